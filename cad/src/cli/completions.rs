@@ -1,0 +1,24 @@
+//! `pinswitch completions SHELL`.
+
+use std::io::Write;
+
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+
+use super::{Cli, Failure};
+
+/// Print the completion script of a shell.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example: pinswitch completions bash > ~/.local/share/bash-completion/completions/pinswitch"
+)]
+pub(super) struct Arguments {
+    /// The shell to complete in.
+    shell: Shell,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut Cli::command(), "pinswitch", &mut script);
+    std::io::stdout().write_all(&script).map_err(|error| Failure::failed(format!("standard output: {error}")))
+}

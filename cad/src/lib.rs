@@ -1,0 +1,3 @@
+//! From a pin configuration to printable parts with their predicted friction curve.
+
+pub mod cli;

@@ -1,0 +1,30 @@
+//! Friction of a pin switch: the published model, the layout law, and curves with their bands.
+//!
+//! The crate knows no geometry kernel. Angles are radians, forces newtons, unless a name says otherwise.
+//!
+//! ```
+//! use pinswitch_model::{Contact, PinPattern, Substrate, predict, published};
+//!
+//! // Three pins, 17.89 degrees apart, on silicone: the paper's "three double" layout.
+//! let pitch_rad = 3.0 * published::GROOVE_PITCH_DEG.to_radians();
+//! let pins = PinPattern::even(3, pitch_rad);
+//! let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
+//! let curve = predict(&contact, &[published::heaviest_load_n()]);
+//! assert_eq!(format!("{:.2}", curve.friction_n[0]), "10.01");
+//! # Ok::<(), pinswitch_model::ContactError>(())
+//! ```
+
+mod capstan;
+mod contact;
+mod curve;
+mod layout_law;
+mod pattern;
+pub mod published;
+mod switch;
+
+pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};
+pub use contact::{Contact, ContactError, Substrate};
+pub use curve::{FrictionCurve, Law, Trust, predict, published_points};
+pub use layout_law::LayoutLaw;
+pub use pattern::PinPattern;
+pub use switch::{PaperSwitch, Switch, SwitchState};

@@ -1,3 +1,7 @@
 //! From a pin configuration to printable parts with their predicted friction curve.
 
 pub mod cli;
+pub mod mesh;
+pub mod profile;
+pub mod solid;
+pub mod validity;

@@ -1,0 +1,228 @@
+//! A closed contour of lines and arcs, with its exact area, perimeter and bounds.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::{Arc, Point2, Vector2};
+
+/// The curve between two corners of a contour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Edge {
+    /// A straight line.
+    Line,
+    /// A circular arc.
+    Arc(Arc),
+}
+
+/// A closed contour; edge `i` joins corner `i` to corner `i + 1`. Material lies to its left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contour {
+    corners: Vec<Point2>,
+    edges: Vec<Edge>,
+}
+
+impl Contour {
+    /// A contour from as many corners as edges; every arc starts and ends in its corners.
+    pub(super) fn from_parts(corners: Vec<Point2>, edges: Vec<Edge>) -> Self {
+        debug_assert_eq!(corners.len(), edges.len());
+        Self { corners, edges }
+    }
+
+    /// A polygon through `corners`.
+    pub fn polygon(corners: Vec<Point2>) -> Self {
+        let edges = vec![Edge::Line; corners.len()];
+        Self { corners, edges }
+    }
+
+    /// A counter-clockwise circle, as two half circles.
+    pub fn circle(centre: Point2, radius_mm: f64) -> Self {
+        let half = |start_rad| Edge::Arc(Arc { centre, radius_mm, start_rad, sweep_rad: PI });
+        let reach = Vector2::new(radius_mm, 0.0);
+        Self { corners: vec![centre + reach, centre - reach], edges: vec![half(0.0), half(PI)] }
+    }
+
+    /// Corners in order.
+    pub fn corners(&self) -> &[Point2] {
+        &self.corners
+    }
+
+    /// Edges in order; edge `i` starts in corner `i`.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// First and last point of edge `i`.
+    pub fn ends(&self, i: usize) -> (Point2, Point2) {
+        (self.corners[i], self.corners[(i + 1) % self.corners.len()])
+    }
+
+    /// The same curve run the other way: an outline becomes a hole.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let n = self.corners.len();
+        let corners = (0..n).map(|i| self.corners[(n - i) % n]).collect();
+        let turn = |edge: &Edge| match edge {
+            Edge::Line => Edge::Line,
+            Edge::Arc(a) => {
+                Edge::Arc(Arc { start_rad: a.start_rad + a.sweep_rad, sweep_rad: -a.sweep_rad, ..*a })
+            }
+        };
+        Self { corners, edges: self.edges.iter().rev().map(turn).collect() }
+    }
+
+    /// The contour moved by `by`.
+    #[must_use]
+    pub fn translated(&self, by: Vector2) -> Self {
+        let edges = self.edges.iter().map(|edge| match edge {
+            Edge::Line => Edge::Line,
+            Edge::Arc(a) => Edge::Arc(Arc { centre: a.centre + by, ..*a }),
+        });
+        Self { corners: self.corners.iter().map(|p| p + by).collect(), edges: edges.collect() }
+    }
+
+    /// The contour scaled about the origin by a positive `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let edges = self.edges.iter().map(|edge| match edge {
+            Edge::Line => Edge::Line,
+            Edge::Arc(a) => {
+                Edge::Arc(Arc { centre: a.centre * factor, radius_mm: a.radius_mm * factor, ..*a })
+            }
+        });
+        Self { corners: self.corners.iter().map(|p| p * factor).collect(), edges: edges.collect() }
+    }
+
+    /// The contour mirrored in the y axis, run so that material stays to its left.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let flip = |p: Point2| Point2::new(-p.x, p.y);
+        let edges = self.edges.iter().map(|edge| match edge {
+            Edge::Line => Edge::Line,
+            Edge::Arc(a) => Edge::Arc(Arc {
+                centre: flip(a.centre),
+                start_rad: PI - a.start_rad,
+                sweep_rad: -a.sweep_rad,
+                ..*a
+            }),
+        });
+        Self { corners: self.corners.iter().map(|p| flip(*p)).collect(), edges: edges.collect() }.reversed()
+    }
+
+    /// The contour halfway to `other`, which has the same edges in the same order. Corners and the middles of arcs
+    /// lie midway, which is exact for arcs about one centre and for lines.
+    #[must_use]
+    pub fn midway(&self, other: &Self) -> Self {
+        let corners: Vec<_> =
+            self.corners.iter().zip(&other.corners).map(|(a, b)| nalgebra::center(a, b)).collect();
+        let n = corners.len();
+        let edges = self.edges.iter().zip(&other.edges).enumerate().map(|(i, pair)| match pair {
+            (Edge::Arc(a), Edge::Arc(b)) => {
+                let centre = nalgebra::center(&a.centre, &b.centre);
+                Edge::Arc(Arc::between(centre, corners[i], corners[(i + 1) % n], a.sweep_rad > 0.0))
+            }
+            _ => Edge::Line,
+        });
+        let edges = edges.collect();
+        Self { corners, edges }
+    }
+
+    /// Signed area in mm² by Green's theorem, exact: positive for outlines, negative for holes.
+    pub fn area_mm2(&self) -> f64 {
+        let twice: f64 = (0..self.edges.len())
+            .map(|i| {
+                let (from, to) = self.ends(i);
+                let chord = from.x * to.y - to.x * from.y;
+                match &self.edges[i] {
+                    Edge::Line => chord,
+                    Edge::Arc(a) => chord + a.radius_mm.powi(2) * (a.sweep_rad - a.sweep_rad.sin()),
+                }
+            })
+            .sum();
+        twice / 2.0
+    }
+
+    /// Length of the contour in mm.
+    pub fn perimeter_mm(&self) -> f64 {
+        (0..self.edges.len())
+            .map(|i| match &self.edges[i] {
+                Edge::Line => (self.ends(i).1 - self.ends(i).0).norm(),
+                Edge::Arc(a) => a.length_mm(),
+            })
+            .sum()
+    }
+
+    /// Lower left and upper right corner of the exact bounding box.
+    pub fn bounds(&self) -> (Point2, Point2) {
+        let mut low = Point2::new(f64::INFINITY, f64::INFINITY);
+        let mut high = -low;
+        let mut include = |p: Point2| {
+            low = Point2::new(low.x.min(p.x), low.y.min(p.y));
+            high = Point2::new(high.x.max(p.x), high.y.max(p.y));
+        };
+        self.corners.iter().for_each(|p| include(*p));
+        for edge in &self.edges {
+            let Edge::Arc(a) = edge else { continue };
+            for quadrant in 0..4 {
+                let angle = f64::from(quadrant) * FRAC_PI_2;
+                if a.covers(angle) {
+                    include(a.centre + Vector2::new(angle.cos(), angle.sin()) * a.radius_mm);
+                }
+            }
+        }
+        (low, high)
+    }
+
+    /// Distance in millimetres from `point` to the exact curve.
+    pub fn distance_mm(&self, point: Point2) -> f64 {
+        let to_edge = |i: usize| {
+            let (from, to) = self.ends(i);
+            let to_ends = (point - from).norm().min((point - to).norm());
+            match &self.edges[i] {
+                Edge::Line => {
+                    let along = to - from;
+                    let t = (point - from).dot(&along) / along.norm_squared();
+                    if (0.0..=1.0).contains(&t) { (from + along * t - point).norm() } else { to_ends }
+                }
+                Edge::Arc(a) => {
+                    let radial = point - a.centre;
+                    let to_circle = (radial.norm() - a.radius_mm).abs();
+                    if a.covers(radial.y.atan2(radial.x)) { to_circle } else { to_ends }
+                }
+            }
+        };
+        (0..self.edges.len()).map(to_edge).fold(f64::INFINITY, f64::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::Pen;
+
+    fn half_disc() -> Contour {
+        Pen::at(Point2::new(1.0, 0.0)).arc_to(Point2::origin(), Point2::new(-1.0, 0.0), true).close()
+    }
+
+    #[test]
+    fn areas_and_perimeters_are_exact() {
+        let circle = Contour::circle(Point2::new(3.0, -2.0), 2.0);
+        assert!((circle.area_mm2() - 4.0 * PI).abs() < 1e-12);
+        assert!((circle.perimeter_mm() - 4.0 * PI).abs() < 1e-12);
+        assert!((circle.reversed().area_mm2() + 4.0 * PI).abs() < 1e-12);
+        assert!((half_disc().area_mm2() - FRAC_PI_2).abs() < 1e-12);
+        assert!((half_disc().mirrored().area_mm2() - FRAC_PI_2).abs() < 1e-12);
+        assert!((half_disc().scaled(2.0).area_mm2() - 4.0 * FRAC_PI_2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bounds_include_the_bulge_of_arcs() {
+        let (low, high) = half_disc().bounds();
+        assert!((low - Point2::new(-1.0, 0.0)).norm() < 1e-12);
+        assert!((high - Point2::new(1.0, 1.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn distances_are_to_the_curve_and_not_to_its_circle() {
+        assert!((half_disc().distance_mm(Point2::new(0.0, 0.5)) - 0.5).abs() < 1e-12);
+        assert!((half_disc().distance_mm(Point2::new(0.0, -3.0)) - 3.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,190 @@
+//! Offsetting a contour into its material: chamfers and draft.
+
+use std::f64::consts::PI;
+
+use super::{Arc, Contour, Edge, Point2, Vector2};
+
+/// Two neighbouring edges whose directions differ by less than this (radians) meet smoothly.
+const SMOOTH_RAD: f64 = 1e-7;
+
+/// The offset contour would lose an edge.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("an offset of {distance_mm:.3} mm swallows the edge at ({x:.3}, {y:.3}) mm")]
+pub struct OffsetError {
+    /// The offset that does not fit.
+    pub distance_mm: f64,
+    /// Where the edge starts that vanishes.
+    pub x: f64,
+    /// Where the edge starts that vanishes.
+    pub y: f64,
+}
+
+/// An edge moved to the left, not yet trimmed to its new corners.
+#[derive(Clone, Copy, Debug)]
+enum Moved {
+    Line { through: Point2, along: Vector2 },
+    Circle { centre: Point2, radius_mm: f64 },
+}
+
+impl Contour {
+    /// The contour moved to its left, into the material, by `distance_mm` (negative: out of it). It has the same
+    /// edges in the same order, so that a wall can join the two.
+    ///
+    /// # Errors
+    /// [`OffsetError`] if an edge would vanish or neighbours would part.
+    pub fn offset(&self, distance_mm: f64) -> Result<Self, OffsetError> {
+        let n = self.edges().len();
+        let fault = |i: usize| OffsetError { distance_mm, x: self.corners()[i].x, y: self.corners()[i].y };
+        let moved: Vec<_> =
+            (0..n).map(|i| self.moved_edge(i, distance_mm).ok_or(fault(i))).collect::<Result<_, _>>()?;
+        let corners: Vec<_> = (0..n)
+            .map(|i| {
+                let before = (i + n - 1) % n;
+                self.moved_corner(before, i, &moved, distance_mm).ok_or(fault(i))
+            })
+            .collect::<Result<_, _>>()?;
+        let edges: Vec<_> = (0..n)
+            .map(|i| self.trimmed(i, corners[i], corners[(i + 1) % n]).ok_or(fault(i)))
+            .collect::<Result<_, _>>()?;
+        Ok(Self::from_parts(corners, edges))
+    }
+
+    fn tangents(&self, i: usize) -> (Vector2, Vector2) {
+        match &self.edges()[i] {
+            Edge::Line => {
+                let (from, to) = self.ends(i);
+                let along = (to - from).normalize();
+                (along, along)
+            }
+            Edge::Arc(arc) => (arc.tangent_at(0.0), arc.tangent_at(1.0)),
+        }
+    }
+
+    fn moved_edge(&self, i: usize, distance_mm: f64) -> Option<Moved> {
+        match &self.edges()[i] {
+            Edge::Line => {
+                let along = self.tangents(i).0;
+                Some(Moved::Line { through: self.corners()[i] + left(along) * distance_mm, along })
+            }
+            Edge::Arc(arc) => {
+                let radius_mm = arc.radius_mm - distance_mm * arc.sweep_rad.signum();
+                (radius_mm > 0.0).then_some(Moved::Circle { centre: arc.centre, radius_mm })
+            }
+        }
+    }
+
+    fn moved_corner(&self, before: usize, after: usize, moved: &[Moved], distance_mm: f64) -> Option<Point2> {
+        let corner = self.corners()[after];
+        let (into, out) = (self.tangents(before).1, self.tangents(after).0);
+        if (into.perp(&out)).abs() < SMOOTH_RAD && into.dot(&out) > 0.0 {
+            return Some(corner + left(into) * distance_mm);
+        }
+        meet(moved[before], moved[after])
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| (a - corner).norm().total_cmp(&(b - corner).norm()))
+    }
+
+    /// Edge `i` between its new corners, if it still runs the same way.
+    fn trimmed(&self, i: usize, from: Point2, to: Point2) -> Option<Edge> {
+        match &self.edges()[i] {
+            Edge::Line => ((to - from).dot(&self.tangents(i).0) > 0.0).then_some(Edge::Line),
+            Edge::Arc(old) => {
+                let arc = Arc::between(old.centre, from, to, old.sweep_rad > 0.0);
+                ((arc.sweep_rad - old.sweep_rad).abs() < PI).then_some(Edge::Arc(arc))
+            }
+        }
+    }
+}
+
+fn left(along: Vector2) -> Vector2 {
+    Vector2::new(-along.y, along.x)
+}
+
+/// The points in which two moved edges meet, none to two.
+fn meet(a: Moved, b: Moved) -> [Option<Point2>; 2] {
+    match (a, b) {
+        (Moved::Line { through: p, along: d }, Moved::Line { through: q, along: e }) => {
+            let cross = d.perp(&e);
+            [(cross.abs() > SMOOTH_RAD).then(|| p + d * ((q - p).perp(&e) / cross)), None]
+        }
+        (Moved::Line { through, along }, Moved::Circle { centre, radius_mm })
+        | (Moved::Circle { centre, radius_mm }, Moved::Line { through, along }) => {
+            let foot = through + along * (centre - through).dot(&along);
+            on_chord(foot, along, radius_mm.powi(2) - (foot - centre).norm_squared())
+        }
+        (Moved::Circle { centre: p, radius_mm: r }, Moved::Circle { centre: q, radius_mm: s }) => {
+            let apart = (q - p).norm();
+            if apart == 0.0 {
+                return [None, None];
+            }
+            let towards = (q - p) / apart;
+            let reach = (apart * apart + r * r - s * s) / (2.0 * apart);
+            on_chord(p + towards * reach, left(towards), r * r - reach * reach)
+        }
+    }
+}
+
+/// The two points at distance `sqrt(half_chord²)` from `middle` along a unit direction.
+fn on_chord(middle: Point2, along: Vector2, half_chord_squared: f64) -> [Option<Point2>; 2] {
+    if half_chord_squared < 0.0 {
+        return [None, None];
+    }
+    let half = half_chord_squared.sqrt();
+    [Some(middle + along * half), Some(middle - along * half)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::Pen;
+
+    fn square() -> Contour {
+        Contour::polygon(vec![
+            Point2::new(0.0, 0.0),
+            Point2::new(4.0, 0.0),
+            Point2::new(4.0, 4.0),
+            Point2::new(0.0, 4.0),
+        ])
+    }
+
+    /// A block with a half-round groove in its top: the groove widens as the outline shrinks.
+    fn grooved() -> Contour {
+        Pen::at(Point2::new(0.0, 0.0))
+            .line_to(Point2::new(6.0, 0.0))
+            .line_to(Point2::new(6.0, 3.0))
+            .line_to(Point2::new(4.0, 3.0))
+            .arc_to(Point2::new(3.0, 3.0), Point2::new(2.0, 3.0), false)
+            .line_to(Point2::new(0.0, 3.0))
+            .close()
+    }
+
+    #[test]
+    fn outlines_shrink_and_holes_grow() {
+        assert!((square().offset(0.5).unwrap().area_mm2() - 9.0).abs() < 1e-12);
+        assert!((square().reversed().offset(0.5).unwrap().area_mm2() + 25.0).abs() < 1e-12);
+        let hole = Contour::circle(Point2::origin(), 1.0).reversed();
+        assert!((hole.offset(0.5).unwrap().area_mm2() + PI * 2.25).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_point_of_an_offset_keeps_its_distance() {
+        let shrunk = grooved().offset(0.3).unwrap();
+        assert!(shrunk.area_mm2() < grooved().area_mm2());
+        for i in 0..shrunk.edges().len() {
+            let (from, to) = shrunk.ends(i);
+            let middle = match &shrunk.edges()[i] {
+                Edge::Line => nalgebra::center(&from, &to),
+                Edge::Arc(arc) => arc.point_at(0.5, arc.radius_mm),
+            };
+            assert!((grooved().distance_mm(middle) - 0.3).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn an_offset_that_swallows_an_edge_is_refused() {
+        assert!(square().offset(2.1).is_err());
+        assert!(grooved().offset(1.5).is_err());
+        assert!(Contour::circle(Point2::origin(), 1.0).offset(1.0).is_err());
+    }
+}

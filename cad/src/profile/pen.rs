@@ -1,0 +1,48 @@
+//! Draws a contour edge by edge.
+
+use super::{Arc, Contour, Edge, Point2};
+
+/// Draws a [`Contour`]; neighbouring edges share their corner by construction.
+#[derive(Clone, Debug)]
+pub struct Pen {
+    corners: Vec<Point2>,
+    edges: Vec<Edge>,
+}
+
+impl Pen {
+    /// Starts at `point`.
+    pub fn at(point: Point2) -> Self {
+        Self { corners: vec![point], edges: Vec::new() }
+    }
+
+    fn here(&self) -> Point2 {
+        // The constructor puts one corner in, and nothing takes it out.
+        self.corners.last().copied().unwrap_or_else(Point2::origin)
+    }
+
+    /// A straight line to `point`.
+    #[must_use]
+    pub fn line_to(mut self, point: Point2) -> Self {
+        self.edges.push(Edge::Line);
+        self.corners.push(point);
+        self
+    }
+
+    /// An arc about `centre` to `point`, counter-clockwise or clockwise.
+    #[must_use]
+    pub fn arc_to(mut self, centre: Point2, point: Point2, counter_clockwise: bool) -> Self {
+        self.edges.push(Edge::Arc(Arc::between(centre, self.here(), point, counter_clockwise)));
+        self.corners.push(point);
+        self
+    }
+
+    /// Closes with a straight line, unless the pen is back at its start.
+    pub fn close(mut self) -> Contour {
+        if (self.here() - self.corners[0]).norm() > 1e-9 {
+            self.edges.push(Edge::Line);
+        } else {
+            self.corners.pop();
+        }
+        Contour::from_parts(self.corners, self.edges)
+    }
+}

@@ -1,0 +1,126 @@
+//! Caps: constrained Delaunay triangulation of an outline with holes.
+
+use std::collections::VecDeque;
+
+use spade::{ConstrainedDelaunayTriangulation, Point2 as SpadePoint, Triangulation};
+
+use crate::profile::Point2;
+
+/// The contours of a cap cannot be triangulated: they cross, touch or leave the plane's finite part.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CapError {
+    /// Two contours of one cap cross near a point.
+    #[error("contours cross near ({x:.3}, {y:.3}) mm at height {z_mm:.3} mm")]
+    Crossing {
+        /// Where they cross, mm.
+        x: f64,
+        /// Where they cross, mm.
+        y: f64,
+        /// Height of the cap, mm.
+        z_mm: f64,
+    },
+    /// Two contours share a point, or a coordinate is not finite.
+    #[error("contours touch or are not finite at height {z_mm:.3} mm")]
+    Touching {
+        /// Height of the cap, mm.
+        z_mm: f64,
+    },
+}
+
+/// Triangulates the region between `loops` (the outline and its holes, in any sense of rotation); gives triangles
+/// of indices into the concatenated points, counter-clockwise.
+pub(super) fn triangulate(loops: &[&[Point2]], z_mm: f64) -> Result<Vec<[usize; 3]>, CapError> {
+    let points: Vec<_> = loops.concat().iter().map(|p| SpadePoint::new(p.x, p.y)).collect();
+    let mut edges = Vec::with_capacity(points.len());
+    let mut first = 0;
+    for points in loops {
+        let n = points.len();
+        edges.extend((0..n).map(|i| [first + i, first + (i + 1) % n]));
+        first += n;
+    }
+    let count = points.len();
+    let mut crossing = None;
+    let place = points.clone();
+    let cdt = ConstrainedDelaunayTriangulation::<SpadePoint<f64>>::try_bulk_load_cdt(points, edges, |edge| {
+        crossing.get_or_insert(edge);
+    })
+    .map_err(|_| CapError::Touching { z_mm })?;
+    if let Some([a, _]) = crossing {
+        return Err(CapError::Crossing { x: place[a].x, y: place[a].y, z_mm });
+    }
+    if cdt.num_vertices() != count {
+        return Err(CapError::Touching { z_mm });
+    }
+    Ok(inside(&cdt))
+}
+
+/// The faces that lie inside: reached from outside by crossing an odd number of constraint edges.
+fn inside(cdt: &ConstrainedDelaunayTriangulation<SpadePoint<f64>>) -> Vec<[usize; 3]> {
+    let mut parity: Vec<Option<bool>> = vec![None; cdt.num_all_faces()];
+    let outer = cdt.outer_face();
+    parity[outer.fix().index()] = Some(false);
+    let mut queue = VecDeque::new();
+    for edge in cdt.convex_hull() {
+        let face = edge.rev().face().fix().index();
+        if parity[face].is_none() {
+            parity[face] = Some(edge.is_constraint_edge());
+            queue.push_back(edge.rev().face().fix());
+        }
+    }
+    let mut triangles = Vec::new();
+    while let Some(face) = queue.pop_front() {
+        let face = cdt.face(face);
+        let Some(face) = face.as_inner() else { continue };
+        let here = parity[face.fix().index()] == Some(true);
+        if here {
+            triangles.push(face.vertices().map(|v| v.fix().index()));
+        }
+        for edge in face.adjacent_edges() {
+            let beyond = edge.rev().face().fix();
+            if parity[beyond.index()].is_none() {
+                parity[beyond.index()] = Some(here ^ edge.is_constraint_edge());
+                queue.push_back(beyond);
+            }
+        }
+    }
+    triangles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(low: f64, high: f64) -> Vec<Point2> {
+        [(low, low), (high, low), (high, high), (low, high)].map(|(x, y)| Point2::new(x, y)).to_vec()
+    }
+
+    fn area(points: &[Point2], triangles: &[[usize; 3]]) -> f64 {
+        triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|i| points[i]);
+                (b - a).perp(&(c - a)) / 2.0
+            })
+            .sum()
+    }
+
+    #[test]
+    fn holes_and_islands_are_told_apart() {
+        let loops = [square(0.0, 10.0), square(2.0, 8.0), square(4.0, 6.0)];
+        let all: Vec<_> = loops.concat();
+        let loops: Vec<&[Point2]> = loops.iter().map(Vec::as_slice).collect();
+        let triangles = triangulate(&loops, 0.0).unwrap();
+        assert!((area(&all, &triangles) - (100.0 - 36.0 + 4.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn contours_that_cross_or_touch_are_refused() {
+        let (a, b) = (square(0.0, 4.0), square(2.0, 6.0));
+        assert!(matches!(triangulate(&[&a, &b], 0.0), Err(CapError::Crossing { .. })));
+        let c = square(4.0, 6.0);
+        assert!(matches!(triangulate(&[&a, &c], 0.0), Err(CapError::Touching { .. })));
+        let mut d = square(1.0, 2.0);
+        d[0].x = f64::NAN;
+        assert!(matches!(triangulate(&[&a, &d], 0.0), Err(CapError::Touching { .. })));
+    }
+}

@@ -1,0 +1,144 @@
+//! Do two triangles pass through each other? Exact, by orientation predicates.
+
+use robust::{Coord, Coord3D, orient2d, orient3d};
+
+use crate::mesh::Point3;
+
+/// A triangle with the numbers of its corners.
+pub(super) type Corners = [(u32, Point3); 3];
+
+/// Whether the triangles meet anywhere but in the corners and edges that they share by number.
+pub(super) fn meet(s: &Corners, t: &Corners) -> bool {
+    let sides = |of: &Corners, plane: &Corners| of.map(|(_, p)| side(plane, p));
+    let (of_t, of_s) = (sides(t, s), sides(s, t));
+    if one_sided(of_t) || one_sided(of_s) {
+        return false;
+    }
+    if of_t == [0.0; 3] {
+        return overlap_in_plane(s, t);
+    }
+    let shared = s.iter().filter(|(i, _)| t.iter().any(|(j, _)| i == j)).count();
+    match shared {
+        0 => pierces(s, t) || pierces(t, s),
+        // From a shared corner, an intersection must leave one triangle through its opposite edge.
+        1 => opposite_edge_pierces(s, t) || opposite_edge_pierces(t, s),
+        // Two planes through a shared edge meet nowhere else.
+        _ => false,
+    }
+}
+
+/// Strictly on one side: no contact.
+fn one_sided(sides: [f64; 3]) -> bool {
+    sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0)
+}
+
+fn coord(p: Point3) -> Coord3D<f64> {
+    Coord3D { x: p.x, y: p.y, z: p.z }
+}
+
+fn side(plane: &Corners, p: Point3) -> f64 {
+    orient3d(coord(plane[0].1), coord(plane[1].1), coord(plane[2].1), coord(p))
+}
+
+fn edges(t: &Corners) -> [(Point3, Point3); 3] {
+    [(t[0].1, t[1].1), (t[1].1, t[2].1), (t[2].1, t[0].1)]
+}
+
+fn pierces(from: &Corners, into: &Corners) -> bool {
+    edges(from).iter().any(|(p, q)| segment_meets(*p, *q, into))
+}
+
+fn opposite_edge_pierces(from: &Corners, into: &Corners) -> bool {
+    let far: Vec<Point3> =
+        from.iter().filter(|(i, _)| into.iter().all(|(j, _)| i != j)).map(|(_, p)| *p).collect();
+    match far[..] {
+        [p, q] => segment_meets(p, q, into),
+        _ => false,
+    }
+}
+
+/// Whether the segment and the triangle have a point in common.
+fn segment_meets(p: Point3, q: Point3, t: &Corners) -> bool {
+    let (at_p, at_q) = (side(t, p), side(t, q));
+    if at_p * at_q > 0.0 {
+        return false;
+    }
+    if at_p == 0.0 && at_q == 0.0 {
+        return segment_meets_in_plane(p, q, t);
+    }
+    let turns = edges(t).map(|(a, b)| orient3d(coord(p), coord(q), coord(a), coord(b)));
+    turns.iter().all(|o| *o >= 0.0) || turns.iter().all(|o| *o <= 0.0)
+}
+
+/// Drops the axis along which the triangle's plane is most nearly seen face on.
+fn flatten(t: &Corners) -> impl Fn(Point3) -> Coord<f64> + use<> {
+    let normal = (t[1].1 - t[0].1).cross(&(t[2].1 - t[0].1)).abs();
+    let drop = normal.imax();
+    move |p: Point3| match drop {
+        0 => Coord { x: p.y, y: p.z },
+        1 => Coord { x: p.z, y: p.x },
+        _ => Coord { x: p.x, y: p.y },
+    }
+}
+
+/// The triangle in its own plane, counter-clockwise.
+fn counter_clockwise(t: &Corners, flat: &impl Fn(Point3) -> Coord<f64>) -> [Coord<f64>; 3] {
+    let [a, b, c] = t.map(|(_, p)| flat(p));
+    if orient2d(a, b, c) < 0.0 { [a, c, b] } else { [a, b, c] }
+}
+
+/// Convex shapes are apart if and only if an edge of one of them separates them.
+fn overlap_in_plane(s: &Corners, t: &Corners) -> bool {
+    let flat = flatten(s);
+    let (a, b) = (counter_clockwise(s, &flat), counter_clockwise(t, &flat));
+    let separates = |x: &[Coord<f64>; 3], y: &[Coord<f64>; 3]| {
+        (0..3).any(|i| y.iter().all(|p| orient2d(x[i], x[(i + 1) % 3], *p) <= 0.0))
+    };
+    !separates(&a, &b) && !separates(&b, &a)
+}
+
+fn segment_meets_in_plane(p: Point3, q: Point3, t: &Corners) -> bool {
+    let flat = flatten(t);
+    let (p, q, t) = (flat(p), flat(q), counter_clockwise(t, &flat));
+    let outside_an_edge = (0..3).any(|i| [p, q].iter().all(|x| orient2d(t[i], t[(i + 1) % 3], *x) < 0.0));
+    let turns = t.map(|x| orient2d(p, q, x));
+    let beside = turns.iter().all(|o| *o > 0.0) || turns.iter().all(|o| *o < 0.0);
+    !outside_an_edge && !beside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle(numbers: [u32; 3], points: [[f64; 3]; 3]) -> Corners {
+        let at = |i: usize| (numbers[i], Point3::from(points[i]));
+        [at(0), at(1), at(2)]
+    }
+
+    const FLAT: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+
+    #[test]
+    fn crossing_and_touching_triangles_meet() {
+        let flat = triangle([0, 1, 2], FLAT);
+        let through = triangle([3, 4, 5], [[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [5.0, 5.0, 1.0]]);
+        let above = triangle([3, 4, 5], [[1.0, 1.0, 0.5], [1.0, 1.0, 1.0], [5.0, 5.0, 1.0]]);
+        let touching = triangle([3, 4, 5], [[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [5.0, 5.0, 1.0]]);
+        assert!(meet(&flat, &through) && meet(&through, &flat));
+        assert!(meet(&flat, &touching));
+        assert!(!meet(&flat, &above));
+    }
+
+    #[test]
+    fn neighbours_meet_only_if_they_fold_over() {
+        let flat = triangle([0, 1, 2], FLAT);
+        let beside = triangle([1, 0, 3], [FLAT[1], FLAT[0], [1.0, -3.0, 0.0]]);
+        let folded = triangle([1, 0, 3], [FLAT[1], FLAT[0], [1.0, 1.0, 0.0]]);
+        let upright = triangle([1, 0, 3], [FLAT[1], FLAT[0], [1.0, 1.0, 2.0]]);
+        assert!(!meet(&flat, &beside) && !meet(&flat, &upright));
+        assert!(meet(&flat, &folded));
+        let fan = triangle([0, 3, 4], [FLAT[0], [-1.0, 0.0, 1.0], [-1.0, 1.0, -1.0]]);
+        let stab = triangle([0, 3, 4], [FLAT[0], [1.0, 1.0, 1.0], [1.0, 1.0, -1.0]]);
+        assert!(!meet(&flat, &fan));
+        assert!(meet(&flat, &stab));
+    }
+}

@@ -88,8 +88,19 @@ fn find(parent: &mut [u32], mut v: u32) -> u32 {
     v
 }
 
+/// Whether `inner` lies inside `outer` as a whole; surfaces that cross are left to the intersection check.
 fn encloses(outer: &Mesh, inner: &Mesh) -> bool {
-    inner.facets().next().is_some_and(|corners| winding(outer, corners[0]).abs() > 0.5)
+    let (Some((low, high)), Some((inner_low, inner_high))) = (corner_bounds(outer), corner_bounds(inner)) else {
+        return false;
+    };
+    low <= inner_low
+        && inner_high <= high
+        && inner.facets().next().is_some_and(|corners| winding(outer, corners[0]).abs() > 0.5)
+}
+
+/// Bounds of the vertices that the facets use.
+fn corner_bounds(mesh: &Mesh) -> Option<(Point3, Point3)> {
+    mesh.facets().flatten().map(|p| (p, p)).reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))
 }
 
 /// Winding number of a closed surface about `point`: its solid angle over a full sphere (van Oosterom & Strackee).

@@ -45,6 +45,7 @@ pub struct Contact {
     outside: usize,
     wrap_rad: f64,
     departures: Vec<String>,
+    six_single_threshold: f64,
 }
 
 impl Contact {
@@ -62,7 +63,21 @@ impl Contact {
             return Err(ContactError::NothingTouches { degrees });
         }
         let outside = pins.count() - touched.count();
-        Ok(Self { substrate, pins: touched, outside, wrap_rad, departures: Vec::new() })
+        Ok(Self {
+            substrate,
+            pins: touched,
+            outside,
+            wrap_rad,
+            departures: Vec::new(),
+            six_single_threshold: published::LAYOUTS[0].threshold,
+        })
+    }
+
+    /// Reads `F_thr` of six-single as `threshold` instead of the printed 5.7: the paper leaves it open (model.md 1).
+    #[must_use]
+    pub fn with_six_single_threshold(mut self, threshold: f64) -> Self {
+        self.six_single_threshold = threshold;
+        self
     }
 
     /// Adds ways in which the part departs from the one that was measured (another silicone, another pin):
@@ -105,14 +120,18 @@ impl Contact {
     }
 
     /// The published layout whose pins these are: same number, same even pitch, centred on the wrap.
-    pub fn published_layout(&self) -> Option<&'static PublishedLayout> {
+    pub fn published_layout(&self) -> Option<PublishedLayout> {
         let pitch = self.pins.mean_pitch_rad()?;
-        published::LAYOUTS.iter().find(|l| {
+        let mut layout = *published::LAYOUTS.iter().find(|l| {
             l.pins == self.pins.count()
                 && (l.pitch_rad() - pitch).abs() < 1e-4
                 && self.pins.is_even()
                 && self.pins.is_centred()
-        })
+        })?;
+        if layout.name == published::LAYOUTS[0].name {
+            layout.threshold = self.six_single_threshold;
+        }
+        Some(layout)
     }
 }
 
@@ -125,7 +144,7 @@ mod tests {
         for layout in &published::LAYOUTS {
             let pins = PinPattern::even(layout.pins, layout.pitch_rad());
             let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap();
-            assert_eq!(contact.published_layout(), Some(layout));
+            assert_eq!(contact.published_layout(), Some(*layout));
             assert!(contact.departures().is_empty());
         }
         let pins = PinPattern::even(4, 0.2);

@@ -208,7 +208,7 @@ fn silicone_alone(contact: &Contact, loads_n: &[f64]) -> Vec<Banded> {
 }
 
 /// Pins alone: the paper's constant coefficient, which misses its own three maxima by 42 to 113 %; the band says so.
-fn pins_alone(contact: &Contact, layout: Option<&PublishedLayout>, loads_n: &[f64]) -> Vec<Banded> {
+fn pins_alone(contact: &Contact, layout: Option<PublishedLayout>, loads_n: &[f64]) -> Vec<Banded> {
     let model =
         capstan_friction_n(published::heaviest_load_n(), published::MU_PINS * published::wrap_angle_rad());
     let spread = match layout {
@@ -219,15 +219,15 @@ fn pins_alone(contact: &Contact, layout: Option<&PublishedLayout>, loads_n: &[f6
 }
 
 /// A published layout: its own miss at the maximum, and no less than the three layouts' root mean square.
-fn paper_device(contact: &Contact, layout: &PublishedLayout, loads_n: &[f64]) -> Vec<Banded> {
+fn paper_device(contact: &Contact, layout: PublishedLayout, loads_n: &[f64]) -> Vec<Banded> {
     let own = |l: &PublishedLayout| {
         let state = PaperSwitch::new(*l).state(published::heaviest_load_n(), published::wrap_angle_rad());
         miss(state.friction_n, l.device_max_n)
     };
     let mean_square =
         published::LAYOUTS.iter().map(|l| own(l).powi(2)).sum::<f64>() / published::LAYOUTS.len() as f64;
-    let spread = own(layout).max(mean_square.sqrt()).max(extrapolated_spread(contact));
-    let switch = PaperSwitch::new(*layout);
+    let spread = own(&layout).max(mean_square.sqrt()).max(extrapolated_spread(contact));
+    let switch = PaperSwitch::new(layout);
     loads_n.iter().map(|&load| banded(switch.state(load, contact.wrap_rad()), spread)).collect()
 }
 

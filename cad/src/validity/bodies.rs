@@ -90,7 +90,8 @@ fn find(parent: &mut [u32], mut v: u32) -> u32 {
 
 /// Whether `inner` lies inside `outer` as a whole; surfaces that cross are left to the intersection check.
 fn encloses(outer: &Mesh, inner: &Mesh) -> bool {
-    let (Some((low, high)), Some((inner_low, inner_high))) = (corner_bounds(outer), corner_bounds(inner)) else {
+    let (Some((low, high)), Some((inner_low, inner_high))) = (corner_bounds(outer), corner_bounds(inner))
+    else {
         return false;
     };
     low <= inner_low

@@ -1,0 +1,13 @@
+//! Configurations: what a user may set, how it is read, and what can be built.
+
+mod error;
+pub mod parameter;
+mod parameters;
+mod read;
+mod reference;
+
+pub use error::{ConfigError, Place};
+pub use parameter::{Origin, Words};
+pub use parameters::{Configuration, MouldKind, SlotKind, Slots, SubstrateKind};
+pub use read::{Places, assign, read};
+pub use reference::{reference_toml, to_toml};

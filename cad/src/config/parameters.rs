@@ -1,0 +1,167 @@
+//! Every parameter of a switch: unit (in its name), default, range, origin and reason.
+
+use super::parameter::{configuration, words};
+use pinswitch_model::published;
+
+words! {
+    /// What lies under the pins.
+    SubstrateKind {
+        /// The cast silicone layer.
+        Silicone = "silicone",
+        /// The printed rigid proxy.
+        Abs = "abs",
+    }
+}
+
+words! {
+    /// Which grooves get a slot in the side supports.
+    Slots {
+        /// Every groove, so that pins can be moved.
+        All = "all",
+        /// Only the occupied ones.
+        Occupied = "occupied",
+    }
+}
+
+words! {
+    /// How deep the slots of the side supports are.
+    SlotKind {
+        /// With a floor that holds the pins axially.
+        Blind = "blind",
+        /// Right through the plate.
+        Through = "through",
+    }
+}
+
+words! {
+    /// How the casting mould is built.
+    MouldKind {
+        /// Core, ring and lid with keys: comes apart.
+        Split = "split",
+        /// A tray in one piece.
+        OnePiece = "one-piece",
+        /// No mould.
+        None = "none",
+    }
+}
+
+configuration! {
+    /// A configuration whose every value lies in its range; [`super::Design`] is one that can also be built.
+    Configuration {
+        /// The switch as a whole.
+        switch: SwitchTable {
+            name: String = "switch".to_owned(), 40, Chosen, "names the output folder and the plots";
+        }
+        /// Pins, tendon contact and what lies under them.
+        layout: LayoutTable {
+            pins: Vec<usize> = Vec::new(), (), Published, "occupied grooves, numbered from 1 along increasing angle; [] leaves the substrate bare";
+            substrate: SubstrateKind = SubstrateKind::Silicone, (), Published, "silicone for the switch; abs for the rigid proxy, on which the pins alone carry the tendon";
+            wrap_angle_deg: f64 = published::WRAP_ANGLE_DEG, 1.0..=340.0, Published, "angle over which the tendon touches; 63.89 in every experiment";
+        }
+        /// The grooved sector.
+        segment: SegmentTable {
+            span_deg: f64 = published::SEGMENT_DEG, 5.0..=340.0, Published, "angle of the grooved sector";
+            grooves: usize = published::GROOVES, 1..=60, Published, "number of grooves, evenly spaced over the span";
+            groove_radius_mm: f64 = 0.5, 0.1..=3.0, Published, "radius of the half-round grooves on shell and silicone";
+            end_margin_mm: f64 = 0.0, 0.0..=10.0, Chosen, "material beyond the span at both ends; the published span leaves end walls of 0.54 mm, 0.9 prints better";
+        }
+        /// The rigid shell.
+        shell: ShellTable {
+            outer_radius_mm: f64 = 20.0, 5.0..=150.0, Assumed, "radius on which the silicone lies; puts the contact at 22 mm, the only radius that the paper gives";
+            wall_mm: f64 = 6.0, 1.0..=60.0, Assumed, "radial thickness; 6 takes an M3 hole with 1 mm of wall around it under the grooves";
+            width_mm: f64 = 14.0, 2.0..=100.0, Assumed, "width along the axis";
+        }
+        /// Axial holes that join shell and side supports.
+        fasteners: FastenersTable {
+            count: usize = 2, 0..=12, Chosen, "number of through holes; 0 leaves them out";
+            hole_diameter_mm: f64 = 3.4, 1.0..=12.0, Chosen, "clearance hole: 3.4 for M3, 2.4 for M2";
+            end_distance_mm: f64 = 4.0, 1.0..=40.0, Chosen, "from the ends of the sector to the middle of the outermost holes, along the arc";
+        }
+        /// The cast layer.
+        silicone: SiliconeTable {
+            thickness_mm: f64 = 2.0, 0.3..=10.0, Published, "thickness of the layer";
+            side_clearance_mm: f64 = 0.2, 0.0..=1.0, Chosen, "gap to each side support; the layer must bulge without rubbing";
+            hardness_shore_a: f64 = 50.0, 10.0..=80.0, Published, "Sylgard 184 after a hot cure; goes into the trust in the curve only";
+            density_g_cm3: f64 = 1.03, 0.8..=1.5, Assumed, "cured Sylgard 184";
+            mix_ratio: f64 = 10.0, 1.0..=20.0, Published, "base to curing agent by mass";
+            waste_factor: f64 = 1.3, 1.0..=3.0, Chosen, "what stays in cup and syringe";
+            least_mix_g: f64 = 11.0, 0.0..=100.0, Chosen, "below it, a scale of 0.1 g cannot weigh 10:1";
+        }
+        /// The steel pins.
+        pins: PinsTable {
+            diameter_mm: f64 = 0.94, 0.1..=5.0, Published, "polished tin-plated steel";
+            tolerance_mm: f64 = 0.01, 0.0..=0.2, Published, "of the diameter";
+            end_play_mm: f64 = 0.2, 0.0..=2.0, Chosen, "axial play between the two slot floors";
+            spares: usize = 1, 0..=20, Chosen, "pins to cut beyond those in use";
+        }
+        /// The tendon.
+        tendon: TendonTable {
+            rope_diameter_mm: f64 = 1.2, 0.1..=6.0, Published, "the paper's 1.2 mm \"radius\" read as diameter: 2.4 mm rope would carry four times the published 850 N";
+            coating_mm: f64 = 0.25, 0.0..=2.0, Published, "polyamide-12 coating, on the radius";
+            length_mm: f64 = 300.0, 10.0..=10000.0, Chosen, "to cut, for the bill of materials";
+        }
+        /// The two side supports.
+        support: SupportTable {
+            plate_mm: f64 = 3.0, 0.8..=20.0, Chosen, "thickness of the plates";
+            slots: Slots = Slots::All, (), Chosen, "all lets pins be moved; occupied makes the layout foolproof";
+            slot_kind: SlotKind = SlotKind::Blind, (), Chosen, "blind slots hold the pins axially; through slots let them be changed from outside";
+            slot_clearance_mm: f64 = 0.2, 0.1..=0.4, Chosen, "slot width beyond the pin; under 0.1 slicers close the slot, over 0.4 the pin walks";
+            slot_floor_mm: f64 = 0.9, 0.2..=5.0, Chosen, "what is left under a blind slot";
+            travel_margin_mm: f64 = 0.2, 0.0..=2.0, Chosen, "travel beyond the pin's flush position";
+            rise_mm: f64 = 2.55, 0.5..=20.0, Chosen, "plate above the resting pins; 1.5 tendon diameters keep the tendon in";
+            corner_radius_mm: f64 = 1.5, 0.0..=5.0, Chosen, "rounds the outer corners, which would cut the coating";
+            lip_depth_mm: f64 = 0.8, 0.0..=5.0, Chosen, "how far the lip reaches over the edge of the silicone; 0 leaves it out";
+            lip_height_mm: f64 = 0.9, 0.4..=5.0, Chosen, "radial thickness of the lip: two printed lines";
+            lip_clearance_mm: f64 = 0.2, 0.0..=2.0, Chosen, "gap between lip and resting silicone";
+        }
+        /// The casting mould.
+        mould: MouldTable {
+            kind: MouldKind = MouldKind::Split, (), Chosen, "split comes apart for release; one-piece is a tray";
+            wall_mm: f64 = 3.0, 1.2..=20.0, Chosen, "least wall around the cavity";
+            floor_mm: f64 = 3.0, 0.8..=20.0, Chosen, "floor, base plate and lid";
+            overfill_mm: f64 = 1.0, 0.0..=10.0, Chosen, "one-piece: height of the basin above the layer; cut the layer along its ledge";
+            draft_deg: f64 = 0.0, 0.0..=5.0, Chosen, "one-piece: slant of inner and end walls; the ribbed wall shapes the contact and stays upright";
+            shrinkage_pct: f64 = 0.0, 0.0..=3.0, Chosen, "linear shrinkage of the silicone: 0 when cured at 25 C, about 1 at 60 to 80 C";
+            clearance_mm: f64 = 0.2, 0.05..=0.5, Chosen, "print clearance between parts of the split mould, per side";
+            key_diameter_mm: f64 = 3.0, 1.5..=10.0, Chosen, "foot of the keys that register the parts";
+            key_height_mm: f64 = 2.5, 0.5..=10.0, Chosen, "height of the keys";
+            pour_width_mm: f64 = 6.0, 1.0..=20.0, Chosen, "mouth of the lid's pouring funnel";
+            vent_diameter_mm: f64 = 1.5, 0.5..=4.0, Chosen, "vents at both ends of the lid, no wider than the cavity allows";
+        }
+        /// Parts beside shell, supports and mould.
+        parts: PartsTable {
+            proxy: bool = true, (), Published, "the rigid proxy of the silicone layer";
+            coupon: bool = true, (), Chosen, "fit coupon: slots of 0.10 to 0.40 mm clearance and three grooves";
+            guide_pulley: bool = false, (), Published, "the rig's guide pulley, radius 22 mm, for a 608 bearing";
+        }
+        /// The engraved label.
+        label: LabelTable {
+            engrave: bool = true, (), Chosen, "tells printed variants apart; left out, with a warning, where it does not fit";
+            text: String = String::new(), 12, Chosen, "empty: pins x step / first groove, such as 3x3/5";
+            height_mm: f64 = 3.0, 1.5..=10.0, Chosen, "height of the letters";
+            stroke_mm: f64 = 0.5, 0.3..=2.0, Chosen, "width of the strokes, at least one printed line";
+            depth_mm: f64 = 0.4, 0.1..=2.0, Chosen, "two layers";
+        }
+        /// The printer.
+        print: PrintTable {
+            nozzle_mm: f64 = 0.4, 0.1..=1.2, Chosen, "nozzle";
+            line_mm: f64 = 0.45, 0.1..=1.5, Chosen, "extrusion width";
+            layer_mm: f64 = 0.2, 0.05..=0.6, Chosen, "layer height";
+            least_wall_mm: f64 = 0.45, 0.1..=3.0, Chosen, "thinnest wall or land that is accepted: one printed line; under two lines it warns";
+            elephant_foot_mm: f64 = 0.0, 0.0..=1.0, Chosen, "45 degree chamfer on bottom edges; slicers compensate 0.2 by default: set the one or the other";
+            bed_mm: f64 = 250.0, 50.0..=2000.0, Chosen, "side of the print bed";
+            abs_density_g_cm3: f64 = 1.04, 0.5..=3.0, Assumed, "for the mass of the printed parts";
+        }
+        /// The mesh.
+        mesh: MeshTable {
+            chord_tolerance_mm: f64 = 0.01, 1e-4..=0.1, Chosen, "largest distance between mesh and true curve, absolute";
+        }
+        /// The predicted curve.
+        friction: FrictionTable {
+            load_min_n: f64 = 3.0766, 0.0..=1000.0, Published, "lightest load of the curve; 3.077 was the lightest tested";
+            load_max_n: f64 = 49.671, 0.1..=1000.0, Published, "heaviest load of the curve; 49.671 was the heaviest tested";
+            points: usize = 101, 2..=10000, Chosen, "points of the curve";
+            six_single_threshold: f64 = 5.7, 0.0..=20.0, Published, "F_thr of six-single as printed; 4.7 would bring its maximum to the measured one";
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Configurations as TOML: what differs from the defaults, or everything with its explanation.
+
+use super::parameters::Configuration;
+
+/// Every parameter with its unit, range, origin and reason, at its default: `templates/reference.toml`.
+pub fn reference_toml() -> String {
+    let defaults = Configuration::default();
+    let mut text =
+        "# Every parameter of pinswitch, at its default. Copy what you change; all are optional.\n\
+                    # Written by `pinswitch init reference`; a test keeps it so.\n"
+            .to_owned();
+    let mut section = "";
+    for parameter in Configuration::PARAMETERS {
+        if parameter.section != section {
+            section = parameter.section;
+            text += &format!("\n[{section}]\n");
+        }
+        let unit = if parameter.unit().is_empty() { String::new() } else { format!(" {}", parameter.unit()) };
+        text += &format!(
+            "# {}. Range: {}{unit}. Origin: {}.\n{} = {}\n",
+            parameter.reason,
+            (parameter.range)(),
+            parameter.origin,
+            parameter.key,
+            (parameter.get)(&defaults)
+        );
+    }
+    text
+}
+
+/// The parameters that differ from the defaults, as TOML that reads back to `configuration`.
+pub fn to_toml(configuration: &Configuration) -> String {
+    let defaults = Configuration::default();
+    let mut text = String::new();
+    let mut section = "";
+    for parameter in Configuration::PARAMETERS {
+        let value = (parameter.get)(configuration).to_string();
+        if value == (parameter.get)(&defaults).to_string() {
+            continue;
+        }
+        if parameter.section != section {
+            section = parameter.section;
+            text += &format!("{}[{section}]\n", if text.is_empty() { "" } else { "\n" });
+        }
+        text += &format!("{} = {value}\n", parameter.key);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{assign, read};
+
+    #[test]
+    fn the_reference_reads_back_to_the_defaults() {
+        let (back, _) = read(&reference_toml(), "reference.toml").unwrap();
+        assert_eq!(back, Configuration::default());
+    }
+
+    #[test]
+    fn a_changed_configuration_reads_back() {
+        let mut changed = Configuration::default();
+        for assignment in ["shell.width_mm=12.5", "support.slots=occupied", "layout.pins=[5, 8, 11]"] {
+            assign(&mut changed, assignment).unwrap();
+        }
+        let text = to_toml(&changed);
+        assert_eq!(read(&text, "x").unwrap().0, changed);
+        assert_eq!(text.lines().filter(|l| l.contains('=')).count(), 3);
+    }
+
+    #[test]
+    fn complaints_name_file_line_field_value_and_remedy() {
+        for (text, expected) in [
+            (
+                "[shell]\nwidth_mm = -3\n",
+                "a.toml:2: shell.width_mm = -3 is not accepted; give a number within 2 to 100",
+            ),
+            ("[shell]\nwith_mm = 3\n", "a.toml:2: shell.with_mm is no known key; did you mean \"width_mm\"?"),
+            ("\n\n[shel]\nwidth_mm = 3\n", "a.toml:3: shel is no known table; did you mean \"shell\"?"),
+            (
+                "[support]\nslots = \"some\"\n",
+                "a.toml:2: support.slots = \"some\" is not accepted; give \"all\" or \"occupied\"",
+            ),
+            (
+                "[segment]\ngrooves = 1.5\n",
+                "a.toml:2: segment.grooves = 1.5 is not accepted; give a whole number",
+            ),
+            ("[shell]\nwidth_mm = nan\n", "a.toml:2: shell.width_mm = nan is not accepted"),
+            ("[layout]\npins = [1, -2]\n", "a.toml:2: layout.pins = [1, -2] is not accepted; give a list"),
+            ("shell = 3\n", "a.toml:1: shell = integer is not accepted; write it as a table: [shell]"),
+            ("[shell\n", "a.toml:1: syntax"),
+            ("[shell]\nwidth_mm = 3\nwidth_mm = 4\n", "a.toml:3: syntax duplicate key"),
+        ] {
+            let error = read(text, "a.toml").unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{error}");
+        }
+        let error = assign(&mut Configuration::default(), "shell.width_mm").unwrap_err().to_string();
+        assert!(error.starts_with("--set: syntax"), "{error}");
+    }
+}

@@ -4,6 +4,7 @@ pub mod cli;
 pub mod config;
 pub mod design;
 pub mod mesh;
+pub mod parts;
 pub mod profile;
 pub mod solid;
 pub mod validity;

@@ -19,6 +19,9 @@ const TENDON_GAP_MM: f64 = 0.5;
 /// What must stay open behind a sector, so that its ends do not meet.
 const LEAST_GAP_MM: f64 = 0.5;
 
+/// What chamfers on both sides leave of a wall on the bed.
+const LEAST_FOOT_MM: f64 = 0.05;
+
 type Rule = fn(&Configuration) -> Result<(), ConfigError>;
 
 /// All rules, in the order in which a reader would fix them.
@@ -56,6 +59,12 @@ fn refuse(
     Err(ConfigError { field: field.to_owned(), value: Some(value.to_string()), problem, remedy, place: None })
 }
 
+/// The least thickness of a wall that may be as thin as `lines` times the thinnest accepted one: chamfers on both of
+/// its bottom edges must leave it a foot.
+fn least_mm(c: &Configuration, lines: f64) -> f64 {
+    (lines * c.print.least_wall_mm).max(2.0 * c.print.elephant_foot_mm + LEAST_FOOT_MM)
+}
+
 fn inner_radius(c: &Configuration) -> Result<(), ConfigError> {
     let most = c.shell.outer_radius_mm - LEAST_INNER_RADIUS_MM;
     if c.shell.wall_mm <= most {
@@ -87,8 +96,7 @@ fn land(c: &Configuration) -> Result<(), ConfigError> {
     if c.segment.grooves < 2 {
         return Ok(());
     }
-    let width = 2.0 * (c.segment.groove_radius_mm + c.print.elephant_foot_mm);
-    let needed = width + c.print.least_wall_mm;
+    let needed = 2.0 * c.segment.groove_radius_mm + least_mm(c, 1.0);
     let chord = 2.0 * c.shell.outer_radius_mm * (pitch_rad(c) / 2.0).sin();
     if chord >= needed {
         return Ok(());
@@ -115,10 +123,9 @@ fn most_grooves(c: &Configuration, needed_mm: f64) -> usize {
 /// The wall between the last groove and the end of the sector is half a land, plus the margin.
 fn end_walls(c: &Configuration) -> Result<(), ConfigError> {
     let half_pitch = (pitch_rad(c) / 2.0).min(std::f64::consts::FRAC_PI_2);
-    let left = c.shell.outer_radius_mm * half_pitch.sin() + c.segment.end_margin_mm
-        - c.segment.groove_radius_mm
-        - 2.0 * c.print.elephant_foot_mm;
-    let least = c.print.least_wall_mm / 2.0;
+    let left =
+        c.shell.outer_radius_mm * half_pitch.sin() + c.segment.end_margin_mm - c.segment.groove_radius_mm;
+    let least = least_mm(c, 0.5);
     if left >= least {
         return Ok(());
     }
@@ -234,10 +241,9 @@ fn tendon_bend(c: &Configuration) -> Result<(), ConfigError> {
 }
 
 fn slot_in_plate(c: &Configuration) -> Result<(), ConfigError> {
-    let (slot, wall) = (slot(c), c.print.least_wall_mm);
-    let foot = c.print.elephant_foot_mm;
-    let half = slot.width_mm / 2.0 + foot;
-    let outer_edge = support_radius_mm(c) - slot.outer_mm - half - foot;
+    let (slot, wall) = (slot(c), least_mm(c, 1.0));
+    let half = slot.width_mm / 2.0;
+    let outer_edge = support_radius_mm(c) - slot.outer_mm - half;
     if outer_edge < wall {
         return refuse(
             "support.rise_mm",
@@ -258,13 +264,14 @@ fn slot_in_plate(c: &Configuration) -> Result<(), ConfigError> {
         );
     }
     let half_pitch = (pitch_rad(c) / 2.0).min(std::f64::consts::FRAC_PI_2);
-    let end = (slot.inner_mm - half) * half_pitch.sin() + c.segment.end_margin_mm - half - foot;
-    if end < wall / 2.0 {
+    let end = (slot.inner_mm - half) * half_pitch.sin() + c.segment.end_margin_mm - half;
+    let least = least_mm(c, 0.5);
+    if end < least {
         return refuse(
             "segment.end_margin_mm",
             c.segment.end_margin_mm,
-            format!("leaves {end:.3} mm beyond the outermost slot; {:.3} mm is the least", wall / 2.0),
-            format!("raise it by {:.3}", wall / 2.0 - end),
+            format!("leaves {end:.3} mm beyond the outermost slot; {least:.3} mm is the least"),
+            format!("raise it by {:.3}", least - end),
         );
     }
     if c.support.slot_kind == SlotKind::Blind && slot.depth_mm < wall {
@@ -312,13 +319,12 @@ fn fasteners_fit(c: &Configuration) -> Result<(), ConfigError> {
     if c.fasteners.count == 0 {
         return Ok(());
     }
-    let foot = 2.0 * c.print.elephant_foot_mm;
-    let edge = HOLE_EDGE_MM.max(c.print.least_wall_mm);
+    let edge = HOLE_EDGE_MM.max(least_mm(c, 1.0));
     let diameter = c.fasteners.hole_diameter_mm;
-    let radial = c.shell.wall_mm - c.segment.groove_radius_mm - 2.0 * edge - 2.0 * foot;
+    let radial = c.shell.wall_mm - c.segment.groove_radius_mm - 2.0 * edge;
     // The slots of the supports may reach below the shell's face.
     let slot = slot(c);
-    let under_slots = 2.0 * (slot.inner_mm - slot.width_mm / 2.0 - edge - foot - fastener_radius_mm(c));
+    let under_slots = 2.0 * (slot.inner_mm - slot.width_mm / 2.0 - edge - fastener_radius_mm(c));
     let most = radial.min(under_slots);
     if diameter > most {
         return refuse(
@@ -328,14 +334,14 @@ fn fasteners_fit(c: &Configuration) -> Result<(), ConfigError> {
             "use a smaller screw, raise shell.wall_mm, or set fasteners.count = 0".to_owned(),
         );
     }
-    let needed = diameter + edge + foot;
+    let needed = diameter + edge;
     let end = c.fasteners.end_distance_mm + c.segment.end_margin_mm;
-    if end < diameter / 2.0 + edge + foot {
+    if end < diameter / 2.0 + edge {
         return refuse(
             "fasteners.end_distance_mm",
             c.fasteners.end_distance_mm,
             "lets the outermost hole leave the sector".to_owned(),
-            format!("raise it to {:.3}", diameter / 2.0 + edge + foot - c.segment.end_margin_mm),
+            format!("raise it to {:.3}", diameter / 2.0 + edge - c.segment.end_margin_mm),
         );
     }
     let angles = fastener_angles_rad(c);

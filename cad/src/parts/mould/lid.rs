@@ -1,0 +1,81 @@
+//! The split mould's lid: it sets the layer's width, with a pouring funnel and vents at both ends.
+
+use super::super::label::{Zone, engrave};
+use super::super::{Part, swallowed};
+use super::split::plate_sector;
+use super::{Cavity, keys};
+use crate::config::ConfigError;
+use crate::design::Design;
+use crate::profile::{Contour, Pen, Point2, polar};
+use crate::solid::{Facing, Solid};
+
+/// Share of the free cavity under the ribs that pouring slot and vents take.
+const OPENING: f64 = 0.8;
+/// Half of the pouring slot, as a share of half the span.
+const SLOT_SHARE: f64 = 0.15;
+/// Where the vents lie, as a share of half the span.
+const VENT_SHARE: f64 = 0.9;
+
+pub(super) fn lid(design: &Design) -> Result<Part, ConfigError> {
+    let c = design.configuration();
+    let cavity = Cavity::of(design);
+    let thickness = c.mould.floor_mm;
+    let chamfer = c.print.elephant_foot_mm;
+    let foot = swallowed("print.elephant_foot_mm");
+    let free = cavity.sector.outer_mm - cavity.sector.inner_mm - cavity.groove_radius_mm;
+    let middle = cavity.sector.inner_mm + free / 2.0;
+    let vent = (c.mould.vent_diameter_mm.min(OPENING * free)) / 2.0;
+    let mut holes = keys::through_holes(design);
+    holes.extend([-1.0, 1.0].map(|side| {
+        let angle = side * (VENT_SHARE * design.half_span_rad() - vent / middle).max(0.0);
+        Contour::circle(polar(middle, angle), vent).reversed()
+    }));
+
+    let mut solid = Solid::new();
+    let plate = plate_sector(design, &cavity).outline();
+    let (bottom, top) = solid.extrude_chamfered(&plate, 0.0, thickness, chamfer).map_err(&foot)?;
+    let (mut bottoms, mut tops) = solid.through_holes(&holes, 0.0, thickness, chamfer).map_err(&foot)?;
+    let width = OPENING * free;
+    let spout = arc_slot(middle, width / 2.0, SLOT_SHARE * design.half_span_rad());
+    // The funnel widens upward: into the wall of the clockwise slot.
+    let room = holes.iter().chain([&plate]).map(|other| gap_mm(&spout, other)).fold(f64::INFINITY, f64::min);
+    let widening =
+        ((c.mould.pour_width_mm - width) / 2.0).min(room - c.print.least_wall_mm).clamp(0.0, thickness);
+    let mouth = spout.offset(widening).map_err(swallowed("mould.pour_width_mm"))?;
+    let (spout, mouth) = (solid.ring(spout, 0.0), solid.ring(mouth, thickness));
+    solid.wall(spout, mouth);
+    bottoms.push(spout);
+    tops.push(mouth);
+    solid.cap(Facing::Down, bottom, &bottoms);
+    let zone = Zone::Arc {
+        inner_mm: design.inner_radius_mm(),
+        outer_mm: middle - width / 2.0 - widening,
+        from_rad: -design.half_span_rad(),
+        to_rad: design.half_span_rad(),
+    };
+    let engraved = engrave(&mut solid, design, &zone, thickness);
+    tops.extend(engraved.rings);
+    solid.cap(Facing::Up, top, &tops);
+    let mut part = Part::new("mould-lid", solid, None);
+    part.notes.extend(engraved.note);
+    Ok(part)
+}
+
+/// Least distance in mm from `slot`, at eight points of every edge, to the curve of `other`.
+fn gap_mm(slot: &Contour, other: &Contour) -> f64 {
+    let points = slot.flattened(&vec![8; slot.edges().len()]);
+    points.iter().map(|p| other.distance_mm(*p)).fold(f64::INFINITY, f64::min)
+}
+
+/// A slot along the arc with round ends, clockwise.
+fn arc_slot(radius_mm: f64, half_width_mm: f64, half_rad: f64) -> Contour {
+    let (inner, outer) = (radius_mm - half_width_mm, radius_mm + half_width_mm);
+    let end = |side: f64| polar(radius_mm, side * half_rad);
+    Pen::at(polar(inner, half_rad))
+        .arc_to(end(1.0), polar(outer, half_rad), true)
+        .arc_to(Point2::origin(), polar(outer, -half_rad), true)
+        .arc_to(end(-1.0), polar(inner, -half_rad), true)
+        .arc_to(Point2::origin(), polar(inner, half_rad), false)
+        .close()
+        .reversed()
+}

@@ -1,0 +1,39 @@
+//! The casting mould, axis upright, open on top (geometry.md, part 3).
+
+mod keys;
+mod lid;
+mod one_piece;
+mod split;
+
+use super::layer::layer_sector;
+use super::{Part, Sector};
+use crate::config::ConfigError;
+use crate::design::Design;
+
+pub(super) use one_piece::one_piece;
+
+/// Core, ring and lid.
+pub(super) fn split(design: &Design) -> Result<[Part; 3], ConfigError> {
+    Ok([split::core(design)?, split::ring(design)?, lid::lid(design)?])
+}
+
+/// The cavity before its ribs: the layer, enlarged by what the silicone shrinks.
+struct Cavity {
+    sector: Sector,
+    groove_radius_mm: f64,
+    groove_angles_rad: Vec<f64>,
+    depth_mm: f64,
+}
+
+impl Cavity {
+    fn of(design: &Design) -> Self {
+        let c = design.configuration();
+        let scale = 1.0 / (1.0 - c.mould.shrinkage_pct / 100.0);
+        Self {
+            sector: layer_sector(design).scaled(scale),
+            groove_radius_mm: c.segment.groove_radius_mm * scale,
+            groove_angles_rad: design.groove_angles_rad(),
+            depth_mm: design.layer_width_mm() * scale,
+        }
+    }
+}

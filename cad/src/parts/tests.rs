@@ -57,3 +57,33 @@ fn all_parts_of_the_variants_are_valid() {
         }
     }
 }
+
+/// Truck builds the same solid from the same profile: closed, as large, and in the same place.
+#[cfg(feature = "brep")]
+#[test]
+fn truck_agrees_with_every_part() {
+    let tolerance = crate::profile::ChordTolerance::new(0.01).unwrap();
+    for kind in ["split", "one-piece"] {
+        let mould = format!("mould.kind={kind}");
+        let design = design(&[
+            "layout.pins=[5, 8, 11]",
+            &mould,
+            "print.elephant_foot_mm=0.2",
+            "parts.guide_pulley=true",
+        ]);
+        for part in printed(&design).unwrap().iter().chain(&reference_bodies(&design).unwrap()) {
+            let truck = part.solid.brep_mesh(tolerance).unwrap();
+            assert!(truck.closed, "{}", part.name);
+            let exact = part.solid.volume_mm3();
+            for volume in truck.mesh.axis_volumes_mm3() {
+                // Truck's vertices lie on the curve: it may be off by the tolerance over the whole surface.
+                let bound = tolerance.mm() * part.solid.surface_mm2();
+                assert!((volume - exact).abs() <= bound, "{}: {volume} for {exact}", part.name);
+            }
+            let (low, high) = truck.mesh.bounds().unwrap();
+            let (exact_low, exact_high) = part.solid.bounds().unwrap();
+            let off = (low - exact_low).amax().max((high - exact_high).amax());
+            assert!(off <= tolerance.mm(), "{}: off by {off}", part.name);
+        }
+    }
+}

@@ -26,7 +26,7 @@ fn assert_valid(part: &Part, design: &Design, variant: &[&str]) {
     let found = examine(&mesh, &expected);
     assert!(found.is_valid(), "{variant:?} {}: {:#?}", part.name, found.faults);
     assert!(found.facts.low_mm[2].abs() < 1e-12);
-    let written = read_stl(&mut Cursor::new(stl_bytes(&mesh).unwrap())).unwrap();
+    let written = read_stl(&mut Cursor::new(stl_bytes(&mesh).unwrap())).unwrap().mesh;
     let found = examine(&written, &expected);
     assert!(found.is_valid(), "{variant:?} {} as STL: {:#?}", part.name, found.faults);
     assert_eq!(written.triangles.len(), mesh.triangles.len());

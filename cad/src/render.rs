@@ -178,8 +178,8 @@ mod tests {
             Body { mesh: square(1.0), colour: [255, 0, 0] },
             Body { mesh: square(0.0), colour: [0, 255, 0] },
         ];
-        let picture = render(&bodies, View { turn_deg: 0.0, rise_deg: 90.0 }, 9, 9);
-        let middle = &picture.pixels[(4 * 9 + 4) * 3..][..3];
+        let picture = render(&bodies, View { turn_deg: 0.0, rise_deg: 90.0 }, 33, 33);
+        let middle = &picture.pixels[(16 * 33 + 16) * 3..][..3];
         assert!(middle[0] > 100 && middle[1] == 0, "{middle:?}");
         assert_eq!(&picture.pixels[..3], &[250, 250, 248]);
         assert!(picture.png().unwrap().starts_with(b"\x89PNG"));

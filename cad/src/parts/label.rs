@@ -72,17 +72,27 @@ impl Zone {
         }
     }
 
-    /// Brings a point from text coordinates (x along the line from its middle, y up from its middle; `x_letter` is
-    /// the middle of its letter) onto the part.
-    fn place(&self, x_letter: f64, x: f64, y: f64) -> Point2 {
+    /// Radius of the letters' feet, mm: letters lean apart, so that there they are closest.
+    fn foot_mm(&self, letter_mm: f64) -> f64 {
         match *self {
-            Self::Flat { middle, .. } => middle + Vector2::new(x, y),
+            Self::Flat { .. } => f64::INFINITY,
+            Self::Arc { inner_mm, outer_mm, .. } => {
+                f64::midpoint(inner_mm, outer_mm) - (letter_mm / 2.0).min((outer_mm - inner_mm) / 2.0)
+            }
+        }
+    }
+
+    /// Brings a point of a letter (`x` and `y` from its middle) onto the part; the letter's foot lies `along_mm` along
+    /// the line from its middle.
+    fn place(&self, along_mm: f64, letter_mm: f64, [x, y]: [f64; 2]) -> Point2 {
+        match *self {
+            Self::Flat { middle, .. } => middle + Vector2::new(along_mm + x, y),
             Self::Arc { inner_mm, outer_mm, from_rad, to_rad } => {
                 let radius = f64::midpoint(inner_mm, outer_mm);
-                let angle = f64::midpoint(from_rad, to_rad) + x_letter / radius;
+                let angle = f64::midpoint(from_rad, to_rad) + along_mm / self.foot_mm(letter_mm);
                 let up = polar(1.0, angle).coords;
                 let right = Vector2::new(up.y, -up.x);
-                Point2::from(up * (radius + y) + right * (x - x_letter))
+                Point2::from(up * (radius + y) + right * x)
             }
         }
     }
@@ -126,7 +136,7 @@ pub(super) fn engrave_text(
         let middle = (i as f64 - (letters - 1.0) / 2.0) * advance;
         for shape in letter_shapes(letter, size, stroke) {
             let mut contours = shape.iter().map(|points| {
-                Contour::polygon(points.iter().map(|[x, y]| zone.place(middle, middle + x, *y)).collect())
+                Contour::polygon(points.iter().map(|p| zone.place(middle, size + stroke, *p)).collect())
             });
             let Some(outline) = contours.next().map(|c| run(c, Sense::Clockwise)) else { continue };
             let islands: Vec<_> = contours.map(|c| run(c, Sense::CounterClockwise)).collect();

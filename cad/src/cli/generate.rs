@@ -1,7 +1,6 @@
 //! `pinswitch generate CONFIG`.
 
 use std::path::PathBuf;
-use std::time::Instant;
 
 use clap::Args;
 
@@ -31,7 +30,6 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let start = Instant::now();
     let design = arguments.source.design()?;
     let set = make_set(&design).map_err(|e| match e {
         SetError::Configuration(e) => Failure::bad_input(e),
@@ -53,10 +51,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let friction = &set.manifest.friction;
     log::info!(
-        "{}: {} parts in {:.0} ms; {:.2} N of friction at {:.2} N ({:.2} to {:.2} N, {})",
+        "{}: {} parts; {:.2} N of friction at {:.2} N of load ({:.2} to {:.2} N, {})",
         folder.display(),
         set.manifest.parts.len(),
-        start.elapsed().as_secs_f64() * 1e3,
         friction.friction_n,
         friction.load_n,
         friction.band_n[0],

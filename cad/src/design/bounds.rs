@@ -19,13 +19,17 @@ const TENDON_GAP_MM: f64 = 0.5;
 /// What must stay open behind a sector, so that its ends do not meet.
 const LEAST_GAP_MM: f64 = 0.5;
 
+/// How far the base or the basin of a mould reaches beyond what it holds.
+const MOULD_MARGIN_MM: f64 = 1.0;
+/// Largest shift of a sector's ends, as a share of its inner radius: beyond it they miss the circle.
+const LARGEST_SHIFT: f64 = 0.9;
 /// What chamfers on both sides leave of a wall on the bed.
 const LEAST_FOOT_MM: f64 = 0.05;
 
 type Rule = fn(&Configuration) -> Result<(), ConfigError>;
 
 /// All rules, in the order in which a reader would fix them.
-const RULES: [Rule; 17] = [
+const RULES: [Rule; 18] = [
     inner_radius,
     wall_under_grooves,
     land,
@@ -41,6 +45,7 @@ const RULES: [Rule; 17] = [
     slot_travel,
     pin_engagement,
     fasteners_fit,
+    ends_stay_apart,
     mould_fits,
     load_range,
 ];
@@ -361,15 +366,24 @@ fn fasteners_fit(c: &Configuration) -> Result<(), ConfigError> {
     Ok(())
 }
 
-/// The mould goes around the sector: its end walls must not meet behind it.
+/// The ends of a sector are parallel to radial planes: at its inner radius they are furthest around the axis, and must
+/// neither leave the circle nor meet behind it.
+fn ends_stay_apart(c: &Configuration) -> Result<(), ConfigError> {
+    let inner = c.shell.outer_radius_mm - c.shell.wall_mm;
+    sector_ends(c, "segment.end_margin_mm", c.segment.end_margin_mm, inner, c.segment.end_margin_mm)
+}
+
+/// The mould goes around the sector, with an end wall at both ends.
 fn mould_fits(c: &Configuration) -> Result<(), ConfigError> {
-    let behind = std::f64::consts::PI - c.segment.span_deg.to_radians() / 2.0;
     let inner = c.shell.outer_radius_mm - c.shell.wall_mm;
     let scale = 1.0 / (1.0 - c.mould.shrinkage_pct / 100.0);
-    let (wall, radius) = match c.mould.kind {
-        MouldKind::None => (0.0, inner),
+    let margin = c.segment.end_margin_mm * scale;
+    match c.mould.kind {
+        MouldKind::None => Ok(()),
         MouldKind::OnePiece => {
-            let inner_wall = c.shell.outer_radius_mm * scale - c.mould.wall_mm - 2.0;
+            let depth = (c.shell.width_mm - 2.0 * c.silicone.side_clearance_mm) * scale;
+            let around = c.mould.wall_mm + MOULD_MARGIN_MM + depth * c.mould.draft_deg.to_radians().tan();
+            let inner_wall = c.shell.outer_radius_mm * scale - around;
             if inner_wall < LEAST_INNER_RADIUS_MM {
                 return refuse(
                     "mould.wall_mm",
@@ -378,24 +392,45 @@ fn mould_fits(c: &Configuration) -> Result<(), ConfigError> {
                     format!("lower it by {:.3}", LEAST_INNER_RADIUS_MM - inner_wall),
                 );
             }
-            (c.mould.wall_mm + 2.0, inner_wall)
+            sector_ends(c, "mould.wall_mm", c.mould.wall_mm, inner_wall, margin + around)
         }
-        MouldKind::Split => (c.mould.wall_mm + 2.0, inner),
-    };
-    // The ends are parallel to radial planes: behind the sector they keep this distance from its middle plane.
-    let ends = wall + c.segment.end_margin_mm;
-    let room = radius * behind.min(std::f64::consts::FRAC_PI_2).sin() - ends;
-    if behind > std::f64::consts::FRAC_PI_2 || room >= LEAST_GAP_MM {
+        MouldKind::Split => {
+            let base = inner - MOULD_MARGIN_MM.min(inner / 2.0);
+            sector_ends(c, "mould.wall_mm", c.mould.wall_mm, base, margin + c.mould.wall_mm + MOULD_MARGIN_MM)
+        }
+    }
+}
+
+/// Refuses `field` if ends shifted by `shift_mm` do not fit a sector of the inner radius `radius_mm`.
+fn sector_ends(
+    c: &Configuration,
+    field: &str,
+    value: f64,
+    radius_mm: f64,
+    shift_mm: f64,
+) -> Result<(), ConfigError> {
+    let most = LARGEST_SHIFT * radius_mm;
+    if shift_mm > most {
+        return refuse(
+            field,
+            value,
+            format!("shifts the ends by {shift_mm:.3} mm, at an inner radius of {radius_mm:.3} mm"),
+            format!("lower it by {:.3}, lower shell.wall_mm, or set mould.kind = \"none\"", shift_mm - most),
+        );
+    }
+    let half_rad = c.segment.span_deg.to_radians() / 2.0 + (shift_mm / radius_mm).asin();
+    let most_rad = std::f64::consts::PI - (LEAST_GAP_MM / 2.0 / radius_mm).min(1.0).asin();
+    if half_rad <= most_rad {
         return Ok(());
     }
     refuse(
         "segment.span_deg",
         c.segment.span_deg,
+        format!("lets the ends meet behind the axis; {LEAST_GAP_MM} mm must stay between them"),
         format!(
-            "leaves {:.3} mm behind the parts for their ends; {LEAST_GAP_MM} mm is the least",
-            2.0 * room
+            "lower it by {:.1}, raise shell.outer_radius_mm, or set mould.kind = \"none\"",
+            2.0 * (half_rad - most_rad).to_degrees()
         ),
-        "lower it, raise shell.outer_radius_mm, or set mould.kind = \"none\"".to_owned(),
     )
 }
 

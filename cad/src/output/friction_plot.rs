@@ -7,6 +7,8 @@ use pinswitch_model::{Contact, FrictionCurve, Law, Trust, capstan_friction_n, pu
 
 /// Width and height of the figure in pixels.
 const SIZE: (u32, u32) = (760, 480);
+/// The drawing library rounds to whole units: it draws this many to a pixel, so that lines are smooth.
+const FINE: u8 = 8;
 const CURVE: RGBColor = RGBColor(0, 90, 156);
 const PINS: RGBColor = RGBColor(90, 90, 90);
 const SILICONE: RGBColor = RGBColor(178, 74, 0);
@@ -25,7 +27,8 @@ pub struct PlotError(String);
 pub fn friction_svg(name: &str, contact: &Contact, curve: &FrictionCurve) -> Result<String, PlotError> {
     let mut svg = String::new();
     draw(&mut svg, name, contact, curve).map_err(|e| PlotError(e.to_string()))?;
-    Ok(svg)
+    let attributes = |(width, height): (u32, u32)| format!(r#"width="{width}" height="{height}""#);
+    Ok(svg.replacen(&attributes(drawn_size()), &attributes(SIZE), 1))
 }
 
 fn draw(
@@ -34,7 +37,7 @@ fn draw(
     contact: &Contact,
     curve: &FrictionCurve,
 ) -> Result<(), Box<dyn std::error::Error>> {
-    let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
+    let root = SVGBackend::with_string(svg, drawn_size()).into_drawing_area();
     root.fill(&WHITE)?;
     let highest_load = curve.load_n.last().copied().unwrap_or(1.0) * 1.03;
     let limit = |mu: f64, load: f64| capstan_friction_n(load, mu * contact.wrap_rad());
@@ -42,21 +45,23 @@ fn draw(
     let measured = points.iter().filter_map(|p| p.friction_n).fold(0.0, f64::max);
     let top = curve.band_high_n.iter().copied().fold(limit(published::MU_SILICONE, highest_load), f64::max);
     let mut chart = ChartBuilder::on(&root)
-        .margin(14)
-        .caption(format!("{name}: friction over load"), ("sans-serif", 19))
-        .x_label_area_size(44)
-        .y_label_area_size(52)
+        .margin(fine::<u32>(14))
+        .caption(format!("{name}: friction over load"), ("sans-serif", fine::<i32>(19)))
+        .x_label_area_size(fine::<u32>(44))
+        .y_label_area_size(fine::<u32>(52))
         .build_cartesian_2d(0.0..highest_load, 0.0..(top.max(measured) * 1.04))?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.10))
+        .bold_line_style(BLACK.mix(0.10).stroke_width(fine(1)))
         .x_desc("load F (N)")
         .y_desc("friction D = (F_c - F_e)/2 (N)")
         .x_label_formatter(&|v| format!("{v:.0}"))
         .y_label_formatter(&|v| format!("{v:.0}"))
-        .label_style(("sans-serif", 14))
-        .axis_desc_style(("sans-serif", 15))
+        .set_all_tick_mark_size(fine::<u32>(5))
+        .axis_style(BLACK.stroke_width(fine(1)))
+        .label_style(("sans-serif", fine::<i32>(14)))
+        .axis_desc_style(("sans-serif", fine::<i32>(15)))
         .draw()?;
 
     let upper = curve.load_n.iter().copied().zip(curve.band_high_n.iter().copied());
@@ -65,7 +70,12 @@ fn draw(
     chart
         .draw_series(std::iter::once(Polygon::new(band, CURVE.mix(0.18))))?
         .label(format!("band ({})", trust_word(curve.trust)))
-        .legend(|(x, y)| Rectangle::new([(x, y - 5), (x + 22, y + 5)], CURVE.mix(0.18).filled()));
+        .legend(|(x, y)| {
+            Rectangle::new(
+                [(x, y - fine::<i32>(5)), (x + fine::<i32>(22), y + fine::<i32>(5))],
+                CURVE.mix(0.18).filled(),
+            )
+        });
 
     for (mu, colour, label) in [
         (published::MU_SILICONE, SILICONE, "silicone alone (capstan)"),
@@ -76,45 +86,66 @@ fn draw(
             (load, limit(mu, load))
         });
         chart
-            .draw_series(DashedLineSeries::new(line, 6, 4, colour.stroke_width(1)))?
+            .draw_series(DashedLineSeries::new(
+                line,
+                fine::<u32>(6),
+                fine::<u32>(4),
+                colour.stroke_width(fine(1)),
+            ))?
             .label(label)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 22, y)], colour.stroke_width(1)));
+            .legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(1)))
+            });
     }
 
     let line: Vec<_> = curve.load_n.iter().copied().zip(curve.friction_n.iter().copied()).collect();
     chart
-        .draw_series(LineSeries::new(line, CURVE.stroke_width(3)))?
+        .draw_series(LineSeries::new(line, CURVE.stroke_width(fine(3))))?
         .label(law_words(curve.law))
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 22, y)], CURVE.stroke_width(3)));
+        .legend(|(x, y)| PathElement::new([(x, y), (x + fine::<i32>(22), y)], CURVE.stroke_width(fine(3))));
 
     let maxima: Vec<_> = points.iter().filter_map(|p| Some((p.load_n, p.friction_n?))).collect();
     if !maxima.is_empty() {
         chart
-            .draw_series(maxima.iter().map(|p| Circle::new(*p, 5, BLACK.filled())))?
+            .draw_series(maxima.iter().map(|p| Circle::new(*p, fine::<i32>(5), BLACK.filled())))?
             .label("published maximum (measured)")
-            .legend(|(x, y)| Circle::new((x + 11, y), 5, BLACK.filled()));
+            .legend(|(x, y)| Circle::new((x + fine::<i32>(11), y), fine::<i32>(5), BLACK.filled()));
     }
     for onset in points.iter().filter(|p| p.friction_n.is_none()) {
         let load = onset.load_n;
-        let text = TextStyle::from(("sans-serif", 13)).pos(Pos::new(HPos::Left, VPos::Top));
-        chart.draw_series(DashedLineSeries::new([(load, 0.0), (load, top)], 2, 3, BLACK.stroke_width(1)))?;
+        let text = TextStyle::from(("sans-serif", fine::<i32>(13))).pos(Pos::new(HPos::Left, VPos::Top));
+        chart.draw_series(DashedLineSeries::new(
+            [(load, 0.0), (load, top)],
+            fine::<u32>(2),
+            fine::<u32>(3),
+            BLACK.stroke_width(fine(1)),
+        ))?;
         chart.draw_series(std::iter::once(Text::new(
             format!(" published onset {load:.2} N"),
-            (load, top * 0.10),
+            (load, top * 0.36),
             text,
         )))?;
     }
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::UpperLeft)
-        .margin(10)
-        .legend_area_size(26)
+        .margin(fine::<i32>(10))
+        .legend_area_size(fine::<u32>(26))
         .background_style(WHITE.mix(0.9))
-        .border_style(BLACK.mix(0.3))
-        .label_font(("sans-serif", 14))
+        .border_style(BLACK.mix(0.3).stroke_width(fine(1)))
+        .label_font(("sans-serif", fine::<i32>(14)))
         .draw()?;
     root.present()?;
     Ok(())
+}
+
+/// Pixels in the drawing's finer units.
+fn fine<T: From<u8> + std::ops::Mul<Output = T>>(pixels: u8) -> T {
+    T::from(pixels) * T::from(FINE)
+}
+
+fn drawn_size() -> (u32, u32) {
+    (SIZE.0 * u32::from(FINE), SIZE.1 * u32::from(FINE))
 }
 
 fn trust_word(trust: Trust) -> &'static str {

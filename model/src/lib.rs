@@ -17,9 +17,12 @@
 mod capstan;
 mod contact;
 mod curve;
+pub mod effects;
+pub mod inference;
 mod layout_law;
 mod pattern;
 pub mod published;
+pub mod rig;
 mod switch;
 
 pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};

@@ -1,0 +1,16 @@
+//! From a table to the effects it shows: forward model, noise, fits, scores and selection.
+
+mod catalogue;
+mod fit;
+mod forward;
+mod noise;
+mod observations;
+mod projection;
+mod screening;
+mod selection;
+
+pub use fit::{Fit, fit, interval_half_widths};
+pub use forward::{Model, Term};
+pub use noise::Noise;
+pub use observations::Observations;
+pub use selection::{Levels, Rival, Selection, select};

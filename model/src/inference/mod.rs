@@ -11,6 +11,6 @@ mod selection;
 
 pub use fit::{Fit, fit, interval_half_widths};
 pub use forward::{Model, Term};
-pub use noise::Noise;
+pub use noise::{Noise, Spread};
 pub use observations::Observations;
 pub use selection::{Levels, Rival, Selection, select};

@@ -15,8 +15,12 @@ pub struct Observations {
     pub series: usize,
     /// Rows of each series and direction: they share an offset.
     pub cells: Vec<Vec<usize>>,
+    /// Load of each cell in newtons.
+    pub cell_load_n: Vec<f64>,
     /// Weight of each row, 1 for a sound one.
     pub weights: Vec<f64>,
+    /// Roots of the weights.
+    pub(crate) roots: Vec<f64>,
 }
 
 impl Observations {
@@ -31,7 +35,9 @@ impl Observations {
             cells[*cell].push(row);
         }
         let force_n = rows.iter().map(|r| r.force_n).collect();
-        Some(Self { points, force_n, series_of, series, cells, weights: vec![1.0; rows.len()] })
+        let cell_load_n = loads(&cells, &points);
+        let ones = vec![1.0; rows.len()];
+        Some(Self { points, force_n, series_of, series, cells, cell_load_n, weights: ones.clone(), roots: ones })
     }
 
     /// The rows for which `keep` holds.
@@ -42,19 +48,22 @@ impl Observations {
         for (new, old) in kept.iter().enumerate() {
             new_index[*old] = new;
         }
-        let cells = self
+        let points: Vec<Point> = kept.iter().map(|i| self.points[*i]).collect();
+        let cells: Vec<Vec<usize>> = self
             .cells
             .iter()
             .map(|c| c.iter().map(|i| new_index[*i]).filter(|i| *i != usize::MAX).collect::<Vec<_>>())
             .filter(|c| !c.is_empty())
             .collect();
         Self {
-            points: kept.iter().map(|i| self.points[*i]).collect(),
+            cell_load_n: loads(&cells, &points),
+            points,
             force_n: kept.iter().map(|i| self.force_n[*i]).collect(),
             series_of: kept.iter().map(|i| self.series_of[*i]).collect(),
             series: self.series,
             cells,
             weights: kept.iter().map(|i| self.weights[*i]).collect(),
+            roots: kept.iter().map(|i| self.roots[*i]).collect(),
         }
     }
 
@@ -69,15 +78,36 @@ impl Observations {
                 local[*row] = residual_n[*row] - median(&mut near);
             }
         }
-        // A residual against the median of seven, itself among them, has 0.93 of the spread of one reading.
-        let mut size: Vec<f64> = local.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
-        let sd = (1.4826 * median(&mut size) / 1.08).max(1e-9);
-        for (weight, value) in self.weights.iter_mut().zip(&local) {
-            let z = (value / sd).abs();
-            *weight = if z <= 3.0 { 1.0 } else { (3.0 / z).powi(3).max(1e-3) };
+        // The spread may grow with load: medians over quarters of the loads, the own row's zeros left out.
+        let spread = |keep: &dyn Fn(f64) -> bool| {
+            let mut size: Vec<f64> = local
+                .iter()
+                .zip(&self.points)
+                .filter(|(v, p)| **v != 0.0 && keep(p.load_n))
+                .map(|(v, _)| v.abs())
+                .collect();
+            (size.len() > 20).then(|| 1.4826 * median(&mut size) / 1.08)
+        };
+        let sd = spread(&|_| true).unwrap_or(0.0).max(1e-9);
+        let mut loads: Vec<f64> = self.points.iter().map(|p| p.load_n).collect();
+        loads.sort_by(f64::total_cmp);
+        let quarter = |i: usize| loads.get(i * loads.len() / 4).copied().unwrap_or(f64::INFINITY);
+        let edges = [quarter(1), quarter(2), quarter(3)];
+        let part = |load: f64| edges.iter().filter(|e| load >= **e).count();
+        let parts: Vec<f64> =
+            (0..4).map(|i| spread(&|load| part(load) == i).unwrap_or(sd).max(0.3 * sd)).collect();
+        for ((weight, value), point) in self.weights.iter_mut().zip(&local).zip(&self.points) {
+            let z = (value / parts[part(point.load_n)]).abs();
+            *weight = if z <= 3.2 { 1.0 } else { (3.2 / z).powi(3).max(1e-3) };
         }
+        self.roots = self.weights.iter().map(|w| w.sqrt()).collect();
         sd
     }
+}
+
+/// Mean load of each cell in newtons.
+fn loads(cells: &[Vec<usize>], points: &[Point]) -> Vec<f64> {
+    cells.iter().map(|c| c.iter().map(|r| points[*r].load_n).sum::<f64>() / c.len().max(1) as f64).collect()
 }
 
 /// Median of the values; they are reordered. Zero without values.

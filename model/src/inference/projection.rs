@@ -40,7 +40,13 @@ impl Projection {
         }
     }
 
+    /// The directions.
+    pub(crate) fn basis(&self) -> &[Vec<f64>] {
+        &self.basis
+    }
+
     /// Number of directions.
+    #[cfg(test)]
     pub(crate) fn rank(&self) -> usize {
         self.basis.len()
     }

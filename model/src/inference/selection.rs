@@ -204,16 +204,17 @@ fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
 
 /// Runs the whole search on a table.
 pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
-    let guess = Noise { repetition_n: 0.1, series_n: 0.03 };
+    let guess = Noise::constant(0.1, 0.03);
     let rough = fit(start, data, guess);
     let sd = data.weigh_outliers(&rough.residual_n);
-    let rough = fit_baseline(&rough.model, data, Noise { repetition_n: sd, series_n: 0.3 * sd });
-    let mut noise = Noise::estimate(data, &rough.residual_n, &explainable(&rough, data), sd);
+    let start = Noise::constant(sd, sd);
+    let rough = fit_baseline(&rough.model, data, start);
+    let mut noise = Noise::estimate(data, &rough.residual_n, &explainable(&rough, data), start);
     let mut baseline = fit_baseline(&rough.model, data, noise);
     let mut found = search(&baseline, data, noise, levels);
     // Once something is explained, the noise shows better: estimate it again and repeat.
     if !found.model.terms.is_empty() {
-        noise = Noise::estimate(data, &found.residual_n, &explainable(&found, data), sd);
+        noise = Noise::estimate(data, &found.residual_n, &explainable(&found, data), noise);
         baseline = fit(&baseline.model, data, noise);
         found = search(&baseline, data, noise, levels);
     }

@@ -1,11 +1,9 @@
 //! `pinswitch completions SHELL`.
 
-use std::io::Write;
-
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
-use super::{Cli, Failure};
+use super::{Cli, Failure, print};
 
 /// Print the completion script of a shell.
 #[derive(Args, Debug)]
@@ -20,5 +18,5 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Cli::command(), "pinswitch", &mut script);
-    std::io::stdout().write_all(&script).map_err(|error| Failure::failed(format!("standard output: {error}")))
+    print(&script)
 }

@@ -1,12 +1,20 @@
 //! The command line: one file per subcommand, input and output at its edges.
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use clap_verbosity_flag::{InfoLevel, Verbosity};
 
+mod check;
 mod completions;
 mod failure;
+mod generate;
+mod init;
+mod layouts;
+mod predict;
+mod render;
+mod source;
 
 pub use failure::Failure;
 
@@ -22,6 +30,12 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Generate(generate::Arguments),
+    Predict(predict::Arguments),
+    Check(check::Arguments),
+    Render(render::Arguments),
+    Layouts(layouts::Arguments),
+    Init(init::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -34,10 +48,33 @@ pub fn run() -> ExitCode {
         .format_target(false)
         .init();
     let outcome = match cli.command {
+        Command::Generate(arguments) => generate::run(&arguments),
+        Command::Predict(arguments) => predict::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Layouts(arguments) => layouts::run(&arguments),
+        Command::Init(arguments) => init::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }
+}
+
+/// Prints on standard output. A reader that stops early, as `head` does, is no failure.
+fn print(bytes: &[u8]) -> Result<(), Failure> {
+    match std::io::stdout().lock().write_all(bytes) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::failed(format!("standard output: {e}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints `value` as indented JSON.
+fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(Failure::failed)?;
+    bytes.push(b'\n');
+    print(&bytes)
 }

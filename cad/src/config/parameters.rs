@@ -75,7 +75,7 @@ configuration! {
         fasteners: FastenersTable {
             count: usize = 2, 0..=12, Chosen, "number of through holes; 0 leaves them out";
             hole_diameter_mm: f64 = 3.4, 1.0..=12.0, Chosen, "clearance hole: 3.4 for M3, 2.4 for M2";
-            end_distance_mm: f64 = 4.0, 1.0..=40.0, Chosen, "from the ends of the sector to the middle of the outermost holes, along the arc";
+            end_distance_mm: f64 = 3.0, 1.0..=40.0, Chosen, "from the ends of the sector to the middle of the outermost holes, along the arc";
         }
         /// The cast layer.
         silicone: SiliconeTable {
@@ -138,7 +138,7 @@ configuration! {
         label: LabelTable {
             engrave: bool = true, (), Chosen, "tells printed variants apart; left out, with a warning, where it does not fit";
             text: String = String::new(), 12, Chosen, "empty: pins x step / first groove, such as 3x3/5";
-            height_mm: f64 = 3.0, 1.5..=10.0, Chosen, "height of the letters";
+            height_mm: f64 = 3.2, 1.5..=10.0, Chosen, "height of the letters";
             stroke_mm: f64 = 0.5, 0.3..=2.0, Chosen, "width of the strokes, at least one printed line";
             depth_mm: f64 = 0.4, 0.1..=2.0, Chosen, "two layers";
         }

@@ -66,6 +66,11 @@ pub fn assign(configuration: &mut Configuration, assignment: &str) -> Result<(),
 pub struct Places(Vec<(String, Place)>);
 
 impl Places {
+    /// Whether the file gives `field`.
+    pub fn gives(&self, field: &str) -> bool {
+        self.of(field).is_some()
+    }
+
     /// Where `field` stands, if the file gives it.
     pub fn of(&self, field: &str) -> Option<&Place> {
         self.0.iter().find(|(path, _)| path == field).map(|(_, place)| place)

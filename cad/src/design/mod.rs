@@ -16,7 +16,7 @@ const PIN_LENGTH_STEP_MM: f64 = 0.5;
 pub struct Design {
     configuration: Configuration,
     tolerance: ChordTolerance,
-    contact: Option<Contact>,
+    contact: Contact,
 }
 
 /// A slot of a side support, in the radial direction.
@@ -46,9 +46,8 @@ impl Design {
                 e.to_string(),
             )
         })?;
-        let mut design = Self { configuration, tolerance, contact: None };
-        design.contact = Some(design.contact_of_layout()?);
-        Ok(design)
+        let contact = contact(&configuration)?;
+        Ok(Self { configuration, tolerance, contact })
     }
 
     /// The values that the user may set.
@@ -73,10 +72,7 @@ impl Design {
 
     /// Angles of the occupied grooves, ascending.
     pub fn pin_angles_rad(&self) -> Vec<f64> {
-        let all = self.groove_angles_rad();
-        let mut pins = self.configuration.layout.pins.clone();
-        pins.sort_unstable();
-        pins.iter().map(|i| all[i - 1]).collect()
+        pin_angles_rad(&self.configuration)
     }
 
     /// Half of the grooved span.
@@ -143,8 +139,8 @@ impl Design {
     }
 
     /// What the tendon touches, for the friction model.
-    pub fn contact(&self) -> Option<&Contact> {
-        self.contact.as_ref()
+    pub fn contact(&self) -> &Contact {
+        &self.contact
     }
 
     /// The engraved label: the configured text, or pins x step / first groove.
@@ -166,52 +162,55 @@ impl Design {
             _ => format!("{:X}", pins.iter().fold(0u64, |bits, i| bits | 1 << (i - 1))),
         }
     }
+}
 
-    fn contact_of_layout(&self) -> Result<Contact, ConfigError> {
-        let layout = &self.configuration.layout;
-        let substrate = match layout.substrate {
-            SubstrateKind::Silicone => Substrate::Silicone,
-            SubstrateKind::Abs => Substrate::Abs,
-        };
-        let pins = PinPattern::new(self.pin_angles_rad());
-        Contact::new(substrate, pins, layout.wrap_angle_deg.to_radians())
-            .map(|c| {
-                c.with_departures(self.departures())
-                    .with_six_single_threshold(self.configuration.friction.six_single_threshold)
-            })
-            .map_err(|e| ConfigError {
-                field: "layout.pins".to_owned(),
-                value: Some(format!("{:?}", layout.pins)),
-                problem: "leaves nothing to predict".to_owned(),
-                remedy: e.to_string(),
-                place: None,
-            })
-    }
+fn contact(c: &Configuration) -> Result<Contact, ConfigError> {
+    let substrate = match c.layout.substrate {
+        SubstrateKind::Silicone => Substrate::Silicone,
+        SubstrateKind::Abs => Substrate::Abs,
+    };
+    let pins = PinPattern::new(pin_angles_rad(c));
+    Contact::new(substrate, pins, c.layout.wrap_angle_deg.to_radians())
+        .map(|contact| {
+            contact.with_departures(departures(c)).with_six_single_threshold(c.friction.six_single_threshold)
+        })
+        .map_err(|e| ConfigError {
+            field: "layout.pins".to_owned(),
+            value: Some(format!("{:?}", c.layout.pins)),
+            problem: "leaves nothing to predict".to_owned(),
+            remedy: e.to_string(),
+            place: None,
+        })
+}
 
-    /// Ways in which this part departs from the one that was measured, where the paper gives a value.
-    fn departures(&self) -> Vec<String> {
-        const THAT_MATTER: [&str; 8] = [
-            "segment.groove_radius_mm",
-            "silicone.thickness_mm",
-            "silicone.hardness_shore_a",
-            "pins.diameter_mm",
-            "tendon.rope_diameter_mm",
-            "tendon.coating_mm",
-            "silicone.mix_ratio",
-            "shell.outer_radius_mm",
-        ];
-        let measured = Configuration::default();
-        Configuration::PARAMETERS
-            .iter()
-            .filter(|p| THAT_MATTER.contains(&p.path().as_str()))
-            .filter_map(|p| {
-                let (ours, theirs) =
-                    ((p.get)(&self.configuration).to_string(), (p.get)(&measured).to_string());
-                let word = if p.origin == crate::config::Origin::Published { "measured" } else { "assumed" };
-                (ours != theirs).then(|| format!("{} is {ours}, {word} was {theirs}", p.path()))
-            })
-            .collect()
-    }
+/// Ways in which a part departs from the one that was measured, in what the friction model depends on. The radius is
+/// not among them: the paper does not give it.
+fn departures(c: &Configuration) -> Vec<String> {
+    const THAT_MATTER: [&str; 7] = [
+        "segment.groove_radius_mm",
+        "silicone.thickness_mm",
+        "silicone.hardness_shore_a",
+        "silicone.mix_ratio",
+        "pins.diameter_mm",
+        "tendon.rope_diameter_mm",
+        "tendon.coating_mm",
+    ];
+    let measured = Configuration::default();
+    Configuration::PARAMETERS
+        .iter()
+        .filter(|p| THAT_MATTER.contains(&p.path().as_str()))
+        .filter_map(|p| {
+            let (ours, theirs) = ((p.get)(c).to_string(), (p.get)(&measured).to_string());
+            (ours != theirs).then(|| format!("{} is {ours}, measured was {theirs}", p.path()))
+        })
+        .collect()
+}
+
+fn pin_angles_rad(c: &Configuration) -> Vec<f64> {
+    let all = groove_angles_rad(c);
+    let mut pins = c.layout.pins.clone();
+    pins.sort_unstable();
+    pins.iter().map(|i| all[i - 1]).collect()
 }
 
 fn groove_angles_rad(c: &Configuration) -> Vec<f64> {

@@ -2,7 +2,7 @@
 
 mod stl;
 
-pub use stl::{StlError, read_stl, stl_bytes};
+pub use stl::{StlError, StlFile, read_stl, stl_bytes};
 
 /// A point in space, in millimetres.
 pub type Point3 = nalgebra::Point3<f64>;

@@ -5,7 +5,7 @@ use std::io::{Read, Seek};
 
 use stl_io::{Normal, Triangle, Vertex};
 
-use super::{Mesh, Point3};
+use super::{Mesh, Point3, Vector3};
 
 /// Why a file is no STL.
 #[derive(Debug, thiserror::Error)]
@@ -27,6 +27,15 @@ pub enum StlError {
     /// The file is an STL without a single triangle.
     #[error("the STL holds no triangle")]
     Empty,
+}
+
+/// What an STL file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StlFile {
+    /// The triangles; corners with identical coordinates are one vertex.
+    pub mesh: Mesh,
+    /// Facets whose stored normal contradicts the order of their corners.
+    pub contrary_normals: usize,
 }
 
 /// The mesh as binary STL: single precision, unit normals, an empty header.
@@ -52,12 +61,13 @@ pub fn stl_bytes(mesh: &Mesh) -> std::io::Result<Vec<u8>> {
 ///
 /// # Errors
 /// [`StlError`] if the file is no STL, cut short, or empty.
-pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<Mesh, StlError> {
+pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {
     check_length(source)?;
-    let mut mesh = Mesh::default();
+    let StlFile { mut mesh, mut contrary_normals } = StlFile::default();
     let mut known: HashMap<[u32; 3], u32> = HashMap::new();
     for facet in stl_io::create_stl_reader(source)? {
-        let corners = facet?.vertices.map(|v| {
+        let facet = facet?;
+        let corners = facet.vertices.map(|v| {
             // Adding zero turns -0 into +0, so that both are one vertex.
             let [x, y, z] = v.0.map(|c| c + 0.0);
             let next = mesh.positions.len();
@@ -67,8 +77,11 @@ pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<Mesh, StlError> {
             })
         });
         mesh.triangles.push(corners);
+        let [a, b, c] = mesh.corners(corners);
+        let stored = Vector3::from(facet.normal.0.map(f64::from));
+        contrary_normals += usize::from((b - a).cross(&(c - a)).dot(&stored) < 0.0);
     }
-    if mesh.triangles.is_empty() { Err(StlError::Empty) } else { Ok(mesh) }
+    if mesh.triangles.is_empty() { Err(StlError::Empty) } else { Ok(StlFile { mesh, contrary_normals }) }
 }
 
 /// A binary STL says how long it is; a file cut short must not pass for a smaller part.
@@ -107,7 +120,7 @@ mod tests {
     fn a_mesh_survives_the_round_trip() {
         let bytes = stl_bytes(&tetrahedron()).unwrap();
         assert_eq!(bytes.len(), 84 + 4 * 50);
-        let back = read_stl(&mut Cursor::new(bytes)).unwrap();
+        let back = read_stl(&mut Cursor::new(bytes)).unwrap().mesh;
         assert_eq!((back.positions.len(), back.triangles.len()), (4, 4));
         for volume in back.axis_volumes_mm3() {
             assert!((volume - 1.0 / 6.0).abs() < 1e-12);

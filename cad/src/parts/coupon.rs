@@ -11,8 +11,10 @@ use crate::solid::{Facing, Solid};
 const CLEARANCES_HUNDREDTHS: [u32; 7] = [10, 15, 20, 25, 30, 35, 40];
 /// Length of a slot beyond its width, in pin diameters.
 const SLOT_TRAVEL: f64 = 1.5;
-/// Room for the figures beside each slot, mm.
-const FIGURE_MM: f64 = 4.0;
+/// Height of the room for the figures beside each slot, mm.
+const FIGURE_MM: f64 = 5.0;
+/// Width of that room, mm.
+const FIGURES_WIDE_MM: f64 = 7.5;
 /// Grooves in the upper edge.
 const GROOVES: usize = 3;
 /// Wall around slots and grooves, mm.
@@ -21,7 +23,7 @@ const WALL_MM: f64 = 2.0;
 pub(super) fn coupon(design: &Design) -> Result<Part, ConfigError> {
     let c = design.configuration();
     let (pin, groove) = (c.pins.diameter_mm, c.segment.groove_radius_mm);
-    let pitch = (pin + 0.4 + WALL_MM).max(FIGURE_MM + 1.5);
+    let pitch = (pin + 0.4 + WALL_MM).max(FIGURES_WIDE_MM);
     let length = pitch * CLEARANCES_HUNDREDTHS.len() as f64 + WALL_MM;
     let slot_length = pin * SLOT_TRAVEL;
     let slot_middle = WALL_MM + FIGURE_MM + WALL_MM / 2.0 + (slot_length + pin + 0.4) / 2.0;
@@ -45,7 +47,7 @@ pub(super) fn coupon(design: &Design) -> Result<Part, ConfigError> {
     let (bottoms, mut tops) = solid.through_holes(&slots, 0.0, thickness, chamfer).map_err(&foot)?;
     solid.cap(Facing::Down, bottom, &bottoms);
     for (i, clearance) in CLEARANCES_HUNDREDTHS.iter().enumerate() {
-        let zone = Zone::flat(Point2::new(place(i), WALL_MM + FIGURE_MM / 2.0), pitch - 1.0, FIGURE_MM);
+        let zone = Zone::flat(Point2::new(place(i), WALL_MM + FIGURE_MM / 2.0), pitch, FIGURE_MM);
         tops.extend(engrave_text(&mut solid, design, &clearance.to_string(), &zone, thickness).rings);
     }
     solid.cap(Facing::Up, top, &tops);

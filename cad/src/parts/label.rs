@@ -13,7 +13,9 @@ const ROUND_RAD: f64 = 0.5;
 /// Letters smaller than this are not legible in a print, mm.
 const LEAST_HEIGHT_MM: f64 = 1.5;
 /// Wall between a letter and the edge of its zone, mm.
-const EDGE_MM: f64 = 0.6;
+const EDGE_MM: f64 = 0.5;
+/// Width of a letter over its height.
+const ASPECT: f64 = 0.58;
 /// Points of a letter's outline that are closer than this are one point, mm.
 const MERGE_MM: f64 = 0.02;
 
@@ -57,28 +59,40 @@ impl Zone {
         Self::Arc { inner_mm: design.inner_radius_mm(), outer_mm, from_rad: widest.0, to_rad: widest.1 }
     }
 
-    /// Length along the text and height across it, in mm.
-    fn size_mm(&self) -> (f64, f64) {
+    /// Length along the feet of letters of `letter_mm`, and height across them, in mm.
+    fn size_mm(&self, letter_mm: f64) -> (f64, f64) {
         match *self {
             Self::Flat { length_mm, height_mm, .. } => (length_mm, height_mm),
-            // A letter's inner edge is the narrower one.
+            // Letters lean apart: their inner edges are the closest.
             Self::Arc { inner_mm, outer_mm, from_rad, to_rad } => {
-                ((to_rad - from_rad) * (inner_mm + EDGE_MM), outer_mm - inner_mm)
+                let foot =
+                    f64::midpoint(inner_mm, outer_mm) - (letter_mm / 2.0).min((outer_mm - inner_mm) / 2.0);
+                ((to_rad - from_rad) * foot, outer_mm - inner_mm)
             }
         }
     }
 
-    /// Brings a point from text coordinates (x along the line from its middle, y up from its middle; `x_letter` is
-    /// the middle of its letter) onto the part.
-    fn place(&self, x_letter: f64, x: f64, y: f64) -> Point2 {
+    /// Radius of the letters' feet, mm: letters lean apart, so that there they are closest.
+    fn foot_mm(&self, letter_mm: f64) -> f64 {
         match *self {
-            Self::Flat { middle, .. } => middle + Vector2::new(x, y),
+            Self::Flat { .. } => f64::INFINITY,
+            Self::Arc { inner_mm, outer_mm, .. } => {
+                f64::midpoint(inner_mm, outer_mm) - (letter_mm / 2.0).min((outer_mm - inner_mm) / 2.0)
+            }
+        }
+    }
+
+    /// Brings a point of a letter (`x` and `y` from its middle) onto the part; the letter's foot lies `along_mm` along
+    /// the line from its middle.
+    fn place(&self, along_mm: f64, letter_mm: f64, [x, y]: [f64; 2]) -> Point2 {
+        match *self {
+            Self::Flat { middle, .. } => middle + Vector2::new(along_mm + x, y),
             Self::Arc { inner_mm, outer_mm, from_rad, to_rad } => {
                 let radius = f64::midpoint(inner_mm, outer_mm);
-                let angle = f64::midpoint(from_rad, to_rad) + x_letter / radius;
+                let angle = f64::midpoint(from_rad, to_rad) + along_mm / self.foot_mm(letter_mm);
                 let up = polar(1.0, angle).coords;
                 let right = Vector2::new(up.y, -up.x);
-                Point2::from(up * (radius + y) + right * (x - x_letter))
+                Point2::from(up * (radius + y) + right * x)
             }
         }
     }
@@ -101,16 +115,15 @@ pub(super) fn engrave_text(
     if !c.label.engrave {
         return Engraved { rings: Vec::new(), note: None };
     }
-    let (length, height) = zone.size_mm();
     let stroke = c.label.stroke_mm;
-    let letters = text.chars().count().max(1) as f64;
-    // A letter advances by its grid plus two, and by no less than leaves a wall between strokes.
-    let advance_per_mm = (WIDTH + 2.0) / HEIGHT;
-    let least_gap = stroke + c.print.least_wall_mm;
-    let by_length = ((length - 2.0 * EDGE_MM - stroke) / (letters * advance_per_mm)).min(c.label.height_mm);
-    let size = by_length.min(height - 2.0 * EDGE_MM - stroke);
-    let advance = (size * advance_per_mm).max(size * WIDTH / HEIGHT + least_gap);
-    let fits = size >= LEAST_HEIGHT_MM.max(4.0 * stroke) && advance * letters <= length - EDGE_MM;
+    let (length, height) = zone.size_mm(c.label.height_mm + stroke);
+    let letters = text.chars().count() as f64;
+    // Strokes of a letter are two grid units apart, letters four and a gap: both must leave a wall between strokes.
+    let gap = stroke + c.print.least_wall_mm;
+    let by_length = ((length - 2.0 * EDGE_MM + gap - stroke) / letters - gap) / ASPECT;
+    let size = c.label.height_mm.min(height - 2.0 * EDGE_MM - stroke).min(by_length);
+    let advance = size * ASPECT + gap;
+    let fits = size >= (gap * HEIGHT / 2.0).max(LEAST_HEIGHT_MM);
     let deep_enough = top_mm - c.label.depth_mm >= c.print.least_wall_mm;
     if !fits || !deep_enough {
         return Engraved {
@@ -123,7 +136,7 @@ pub(super) fn engrave_text(
         let middle = (i as f64 - (letters - 1.0) / 2.0) * advance;
         for shape in letter_shapes(letter, size, stroke) {
             let mut contours = shape.iter().map(|points| {
-                Contour::polygon(points.iter().map(|[x, y]| zone.place(middle, middle + x, *y)).collect())
+                Contour::polygon(points.iter().map(|p| zone.place(middle, size + stroke, *p)).collect())
             });
             let Some(outline) = contours.next().map(|c| run(c, Sense::Clockwise)) else { continue };
             let islands: Vec<_> = contours.map(|c| run(c, Sense::CounterClockwise)).collect();
@@ -136,11 +149,11 @@ pub(super) fn engrave_text(
 /// The outlines of a letter's strokes, united: each shape is its outline, then its islands, in mm about the letter's
 /// middle.
 fn letter_shapes(letter: char, height_mm: f64, stroke_mm: f64) -> Vec<Vec<Vec<[f64; 2]>>> {
-    let scale = height_mm / HEIGHT;
+    let (along, up) = (height_mm * ASPECT / WIDTH, height_mm / HEIGHT);
     let paths: Vec<Vec<[f64; 2]>> = strokes(letter)
         .unwrap_or_default()
         .iter()
-        .map(|run| run.iter().map(|[x, y]| [(x - WIDTH / 2.0) * scale, (y - HEIGHT / 2.0) * scale]).collect())
+        .map(|run| run.iter().map(|[x, y]| [(x - WIDTH / 2.0) * along, (y - HEIGHT / 2.0) * up]).collect())
         .collect();
     let style = StrokeStyle::new(stroke_mm)
         .line_join(LineJoin::Round(ROUND_RAD))
@@ -180,6 +193,9 @@ fn merged(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::Configuration;
+    use crate::solid::Facing;
+    use crate::validity::{Expectation, examine};
 
     #[test]
     fn no_letter_has_a_part_inside_its_island() {
@@ -193,6 +209,25 @@ mod tests {
             }
             // Only the colon and the equals sign have two parts; an island with a part in it would make two.
             assert!(shapes.len() <= 1 || ":=".contains(letter), "{letter}: {}", shapes.len());
+        }
+    }
+    #[test]
+    fn every_letter_leaves_walls_that_print() {
+        let design = Design::new(Configuration::default()).unwrap();
+        let outline = Contour::polygon(
+            [(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0)].map(|(x, y)| Point2::new(x, y)).to_vec(),
+        );
+        for letter in ('!'..='~').filter(|l| strokes(*l).is_some()) {
+            let mut solid = Solid::new();
+            let (bottom, top) = solid.extrude(&outline, 0.0, 2.0);
+            solid.cap(Facing::Down, bottom, &[]);
+            let zone = Zone::flat(Point2::new(4.0, 4.0), 8.0, 8.0);
+            let engraved = engrave_text(&mut solid, &design, &letter.to_string(), &zone, 2.0);
+            assert!(engraved.note.is_none());
+            solid.cap(Facing::Up, top, &engraved.rings);
+            let printable = Expectation { bodies: Some(1), min_wall_mm: 0.4, ..Expectation::default() };
+            let found = examine(&solid.mesh(design.tolerance()).unwrap(), &printable);
+            assert!(found.is_valid(), "{letter}: {:?}", found.faults);
         }
     }
 }

@@ -19,6 +19,7 @@ use crate::profile::{Contour, OffsetError, polar};
 use crate::solid::{CapError, Solid};
 
 pub use layer::silicone_layer;
+pub use mould::cavity_mm3;
 pub use sector::Sector;
 
 /// What a part is made of.

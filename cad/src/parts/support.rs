@@ -11,6 +11,8 @@ use crate::solid::{Facing, Solid};
 
 /// The lip ends this far inside the plate, mm: two coincident walls would not be a solid.
 const LIP_END_MM: f64 = 0.5;
+/// Ledge between a slot and the lip beside it, mm: likewise.
+const LIP_LEDGE_MM: f64 = 0.1;
 
 /// Which side of the switch a support is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +58,9 @@ fn support(design: &Design, side: Side) -> Result<Part, ConfigError> {
     let floor = plate - design.slot().depth_mm;
     tops.extend(blind.iter().map(|slot| solid.pocket(slot, &[], floor, plate)));
     let lip_top = plate + c.support.lip_depth_mm;
-    for piece in lip(design) {
+    let lip = lip(design);
+    let lost_lip = lip.is_empty() && c.support.lip_depth_mm > 0.0;
+    for piece in lip {
         tops.push(solid.boss(&turned(piece), plate, lip_top));
     }
     let slot = design.slot();
@@ -70,6 +74,12 @@ fn support(design: &Design, side: Side) -> Result<Part, ConfigError> {
     };
     let mut part = Part::new(name, solid, Some(pose));
     part.notes.extend(engraved.note);
+    if lost_lip {
+        part.notes.push(
+            "the lip does not fit between the slots and is left out: use support.slots = \"occupied\""
+                .to_owned(),
+        );
+    }
     Ok(part)
 }
 
@@ -103,7 +113,7 @@ fn lip(design: &Design) -> Vec<Contour> {
         return Vec::new();
     }
     // A slot and its clearance, as an angle at the inner radius, where they are widest.
-    let beside = (design.slot().width_mm / 2.0 + c.print.least_wall_mm / 2.0) / inner;
+    let beside = (design.slot().width_mm / 2.0 + LIP_LEDGE_MM) / inner;
     let slots = design.slot_angles_rad();
     let mut starts = vec![-end];
     let mut ends = Vec::new();

@@ -26,7 +26,7 @@ fn assert_valid(part: &Part, design: &Design, variant: &[&str]) {
     let found = examine(&mesh, &expected);
     assert!(found.is_valid(), "{variant:?} {}: {:#?}", part.name, found.faults);
     assert!(found.facts.low_mm[2].abs() < 1e-12);
-    let written = read_stl(&mut Cursor::new(stl_bytes(&mesh).unwrap())).unwrap();
+    let written = read_stl(&mut Cursor::new(stl_bytes(&mesh).unwrap())).unwrap().mesh;
     let found = examine(&written, &expected);
     assert!(found.is_valid(), "{variant:?} {} as STL: {:#?}", part.name, found.faults);
     assert_eq!(written.triangles.len(), mesh.triangles.len());
@@ -54,6 +54,36 @@ fn all_parts_of_the_variants_are_valid() {
         let design = design(variant);
         for part in printed(&design).unwrap().iter().chain(&reference_bodies(&design).unwrap()) {
             assert_valid(part, &design, variant);
+        }
+    }
+}
+
+/// Truck builds the same solid from the same profile: closed, as large, and in the same place.
+#[cfg(feature = "brep")]
+#[test]
+fn truck_agrees_with_every_part() {
+    let tolerance = crate::profile::ChordTolerance::new(0.01).unwrap();
+    for kind in ["split", "one-piece"] {
+        let mould = format!("mould.kind={kind}");
+        let design = design(&[
+            "layout.pins=[5, 8, 11]",
+            &mould,
+            "print.elephant_foot_mm=0.2",
+            "parts.guide_pulley=true",
+        ]);
+        for part in printed(&design).unwrap().iter().chain(&reference_bodies(&design).unwrap()) {
+            let truck = part.solid.brep_mesh(tolerance).unwrap();
+            assert!(truck.closed, "{}", part.name);
+            let exact = part.solid.volume_mm3();
+            for volume in truck.mesh.axis_volumes_mm3() {
+                // Truck's vertices lie on the curve: it may be off by the tolerance over the whole surface.
+                let bound = tolerance.mm() * part.solid.surface_mm2();
+                assert!((volume - exact).abs() <= bound, "{}: {volume} for {exact}", part.name);
+            }
+            let (low, high) = truck.mesh.bounds().unwrap();
+            let (exact_low, exact_high) = part.solid.bounds().unwrap();
+            let off = (low - exact_low).amax().max((high - exact_high).amax());
+            assert!(off <= tolerance.mm(), "{}: off by {off}", part.name);
         }
     }
 }

@@ -178,14 +178,38 @@ impl Solid {
             .reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))
     }
 
-    /// The contours that bound the material at height `z_mm`, which must not be the height of a cap; slanted
-    /// walls give their lower contour moved in proportion only if both rings are alike, else nothing.
-    pub fn section(&self, z_mm: f64) -> Vec<&Contour> {
+    /// The contours that bound the material at height `z_mm`, outlines counter-clockwise and holes clockwise;
+    /// slanted walls give the contour midway between their rings.
+    pub fn section(&self, z_mm: f64) -> Vec<Contour> {
         self.walls
             .iter()
-            .filter(|w| self.rings[w.lower.0].z_mm < z_mm && z_mm < self.rings[w.upper.0].z_mm)
-            .map(|w| &self.rings[w.lower.0].contour)
+            .map(|w| (&self.rings[w.lower.0], &self.rings[w.upper.0]))
+            .filter(|(lower, upper)| lower.z_mm < z_mm && z_mm < upper.z_mm)
+            .map(|(lower, upper)| {
+                let upright = lower.contour == upper.contour;
+                if upright { lower.contour.clone() } else { lower.contour.midway(&upper.contour) }
+            })
             .collect()
+    }
+
+    /// Pieces per edge of each ring, from `pieces` of its contour; rings that walls join get the same numbers, the
+    /// larger ones, so that the wall between them is a strip.
+    fn levelled(&self, pieces: impl Fn(&Contour) -> Vec<usize>) -> Vec<Vec<usize>> {
+        let mut numbers: Vec<_> = self.rings.iter().map(|r| pieces(&r.contour)).collect();
+        loop {
+            let mut settled = true;
+            for Wall { lower: RingId(a), upper: RingId(b) } in &self.walls {
+                if numbers[*a] != numbers[*b] {
+                    let most: Vec<_> = numbers[*a].iter().zip(&numbers[*b]).map(|(x, y)| *x.max(y)).collect();
+                    numbers[*a].clone_from(&most);
+                    numbers[*b] = most;
+                    settled = false;
+                }
+            }
+            if settled {
+                return numbers;
+            }
+        }
     }
 
     /// Every height at which a ring lies, ascending, without repeats.

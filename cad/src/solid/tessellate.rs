@@ -1,7 +1,7 @@
 //! From a solid to its triangle mesh, within a chord tolerance.
 
 use super::cap::{CapError, triangulate};
-use super::{Cap, Facing, RingId, Solid, Wall};
+use super::{Cap, Facing, Solid};
 use crate::mesh::{Mesh, Point3};
 use crate::profile::{ChordTolerance, Point2};
 
@@ -17,7 +17,7 @@ impl Solid {
     /// # Errors
     /// [`CapError`] if contours of one cap cross or touch.
     pub fn mesh(&self, tolerance: ChordTolerance) -> Result<Mesh, CapError> {
-        let chords = self.chords(tolerance);
+        let chords = self.levelled(|contour| contour.chords(tolerance));
         let mut positions = Vec::new();
         let rings: Vec<_> = self
             .rings
@@ -38,25 +38,6 @@ impl Solid {
             self.close(cap, &rings, &mut triangles)?;
         }
         Ok(Mesh::new(positions, triangles))
-    }
-
-    /// Chords per edge of each ring; rings that walls join get the same numbers, the larger ones.
-    fn chords(&self, tolerance: ChordTolerance) -> Vec<Vec<usize>> {
-        let mut chords: Vec<_> = self.rings.iter().map(|r| r.contour.chords(tolerance)).collect();
-        loop {
-            let mut settled = true;
-            for Wall { lower: RingId(a), upper: RingId(b) } in &self.walls {
-                if chords[*a] != chords[*b] {
-                    let most: Vec<_> = chords[*a].iter().zip(&chords[*b]).map(|(x, y)| *x.max(y)).collect();
-                    chords[*a].clone_from(&most);
-                    chords[*b] = most;
-                    settled = false;
-                }
-            }
-            if settled {
-                return chords;
-            }
-        }
     }
 
     fn close(&self, cap: &Cap, rings: &[FlatRing], triangles: &mut Vec<[u32; 3]>) -> Result<(), CapError> {

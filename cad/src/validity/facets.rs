@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Fault, place};
+use super::{Facts, Fault, place};
 use crate::mesh::{Mesh, Point3};
 
 /// Least height of a triangle in mm: twice its area over its longest side.
@@ -27,6 +27,19 @@ pub(super) fn not_finite(mesh: &Mesh) -> Option<Fault> {
         count: bad,
         at_mm: None,
         detail: format!("{bad} vertices have a coordinate that is NaN or infinite"),
+    })
+}
+
+/// A mesh that is far too small or too large to be in millimetres.
+pub(super) fn wrong_unit(facts: &Facts, (least, most): (f64, f64)) -> Option<Fault> {
+    let longest = (0..3).map(|i| facts.high_mm[i] - facts.low_mm[i]).fold(0.0, f64::max);
+    (longest < least || longest > most).then(|| Fault {
+        check: "size",
+        count: 1,
+        at_mm: None,
+        detail: format!(
+            "the longest side is {longest:.4} mm, expected are {least} to {most} mm: is it in millimetres?"
+        ),
     })
 }
 

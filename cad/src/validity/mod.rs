@@ -23,6 +23,8 @@ pub struct Expectation {
     pub volume_mm3: Option<(f64, f64)>,
     /// Least height of a triangle, mm: below it, single precision no longer tells its corners apart.
     pub min_height_mm: f64,
+    /// Least and greatest length of the longest side, mm; beyond it the unit is probably wrong.
+    pub longest_side_mm: (f64, f64),
     /// Least wall thickness in mm; zero does not look for thin walls.
     pub min_wall_mm: f64,
     /// Whether to look for facets that pass through each other: the slowest of the checks.
@@ -31,7 +33,14 @@ pub struct Expectation {
 
 impl Default for Expectation {
     fn default() -> Self {
-        Self { bodies: None, volume_mm3: None, min_height_mm: 1e-5, min_wall_mm: 0.0, intersections: true }
+        Self {
+            bodies: None,
+            volume_mm3: None,
+            min_height_mm: 1e-5,
+            longest_side_mm: (1.0, 1000.0),
+            min_wall_mm: 0.0,
+            intersections: true,
+        }
     }
 }
 
@@ -110,6 +119,7 @@ pub fn examine(mesh: &Mesh, expected: &Expectation) -> Examination {
         return found;
     }
     measure(mesh, &mut found.facts);
+    found.faults.extend(facets::wrong_unit(&found.facts, expected.longest_side_mm));
     let degenerate = facets::degenerate(mesh, expected.min_height_mm);
     let repeated = facets::repeated(mesh);
     let edge_faults = edges::unpaired(mesh);

@@ -1,6 +1,5 @@
 //! The split mould's lid: it sets the layer's width, with a pouring funnel and vents at both ends.
 
-use super::super::label::{Zone, engrave};
 use super::super::{Part, swallowed};
 use super::split::plate_sector;
 use super::{Cavity, keys};
@@ -16,49 +15,70 @@ const SLOT_SHARE: f64 = 0.15;
 /// Where the vents lie, as a share of half the span.
 const VENT_SHARE: f64 = 0.9;
 
-pub(super) fn lid(design: &Design) -> Result<Part, ConfigError> {
+/// The lid's openings, clockwise.
+struct Openings {
+    keys: Vec<Contour>,
+    vents: Vec<Contour>,
+    /// Foot and mouth of the pouring funnel.
+    spout: Contour,
+    mouth: Contour,
+}
+
+fn openings(design: &Design, plate: &Contour) -> Result<Openings, ConfigError> {
     let c = design.configuration();
     let cavity = Cavity::of(design);
-    let thickness = c.mould.floor_mm;
-    let chamfer = c.print.elephant_foot_mm;
-    let foot = swallowed("print.elephant_foot_mm");
     let free = cavity.sector.outer_mm - cavity.sector.inner_mm - cavity.groove_radius_mm;
     let middle = cavity.sector.inner_mm + free / 2.0;
     let vent = (c.mould.vent_diameter_mm.min(OPENING * free)) / 2.0;
-    let mut holes = keys::through_holes(design);
-    holes.extend([-1.0, 1.0].map(|side| {
-        let angle = side * (VENT_SHARE * design.half_span_rad() - vent / middle).max(0.0);
-        Contour::circle(polar(middle, angle), vent).reversed()
-    }));
-
-    let mut solid = Solid::new();
-    let plate = plate_sector(design, &cavity).outline();
-    let (bottom, top) = solid.extrude_chamfered(&plate, 0.0, thickness, chamfer).map_err(&foot)?;
-    let (mut bottoms, mut tops) = solid.through_holes(&holes, 0.0, thickness, chamfer).map_err(&foot)?;
+    let keys = keys::through_holes(design);
+    let vents = [-1.0, 1.0]
+        .map(|side| {
+            let angle = side * (VENT_SHARE * design.half_span_rad() - vent / middle).max(0.0);
+            Contour::circle(polar(middle, angle), vent).reversed()
+        })
+        .to_vec();
     let width = OPENING * free;
     let spout = arc_slot(middle, width / 2.0, SLOT_SHARE * design.half_span_rad());
-    // The funnel widens upward: into the wall of the clockwise slot.
-    let room = holes.iter().chain([&plate]).map(|other| gap_mm(&spout, other)).fold(f64::INFINITY, f64::min);
-    let widening =
-        ((c.mould.pour_width_mm - width) / 2.0).min(room - c.print.least_wall_mm).clamp(0.0, thickness);
+    // The funnel widens upward, into the plate, as far as its neighbours leave a wall.
+    let neighbours = keys.iter().chain(&vents).chain([plate]);
+    let room = neighbours.map(|other| gap_mm(&spout, other)).fold(f64::INFINITY, f64::min);
+    let wanted = (c.mould.pour_width_mm - width) / 2.0;
+    let widening = wanted.min(room - c.print.least_wall_mm).clamp(0.0, c.mould.floor_mm);
     let mouth = spout.offset(widening).map_err(swallowed("mould.pour_width_mm"))?;
-    let (spout, mouth) = (solid.ring(spout, 0.0), solid.ring(mouth, thickness));
+    Ok(Openings { keys, vents, spout, mouth })
+}
+
+/// Volume of funnel and vents, mm³; nothing if they cannot be built, which [`lid`] reports.
+pub(super) fn openings_mm3(design: &Design) -> f64 {
+    let plate = plate_sector(design, &Cavity::of(design)).outline();
+    openings(design, &plate).map_or(0.0, |o| {
+        let thickness = design.configuration().mould.floor_mm;
+        let mut solid = Solid::new();
+        let (spout, mouth) = (solid.ring(o.spout.reversed(), 0.0), solid.ring(o.mouth.reversed(), thickness));
+        solid.wall(spout, mouth);
+        solid.volume_mm3() - o.vents.iter().map(Contour::area_mm2).sum::<f64>() * thickness
+    })
+}
+
+pub(super) fn lid(design: &Design) -> Result<Part, ConfigError> {
+    let c = design.configuration();
+    let thickness = c.mould.floor_mm;
+    let chamfer = c.print.elephant_foot_mm;
+    let foot = swallowed("print.elephant_foot_mm");
+    let plate = plate_sector(design, &Cavity::of(design)).outline();
+    let o = openings(design, &plate)?;
+    let holes = [o.keys, o.vents].concat();
+
+    let mut solid = Solid::new();
+    let (bottom, top) = solid.extrude_chamfered(&plate, 0.0, thickness, chamfer).map_err(&foot)?;
+    let (mut bottoms, mut tops) = solid.through_holes(&holes, 0.0, thickness, chamfer).map_err(&foot)?;
+    let (spout, mouth) = (solid.ring(o.spout, 0.0), solid.ring(o.mouth, thickness));
     solid.wall(spout, mouth);
     bottoms.push(spout);
     tops.push(mouth);
     solid.cap(Facing::Down, bottom, &bottoms);
-    let zone = Zone::Arc {
-        inner_mm: design.inner_radius_mm(),
-        outer_mm: middle - width / 2.0 - widening,
-        from_rad: -design.half_span_rad(),
-        to_rad: design.half_span_rad(),
-    };
-    let engraved = engrave(&mut solid, design, &zone, thickness);
-    tops.extend(engraved.rings);
     solid.cap(Facing::Up, top, &tops);
-    let mut part = Part::new("mould-lid", solid, None);
-    part.notes.extend(engraved.note);
-    Ok(part)
+    Ok(Part::new("mould-lid", solid, None))
 }
 
 /// Least distance in mm from `slot`, at eight points of every edge, to the curve of `other`.

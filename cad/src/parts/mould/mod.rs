@@ -7,7 +7,7 @@ mod split;
 
 use super::layer::layer_sector;
 use super::{Part, Sector};
-use crate::config::ConfigError;
+use crate::config::{ConfigError, MouldKind};
 use crate::design::Design;
 
 pub(super) use one_piece::one_piece;
@@ -15,6 +15,20 @@ pub(super) use one_piece::one_piece;
 /// Core, ring and lid.
 pub(super) fn split(design: &Design) -> Result<[Part; 3], ConfigError> {
     Ok([split::core(design)?, split::ring(design)?, lid::lid(design)?])
+}
+
+/// Volume in mm³ of the mould's cavity up to the layer's width, and of what lies above it: the basin of the one-piece
+/// mould, or the split mould's funnel and vents. Draft counts as overfill: it is cut or pressed away.
+pub fn cavity_mm3(design: &Design) -> (f64, f64) {
+    let cavity = Cavity::of(design);
+    let section = cavity.sector.grooved(&cavity.groove_angles_rad, cavity.groove_radius_mm).area_mm2();
+    let layer = section * cavity.depth_mm;
+    let above = match design.configuration().mould.kind {
+        MouldKind::None => 0.0,
+        MouldKind::OnePiece => one_piece::filled_mm3(design) - layer,
+        MouldKind::Split => lid::openings_mm3(design),
+    };
+    (layer, above)
 }
 
 /// The cavity before its ribs: the layer, enlarged by what the silicone shrinks.

@@ -1,0 +1,74 @@
+//! `pinswitch generate CONFIG`.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Args;
+
+use super::source::Source;
+use super::{Failure, print};
+use crate::output::{SetError, make_set, write_set};
+
+/// Make the printable parts of a configuration, with their predicted friction curve.
+///
+/// Writes one folder: the parts as binary STL (millimetres, print orientation), friction.csv and friction.svg (the
+/// predicted curve with its band), and manifest.json (every parameter, derived dimension, volume, hash, and the bill
+/// of materials). Nothing is written if anything is wrong.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pinswitch generate three-double
+  pinswitch generate my-switch.toml --out parts --preset printer-fff-0.4
+  pinswitch generate three-double --set layout.pins=[4,8,12] --set support.slots=occupied")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+    /// Folder to write into [default: out/NAME].
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the manifest as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let start = Instant::now();
+    let design = arguments.source.design()?;
+    let set = make_set(&design).map_err(|e| match e {
+        SetError::Configuration(e) => Failure::bad_input(e),
+        other => Failure::failed(other),
+    })?;
+    let folder = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("out").join(&design.configuration().switch.name));
+    write_set(&folder, &set.files).map_err(Failure::failed)?;
+    for warning in &set.manifest.warnings {
+        log::warn!("{warning}");
+    }
+    for part in &set.manifest.parts {
+        log::debug!("{}: {:.3} mm3, {} triangles", part.file, part.volume_mm3, part.mesh.triangles);
+        for note in &part.notes {
+            log::warn!("{}: {note}", part.file);
+        }
+    }
+    let friction = &set.manifest.friction;
+    log::info!(
+        "{}: {} parts in {:.0} ms; {:.2} N of friction at {:.2} N ({:.2} to {:.2} N, {})",
+        folder.display(),
+        set.manifest.parts.len(),
+        start.elapsed().as_secs_f64() * 1e3,
+        friction.friction_n,
+        friction.load_n,
+        friction.band_n[0],
+        friction.band_n[1],
+        serde_json::to_value(friction.trust)
+            .ok()
+            .and_then(|t| t.as_str().map(str::to_owned))
+            .unwrap_or_default(),
+    );
+    if arguments.json {
+        let manifest = set.files.last().map(|f| f.bytes.clone()).unwrap_or_default();
+        print(&manifest)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,31 @@
+//! `pinswitch predict CONFIG`.
+
+use clap::Args;
+
+use super::source::Source;
+use super::{Failure, print, print_json};
+use crate::output::{curve_of, friction_csv};
+
+/// Predict the friction curve of a configuration, without making parts.
+///
+/// The curve carries its law, its band, and one word on how far to trust it: published, interpolated or extrapolated.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pinswitch predict three-double
+  pinswitch predict three-double --set layout.pins=[4,8,12] --json")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+    /// Print JSON instead of CSV.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let design = arguments.source.design()?;
+    let curve = curve_of(&design, design.contact());
+    for reason in &curve.reasons {
+        log::info!("{reason}");
+    }
+    if arguments.json { print_json(&curve) } else { print(friction_csv(&curve).as_bytes()) }
+}

@@ -1,0 +1,26 @@
+//! The friction curve as a table.
+
+use std::fmt::Write;
+
+use pinswitch_model::FrictionCurve;
+
+/// One row per load; forces in newtons, four decimals.
+pub fn friction_csv(curve: &FrictionCurve) -> String {
+    let mut text =
+        "load_N,eccentric_N,concentric_N,friction_N,band_low_N,band_high_N,silicone_share\n".to_owned();
+    for i in 0..curve.load_n.len() {
+        let row = [
+            curve.load_n[i],
+            curve.eccentric_n[i],
+            curve.concentric_n[i],
+            curve.friction_n[i],
+            curve.band_low_n[i],
+            curve.band_high_n[i],
+            curve.silicone_share[i],
+        ];
+        let cells: Vec<_> = row.iter().map(|v| format!("{v:.4}")).collect();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}", cells.join(","));
+    }
+    text
+}

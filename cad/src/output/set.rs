@@ -1,0 +1,107 @@
+//! Makes a whole set in memory: nothing is written before everything is known to be right.
+
+use pinswitch_model::{Contact, FrictionCurve, predict};
+
+use super::{Manifest, PlotError, bill_of_materials, friction_csv, friction_svg, manifest};
+use crate::config::ConfigError;
+use crate::design::Design;
+use crate::mesh::stl_bytes;
+use crate::parts::{self, Part};
+use crate::solid::CapError;
+use crate::validity::{Expectation, Facts, Fault, examine};
+
+/// A file to be written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputFile {
+    /// Its name in the folder.
+    pub name: String,
+    /// Its content.
+    pub bytes: Vec<u8>,
+}
+
+/// A set of parts with its curve, ready to be written; the manifest is the last file.
+#[derive(Clone, Debug)]
+pub struct Set {
+    /// What the set holds.
+    pub manifest: Manifest,
+    /// The files, the manifest last.
+    pub files: Vec<OutputFile>,
+}
+
+/// Why a set cannot be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SetError {
+    /// The configuration asks for something that cannot be built.
+    #[error(transparent)]
+    Configuration(#[from] ConfigError),
+    /// Contours of a part cross: a bound is missing, and this is a fault of the program.
+    #[error("{part}: {source}; please report the configuration")]
+    Cap {
+        /// The part.
+        part: String,
+        /// Where.
+        source: CapError,
+    },
+    /// A mesh is not valid: a fault of the program. Nothing is written.
+    #[error("{part}: invalid mesh: {fault}; please report the configuration")]
+    Invalid {
+        /// The part.
+        part: String,
+        /// What is wrong.
+        fault: Fault,
+    },
+    /// The plot cannot be drawn.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+    /// A file cannot be put together.
+    #[error("cannot put a file together: {0}")]
+    Encoding(String),
+}
+
+/// The predicted curve of `design`.
+pub fn curve_of(design: &Design, contact: &Contact) -> FrictionCurve {
+    let f = &design.configuration().friction;
+    let step = (f.load_max_n - f.load_min_n) / (f.points - 1) as f64;
+    let loads: Vec<f64> = (0..f.points).map(|i| f.load_min_n + step * i as f64).collect();
+    predict(contact, &loads)
+}
+
+/// Makes every file of `design`.
+///
+/// # Errors
+/// [`SetError`]; a mesh that the oracle refuses is never handed out.
+pub fn make_set(design: &Design) -> Result<Set, SetError> {
+    let mut files = Vec::new();
+    let mut parts = Vec::new();
+    for part in parts::printed(design)? {
+        let (bytes, facts) = mesh_file(&part, design)?;
+        files.push(OutputFile { name: format!("{}.stl", part.name), bytes });
+        parts.push((part, facts));
+    }
+    let contact = design.contact();
+    let curve = curve_of(design, contact);
+    files.push(OutputFile { name: "friction.csv".to_owned(), bytes: friction_csv(&curve).into_bytes() });
+    let svg = friction_svg(&design.configuration().switch.name, contact, &curve)?;
+    files.push(OutputFile { name: "friction.svg".to_owned(), bytes: svg.into_bytes() });
+    let (layer_mm3, overfill_mm3) = parts::cavity_mm3(design);
+    let bill = bill_of_materials(design, layer_mm3, overfill_mm3);
+    let manifest = manifest(design, &parts, bill, &curve, &files);
+    let mut bytes = serde_json::to_vec_pretty(&manifest).map_err(|e| SetError::Encoding(e.to_string()))?;
+    bytes.push(b'\n');
+    files.push(OutputFile { name: "manifest.json".to_owned(), bytes });
+    Ok(Set { manifest, files })
+}
+
+/// The part as binary STL, examined before it is handed out. The search for self-intersections, which vertical walls
+/// over checked caps cannot have, is left to `pinswitch check` and the tests.
+fn mesh_file(part: &Part, design: &Design) -> Result<(Vec<u8>, Facts), SetError> {
+    let mesh = part.print_mesh(design).map_err(|source| SetError::Cap { part: part.name.clone(), source })?;
+    let expected = Expectation { bodies: Some(1), intersections: false, ..Expectation::default() };
+    let found = examine(&mesh, &expected);
+    if let Some(fault) = found.faults.into_iter().next() {
+        return Err(SetError::Invalid { part: part.name.clone(), fault });
+    }
+    let bytes = stl_bytes(&mesh).map_err(|e| SetError::Encoding(e.to_string()))?;
+    Ok((bytes, found.facts))
+}

@@ -14,6 +14,7 @@
 //! # Ok::<(), pinswitch_model::ContactError>(())
 //! ```
 
+pub mod calibration;
 mod capstan;
 mod contact;
 mod curve;

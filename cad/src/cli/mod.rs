@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use clap_verbosity_flag::{InfoLevel, Verbosity};
 
+mod calibrate;
 mod check;
 mod completions;
 mod failure;
@@ -13,6 +14,7 @@ mod generate;
 mod init;
 mod layouts;
 mod predict;
+mod predict_rows;
 mod render;
 mod source;
 
@@ -36,6 +38,7 @@ enum Command {
     Render(render::Arguments),
     Layouts(layouts::Arguments),
     Init(init::Arguments),
+    Calibrate(calibrate::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -54,6 +57,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Layouts(arguments) => layouts::run(&arguments),
         Command::Init(arguments) => init::run(&arguments),
+        Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
     };
     match outcome {

@@ -75,6 +75,16 @@ pub enum Side {
     Rig,
 }
 
+impl Side {
+    /// The word of data.md.
+    pub fn word(self) -> &'static str {
+        match self {
+            Side::Switch => "switch",
+            Side::Rig => "rig",
+        }
+    }
+}
+
 /// Where the trace of an effect lies (data.md section 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -6,6 +6,7 @@ use super::forward::Model;
 use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
+use crate::rig::Point;
 
 /// A model fitted to data.
 #[derive(Clone, Debug)]
@@ -116,18 +117,51 @@ pub fn fit(start: &Model, data: &Observations, noise: Noise) -> Fit {
     Fit { model, cost, residual_n, converged }
 }
 
-/// Half widths of 95 % intervals of all constants, in the constants' own units, from the normal equations
-/// and a scale of at least one.
-pub fn interval_half_widths(fitted: &Fit, data: &Observations, noise: Noise) -> Vec<f64> {
+/// Covariance of the constants' coordinates, from the normal equations and a scale of at least one.
+pub fn coordinate_covariance(fitted: &Fit, data: &Observations, noise: Noise) -> DMatrix<f64> {
     let (_, predicted, white) = evaluate(&fitted.model, data, noise);
     let (a, _) = normal_equations(&fitted.model, data, noise, &predicted, &white);
-    let covariance = a.clone().cholesky().map_or_else(|| DMatrix::zeros(a.nrows(), a.ncols()), |c| c.inverse());
     let degrees = (data.points.len() as f64 - a.nrows() as f64).max(1.0);
-    let scale = (dot(&white, &white) / degrees).max(1.0).sqrt();
-    (0..a.nrows())
-        .map(|i| {
-            let (_, slope) = fitted.model.value(i);
-            1.96 * scale * covariance[(i, i)].max(0.0).sqrt() * slope.abs()
+    let scale = (dot(&white, &white) / degrees).max(1.0);
+    a.clone().cholesky().map_or_else(|| DMatrix::zeros(a.nrows(), a.ncols()), |c| c.inverse() * scale)
+}
+
+/// Half widths of 95 % intervals of all constants, in the constants' own units.
+pub fn interval_half_widths(fitted: &Fit, data: &Observations, noise: Noise) -> Vec<f64> {
+    let covariance = coordinate_covariance(fitted, data, noise);
+    (0..covariance.nrows())
+        .map(|i| 1.96 * covariance[(i, i)].max(0.0).sqrt() * fitted.model.value(i).1.abs())
+        .collect()
+}
+
+/// Standard deviations of predicted readings in newtons: noise of a reading and uncertainty of the constants.
+/// Rows of `covariance` beyond the model's own constants are ignored, missing ones count as certain.
+pub fn prediction_sd_n(model: &Model, points: &[Point], covariance: &[Vec<f64>], noise: Noise) -> Vec<f64> {
+    let at = model.predict(points);
+    let mut shifted = model.clone();
+    let columns: Vec<Vec<f64>> = (0..model.coordinates.len())
+        .map(|j| {
+            let step = 1e-5 * model.coordinates[j].abs().max(0.1);
+            shifted.coordinates[j] = model.coordinates[j] + step;
+            let moved = shifted.predict(points);
+            shifted.coordinates[j] = model.coordinates[j];
+            moved.iter().zip(&at).map(|(m, a)| (m - a) / step).collect()
+        })
+        .collect();
+    let same = covariance.len() == columns.len();
+    (0..points.len())
+        .map(|row| {
+            let mut variance = noise.at(points[row].load_n).powi(2);
+            for (i, line) in covariance.iter().enumerate().filter(|_| same) {
+                for (j, c) in line.iter().enumerate() {
+                    variance += columns[i][row] * c * columns[j][row];
+                }
+            }
+            if !same {
+                // A layout nobody measured: the law's own uncertainty, 12 % of the friction force (model.md 2).
+                variance += (0.12 * (at[row] - points[row].load_n)).powi(2);
+            }
+            variance.max(0.0).sqrt()
         })
         .collect()
 }

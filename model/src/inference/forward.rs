@@ -198,9 +198,29 @@ impl Model {
         true
     }
 
-    /// Whether a constant is a size (free), not a shape.
-    pub(crate) fn is_shape(&self, index: usize) -> bool {
-        self.priors[index].sd < 10.0 && index >= self.baseline_len()
+    /// The same model in a frame with more conditions; what they need beyond it comes from the layout law.
+    #[must_use]
+    pub fn in_frame(&self, frame: Frame) -> Self {
+        let mut model = Self::baseline(frame);
+        let (mut from, mut to) = (2, 2);
+        model.coordinates[..2].copy_from_slice(&self.coordinates[..2]);
+        // Conditions keep their order, new ones follow: devices first, then plain contacts.
+        for (known, all) in [
+            (2 * self.frame.devices(), 2 * model.frame.devices()),
+            (self.plain_count(), model.plain_count()),
+        ] {
+            model.coordinates[to..to + known].copy_from_slice(&self.coordinates[from..from + known]);
+            from += known;
+            to += all;
+        }
+        model.terms.clone_from(&self.terms);
+        model.coordinates.extend_from_slice(&self.coordinates[from..]);
+        model.priors.extend_from_slice(&self.priors[from..]);
+        model
+    }
+
+    fn plain_count(&self) -> usize {
+        self.plain.iter().filter(|at| **at != usize::MAX).count()
     }
 
     /// Readings in newtons at the points.

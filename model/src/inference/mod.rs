@@ -9,7 +9,7 @@ mod projection;
 mod screening;
 mod selection;
 
-pub use fit::{Fit, fit, interval_half_widths};
+pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_sd_n};
 pub use forward::{Model, Term};
 pub use noise::{Noise, Spread};
 pub use observations::Observations;

@@ -1,0 +1,46 @@
+//! `pinswitch predict --model MODEL --rows TABLE --out FILE`: readings from a calibrated model.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use pinswitch_model::calibration::ModelFile;
+use pinswitch_model::rig::PlateauTable;
+
+use super::{Failure, print};
+use crate::output::write_file;
+
+/// Rows of a plateau table, predicted by a calibrated model.
+#[derive(Args, Clone, Debug)]
+pub(super) struct Rows {
+    /// A model.toml or baseline.toml written by `calibrate`.
+    #[arg(long, value_name = "TOML", requires = "rows")]
+    model: Option<PathBuf>,
+    /// A plateau table whose rows are predicted; its force_N is not used.
+    #[arg(long, value_name = "CSV", requires = "model")]
+    rows: Option<PathBuf>,
+    /// Where the table with predicted_N and sd_N goes; standard output if absent.
+    #[arg(long, value_name = "CSV", requires = "rows")]
+    out: Option<PathBuf>,
+}
+
+impl Rows {
+    /// Predicts the rows if rows are asked for; `None` if the command is about a configuration.
+    pub(super) fn run(&self) -> Option<Result<(), Failure>> {
+        let (model, rows) = self.model.as_ref().zip(self.rows.as_ref())?;
+        Some(self.predict(model, rows))
+    }
+
+    fn predict(&self, model: &std::path::Path, rows: &std::path::Path) -> Result<(), Failure> {
+        let (model_name, rows_name) = (model.display().to_string(), rows.display().to_string());
+        let text = std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{model_name}: {e}")))?;
+        let model = ModelFile::parse(&text, &model_name).map_err(Failure::bad_input)?;
+        let file = std::fs::File::open(rows).map_err(|e| Failure::bad_input(format!("{rows_name}: {e}")))?;
+        let table = PlateauTable::read_conditions(file, &rows_name).map_err(Failure::bad_input)?;
+        let (predicted, sd) = model.predict(&table.rows, &model_name).map_err(Failure::bad_input)?;
+        let csv = table.with_columns(&["predicted_N", "sd_N"], &[predicted, sd], 5);
+        match &self.out {
+            Some(path) => write_file(path, csv.as_bytes()).map_err(Failure::failed),
+            None => print(csv.as_bytes()),
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! The closed loop: a table in, a verdict with errors before and after out (data.md sections 5 and 6).
+
+mod heldout;
+mod model_file;
+mod report;
+
+pub use heldout::{HeldOut, held_out};
+pub use model_file::{ModelFile, ModelFileError};
+pub use report::{
+    BadSeries, Calibration, CalibrationError, DataSummary, EffectReport, Estimate, Invisible, ModelReport, Report,
+    RivalReport, Verdict, calibrate,
+};

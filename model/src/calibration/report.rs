@@ -1,0 +1,391 @@
+//! The report of a calibration: verdict, effects, rivals, blind spots, errors before and after.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::heldout::{SOUND_WEIGHT, held_out};
+use crate::effects::LIBRARY;
+use crate::inference::{Fit, Levels, Model, Noise, Observations, Selection, Term, interval_half_widths, select};
+use crate::rig::{Frame, PlateauRow};
+
+/// Why rows cannot be calibrated.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CalibrationError {
+    /// Fewer rows than the baseline has constants.
+    #[error("{found} rows cannot fix the {needed} constants of the baseline; record more loads or repetitions")]
+    TooFewRows {
+        /// Rows given.
+        found: usize,
+        /// Constants of the baseline.
+        needed: usize,
+    },
+}
+
+/// What the data say about the paper's model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// The paper's model explains the data down to its noise.
+    None,
+    /// Every effect found is named and has no rival.
+    Attributed,
+    /// At least one effect has rivals that this data cannot tell apart.
+    Ambiguous,
+    /// Structure is left that no named effect explains.
+    Unattributed,
+}
+
+/// A constant with its interval.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Its value.
+    pub value: f64,
+    /// 95 % confidence interval.
+    pub ci95: [f64; 2],
+    /// Its unit.
+    pub unit: String,
+}
+
+/// Counts of a table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DataSummary {
+    /// Rows.
+    pub rows: usize,
+    /// Series.
+    pub series: usize,
+    /// Conditions.
+    pub conditions: usize,
+    /// Rows weighed down as outliers.
+    pub outliers: usize,
+}
+
+/// One fitted model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelReport {
+    /// Root mean square residual on the rows fitted, in newtons, outliers left out.
+    #[serde(rename = "rmse_N")]
+    pub rmse_n: f64,
+    /// The same on whole series and whole loads held out.
+    #[serde(rename = "heldout_rmse_N")]
+    pub heldout_rmse_n: f64,
+    /// On whole series held out.
+    #[serde(rename = "heldout_series_rmse_N")]
+    pub heldout_series_rmse_n: f64,
+    /// On whole loads held out.
+    #[serde(rename = "heldout_loads_rmse_N")]
+    pub heldout_loads_rmse_n: f64,
+    /// Constants by name.
+    pub parameters: BTreeMap<String, Estimate>,
+}
+
+/// An effect that explains the data as well.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RivalReport {
+    /// Its id.
+    pub id: String,
+    /// Why the data cannot tell.
+    pub why: String,
+    /// The experiment that would.
+    pub experiment: String,
+}
+
+/// One effect found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EffectReport {
+    /// Its id, or `unattributed`.
+    pub id: String,
+    /// Where it lies.
+    pub covariate: String,
+    /// `switch` or `rig`; absent for what has no name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub side: Option<String>,
+    /// Formula with source, or the shape of a structure in words.
+    pub formula: String,
+    /// Probability of such a gain without the effect, over the whole vocabulary.
+    pub p_value: f64,
+    /// Its constants.
+    pub parameters: BTreeMap<String, Estimate>,
+    /// Held-out error of the same model without it, in newtons.
+    #[serde(rename = "error_before_N")]
+    pub error_before_n: f64,
+    /// Held-out error of the model with it, in newtons.
+    #[serde(rename = "error_after_N")]
+    pub error_after_n: f64,
+    /// What else it could be.
+    pub rivals: Vec<RivalReport>,
+}
+
+/// An effect that this data cannot show.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Invisible {
+    /// Its id.
+    pub id: String,
+    /// Why.
+    pub why: String,
+    /// The experiment that would show it.
+    pub experiment: String,
+}
+
+/// A series that stands out from the model by more than its noise allows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BadSeries {
+    /// Its name in the table.
+    pub series: String,
+    /// `eccentric` or `concentric`.
+    pub direction: String,
+    /// Mean residual in newtons.
+    #[serde(rename = "offset_N")]
+    pub offset_n: f64,
+    /// In standard deviations.
+    pub standard_deviations: f64,
+}
+
+/// `report.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// Name and version of the format.
+    pub schema: String,
+    /// Counts.
+    pub data: DataSummary,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Standard deviation of a reading about the best model, in newtons.
+    #[serde(rename = "noise_floor_N")]
+    pub noise_floor_n: f64,
+    /// The noise by its parts.
+    pub noise: Noise,
+    /// The paper's model, refitted.
+    pub baseline: ModelReport,
+    /// With what was found.
+    pub augmented: ModelReport,
+    /// What was found.
+    pub effects: Vec<EffectReport>,
+    /// Candidates with their gain over the baseline to first order, in whitened squares.
+    pub candidates: BTreeMap<String, f64>,
+    /// What this data cannot see.
+    pub invisible: Vec<Invisible>,
+    /// What no data of such a rig can see after the refit.
+    pub never_visible: Vec<String>,
+    /// Series to look at: a mislabelled weight, a bad run.
+    pub bad_series: Vec<BadSeries>,
+}
+
+/// A report with the fits behind it.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// The report.
+    pub report: Report,
+    /// The selection behind it.
+    pub selection: Selection,
+    /// The rows as they were fitted.
+    pub data: Observations,
+}
+
+/// Calibrates a table.
+///
+/// # Errors
+/// [`CalibrationError::TooFewRows`] if the rows cannot fix the baseline.
+pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, CalibrationError> {
+    let frame = Frame::new(rows);
+    let start = Model::baseline(frame.clone());
+    let needed = start.values().len() + 2;
+    let too_few = CalibrationError::TooFewRows { found: rows.len(), needed };
+    let mut data = Observations::new(&frame, rows).ok_or_else(|| too_few.clone())?;
+    if rows.len() < needed {
+        return Err(too_few);
+    }
+    let selection = select(&start, &mut data, levels);
+    let report = report(rows, &selection, &data);
+    Ok(Calibration { report, selection, data })
+}
+
+/// Rounds for print: twelve significant digits keep the output the same on every machine.
+fn estimate(value: f64, half_width: f64, unit: &str) -> Estimate {
+    Estimate { value, ci95: [value - half_width, value + half_width], unit: unit.to_owned() }
+}
+
+fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport, f64) {
+    let held = held_out(&fitted.model, data, noise);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (r, _) in fitted.residual_n.iter().zip(&data.weights).filter(|(_, w)| **w > SOUND_WEIGHT) {
+        sum += r * r;
+        count += 1.0;
+    }
+    let widths = interval_half_widths(fitted, data, noise);
+    let parameters = fitted
+        .model
+        .names()
+        .into_iter()
+        .zip(fitted.model.values().into_iter().zip(widths))
+        .map(|((name, unit), (value, width))| (name, estimate(value, width, unit)))
+        .collect();
+    let report = ModelReport {
+        rmse_n: (sum / f64::max(count, 1.0)).sqrt(),
+        heldout_rmse_n: held.both_n(),
+        heldout_series_rmse_n: held.series_n,
+        heldout_loads_rmse_n: held.loads_n,
+        parameters,
+    };
+    (report, held.both_n())
+}
+
+/// Tail probability of a gain with one constant, for any of the library's effects (Sidak).
+fn p_value(gain: f64) -> f64 {
+    let single = ChiSquared::new(1.0).map_or(1.0, |d| d.sf(gain.max(0.0)));
+    let all = -(LIBRARY.len() as f64 * (-single).ln_1p()).exp_m1();
+    all.clamp(0.0, 1.0)
+}
+
+fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Report {
+    let noise = selection.noise;
+    let (baseline, before_n) = model_report(&selection.baseline, data, noise);
+    let (augmented, after_n) = if selection.augmented.model.terms.is_empty() {
+        (baseline.clone(), before_n)
+    } else {
+        model_report(&selection.augmented, data, noise)
+    };
+    let effects = effects(selection, data, after_n, &augmented);
+    let verdict = if selection.structure.is_some() {
+        Verdict::Unattributed
+    } else if effects.is_empty() {
+        Verdict::None
+    } else if effects.iter().any(|e| !e.rivals.is_empty()) {
+        Verdict::Ambiguous
+    } else {
+        Verdict::Attributed
+    };
+    Report {
+        schema: "pinswitch.calibration/1".to_owned(),
+        data: DataSummary {
+            rows: rows.len(),
+            series: data.series,
+            conditions: selection.baseline.model.frame.conditions.len(),
+            outliers: data.weights.iter().filter(|w| **w <= SOUND_WEIGHT).count(),
+        },
+        verdict,
+        noise_floor_n: noise.floor_n(data),
+        noise,
+        baseline,
+        augmented,
+        effects,
+        candidates: selection.candidates.iter().map(|(id, gain)| ((*id).to_owned(), *gain)).collect(),
+        invisible: selection
+            .invisible
+            .iter()
+            .filter(|(e, ..)| !selection.augmented.model.terms.iter().any(|t| t.id() == e.id()))
+            .map(|(effect, share, strength)| Invisible {
+                id: effect.id().to_owned(),
+                why: if *strength < 1e-6 {
+                    effect.invisible_because().to_owned()
+                } else if *share < 2e-3 {
+                    "the refitted baseline takes it over".to_owned()
+                } else {
+                    format!("at a typical size it makes {strength:.1} standard deviations, 4 are needed")
+                },
+                experiment: effect.experiment().to_owned(),
+            })
+            .collect(),
+        never_visible: [
+            "a loss in the guide pulleys in proportion to tension: needs a run without the switch",
+            "a wrap angle that is wrong by a constant: needs the angle measured",
+            "a threshold shifted by the same load everywhere: needs another way to see the switching",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        bad_series: bad_series(rows, selection, data),
+    }
+}
+
+fn effects(selection: &Selection, data: &Observations, after_n: f64, augmented: &ModelReport) -> Vec<EffectReport> {
+    let model = &selection.augmented.model;
+    let mut found = Vec::new();
+    let (mut named, mut unnamed) = (0, Vec::new());
+    for (i, term) in model.terms.iter().enumerate() {
+        let Term::Named(effect) = term else {
+            unnamed.push(i);
+            continue;
+        };
+        let without = model.without_term(i);
+        let gain = selection.gains.get(named).copied().unwrap_or(0.0);
+        let rivals = selection.rivals.get(named).map_or(&[][..], Vec::as_slice);
+        named += 1;
+        found.push(EffectReport {
+            id: effect.id().to_owned(),
+            covariate: effect.covariate().word().to_owned(),
+            side: Some(effect.side().word().to_owned()),
+            formula: effect.formula().to_owned(),
+            p_value: p_value(gain),
+            parameters: effect
+                .parameters()
+                .iter()
+                .filter_map(|p| {
+                    let known = augmented.parameters.get(&format!("{}.{}", effect.id(), p.name))?;
+                    Some((p.name.to_owned(), known.clone()))
+                })
+                .collect(),
+            error_before_n: held_out(&without, data, selection.noise).both_n(),
+            error_after_n: after_n,
+            rivals: rivals
+                .iter()
+                .map(|r| RivalReport {
+                    id: r.effect.id().to_owned(),
+                    why: format!(
+                        "after the refit its trace is the same to a cosine of {:.3}; in place of {} it fits worse by only {:.1} whitened squares",
+                        r.cosine, effect.id(), r.worse_by
+                    ),
+                    experiment: format!("{}; {}", effect.experiment(), r.effect.experiment()),
+                })
+                .collect(),
+        });
+    }
+    if let Some((covariate, gain)) = selection.structure {
+        let shapes: Vec<String> = unnamed
+            .iter()
+            .filter_map(|i| match &model.terms[*i] {
+                Term::Structure(s) => Some(s.describe(&model.frame)),
+                Term::Named(_) => None,
+            })
+            .collect();
+        let bare = unnamed.iter().rev().fold(model.clone(), |m, i| m.without_term(*i));
+        found.push(EffectReport {
+            id: "unattributed".to_owned(),
+            covariate: covariate.word().to_owned(),
+            side: None,
+            formula: shapes.join("; "),
+            p_value: p_value(gain - 12.0),
+            parameters: augmented
+                .parameters
+                .iter()
+                .filter(|(name, _)| name.starts_with("unattributed."))
+                .map(|(name, e)| (name.clone(), e.clone()))
+                .collect(),
+            error_before_n: held_out(&bare, data, selection.noise).both_n(),
+            error_after_n: after_n,
+            rivals: Vec::new(),
+        });
+    }
+    found
+}
+
+/// Cells whose mean residual is beyond 4.5 standard deviations.
+fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Vec<BadSeries> {
+    let mut bad = Vec::new();
+    for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {
+        let weight: f64 = cell.iter().map(|r| data.weights[*r]).sum();
+        let mean =
+            cell.iter().map(|r| data.weights[*r] * selection.augmented.residual_n[*r]).sum::<f64>() / weight;
+        let sd = (selection.noise.repetition.at(*load) / weight.sqrt()).hypot(selection.noise.series.at(*load));
+        if let Some(row) = cell.first().and_then(|r| rows.get(*r)).filter(|_| mean.abs() > 4.5 * sd) {
+            bad.push(BadSeries {
+                series: row.series.clone(),
+                direction: crate::rig::direction_word(row.direction).to_owned(),
+                offset_n: mean,
+                standard_deviations: mean / sd,
+            });
+        }
+    }
+    bad
+}

@@ -2,8 +2,7 @@
 
 use clap::Args;
 
-use super::predict_rows::Rows;
-use super::source::Source;
+use super::predict_rows::{Rows, SourceUnlessRows};
 use super::{Failure, print, print_json};
 use crate::output::{curve_of, friction_csv};
 
@@ -16,7 +15,7 @@ use crate::output::{curve_of, friction_csv};
   pinswitch predict three-double --set layout.pins=[4,8,12] --json")]
 pub(super) struct Arguments {
     #[command(flatten)]
-    source: Option<Source>,
+    source: SourceUnlessRows,
     #[command(flatten)]
     rows: Rows,
     /// Print JSON instead of CSV.
@@ -28,7 +27,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(outcome) = arguments.rows.run() {
         return outcome;
     }
-    let source = arguments.source.as_ref().ok_or_else(|| {
+    let source = arguments.source.0.as_ref().ok_or_else(|| {
         Failure::bad_input("predict needs a configuration, or --model and --rows; see pinswitch predict --help")
     })?;
     let design = source.design()?;

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgMatches, Args, Command, FromArgMatches};
 use pinswitch_model::calibration::ModelFile;
 use pinswitch_model::rig::PlateauTable;
 
+use super::source::Source;
 use super::{Failure, print};
 use crate::output::write_file;
 
@@ -21,6 +22,33 @@ pub(super) struct Rows {
     /// Where the table with predicted_N and sd_N goes; standard output if absent.
     #[arg(long, value_name = "CSV", requires = "rows")]
     out: Option<PathBuf>,
+}
+
+/// A configuration, which is needed only when no rows are given.
+#[derive(Clone, Debug)]
+pub(super) struct SourceUnlessRows(pub(super) Option<Source>);
+
+impl FromArgMatches for SourceUnlessRows {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        matches.contains_id("config").then(|| Source::from_arg_matches(matches)).transpose().map(Self)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for SourceUnlessRows {
+    fn augment_args(command: Command) -> Command {
+        Source::augment_args(command).mut_arg("config", |config| {
+            config.required(false).required_unless_present("rows").conflicts_with("rows")
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
 }
 
 impl Rows {

@@ -24,6 +24,7 @@ mod layout_law;
 mod pattern;
 pub mod published;
 pub mod rig;
+pub mod simulation;
 mod switch;
 
 pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};

@@ -24,6 +24,7 @@ mod layout_law;
 mod pattern;
 pub mod published;
 pub mod rig;
+pub mod segmentation;
 pub mod simulation;
 mod switch;
 

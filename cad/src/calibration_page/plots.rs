@@ -18,7 +18,7 @@ const SHOWN: usize = 900;
 /// A figure cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 #[error("a plot of the calibration cannot be drawn: {0}")]
-pub struct PlotFailure(String);
+pub struct PlotFailure(pub(super) String);
 
 /// One figure.
 #[derive(Clone, Debug)]

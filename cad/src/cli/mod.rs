@@ -16,6 +16,7 @@ mod layouts;
 mod predict;
 mod predict_rows;
 mod render;
+mod segment;
 mod source;
 
 pub use failure::Failure;
@@ -38,6 +39,7 @@ enum Command {
     Render(render::Arguments),
     Layouts(layouts::Arguments),
     Init(init::Arguments),
+    Segment(segment::Arguments),
     Calibrate(calibrate::Arguments),
     Completions(completions::Arguments),
 }
@@ -57,6 +59,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Layouts(arguments) => layouts::run(&arguments),
         Command::Init(arguments) => init::run(&arguments),
+        Command::Segment(arguments) => segment::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
     };

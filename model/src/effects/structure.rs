@@ -75,6 +75,13 @@ pub enum Shape {
         /// Half width in `ln v`.
         half_width: f64,
     },
+    /// A bell in the logarithm of speed.
+    SpeedBump {
+        /// Centre, `ln(v/v0)`.
+        log_speed: f64,
+        /// Width in `ln v`.
+        width: f64,
+    },
     /// `ln(v/v0)` to a power.
     SpeedPower {
         /// The power.
@@ -157,6 +164,7 @@ impl Structure {
             Shape::PositionBump { at, width } => (-0.5 * ((p.position - at) / width).powi(2)).exp(),
             Shape::PositionPower { power } => (2.0 * p.position - 1.0).powi(*power),
             Shape::SpeedLevel { log_speed, half_width } => flag((p.log_speed - log_speed).abs() <= *half_width),
+            Shape::SpeedBump { log_speed, width } => (-0.5 * ((p.log_speed - log_speed) / width).powi(2)).exp(),
             Shape::SpeedPower { power } => p.log_speed.powi(*power),
             Shape::DwellLevel { log_dwell } => flag((p.log_dwell - log_dwell).abs() < 0.02),
             Shape::LoadLevel { load_n, half_width } => flag((p.load_n - load_n).abs() <= *half_width),
@@ -229,6 +237,11 @@ impl Structure {
             Shape::SpeedLevel { log_speed, .. } => {
                 format!("another level at a speed of {:.0} %", frame.reference_speed_pct * log_speed.exp())
             }
+            Shape::SpeedBump { log_speed, width } => format!(
+                "a resonance at a speed of {:.0} %, {:.0} % wide",
+                frame.reference_speed_pct * log_speed.exp(),
+                200.0 * width
+            ),
             Shape::SpeedPower { power } => format!("a course with ln(speed) to the power {power}"),
             Shape::DwellLevel { log_dwell } => {
                 format!("another level at a dwell of {:.2} s", 3.0 * log_dwell.exp())

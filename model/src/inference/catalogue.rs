@@ -139,6 +139,9 @@ fn rates(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]) {
     if speeds.len() > 1 && speeds.len() <= 30 {
         for log_speed in speeds {
             push(groups, Covariate::Speed, &ALL, &Shape::SpeedLevel { log_speed, half_width: 1e-3 });
+            for width in [0.02, 0.04] {
+                push(groups, Covariate::Speed, &ALL, &Shape::SpeedBump { log_speed, width });
+            }
         }
         for power in 1..=2 {
             push(groups, Covariate::Speed, &READING_AND_FRICTION, &Shape::SpeedPower { power });

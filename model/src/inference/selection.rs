@@ -258,7 +258,9 @@ fn unnamed(
     // Instead of the names: the best shape alone, and names only on top of it.
     if let Some(score) = alone.first().filter(|s| s.gain > least) {
         let with = with_structure(baseline, score, data, noise);
-        if with.cost < found.cost - levels.structure || best.is_some() {
+        // One shape against several names: each name beyond the first must have paid for itself.
+        let names = named(&found.model).len() as f64;
+        if with.cost < found.cost - 20.0 + 12.0 * (names - 1.0) || best.is_some() {
             let gain = baseline.cost - with.cost;
             let extended = search(&with, data, noise, levels);
             let pruned = drop_all_superfluous(extended, data, noise, levels.further);
@@ -268,7 +270,11 @@ fn unnamed(
         }
     }
     match best {
-        Some((with, covariate, gain)) => (smooth(with, data, noise), Some((covariate, gain))),
+        Some((with, covariate, gain)) => {
+            let corrected = smooth(with, data, noise);
+            let least = levels.further.max(0.01 * (baseline.cost - corrected.cost));
+            (drop_all_superfluous(corrected, data, noise, least), Some((covariate, gain)))
+        }
         None => (found, None),
     }
 }

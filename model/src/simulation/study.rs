@@ -202,7 +202,7 @@ fn outside(name: &str, covariate: Covariate, protocol: Protocol, random: &mut Ch
                 Protocol::Paper => (random.random_range(49.0f64..55.0).round() / 51.9).ln(),
                 Protocol::Randomised => (60.0f64 / 53.9).ln(),
             };
-            one(friction.abs(), Channel::Friction, Shape::SpeedLevel { log_speed, half_width: 0.04 })
+            one(friction.abs(), Channel::Friction, Shape::SpeedLevel { log_speed, half_width: 0.012 })
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_model::calibration::{Calibration, ModelFile, Report, Verdict, calibrate};
+use pinswitch_model::calibration::{Calibration, ModelFile, Report, Verdict, calibrate, calibrate_below};
 use pinswitch_model::inference::Levels;
 use pinswitch_model::rig::PlateauTable;
 
@@ -22,6 +22,9 @@ pub(super) struct Arguments {
     /// Folder for report.json, report.html, residuals.csv, baseline.toml, model.toml and the plots.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Fit only loads up to this percentage of the highest one and judge both models on the rest.
+    #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..100))]
+    fit_below: Option<u8>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -29,8 +32,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let file = std::fs::File::open(&arguments.table).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
     let table = PlateauTable::read(file, &name).map_err(Failure::bad_input)?;
     table.require_loads(&name).map_err(Failure::bad_input)?;
-    let calibration = calibrate(&table.rows, Levels::default())
-        .map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let mut table = table;
+    let calibration = match arguments.fit_below {
+        None => calibrate(&table.rows, Levels::default()),
+        Some(percent) => {
+            let share = f64::from(percent) / 100.0;
+            let calibration = calibrate_below(&table.rows, share, Levels::default());
+            let highest = table.rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
+            table.retain(|row| row.load_n <= share * highest);
+            calibration
+        }
+    }
+    .map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
     let files = files(&table, &calibration, &name)?;
     write_set(&arguments.out, &files).map_err(Failure::failed)?;
     print(summary(&calibration.report).as_bytes())
@@ -89,6 +102,12 @@ fn summary(report: &Report) -> String {
         for rival in &effect.rivals {
             text.push_str(&format!("    or {}: {}; to settle it: {}\n", rival.id, rival.why, rival.experiment));
         }
+    }
+    if let Some(e) = &report.extrapolation {
+        text.push_str(&format!(
+            "above {:.1} N ({} rows, none fitted): {:.2} N before, {:.2} N after; medians {:.2} and {:.2} N\n",
+            e.fitted_below_n, e.rows, e.rmse_before_n, e.rmse_after_n, e.median_before_n, e.median_after_n
+        ));
     }
     for bad in &report.bad_series {
         text.push_str(&format!(

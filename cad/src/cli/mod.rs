@@ -17,6 +17,7 @@ mod predict;
 mod predict_rows;
 mod render;
 mod segment;
+mod simulate;
 mod source;
 
 pub use failure::Failure;
@@ -41,6 +42,7 @@ enum Command {
     Init(init::Arguments),
     Segment(segment::Arguments),
     Calibrate(calibrate::Arguments),
+    Simulate(simulate::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -61,6 +63,7 @@ pub fn run() -> ExitCode {
         Command::Init(arguments) => init::run(&arguments),
         Command::Segment(arguments) => segment::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
     };
     match outcome {

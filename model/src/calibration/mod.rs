@@ -7,6 +7,6 @@ mod report;
 pub use heldout::{HeldOut, held_out};
 pub use model_file::{ModelFile, ModelFileError};
 pub use report::{
-    BadSeries, Calibration, CalibrationError, DataSummary, EffectReport, Estimate, Invisible, ModelReport, Report,
-    RivalReport, Verdict, calibrate,
+    BadSeries, Calibration, CalibrationError, DataSummary, EffectReport, Estimate, Extrapolation, Invisible, ModelReport, Report,
+    RivalReport, Verdict, calibrate, calibrate_below,
 };

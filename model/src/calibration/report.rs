@@ -136,7 +136,7 @@ pub struct BadSeries {
     pub series: String,
     /// `eccentric` or `concentric`.
     pub direction: String,
-    /// Mean residual in newtons.
+    /// Mean residual in newtons, or the worst reading's where one reading alone is wrong.
     #[serde(rename = "offset_N")]
     pub offset_n: f64,
     /// In standard deviations.
@@ -171,6 +171,61 @@ pub struct Report {
     pub never_visible: Vec<String>,
     /// Series to look at: a mislabelled weight, a bad run.
     pub bad_series: Vec<BadSeries>,
+    /// Errors on loads above those fitted, if some were kept back.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extrapolation: Option<Extrapolation>,
+}
+
+/// Errors on the rows with higher loads than those fitted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Extrapolation {
+    /// Highest load fitted, in newtons.
+    #[serde(rename = "fitted_below_N")]
+    pub fitted_below_n: f64,
+    /// Rows judged.
+    pub rows: usize,
+    /// Root mean square error of the refitted baseline, in newtons.
+    #[serde(rename = "rmse_before_N")]
+    pub rmse_before_n: f64,
+    /// Of the augmented model.
+    #[serde(rename = "rmse_after_N")]
+    pub rmse_after_n: f64,
+    /// Median absolute error of the refitted baseline, in newtons.
+    #[serde(rename = "median_before_N")]
+    pub median_before_n: f64,
+    /// Of the augmented model.
+    #[serde(rename = "median_after_N")]
+    pub median_after_n: f64,
+}
+
+/// Calibrates on loads up to a share of the highest one and judges both models on the rest.
+///
+/// # Errors
+/// [`CalibrationError::TooFewRows`] if the rows below cannot fix the baseline.
+pub fn calibrate_below(rows: &[PlateauRow], share: f64, levels: Levels) -> Result<Calibration, CalibrationError> {
+    let highest = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
+    let (seen, rest): (Vec<_>, Vec<_>) = rows.iter().cloned().partition(|r| r.load_n <= share * highest);
+    let mut calibration = calibrate(&seen, levels)?;
+    let judge = |model: &Model| {
+        let points = model.frame.points(&rest).unwrap_or_default();
+        let mut sizes: Vec<f64> =
+            model.predict(&points).iter().zip(&rest).map(|(p, r)| (p - r.force_n).abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let square: f64 = sizes.iter().map(|s| s * s).sum();
+        let median = sizes.get(sizes.len() / 2).copied().unwrap_or(f64::NAN);
+        ((square / sizes.len().max(1) as f64).sqrt(), median)
+    };
+    let before = judge(&calibration.selection.baseline.model);
+    let after = judge(&calibration.selection.augmented.model);
+    calibration.report.extrapolation = Some(Extrapolation {
+        fitted_below_n: share * highest,
+        rows: rest.len(),
+        rmse_before_n: before.0,
+        rmse_after_n: after.0,
+        median_before_n: before.1,
+        median_after_n: after.1,
+    });
+    Ok(calibration)
 }
 
 /// A report with the fits behind it.
@@ -296,6 +351,7 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Re
         .map(str::to_owned)
         .to_vec(),
         bad_series: bad_series(rows, selection, data),
+        extrapolation: None,
     }
 }
 
@@ -370,7 +426,7 @@ fn effects(selection: &Selection, data: &Observations, after_n: f64, augmented: 
     found
 }
 
-/// Cells whose mean residual is beyond 4.5 standard deviations.
+/// Cells whose mean residual is beyond 4.5 standard deviations, or that hold a reading beyond 20.
 fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Vec<BadSeries> {
     let mut bad = Vec::new();
     for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {
@@ -378,12 +434,24 @@ fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -
         let mean =
             cell.iter().map(|r| data.weights[*r] * selection.augmented.residual_n[*r]).sum::<f64>() / weight;
         let sd = (selection.noise.repetition.at(*load) / weight.sqrt()).hypot(selection.noise.series.at(*load));
-        if let Some(row) = cell.first().and_then(|r| rows.get(*r)).filter(|_| mean.abs() > 4.5 * sd) {
+        let worst = cell
+            .iter()
+            .map(|r| selection.augmented.residual_n[*r])
+            .fold(0.0f64, |a, b| if b.abs() > a.abs() { b } else { a });
+        let reading_sd = selection.noise.at(*load);
+        let (offset_n, sd) = if mean.abs() > 4.5 * sd {
+            (mean, sd)
+        } else if worst.abs() > 20.0 * reading_sd {
+            (worst, reading_sd)
+        } else {
+            continue;
+        };
+        if let Some(row) = cell.first().and_then(|r| rows.get(*r)) {
             bad.push(BadSeries {
                 series: row.series.clone(),
                 direction: crate::rig::direction_word(row.direction).to_owned(),
-                offset_n: mean,
-                standard_deviations: mean / sd,
+                offset_n,
+                standard_deviations: offset_n / sd,
             });
         }
     }

@@ -171,6 +171,15 @@ impl PlateauTable {
         Ok(())
     }
 
+    /// Keeps the rows for which `keep` holds.
+    pub fn retain(&mut self, keep: impl Fn(&PlateauRow) -> bool) {
+        let kept: Vec<bool> = self.rows.iter().map(keep).collect();
+        let mut flags = kept.iter();
+        self.rows.retain(|_| flags.next().copied().unwrap_or(false));
+        let mut flags = kept.iter();
+        self.cells.retain(|_| flags.next().copied().unwrap_or(false));
+    }
+
     /// The table as CSV with columns added at its end; cells that were read are written as they were.
     pub fn with_columns(&self, names: &[&str], columns: &[Vec<f64>], decimals: usize) -> String {
         let mut out = String::new();

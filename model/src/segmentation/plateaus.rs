@@ -131,10 +131,12 @@ pub fn segment(log: &Log, rig: &Rig) -> Segmented {
             time_s: rest_end_s,
             samples,
         });
-        if let Some(n) = next {
-            if log.time_s[n.from] - log.time_s[m.from] > 1.6 * period {
-                out.findings.push(Finding::MissingRepetition { direction, after: counts[slot] });
-            }
+    }
+    for pair in out.plateaus.windows(2) {
+        // Between the directions the experimenter may pause.
+        if pair[0].direction == pair[1].direction && pair[1].time_s - pair[0].time_s > 1.6 * period {
+            out.findings
+                .push(Finding::MissingRepetition { direction: pair[0].direction, after: pair[0].repetition });
         }
     }
     findings(log, rig, spikes, &lengths, &mut out);

@@ -1,9 +1,9 @@
 //! `pinswitch calibrate TABLE --out DIR`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pinswitch_model::calibration::{Calibration, ModelFile, Report, Verdict, calibrate, calibrate_below};
+use pinswitch_model::calibration::{Calibration, ModelFile, Report, Verdict, calibrate, calibrate_below, explain_published};
 use pinswitch_model::inference::Levels;
 use pinswitch_model::rig::PlateauTable;
 
@@ -18,18 +18,25 @@ use crate::output::{OutputFile, write_set};
 #[command(after_help = "Example: pinswitch calibrate plateaus.csv --out calibration")]
 pub(super) struct Arguments {
     /// The plateau table (CSV, one row per repetition).
-    table: PathBuf,
+    #[arg(required_unless_present = "published")]
+    table: Option<PathBuf>,
     /// Folder for report.json, report.html, residuals.csv, baseline.toml, model.toml and the plots.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Calibrate on the seven maxima printed in the paper instead of a table.
+    #[arg(long, conflicts_with_all = ["table", "fit_below"])]
+    published: bool,
     /// Fit only loads up to this percentage of the highest one and judge both models on the rest.
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..100))]
     fit_below: Option<u8>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let name = arguments.table.display().to_string();
-    let file = std::fs::File::open(&arguments.table).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let Some(table) = arguments.table.as_ref().filter(|_| !arguments.published) else {
+        return published(&arguments.out);
+    };
+    let name = table.display().to_string();
+    let file = std::fs::File::open(table).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
     let table = PlateauTable::read(file, &name).map_err(Failure::bad_input)?;
     table.require_loads(&name).map_err(Failure::bad_input)?;
     let mut table = table;
@@ -47,6 +54,27 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let files = files(&table, &calibration, &name)?;
     write_set(&arguments.out, &files).map_err(Failure::failed)?;
     print(summary(&calibration.report).as_bytes())
+}
+
+/// The loop on the paper's own numbers.
+fn published(out: &Path) -> Result<(), Failure> {
+    let all = explain_published();
+    let mut text = "explanation          RMS error   layout left out   constants\n".to_owned();
+    for e in &all {
+        let constants: Vec<String> = e.constants.iter().map(|(n, v)| format!("{n} = {v:.4}")).collect();
+        text.push_str(&format!(
+            "{:<20} {:>7.1} %   {:>13.1} %   {}\n",
+            e.id,
+            e.rms_pct,
+            e.left_out_rms_pct,
+            constants.join(", ")
+        ));
+    }
+    let mut json = serde_json::to_vec_pretty(&all).map_err(Failure::failed)?;
+    json.push(b'\n');
+    let files = [OutputFile { name: "published.json".to_owned(), bytes: json }];
+    write_set(out, &files).map_err(Failure::failed)?;
+    print(text.as_bytes())
 }
 
 /// Everything that is written, complete in memory before the first file is.
@@ -105,8 +133,10 @@ fn summary(report: &Report) -> String {
     }
     if let Some(e) = &report.extrapolation {
         text.push_str(&format!(
-            "above {:.1} N ({} rows, none fitted): {:.2} N before, {:.2} N after; medians {:.2} and {:.2} N\n",
-            e.fitted_below_n, e.rows, e.rmse_before_n, e.rmse_after_n, e.median_before_n, e.median_after_n
+            "above {:.1} N ({} rows, none fitted): {:.2} N before, {:.2} N after; medians {:.2} and {:.2} N; \
+             {:.2} N after without {} bad reading(s)\n",
+            e.fitted_below_n, e.rows, e.rmse_before_n, e.rmse_after_n, e.median_before_n, e.median_after_n,
+            e.rmse_after_without_bad_n, e.bad_rows
         ));
     }
     for bad in &report.bad_series {

@@ -2,10 +2,12 @@
 
 mod heldout;
 mod model_file;
+mod published_loop;
 mod report;
 
 pub use heldout::{HeldOut, held_out};
 pub use model_file::{ModelFile, ModelFileError};
+pub use published_loop::{Explanation, explain_published};
 pub use report::{
     BadSeries, Calibration, CalibrationError, DataSummary, EffectReport, Estimate, Extrapolation, Invisible, ModelReport, Report,
     RivalReport, Verdict, calibrate, calibrate_below,

@@ -8,7 +8,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use super::heldout::{SOUND_WEIGHT, held_out};
 use crate::effects::LIBRARY;
 use crate::inference::{Fit, Levels, Model, Noise, Observations, Selection, Term, interval_half_widths, select};
-use crate::rig::{Frame, PlateauRow};
+use crate::rig::{Frame, PlateauRow, Surface};
 
 /// Why rows cannot be calibrated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -190,6 +190,11 @@ pub struct Extrapolation {
     /// Of the augmented model.
     #[serde(rename = "rmse_after_N")]
     pub rmse_after_n: f64,
+    /// The same without readings beyond twenty standard deviations of noise: a bad run decides nothing.
+    #[serde(rename = "rmse_after_without_bad_N")]
+    pub rmse_after_without_bad_n: f64,
+    /// Readings left out of that.
+    pub bad_rows: usize,
     /// Median absolute error of the refitted baseline, in newtons.
     #[serde(rename = "median_before_N")]
     pub median_before_n: f64,
@@ -217,11 +222,24 @@ pub fn calibrate_below(rows: &[PlateauRow], share: f64, levels: Levels) -> Resul
     };
     let before = judge(&calibration.selection.baseline.model);
     let after = judge(&calibration.selection.augmented.model);
+    let noise = calibration.selection.noise;
+    let points = calibration.selection.augmented.model.frame.points(&rest).unwrap_or_default();
+    let predicted = calibration.selection.augmented.model.predict(&points);
+    let sound: Vec<f64> = predicted
+        .iter()
+        .zip(&rest)
+        .map(|(p, r)| (p - r.force_n, noise.at(r.load_n)))
+        .filter(|(miss, sd)| miss.abs() <= 20.0 * sd)
+        .map(|(miss, _)| miss)
+        .collect();
+    let without_bad = (sound.iter().map(|m| m * m).sum::<f64>() / sound.len().max(1) as f64).sqrt();
     calibration.report.extrapolation = Some(Extrapolation {
         fitted_below_n: share * highest,
         rows: rest.len(),
         rmse_before_n: before.0,
         rmse_after_n: after.0,
+        rmse_after_without_bad_n: without_bad,
+        bad_rows: rest.len() - sound.len(),
         median_before_n: before.1,
         median_after_n: after.1,
     });
@@ -270,11 +288,18 @@ fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport
         count += 1.0;
     }
     let widths = interval_half_widths(fitted, data, noise);
+    let conditions = &fitted.model.frame.conditions;
+    let touched = |name: &str| match name {
+        "mu_p" => conditions.iter().any(crate::rig::Condition::has_pins),
+        "mu_s" => conditions.iter().any(|c| c.surface == Surface::Silicone),
+        _ => true,
+    };
     let parameters = fitted
         .model
         .names()
         .into_iter()
         .zip(fitted.model.values().into_iter().zip(widths))
+        .filter(|((name, _), _)| touched(name))
         .map(|((name, unit), (value, width))| (name, estimate(value, width, unit)))
         .collect();
     let report = ModelReport {

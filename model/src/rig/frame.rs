@@ -30,13 +30,7 @@ impl Condition {
     fn new(surface: Surface, pins: &[usize], device: Option<usize>) -> Self {
         let wrap = if surface == Surface::Plain { 1.0 } else { published::wrap_angle_rad() };
         let n = pins.len() as f64;
-        let pitch: Vec<f64> =
-            pins.windows(2).map(|w| (w[1] - w[0]) as f64 * published::GROOVE_PITCH_DEG.to_radians()).collect();
-        // Inner pins turn the tendon by half of both neighbouring pitches; the ends take half a pitch and
-        // half of what the pitches leave of the wrap (model.md 3).
-        let outside = (wrap - pitch.iter().sum::<f64>()).max(0.0) / 2.0;
-        let half = |i: Option<usize>| i.and_then(|i| pitch.get(i)).map_or(outside, |p| p / 2.0);
-        let ploughing = (0..pins.len()).map(|i| (half(i.checked_sub(1)) + half(Some(i))).powf(1.5)).sum();
+        let ploughing = Self::ploughing_sum(pins, wrap);
         Self {
             surface,
             pins: pins.to_vec(),
@@ -46,6 +40,17 @@ impl Condition {
             turn_rad: if pins.is_empty() { 0.0 } else { wrap / n },
             ploughing,
         }
+    }
+
+    /// `sum theta_i^1.5` over occupied grooves within a wrap in radians (model.md 3).
+    pub(crate) fn ploughing_sum(pins: &[usize], wrap: f64) -> f64 {
+        let pitch: Vec<f64> =
+            pins.windows(2).map(|w| (w[1] - w[0]) as f64 * published::GROOVE_PITCH_DEG.to_radians()).collect();
+        // Inner pins turn the tendon by half of both neighbouring pitches; the ends take half a pitch and
+        // half of what the pitches leave of the wrap (model.md 3).
+        let outside = (wrap - pitch.iter().sum::<f64>()).max(0.0) / 2.0;
+        let half = |i: Option<usize>| i.and_then(|i| pitch.get(i)).map_or(outside, |p| p / 2.0);
+        (0..pins.len()).map(|i| (half(i.checked_sub(1)) + half(Some(i))).powf(1.5)).sum()
     }
 
     /// A name for people: `silicone`, `abs 5;8;11`, `silicone 5;8;11`.

@@ -7,4 +7,4 @@ mod study;
 
 pub use plan::{Constants, EffectPlan, NoisePlan, Plan, PlanError, Protocol};
 pub use rig::{Simulated, simulate};
-pub use study::{Case, Outcome, Strength, Study, run_case, study_cases};
+pub use study::{Case, Outcome, Strength, Study, plan_of, run_case, study_cases};

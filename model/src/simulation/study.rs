@@ -198,11 +198,12 @@ fn outside(name: &str, covariate: Covariate, protocol: Protocol, random: &mut Ch
             Shape::PositionBump { at: random.random_range(0.25..0.75), width: random.random_range(0.03..0.08) },
         ),
         _ => {
-            let log_speed = match protocol {
-                Protocol::Paper => (random.random_range(49.0f64..55.0).round() / 51.9).ln(),
-                Protocol::Randomised => (60.0f64 / 53.9).ln(),
+            // Wide enough to hold the speed it is meant for, whatever the mean speed of the session.
+            let (log_speed, half_width) = match protocol {
+                Protocol::Paper => ((random.random_range(49.0f64..55.0).round() / 51.9).ln(), 0.012),
+                Protocol::Randomised => ((60.0f64 / 53.9).ln(), 0.08),
             };
-            one(friction.abs(), Channel::Friction, Shape::SpeedLevel { log_speed, half_width: 0.012 })
+            one(friction.abs(), Channel::Friction, Shape::SpeedLevel { log_speed, half_width })
         }
     }
 }

@@ -97,7 +97,7 @@ pub fn make_set(design: &Design) -> Result<Set, SetError> {
 /// over checked caps cannot have, is left to `pinswitch check` and the tests.
 fn mesh_file(part: &Part, design: &Design) -> Result<(Vec<u8>, Facts), SetError> {
     let mesh = part.print_mesh(design).map_err(|source| SetError::Cap { part: part.name.clone(), source })?;
-    let expected = Expectation { bodies: Some(1), intersections: false, ..Expectation::default() };
+    let expected = Expectation { intersections: false, ..part.expectation(design) };
     let found = examine(&mesh, &expected);
     if let Some(fault) = found.faults.into_iter().next() {
         return Err(SetError::Invalid { part: part.name.clone(), fault });

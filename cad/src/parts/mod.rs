@@ -17,6 +17,7 @@ use crate::design::Design;
 use crate::mesh::{Mesh, Vector3};
 use crate::profile::{Contour, OffsetError, polar};
 use crate::solid::{CapError, Solid};
+use crate::validity::Expectation;
 
 pub use layer::silicone_layer;
 pub use mould::cavity_mm3;
@@ -73,6 +74,16 @@ pub struct Part {
 impl Part {
     fn new(name: impl Into<String>, solid: Solid, pose: Option<Pose>) -> Self {
         Self { name: name.into(), material: Material::Abs, solid, pose, notes: Vec::new() }
+    }
+
+    /// What its mesh is held against: one body, and the exact volume within what the chord tolerance allows.
+    pub fn expectation(&self, design: &Design) -> Expectation {
+        let bound = self.solid.volume_bound_mm3(design.tolerance());
+        Expectation {
+            bodies: Some(1),
+            volume_mm3: Some((self.solid.volume_mm3(), bound)),
+            ..Expectation::default()
+        }
     }
 
     /// The mesh about the pulley's axis, standing on z = 0.

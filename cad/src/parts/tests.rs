@@ -6,7 +6,7 @@ use super::{Part, printed, reference_bodies};
 use crate::config::{Configuration, assign};
 use crate::design::Design;
 use crate::mesh::{read_stl, stl_bytes};
-use crate::validity::{Expectation, examine};
+use crate::validity::examine;
 
 fn design(assignments: &[&str]) -> Design {
     let mut configuration = Configuration::default();
@@ -17,11 +17,7 @@ fn design(assignments: &[&str]) -> Design {
 }
 
 fn assert_valid(part: &Part, design: &Design, variant: &[&str]) {
-    let exact = part.solid.volume_mm3();
-    // Slanted walls are ruled between straddling polygons, so only vertical parts keep their volume to the digit.
-    let bound = design.tolerance().mm() * part.solid.surface_mm2() * 0.05 + exact * 1e-6;
-    let expected =
-        Expectation { bodies: Some(1), volume_mm3: Some((exact, bound)), ..Expectation::default() };
+    let expected = part.expectation(design);
     let mesh = part.print_mesh(design).unwrap();
     let found = examine(&mesh, &expected);
     assert!(found.is_valid(), "{variant:?} {}: {:#?}", part.name, found.faults);

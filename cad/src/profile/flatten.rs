@@ -6,8 +6,8 @@
 
 use super::{Arc, ChordTolerance, Contour, Edge, Point2};
 
-/// An arc that bulges less than this is drawn as its chord: finer vertices would not survive single precision.
-const FLAT_MM: f64 = 2e-4;
+/// An arc that bulges less than this, in mm, is drawn as its chord: finer vertices would not survive single precision.
+pub const FLAT_MM: f64 = 2e-4;
 
 /// Radius of the inner vertices for which `chords` chords enclose the area of the arc's sector.
 ///

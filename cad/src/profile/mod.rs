@@ -11,7 +11,7 @@ mod tolerance;
 
 pub use arc::Arc;
 pub use contour::{Contour, Edge};
-pub use flatten::{chords_for, deviation_mm};
+pub use flatten::{FLAT_MM, chords_for, deviation_mm};
 pub use offset::OffsetError;
 pub use pen::Pen;
 pub use tolerance::{ChordTolerance, ToleranceError};

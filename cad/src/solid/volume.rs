@@ -1,7 +1,7 @@
 //! Volume in closed form: the sections' areas, integrated over the height.
 
-use super::Solid;
-use crate::profile::Contour;
+use super::{Solid, Wall};
+use crate::profile::{ChordTolerance, Contour, FLAT_MM};
 
 impl Solid {
     /// Volume in mm³.
@@ -15,30 +15,37 @@ impl Solid {
             .map(|wall| {
                 let (lower, upper) = (&self.rings[wall.lower.0], &self.rings[wall.upper.0]);
                 let (a, b) = (lower.contour.area_mm2(), upper.contour.area_mm2());
-                let middle = if lower.contour == upper.contour {
-                    a
-                } else {
-                    middle_area_mm2(&lower.contour, &upper.contour)
-                };
+                let middle =
+                    if self.is_upright(wall) { a } else { middle_area_mm2(&lower.contour, &upper.contour) };
                 (upper.z_mm - lower.z_mm) * (a + 4.0 * middle + b) / 6.0
             })
             .sum()
     }
 
+    /// How far the mesh's volume may lie from [`Self::volume_mm3`], in mm³: flattened arcs keep their area, but for
+    /// those too flat to be cut ([`FLAT_MM`]); between slanted rings the mesh keeps the tolerance only.
+    pub fn volume_bound_mm3(&self, tolerance: ChordTolerance) -> f64 {
+        let off =
+            |wall: &Wall| if self.is_upright(wall) { FLAT_MM.min(tolerance.mm()) } else { tolerance.mm() };
+        let bound: f64 = self.walls.iter().map(|wall| off(wall) * self.wall_mm2(wall)).sum();
+        // Single precision of the written file: seven digits of a coordinate, over the whole surface.
+        bound + 1e-5 * self.surface_mm2()
+    }
+
     /// Area of the surface in mm², from the exact profile; slanted walls with their mean perimeter and slant.
     pub fn surface_mm2(&self) -> f64 {
-        let walls: f64 = self
-            .walls
-            .iter()
-            .map(|wall| {
-                let (lower, upper) = (&self.rings[wall.lower.0], &self.rings[wall.upper.0]);
-                let (p, q) = (lower.contour.perimeter_mm(), upper.contour.perimeter_mm());
-                let inward = (lower.contour.corners()[0] - upper.contour.corners()[0]).norm();
-                let slant = if lower.contour == upper.contour { 0.0 } else { inward };
-                (p + q) / 2.0 * (upper.z_mm - lower.z_mm).hypot(slant)
-            })
-            .sum();
-        walls + self.caps_mm2()
+        self.walls.iter().map(|wall| self.wall_mm2(wall)).sum::<f64>() + self.caps_mm2()
+    }
+
+    fn is_upright(&self, wall: &Wall) -> bool {
+        self.rings[wall.lower.0].contour == self.rings[wall.upper.0].contour
+    }
+
+    fn wall_mm2(&self, wall: &Wall) -> f64 {
+        let (lower, upper) = (&self.rings[wall.lower.0], &self.rings[wall.upper.0]);
+        let (p, q) = (lower.contour.perimeter_mm(), upper.contour.perimeter_mm());
+        let inward = (lower.contour.corners()[0] - upper.contour.corners()[0]).norm();
+        (p + q) / 2.0 * (upper.z_mm - lower.z_mm).hypot(inward)
     }
 
     fn caps_mm2(&self) -> f64 {

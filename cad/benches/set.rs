@@ -1,0 +1,80 @@
+//! Times of the main job, step by step: profile, mesh, oracle, STL bytes, and the whole set.
+
+#![allow(clippy::expect_used)]
+
+use divan::{Bencher, black_box};
+use pinswitch::config::{Configuration, assign};
+use pinswitch::design::Design;
+use pinswitch::mesh::stl_bytes;
+use pinswitch::output::{curve_of, make_set, write_set};
+use pinswitch::parts::{Part, printed};
+use pinswitch::validity::{Expectation, examine};
+
+fn main() {
+    divan::main();
+}
+
+fn design() -> Design {
+    let mut configuration = Configuration::default();
+    assign(&mut configuration, "layout.pins=[5, 8, 11]").expect("a shipped layout");
+    Design::new(configuration).expect("a shipped layout")
+}
+
+fn shell(design: &Design) -> Part {
+    printed(design).expect("a shipped layout").swap_remove(0)
+}
+
+#[divan::bench]
+fn solids_of_all_parts(bencher: Bencher) {
+    let design = design();
+    bencher.bench_local(|| printed(black_box(&design)));
+}
+
+#[divan::bench]
+fn shell_mesh(bencher: Bencher) {
+    let design = design();
+    let shell = shell(&design);
+    bencher.bench_local(|| shell.mesh(black_box(&design)));
+}
+
+#[divan::bench]
+fn shell_stl_bytes(bencher: Bencher) {
+    let design = design();
+    let mesh = shell(&design).mesh(&design).expect("a valid part");
+    bencher.bench_local(|| stl_bytes(black_box(&mesh)));
+}
+
+#[divan::bench]
+fn shell_oracle_without_intersections(bencher: Bencher) {
+    let design = design();
+    let mesh = shell(&design).mesh(&design).expect("a valid part");
+    let expected = Expectation { intersections: false, ..Expectation::default() };
+    bencher.bench_local(|| examine(black_box(&mesh), &expected));
+}
+
+#[divan::bench]
+fn shell_oracle_with_intersections(bencher: Bencher) {
+    let design = design();
+    let mesh = shell(&design).mesh(&design).expect("a valid part");
+    bencher.bench_local(|| examine(black_box(&mesh), &Expectation::default()));
+}
+
+#[divan::bench]
+fn friction_curve(bencher: Bencher) {
+    let design = design();
+    bencher.bench_local(|| curve_of(black_box(&design), design.contact()));
+}
+
+#[divan::bench]
+fn whole_set_in_memory(bencher: Bencher) {
+    let design = design();
+    bencher.bench_local(|| make_set(black_box(&design)));
+}
+
+#[divan::bench]
+fn whole_set_written(bencher: Bencher) {
+    let design = design();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    bencher
+        .bench_local(|| write_set(folder.path(), &make_set(black_box(&design)).expect("a valid set").files));
+}

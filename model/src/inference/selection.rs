@@ -29,7 +29,7 @@ pub struct Levels {
 impl Default for Levels {
     fn default() -> Self {
         Self {
-            first: 16.0,
+            first: 14.0,
             further: 18.0,
             further_share: 0.004,
             rival: 9.0,

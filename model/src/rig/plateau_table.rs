@@ -113,10 +113,16 @@ impl PlateauTable {
         Self::parse(source, file, Force::Ignored)
     }
 
-    fn parse(source: impl Read, file: &str, force: Force) -> Result<Self, TableError> {
+    fn parse(mut source: impl Read, file: &str, force: Force) -> Result<Self, TableError> {
+        let mut text = Vec::new();
+        source.read_to_end(&mut text).map_err(|e| TableError::Malformed {
+            file: file.to_owned(),
+            line: None,
+            problem: e.to_string(),
+        })?;
         let malformed = |error: csv::Error| TableError::Malformed {
             file: file.to_owned(),
-            line: error.position().map(csv::Position::line),
+            line: error.position().map(|p| line_at(&text, p.byte())),
             problem: match error.kind() {
                 csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
                     format!("{len} cells, the header has {expected_len}")
@@ -125,7 +131,7 @@ impl PlateauTable {
                 _ => error.to_string(),
             },
         };
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(source);
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_slice());
         let header: Vec<String> = reader
             .headers()
             .map_err(malformed)?
@@ -145,9 +151,9 @@ impl PlateauTable {
         let (mut rows, mut cells) = (Vec::new(), Vec::new());
         for record in reader.records() {
             let record = record.map_err(malformed)?;
-            let line = record.position().map_or(0, csv::Position::line);
+            let byte = record.position().map_or(0, csv::Position::byte);
             let cell = |index: usize| at[index].and_then(|i| record.get(i)).unwrap_or("");
-            rows.push(parse_row(&Cells { file, line, cell: &cell, force })?);
+            rows.push(parse_row(&Cells { file, text: &text, byte, cell: &cell, force })?);
             cells.push(record.iter().map(str::to_owned).collect());
         }
         if rows.is_empty() {
@@ -235,10 +241,19 @@ fn push_line<'a>(out: &mut String, cells: impl Iterator<Item = &'a str>) {
     out.push('\n');
 }
 
+/// Line of the record that starts at a byte, from 1. The csv crate's own count is one short on the first record
+/// when cells are trimmed; line breaks that a record starts with belong to the line before.
+fn line_at(text: &[u8], byte: u64) -> u64 {
+    let byte = usize::try_from(byte).unwrap_or(usize::MAX).min(text.len());
+    let breaks = text[byte..].iter().take_while(|b| **b == b'\n' || **b == b'\r').count();
+    1 + text[..byte + breaks].iter().filter(|b| **b == b'\n').count() as u64
+}
+
 /// One line on its way to a row.
 struct Cells<'a> {
     file: &'a str,
-    line: u64,
+    text: &'a [u8],
+    byte: u64,
     cell: &'a dyn Fn(usize) -> &'a str,
     force: Force,
 }
@@ -247,7 +262,7 @@ impl Cells<'_> {
     fn refuse(&self, column: usize, problem: impl Into<String>) -> TableError {
         TableError::Cell {
             file: self.file.to_owned(),
-            line: self.line,
+            line: line_at(self.text, self.byte),
             column: COLUMNS[column],
             value: (self.cell)(column).to_owned(),
             problem: problem.into(),

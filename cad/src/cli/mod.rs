@@ -13,6 +13,7 @@ mod failure;
 mod generate;
 mod init;
 mod layouts;
+mod power;
 mod predict;
 mod predict_rows;
 mod render;
@@ -43,6 +44,7 @@ enum Command {
     Segment(segment::Arguments),
     Calibrate(calibrate::Arguments),
     Simulate(simulate::Arguments),
+    Power(power::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -63,6 +65,7 @@ pub fn run() -> ExitCode {
         Command::Init(arguments) => init::run(&arguments),
         Command::Segment(arguments) => segment::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
+        Command::Power(arguments) => power::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
     };

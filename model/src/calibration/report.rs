@@ -165,6 +165,8 @@ pub struct Report {
     pub effects: Vec<EffectReport>,
     /// Candidates with their gain over the baseline to first order, in whitened squares.
     pub candidates: BTreeMap<String, f64>,
+    /// Probability of the largest candidate without any effect, by flipped signs of whole series.
+    pub family_probability: f64,
     /// What this data cannot see.
     pub invisible: Vec<Invisible>,
     /// What no data of such a rig can see after the refit.
@@ -352,6 +354,7 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Re
         augmented,
         effects,
         candidates: selection.candidates.iter().map(|(id, gain)| ((*id).to_owned(), *gain)).collect(),
+        family_probability: selection.family_probability,
         invisible: selection
             .invisible
             .iter()

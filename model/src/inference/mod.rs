@@ -8,6 +8,7 @@ mod observations;
 mod projection;
 mod screening;
 mod selection;
+mod sign_flips;
 
 pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_sd_n};
 pub use forward::{Model, Term};

@@ -9,6 +9,9 @@ use super::observations::Observations;
 use super::projection::{Projection, dot};
 use crate::effects::{Channel, Covariate, Effect, LIBRARY, Shape, Structure};
 
+/// What a wave's gain is reduced by, in whitened squares.
+const WAVE_TOLL: f64 = 15.0;
+
 /// A fitted model with its whitened residual and the directions its constants can take.
 pub(crate) struct Screen<'a> {
     fitted: &'a Fit,
@@ -45,7 +48,7 @@ pub(crate) struct StructureScore {
     pub(crate) group: Group,
     /// Sizes to first order.
     pub(crate) sizes: Vec<f64>,
-    /// Gain in whitened squares to first order.
+    /// Gain in whitened squares to first order, less the toll of a wave.
     pub(crate) gain: f64,
 }
 
@@ -191,6 +194,8 @@ impl<'a> Screen<'a> {
         } else {
             (u * u / a, vec![u / a])
         };
+        // A wave has two sizes, and there are hundreds of them at free frequencies: its gain must pay for both.
+        let gain = if group.len() > 1 { gain - WAVE_TOLL } else { gain };
         Some(StructureScore { group, sizes, gain })
     }
 }

@@ -12,6 +12,8 @@ use crate::effects::{Covariate, Effect};
 pub struct Levels {
     /// Least gain of the first named effect.
     pub first: f64,
+    /// Largest probability by sign flips at which a weak first effect is believed.
+    pub flips: f64,
     /// Least gain of each further one.
     pub further: f64,
     /// Least gain of a further one as a share of the first one's gain: below it, it may stem from the form.
@@ -30,6 +32,7 @@ impl Default for Levels {
     fn default() -> Self {
         Self {
             first: 14.0,
+            flips: 0.1,
             further: 18.0,
             further_share: 0.004,
             rival: 9.0,
@@ -68,6 +71,8 @@ pub struct Selection {
     pub candidates: Vec<(&'static str, f64)>,
     /// Effects that this data cannot show: id, visible share, strength at a typical size.
     pub invisible: Vec<(&'static dyn Effect, f64, f64)>,
+    /// Probability, by flipped signs of whole series, of the largest candidate without any effect.
+    pub family_probability: f64,
     /// The noise.
     pub noise: Noise,
 }
@@ -96,6 +101,13 @@ fn extensions(from: &Fit, data: &Observations, noise: Noise, least: f64, most: u
 /// Adds named effects while each gains enough, then drops and exchanges.
 fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit {
     let mut current = start.clone();
+    let scores = Screen::new(start, data, noise).effects();
+    let strongest = scores.iter().map(|s| s.gain).fold(0.0, f64::max);
+    // A weak candidate that a few series carry alone is no effect, whatever the noise model says. With few series
+    // flips cannot tell, and the noise model decides.
+    if strongest < 3.0 * levels.first && data.series >= 12 && flips(&scores) > levels.flips {
+        return current;
+    }
     for _ in 0..4 {
         let gained = start.cost - current.cost;
         let least = if named(&current.model).is_empty() {
@@ -116,6 +128,13 @@ fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit
         current = prune(current, data, noise, levels.further.max(levels.further_share * gained));
     }
     current
+}
+
+/// Probability of the scores by flipped signs.
+fn flips(scores: &[super::screening::EffectScore]) -> f64 {
+    let contributions: Vec<&[f64]> =
+        scores.iter().filter(|s| s.visible_share > 2e-3).map(|s| s.by_series.as_slice()).collect();
+    super::sign_flips::family_probability(&contributions)
 }
 
 /// Drops named effects that the others have made superfluous.
@@ -352,5 +371,6 @@ fn describe(
         .filter(|s| s.visible_share < 2e-3 || s.strength < 4.0)
         .map(|s| (s.effect, s.visible_share, s.strength))
         .collect();
-    Selection { baseline, augmented, gains, rivals, structure, candidates, invisible, noise }
+    let family_probability = flips(&scores);
+    Selection { family_probability, baseline, augmented, gains, rivals, structure, candidates, invisible, noise }
 }

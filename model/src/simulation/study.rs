@@ -41,7 +41,7 @@ const fn strength(id: &'static str, least: f64, most: f64, signed: bool) -> Stre
 }
 
 /// Sizes drawn in the study: the upper part of the typical sizes of effects.md, log-uniform.
-const STRENGTHS: [Strength; 21] = [
+static STRENGTHS: [Strength; 21] = [
     Strength { shape: Some((1.0, 2.0)), ..strength("coating_stiffening", 0.3, 1.2, false) },
     strength("coating_ploughing", 0.012, 0.03, false),
     strength("polygon_bending", 0.3, 1.5, false),
@@ -64,6 +64,11 @@ const STRENGTHS: [Strength; 21] = [
     Strength { size: (0.0, 0.0), ..strength("hook_omitted", 0.0, 0.0, false) },
     Strength { size: (0.0, 0.0), ..strength("switch_local_tension", 0.0, 0.0, false) },
 ];
+
+/// Sizes of all effects.
+pub(super) fn strengths() -> &'static [Strength] {
+    &STRENGTHS
+}
 
 /// What lies outside the vocabulary in the study.
 const OUTSIDE: [(&str, Covariate); 7] = [

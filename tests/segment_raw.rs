@@ -27,8 +27,13 @@ fn every_repetition_is_found_within_a_fiftieth_of_a_newton() {
     let run = folder.path().join("run.toml");
     std::fs::write(&run, run_toml(files)).unwrap();
     let out = folder.path().join("plateaus.csv");
-    let done =
-        Command::new(env!("CARGO_BIN_EXE_pinswitch")).arg("segment").arg(&run).arg("--out").arg(&out).output().unwrap();
+    let done = Command::new(env!("CARGO_BIN_EXE_pinswitch"))
+        .arg("segment")
+        .arg(&run)
+        .arg("--out")
+        .arg(&out)
+        .output()
+        .unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let table = std::fs::read_to_string(&out).unwrap();
     let mut found = std::collections::BTreeMap::new();

@@ -1,17 +1,19 @@
 //! The undeclared-effect test: the calibrator gets a plateau table only, and must say what the paper's model lacks.
 //! The tables are copies of rig sets (their README allows it); what was put into each stands beside its test.
 
+use serde_json::Value;
 use std::ffi::OsStr;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use serde_json::Value;
 
 /// Unpacks a rig set into a folder.
 fn unpack(name: &str, folder: &Path) -> PathBuf {
     let packed = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data").join(format!("{name}.csv.gz"));
     let mut text = String::new();
-    flate2::read::MultiGzDecoder::new(std::fs::File::open(packed).unwrap()).read_to_string(&mut text).unwrap();
+    flate2::read::MultiGzDecoder::new(std::fs::File::open(packed).unwrap())
+        .read_to_string(&mut text)
+        .unwrap();
     let path = folder.join(format!("{name}.csv"));
     std::fs::write(&path, text).unwrap();
     path
@@ -19,8 +21,10 @@ fn unpack(name: &str, folder: &Path) -> PathBuf {
 
 /// Runs the command line, which must end with this exit code.
 fn pinswitch(code: i32, arguments: &[&dyn AsRef<OsStr>]) -> Output {
-    let output =
-        Command::new(env!("CARGO_BIN_EXE_pinswitch")).args(arguments.iter().map(|a| a.as_ref())).output().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_pinswitch"))
+        .args(arguments.iter().map(|a| a.as_ref()))
+        .output()
+        .unwrap();
     assert_eq!(output.status.code(), Some(code), "{}", String::from_utf8_lossy(&output.stderr));
     output
 }
@@ -122,7 +126,8 @@ fn permuted_data_gives_no_effect_of_time_speed_or_place() {
     let folder = tempfile::tempdir().unwrap();
     let path = unpack("set-16", folder.path());
     let text = std::fs::read_to_string(&path).unwrap();
-    let mut lines: Vec<Vec<String>> = text.lines().map(|l| l.split(',').map(str::to_owned).collect()).collect();
+    let mut lines: Vec<Vec<String>> =
+        text.lines().map(|l| l.split(',').map(str::to_owned).collect()).collect();
     let header = lines.remove(0);
     let mut groups = std::collections::BTreeMap::<_, Vec<usize>>::new();
     for (i, l) in lines.iter().enumerate() {
@@ -161,7 +166,11 @@ fn the_same_table_gives_the_same_bytes() {
     calibrate(&table, &two);
     for entry in std::fs::read_dir(&one).unwrap() {
         let name = entry.unwrap().file_name();
-        assert_eq!(std::fs::read(one.join(&name)).unwrap(), std::fs::read(two.join(&name)).unwrap(), "{name:?}");
+        assert_eq!(
+            std::fs::read(one.join(&name)).unwrap(),
+            std::fs::read(two.join(&name)).unwrap(),
+            "{name:?}"
+        );
     }
 }
 
@@ -221,7 +230,11 @@ fn a_real_machine_needs_a_drag_and_its_bad_run_is_flagged() {
     let report = calibrate(&table, &folder.path().join("out"));
     assert!(report["augmented"]["heldout_rmse_N"].as_f64().unwrap() < 2.0);
     assert!(report["baseline"]["heldout_rmse_N"].as_f64().unwrap() > 15.0);
-    assert!(report["bad_series"].as_array().unwrap().iter().any(|b| b["series"] == "7"), "{}", report["bad_series"]);
+    assert!(
+        report["bad_series"].as_array().unwrap().iter().any(|b| b["series"] == "7"),
+        "{}",
+        report["bad_series"]
+    );
     let below = folder.path().join("below");
     pinswitch(0, &[&"calibrate", &table, &"--out", &below, &"--fit-below", &"60"]);
     let report: Value = serde_json::from_slice(&std::fs::read(below.join("report.json")).unwrap()).unwrap();

@@ -22,6 +22,13 @@ fn main() {
         }
         gains.sort_by(f64::total_cmp);
         let at = |share: usize| gains.get(gains.len() * share / 100).copied().unwrap_or(f64::NAN);
-        println!("{:?}: median {:.1}, 90 % {:.1}, 95 % {:.1}, 98 % {:.1}; alarms {alarms:?}", case.protocol, at(50), at(90), at(95), at(98));
+        println!(
+            "{:?}: median {:.1}, 90 % {:.1}, 95 % {:.1}, 98 % {:.1}; alarms {alarms:?}",
+            case.protocol,
+            at(50),
+            at(90),
+            at(95),
+            at(98)
+        );
     }
 }

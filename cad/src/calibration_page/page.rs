@@ -56,8 +56,12 @@ fn conclusion(report: &Report) -> String {
             format!("The paper's model lacks {}; this data cannot tell which.", sets.join(", and "))
         }
         Verdict::Unattributed => {
-            let places: Vec<&str> =
-                report.effects.iter().filter(|e| e.id == "unattributed").map(|e| e.covariate.as_str()).collect();
+            let places: Vec<&str> = report
+                .effects
+                .iter()
+                .filter(|e| e.id == "unattributed")
+                .map(|e| e.covariate.as_str())
+                .collect();
             format!("No named effect explains what is left; it lies in {}.", places.join(", "))
         }
     };
@@ -92,9 +96,12 @@ fn data(report: &Report) -> String {
 }
 
 fn figures(plots: &[Plot], prefix: &str, heading: &str) -> String {
-    let mut html = format!("<h2>{heading}</h2><p><span class=\"b\">The paper's model, refitted</span>; <span class=\"a\">the better model</span>.</p>\n");
+    let mut html = format!(
+        "<h2>{heading}</h2><p><span class=\"b\">The paper's model, refitted</span>; <span class=\"a\">the better model</span>.</p>\n"
+    );
     for plot in plots.iter().filter(|p| p.file.starts_with(prefix)) {
-        let _ = writeln!(html, "<figure>{}<figcaption>{}</figcaption></figure>", plot.svg, escape(&plot.caption));
+        let _ =
+            writeln!(html, "<figure>{}<figcaption>{}</figcaption></figure>", plot.svg, escape(&plot.caption));
     }
     html
 }
@@ -133,10 +140,11 @@ fn found(report: &Report) -> String {
 fn candidates(report: &Report) -> String {
     let mut all: Vec<_> = report.candidates.iter().collect();
     all.sort_by(|a, b| b.1.total_cmp(a.1));
-    let mut html = "<h2>The candidates</h2><p>What each effect alone would gain over the paper's model, to first \
+    let mut html =
+        "<h2>The candidates</h2><p>What each effect alone would gain over the paper's model, to first \
                     order, in squares of the noise. Others fall away once the named ones are in.</p>\
                     <table><tr><th>effect</th><th>gain</th><th></th></tr>\n"
-        .to_owned();
+            .to_owned();
     for (id, gain) in all {
         let kept = if report.effects.iter().any(|e| e.id == *id) {
             "kept"
@@ -162,7 +170,8 @@ fn constants(report: &Report) -> String {
 }
 
 fn table<'a>(rows: impl Iterator<Item = (&'a String, &'a Estimate)>) -> String {
-    let mut html = "<table><tr><th>constant</th><th>value</th><th>95 % interval</th><th>unit</th></tr>\n".to_owned();
+    let mut html =
+        "<table><tr><th>constant</th><th>value</th><th>95 % interval</th><th>unit</th></tr>\n".to_owned();
     for (name, e) in rows {
         let _ = writeln!(
             html,
@@ -181,8 +190,13 @@ fn table<'a>(rows: impl Iterator<Item = (&'a String, &'a Estimate)>) -> String {
 fn blind(report: &Report) -> String {
     let mut html = "<h2>What this data cannot see</h2><ul>\n".to_owned();
     for i in &report.invisible {
-        let _ =
-            writeln!(html, "<li><b>{}</b>: {}. To see it: {}.</li>", i.id, escape(&i.why), escape(&i.experiment));
+        let _ = writeln!(
+            html,
+            "<li><b>{}</b>: {}. To see it: {}.</li>",
+            i.id,
+            escape(&i.why),
+            escape(&i.experiment)
+        );
     }
     for text in &report.never_visible {
         let _ = writeln!(html, "<li>{}.</li>", escape(text));

@@ -46,7 +46,10 @@ pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotFailure> {
         curve(&mut svg, calibration, index).map_err(failure)?;
         all.push(Plot {
             file: format!("condition-{index}.svg"),
-            caption: format!("Tension minus load on {}: readings, the paper's model, the better model", condition.name()),
+            caption: format!(
+                "Tension minus load on {}: readings, the paper's model, the better model",
+                condition.name()
+            ),
             svg,
         });
     }
@@ -63,7 +66,11 @@ pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotFailure> {
         residual(&mut svg, calibration, name, of).map_err(failure)?;
         let word = name.split([' ', '(']).next().unwrap_or(name);
         let word = word.trim_start_matches("ln");
-        let word = if word.is_empty() { name.trim_start_matches("ln(").split(' ').next().unwrap_or(name) } else { word };
+        let word = if word.is_empty() {
+            name.trim_start_matches("ln(").split(' ').next().unwrap_or(name)
+        } else {
+            word
+        };
         all.push(Plot {
             file: format!("residual-{word}.svg"),
             caption: format!("Residuals over {name}, before (left) and after (right)"),
@@ -81,7 +88,8 @@ fn curve(svg: &mut String, calibration: &Calibration, condition: usize) -> Resul
     for (i, p) in data.points.iter().enumerate().filter(|(_, p)| p.condition == condition) {
         let y = data.force_n[i];
         let entry = means.entry((p.sign > 0.0, p.load_n.to_bits())).or_insert([0.0; 5]);
-        let values = [p.load_n, y, y - selection.baseline.residual_n[i], y - selection.augmented.residual_n[i], 1.0];
+        let values =
+            [p.load_n, y, y - selection.baseline.residual_n[i], y - selection.augmented.residual_n[i], 1.0];
         entry.iter_mut().zip(values).for_each(|(e, v)| *e += v);
     }
     let lines: Vec<(bool, [f64; 4])> = means
@@ -113,7 +121,12 @@ fn curve(svg: &mut String, calibration: &Calibration, condition: usize) -> Resul
 }
 
 /// Residuals over one covariate, before and after, on the same axes.
-fn residual(svg: &mut String, calibration: &Calibration, name: &str, of: Reader) -> Result<(), Box<dyn Error>> {
+fn residual(
+    svg: &mut String,
+    calibration: &Calibration,
+    name: &str,
+    of: Reader,
+) -> Result<(), Box<dyn Error>> {
     let (data, selection) = (&calibration.data, &calibration.selection);
     let xs: Vec<f64> = data.points.iter().map(of).collect();
     let (least, most) = xs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |a, x| (a.0.min(*x), a.1.max(*x)));
@@ -132,7 +145,12 @@ fn residual(svg: &mut String, calibration: &Calibration, name: &str, of: Reader)
             .x_label_area_size(40)
             .y_label_area_size(56)
             .build_cartesian_2d(least - pad..most + pad, -high..high)?;
-        chart.configure_mesh().light_line_style(TRANSPARENT).x_desc(name).y_desc("reading - model (N)").draw()?;
+        chart
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .x_desc(name)
+            .y_desc("reading - model (N)")
+            .draw()?;
         let shown = (0..xs.len()).step_by(stride).filter(|i| residual[*i].abs() < high);
         chart.draw_series(shown.map(|i| Circle::new((xs[i], residual[i]), 2, colour.mix(0.5).filled())))?;
         chart.draw_series(LineSeries::new([(least - pad, 0.0), (most + pad, 0.0)], BLACK.stroke_width(1)))?;

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pinswitch_model::calibration::{Calibration, ModelFile, Report, Verdict, calibrate, calibrate_below, explain_published};
+use pinswitch_model::calibration::{
+    Calibration, ModelFile, Report, Verdict, calibrate, calibrate_below, explain_published,
+};
 use pinswitch_model::inference::Levels;
 use pinswitch_model::rig::PlateauTable;
 
@@ -84,7 +86,8 @@ fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<
     let mut json = serde_json::to_vec_pretty(&calibration.report).map_err(Failure::failed)?;
     json.push(b'\n');
     let plots = plots(calibration).map_err(Failure::failed)?;
-    let title = std::path::Path::new(name).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let title =
+        std::path::Path::new(name).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let html = page(&title, calibration, &plots);
     let before: Vec<f64> = selection.baseline.residual_n.clone();
     let after: Vec<f64> = selection.augmented.residual_n.clone();
@@ -121,22 +124,33 @@ fn summary(report: &Report) -> String {
         let constants: Vec<String> = effect
             .parameters
             .iter()
-            .map(|(name, e)| format!("{name} = {:.4} [{:.4}, {:.4}] {}", e.value, e.ci95[0], e.ci95[1], e.unit))
+            .map(|(name, e)| {
+                format!("{name} = {:.4} [{:.4}, {:.4}] {}", e.value, e.ci95[0], e.ci95[1], e.unit)
+            })
             .collect();
         text.push_str(&format!("  {} ({}): {}\n", effect.id, effect.covariate, constants.join(", ")));
         if effect.id == "unattributed" {
             text.push_str(&format!("    {}\n", effect.formula));
         }
         for rival in &effect.rivals {
-            text.push_str(&format!("    or {}: {}; to settle it: {}\n", rival.id, rival.why, rival.experiment));
+            text.push_str(&format!(
+                "    or {}: {}; to settle it: {}\n",
+                rival.id, rival.why, rival.experiment
+            ));
         }
     }
     if let Some(e) = &report.extrapolation {
         text.push_str(&format!(
             "above {:.1} N ({} rows, none fitted): {:.2} N before, {:.2} N after; medians {:.2} and {:.2} N; \
              {:.2} N after without {} bad reading(s)\n",
-            e.fitted_below_n, e.rows, e.rmse_before_n, e.rmse_after_n, e.median_before_n, e.median_after_n,
-            e.rmse_after_without_bad_n, e.bad_rows
+            e.fitted_below_n,
+            e.rows,
+            e.rmse_before_n,
+            e.rmse_after_n,
+            e.median_before_n,
+            e.median_after_n,
+            e.rmse_after_without_bad_n,
+            e.bad_rows
         ));
     }
     for bad in &report.bad_series {

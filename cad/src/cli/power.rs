@@ -24,13 +24,15 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.plan.display().to_string();
-    let text = std::fs::read_to_string(&arguments.plan).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let text =
+        std::fs::read_to_string(&arguments.plan).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
     let plan = Plan::parse(&text, &name).map_err(Failure::bad_input)?;
     let all = power(&plan, arguments.runs, Levels::default());
     if arguments.json {
         return print_json(&all);
     }
-    let mut table = format!("{:<26} {:<18} named  rivals  missed  named with it or instead\n", "effect", "constants");
+    let mut table =
+        format!("{:<26} {:<18} named  rivals  missed  named with it or instead\n", "effect", "constants");
     for p in &all {
         let values: Vec<String> = p.values.iter().map(|v| format!("{v:.3}")).collect();
         let others: Vec<String> = p.others.iter().map(|(id, n)| format!("{id} {n}")).collect();

@@ -28,7 +28,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return outcome;
     }
     let source = arguments.source.0.as_ref().ok_or_else(|| {
-        Failure::bad_input("predict needs a configuration, or --model and --rows; see pinswitch predict --help")
+        Failure::bad_input(
+            "predict needs a configuration, or --model and --rows; see pinswitch predict --help",
+        )
     })?;
     let design = source.design()?;
     let curve = curve_of(&design, design.contact());

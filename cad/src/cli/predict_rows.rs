@@ -1,14 +1,16 @@
 //! `pinswitch predict --model MODEL --rows TABLE --out FILE`: readings from a calibrated model.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use pinswitch_model::calibration::ModelFile;
-use pinswitch_model::rig::PlateauTable;
+use pinswitch_model::rig::{PlateauTable, Surface};
+use pinswitch_model::{FrictionCurve, Substrate, published};
 
 use super::source::Source;
 use super::{Failure, print};
-use crate::output::write_file;
+use crate::design::Design;
+use crate::output::{loads_of, write_file};
 
 /// Rows of a plateau table, predicted by a calibrated model.
 #[derive(Args, Clone, Debug)]
@@ -58,9 +60,10 @@ impl Rows {
         Some(self.predict(model, rows))
     }
 
-    fn predict(&self, model: &std::path::Path, rows: &std::path::Path) -> Result<(), Failure> {
+    fn predict(&self, model: &Path, rows: &Path) -> Result<(), Failure> {
         let (model_name, rows_name) = (model.display().to_string(), rows.display().to_string());
-        let text = std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{model_name}: {e}")))?;
+        let text =
+            std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{model_name}: {e}")))?;
         let model = ModelFile::parse(&text, &model_name).map_err(Failure::bad_input)?;
         let file = std::fs::File::open(rows).map_err(|e| Failure::bad_input(format!("{rows_name}: {e}")))?;
         let table = PlateauTable::read_conditions(file, &rows_name).map_err(Failure::bad_input)?;
@@ -71,4 +74,25 @@ impl Rows {
             None => print(csv.as_bytes()),
         }
     }
+}
+
+/// The curve of a design by a calibrated model: effects of the switch in, effects of the rig out.
+pub(super) fn calibrated_curve(design: &Design, model: &Path) -> Result<FrictionCurve, Failure> {
+    let name = model.display().to_string();
+    let text = std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
+    let surface = match design.contact().substrate() {
+        Substrate::Silicone => Surface::Silicone,
+        Substrate::Abs => Surface::Abs,
+    };
+    let wrap_deg = design.contact().wrap_rad().to_degrees();
+    if (wrap_deg - published::WRAP_ANGLE_DEG).abs() > 0.005 {
+        return Err(Failure::bad_input(format!(
+            "layout.wrap_angle_deg = {wrap_deg:.2} is not the {} deg of the calibrated rig; leave out --model",
+            published::WRAP_ANGLE_DEG
+        )));
+    }
+    let mut pins = design.configuration().layout.pins.clone();
+    pins.sort_unstable();
+    file.part_curve(surface, &pins, &loads_of(design), &name).map_err(Failure::bad_input)
 }

@@ -40,10 +40,12 @@ struct Entry<'a> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.run.display().to_string();
-    let text = std::fs::read_to_string(&arguments.run).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let text =
+        std::fs::read_to_string(&arguments.run).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
     let plan = RunPlan::parse(&text, &name).map_err(Failure::bad_input)?;
     let folder = arguments.run.parent().unwrap_or_else(|| Path::new("."));
-    let stem = arguments.out.file_stem().map_or_else(|| "plateaus".into(), |s| s.to_string_lossy().into_owned());
+    let stem =
+        arguments.out.file_stem().map_or_else(|| "plateaus".into(), |s| s.to_string_lossy().into_owned());
     let (mut rows, mut files, mut report, mut summary) = (Vec::new(), Vec::new(), Vec::new(), String::new());
     let mut start_s = 0.0;
     for (index, series) in plan.series.iter().enumerate() {
@@ -62,7 +64,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             concentric: count(true),
             findings: &found.findings,
         };
-        summary.push_str(&format!("{}: {} eccentric, {} concentric", series.file, entry.eccentric, entry.concentric));
+        summary.push_str(&format!(
+            "{}: {} eccentric, {} concentric",
+            series.file, entry.eccentric, entry.concentric
+        ));
         for finding in &found.findings {
             summary.push_str(&format!("; {finding:?}"));
         }
@@ -70,7 +75,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         report.push(serde_json::to_value(&entry).map_err(Failure::failed)?);
         if !arguments.no_plots {
             let svg = log_svg(&series.file, &log, &found).map_err(Failure::failed)?;
-            let log_stem = series.file.trim_end_matches(".gz").trim_end_matches(".csv").replace(['/', '\\'], "-");
+            let log_stem =
+                series.file.trim_end_matches(".gz").trim_end_matches(".csv").replace(['/', '\\'], "-");
             files.push(OutputFile { name: format!("{stem}-{log_stem}.svg"), bytes: svg.into_bytes() });
         }
     }
@@ -85,7 +91,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     .map_err(Failure::failed)?;
     json.push(b'\n');
     files.push(OutputFile { name: format!("{stem}.json"), bytes: json });
-    let table = arguments.out.file_name().map_or_else(|| "plateaus.csv".into(), |n| n.to_string_lossy().into_owned());
+    let table =
+        arguments.out.file_name().map_or_else(|| "plateaus.csv".into(), |n| n.to_string_lossy().into_owned());
     files.push(OutputFile { name: table, bytes: PlateauTable::write(&rows).into_bytes() });
     let out = arguments.out.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     write_set(out, &files).map_err(Failure::failed)?;
@@ -104,7 +111,13 @@ fn read_log(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(text)
 }
 
-fn plateau_rows(plan: &RunPlan, series: &SeriesPlan, index: usize, found: &Segmented, start_s: f64) -> Vec<PlateauRow> {
+fn plateau_rows(
+    plan: &RunPlan,
+    series: &SeriesPlan,
+    index: usize,
+    found: &Segmented,
+    start_s: f64,
+) -> Vec<PlateauRow> {
     found
         .plateaus
         .iter()

@@ -2,6 +2,7 @@
 
 mod heldout;
 mod model_file;
+mod part_curve;
 mod published_loop;
 mod report;
 
@@ -9,6 +10,6 @@ pub use heldout::{HeldOut, held_out};
 pub use model_file::{ModelFile, ModelFileError};
 pub use published_loop::{Explanation, explain_published};
 pub use report::{
-    BadSeries, Calibration, CalibrationError, DataSummary, EffectReport, Estimate, Extrapolation, Invisible, ModelReport, Report,
-    RivalReport, Verdict, calibrate, calibrate_below,
+    BadSeries, Calibration, CalibrationError, DataSummary, EffectReport, Estimate, Extrapolation, Invisible,
+    ModelReport, Report, RivalReport, Verdict, calibrate, calibrate_below,
 };

@@ -115,7 +115,9 @@ impl ModelFile {
                 .collect(),
             noise,
             frame: model.frame.clone(),
-            covariance: (0..covariance.nrows()).map(|i| covariance.row(i).iter().copied().collect()).collect(),
+            covariance: (0..covariance.nrows())
+                .map(|i| covariance.row(i).iter().copied().collect())
+                .collect(),
         }
     }
 
@@ -152,14 +154,15 @@ impl ModelFile {
     pub fn model(&self, file: &str) -> Result<Model, ModelFileError> {
         let mut model = Model::baseline(self.frame.clone());
         for entry in &self.terms {
-            let term = match &entry.structure {
-                Some(structure) => Term::Structure(structure.clone()),
-                None => Term::Named(effect_named(&entry.id).ok_or_else(|| ModelFileError::Effect {
-                    file: file.to_owned(),
-                    id: entry.id.clone(),
-                })?),
-            };
-            let zeros = vec![0.0; term.len()];
+            let term =
+                match &entry.structure {
+                    Some(structure) => Term::Structure(structure.clone()),
+                    None => Term::Named(effect_named(&entry.id).ok_or_else(|| ModelFileError::Effect {
+                        file: file.to_owned(),
+                        id: entry.id.clone(),
+                    })?),
+                };
+            let zeros = vec![0.0; term.constants()];
             model = model.with_term(term, &zeros);
         }
         let values: Vec<f64> = self.constants.iter().map(|c| c.value).collect();
@@ -186,14 +189,26 @@ impl ModelFile {
         Ok((predicted, sd))
     }
 
+    pub(super) fn covariance(&self) -> &[Vec<f64>] {
+        &self.covariance
+    }
+
+    pub(super) fn reference_speed_pct(&self) -> f64 {
+        self.frame.reference_speed_pct
+    }
+
     /// Ids of the terms that stay out of the curve of a printed part, and of those that stay in.
     pub fn sides(&self) -> (Vec<&str>, Vec<&str>) {
-        self.terms
-            .iter()
-            .map(|t| (t.id.as_str(), t.side.as_deref() == Some("switch")))
-            .fold((Vec::new(), Vec::new()), |(mut out, mut inside), (id, stays)| {
-                if stays { inside.push(id) } else { out.push(id) }
+        self.terms.iter().map(|t| (t.id.as_str(), t.side.as_deref() == Some("switch"))).fold(
+            (Vec::new(), Vec::new()),
+            |(mut out, mut inside), (id, stays)| {
+                if stays {
+                    inside.push(id)
+                } else {
+                    out.push(id)
+                }
                 (out, inside)
-            })
+            },
+        )
     }
 }

@@ -46,7 +46,9 @@ fn maxima() -> Vec<Maximum> {
         name: "silicone".to_owned(),
     }];
     for (i, l) in published::LAYOUTS.iter().enumerate() {
-        for (surface, friction_n, on) in [(Surface::Abs, l.pins_max_n, "pins"), (Surface::Silicone, l.device_max_n, "device")] {
+        for (surface, friction_n, on) in
+            [(Surface::Abs, l.pins_max_n, "pins"), (Surface::Silicone, l.device_max_n, "device")]
+        {
             all.push(Maximum { layout: Some(i), surface, friction_n, name: format!("{} {on}", l.name) });
         }
     }
@@ -135,7 +137,9 @@ pub fn explain_published() -> Vec<Explanation> {
         let mut left_out = Vec::new();
         for layout in 0..published::LAYOUTS.len() {
             let others = fit(kind, &data, |m| m.layout != Some(layout));
-            left_out.extend(data.iter().filter(|m| m.layout == Some(layout)).map(|m| miss(kind, &others, m, true)));
+            left_out.extend(
+                data.iter().filter(|m| m.layout == Some(layout)).map(|m| miss(kind, &others, m, true)),
+            );
         }
         all.push(Explanation {
             id,

@@ -7,7 +7,9 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::heldout::{SOUND_WEIGHT, held_out};
 use crate::effects::LIBRARY;
-use crate::inference::{Fit, Levels, Model, Noise, Observations, Selection, Term, interval_half_widths, select};
+use crate::inference::{
+    Fit, Levels, Model, Noise, Observations, Selection, Term, interval_half_widths, select,
+};
 use crate::rig::{Frame, PlateauRow, Surface};
 
 /// Why rows cannot be calibrated.
@@ -15,7 +17,9 @@ use crate::rig::{Frame, PlateauRow, Surface};
 #[non_exhaustive]
 pub enum CalibrationError {
     /// Fewer rows than the baseline has constants.
-    #[error("{found} rows cannot fix the {needed} constants of the baseline; record more loads or repetitions")]
+    #[error(
+        "{found} rows cannot fix the {needed} constants of the baseline; record more loads or repetitions"
+    )]
     TooFewRows {
         /// Rows given.
         found: usize,
@@ -209,7 +213,11 @@ pub struct Extrapolation {
 ///
 /// # Errors
 /// [`CalibrationError::TooFewRows`] if the rows below cannot fix the baseline.
-pub fn calibrate_below(rows: &[PlateauRow], share: f64, levels: Levels) -> Result<Calibration, CalibrationError> {
+pub fn calibrate_below(
+    rows: &[PlateauRow],
+    share: f64,
+    levels: Levels,
+) -> Result<Calibration, CalibrationError> {
     let highest = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
     let (seen, rest): (Vec<_>, Vec<_>) = rows.iter().cloned().partition(|r| r.load_n <= share * highest);
     let mut calibration = calibrate(&seen, levels)?;
@@ -383,7 +391,12 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Re
     }
 }
 
-fn effects(selection: &Selection, data: &Observations, after_n: f64, augmented: &ModelReport) -> Vec<EffectReport> {
+fn effects(
+    selection: &Selection,
+    data: &Observations,
+    after_n: f64,
+    augmented: &ModelReport,
+) -> Vec<EffectReport> {
     let model = &selection.augmented.model;
     let mut found = Vec::new();
     let (mut named, mut unnamed) = (0, Vec::new());
@@ -461,7 +474,8 @@ fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -
         let weight: f64 = cell.iter().map(|r| data.weights[*r]).sum();
         let mean =
             cell.iter().map(|r| data.weights[*r] * selection.augmented.residual_n[*r]).sum::<f64>() / weight;
-        let sd = (selection.noise.repetition.at(*load) / weight.sqrt()).hypot(selection.noise.series.at(*load));
+        let sd =
+            (selection.noise.repetition.at(*load) / weight.sqrt()).hypot(selection.noise.series.at(*load));
         let worst = cell
             .iter()
             .map(|r| selection.augmented.residual_n[*r])

@@ -28,6 +28,11 @@ impl Effect for Adhesion {
         const { &[Parameter::free("c", "N")] }
     }
 
+    // One sign: it opposes every move.
+    fn one_sided(&self) -> bool {
+        true
+    }
+
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.2]]
     }

@@ -28,6 +28,11 @@ impl Effect for CoatingPloughing {
         const { &[Parameter::free("kappa", "N^-0.5")] }
     }
 
+    // One sign: ploughing only adds friction.
+    fn one_sided(&self) -> bool {
+        true
+    }
+
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.024]]
     }

@@ -1,8 +1,8 @@
 //! `coating_stiffening`: friction of the coating on the pins grows with load.
 
+use super::REFERENCE_LOAD_N;
 use super::{ContactState, Covariate, Effect, Parameter, Side};
 use crate::rig::{Condition, Frame, Point};
-use super::REFERENCE_LOAD_N;
 
 /// mu_p (1 + k (F/F0)^m), m in 1..2, F0 = 50 N (effects.md)
 #[derive(Debug)]
@@ -27,6 +27,11 @@ impl Effect for CoatingStiffening {
 
     fn parameters(&self) -> &'static [Parameter] {
         const { &[Parameter::free("k", "1"), Parameter::bounded("m", "1", 0.9, 2.1)] }
+    }
+
+    // One sign: the contact grows with load.
+    fn one_sided(&self) -> bool {
+        true
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

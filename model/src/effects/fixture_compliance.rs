@@ -1,8 +1,8 @@
 //! `fixture_compliance`: the wrap angle grows with load because the mount bends.
 
+use super::REFERENCE_LOAD_N;
 use super::{ContactState, Covariate, Effect, Parameter, Side};
 use crate::rig::{Condition, Frame, Point};
-use super::REFERENCE_LOAD_N;
 
 /// a (1 + k F/F0), every condition alike (effects.md)
 #[derive(Debug)]

@@ -1,8 +1,8 @@
 //! `hook_omitted`: the declared load leaves out the hook's weight.
 
 use super::{ContactState, Covariate, Effect, Parameter, Side};
-use crate::rig::{Condition, Frame, Point};
 use crate::published;
+use crate::rig::{Condition, Frame, Point};
 
 /// F + 0.613 N: the hook of 62.53 g; no free constant (effects.md)
 #[derive(Debug)]

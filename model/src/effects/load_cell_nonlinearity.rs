@@ -1,8 +1,8 @@
 //! `load_cell_nonlinearity`: the reading bends with its square.
 
+use super::REFERENCE_LOAD_N;
 use super::{Covariate, Effect, Parameter, Side};
 use crate::rig::{Frame, Point};
-use super::REFERENCE_LOAD_N;
 
 /// reading + k (reading/F0)^2 (effects.md)
 #[derive(Debug)]

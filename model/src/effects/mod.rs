@@ -174,6 +174,10 @@ pub trait Effect: Debug + Sync {
     fn formula(&self) -> &'static str;
     /// Its constants; sensitivities to them are central differences.
     fn parameters(&self) -> &'static [Parameter];
+    /// Whether its size can only be positive: what fits with a negative one is something else.
+    fn one_sided(&self) -> bool {
+        false
+    }
     /// Values to start a fit from: the sizes typical of this rig, one entry per shape.
     fn starts(&self, frame: &Frame) -> Vec<Vec<f64>>;
     /// Effects that may look the same.

@@ -31,6 +31,11 @@ impl Effect for PolygonBending {
         const { &[Parameter::free("k", "1")] }
     }
 
+    // One sign: sharper turns bend the fibres more.
+    fn one_sided(&self) -> bool {
+        true
+    }
+
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.5]]
     }

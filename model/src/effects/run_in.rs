@@ -28,6 +28,11 @@ impl Effect for RunIn {
         const { &[Parameter::free("k", "1"), Parameter::bounded("r0", "1", 0.5, 12.0)] }
     }
 
+    // One sign: friction is higher before it settles.
+    fn one_sided(&self) -> bool {
+        true
+    }
+
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.1, 1.0], vec![0.1, 2.5], vec![0.1, 5.0], vec![0.1, 9.0]]
     }

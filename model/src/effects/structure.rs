@@ -163,8 +163,12 @@ impl Structure {
             Shape::PositionWave { cycles, quarter } => wave(p.position, *cycles, *quarter),
             Shape::PositionBump { at, width } => (-0.5 * ((p.position - at) / width).powi(2)).exp(),
             Shape::PositionPower { power } => (2.0 * p.position - 1.0).powi(*power),
-            Shape::SpeedLevel { log_speed, half_width } => flag((p.log_speed - log_speed).abs() <= *half_width),
-            Shape::SpeedBump { log_speed, width } => (-0.5 * ((p.log_speed - log_speed) / width).powi(2)).exp(),
+            Shape::SpeedLevel { log_speed, half_width } => {
+                flag((p.log_speed - log_speed).abs() <= *half_width)
+            }
+            Shape::SpeedBump { log_speed, width } => {
+                (-0.5 * ((p.log_speed - log_speed) / width).powi(2)).exp()
+            }
             Shape::SpeedPower { power } => p.log_speed.powi(*power),
             Shape::DwellLevel { log_dwell } => flag((p.log_dwell - log_dwell).abs() < 0.02),
             Shape::LoadLevel { load_n, half_width } => flag((p.load_n - load_n).abs() <= *half_width),
@@ -229,7 +233,9 @@ impl Structure {
             }
             Shape::TimePower { power } => format!("a drift with time to the power {power}"),
             Shape::TimeWave { cycles, .. } => format!("a wave of period {:.0} s", frame.session_s / cycles),
-            Shape::PositionWave { cycles, .. } => format!("a wave of {:.1} mm along the stroke", stroke / cycles),
+            Shape::PositionWave { cycles, .. } => {
+                format!("a wave of {:.1} mm along the stroke", stroke / cycles)
+            }
             Shape::PositionBump { at, width } => {
                 format!("a bump at {:.0} mm of the stroke, {:.0} mm wide", at * stroke, 2.0 * width * stroke)
             }

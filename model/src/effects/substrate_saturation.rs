@@ -1,8 +1,8 @@
 //! `substrate_saturation`: the friction of the silicone is bounded, its coefficient falls with load.
 
+use super::REFERENCE_LOAD_N;
 use super::{ContactState, Covariate, Effect, Parameter, Side};
 use crate::rig::{Condition, Frame, Point};
-use super::REFERENCE_LOAD_N;
 
 /// mu_s (F/F0)^(n-1) blended with mu_s/(1 + k F/F0) by the shape h in 0..1 (effects.md)
 #[derive(Debug)]
@@ -27,6 +27,11 @@ impl Effect for SubstrateSaturation {
 
     fn parameters(&self) -> &'static [Parameter] {
         const { &[Parameter::free("k", "1"), Parameter::bounded("h", "1", -0.02, 1.02)] }
+    }
+
+    // One sign: the friction of a soft contact falls behind load.
+    fn one_sided(&self) -> bool {
+        true
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {

@@ -28,6 +28,11 @@ impl Effect for SwitchingHysteresis {
         const { &[Parameter::free("H", "N")] }
     }
 
+    // One sign: the silicone recovers late.
+    fn one_sided(&self) -> bool {
+        true
+    }
+
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![4.0], vec![1.0]]
     }

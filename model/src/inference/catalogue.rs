@@ -15,10 +15,16 @@ fn levels(points: &[Point], of: impl Fn(&Point) -> f64, tolerance: f64) -> Vec<f
 }
 
 /// Share of the variance of one covariate that another one fixes level by level.
-fn follows(points: &[Point], what: impl Fn(&Point) -> f64, of: impl Fn(&Point) -> f64, tolerance: f64) -> bool {
+fn follows(
+    points: &[Point],
+    what: impl Fn(&Point) -> f64,
+    of: impl Fn(&Point) -> f64,
+    tolerance: f64,
+) -> bool {
     levels(points, &of, 1e-6).iter().all(|level| {
         let at: Vec<f64> = points.iter().filter(|p| (of(p) - level).abs() < 1e-5).map(&what).collect();
-        at.iter().copied().fold(f64::NEG_INFINITY, f64::max) - at.iter().copied().fold(f64::INFINITY, f64::min)
+        at.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+            - at.iter().copied().fold(f64::INFINITY, f64::min)
             < tolerance
     })
 }
@@ -39,10 +45,17 @@ fn push(groups: &mut Vec<Group>, covariate: Covariate, channels: &[Channel], for
 }
 
 /// Pushes a wave: sine and cosine together.
-fn push_wave(groups: &mut Vec<Group>, covariate: Covariate, channels: &[Channel], form: impl Fn(u8) -> Shape) {
-    groups.extend(channels.iter().map(|c| {
-        [0, 1].map(|quarter| Structure { covariate, channel: *c, form: form(quarter) }).to_vec()
-    }));
+fn push_wave(
+    groups: &mut Vec<Group>,
+    covariate: Covariate,
+    channels: &[Channel],
+    form: impl Fn(u8) -> Shape,
+) {
+    groups.extend(
+        channels.iter().map(|c| {
+            [0, 1].map(|quarter| Structure { covariate, channel: *c, form: form(quarter) }).to_vec()
+        }),
+    );
 }
 
 const READING_AND_FRICTION: [Channel; 2] = [Channel::Reading, Channel::Friction];
@@ -59,7 +72,10 @@ fn time(groups: &mut Vec<Group>, points: &[Point]) {
     }
     for i in 1..160 {
         let cycles = 0.5 * f64::from(i);
-        push_wave(groups, Covariate::Time, &READING_AND_FRICTION, |quarter| Shape::TimeWave { cycles, quarter });
+        push_wave(groups, Covariate::Time, &READING_AND_FRICTION, |quarter| Shape::TimeWave {
+            cycles,
+            quarter,
+        });
     }
     for power in 1..=3 {
         push(groups, Covariate::Time, &ALL, &Shape::TimePower { power });

@@ -23,7 +23,7 @@ impl Term {
     }
 
     /// Number of its constants.
-    pub fn len(&self) -> usize {
+    pub fn constants(&self) -> usize {
         match self {
             Term::Named(effect) => effect.parameters().len(),
             Term::Structure(_) => 1,
@@ -115,7 +115,7 @@ impl Model {
     pub fn without_term(&self, index: usize) -> Self {
         let mut model = self.clone();
         let at = self.term_offset(index);
-        let len = self.terms[index].len();
+        let len = self.terms[index].constants();
         model.coordinates.drain(at..at + len);
         model.priors.drain(at..at + len);
         model.terms.remove(index);
@@ -124,12 +124,12 @@ impl Model {
 
     /// Index of the first constant of a term.
     pub(crate) fn term_offset(&self, index: usize) -> usize {
-        self.baseline_len() + self.terms[..index].iter().map(Term::len).sum::<usize>()
+        self.baseline_len() + self.terms[..index].iter().map(Term::constants).sum::<usize>()
     }
 
     /// Number of the baseline's constants.
     pub(crate) fn baseline_len(&self) -> usize {
-        self.coordinates.len() - self.terms.iter().map(Term::len).sum::<usize>()
+        self.coordinates.len() - self.terms.iter().map(Term::constants).sum::<usize>()
     }
 
     pub(crate) fn priors(&self) -> &[Prior] {
@@ -150,8 +150,9 @@ impl Model {
         let mut structures = 0;
         for term in &self.terms {
             match term {
-                Term::Named(effect) => names
-                    .extend(effect.parameters().iter().map(|p| (format!("{}.{}", effect.id(), p.name), p.unit))),
+                Term::Named(effect) => names.extend(
+                    effect.parameters().iter().map(|p| (format!("{}.{}", effect.id(), p.name), p.unit)),
+                ),
                 Term::Structure(structure) => {
                     structures += 1;
                     names.push((format!("unattributed.{structures}"), structure.unit()));
@@ -205,10 +206,9 @@ impl Model {
         let (mut from, mut to) = (2, 2);
         model.coordinates[..2].copy_from_slice(&self.coordinates[..2]);
         // Conditions keep their order, new ones follow: devices first, then plain contacts.
-        for (known, all) in [
-            (2 * self.frame.devices(), 2 * model.frame.devices()),
-            (self.plain_count(), model.plain_count()),
-        ] {
+        for (known, all) in
+            [(2 * self.frame.devices(), 2 * model.frame.devices()), (self.plain_count(), model.plain_count())]
+        {
             model.coordinates[to..to + known].copy_from_slice(&self.coordinates[from..from + known]);
             from += known;
             to += all;
@@ -237,6 +237,24 @@ impl Model {
         points.iter().map(|point| self.read(&values, &offsets, point, true)).collect()
     }
 
+    /// Share of the friction that the silicone makes at the points, by eq. 4 at the baseline's constants, 0..1.
+    pub fn silicone_share(&self, points: &[Point]) -> Vec<f64> {
+        let values = self.values();
+        points
+            .iter()
+            .map(|p| {
+                let condition = &self.frame.conditions[p.condition];
+                let Some(d) = condition.device else {
+                    return f64::from(u8::from(condition.surface == Surface::Silicone));
+                };
+                let s = 1.0 / (1.0 + (-values[3 + 2 * d] * (p.load_n / values[2 + 2 * d] - 1.0)).exp());
+                let silicone = (1.0 - condition.weight) * s * (values[1] * condition.wrap_rad).sinh();
+                let pins = (1.0 + condition.weight) * (1.0 - s) * (values[0] * condition.wrap_rad).sinh();
+                silicone / (silicone + pins).max(1e-300)
+            })
+            .collect()
+    }
+
     fn read(&self, values: &[f64], offsets: &[usize], point: &Point, part_only: bool) -> f64 {
         let condition: &Condition = &self.frame.conditions[point.condition];
         let plain = self.plain[point.condition];
@@ -262,7 +280,7 @@ impl Model {
         for (term, at) in self.terms.iter().zip(offsets).filter(|(term, _)| kept(term)) {
             match term {
                 Term::Named(effect) => {
-                    effect.on_contact(&values[*at..at + term.len()], point, condition, &mut state);
+                    effect.on_contact(&values[*at..at + term.constants()], point, condition, &mut state);
                 }
                 Term::Structure(structure) => structure.on_contact(values[*at], point, &mut state),
             }
@@ -271,9 +289,11 @@ impl Model {
         let mut saturation = None;
         for (term, at) in self.terms.iter().zip(offsets).filter(|(term, _)| kept(term)) {
             match term {
-                Term::Named(effect) if effect.id() == "load_cell_saturation" => saturation = Some((effect, *at)),
+                Term::Named(effect) if effect.id() == "load_cell_saturation" => {
+                    saturation = Some((effect, *at))
+                }
                 Term::Named(effect) => {
-                    reading = effect.on_reading(&values[*at..at + term.len()], point, reading);
+                    reading = effect.on_reading(&values[*at..at + term.constants()], point, reading);
                 }
                 Term::Structure(structure) => reading = structure.on_reading(values[*at], point, reading),
             }

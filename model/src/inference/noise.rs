@@ -112,7 +112,12 @@ impl Noise {
     /// Estimates both from residuals out of which everything explainable has been projected: the spread
     /// inside the cells, and what the cells' means have beyond it. `explainable` are columns in newtons;
     /// without their removal a missing effect would inflate its own noise (attribution.md 2).
-    pub(crate) fn estimate(data: &Observations, residual_n: &[f64], explainable: &[Vec<f64>], start: Self) -> Self {
+    pub(crate) fn estimate(
+        data: &Observations,
+        residual_n: &[f64],
+        explainable: &[Vec<f64>],
+        start: Self,
+    ) -> Self {
         let mut noise = start;
         for _ in 0..3 {
             let mut projection = Projection::new(residual_n.len());

@@ -37,7 +37,16 @@ impl Observations {
         let force_n = rows.iter().map(|r| r.force_n).collect();
         let cell_load_n = loads(&cells, &points);
         let ones = vec![1.0; rows.len()];
-        Some(Self { points, force_n, series_of, series, cells, cell_load_n, weights: ones.clone(), roots: ones })
+        Some(Self {
+            points,
+            force_n,
+            series_of,
+            series,
+            cells,
+            cell_load_n,
+            weights: ones.clone(),
+            roots: ones,
+        })
     }
 
     /// The rows for which `keep` holds.

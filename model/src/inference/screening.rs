@@ -66,7 +66,9 @@ impl<'a> Screen<'a> {
         }
         let mut residual = fitted.residual_n.clone();
         noise.whiten(data, &mut residual);
-        residual.extend(model.coordinates.iter().zip(model.priors()).map(|(c, prior)| (prior.mean - c) / prior.sd));
+        residual.extend(
+            model.coordinates.iter().zip(model.priors()).map(|(c, prior)| (prior.mean - c) / prior.sd),
+        );
         basis.remove(&mut residual);
         Self { fitted, data, noise, basis, residual, predicted }
     }
@@ -143,8 +145,11 @@ impl<'a> Screen<'a> {
                     form: Shape::LoadPower { power: 0, unit_n: 1.0 },
                 };
                 let size = 1e-3;
-                let mut column =
-                    self.fitted.model.with_term(Term::Structure(everywhere), &[size]).predict(&self.data.points);
+                let mut column = self
+                    .fitted
+                    .model
+                    .with_term(Term::Structure(everywhere), &[size])
+                    .predict(&self.data.points);
                 column.iter_mut().zip(&self.predicted).for_each(|(c, p)| *c = (*c - p) / size);
                 column
             }

@@ -84,8 +84,21 @@ fn named(model: &Model) -> Vec<&'static dyn Effect> {
     model.terms.iter().filter_map(|t| if let Term::Named(e) = t { Some(*e) } else { None }).collect()
 }
 
+/// Whether the effect just added, the last term, has a size that its physics allows.
+fn possible(effect: &dyn Effect, fitted: &Fit) -> bool {
+    let last = fitted.model.terms.len().saturating_sub(1);
+    let size = fitted.model.values().get(fitted.model.term_offset(last)).copied();
+    !effect.one_sided() || size.is_some_and(|s| s > 0.0)
+}
+
 /// Full fits of the most promising absent effects, best cost first.
-fn extensions(from: &Fit, data: &Observations, noise: Noise, least: f64, most: usize) -> Vec<(&'static dyn Effect, Fit)> {
+fn extensions(
+    from: &Fit,
+    data: &Observations,
+    noise: Noise,
+    least: f64,
+    most: usize,
+) -> Vec<(&'static dyn Effect, Fit)> {
     let mut scores = Screen::new(from, data, noise).effects();
     scores.retain(|s| s.gain > least);
     scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -93,8 +106,9 @@ fn extensions(from: &Fit, data: &Observations, noise: Noise, least: f64, most: u
     let mut fits: Vec<_> = scores
         .into_iter()
         .map(|s| (s.effect, fit(&from.model.with_term(Term::Named(s.effect), &s.start), data, noise)))
+        .filter(|(effect, fitted)| possible(*effect, fitted))
         .collect();
-    fits.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    fits.sort_by(|a: &(_, Fit), b| a.1.cost.total_cmp(&b.1.cost));
     fits
 }
 
@@ -115,8 +129,7 @@ fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit
         } else {
             levels.further.max(levels.further_share * gained)
         };
-        let Some((_, best)) =
-            extensions(&current, data, noise, 0.3 * least, FITTED).into_iter().next()
+        let Some((_, best)) = extensions(&current, data, noise, 0.3 * least, FITTED).into_iter().next()
         else {
             break;
         };
@@ -262,7 +275,11 @@ fn unnamed(
     let explained = baseline.cost - found.cost;
     let least = levels.structure.max(levels.structure_share * explained);
     let left = Screen::new(&found, data, noise).structures();
-    let alone = if found.model.terms.is_empty() { Vec::new() } else { Screen::new(baseline, data, noise).structures() };
+    let alone = if found.model.terms.is_empty() {
+        Vec::new()
+    } else {
+        Screen::new(baseline, data, noise).structures()
+    };
     let mut best: Option<(Fit, Covariate, f64)> = None;
     let penalty = |f: &Fit| f.cost + levels.further * named(&f.model).len() as f64;
     // On top of the names.
@@ -352,10 +369,11 @@ fn describe(
         for score in others {
             let other = fit(&without.model.with_term(Term::Named(score.effect), &score.start), data, noise);
             let worse_by = other.cost - augmented.cost;
-            if worse_by < margin {
+            if worse_by < margin && possible(score.effect, &other) {
                 let cosine = own.as_ref().map_or(0.0, |own| {
                     let dot = super::projection::dot;
-                    (dot(own, &score.column) / (dot(own, own) * dot(&score.column, &score.column)).sqrt()).abs()
+                    (dot(own, &score.column) / (dot(own, own) * dot(&score.column, &score.column)).sqrt())
+                        .abs()
                 });
                 list.push(Rival { effect: score.effect, worse_by, cosine });
             }
@@ -372,5 +390,15 @@ fn describe(
         .map(|s| (s.effect, s.visible_share, s.strength))
         .collect();
     let family_probability = flips(&scores);
-    Selection { family_probability, baseline, augmented, gains, rivals, structure, candidates, invisible, noise }
+    Selection {
+        family_probability,
+        baseline,
+        augmented,
+        gains,
+        rivals,
+        structure,
+        candidates,
+        invisible,
+        noise,
+    }
 }

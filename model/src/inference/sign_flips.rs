@@ -21,10 +21,7 @@ pub(crate) fn family_probability(contributions: &[&[f64]]) -> f64 {
         .collect();
     let series = scaled.first().map_or(0, Vec::len);
     let largest = |signs: &[f64]| {
-        scaled
-            .iter()
-            .map(|c| c.iter().zip(signs).map(|(v, s)| v * s).sum::<f64>().abs())
-            .fold(0.0, f64::max)
+        scaled.iter().map(|c| c.iter().zip(signs).map(|(v, s)| v * s).sum::<f64>().abs()).fold(0.0, f64::max)
     };
     let observed = largest(&vec![1.0; series]);
     let mut random = ChaCha8Rng::seed_from_u64(SEED);

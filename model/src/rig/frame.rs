@@ -44,8 +44,10 @@ impl Condition {
 
     /// `sum theta_i^1.5` over occupied grooves within a wrap in radians (model.md 3).
     pub(crate) fn ploughing_sum(pins: &[usize], wrap: f64) -> f64 {
-        let pitch: Vec<f64> =
-            pins.windows(2).map(|w| (w[1] - w[0]) as f64 * published::GROOVE_PITCH_DEG.to_radians()).collect();
+        let pitch: Vec<f64> = pins
+            .windows(2)
+            .map(|w| (w[1] - w[0]) as f64 * published::GROOVE_PITCH_DEG.to_radians())
+            .collect();
         // Inner pins turn the tendon by half of both neighbouring pitches; the ends take half a pitch and
         // half of what the pitches leave of the wrap (model.md 3).
         let outside = (wrap - pitch.iter().sum::<f64>()).max(0.0) / 2.0;
@@ -56,7 +58,11 @@ impl Condition {
     /// A name for people: `silicone`, `abs 5;8;11`, `silicone 5;8;11`.
     pub fn name(&self) -> String {
         let pins: Vec<String> = self.pins.iter().map(usize::to_string).collect();
-        if pins.is_empty() { self.surface.word().to_owned() } else { format!("{} {}", self.surface.word(), pins.join(";")) }
+        if pins.is_empty() {
+            self.surface.word().to_owned()
+        } else {
+            format!("{} {}", self.surface.word(), pins.join(";"))
+        }
     }
 
     /// Whether pins touch the tendon (on `abs` or in a device).

@@ -5,7 +5,7 @@ mod plateau_table;
 mod row;
 
 pub(crate) use frame::groups;
-pub(crate) use row::direction_word;
 pub use frame::{Condition, Frame, Point};
 pub use plateau_table::{PlateauTable, TableError};
+pub(crate) use row::direction_word;
 pub use row::{PlateauRow, Surface, Sweep};

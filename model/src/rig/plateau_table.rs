@@ -270,8 +270,9 @@ impl Cells<'_> {
     }
 
     fn number(&self, column: usize, least: f64) -> Result<f64, TableError> {
-        let value: f64 =
-            (self.cell)(column).parse().map_err(|_| self.refuse(column, "is no number; write it like 12.5"))?;
+        let value: f64 = (self.cell)(column)
+            .parse()
+            .map_err(|_| self.refuse(column, "is no number; write it like 12.5"))?;
         if !value.is_finite() {
             return Err(self.refuse(column, "is no finite number; leave the row out if the reading is lost"));
         }

@@ -52,8 +52,12 @@ impl Log {
         let mut lines = text.split(|b| *b == b'\n');
         let header = lines.next().unwrap_or_default();
         let header = String::from_utf8_lossy(header);
-        let names: Vec<&str> =
-            header.trim_start_matches('\u{feff}').trim().split(',').map(|n| n.trim().trim_matches('"')).collect();
+        let names: Vec<&str> = header
+            .trim_start_matches('\u{feff}')
+            .trim()
+            .split(',')
+            .map(|n| n.trim().trim_matches('"'))
+            .collect();
         let mut at = [0; 4];
         for (slot, column) in at.iter_mut().zip(COLUMNS) {
             *slot = names

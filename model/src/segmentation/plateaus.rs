@@ -111,7 +111,8 @@ pub fn segment(log: &Log, rig: &Rig) -> Segmented {
             || (stop_s + rig.dwell_s).min(log.time_s[log.time_s.len() - 1]),
             |n| log.time_s[n.from].min(stop_s + rig.dwell_s + 0.05),
         );
-        let travelled = level(log, rest_end_s - 0.5, rest_end_s) - level(log, log.time_s[m.from] - 0.3, log.time_s[m.from]);
+        let travelled = level(log, rest_end_s - 0.5, rest_end_s)
+            - level(log, log.time_s[m.from] - 0.3, log.time_s[m.from]);
         let direction = if travelled >= 0.0 { Direction::Eccentric } else { Direction::Concentric };
         let slot = usize::from(direction == Direction::Concentric);
         let from_s = (rest_end_s - READ_S).max(stop_s + 0.25 * (rest_end_s - stop_s));
@@ -203,9 +204,14 @@ fn findings(log: &Log, rig: &Rig, spikes: usize, lengths: &[(Direction, u32, f64
     }
     let step = 1.0 / rig.sample_rate_hz;
     // Jitter moves a stamp by up to a quarter of a step; a lost sample doubles the gap.
-    let lost: f64 = log.time_s.windows(2).map(|w| ((w[1] - w[0]) / step).round() - 1.0).filter(|n| *n > 0.0).sum();
+    let lost: f64 =
+        log.time_s.windows(2).map(|w| ((w[1] - w[0]) / step).round() - 1.0).filter(|n| *n > 0.0).sum();
     if lost > 0.0 {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive whole number")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a positive whole number"
+        )]
         out.findings.push(Finding::LostSamples { samples: lost as usize });
     }
     if log.unusable > 0 {

@@ -135,8 +135,7 @@ mod tests {
     use super::*;
 
     const RIG: &str = "[rig]\nwrap_angle_deg=63.89\nsample_rate_hz=200.0\nhook_mass_g=62.53\nstroke_mm=152.4\non_s=0.5\ndwell_s=3.0\n";
-    const SERIES: &str =
-        "[[series]]\nfile=\"a.csv\"\nsubstrate=\"silicone\"\npins=[]\nload_mass_g=251.2\nspeed_pct=47\nsweep=\"up\"\n";
+    const SERIES: &str = "[[series]]\nfile=\"a.csv\"\nsubstrate=\"silicone\"\npins=[]\nload_mass_g=251.2\nspeed_pct=47\nsweep=\"up\"\n";
 
     #[test]
     fn the_hook_counts_as_load() {

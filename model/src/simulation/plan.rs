@@ -227,12 +227,18 @@ impl Plan {
         let bound = |field, value: String, bound, remedy| {
             Err(PlanError::Bound { file: file.to_owned(), field, value, bound, remedy })
         };
-        let positive = |values: &[f64]| !values.is_empty() && values.iter().all(|v| *v > 0.0 && v.is_finite());
+        let positive =
+            |values: &[f64]| !values.is_empty() && values.iter().all(|v| *v > 0.0 && v.is_finite());
         for (field, values) in
             [("weights_g", &self.weights_g), ("speeds_pct", &self.speeds_pct), ("dwells_s", &self.dwells_s)]
         {
             if !positive(values) || values.len() > 1000 {
-                return bound(field, format!("{values:?}"), "1 to 1000 positive numbers", "list the values to run");
+                return bound(
+                    field,
+                    format!("{values:?}"),
+                    "1 to 1000 positive numbers",
+                    "list the values to run",
+                );
             }
         }
         if self.repetitions.iter().any(|r| !(1..=1000).contains(r)) {
@@ -240,7 +246,12 @@ impl Plan {
         }
         let grooves = 1..=published::GROOVES;
         if self.layouts.iter().any(|l| l.is_empty() || l.iter().any(|g| !grooves.contains(g))) {
-            return bound("layouts", format!("{:?}", self.layouts), "lists of grooves 1..15", "name occupied grooves");
+            return bound(
+                "layouts",
+                format!("{:?}", self.layouts),
+                "lists of grooves 1..15",
+                "name occupied grooves",
+            );
         }
         if !self.silicone && self.layouts.is_empty() {
             return bound("layouts", "[]".to_owned(), "at least one", "measure silicone or a layout");
@@ -265,10 +276,9 @@ impl Plan {
                     let names: Vec<&str> = effect.parameters().iter().map(|p| p.name).collect();
                     format!("it needs {} value(s): {}", names.len(), names.join(", "))
                 }
-                None => format!(
-                    "known are {}",
-                    LIBRARY.iter().map(|e| e.id()).collect::<Vec<_>>().join(", ")
-                ),
+                None => {
+                    format!("known are {}", LIBRARY.iter().map(|e| e.id()).collect::<Vec<_>>().join(", "))
+                }
             };
             return Err(PlanError::Effect {
                 file: file.to_owned(),

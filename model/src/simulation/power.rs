@@ -33,7 +33,8 @@ pub struct Power {
 pub fn power(plan: &Plan, runs: u64, levels: Levels) -> Vec<Power> {
     let mut all = Vec::new();
     for strength in strengths() {
-        let sizes = if strength.size.1 > 0.0 { vec![strength.size.0, strength.size.1] } else { vec![f64::NAN] };
+        let sizes =
+            if strength.size.1 > 0.0 { vec![strength.size.0, strength.size.1] } else { vec![f64::NAN] };
         for size in sizes {
             let mut values: Vec<f64> = if size.is_nan() { Vec::new() } else { vec![size] };
             values.extend(strength.shape.map(|(least, most)| 0.5 * (least + most)));
@@ -44,8 +45,15 @@ pub fn power(plan: &Plan, runs: u64, levels: Levels) -> Vec<Power> {
 }
 
 fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64, levels: Levels) -> Power {
-    let mut power =
-        Power { id, values: values.clone(), runs: 0, named: 0, ambiguous: 0, missed: 0, others: BTreeMap::new() };
+    let mut power = Power {
+        id,
+        values: values.clone(),
+        runs: 0,
+        named: 0,
+        ambiguous: 0,
+        missed: 0,
+        others: BTreeMap::new(),
+    };
     for run in 0..runs {
         let mut planned = plan.clone();
         planned.seed = plan.seed.wrapping_add(run);
@@ -56,12 +64,19 @@ fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64, levels: Level
         let found = select(&Model::baseline(frame), &mut data, levels);
         power.runs += 1;
         let (mut alone, mut with_rivals) = (false, false);
-        let names = found.augmented.model.terms.iter().filter_map(|t| if let Term::Named(e) = t { Some(*e) } else { None });
+        let names = found
+            .augmented
+            .model
+            .terms
+            .iter()
+            .filter_map(|t| if let Term::Named(e) = t { Some(*e) } else { None });
         for (effect, rivals) in names.zip(&found.rivals) {
             let here = effect.id() == id || rivals.iter().any(|r| r.effect.id() == id);
             alone |= here && rivals.is_empty();
             with_rivals |= here && !rivals.is_empty();
-            for other in std::iter::once(effect.id()).chain(rivals.iter().map(|r| r.effect.id())).filter(|o| *o != id) {
+            for other in
+                std::iter::once(effect.id()).chain(rivals.iter().map(|r| r.effect.id())).filter(|o| *o != id)
+            {
                 *power.others.entry(other).or_default() += 1;
             }
         }

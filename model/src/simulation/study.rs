@@ -165,9 +165,16 @@ pub fn plan_of(case: &Case, seed: u64) -> Plan {
 }
 
 /// Structures of a case outside the vocabulary.
-fn outside(name: &str, covariate: Covariate, protocol: Protocol, random: &mut ChaCha8Rng) -> Vec<StructurePlan> {
+fn outside(
+    name: &str,
+    covariate: Covariate,
+    protocol: Protocol,
+    random: &mut ChaCha8Rng,
+) -> Vec<StructurePlan> {
     let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
-    let one = |size: f64, channel, form| vec![StructurePlan { size, structure: Structure { covariate, channel, form } }];
+    let one = |size: f64, channel, form| {
+        vec![StructurePlan { size, structure: Structure { covariate, channel, form } }]
+    };
     let friction = sign * random.random_range(0.08..0.25);
     let newtons = sign * random.random_range(0.3..0.8);
     match name {
@@ -182,16 +189,20 @@ fn outside(name: &str, covariate: Covariate, protocol: Protocol, random: &mut Ch
             Channel::Friction,
             Shape::PositionWave { cycles: random.random_range(1.5..4.5), quarter: 0 },
         ),
-        "wave in time" => {
-            one(0.5 * newtons, Channel::Reading, Shape::TimeWave { cycles: random.random_range(3.0..40.0), quarter: 1 })
-        }
+        "wave in time" => one(
+            0.5 * newtons,
+            Channel::Reading,
+            Shape::TimeWave { cycles: random.random_range(3.0..40.0), quarter: 1 },
+        ),
         "one defective layout" => {
             // In the paper's order condition 1 + l and 4 + l have layout l.
             let layout = random.random_range(1..4);
             match protocol {
-                Protocol::Paper => {
-                    one(friction, Channel::Friction, Shape::ConditionIs { conditions: vec![layout, layout + 3] })
-                }
+                Protocol::Paper => one(
+                    friction,
+                    Channel::Friction,
+                    Shape::ConditionIs { conditions: vec![layout, layout + 3] },
+                ),
                 Protocol::Randomised => {
                     one(friction, Channel::Friction, Shape::ConditionIs { conditions: vec![layout] })
                 }
@@ -200,7 +211,10 @@ fn outside(name: &str, covariate: Covariate, protocol: Protocol, random: &mut Ch
         "worn spot" => one(
             friction.abs(),
             Channel::Friction,
-            Shape::PositionBump { at: random.random_range(0.25..0.75), width: random.random_range(0.03..0.08) },
+            Shape::PositionBump {
+                at: random.random_range(0.25..0.75),
+                width: random.random_range(0.03..0.08),
+            },
         ),
         _ => {
             // Wide enough to hold the speed it is meant for, whatever the mean speed of the session.
@@ -218,7 +232,8 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Outcome {
     let plan = plan_of(case, seed);
     let simulated = simulate(&plan);
     let text = PlateauTable::write(&simulated.rows);
-    let rows = PlateauTable::read(text.as_bytes(), "simulated").map_or_else(|_| simulated.rows.clone(), |t| t.rows);
+    let rows =
+        PlateauTable::read(text.as_bytes(), "simulated").map_or_else(|_| simulated.rows.clone(), |t| t.rows);
     let frame = Frame::new(&rows);
     let start = Model::baseline(frame.clone());
     let Some(mut data) = Observations::new(&frame, &rows) else {
@@ -315,7 +330,8 @@ impl Study {
             let n = outcomes.len();
             let exact = outcomes.iter().filter(|o| o.exact).count();
             let honest = outcomes.iter().filter(|o| o.exact || o.honest).count();
-            let mut ratios: Vec<f64> = outcomes.iter().map(|o| o.fresh_n[1] / o.fresh_n[0].max(1e-9)).collect();
+            let mut ratios: Vec<f64> =
+                outcomes.iter().map(|o| o.fresh_n[1] / o.fresh_n[0].max(1e-9)).collect();
             ratios.sort_by(f64::total_cmp);
             let mut other: BTreeMap<String, usize> = BTreeMap::new();
             for o in outcomes.iter().filter(|o| !o.exact) {

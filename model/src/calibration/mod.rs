@@ -5,11 +5,13 @@ mod model_file;
 mod part_curve;
 mod published_loop;
 mod report;
+mod schema;
 
 pub use heldout::{HeldOut, held_out};
 pub use model_file::{ModelFile, ModelFileError};
 pub use published_loop::{Explanation, explain_published};
-pub use report::{
-    BadSeries, Calibration, CalibrationError, DataSummary, EffectReport, Estimate, Extrapolation, Invisible,
-    ModelReport, Report, RivalReport, Verdict, calibrate, calibrate_below,
+pub use report::{Calibration, CalibrationError, calibrate, calibrate_below};
+pub use schema::{
+    BadSeries, DataSummary, EffectReport, Estimate, Extrapolation, Invisible, ModelReport, Report,
+    RivalReport, Verdict,
 };

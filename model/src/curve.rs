@@ -23,6 +23,8 @@ pub enum Law {
     Paper,
     /// The layout law of model.md 2.
     Layout,
+    /// A model calibrated on measured data.
+    Calibrated,
 }
 
 /// How far a curve can be trusted.

@@ -14,12 +14,18 @@
 //! # Ok::<(), pinswitch_model::ContactError>(())
 //! ```
 
+pub mod calibration;
 mod capstan;
 mod contact;
 mod curve;
+pub mod effects;
+pub mod inference;
 mod layout_law;
 mod pattern;
 pub mod published;
+pub mod rig;
+pub mod segmentation;
+pub mod simulation;
 mod switch;
 
 pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};

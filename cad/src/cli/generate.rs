@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::predict_rows::calibrated_curve;
 use super::source::Source;
 use super::{Failure, print};
-use crate::output::{SetError, make_set, write_set};
+use crate::output::{SetError, curve_of, make_set_with, write_set};
 
 /// Make the printable parts of a configuration, with their predicted friction curve.
 ///
@@ -24,6 +25,9 @@ pub(super) struct Arguments {
     /// Folder to write into [default: out/NAME].
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// A model.toml written by `calibrate`: the curve comes from it, without the effects of the rig.
+    #[arg(long, value_name = "TOML")]
+    model: Option<PathBuf>,
     /// Print the manifest as JSON.
     #[arg(long)]
     json: bool,
@@ -31,7 +35,11 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let design = arguments.source.design()?;
-    let set = make_set(&design).map_err(|e| match e {
+    let curve = match &arguments.model {
+        Some(model) => calibrated_curve(&design, model)?,
+        None => curve_of(&design, design.contact()),
+    };
+    let set = make_set_with(&design, &curve).map_err(|e| match e {
         SetError::Configuration(e) => Failure::bad_input(e),
         other => Failure::failed(other),
     })?;

@@ -6,14 +6,19 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use clap_verbosity_flag::{InfoLevel, Verbosity};
 
+mod calibrate;
 mod check;
 mod completions;
 mod failure;
 mod generate;
 mod init;
 mod layouts;
+mod power;
 mod predict;
+mod predict_rows;
 mod render;
+mod segment;
+mod simulate;
 mod source;
 
 pub use failure::Failure;
@@ -36,6 +41,10 @@ enum Command {
     Render(render::Arguments),
     Layouts(layouts::Arguments),
     Init(init::Arguments),
+    Segment(segment::Arguments),
+    Calibrate(calibrate::Arguments),
+    Simulate(simulate::Arguments),
+    Power(power::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -54,6 +63,10 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Layouts(arguments) => layouts::run(&arguments),
         Command::Init(arguments) => init::run(&arguments),
+        Command::Segment(arguments) => segment::run(&arguments),
+        Command::Calibrate(arguments) => calibrate::run(&arguments),
+        Command::Power(arguments) => power::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
     };
     match outcome {

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::source::Source;
+use super::predict_rows::{Rows, SourceUnlessRows};
 use super::{Failure, print, print_json};
 use crate::output::{curve_of, friction_csv};
 
@@ -15,14 +15,24 @@ use crate::output::{curve_of, friction_csv};
   pinswitch predict three-double --set layout.pins=[4,8,12] --json")]
 pub(super) struct Arguments {
     #[command(flatten)]
-    source: Source,
+    source: SourceUnlessRows,
+    #[command(flatten)]
+    rows: Rows,
     /// Print JSON instead of CSV.
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let design = arguments.source.design()?;
+    if let Some(outcome) = arguments.rows.run() {
+        return outcome;
+    }
+    let source = arguments.source.0.as_ref().ok_or_else(|| {
+        Failure::bad_input(
+            "predict needs a configuration, or --model and --rows; see pinswitch predict --help",
+        )
+    })?;
+    let design = source.design()?;
     let curve = curve_of(&design, design.contact());
     for reason in &curve.reasons {
         log::info!("{reason}");

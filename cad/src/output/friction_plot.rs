@@ -160,5 +160,6 @@ fn law_words(law: Law) -> &'static str {
     match law {
         Law::Paper => "the paper's model",
         Law::Layout => "layout law",
+        Law::Calibrated => "calibrated model",
     }
 }

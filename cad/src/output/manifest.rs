@@ -165,6 +165,7 @@ pub fn manifest(
                 Law::Layout => {
                     "layout law fitted to the three published layouts: F_half = 13.1 N sqrt(n/(a p)), s = 4.64"
                 }
+                Law::Calibrated => "a model calibrated on measured data, see the reasons for what it holds",
             },
             load_n: last(&curve.load_n),
             friction_n: last(&curve.friction_n),

@@ -61,10 +61,14 @@ pub enum SetError {
 
 /// The predicted curve of `design`.
 pub fn curve_of(design: &Design, contact: &Contact) -> FrictionCurve {
+    predict(contact, &loads_of(design))
+}
+
+/// The loads of the curve of `design`, in newtons.
+pub fn loads_of(design: &Design) -> Vec<f64> {
     let f = &design.configuration().friction;
     let step = (f.load_max_n - f.load_min_n) / (f.points - 1) as f64;
-    let loads: Vec<f64> = (0..f.points).map(|i| f.load_min_n + step * i as f64).collect();
-    predict(contact, &loads)
+    (0..f.points).map(|i| f.load_min_n + step * i as f64).collect()
 }
 
 /// Makes every file of `design`.
@@ -72,6 +76,14 @@ pub fn curve_of(design: &Design, contact: &Contact) -> FrictionCurve {
 /// # Errors
 /// [`SetError`]; a mesh that the oracle refuses is never handed out.
 pub fn make_set(design: &Design) -> Result<Set, SetError> {
+    make_set_with(design, &curve_of(design, design.contact()))
+}
+
+/// Makes every file of `design` with this curve attached, such as one of a calibrated model.
+///
+/// # Errors
+/// [`SetError`]; a mesh that the oracle refuses is never handed out.
+pub fn make_set_with(design: &Design, curve: &FrictionCurve) -> Result<Set, SetError> {
     let mut files = Vec::new();
     let mut parts = Vec::new();
     for part in parts::printed(design)? {
@@ -80,13 +92,12 @@ pub fn make_set(design: &Design) -> Result<Set, SetError> {
         parts.push((part, facts));
     }
     let contact = design.contact();
-    let curve = curve_of(design, contact);
-    files.push(OutputFile { name: "friction.csv".to_owned(), bytes: friction_csv(&curve).into_bytes() });
-    let svg = friction_svg(&design.configuration().switch.name, contact, &curve)?;
+    files.push(OutputFile { name: "friction.csv".to_owned(), bytes: friction_csv(curve).into_bytes() });
+    let svg = friction_svg(&design.configuration().switch.name, contact, curve)?;
     files.push(OutputFile { name: "friction.svg".to_owned(), bytes: svg.into_bytes() });
     let (layer_mm3, overfill_mm3) = parts::cavity_mm3(design);
     let bill = bill_of_materials(design, layer_mm3, overfill_mm3);
-    let manifest = manifest(design, &parts, bill, &curve, &files);
+    let manifest = manifest(design, &parts, bill, curve, &files);
     let mut bytes = serde_json::to_vec_pretty(&manifest).map_err(|e| SetError::Encoding(e.to_string()))?;
     bytes.push(b'\n');
     files.push(OutputFile { name: "manifest.json".to_owned(), bytes });

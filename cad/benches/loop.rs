@@ -1,0 +1,46 @@
+//! Calibration of a 3,000-row table and segmentation of a raw log.
+
+use std::io::Read;
+use std::path::Path;
+
+use divan::{Bencher, black_box};
+use pinswitch_model::calibration::calibrate;
+use pinswitch_model::inference::Levels;
+use pinswitch_model::rig::PlateauTable;
+use pinswitch_model::segmentation::{Log, Rig, segment};
+
+fn main() {
+    divan::main();
+}
+
+/// Unpacks a file of `tests/data`.
+fn unpack(name: &str) -> Vec<u8> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data").join(name);
+    let mut bytes = Vec::new();
+    flate2::read::MultiGzDecoder::new(std::fs::File::open(path).expect("test data"))
+        .read_to_end(&mut bytes)
+        .expect("a gzip file");
+    bytes
+}
+
+/// The bound is 2 s on one core.
+#[divan::bench(args = ["set-01", "set-04", "set-14", "set-16"], sample_count = 5)]
+fn calibration(bencher: Bencher, name: &str) {
+    let table = PlateauTable::read(unpack(&format!("{name}.csv.gz")).as_slice(), name).expect("a table");
+    bencher.bench_local(|| calibrate(black_box(&table.rows), Levels::default()));
+}
+
+/// One of 77 logs; the bound for all of them is 3 s.
+#[divan::bench]
+fn segmentation_of_one_log(bencher: Bencher) {
+    let rig = Rig {
+        wrap_angle_deg: 63.89,
+        sample_rate_hz: 200.0,
+        hook_mass_g: 62.53,
+        stroke_mm: 152.4,
+        on_s: 0.5,
+        dwell_s: 3.0,
+    };
+    let text = unpack("raw/silicone_5002g.csv.gz");
+    bencher.bench_local(|| Log::parse(black_box(&text), "log").map(|log| segment(&log, &rig)));
+}

@@ -1,0 +1,53 @@
+//! `pinswitch power PLAN.toml`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use pinswitch_model::inference::Levels;
+use pinswitch_model::simulation::{Plan, power};
+
+use super::{Failure, print, print_json};
+
+/// Tell before any measurement which effects of which size a planned experiment could see and tell apart.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: pinswitch power plan.toml --runs 5")]
+pub(super) struct Arguments {
+    /// The plan, as for `simulate`; each effect is put into it in turn.
+    plan: PathBuf,
+    /// Simulated experiments per effect and size.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    runs: u64,
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let name = arguments.plan.display().to_string();
+    let text =
+        std::fs::read_to_string(&arguments.plan).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let plan = Plan::parse(&text, &name).map_err(Failure::bad_input)?;
+    let all = power(&plan, arguments.runs, Levels::default());
+    if arguments.json {
+        return print_json(&all);
+    }
+    let mut table =
+        format!("{:<26} {:<18} named  rivals  missed  named with it or instead\n", "effect", "constants");
+    for p in &all {
+        let values: Vec<String> = p.values.iter().map(|v| format!("{v:.3}")).collect();
+        let others: Vec<String> = p.others.iter().map(|(id, n)| format!("{id} {n}")).collect();
+        table.push_str(&format!(
+            "{:<26} {:<18} {:>2}/{:<2}  {:>2}/{:<2}   {:>2}/{:<2}   {}\n",
+            p.id,
+            values.join(", "),
+            p.named,
+            p.runs,
+            p.ambiguous,
+            p.runs,
+            p.missed,
+            p.runs,
+            others.join(", ")
+        ));
+    }
+    print(table.as_bytes())
+}

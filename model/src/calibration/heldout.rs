@@ -1,0 +1,61 @@
+//! Errors on data held out from the fit: whole series, then whole loads.
+
+use crate::inference::{Model, Noise, Observations, fit};
+
+/// Root mean square errors in newtons on rows that the fit did not see.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldOut {
+    /// Each fourth of the series left out in turn.
+    pub series_n: f64,
+    /// Each fourth of the loads left out in turn.
+    pub loads_n: f64,
+}
+
+impl HeldOut {
+    /// Both together, as one root mean square.
+    pub fn both_n(self) -> f64 {
+        (0.5 * (self.series_n.powi(2) + self.loads_n.powi(2))).sqrt()
+    }
+}
+
+const FOLDS: usize = 4;
+/// Rows weighed down further than this are outliers and judge no model.
+pub(crate) const SOUND_WEIGHT: f64 = 0.5;
+
+/// Held-out errors of a model that is refitted from where it stands.
+pub fn held_out(model: &Model, data: &Observations, noise: Noise) -> HeldOut {
+    let mut loads: Vec<f64> = data.points.iter().map(|p| p.load_n).collect();
+    loads.sort_by(f64::total_cmp);
+    loads.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
+    let load_fold = |i: usize| loads.partition_point(|l| *l < data.points[i].load_n - 1e-7) % FOLDS;
+    let series_fold = |i: usize| (data.series_of[i] * 7 / 3) % FOLDS;
+    HeldOut {
+        series_n: error(model, data, noise, &series_fold),
+        loads_n: if loads.len() > FOLDS { error(model, data, noise, &load_fold) } else { f64::NAN },
+    }
+    .without_gaps()
+}
+
+impl HeldOut {
+    /// With too few loads to leave any out, the series stand for both.
+    fn without_gaps(self) -> Self {
+        if self.loads_n.is_nan() { Self { loads_n: self.series_n, ..self } } else { self }
+    }
+}
+
+fn error(model: &Model, data: &Observations, noise: Noise, fold: &dyn Fn(usize) -> usize) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for left_out in 0..FOLDS {
+        let seen = data.subset(|i| fold(i) != left_out);
+        if seen.points.len() < model.values().len() + 2 || seen.points.len() == data.points.len() {
+            continue;
+        }
+        let fitted = fit(model, &seen, noise);
+        let hidden = data.subset(|i| fold(i) == left_out && data.weights[i] > SOUND_WEIGHT);
+        for (predicted, read) in fitted.model.predict(&hidden.points).iter().zip(&hidden.force_n) {
+            sum += (predicted - read).powi(2);
+            count += 1.0;
+        }
+    }
+    if count > 0.0 { (sum / count).sqrt() } else { f64::NAN }
+}

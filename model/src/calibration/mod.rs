@@ -1,0 +1,17 @@
+//! The closed loop: a table in, a verdict with errors before and after out (data.md sections 5 and 6).
+
+mod heldout;
+mod model_file;
+mod part_curve;
+mod published_loop;
+mod report;
+mod schema;
+
+pub use heldout::{HeldOut, held_out};
+pub use model_file::{ModelFile, ModelFileError};
+pub use published_loop::{Explanation, explain_published};
+pub use report::{Calibration, CalibrationError, calibrate, calibrate_below};
+pub use schema::{
+    BadSeries, DataSummary, EffectReport, Estimate, Extrapolation, Invisible, ModelReport, Report,
+    RivalReport, Verdict,
+};

@@ -1,0 +1,321 @@
+//! From a selection to its report: verdict, effects, rivals, blind spots, errors before and after.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::heldout::{SOUND_WEIGHT, held_out};
+use super::schema::{
+    BadSeries, DataSummary, EffectReport, Estimate, Extrapolation, Invisible, ModelReport, Report,
+    RivalReport, Verdict,
+};
+use crate::effects::LIBRARY;
+use crate::inference::{
+    Fit, Levels, Model, Noise, Observations, Selection, Term, interval_half_widths, select,
+};
+use crate::rig::{Frame, PlateauRow, Surface};
+
+/// Why rows cannot be calibrated.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CalibrationError {
+    /// Fewer rows than the baseline has constants.
+    #[error(
+        "{found} rows cannot fix the {needed} constants of the baseline; record more loads or repetitions"
+    )]
+    TooFewRows {
+        /// Rows given.
+        found: usize,
+        /// Constants of the baseline.
+        needed: usize,
+    },
+}
+
+/// A report with the fits behind it.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// The report.
+    pub report: Report,
+    /// The selection behind it.
+    pub selection: Selection,
+    /// The rows as they were fitted.
+    pub data: Observations,
+}
+
+/// Calibrates a table.
+///
+/// # Errors
+/// [`CalibrationError::TooFewRows`] if the rows cannot fix the baseline.
+pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, CalibrationError> {
+    let frame = Frame::new(rows);
+    let start = Model::baseline(frame.clone());
+    let needed = start.values().len() + 2;
+    let too_few = CalibrationError::TooFewRows { found: rows.len(), needed };
+    let mut data = Observations::new(&frame, rows).ok_or_else(|| too_few.clone())?;
+    if rows.len() < needed {
+        return Err(too_few);
+    }
+    let selection = select(&start, &mut data, levels);
+    let report = report(rows, &selection, &data);
+    Ok(Calibration { report, selection, data })
+}
+
+/// Calibrates on loads up to a share of the highest one and judges both models on the rest.
+///
+/// # Errors
+/// [`CalibrationError::TooFewRows`] if the rows below cannot fix the baseline.
+pub fn calibrate_below(
+    rows: &[PlateauRow],
+    share: f64,
+    levels: Levels,
+) -> Result<Calibration, CalibrationError> {
+    let highest = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
+    let (seen, rest): (Vec<_>, Vec<_>) = rows.iter().cloned().partition(|r| r.load_n <= share * highest);
+    let mut calibration = calibrate(&seen, levels)?;
+    let judge = |model: &Model| {
+        let points = model.frame.points(&rest).unwrap_or_default();
+        let mut sizes: Vec<f64> =
+            model.predict(&points).iter().zip(&rest).map(|(p, r)| (p - r.force_n).abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let square: f64 = sizes.iter().map(|s| s * s).sum();
+        let median = sizes.get(sizes.len() / 2).copied().unwrap_or(f64::NAN);
+        ((square / sizes.len().max(1) as f64).sqrt(), median)
+    };
+    let before = judge(&calibration.selection.baseline.model);
+    let after = judge(&calibration.selection.augmented.model);
+    let noise = calibration.selection.noise;
+    let points = calibration.selection.augmented.model.frame.points(&rest).unwrap_or_default();
+    let predicted = calibration.selection.augmented.model.predict(&points);
+    let sound: Vec<f64> = predicted
+        .iter()
+        .zip(&rest)
+        .map(|(p, r)| (p - r.force_n, noise.at(r.load_n)))
+        .filter(|(miss, sd)| miss.abs() <= 20.0 * sd)
+        .map(|(miss, _)| miss)
+        .collect();
+    let without_bad = (sound.iter().map(|m| m * m).sum::<f64>() / sound.len().max(1) as f64).sqrt();
+    calibration.report.extrapolation = Some(Extrapolation {
+        fitted_below_n: share * highest,
+        rows: rest.len(),
+        rmse_before_n: before.0,
+        rmse_after_n: after.0,
+        rmse_after_without_bad_n: without_bad,
+        bad_rows: rest.len() - sound.len(),
+        median_before_n: before.1,
+        median_after_n: after.1,
+    });
+    Ok(calibration)
+}
+
+/// A constant with its interval.
+fn estimate(value: f64, half_width: f64, unit: &str) -> Estimate {
+    Estimate { value, ci95: [value - half_width, value + half_width], unit: unit.to_owned() }
+}
+
+fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport, f64) {
+    let held = held_out(&fitted.model, data, noise);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (r, _) in fitted.residual_n.iter().zip(&data.weights).filter(|(_, w)| **w > SOUND_WEIGHT) {
+        sum += r * r;
+        count += 1.0;
+    }
+    let widths = interval_half_widths(fitted, data, noise);
+    let conditions = &fitted.model.frame.conditions;
+    let touched = |name: &str| match name {
+        "mu_p" => conditions.iter().any(crate::rig::Condition::has_pins),
+        "mu_s" => conditions.iter().any(|c| c.surface == Surface::Silicone),
+        _ => true,
+    };
+    let parameters = fitted
+        .model
+        .names()
+        .into_iter()
+        .zip(fitted.model.values().into_iter().zip(widths))
+        .filter(|((name, _), _)| touched(name))
+        .map(|((name, unit), (value, width))| (name, estimate(value, width, unit)))
+        .collect();
+    let report = ModelReport {
+        rmse_n: (sum / f64::max(count, 1.0)).sqrt(),
+        heldout_rmse_n: held.both_n(),
+        heldout_series_rmse_n: held.series_n,
+        heldout_loads_rmse_n: held.loads_n,
+        parameters,
+    };
+    (report, held.both_n())
+}
+
+/// Tail probability of a gain with one constant, for any of the library's effects (Sidak).
+fn p_value(gain: f64) -> f64 {
+    let single = ChiSquared::new(1.0).map_or(1.0, |d| d.sf(gain.max(0.0)));
+    let all = -(LIBRARY.len() as f64 * (-single).ln_1p()).exp_m1();
+    all.clamp(0.0, 1.0)
+}
+
+fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Report {
+    let noise = selection.noise;
+    let (baseline, before_n) = model_report(&selection.baseline, data, noise);
+    let (augmented, after_n) = if selection.augmented.model.terms.is_empty() {
+        (baseline.clone(), before_n)
+    } else {
+        model_report(&selection.augmented, data, noise)
+    };
+    let effects = effects(selection, data, after_n, &augmented);
+    let verdict = if selection.structure.is_some() {
+        Verdict::Unattributed
+    } else if effects.is_empty() {
+        Verdict::None
+    } else if effects.iter().any(|e| !e.rivals.is_empty()) {
+        Verdict::Ambiguous
+    } else {
+        Verdict::Attributed
+    };
+    Report {
+        schema: "pinswitch.calibration/1".to_owned(),
+        data: DataSummary {
+            rows: rows.len(),
+            series: data.series,
+            conditions: selection.baseline.model.frame.conditions.len(),
+            outliers: data.weights.iter().filter(|w| **w <= SOUND_WEIGHT).count(),
+        },
+        verdict,
+        noise_floor_n: noise.floor_n(data),
+        noise,
+        baseline,
+        augmented,
+        effects,
+        candidates: selection.candidates.iter().map(|(id, gain)| ((*id).to_owned(), *gain)).collect(),
+        family_probability: selection.family_probability,
+        invisible: selection
+            .invisible
+            .iter()
+            .filter(|(e, ..)| !selection.augmented.model.terms.iter().any(|t| t.id() == e.id()))
+            .map(|(effect, share, strength)| Invisible {
+                id: effect.id().to_owned(),
+                why: if *strength < 1e-6 {
+                    effect.invisible_because().to_owned()
+                } else if *share < 2e-3 {
+                    "the refitted baseline takes it over".to_owned()
+                } else {
+                    format!("at a typical size it makes {strength:.1} standard deviations, 4 are needed")
+                },
+                experiment: effect.experiment().to_owned(),
+            })
+            .collect(),
+        never_visible: [
+            "a loss in the guide pulleys in proportion to tension: needs a run without the switch",
+            "a wrap angle that is wrong by a constant: needs the angle measured",
+            "a threshold shifted by the same load everywhere: needs another way to see the switching",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        bad_series: bad_series(rows, selection, data),
+        extrapolation: None,
+    }
+}
+
+fn effects(
+    selection: &Selection,
+    data: &Observations,
+    after_n: f64,
+    augmented: &ModelReport,
+) -> Vec<EffectReport> {
+    let model = &selection.augmented.model;
+    let mut found = Vec::new();
+    let (mut named, mut unnamed) = (0, Vec::new());
+    for (i, term) in model.terms.iter().enumerate() {
+        let Term::Named(effect) = term else {
+            unnamed.push(i);
+            continue;
+        };
+        let without = model.without_term(i);
+        let gain = selection.gains.get(named).copied().unwrap_or(0.0);
+        let rivals = selection.rivals.get(named).map_or(&[][..], Vec::as_slice);
+        named += 1;
+        found.push(EffectReport {
+            id: effect.id().to_owned(),
+            covariate: effect.covariate().word().to_owned(),
+            side: Some(effect.side().word().to_owned()),
+            formula: effect.formula().to_owned(),
+            p_value: p_value(gain),
+            parameters: effect
+                .parameters()
+                .iter()
+                .filter_map(|p| {
+                    let known = augmented.parameters.get(&format!("{}.{}", effect.id(), p.name))?;
+                    Some((p.name.to_owned(), known.clone()))
+                })
+                .collect(),
+            error_before_n: held_out(&without, data, selection.noise).both_n(),
+            error_after_n: after_n,
+            rivals: rivals
+                .iter()
+                .map(|r| RivalReport {
+                    id: r.effect.id().to_owned(),
+                    why: format!(
+                        "after the refit its trace is the same to a cosine of {:.3}; in place of {} it fits worse by only {:.1} whitened squares",
+                        r.cosine, effect.id(), r.worse_by
+                    ),
+                    experiment: format!("{}; {}", effect.experiment(), r.effect.experiment()),
+                })
+                .collect(),
+        });
+    }
+    if let Some((covariate, gain)) = selection.structure {
+        let shapes: Vec<String> = unnamed
+            .iter()
+            .filter_map(|i| match &model.terms[*i] {
+                Term::Structure(s) => Some(s.describe(&model.frame)),
+                Term::Named(_) => None,
+            })
+            .collect();
+        let bare = unnamed.iter().rev().fold(model.clone(), |m, i| m.without_term(*i));
+        found.push(EffectReport {
+            id: "unattributed".to_owned(),
+            covariate: covariate.word().to_owned(),
+            side: None,
+            formula: shapes.join("; "),
+            p_value: p_value(gain - 12.0),
+            parameters: augmented
+                .parameters
+                .iter()
+                .filter(|(name, _)| name.starts_with("unattributed."))
+                .map(|(name, e)| (name.clone(), e.clone()))
+                .collect(),
+            error_before_n: held_out(&bare, data, selection.noise).both_n(),
+            error_after_n: after_n,
+            rivals: Vec::new(),
+        });
+    }
+    found
+}
+
+/// Cells whose mean residual is beyond 4.5 standard deviations, or that hold a reading beyond 20.
+fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Vec<BadSeries> {
+    let mut bad = Vec::new();
+    for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {
+        let weight: f64 = cell.iter().map(|r| data.weights[*r]).sum();
+        let mean =
+            cell.iter().map(|r| data.weights[*r] * selection.augmented.residual_n[*r]).sum::<f64>() / weight;
+        let sd =
+            (selection.noise.repetition.at(*load) / weight.sqrt()).hypot(selection.noise.series.at(*load));
+        let worst = cell
+            .iter()
+            .map(|r| selection.augmented.residual_n[*r])
+            .fold(0.0f64, |a, b| if b.abs() > a.abs() { b } else { a });
+        let reading_sd = selection.noise.at(*load);
+        let (offset_n, sd) = if mean.abs() > 4.5 * sd {
+            (mean, sd)
+        } else if worst.abs() > 20.0 * reading_sd {
+            (worst, reading_sd)
+        } else {
+            continue;
+        };
+        if let Some(row) = cell.first().and_then(|r| rows.get(*r)) {
+            bad.push(BadSeries {
+                series: row.series.clone(),
+                direction: crate::rig::direction_word(row.direction).to_owned(),
+                offset_n,
+                standard_deviations: offset_n / sd,
+            });
+        }
+    }
+    bad
+}

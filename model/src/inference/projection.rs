@@ -1,0 +1,91 @@
+//! Projecting out columns: an orthonormal basis that grows column by column.
+
+/// An orthonormal basis of the columns absorbed so far.
+#[derive(Clone, Debug)]
+pub(crate) struct Projection {
+    len: usize,
+    basis: Vec<Vec<f64>>,
+}
+
+/// A column that keeps less than this share of its length adds no direction.
+const INDEPENDENT: f64 = 1e-5;
+
+impl Projection {
+    pub(crate) fn new(len: usize) -> Self {
+        Self { len, basis: Vec::new() }
+    }
+
+    /// Adds a column's new direction; returns whether it had one.
+    pub(crate) fn absorb(&mut self, mut column: Vec<f64>) -> bool {
+        debug_assert_eq!(column.len(), self.len);
+        let before = dot(&column, &column).sqrt();
+        self.remove(&mut column);
+        self.remove(&mut column);
+        let after = dot(&column, &column).sqrt();
+        let independent = after > INDEPENDENT * before && after > 1e-12;
+        if independent {
+            column.iter_mut().for_each(|v| *v /= after);
+            self.basis.push(column);
+        }
+        independent
+    }
+
+    /// Removes from a column what the basis explains.
+    pub(crate) fn remove(&self, column: &mut [f64]) {
+        for axis in &self.basis {
+            let share = dot(axis, column);
+            if share != 0.0 {
+                column.iter_mut().zip(axis).for_each(|(v, a)| *v -= share * a);
+            }
+        }
+    }
+
+    /// The directions.
+    pub(crate) fn basis(&self) -> &[Vec<f64>] {
+        &self.basis
+    }
+
+    /// Number of directions.
+    #[cfg(test)]
+    pub(crate) fn rank(&self) -> usize {
+        self.basis.len()
+    }
+}
+
+/// Inner product, in four sums that do not wait for each other.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in a4.zip(b4) {
+        for i in 0..4 {
+            sums[i] += x[i] * y[i];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn what_is_left_is_orthogonal(a in prop::collection::vec(-1.0..1.0f64, 7), b in prop::collection::vec(-1.0..1.0f64, 7)) {
+            let mut projection = Projection::new(7);
+            prop_assume!(projection.absorb(a.clone()));
+            let mut rest = b;
+            projection.remove(&mut rest);
+            prop_assert!(dot(&rest, &a).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_copy_adds_no_direction() {
+        let mut projection = Projection::new(3);
+        assert!(projection.absorb(vec![1.0, 2.0, 3.0]));
+        assert!(!projection.absorb(vec![2.0, 4.0, 6.0]));
+        assert_eq!(projection.rank(), 1);
+    }
+}

@@ -1,0 +1,206 @@
+//! Scores: how much each effect or structure that is not in a model would gain, by its sensitivity after the
+//! model's own constants have been refitted to first order.
+
+use super::catalogue::{Group, catalogue};
+use super::fit::{Fit, jacobian};
+use super::forward::Term;
+use super::noise::Noise;
+use super::observations::Observations;
+use super::projection::{Projection, dot};
+use crate::effects::{Channel, Covariate, Effect, LIBRARY, Shape, Structure};
+
+/// What a wave's gain is reduced by, in whitened squares.
+const WAVE_TOLL: f64 = 15.0;
+
+/// A fitted model with its whitened residual and the directions its constants can take.
+pub(crate) struct Screen<'a> {
+    fitted: &'a Fit,
+    data: &'a Observations,
+    noise: Noise,
+    basis: Projection,
+    residual: Vec<f64>,
+    predicted: Vec<f64>,
+}
+
+/// Score of a named effect.
+#[derive(Clone, Debug)]
+pub(crate) struct EffectScore {
+    /// The effect.
+    pub(crate) effect: &'static dyn Effect,
+    /// Constants to start its fit from.
+    pub(crate) start: Vec<f64>,
+    /// Gain in whitened squares to first order.
+    pub(crate) gain: f64,
+    /// Share of the sensitivity's length that the model's own constants cannot take over.
+    pub(crate) visible_share: f64,
+    /// Length of the visible sensitivity at the start's size, in standard deviations.
+    pub(crate) strength: f64,
+    /// Contributions of the series to the score; their squared sum is the gain.
+    pub(crate) by_series: Vec<f64>,
+    /// The visible sensitivity itself.
+    pub(crate) column: Vec<f64>,
+}
+
+/// Score of a structure.
+#[derive(Clone, Debug)]
+pub(crate) struct StructureScore {
+    /// Shapes that go together (a wave is a sine and a cosine).
+    pub(crate) group: Group,
+    /// Sizes to first order.
+    pub(crate) sizes: Vec<f64>,
+    /// Gain in whitened squares to first order, less the toll of a wave.
+    pub(crate) gain: f64,
+}
+
+impl<'a> Screen<'a> {
+    pub(crate) fn new(fitted: &'a Fit, data: &'a Observations, noise: Noise) -> Self {
+        let model = &fitted.model;
+        let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
+        let p = model.coordinates.len();
+        let mut basis = Projection::new(predicted.len() + p);
+        for (j, mut column) in jacobian(model, data, &predicted).into_iter().enumerate() {
+            noise.whiten(data, &mut column);
+            column.resize(predicted.len() + p, 0.0);
+            column[predicted.len() + j] = 1.0 / model.priors()[j].sd;
+            basis.absorb(column);
+        }
+        let mut residual = fitted.residual_n.clone();
+        noise.whiten(data, &mut residual);
+        residual.extend(
+            model.coordinates.iter().zip(model.priors()).map(|(c, prior)| (prior.mean - c) / prior.sd),
+        );
+        basis.remove(&mut residual);
+        Self { fitted, data, noise, basis, residual, predicted }
+    }
+
+    /// Whitens a column in newtons and removes what the model's constants can take over.
+    /// Returns it with the share of its length that is left.
+    fn visible(&self, mut column: Vec<f64>) -> (Vec<f64>, f64) {
+        self.noise.whiten(self.data, &mut column);
+        let before = dot(&column, &column).sqrt();
+        column.resize(self.residual.len(), 0.0);
+        self.basis.remove(&mut column);
+        let after = dot(&column, &column).sqrt();
+        (column, if before > 0.0 { after / before } else { 0.0 })
+    }
+
+    /// Scores of all effects that the model does not have, one per effect at its best shape.
+    pub(crate) fn effects(&self) -> Vec<EffectScore> {
+        let model = &self.fitted.model;
+        let absent = |effect: &&'static dyn Effect| {
+            !model.terms.iter().any(|t| matches!(t, Term::Named(e) if e.id() == effect.id()))
+        };
+        LIBRARY.iter().copied().filter(absent).filter_map(|effect| self.effect(effect)).collect()
+    }
+
+    fn effect(&self, effect: &'static dyn Effect) -> Option<EffectScore> {
+        let mut best: Option<EffectScore> = None;
+        for start in effect.starts(&self.fitted.model.frame) {
+            let changed = self.fitted.model.with_term(Term::Named(effect), &start).predict(&self.data.points);
+            let column: Vec<f64> = changed.iter().zip(&self.predicted).map(|(c, p)| c - p).collect();
+            let (column, visible_share) = self.visible(column);
+            let length2 = dot(&column, &column);
+            let along = dot(&column, &self.residual);
+            let fixed = effect.parameters().is_empty() || effect.id() == "load_cell_saturation";
+            let gain = if length2 < 1e-9 {
+                0.0
+            } else if fixed {
+                2.0 * along - length2
+            } else {
+                along * along / length2
+            };
+            if best.as_ref().is_none_or(|b| gain > b.gain) {
+                let mut by_series = vec![0.0; self.data.series];
+                let scale = 1.0 / length2.sqrt().max(1e-9);
+                for (row, series) in self.data.series_of.iter().enumerate() {
+                    by_series[*series] += scale * column[row] * self.residual[row];
+                }
+                let mut start = start;
+                if !fixed && length2 > 1e-9 {
+                    start[0] *= along / length2;
+                }
+                best = Some(EffectScore {
+                    effect,
+                    start,
+                    gain,
+                    visible_share,
+                    strength: length2.sqrt(),
+                    by_series,
+                    column,
+                });
+            }
+        }
+        best
+    }
+
+    /// Scores of the whole catalogue of structures, best first.
+    pub(crate) fn structures(&self) -> Vec<StructureScore> {
+        let sensitivity = |channel: Channel| match channel {
+            Channel::Reading => vec![1.0; self.predicted.len()],
+            Channel::Drag => self.data.points.iter().map(|p| p.sign).collect(),
+            _ => {
+                let everywhere = Structure {
+                    covariate: Covariate::Load,
+                    channel,
+                    form: Shape::LoadPower { power: 0, unit_n: 1.0 },
+                };
+                let size = 1e-3;
+                let mut column = self
+                    .fitted
+                    .model
+                    .with_term(Term::Structure(everywhere), &[size])
+                    .predict(&self.data.points);
+                column.iter_mut().zip(&self.predicted).for_each(|(c, p)| *c = (*c - p) / size);
+                column
+            }
+        };
+        let channels = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone]
+            .map(|channel| (channel, sensitivity(channel)));
+        let mut scores: Vec<StructureScore> = catalogue(&self.fitted.model.frame, &self.data.points)
+            .into_iter()
+            .filter_map(|group| {
+                let columns: Vec<Vec<f64>> = group
+                    .iter()
+                    .filter_map(|structure| {
+                        let (_, along) = channels.iter().find(|(c, _)| *c == structure.channel)?;
+                        let column =
+                            self.data.points.iter().zip(along).map(|(p, s)| structure.value(p) * s).collect();
+                        let (column, visible) = self.visible(column);
+                        (visible > 0.02).then_some(column)
+                    })
+                    .collect();
+                self.group(group, &columns)
+            })
+            .collect();
+        scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        scores
+    }
+
+    /// Least squares of the residual on one or two visible columns.
+    fn group(&self, group: Group, columns: &[Vec<f64>]) -> Option<StructureScore> {
+        if columns.len() != group.len() || columns.is_empty() {
+            return None;
+        }
+        let a = dot(&columns[0], &columns[0]);
+        let u = dot(&columns[0], &self.residual);
+        // A shape that rests on one or two series is a bad run, not structure.
+        if a < 1e-9 {
+            return None;
+        }
+        let (gain, sizes) = if let Some(second) = columns.get(1) {
+            let (b, c, v) = (dot(&columns[0], second), dot(second, second), dot(second, &self.residual));
+            let det = a * c - b * b;
+            if det < 1e-6 * a * c {
+                (u * u / a, vec![u / a, 0.0])
+            } else {
+                let (k, l) = ((c * u - b * v) / det, (a * v - b * u) / det);
+                (k * u + l * v, vec![k, l])
+            }
+        } else {
+            (u * u / a, vec![u / a])
+        };
+        // A wave has two sizes, and there are hundreds of them at free frequencies: its gain must pay for both.
+        let gain = if group.len() > 1 { gain - WAVE_TOLL } else { gain };
+        Some(StructureScore { group, sizes, gain })
+    }
+}

@@ -1,0 +1,11 @@
+//! Measured data of the friction rig: plateau tables, their rows, and what a session as a whole fixes.
+
+mod frame;
+mod plateau_table;
+mod row;
+
+pub(crate) use frame::groups;
+pub use frame::{Condition, Frame, Point};
+pub use plateau_table::{PlateauTable, TableError};
+pub(crate) use row::direction_word;
+pub use row::{PlateauRow, Surface, Sweep};

@@ -1,5 +1,7 @@
 //! Bad input: one clear error that names field, value, bound and remedy, exit code 2, and nothing written.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::path::Path;
 use std::process::Command;
 

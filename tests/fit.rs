@@ -1,6 +1,8 @@
 //! Fit, proved by geometry: pins in their slots and grooves over their whole travel, no parts that overlap, holes on
 //! one axis, and a mould whose cavity is the layer.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;

@@ -1,6 +1,8 @@
 //! Programs that nobody here wrote judge our parts, and our oracle judges meshes that nobody here made. The judges lie
 //! in `../shared/tools`; where they are absent, or not installed, the tests say so and pass.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

@@ -1,6 +1,8 @@
 //! Any configuration gives valid parts or one clear error, and none panics: random ones, and a corpus of those that
 //! once broke. `PINSWITCH_CASES=2000` makes a long run.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::io::Cursor;
 use std::sync::atomic::{AtomicU32, Ordering};
 

@@ -1,5 +1,7 @@
 //! Everything that README shows is what the program does.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::path::Path;
 use std::process::Command;
 

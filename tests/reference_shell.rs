@@ -1,5 +1,7 @@
 //! The reference shell of the kernel study: its exact volume at every tolerance, and the deviation of every curve.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use pinswitch::config::{Configuration, assign};
 use pinswitch::design::Design;
 use pinswitch::parts::printed;

@@ -1,6 +1,8 @@
 //! The undeclared-effect test: the calibrator gets a plateau table only, and must say what the paper's model lacks.
 //! The tables are copies of rig sets (their README allows it); what was put into each stands beside its test.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::io::Read;

@@ -1,5 +1,7 @@
 //! Calibration of a 3,000-row table and segmentation of a raw log.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::io::Read;
 use std::path::Path;
 

@@ -156,7 +156,7 @@ impl Canvas {
             let (a, b) = (self.depths[i], self.depths[j]);
             (a.is_finite() != b.is_finite()) || (a - b).abs() > 0.35
         };
-        let right = (i + 1) % self.columns != 0 && jump(i + 1);
+        let right = !(i + 1).is_multiple_of(self.columns) && jump(i + 1);
         right || (i + self.columns < self.depths.len() && jump(i + self.columns))
     }
 }

@@ -1,5 +1,7 @@
 //! Largest gains on rigs without any effect: what the levels of the selection rest on.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use pinswitch_model::inference::{Levels, Model, Observations, select};
 use pinswitch_model::rig::Frame;
 use pinswitch_model::simulation::{plan_of, simulate, study_cases};

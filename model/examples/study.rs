@@ -1,5 +1,7 @@
 //! `cargo run --release -p pinswitch-model --example study -- FIRST LAST [NAME]`: the confusion matrix of the calibrator.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use pinswitch_model::inference::Levels;
 use pinswitch_model::simulation::{Study, run_case, study_cases};
 

@@ -46,7 +46,7 @@ words! {
 }
 
 configuration! {
-    /// A configuration whose every value lies in its range; [`super::Design`] is one that can also be built.
+    /// A configuration whose every value lies in its range; [`crate::design::Design`] is one that can also be built.
     Configuration {
         /// The switch as a whole.
         switch: SwitchTable {

@@ -60,7 +60,7 @@ impl Design {
         self.tolerance
     }
 
-    /// What printed but is not ideal: see [`warnings`].
+    /// What printed but is not ideal: see the `warnings` module.
     pub fn warnings(&self) -> Vec<String> {
         warnings::of(&self.configuration)
     }

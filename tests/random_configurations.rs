@@ -106,6 +106,8 @@ fn random_configurations_give_valid_parts_or_one_clear_error() {
             Ok(Outcome::Parts) => built.fetch_add(1, Ordering::Relaxed),
             Ok(Outcome::Refused(_)) => refused.fetch_add(1, Ordering::Relaxed),
             Err(fault) => {
+                // The first one printed is the one found; those after it are proptest's simplifications.
+                eprintln!("{fault}\nin\n{}", to_toml(&configuration));
                 return Err(TestCaseError::fail(format!("{fault}\nin\n{}", to_toml(&configuration))));
             }
         };

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::PinPattern;
+use crate::physics::Bed;
 use crate::published::{self, PublishedLayout};
 
 /// What lies under the pins.
@@ -46,6 +47,7 @@ pub struct Contact {
     wrap_rad: f64,
     departures: Vec<String>,
     six_single_threshold: f64,
+    bed: Bed,
 }
 
 impl Contact {
@@ -70,6 +72,7 @@ impl Contact {
             wrap_rad,
             departures: Vec::new(),
             six_single_threshold: published::LAYOUTS[0].threshold,
+            bed: Bed::published(),
         })
     }
 
@@ -86,6 +89,18 @@ impl Contact {
     pub fn with_departures(mut self, departures: Vec<String>) -> Self {
         self.departures = departures;
         self
+    }
+
+    /// Lays the pins on `bed` instead of the published one; the physics reads it.
+    #[must_use]
+    pub fn with_bed(mut self, bed: Bed) -> Self {
+        self.bed = bed;
+        self
+    }
+
+    /// Dimensions and stiffness of what carries the tendon.
+    pub fn bed(&self) -> &Bed {
+        &self.bed
     }
 
     /// What lies under the pins.

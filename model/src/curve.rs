@@ -23,6 +23,8 @@ pub enum Law {
     Paper,
     /// The layout law of model.md 2.
     Layout,
+    /// A string over sinking pins on a foundation, see [`crate::physics`].
+    Physics,
     /// A model calibrated on measured data.
     Calibrated,
 }
@@ -85,18 +87,39 @@ struct Banded {
     high_n: f64,
 }
 
-/// Predicts tension and friction of `contact` at `loads_n` newtons: the paper's model where it was measured,
-/// the layout law elsewhere.
-pub fn predict(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
-    let (trust, reasons) = trust(contact);
-    let (law, points) = match (contact.substrate(), contact.published_layout()) {
-        (Substrate::Abs, layout) => (Law::Paper, pins_alone(contact, layout, loads_n)),
-        (Substrate::Silicone, Some(layout)) => (Law::Paper, paper_device(contact, layout, loads_n)),
-        (Substrate::Silicone, None) => match LayoutLaw::new(contact.pins(), contact.wrap_rad()) {
-            Some(law) => (Law::Layout, layout_device(contact, law, trust, loads_n)),
-            None => (Law::Paper, silicone_alone(contact, loads_n)),
-        },
+/// The paper's model; `None` for pins on silicone that it gives no constants for.
+pub(crate) fn paper_curve(contact: &Contact, loads_n: &[f64]) -> Option<FrictionCurve> {
+    match (contact.substrate(), contact.published_layout()) {
+        (Substrate::Silicone, Some(layout)) => {
+            Some(curve_of(Law::Paper, trust(contact), &paper_device(contact, layout, loads_n)))
+        }
+        (Substrate::Silicone, None) if contact.pins().count() > 0 => None,
+        _ => Some(capstan_curve(contact, loads_n)),
+    }
+}
+
+/// The paper's capstan on one material: silicone where there are no pins, else the pins alone.
+pub(crate) fn capstan_curve(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
+    let points = if contact.pins().count() == 0 {
+        silicone_alone(contact, loads_n)
+    } else {
+        pins_alone(contact, contact.published_layout(), loads_n)
     };
+    curve_of(Law::Paper, trust(contact), &points)
+}
+
+/// The layout law; `None` without pins on silicone.
+pub(crate) fn layout_curve(contact: &Contact, loads_n: &[f64]) -> Option<FrictionCurve> {
+    if contact.substrate() == Substrate::Abs {
+        return None;
+    }
+    let law = LayoutLaw::new(contact.pins(), contact.wrap_rad())?;
+    let trusted = trust(contact);
+    let points = layout_device(contact, law, trusted.0, loads_n);
+    Some(curve_of(Law::Layout, trusted, &points))
+}
+
+fn curve_of(law: Law, (trust, reasons): (Trust, Vec<String>), points: &[Banded]) -> FrictionCurve {
     let column = |f: fn(&Banded) -> f64| points.iter().map(f).collect::<Vec<_>>();
     FrictionCurve {
         law,
@@ -133,7 +156,8 @@ pub fn published_points(contact: &Contact) -> Vec<PublishedPoint> {
     }
 }
 
-fn trust(contact: &Contact) -> (Trust, Vec<String>) {
+/// How far the friction of `contact` is known from measurements, and why no further.
+pub(crate) fn trust(contact: &Contact) -> (Trust, Vec<String>) {
     let mut reasons = contact.departures();
     let pins = contact.pins();
     let bare_silicone = contact.substrate() == Substrate::Silicone && pins.count() == 0;
@@ -240,7 +264,7 @@ fn extrapolated_spread(contact: &Contact) -> f64 {
 
 /// The layout law; its band is the envelope over both uncertainties.
 fn layout_device(contact: &Contact, law: LayoutLaw, trust: Trust, loads_n: &[f64]) -> Vec<Banded> {
-    let spread = if trust == Trust::Interpolated { INTERPOLATED } else { EXTRAPOLATED };
+    let spread = if trust == Trust::Extrapolated { EXTRAPOLATED } else { INTERPOLATED };
     let (early, late) = (
         law.with_half_load_scaled(1.0 / (1.0 + spread.half_load)),
         law.with_half_load_scaled(1.0 + spread.half_load),
@@ -261,7 +285,7 @@ fn layout_device(contact: &Contact, law: LayoutLaw, trust: Trust, loads_n: &[f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PinPattern;
+    use crate::{PinPattern, predict};
     use proptest::prelude::*;
 
     fn contact(substrate: Substrate, pins: PinPattern) -> Contact {

@@ -1,0 +1,45 @@
+//! Where the tendon turns: forces of pins and silicone along the wrap, for figures and for checks.
+
+use serde::Serialize;
+
+use super::fit::PUBLISHED_FIT;
+use super::{PhysicsError, PhysicsSwitch};
+use crate::{Contact, Direction};
+
+/// The tendon along the wrap at one load, sliding in one direction.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContactProfile {
+    /// Angles in radians, ascending; zero in the middle.
+    pub angle_rad: Vec<f64>,
+    /// Gap between the tendon's underside and the undeformed silicone, mm.
+    pub gap_mm: Vec<f64>,
+    /// Local tension, N.
+    pub tension_n: Vec<f64>,
+    /// Force of each pin, N.
+    pub pin_n: Vec<f64>,
+    /// Turn at each pin, rad.
+    pub pin_turn_rad: Vec<f64>,
+    /// Turn on the silicone, rad.
+    pub silicone_turn_rad: f64,
+}
+
+/// The profile of `contact` under `load_n`, with the constants fitted to the published maxima.
+///
+/// # Errors
+/// [`PhysicsError`] if the equilibrium is not found.
+pub fn contact_profile(
+    contact: &Contact,
+    load_n: f64,
+    direction: Direction,
+) -> Result<ContactProfile, PhysicsError> {
+    let switch = PhysicsSwitch::new(contact, PUBLISHED_FIT.constants());
+    let sliding = switch.sliding(load_n, direction, None)?;
+    Ok(ContactProfile {
+        angle_rad: switch.angles_rad().to_vec(),
+        gap_mm: sliding.shape.gap_mm,
+        tension_n: sliding.tension_n,
+        pin_n: sliding.shape.pin_n,
+        pin_turn_rad: sliding.pin_turn_rad,
+        silicone_turn_rad: sliding.silicone_turn_rad,
+    })
+}

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::law::LawChoice;
 use super::predict_rows::calibrated_curve;
 use super::source::Source;
 use super::{Failure, print};
-use crate::output::{SetError, curve_of, make_set_with, write_set};
+use crate::output::{SetError, make_set_with, write_set};
 
 /// Make the printable parts of a configuration, with their predicted friction curve.
 ///
@@ -26,8 +27,10 @@ pub(super) struct Arguments {
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
     /// A model.toml written by `calibrate`: the curve comes from it, without the effects of the rig.
-    #[arg(long, value_name = "TOML")]
+    #[arg(long, value_name = "TOML", conflicts_with = "law")]
     model: Option<PathBuf>,
+    #[command(flatten)]
+    law: LawChoice,
     /// Print the manifest as JSON.
     #[arg(long)]
     json: bool,
@@ -37,7 +40,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let design = arguments.source.design()?;
     let curve = match &arguments.model {
         Some(model) => calibrated_curve(&design, model)?,
-        None => curve_of(&design, design.contact()),
+        None => arguments.law.curve(&design)?,
     };
     let set = make_set_with(&design, &curve).map_err(|e| match e {
         SetError::Configuration(e) => Failure::bad_input(e),

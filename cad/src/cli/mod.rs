@@ -12,6 +12,7 @@ mod completions;
 mod failure;
 mod generate;
 mod init;
+mod law;
 mod layouts;
 mod power;
 mod predict;

@@ -1,10 +1,13 @@
 //! `pinswitch predict CONFIG`.
 
 use clap::Args;
+use pinswitch_model::FrictionCurve;
+use serde::Serialize;
 
+use super::law::{LawChoice, side_by_side};
 use super::predict_rows::{Rows, SourceUnlessRows};
 use super::{Failure, print, print_json};
-use crate::output::{curve_of, friction_csv};
+use crate::output::{curves_beside, friction_csv};
 
 /// Predict the friction curve of a configuration, without making parts.
 ///
@@ -12,15 +15,26 @@ use crate::output::{curve_of, friction_csv};
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch predict three-double
-  pinswitch predict three-double --set layout.pins=[4,8,12] --json")]
+  pinswitch predict three-double --set layout.pins=[4,8,12] --json
+  pinswitch predict three-double --law physics")]
 pub(super) struct Arguments {
     #[command(flatten)]
     source: SourceUnlessRows,
     #[command(flatten)]
     rows: Rows,
-    /// Print JSON instead of CSV.
+    #[command(flatten)]
+    law: LawChoice,
+    /// Print JSON instead of CSV; the other laws' curves stand beside it under other_laws.
     #[arg(long)]
     json: bool,
+}
+
+/// The curve, and those of other laws for comparison.
+#[derive(Serialize)]
+struct Output {
+    #[serde(flatten)]
+    curve: FrictionCurve,
+    other_laws: Vec<FrictionCurve>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -33,9 +47,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         )
     })?;
     let design = source.design()?;
-    let curve = curve_of(&design, design.contact());
+    let curve = arguments.law.curve(&design)?;
+    let others = curves_beside(&design, curve.law);
+    log::info!("{}", side_by_side(&curve, &others));
     for reason in &curve.reasons {
         log::info!("{reason}");
     }
-    if arguments.json { print_json(&curve) } else { print(friction_csv(&curve).as_bytes()) }
+    if arguments.json {
+        print_json(&Output { curve, other_laws: others })
+    } else {
+        print(friction_csv(&curve).as_bytes())
+    }
 }

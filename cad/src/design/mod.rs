@@ -3,6 +3,7 @@
 mod bounds;
 mod warnings;
 
+use pinswitch_model::physics::{Bed, modulus_of_shore_a_mpa};
 use pinswitch_model::{Contact, PinPattern, Substrate};
 
 use crate::config::{ConfigError, Configuration, SlotKind, Slots, SubstrateKind};
@@ -172,7 +173,10 @@ fn contact(c: &Configuration) -> Result<Contact, ConfigError> {
     let pins = PinPattern::new(pin_angles_rad(c));
     Contact::new(substrate, pins, c.layout.wrap_angle_deg.to_radians())
         .map(|contact| {
-            contact.with_departures(departures(c)).with_six_single_threshold(c.friction.six_single_threshold)
+            contact
+                .with_departures(departures(c))
+                .with_six_single_threshold(c.friction.six_single_threshold)
+                .with_bed(bed(c))
         })
         .map_err(|e| ConfigError {
             field: "layout.pins".to_owned(),
@@ -181,6 +185,20 @@ fn contact(c: &Configuration) -> Result<Contact, ConfigError> {
             remedy: e.to_string(),
             place: None,
         })
+}
+
+/// What carries the tendon, for the physics.
+fn bed(c: &Configuration) -> Bed {
+    Bed {
+        contact_radius_mm: contact_radius_mm(c),
+        tendon_radius_mm: tendon_diameter_mm(c) / 2.0,
+        pin_diameter_mm: c.pins.diameter_mm,
+        groove_radius_mm: c.segment.groove_radius_mm,
+        layer_mm: c.silicone.thickness_mm,
+        layer_width_mm: c.shell.width_mm - 2.0 * c.silicone.side_clearance_mm,
+        modulus_mpa: modulus_of_shore_a_mpa(c.silicone.hardness_shore_a),
+        ..Bed::published()
+    }
 }
 
 /// Ways in which a part departs from the one that was measured, in what the friction model depends on. The radius is
@@ -282,6 +300,7 @@ mod tests {
         assert_eq!(design.contact_radius_mm(), 22.0);
         assert_eq!(design.pin_length_mm(), 18.0);
         assert!((design.tendon_diameter_mm() - 1.7).abs() < 1e-12);
+        assert_eq!(*design.contact().bed(), Bed::published());
     }
 
     #[test]

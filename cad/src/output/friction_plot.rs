@@ -12,6 +12,12 @@ const FINE: u8 = 8;
 const CURVE: RGBColor = RGBColor(0, 90, 156);
 const PINS: RGBColor = RGBColor(90, 90, 90);
 const SILICONE: RGBColor = RGBColor(178, 74, 0);
+/// Lines of other laws, in the order of [`Law`].
+const OTHERS: [(Law, RGBColor); 3] = [
+    (Law::Paper, RGBColor(0, 120, 90)),
+    (Law::Layout, RGBColor(140, 60, 150)),
+    (Law::Physics, RGBColor(190, 20, 60)),
+];
 /// Points of a limit line.
 const LIMIT_POINTS: u32 = 60;
 
@@ -20,13 +26,18 @@ const LIMIT_POINTS: u32 = 60;
 #[error("the friction plot cannot be drawn: {0}")]
 pub struct PlotError(String);
 
-/// Draws `curve` for `contact` as a self-contained SVG titled `name`.
+/// Draws `curve` for `contact` with its band as a self-contained SVG titled `name`, the `others` beside it as thin lines.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing library refuses a coordinate.
-pub fn friction_svg(name: &str, contact: &Contact, curve: &FrictionCurve) -> Result<String, PlotError> {
+pub fn friction_svg(
+    name: &str,
+    contact: &Contact,
+    curve: &FrictionCurve,
+    others: &[FrictionCurve],
+) -> Result<String, PlotError> {
     let mut svg = String::new();
-    draw(&mut svg, name, contact, curve).map_err(|e| PlotError(e.to_string()))?;
+    draw(&mut svg, name, contact, curve, others).map_err(|e| PlotError(e.to_string()))?;
     let attributes = |(width, height): (u32, u32)| format!(r#"width="{width}" height="{height}""#);
     Ok(svg.replacen(&attributes(drawn_size()), &attributes(SIZE), 1))
 }
@@ -36,6 +47,7 @@ fn draw(
     name: &str,
     contact: &Contact,
     curve: &FrictionCurve,
+    others: &[FrictionCurve],
 ) -> Result<(), Box<dyn std::error::Error>> {
     let root = SVGBackend::with_string(svg, drawn_size()).into_drawing_area();
     root.fill(&WHITE)?;
@@ -93,6 +105,17 @@ fn draw(
                 colour.stroke_width(fine(1)),
             ))?
             .label(label)
+            .legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(1)))
+            });
+    }
+
+    for other in others {
+        let colour = OTHERS.iter().find(|(law, _)| *law == other.law).map_or(BLACK, |(_, colour)| *colour);
+        let line = other.load_n.iter().copied().zip(other.friction_n.iter().copied());
+        chart
+            .draw_series(LineSeries::new(line, colour.stroke_width(fine(1))))?
+            .label(format!("{}, for comparison", law_words(other.law)))
             .legend(move |(x, y)| {
                 PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(1)))
             });
@@ -160,6 +183,7 @@ fn law_words(law: Law) -> &'static str {
     match law {
         Law::Paper => "the paper's model",
         Law::Layout => "layout law",
+        Law::Physics => "physics",
         Law::Calibrated => "calibrated model",
     }
 }

@@ -90,6 +90,25 @@ pub struct FrictionEntry {
     pub band_n: [f64; 2],
     /// The whole curve.
     pub curve_file: &'static str,
+    /// The other laws that apply, at the same load: beside the curve, never mixed into it.
+    pub other_laws: Vec<LawEntry>,
+}
+
+/// What another law says at the heaviest load.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LawEntry {
+    /// The law.
+    pub law: Law,
+    /// How far to trust it.
+    pub trust: Trust,
+    /// Why no further.
+    pub reasons: Vec<String>,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// Friction, N.
+    pub friction_n: f64,
+    /// Its band, N.
+    pub band_n: [f64; 2],
 }
 
 /// A file of the set.
@@ -136,12 +155,12 @@ pub fn manifest(
     parts: &[(Part, Facts)],
     bill: Bill,
     curve: &FrictionCurve,
+    others: &[FrictionCurve],
     files: &[OutputFile],
 ) -> Manifest {
     let c = design.configuration();
     let parts: Vec<_> = parts.iter().map(|(part, facts)| part_entry(part, facts, c)).collect();
     let error = |p: &PartEntry| (p.mesh.volume_mm3 / p.volume_mm3 - 1.0).abs();
-    let last = |column: &[f64]| column.last().copied().unwrap_or_default();
     Manifest {
         schema: "pinswitch.set/1",
         name: c.switch.name.clone(),
@@ -158,22 +177,45 @@ pub fn manifest(
             law: curve.law,
             trust: curve.trust,
             reasons: curve.reasons.clone(),
-            source: match curve.law {
-                Law::Paper => {
-                    "capstan and eq. 4 of Dermitzakis & Carbajal, arXiv:1401.5232, with its constants"
-                }
-                Law::Layout => {
-                    "layout law fitted to the three published layouts: F_half = 13.1 N sqrt(n/(a p)), s = 4.64"
-                }
-                Law::Calibrated => "a model calibrated on measured data, see the reasons for what it holds",
-            },
+            source: source(curve.law),
             load_n: last(&curve.load_n),
             friction_n: last(&curve.friction_n),
             band_n: [last(&curve.band_low_n), last(&curve.band_high_n)],
+            other_laws: others.iter().map(law_entry).collect(),
             curve_file: "friction.csv",
         },
         warnings: design.warnings(),
         files: files.iter().map(file_entry).collect(),
+    }
+}
+
+fn last(column: &[f64]) -> f64 {
+    column.last().copied().unwrap_or_default()
+}
+
+fn law_entry(curve: &FrictionCurve) -> LawEntry {
+    LawEntry {
+        law: curve.law,
+        trust: curve.trust,
+        reasons: curve.reasons.clone(),
+        source: source(curve.law),
+        friction_n: last(&curve.friction_n),
+        band_n: [last(&curve.band_low_n), last(&curve.band_high_n)],
+    }
+}
+
+/// Where a law comes from.
+fn source(law: Law) -> &'static str {
+    match law {
+        Law::Paper => "capstan and eq. 4 of Dermitzakis & Carbajal, arXiv:1401.5232, with its constants",
+        Law::Layout => {
+            "layout law fitted to the three published layouts: F_half = 13.1 N sqrt(n/(a p)), s = 4.64"
+        }
+        Law::Physics => {
+            "string over sinking pins on a silicone foundation, ploughing of the coating; three constants fitted to the \
+             seven published maxima"
+        }
+        Law::Calibrated => "a model calibrated on measured data, see the reasons for what it holds",
     }
 }
 

@@ -11,5 +11,5 @@ pub use bill::{Bill, bill_of_materials};
 pub use friction_csv::friction_csv;
 pub use friction_plot::{PlotError, friction_svg};
 pub use manifest::{Manifest, manifest};
-pub use set::{OutputFile, Set, SetError, curve_of, loads_of, make_set, make_set_with};
+pub use set::{OutputFile, Set, SetError, curve_of, curves_beside, loads_of, make_set, make_set_with};
 pub use write::{WriteError, write_file, write_set};

@@ -1,6 +1,6 @@
 //! Makes a whole set in memory: nothing is written before everything is known to be right.
 
-use pinswitch_model::{Contact, FrictionCurve, predict};
+use pinswitch_model::{Contact, FrictionCurve, Law, other_laws, predict};
 
 use super::{Manifest, PlotError, bill_of_materials, friction_csv, friction_svg, manifest};
 use crate::config::ConfigError;
@@ -64,11 +64,23 @@ pub fn curve_of(design: &Design, contact: &Contact) -> FrictionCurve {
     predict(contact, &loads_of(design))
 }
 
+/// Loads at which the other laws are compared with a curve: enough for a line in a plot.
+const COMPARISON_POINTS: usize = 26;
+
+/// The other laws' curves beside one of `law`, over the same range of loads.
+pub fn curves_beside(design: &Design, law: Law) -> Vec<FrictionCurve> {
+    other_laws(law, design.contact(), &spaced_loads(design, COMPARISON_POINTS))
+}
+
 /// The loads of the curve of `design`, in newtons.
 pub fn loads_of(design: &Design) -> Vec<f64> {
+    spaced_loads(design, design.configuration().friction.points)
+}
+
+fn spaced_loads(design: &Design, points: usize) -> Vec<f64> {
     let f = &design.configuration().friction;
-    let step = (f.load_max_n - f.load_min_n) / (f.points - 1) as f64;
-    (0..f.points).map(|i| f.load_min_n + step * i as f64).collect()
+    let step = (f.load_max_n - f.load_min_n) / (points - 1) as f64;
+    (0..points).map(|i| f.load_min_n + step * i as f64).collect()
 }
 
 /// Makes every file of `design`.
@@ -93,11 +105,12 @@ pub fn make_set_with(design: &Design, curve: &FrictionCurve) -> Result<Set, SetE
     }
     let contact = design.contact();
     files.push(OutputFile { name: "friction.csv".to_owned(), bytes: friction_csv(curve).into_bytes() });
-    let svg = friction_svg(&design.configuration().switch.name, contact, curve)?;
+    let others = curves_beside(design, curve.law);
+    let svg = friction_svg(&design.configuration().switch.name, contact, curve, &others)?;
     files.push(OutputFile { name: "friction.svg".to_owned(), bytes: svg.into_bytes() });
     let (layer_mm3, overfill_mm3) = parts::cavity_mm3(design);
     let bill = bill_of_materials(design, layer_mm3, overfill_mm3);
-    let manifest = manifest(design, &parts, bill, curve, &files);
+    let manifest = manifest(design, &parts, bill, curve, &others, &files);
     let mut bytes = serde_json::to_vec_pretty(&manifest).map_err(|e| SetError::Encoding(e.to_string()))?;
     bytes.push(b'\n');
     files.push(OutputFile { name: "manifest.json".to_owned(), bytes });

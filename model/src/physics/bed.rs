@@ -73,9 +73,10 @@ impl Bed {
         self.contact_radius_mm + self.tendon_radius_mm
     }
 
-    /// `h0`: height of a resting pin's top over the silicone.
+    /// `h0`: height of a resting pin's top over the silicone. A pin that lies below its surface counts as a hair above
+    /// it: it carries next to nothing.
     pub fn protrusion_mm(&self) -> f64 {
-        self.pin_diameter_mm - self.groove_radius_mm
+        (self.pin_diameter_mm - self.groove_radius_mm).max(1e-3)
     }
 
     /// Force that sinks a pin flush, against the published bed: a strip of the pin's width on a layer, `E d w h0/t`.

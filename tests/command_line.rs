@@ -121,8 +121,8 @@ fn other_layouts_say_how_far_to_trust_them() {
         (curve["law"].as_str().unwrap().to_owned(), curve["trust"].as_str().unwrap().to_owned())
     };
     assert_eq!(trust("layout.pins=[5,7,9,11]"), ("layout".into(), "interpolated".into()));
-    assert_eq!(trust("layout.pins=[5,6]"), ("layout".into(), "extrapolated".into()));
-    assert_eq!(trust("silicone.thickness_mm=3"), ("paper".into(), "extrapolated".into()));
+    assert_eq!(trust("layout.pins=[5,6]"), ("physics".into(), "extrapolated".into()));
+    assert_eq!(trust("silicone.thickness_mm=3"), ("physics".into(), "extrapolated".into()));
 }
 
 #[test]

@@ -9,7 +9,9 @@ use clap_verbosity_flag::{InfoLevel, Verbosity};
 mod calibrate;
 mod check;
 mod completions;
+mod design;
 mod failure;
+mod finger;
 mod generate;
 mod init;
 mod law;
@@ -17,6 +19,7 @@ mod layouts;
 mod power;
 mod predict;
 mod predict_rows;
+mod range;
 mod render;
 mod segment;
 mod simulate;
@@ -38,6 +41,8 @@ struct Cli {
 enum Command {
     Generate(generate::Arguments),
     Predict(predict::Arguments),
+    Design(design::Arguments),
+    Finger(finger::Arguments),
     Check(check::Arguments),
     Render(render::Arguments),
     Layouts(layouts::Arguments),
@@ -60,6 +65,8 @@ pub fn run() -> ExitCode {
     let outcome = match cli.command {
         Command::Generate(arguments) => generate::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
+        Command::Design(arguments) => design::run(&arguments),
+        Command::Finger(arguments) => finger::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Layouts(arguments) => layouts::run(&arguments),

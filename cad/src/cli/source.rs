@@ -26,6 +26,11 @@ pub(super) struct Source {
 }
 
 impl Source {
+    /// The configuration of this name alone, with nothing laid over it.
+    pub(super) fn named(config: &str) -> Self {
+        Self { config: config.to_owned(), preset: None, assignments: Vec::new(), tolerance: None }
+    }
+
     /// Reads, overlays and validates.
     ///
     /// # Errors

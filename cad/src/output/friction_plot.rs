@@ -5,10 +5,10 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use pinswitch_model::{Contact, FrictionCurve, Law, Trust, capstan_friction_n, published, published_points};
 
+use super::plot_scale::{drawn_size, fine, shown_at_size};
+
 /// Width and height of the figure in pixels.
 const SIZE: (u32, u32) = (760, 480);
-/// The drawing library rounds to whole units: it draws this many to a pixel, so that lines are smooth.
-const FINE: u8 = 8;
 const CURVE: RGBColor = RGBColor(0, 90, 156);
 const PINS: RGBColor = RGBColor(90, 90, 90);
 const SILICONE: RGBColor = RGBColor(178, 74, 0);
@@ -26,6 +26,12 @@ const LIMIT_POINTS: u32 = 60;
 #[error("the friction plot cannot be drawn: {0}")]
 pub struct PlotError(String);
 
+impl PlotError {
+    pub(super) fn new(cause: &impl ToString) -> Self {
+        Self(cause.to_string())
+    }
+}
+
 /// Draws `curve` for `contact` with its band as a self-contained SVG titled `name`, the `others` beside it as thin lines.
 ///
 /// # Errors
@@ -37,9 +43,8 @@ pub fn friction_svg(
     others: &[FrictionCurve],
 ) -> Result<String, PlotError> {
     let mut svg = String::new();
-    draw(&mut svg, name, contact, curve, others).map_err(|e| PlotError(e.to_string()))?;
-    let attributes = |(width, height): (u32, u32)| format!(r#"width="{width}" height="{height}""#);
-    Ok(svg.replacen(&attributes(drawn_size()), &attributes(SIZE), 1))
+    draw(&mut svg, name, contact, curve, others).map_err(|e| PlotError::new(&e))?;
+    Ok(shown_at_size(svg, SIZE))
 }
 
 fn draw(
@@ -49,7 +54,7 @@ fn draw(
     curve: &FrictionCurve,
     others: &[FrictionCurve],
 ) -> Result<(), Box<dyn std::error::Error>> {
-    let root = SVGBackend::with_string(svg, drawn_size()).into_drawing_area();
+    let root = SVGBackend::with_string(svg, drawn_size(SIZE)).into_drawing_area();
     root.fill(&WHITE)?;
     let highest_load = curve.load_n.last().copied().unwrap_or(1.0) * 1.03;
     let limit = |mu: f64, load: f64| capstan_friction_n(load, mu * contact.wrap_rad());
@@ -160,15 +165,6 @@ fn draw(
         .draw()?;
     root.present()?;
     Ok(())
-}
-
-/// Pixels in the drawing's finer units.
-fn fine<T: From<u8> + std::ops::Mul<Output = T>>(pixels: u8) -> T {
-    T::from(pixels) * T::from(FINE)
-}
-
-fn drawn_size() -> (u32, u32) {
-    (SIZE.0 * u32::from(FINE), SIZE.1 * u32::from(FINE))
 }
 
 fn trust_word(trust: Trust) -> &'static str {

@@ -4,6 +4,8 @@ mod bill;
 mod friction_csv;
 mod friction_plot;
 mod manifest;
+mod pareto_plot;
+mod plot_scale;
 mod set;
 mod write;
 
@@ -11,5 +13,6 @@ pub use bill::{Bill, bill_of_materials};
 pub use friction_csv::friction_csv;
 pub use friction_plot::{PlotError, friction_svg};
 pub use manifest::{Manifest, manifest};
+pub use pareto_plot::pareto_svg;
 pub use set::{OutputFile, Set, SetError, curve_of, curves_beside, loads_of, make_set, make_set_with};
 pub use write::{WriteError, write_file, write_set};

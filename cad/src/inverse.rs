@@ -4,15 +4,16 @@
 use argmin::core::{CostFunction, Executor};
 use argmin::solver::brent::BrentOpt;
 use pinswitch_model::layout_search::{Candidate, Search, Wanted};
-use pinswitch_model::{FrictionCurve, Law, Transition, Trust};
+use pinswitch_model::{FrictionCurve, Law, PinPattern, Transition, Trust};
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::config::{Configuration, SubstrateKind};
 use crate::design::Design;
 use crate::output::curve_of;
 
-/// Candidates of the sweep that are judged by the law that predicts them.
-const JUDGED: usize = 400;
+/// Candidates of the sweep that are judged by the law that predicts them, besides all even and centred ones.
+const JUDGED: usize = 150;
 /// Steps of the search over the pitch.
 const PITCH_STEPS: u64 = 24;
 
@@ -37,6 +38,9 @@ pub struct Proposal {
     pub ratio: f64,
     /// Distance from what was wanted, see [`Wanted::miss`].
     pub miss: f64,
+    /// What to expect of it: the miss and the half widths of the bands, as logarithms, added as squares. Ranks a layout
+    /// that is known well before one that is only guessed to be closer.
+    pub expected_miss: f64,
     /// Whether what was wanted lies within the bands.
     pub within_band: bool,
     /// The configuration.
@@ -77,9 +81,14 @@ pub fn find(design: &Design, search: &Search, wanted: Wanted, best: usize, tune:
     let miss = |c: &Candidate| wanted.miss(c.threshold_n, c.friction_n);
     ranked.sort_by(|a, b| miss(a).total_cmp(&miss(b)));
     let configuration = design.configuration();
-    let mut proposals: Vec<Proposal> = ranked
-        .iter()
-        .take(JUDGED)
+    let judged: Vec<&Candidate> = ranked
+        .into_iter()
+        .enumerate()
+        .filter(|(rank, c)| *rank < JUDGED || is_even_and_centred(search, c))
+        .map(|(_, c)| c)
+        .collect();
+    let mut proposals: Vec<Proposal> = judged
+        .into_par_iter()
         .filter_map(|c| {
             let mut with_pins = configuration.clone();
             with_pins.layout.pins.clone_from(&c.pins);
@@ -87,14 +96,29 @@ pub fn find(design: &Design, search: &Search, wanted: Wanted, best: usize, tune:
         })
         .filter(|p| p.miss.is_finite())
         .collect();
-    proposals.sort_by(|a, b| a.miss.total_cmp(&b.miss));
+    rank(&mut proposals);
     proposals.truncate(best);
     if tune {
-        proposals = proposals.into_iter().map(|p| tuned(p, wanted)).collect();
-        proposals.sort_by(|a, b| a.miss.total_cmp(&b.miss));
+        proposals = proposals.into_par_iter().map(|p| tuned(p, wanted)).collect();
+        rank(&mut proposals);
     }
     let untouched = configuration.segment.grooves - search.grooves.len();
     Found { patterns: (candidates.len() as u64) << untouched.min(32), candidates, proposals }
+}
+
+/// Best first: those whose bands hold what was wanted, by what to expect of them; of equals, the one with fewer pins.
+fn rank(proposals: &mut [Proposal]) {
+    proposals.sort_by(|a, b| {
+        (b.within_band.cmp(&a.within_band))
+            .then_with(|| a.expected_miss.total_cmp(&b.expected_miss))
+            .then_with(|| a.pins.len().cmp(&b.pins.len()))
+    });
+}
+
+fn is_even_and_centred(search: &Search, candidate: &Candidate) -> bool {
+    let angles = search.grooves.iter().filter(|(number, _)| candidate.pins.contains(number)).map(|g| g.1);
+    let pattern = PinPattern::new(angles.collect());
+    pattern.is_even() && pattern.is_centred()
 }
 
 /// The proposal of a configuration; `None` if it cannot be built.
@@ -110,7 +134,13 @@ fn propose(mut configuration: Configuration, wanted: Wanted, ratio: f64) -> Opti
         wanted.friction_n.is_none_or(|w| (friction_band_n[0]..=friction_band_n[1]).contains(&w));
     let threshold_met =
         wanted.threshold_n.is_none_or(|w| transition.is_some_and(|t| (t.low_n..=t.high_n).contains(&w)));
+    let miss = wanted.miss(transition.map(|t| t.threshold_n), friction_n);
+    let half_width = |low: f64, high: f64| (high / low).ln() / 2.0;
+    let friction_width =
+        wanted.friction_n.map_or(0.0, |_| half_width(friction_band_n[0], friction_band_n[1]));
+    let threshold_width = wanted.threshold_n.and(transition).map_or(0.0, |t| half_width(t.low_n, t.high_n));
     Some(Proposal {
+        expected_miss: (miss.powi(2) + friction_width.powi(2) + threshold_width.powi(2)).sqrt(),
         pins: design.configuration().layout.pins.clone(),
         span_deg: design.configuration().segment.span_deg,
         law: curve.law,
@@ -119,7 +149,7 @@ fn propose(mut configuration: Configuration, wanted: Wanted, ratio: f64) -> Opti
         friction_n,
         friction_band_n,
         ratio,
-        miss: wanted.miss(transition.map(|t| t.threshold_n), friction_n),
+        miss,
         within_band: friction_met && threshold_met,
         configuration: design.configuration().clone(),
     })
@@ -145,7 +175,7 @@ impl CostFunction for Pitch<'_> {
 
     fn cost(&self, span_deg: &f64) -> Result<f64, argmin::core::Error> {
         // What cannot be built or does not switch is as bad as can be, but finite, as the optimiser needs it.
-        Ok(self.at(*span_deg).map_or(1e3, |p| p.miss.min(1e3)))
+        Ok(self.at(*span_deg).map_or(1e3, |p| p.expected_miss.min(1e3)))
     }
 }
 
@@ -161,7 +191,7 @@ fn tuned(proposal: Proposal, wanted: Wanted) -> Proposal {
     // Hundredths of a degree are finer than any printer.
     let rounded = found.map(|span| (span * 100.0).round() / 100.0);
     match rounded.and_then(|span| Pitch { proposal: &proposal, wanted }.at(span)) {
-        Some(better) if better.miss < proposal.miss => better,
+        Some(better) if better.expected_miss < proposal.expected_miss => better,
         _ => proposal,
     }
 }

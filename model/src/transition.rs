@@ -24,9 +24,9 @@ fn crossing(load_n: &[f64], column: &[f64], level: f64) -> Option<f64> {
 }
 
 impl Transition {
-    /// The transition of `curve`; `None` if silicone never makes half of the friction within its loads.
+    /// The transition of `curve`; `None` if silicone makes half of the friction at none of its loads, or at all.
     pub fn of(curve: &FrictionCurve) -> Option<Self> {
-        let threshold_n = crossing(&curve.load_n, &curve.silicone_share, 0.5)?;
+        let threshold_n = Self::threshold_n(&curve.load_n, &curve.silicone_share)?;
         let reach = |column: &[f64]| {
             let friction = at(&curve.load_n, &curve.friction_n, threshold_n);
             crossing(&curve.load_n, column, friction)
@@ -40,7 +40,8 @@ impl Transition {
 
     /// The threshold of states at ascending loads, for a sweep that needs no band.
     pub(crate) fn threshold_n(load_n: &[f64], silicone_share: &[f64]) -> Option<f64> {
-        crossing(load_n, silicone_share, 0.5)
+        let starts_on_pins = *silicone_share.first()? < 0.5;
+        starts_on_pins.then(|| crossing(load_n, silicone_share, 0.5)).flatten()
     }
 }
 

@@ -88,7 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     log::info!(
-        "{} patterns, {} of which differ in what the tendon touches; {} can be proposed",
+        "{} patterns touch the tendon, {} of which differ in where; {} can be proposed",
         found.patterns,
         found.candidates.len(),
         found.proposals.len()

@@ -16,6 +16,7 @@ mod generate;
 mod init;
 mod law;
 mod layouts;
+mod physics;
 mod power;
 mod predict;
 mod predict_rows;
@@ -43,6 +44,7 @@ enum Command {
     Predict(predict::Arguments),
     Design(design::Arguments),
     Finger(finger::Arguments),
+    Physics(physics::Arguments),
     Check(check::Arguments),
     Render(render::Arguments),
     Layouts(layouts::Arguments),
@@ -67,6 +69,7 @@ pub fn run() -> ExitCode {
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Design(arguments) => design::run(&arguments),
         Command::Finger(arguments) => finger::run(&arguments),
+        Command::Physics(arguments) => physics::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Layouts(arguments) => layouts::run(&arguments),

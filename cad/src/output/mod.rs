@@ -1,6 +1,7 @@
 //! What a run writes: parts, friction curve, plot and manifest, made in memory and written whole.
 
 mod bill;
+mod contact_plot;
 mod friction_csv;
 mod friction_plot;
 mod manifest;
@@ -10,6 +11,7 @@ mod set;
 mod write;
 
 pub use bill::{Bill, bill_of_materials};
+pub use contact_plot::contact_svg;
 pub use friction_csv::friction_csv;
 pub use friction_plot::{PlotError, friction_svg};
 pub use manifest::{Manifest, manifest};

@@ -12,8 +12,8 @@ use super::{Bed, Constants, OutsidePins, PhysicsError};
 use crate::published;
 use crate::{Contact, Direction, FrictionCurve, Law, Substrate, SwitchState, Trust, capstan_tension_n};
 
-/// Elements over the wrap. Doubling them moves the friction of the published layouts by less than 0.1 % (a test).
-const ELEMENTS: usize = 120;
+/// Elements over the wrap: sixteen times as many move the friction of the published layouts by less than 0.1 % (a test).
+const ELEMENTS: usize = 60;
 /// Share of cases that a band should hold.
 const CONFIDENCE: f64 = 0.95;
 /// Step of a logarithm for the sensitivities.

@@ -15,6 +15,8 @@ pub struct ContactProfile {
     pub gap_mm: Vec<f64>,
     /// Local tension, N.
     pub tension_n: Vec<f64>,
+    /// Angle of each pin, rad.
+    pub pin_angle_rad: Vec<f64>,
     /// Force of each pin, N.
     pub pin_n: Vec<f64>,
     /// Turn at each pin, rad.
@@ -38,6 +40,7 @@ pub fn contact_profile(
         angle_rad: switch.angles_rad().to_vec(),
         gap_mm: sliding.shape.gap_mm,
         tension_n: sliding.tension_n,
+        pin_angle_rad: contact.pins().angles_rad().to_vec(),
         pin_n: sliding.shape.pin_n,
         pin_turn_rad: sliding.pin_turn_rad,
         silicone_turn_rad: sliding.silicone_turn_rad,

@@ -75,8 +75,8 @@ fn refinement_converges() {
                 .friction_n(HEAVIEST_N)
                 .unwrap()
         };
-        let (coarse, usual, fine, finest) = (friction(60), friction(120), friction(240), friction(960));
-        assert!((usual / finest - 1.0).abs() < 2e-3, "{coarse} {usual} {fine} {finest}");
+        let (coarse, usual, fine, finest) = (friction(30), friction(60), friction(240), friction(960));
+        assert!((usual / finest - 1.0).abs() < 1e-3, "{coarse} {usual} {fine} {finest}");
         assert!((fine - finest).abs() < (coarse - finest).abs(), "{coarse} {usual} {fine} {finest}");
     }
 }

@@ -53,8 +53,11 @@ fn draw(
         .axis_desc_style(("sans-serif", fine::<i32>(15)))
         .draw()?;
     chart
-        .draw_series(std::iter::once(Rectangle::new([(-half, low), (half, 0.0)], SILICONE.filled())))?
-        .label("silicone at rest")
+        .draw_series(profiles.first().map(|(_, p)| {
+            let (from, to) = (p.silicone_rad.0.to_degrees(), p.silicone_rad.1.to_degrees());
+            Rectangle::new([(from, low), (to, 0.0)], SILICONE.filled())
+        }))?
+        .label("silicone that the tendon can touch")
         .legend(|(x, y)| {
             Rectangle::new(
                 [(x, y - fine::<i32>(5)), (x + fine::<i32>(22), y + fine::<i32>(5))],
@@ -88,7 +91,7 @@ fn draw(
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperMiddle)
+        .position(SeriesLabelPosition::LowerMiddle)
         .margin(fine::<i32>(8))
         .legend_area_size(fine::<u32>(26))
         .background_style(WHITE.mix(0.9))

@@ -83,6 +83,13 @@ impl PhysicsSwitch {
         slide(supports, &self.constants, self.contact.wrap_rad(), load_n, direction, start)
     }
 
+    /// Angles between which the silicone can touch.
+    pub(super) fn silicone_rad(&self) -> (f64, f64) {
+        let touched = || self.grid.angle_rad.iter().zip(&self.grid.silicone_mm).filter(|(_, w)| **w > 0.0);
+        let angle = |node: Option<(&f64, &f64)>| node.map_or(0.0, |(angle, _)| *angle);
+        (angle(touched().next()), angle(touched().next_back()))
+    }
+
     pub(super) fn angles_rad(&self) -> &[f64] {
         &self.grid.angle_rad
     }

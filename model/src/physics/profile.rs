@@ -13,6 +13,8 @@ pub struct ContactProfile {
     pub angle_rad: Vec<f64>,
     /// Gap between the tendon's underside and the undeformed silicone, mm.
     pub gap_mm: Vec<f64>,
+    /// Angles between which the silicone can touch, rad.
+    pub silicone_rad: (f64, f64),
     /// Local tension, N.
     pub tension_n: Vec<f64>,
     /// Angle of each pin, rad.
@@ -38,6 +40,7 @@ pub fn contact_profile(
     let sliding = switch.sliding(load_n, direction, None)?;
     Ok(ContactProfile {
         angle_rad: switch.angles_rad().to_vec(),
+        silicone_rad: switch.silicone_rad(),
         gap_mm: sliding.shape.gap_mm,
         tension_n: sliding.tension_n,
         pin_angle_rad: contact.pins().angles_rad().to_vec(),

@@ -4,6 +4,7 @@ pub mod calibration_page;
 pub mod cli;
 pub mod config;
 pub mod design;
+pub mod formats;
 pub mod inverse;
 pub mod mesh;
 pub mod output;

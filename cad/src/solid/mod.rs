@@ -212,6 +212,21 @@ impl Solid {
         }
     }
 
+    /// Contour and height in mm of every ring, in the order of their numbers.
+    pub fn rings(&self) -> impl Iterator<Item = (&Contour, f64)> {
+        self.rings.iter().map(|ring| (&ring.contour, ring.z_mm))
+    }
+
+    /// Numbers of the lower and upper ring of every wall.
+    pub fn walls(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.walls.iter().map(|wall| (wall.lower.0, wall.upper.0))
+    }
+
+    /// Which way every cap faces, and the numbers of its rings, the outline first.
+    pub fn caps(&self) -> impl Iterator<Item = (Facing, Vec<usize>)> + '_ {
+        self.caps.iter().map(|cap| (cap.facing, cap.rings.iter().map(|ring| ring.0).collect()))
+    }
+
     /// Every height at which a ring lies, ascending, without repeats.
     pub fn heights_mm(&self) -> Vec<f64> {
         let mut heights: Vec<f64> = self.rings.iter().map(|r| r.z_mm).collect();

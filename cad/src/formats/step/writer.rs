@@ -1,0 +1,101 @@
+//! Numbered entities of a STEP file (ISO 10303-21).
+
+use std::fmt::Write as _;
+
+use crate::mesh::{Point3, Vector3};
+
+/// The number of an entity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Id(usize);
+
+impl std::fmt::Display for Id {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "#{}", self.0)
+    }
+}
+
+/// Entities in the order in which they were added.
+#[derive(Debug, Default)]
+pub(super) struct Writer {
+    data: String,
+    last: usize,
+}
+
+impl Writer {
+    /// Adds an entity and gives its number.
+    pub(super) fn add(&mut self, entity: &str) -> Id {
+        self.last += 1;
+        let _ = writeln!(self.data, "#{}={entity};", self.last);
+        Id(self.last)
+    }
+
+    pub(super) fn point(&mut self, p: Point3) -> Id {
+        self.add(&format!("CARTESIAN_POINT('',({},{},{}))", real(p.x), real(p.y), real(p.z)))
+    }
+
+    pub(super) fn direction(&mut self, d: Vector3) -> Id {
+        self.add(&format!("DIRECTION('',({},{},{}))", real(d.x), real(d.y), real(d.z)))
+    }
+
+    /// A right-handed frame at `at`: its z axis, and the direction of its x axis.
+    pub(super) fn placement(&mut self, at: Point3, axis: Vector3, reference: Vector3) -> Id {
+        let (at, axis, reference) = (self.point(at), self.direction(axis), self.direction(reference));
+        self.add(&format!("AXIS2_PLACEMENT_3D('',{at},{axis},{reference})"))
+    }
+
+    /// The frame of the model.
+    pub(super) fn origin(&mut self) -> Id {
+        self.placement(Point3::origin(), Vector3::z(), Vector3::x())
+    }
+
+    /// The whole file, named `name`.
+    pub(super) fn file(&self, name: &str) -> String {
+        // The time stamp is the epoch: one of our own would make every run differ.
+        format!(
+            "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('pinswitch: exact solids of a friction switch'),'2;1');\n\
+             FILE_NAME('{}','1970-01-01T00:00:00',(''),(''),'pinswitch {}','pinswitch','');\n\
+             FILE_SCHEMA(('AUTOMOTIVE_DESIGN {{ 1 0 10303 214 1 1 1 1 }}'));\nENDSEC;\nDATA;\n{}ENDSEC;\nEND-ISO-10303-21;\n",
+            text(name),
+            env!("CARGO_PKG_VERSION"),
+            self.data
+        )
+    }
+}
+
+/// A list of entity numbers, as `(#1,#2)`.
+pub(super) fn list(ids: &[Id]) -> String {
+    let all: Vec<String> = ids.iter().map(Id::to_string).collect();
+    format!("({})", all.join(","))
+}
+
+/// A real number: every digit that a double has, with the point that the format demands.
+pub(super) fn real(value: f64) -> String {
+    // A negative zero is a zero.
+    let shortest = format!("{:?}", value + 0.0);
+    match shortest.split_once('e') {
+        Some((mantissa, exponent)) if mantissa.contains('.') => format!("{mantissa}E{exponent}"),
+        Some((mantissa, exponent)) => format!("{mantissa}.E{exponent}"),
+        None => shortest,
+    }
+}
+
+/// A string of the format: quotes doubled, anything beyond printable ASCII left out.
+pub(super) fn text(value: &str) -> String {
+    value.chars().filter(|c| c.is_ascii() && !c.is_ascii_control()).collect::<String>().replace('\'', "''")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_their_digits_and_their_point() {
+        let written: Vec<String> = [0.1, -0.0, 1e-7, 12.0, -2.5e-10, 1e22].map(real).to_vec();
+        assert_eq!(written, ["0.1", "0.0", "1.E-7", "12.0", "-2.5E-10", "1.E22"]);
+    }
+
+    #[test]
+    fn quotes_are_doubled() {
+        assert_eq!(text("a 'b' \u{e4}\n"), "a ''b'' ");
+    }
+}

@@ -36,7 +36,7 @@ mod transition;
 
 pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};
 pub use contact::{Contact, ContactError, Substrate};
-pub use curve::{FrictionCurve, Law, Trust, published_points};
+pub use curve::{FrictionCurve, Law, PublishedPoint, Trust, published_points};
 pub use law::{LawError, best_law, other_laws, predict, predict_by};
 pub use layout_law::LayoutLaw;
 pub use pattern::PinPattern;

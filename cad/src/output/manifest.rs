@@ -56,6 +56,8 @@ pub struct PartEntry {
     pub surface_mm2: f64,
     /// Mass when printed solid, g.
     pub mass_g: f64,
+    /// Widest ceiling to be bridged when it is printed, mm.
+    pub widest_bridge_mm: f64,
     /// The mesh as written.
     pub mesh: Facts,
     /// What a person should know.
@@ -219,6 +221,11 @@ fn source(law: Law) -> &'static str {
     }
 }
 
+/// Lists `files` in the manifest.
+pub(super) fn with_files(manifest: &mut Manifest, files: &[OutputFile]) {
+    manifest.files = files.iter().map(file_entry).collect();
+}
+
 fn part_entry(part: &Part, facts: &Facts, c: &Configuration) -> PartEntry {
     let volume_mm3 = part.solid.volume_mm3();
     PartEntry {
@@ -228,6 +235,7 @@ fn part_entry(part: &Part, facts: &Facts, c: &Configuration) -> PartEntry {
         volume_mm3,
         surface_mm2: part.solid.surface_mm2(),
         mass_g: volume_mm3 / 1000.0 * c.print.abs_density_g_cm3,
+        widest_bridge_mm: part.widest_bridge_mm(),
         mesh: facts.clone(),
         notes: part.notes.clone(),
     }

@@ -2,8 +2,10 @@
 
 mod bill;
 mod contact_plot;
+mod formats;
 mod friction_csv;
 mod friction_plot;
+mod guide;
 mod manifest;
 mod pareto_plot;
 mod plot_scale;
@@ -12,8 +14,10 @@ mod write;
 
 pub use bill::{Bill, bill_of_materials};
 pub use contact_plot::contact_svg;
+pub use formats::{Format, make_set_in};
 pub use friction_csv::friction_csv;
 pub use friction_plot::{PlotError, friction_svg};
+pub use guide::{Check, checks, printing_guide};
 pub use manifest::{Manifest, manifest};
 pub use pareto_plot::pareto_svg;
 pub use set::{OutputFile, Set, SetError, curve_of, curves_beside, loads_of, make_set, make_set_with};

@@ -16,7 +16,7 @@ use crate::config::{ConfigError, MouldKind, SubstrateKind};
 use crate::design::Design;
 use crate::mesh::{Mesh, Vector3};
 use crate::profile::{Contour, OffsetError, polar};
-use crate::solid::{CapError, Solid};
+use crate::solid::{CapError, Facing, Solid};
 use crate::validity::Expectation;
 
 pub use layer::silicone_layer;
@@ -84,6 +84,23 @@ impl Part {
             volume_mm3: Some((self.solid.volume_mm3(), bound)),
             ..Expectation::default()
         }
+    }
+
+    /// Widest ceiling to be bridged when it is printed, mm: over all faces that look down from above the bed, the shorter
+    /// side of their bounding box. 0 without any.
+    pub fn widest_bridge_mm(&self) -> f64 {
+        let rings: Vec<(&Contour, f64)> = self.solid.rings().collect();
+        let bed = self.solid.bounds().map_or(0.0, |(low, _)| low.z);
+        self.solid
+            .caps()
+            .filter(|(facing, _)| *facing == Facing::Down)
+            .filter_map(|(_, members)| members.first().map(|outline| rings[*outline]))
+            .filter(|(_, z_mm)| *z_mm > bed + 1e-9)
+            .map(|(contour, _)| {
+                let (low, high) = contour.bounds();
+                (high.x - low.x).min(high.y - low.y)
+            })
+            .fold(0.0, f64::max)
     }
 
     /// The mesh about the pulley's axis, standing on z = 0.

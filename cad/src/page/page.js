@@ -1,0 +1,342 @@
+'use strict';
+// The page of one set: what is shown comes from the JSON in #data; a live preview replaces it through `update`.
+
+const byId = (id) => document.getElementById(id);
+const errors = [];
+addEventListener('error', (event) => { errors.push(event.message); document.body.dataset.errors = errors.length; });
+document.body.dataset.errors = 0;
+
+const make = (tag, text, attributes = {}) => {
+  const element = document.createElement(tag);
+  if (text !== undefined) element.textContent = text;
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  return element;
+};
+const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+const dark = () => matchMedia('(prefers-color-scheme: dark)').matches;
+
+// A column's value at `x`, linear between its points.
+function at(xs, ys, x) {
+  let i = xs.findIndex((v) => v >= x);
+  if (i < 0) i = xs.length - 1;
+  if (i === 0) return ys[0];
+  return ys[i - 1] + (ys[i] - ys[i - 1]) * (x - xs[i - 1]) / (xs[i] - xs[i - 1]);
+}
+
+// ---- the assembly -------------------------------------------------------------------------------------------------
+
+class Assembly {
+  constructor(host) {
+    this.host = host;
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.localClippingEnabled = true;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    host.replaceChildren(this.renderer.domElement);
+    this.scene = new THREE.Scene();
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x707880, 1.6));
+    const sun = new THREE.DirectionalLight(0xffffff, 2.2);
+    sun.position.set(40, 70, 90);
+    this.scene.add(sun);
+    this.camera = new THREE.PerspectiveCamera(28, 1, 1, 2000);
+    this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener('change', () => this.draw());
+    this.plane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0);
+    this.group = new THREE.Group();
+    this.scene.add(this.group);
+    new ResizeObserver(() => this.resize()).observe(host);
+  }
+
+  load(data, hidden) {
+    this.group.clear();
+    this.data = data;
+    this.bodies = data.bodies.map((body) => {
+      const source = data.meshes[body.mesh];
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(bytesOf(source.positions).buffer), 3));
+      geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytesOf(source.triangles).buffer), 1));
+      const faceted = geometry.toNonIndexed();
+      faceted.computeVertexNormals();
+      const material = new THREE.MeshStandardMaterial({
+        color: new THREE.Color(...body.colour.map((c) => c / 255)).convertSRGBToLinear(), side: THREE.DoubleSide,
+        metalness: body.material === 'steel' ? 0.55 : 0.0, roughness: body.material === 'steel' ? 0.35 : 0.75,
+        transparent: body.material === 'silicone', opacity: body.material === 'silicone' ? 0.78 : 1,
+      });
+      const mesh = new THREE.Mesh(faceted, material);
+      const edges = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 25),
+        new THREE.LineBasicMaterial({ color: 0x1a2530, transparent: true, opacity: 0.45 }));
+      const node = new THREE.Group();
+      node.add(mesh, edges);
+      node.userData = { body, materials: [material, edges.material], home: new THREE.Matrix4().fromArray(body.matrix) };
+      node.matrixAutoUpdate = false;
+      node.visible = !hidden.has(body.name);
+      this.group.add(node);
+      return node;
+    });
+    this.tendon = undefined;
+    const box = new THREE.Box3().setFromObject(this.group);
+    this.middle = box.getCenter(new THREE.Vector3());
+    this.reach = box.getSize(new THREE.Vector3()).length();
+    this.low = box.min.z;
+    this.high = box.max.z;
+  }
+
+  aim(turn, tilt) {
+    const [a, b] = [turn, tilt].map((degrees) => degrees * Math.PI / 180);
+    const distance = this.reach * 2.3;
+    this.camera.position.set(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b)).multiplyScalar(distance).add(this.middle);
+    this.controls.target.copy(this.middle);
+    this.controls.update();
+    this.draw();
+  }
+
+  // Pins sink and the tendon follows; everything moves along its way out by `apart`.
+  pose(load, apart) {
+    for (const node of this.bodies) {
+      const { body, home } = node.userData;
+      const way = new THREE.Vector3(...body.way_out).multiplyScalar(apart);
+      if (body.sink) {
+        const depth = at(this.data.contact.load_n, body.sink.depth_mm, load);
+        way.add(new THREE.Vector3(body.sink.towards[0], body.sink.towards[1], 0).multiplyScalar(depth));
+      }
+      node.matrix.makeTranslation(way.x, way.y, way.z).multiply(home);
+      node.matrixWorldNeedsUpdate = true;
+    }
+    this.lay(load, apart);
+    this.draw();
+  }
+
+  lay(load, apart) {
+    const contact = this.data.contact;
+    if (this.tendon) { this.group.remove(this.tendon); this.tendon.geometry.dispose(); this.tendon = undefined; }
+    if (!contact.angle_rad.length || apart > 0.02 || this.tendonHidden) return;
+    const points = contact.angle_rad.map((angle, i) => {
+      const radius = contact.axis_radius_mm + at(contact.load_n, contact.gap_mm.map((gaps) => gaps[i]), load);
+      return new THREE.Vector3(radius * Math.sin(angle), radius * Math.cos(angle), contact.z_mm);
+    });
+    const straight = (end, side) => end.clone().add(
+      new THREE.Vector3(side * Math.cos(contact.half_wrap_rad), -Math.sin(contact.half_wrap_rad), 0).multiplyScalar(14));
+    points.unshift(straight(points[0], -1));
+    points.push(straight(points[points.length - 1], 1));
+    const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 160, contact.tendon_radius_mm, 12);
+    this.tendon = new THREE.Mesh(tube, new THREE.MeshStandardMaterial({ color: 0x3a4a5c, roughness: 0.6 }));
+    this.group.add(this.tendon);
+  }
+
+  cut(on, share) {
+    this.plane.constant = this.low + (this.high - this.low) * share;
+    const planes = on ? [this.plane] : [];
+    for (const node of this.bodies) node.userData.materials.forEach((m) => { m.clippingPlanes = planes; m.needsUpdate = true; });
+    this.draw();
+  }
+
+  show(name, visible) {
+    if (name === 'tendon') { this.tendonHidden = !visible; if (this.tendon) this.tendon.visible = visible; }
+    for (const node of this.bodies) if (node.userData.body.name === name) node.visible = visible;
+    this.draw();
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.host;
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.camera.aspect = clientWidth / Math.max(clientHeight, 1);
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  draw() { if (this.bodies) this.renderer.render(this.scene, this.camera); }
+}
+
+// ---- the curve ----------------------------------------------------------------------------------------------------
+
+const COLOURS = { main: '#0072c6', band: 'rgba(0, 114, 198, 0.16)', paper: '#00866a', layout: '#a24bb0', physics: '#d0284b', calibrated: '#777', measured: '#d9822b' };
+let chart;
+let shownLoad = 0;
+
+function drawChart(data) {
+  const { curve, other_laws: others, published } = data;
+  const ink = dark() ? '#e8ecf1' : '#1c2430';
+  const grid = dark() ? '#333c47' : '#e3e6ea';
+  // uPlot wants one axis of loads: those of the curve; other laws and measured points are put on it.
+  const loads = [...new Set([...curve.load_n, ...published.map((p) => p.load_n)])].sort((a, b) => a - b);
+  const inside = (xs, ys) => loads.map((x) => (x < xs[0] - 1e-9 || x > xs[xs.length - 1] + 1e-9 ? null : at(xs, ys, x)));
+  const series = [
+    { label: 'load (N)', value: (_, v) => v?.toFixed(2) ?? '' },
+    { label: `${curve.law}`, stroke: COLOURS.main, width: 3 },
+    { label: 'band, low', stroke: 'transparent' },
+    { label: 'band, high', stroke: 'transparent' },
+    ...others.map((other) => ({ label: other.law, stroke: COLOURS[other.law], width: 1.2, dash: [6, 4] })),
+    { label: 'measured', stroke: COLOURS.measured, paths: () => null, points: { show: true, size: 10, fill: COLOURS.measured } },
+  ].map((s) => ({ spanGaps: true, points: { show: false }, value: (_, v) => v?.toFixed(3) ?? '', ...s }));
+  const columns = [loads, inside(curve.load_n, curve.friction_n), inside(curve.load_n, curve.band_low_n), inside(curve.load_n, curve.band_high_n),
+    ...others.map((other) => inside(other.load_n, other.friction_n)),
+    loads.map((x) => published.find((p) => p.load_n === x)?.friction_n ?? null)];
+  const axis = (label) => ({ label, stroke: ink, grid: { stroke: grid }, ticks: { stroke: grid } });
+  byId('chart').replaceChildren();
+  chart = new uPlot({
+    width: byId('chart').clientWidth || 900, height: 360, scales: { x: { time: false } }, series, bands: [{ series: [3, 2], fill: COLOURS.band }],
+    axes: [axis('load F (N)'), axis('friction D (N)')],
+    hooks: { draw: [(u) => {
+      const [x, y] = [u.valToPos(shownLoad, 'x', true), u.valToPos(at(curve.load_n, curve.friction_n, shownLoad), 'y', true)];
+      u.ctx.beginPath();
+      u.ctx.arc(x, y, 7 * devicePixelRatio, 0, 2 * Math.PI);
+      u.ctx.fillStyle = COLOURS.main;
+      u.ctx.fill();
+    }] },
+  }, columns, byId('chart'));
+}
+
+// ---- tables and downloads -----------------------------------------------------------------------------------------
+
+function table(head, rows) {
+  const element = make('table');
+  const numeric = (cell) => typeof cell === 'number' || /^[-+\d.]/.test(String(cell));
+  const line = (cells, tag) => {
+    const row = make('tr');
+    cells.forEach((cell) => row.append(make(tag, cell, { class: tag === 'td' && numeric(cell) ? 'n' : '', ...(tag === 'th' ? { scope: 'col' } : {}) })));
+    return row;
+  };
+  element.append(make('thead'), make('tbody'));
+  element.tHead.append(line(head, 'th'));
+  rows.forEach((row) => element.tBodies[0].append(line(row, 'td')));
+  return element;
+}
+
+// Binary STL of a mesh: the same bytes that `generate` writes, but for the header.
+function stl(mesh) {
+  const p = new Float32Array(bytesOf(mesh.positions).buffer);
+  const t = new Uint32Array(bytesOf(mesh.triangles).buffer);
+  const out = new DataView(new ArrayBuffer(84 + 50 * t.length / 3));
+  out.setUint32(80, t.length / 3, true);
+  for (let i = 0, offset = 84; i < t.length; i += 3, offset += 50) {
+    const [a, b, c] = [0, 1, 2].map((k) => [0, 1, 2].map((d) => p[3 * t[i + k] + d]));
+    const [u, v] = [b, c].map((q) => q.map((x, d) => x - a[d]));
+    const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    const length = Math.hypot(...n) || 1;
+    [...n.map((x) => x / length), ...a, ...b, ...c].forEach((x, k) => out.setFloat32(offset + 4 * k, x, true));
+  }
+  return out.buffer;
+}
+
+function download(name, content, type) {
+  const link = make('a', '', { download: name, href: URL.createObjectURL(new Blob([content], { type })) });
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+function fillTables(data) {
+  const { manifest, curve } = data;
+  const bill = manifest.bill_of_materials;
+  const rows = [];
+  if (bill.pins.number) rows.push(['steel pins', `${bill.pins.number} + ${bill.pins.spares} spare`, `${bill.pins.diameter_mm} x ${bill.pins.length_mm} mm`]);
+  if (bill.silicone) {
+    rows.push(['silicone, to pour', `${bill.silicone.pour_ml.toFixed(2)} ml`, `${bill.silicone.pour_g.toFixed(2)} g`]);
+    rows.push(['silicone, to mix', `${bill.silicone.mix_g.toFixed(1)} g`, `${bill.silicone.base_g.toFixed(1)} g base + ${bill.silicone.agent_g.toFixed(1)} g agent`]);
+  }
+  rows.push(['tendon', `${bill.tendon.length_mm} mm`, `${bill.tendon.rope_diameter_mm} mm, ${bill.tendon.outer_diameter_mm.toFixed(2)} mm coated`]);
+  if (bill.fasteners) rows.push(['screws with nuts', bill.fasteners.number, `${bill.fasteners.thread} x ${bill.fasteners.length_mm} mm`]);
+  byId('bill').replaceChildren(table(['item', 'quantity', 'size'], rows));
+  byId('parts').replaceChildren(table(['part', 'mass (g)', 'volume (mm³)', 'triangles'],
+    manifest.parts.map((p) => [p.name, p.mass_g.toFixed(2), p.volume_mm3.toFixed(2), p.mesh.triangles])));
+  byId('table').replaceChildren(table(['load (N)', 'eccentric', 'concentric', 'friction', 'low', 'high'],
+    curve.load_n.map((_, i) => [curve.load_n, curve.eccentric_n, curve.concentric_n, curve.friction_n, curve.band_low_n, curve.band_high_n].map((c) => c[i].toFixed(3)))));
+  byId('checks').replaceChildren(...data.checks.map((c) => make('li', `${c.fine ? 'ok' : 'look'}: ${c.words}`, { class: c.fine ? '' : 'bad' })),
+    ...manifest.warnings.map((w) => make('li', `warning: ${w}`, { class: 'bad' })));
+  byId('law').textContent = `Law: ${curve.law}, ${curve.trust}. ${manifest.friction.source}.`;
+  byId('reasons').replaceChildren(...curve.reasons.map((r) => make('li', r)));
+  const files = data.meshes.filter((m) => m.file).map((m) => [m.file, () => download(m.file, stl(m), 'model/stl')]);
+  files.push(['manifest.json', () => download('manifest.json', JSON.stringify(manifest, null, 2), 'application/json')]);
+  files.push(['friction.csv', () => download('friction.csv', data.friction_csv, 'text/csv')]);
+  byId('files').replaceChildren(...files.map(([name, save]) => {
+    const item = make('li');
+    const button = make('button', `Save ${name}`, { type: 'button' });
+    button.addEventListener('click', save);
+    item.append(button);
+    return item;
+  }));
+}
+
+// ---- the whole ----------------------------------------------------------------------------------------------------
+
+let assembly;
+let current;
+const hidden = new Set();
+
+function fillBodies(data) {
+  const names = data.bodies.map((b) => b.name).concat(data.contact.angle_rad.length ? ['tendon'] : []);
+  const rows = names.map((name) => {
+    const label = make('label', undefined, { class: 'row' });
+    const box = make('input', undefined, { type: 'checkbox' });
+    box.checked = !hidden.has(name);
+    box.addEventListener('change', () => {
+      if (box.checked) hidden.delete(name); else hidden.add(name);
+      assembly?.show(name, box.checked);
+    });
+    label.append(box, name);
+    return label;
+  });
+  byId('bodies').replaceChildren(make('legend', 'Show'), ...rows);
+}
+
+function moveLoad() {
+  const { curve } = current;
+  const [lightest, heaviest] = [curve.load_n[0], curve.load_n[curve.load_n.length - 1]];
+  shownLoad = lightest + (heaviest - lightest) * Number(byId('load').value);
+  byId('load-value').textContent = `${shownLoad.toFixed(1)} N: ${at(curve.load_n, curve.friction_n, shownLoad).toFixed(2)} N of friction`;
+  assembly?.pose(shownLoad, Number(byId('explode').value));
+  chart?.redraw(false);
+}
+
+// Shows another state of the set: the first, or what the live preview sends.
+function update(data) {
+  current = data;
+  byId('name').textContent = data.manifest.name;
+  const f = data.manifest.friction;
+  byId('summary').textContent = `${data.layout}; ${f.friction_n.toFixed(2)} N of friction at ${f.load_n.toFixed(2)} N of load (${f.band_n[0].toFixed(2)} to ${f.band_n[1].toFixed(2)} N, ${f.trust})`;
+  byId('maker').textContent = `Made by ${data.manifest.generator}.`;
+  fillBodies(data);
+  fillTables(data);
+  assembly?.load(data, hidden);
+  drawChart(data);
+  moveLoad();
+  assembly?.cut(byId('section').checked, Number(byId('cut').value));
+  document.body.dataset.ready = 'true';
+}
+
+function start() {
+  const data = JSON.parse(byId('data').textContent);
+  try {
+    assembly = new Assembly(byId('view'));
+  } catch (problem) {
+    // No WebGL: the still picture stays.
+    document.body.dataset.still = 'true';
+  }
+  for (const id of ['load', 'explode']) byId(id).addEventListener('input', moveLoad);
+  const aim = () => assembly?.aim(Number(byId('turn').value), Number(byId('tilt').value));
+  for (const id of ['turn', 'tilt']) byId(id).addEventListener('input', aim);
+  const cut = () => assembly?.cut(byId('section').checked, Number(byId('cut').value));
+  for (const id of ['section', 'cut']) byId(id).addEventListener('input', cut);
+  update(data);
+  aim();
+  addEventListener('resize', () => chart?.setSize({ width: byId('chart').clientWidth, height: 360 }));
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => drawChart(current));
+  if (data.live) follow(data.live);
+}
+
+// Live preview: asks for the next state; the answer comes when the configuration has changed.
+async function follow(version) {
+  for (;;) {
+    try {
+      const answer = await (await fetch(`/state?after=${version}`)).json();
+      version = answer.version;
+      byId('trouble').hidden = !answer.trouble;
+      byId('trouble').textContent = answer.trouble ?? '';
+      if (answer.data) update(answer.data);
+    } catch {
+      byId('trouble').hidden = false;
+      byId('trouble').textContent = 'The preview has ended; the last state stays.';
+      await new Promise((later) => setTimeout(later, 1000));
+    }
+  }
+}
+
+start();

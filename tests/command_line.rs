@@ -51,10 +51,16 @@ fn readme_s_first_command_makes_a_complete_checked_set() {
         "friction.csv",
         "friction.svg",
         "manifest.json",
+        "assembly.3mf",
+        "drawing.svg",
+        "PRINTING.md",
+        "assembly.png",
+        "plate.png",
+        "report.html",
     ] {
         assert!(written.contains_key(name), "{name} is missing");
     }
-    assert_eq!(written.len(), 11, "{:?}", written.keys());
+    assert_eq!(written.len(), 17, "{:?}", written.keys());
 
     let manifest: Value = serde_json::from_slice(&written["manifest.json"]).unwrap();
     let listed = manifest["files"].as_array().unwrap();

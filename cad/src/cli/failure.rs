@@ -23,6 +23,13 @@ impl Failure {
         Self::BadInput(message.to_string())
     }
 
+    /// What went wrong.
+    pub(super) fn message(&self) -> &str {
+        match self {
+            Self::Failed(message) | Self::BadInput(message) => message,
+        }
+    }
+
     /// Prints the message on standard error and gives the exit code.
     pub(super) fn report(&self) -> ExitCode {
         let (message, code) = match self {

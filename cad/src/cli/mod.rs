@@ -25,6 +25,7 @@ mod render;
 mod segment;
 mod simulate;
 mod source;
+mod view;
 
 pub use failure::Failure;
 
@@ -45,6 +46,7 @@ enum Command {
     Design(design::Arguments),
     Finger(finger::Arguments),
     Physics(physics::Arguments),
+    View(view::Arguments),
     Check(check::Arguments),
     Render(render::Arguments),
     Layouts(layouts::Arguments),
@@ -70,6 +72,7 @@ pub fn run() -> ExitCode {
         Command::Design(arguments) => design::run(&arguments),
         Command::Finger(arguments) => finger::run(&arguments),
         Command::Physics(arguments) => physics::run(&arguments),
+        Command::View(arguments) => view::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Layouts(arguments) => layouts::run(&arguments),

@@ -31,6 +31,11 @@ impl Source {
         Self { config: config.to_owned(), preset: None, assignments: Vec::new(), tolerance: None }
     }
 
+    /// The file that the configuration is read from; `None` for a template.
+    pub(super) fn file(&self) -> Option<PathBuf> {
+        Some(PathBuf::from(&self.config)).filter(|path| path.exists())
+    }
+
     /// Reads, overlays and validates.
     ///
     /// # Errors

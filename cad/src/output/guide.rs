@@ -75,8 +75,11 @@ fn print_section(text: &mut String, design: &Design, manifest: &Manifest) {
     }
     text.push_str("\n### Checks\n\n");
     for check in checks(design, &manifest.parts) {
-        let mark = if check.fine { "ok" } else { "**look**" };
-        let _ = writeln!(text, "- {mark}: {}", check.words);
+        let _ = if check.fine {
+            writeln!(text, "- ok: {}", check.words)
+        } else {
+            writeln!(text, "- **look**: {}; {}", check.words, check.remedy)
+        };
     }
     for warning in &manifest.warnings {
         let _ = writeln!(text, "- **warning**: {warning}");
@@ -93,8 +96,10 @@ fn bridge(mm: f64) -> String {
 pub struct Check {
     /// Whether it is kept.
     pub fine: bool,
-    /// The rule in this set's numbers, and what to change.
+    /// The rule in this set's numbers.
     pub words: String,
+    /// What to change where it is not kept.
+    pub remedy: &'static str,
 }
 
 /// Longest bridge that prints without sagging, mm (printing.md).
@@ -106,24 +111,22 @@ pub fn checks(design: &Design, parts: &[PartEntry]) -> Vec<Check> {
     let pitch = c.segment.span_deg.to_radians() / c.segment.grooves as f64;
     let land = 2.0 * (c.shell.outer_radius_mm * (pitch / 2.0).sin() - c.segment.groove_radius_mm);
     let two_lines = 2.0 * c.print.line_mm;
-    let check = |fine: bool, words: String| Check { fine, words };
+    let check = |fine: bool, remedy: &'static str, words: String| Check { fine, words, remedy };
+    let bridge = parts.iter().map(|p| p.widest_bridge_mm).fold(0.0, f64::max);
     let mut all = vec![
         check(
             c.print.line_mm >= c.print.nozzle_mm,
-            format!(
-                "a line of {} mm from a nozzle of {} mm; raise print.line_mm to the nozzle or more",
-                c.print.line_mm, c.print.nozzle_mm
-            ),
+            "raise print.line_mm to the nozzle or more",
+            format!("a line of {} mm from a nozzle of {} mm", c.print.line_mm, c.print.nozzle_mm),
         ),
         check(
             c.print.layer_mm <= 0.8 * c.print.nozzle_mm,
-            format!(
-                "layers of {} mm, at most four fifths of the nozzle; lower print.layer_mm",
-                c.print.layer_mm
-            ),
+            "lower print.layer_mm",
+            format!("layers of {} mm, at most four fifths of the nozzle", c.print.layer_mm),
         ),
         check(
             c.support.slot_clearance_mm >= 0.1,
+            "raise support.slot_clearance_mm",
             format!(
                 "slots {} mm wider than the pins; slicers close gaps under 0.10 mm",
                 c.support.slot_clearance_mm
@@ -131,28 +134,28 @@ pub fn checks(design: &Design, parts: &[PartEntry]) -> Vec<Check> {
         ),
         check(
             c.support.slot_floor_mm >= 3.0 * c.print.layer_mm,
-            format!(
-                "slot floors of {} mm, three layers or more; raise support.slot_floor_mm",
-                c.support.slot_floor_mm
-            ),
+            "raise support.slot_floor_mm",
+            format!("slot floors of {} mm, three layers or more", c.support.slot_floor_mm),
+        ),
+        check(
+            bridge <= LONGEST_BRIDGE_MM,
+            "lower pins.diameter_mm or mould.key_diameter_mm",
+            format!("ceilings of up to {bridge:.2} mm to bridge, up to {LONGEST_BRIDGE_MM} mm print well"),
         ),
     ];
-    let bridge = parts.iter().map(|p| p.widest_bridge_mm).fold(0.0, f64::max);
-    all.push(check(
-        bridge <= LONGEST_BRIDGE_MM,
-        format!("ceilings of up to {bridge:.2} mm are bridged, {LONGEST_BRIDGE_MM} mm is good; lower pins.diameter_mm or mould.key_diameter_mm"),
-    ));
     if c.segment.grooves > 1 {
         all.push(check(
             land >= two_lines,
-            format!("lands of {land:.2} mm between grooves, two lines are {two_lines:.2} mm; raise shell.outer_radius_mm"),
+            "raise shell.outer_radius_mm or lower segment.grooves",
+            format!("lands of {land:.2} mm between grooves, two lines are {two_lines:.2} mm"),
         ));
     }
     if c.fasteners.count > 0 {
         let rim = (c.shell.wall_mm - c.segment.groove_radius_mm - c.fasteners.hole_diameter_mm) / 2.0;
         all.push(check(
             rim >= 1.0,
-            format!("{rim:.2} mm of wall around the screw holes, 1.0 is good; raise shell.wall_mm"),
+            "raise shell.wall_mm or lower fasteners.hole_diameter_mm",
+            format!("{rim:.2} mm of wall around the screw holes, 1.0 is good"),
         ));
     }
     all

@@ -68,11 +68,13 @@ class Assembly {
       node.add(mesh, edges);
       node.userData = { body, materials: [material, edges.material], home: new THREE.Matrix4().fromArray(body.matrix) };
       node.matrixAutoUpdate = false;
+      node.matrix.copy(node.userData.home);
       node.visible = !hidden.has(body.name);
       this.group.add(node);
       return node;
     });
     this.tendon = undefined;
+    this.group.updateMatrixWorld(true);
     const box = new THREE.Box3().setFromObject(this.group);
     this.middle = box.getCenter(new THREE.Vector3());
     this.reach = box.getSize(new THREE.Vector3()).length();
@@ -82,7 +84,7 @@ class Assembly {
 
   aim(turn, tilt) {
     const [a, b] = [turn, tilt].map((degrees) => degrees * Math.PI / 180);
-    const distance = this.reach * 2.3;
+    const distance = this.reach * 2.05;
     this.camera.position.set(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b)).multiplyScalar(distance).add(this.middle);
     this.controls.target.copy(this.middle);
     this.controls.update();
@@ -239,7 +241,7 @@ function fillTables(data) {
     manifest.parts.map((p) => [p.name, p.mass_g.toFixed(2), p.volume_mm3.toFixed(2), p.mesh.triangles])));
   byId('table').replaceChildren(table(['load (N)', 'eccentric', 'concentric', 'friction', 'low', 'high'],
     curve.load_n.map((_, i) => [curve.load_n, curve.eccentric_n, curve.concentric_n, curve.friction_n, curve.band_low_n, curve.band_high_n].map((c) => c[i].toFixed(3)))));
-  byId('checks').replaceChildren(...data.checks.map((c) => make('li', `${c.fine ? 'ok' : 'look'}: ${c.words}`, { class: c.fine ? '' : 'bad' })),
+  byId('checks').replaceChildren(...data.checks.map((c) => make('li', c.fine ? `ok: ${c.words}` : `look: ${c.words}; ${c.remedy}`, { class: c.fine ? '' : 'bad' })),
     ...manifest.warnings.map((w) => make('li', `warning: ${w}`, { class: 'bad' })));
   byId('law').textContent = `Law: ${curve.law}, ${curve.trust}. ${manifest.friction.source}.`;
   byId('reasons').replaceChildren(...curve.reasons.map((r) => make('li', r)));

@@ -123,7 +123,7 @@ fn readers_of_3mf_and_step_accept_the_three_layouts() {
         let folder = tempfile::tempdir().unwrap();
         let files = generate(folder.path(), &[layout, "--format", "3mf,step"]);
         let manifest: Value = serde_json::from_slice(&files["manifest.json"]).unwrap();
-        let judged = |file: &str, extra: &[&str]| {
+        let ask = |file: &str, extra: &[&str]| {
             let output = Command::new(python)
                 .arg(&judge)
                 .arg(folder.path().join("set").join(file))
@@ -150,7 +150,7 @@ fn readers_of_3mf_and_step_accept_the_three_layouts() {
         assert!(
             complaints
                 .iter()
-                .all(|l| l.contains("8.0") && l.trim_end().ends_with("(self-interference or small edges)")),
+                .all(|l| l.trim_end().ends_with("(self-interference or small edges)") && !l.contains(';')),
             "{layout}: {said}"
         );
     }

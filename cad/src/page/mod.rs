@@ -46,14 +46,8 @@ pub fn page_html(
     curve: &FrictionCurve,
     live: Option<u64>,
 ) -> Result<String, PageError> {
-    let still = render(
-        &assembled(design, 1.0)?,
-        View { turn_deg: 30.0, rise_deg: 40.0 },
-        STILL_WIDTH,
-        STILL_WIDTH * 3 / 4,
-    )
-    .png()
-    .map_err(|e| PageError::Encoding(e.to_string()))?;
+    // A live page is rebuilt while somebody waits, in a browser that has shown it already: no picture.
+    let still = if live.is_some() { String::new() } else { still(design)? };
     let data = page_data(design, manifest, curve, live)?;
     let json = serde_json::to_string(&data).map_err(|e| PageError::Encoding(e.to_string()))?;
     let title = manifest.name.replace('&', "&amp;").replace('<', "&lt;");
@@ -65,11 +59,19 @@ pub fn page_html(
         ("{{THREE}}", THREE),
         ("{{UPLOT}}", UPLOT),
         ("{{JS}}", JS),
-        ("{{STILL}}", &format!("data:image/png;base64,{}", STANDARD.encode(still))),
+        ("{{STILL}}", &still),
         // In a script element only the end tag needs care.
         ("{{DATA}}", &json.replace("</", "<\\/")),
     ]
     .into_iter()
     .fold(HTML.to_owned(), |page, (place, content)| page.replacen(place, content, 1));
     Ok(page)
+}
+
+/// The parts pulled apart, as a data URL.
+fn still(design: &Design) -> Result<String, PageError> {
+    let view = View { turn_deg: 30.0, rise_deg: 40.0 };
+    let picture = render(&assembled(design, 1.0)?, view, STILL_WIDTH, STILL_WIDTH * 3 / 4);
+    let png = picture.png().map_err(|e| PageError::Encoding(e.to_string()))?;
+    Ok(format!("data:image/png;base64,{}", STANDARD.encode(png)))
 }

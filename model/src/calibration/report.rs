@@ -1,7 +1,5 @@
 //! From a selection to its report: verdict, effects, rivals, blind spots, errors before and after.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF};
-
 use super::heldout::{SOUND_WEIGHT, held_out};
 use super::schema::{
     BadSeries, DataSummary, EffectReport, Estimate, Extrapolation, Invisible, ModelReport, Report,
@@ -9,7 +7,8 @@ use super::schema::{
 };
 use crate::effects::LIBRARY;
 use crate::inference::{
-    Fit, Levels, Model, Noise, Observations, Selection, Term, interval_half_widths, select,
+    Fit, Levels, Model, Noise, Observations, Selection, Term, cell_deviation, degrees_of_freedom,
+    family_p_value, interval_half_widths, select,
 };
 use crate::rig::{Frame, PlateauRow, Surface};
 
@@ -142,13 +141,6 @@ fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport
     (report, held.both_n())
 }
 
-/// Tail probability of a gain with one constant, for any of the library's effects (Sidak).
-fn p_value(gain: f64) -> f64 {
-    let single = ChiSquared::new(1.0).map_or(1.0, |d| d.sf(gain.max(0.0)));
-    let all = -(LIBRARY.len() as f64 * (-single).ln_1p()).exp_m1();
-    all.clamp(0.0, 1.0)
-}
-
 fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Report {
     let noise = selection.noise;
     let (baseline, before_n) = model_report(&selection.baseline, data, noise);
@@ -218,6 +210,7 @@ fn effects(
     augmented: &ModelReport,
 ) -> Vec<EffectReport> {
     let model = &selection.augmented.model;
+    let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
     let mut found = Vec::new();
     let (mut named, mut unnamed) = (0, Vec::new());
     for (i, term) in model.terms.iter().enumerate() {
@@ -234,7 +227,7 @@ fn effects(
             covariate: effect.covariate().word().to_owned(),
             side: Some(effect.side().word().to_owned()),
             formula: effect.formula().to_owned(),
-            p_value: p_value(gain),
+            p_value: family_p_value(gain, LIBRARY.len(), degrees),
             parameters: effect
                 .parameters()
                 .iter()
@@ -272,7 +265,7 @@ fn effects(
             covariate: covariate.word().to_owned(),
             side: None,
             formula: shapes.join("; "),
-            p_value: p_value(gain - 12.0),
+            p_value: family_p_value(gain, selection.structures_tried, degrees),
             parameters: augmented
                 .parameters
                 .iter()
@@ -290,12 +283,8 @@ fn effects(
 /// Cells whose mean residual is beyond 4.5 standard deviations, or that hold a reading beyond 20.
 fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Vec<BadSeries> {
     let mut bad = Vec::new();
-    for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {
-        let weight: f64 = cell.iter().map(|r| data.weights[*r]).sum();
-        let mean =
-            cell.iter().map(|r| data.weights[*r] * selection.augmented.residual_n[*r]).sum::<f64>() / weight;
-        let sd =
-            (selection.noise.repetition.at(*load) / weight.sqrt()).hypot(selection.noise.series.at(*load));
+    for (index, (cell, load)) in data.cells.iter().zip(&data.cell_load_n).enumerate() {
+        let (mean, sd) = cell_deviation(&selection.augmented, data, selection.noise, index);
         let worst = cell
             .iter()
             .map(|r| selection.augmented.residual_n[*r])

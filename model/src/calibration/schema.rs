@@ -86,7 +86,8 @@ pub struct EffectReport {
     pub side: Option<String>,
     /// Formula with source, or the shape of a structure in words.
     pub formula: String,
-    /// Probability of such a gain without the effect, over the whole vocabulary.
+    /// Probability of such a gain by chance, over all that was tried: Student's t with the number of series,
+    /// Sidak's correction. Held against simulated rigs without effect in `model/calibration.md`.
     pub p_value: f64,
     /// Its constants.
     pub parameters: BTreeMap<String, Estimate>,

@@ -2,16 +2,18 @@
 
 use super::fit::{Fit, fit};
 use super::forward::{Model, Term};
+use super::isolation::isolated_series;
 use super::noise::Noise;
 use super::observations::Observations;
 use super::screening::{Screen, StructureScore};
-use crate::effects::{Covariate, Effect};
+use super::significance::{degrees_of_freedom, gain_at};
+use crate::effects::{Covariate, Effect, LIBRARY};
 
 /// Levels of the decisions, in whitened squares; tuned by `pinswitch simulate --study`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levels {
-    /// Least gain of the first named effect.
-    pub first: f64,
+    /// Probability by chance, over the vocabulary, at which the first named effect is believed.
+    pub first_p: f64,
     /// Largest probability by sign flips at which a weak first effect is believed.
     pub flips: f64,
     /// Least gain of each further one.
@@ -31,7 +33,7 @@ pub struct Levels {
 impl Default for Levels {
     fn default() -> Self {
         Self {
-            first: 14.0,
+            first_p: 0.012,
             flips: 0.1,
             further: 18.0,
             further_share: 0.004,
@@ -73,6 +75,10 @@ pub struct Selection {
     pub invisible: Vec<(&'static dyn Effect, f64, f64)>,
     /// Probability, by flipped signs of whole series, of the largest candidate without any effect.
     pub family_probability: f64,
+    /// Gain of the best structure without a name on top of what was found, in whitened squares.
+    pub structure_gain: f64,
+    /// Structures that were tried.
+    pub structures_tried: usize,
     /// The noise.
     pub noise: Noise,
 }
@@ -115,17 +121,19 @@ fn extensions(
 /// Adds named effects while each gains enough, then drops and exchanges.
 fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit {
     let mut current = start.clone();
+    let degrees = degrees_of_freedom(data, start.model.coordinates.len());
+    let first = gain_at(levels.first_p, LIBRARY.len(), degrees);
     let scores = Screen::new(start, data, noise).effects();
     let strongest = scores.iter().map(|s| s.gain).fold(0.0, f64::max);
     // A weak candidate that a few series carry alone is no effect, whatever the noise model says. With few series
     // flips cannot tell, and the noise model decides.
-    if strongest < 3.0 * levels.first && data.series >= 12 && flips(&scores) > levels.flips {
+    if strongest < 3.0 * first && data.series >= 12 && flips(&scores) > levels.flips {
         return current;
     }
     for _ in 0..4 {
         let gained = start.cost - current.cost;
         let least = if named(&current.model).is_empty() {
-            levels.first
+            first
         } else {
             levels.further.max(levels.further_share * gained)
         };
@@ -215,7 +223,7 @@ pub(crate) fn fit_baseline(model: &Model, data: &Observations, noise: Noise) -> 
 fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
     let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let mut columns = super::fit::jacobian(&fitted.model, data, &predicted);
-    for effect in crate::effects::LIBRARY {
+    for effect in LIBRARY {
         for start in effect.starts(&fitted.model.frame) {
             let changed = fitted.model.with_term(Term::Named(effect), &start).predict(&data.points);
             columns.push(changed.iter().zip(&predicted).map(|(c, p)| c - p).collect());
@@ -234,8 +242,21 @@ fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
     columns
 }
 
-/// Runs the whole search on a table.
+/// Series that may be set aside; more than these are no accidents.
+const MOST_ASIDE: usize = 3;
+
+/// Runs the whole search on a table. A series that is wrong as a whole is set aside and the search begins again.
 pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
+    let mut found = search_once(start, data, levels);
+    while data.aside() < MOST_ASIDE {
+        let Some(series) = isolated_series(&found.augmented, data, found.noise) else { break };
+        data.set_aside(series);
+        found = search_once(start, data, levels);
+    }
+    found
+}
+
+fn search_once(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
     let guess = Noise::constant(0.1, 0.03);
     let rough = fit(start, data, guess);
     let sd = data.weigh_outliers(&rough.residual_n);
@@ -250,8 +271,12 @@ pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selecti
         baseline = fit(&baseline.model, data, noise);
         found = search(&baseline, data, noise, levels);
     }
-    let (found, structure) = unnamed(&baseline, found, data, noise, levels);
-    describe(baseline, found, structure, data, noise, levels)
+    let left = Screen::new(&found, data, noise).structures();
+    let (tried, best) = (left.len(), left.first().map_or(0.0, |s| s.gain));
+    let (found, structure) = unnamed(&baseline, found, &left, data, noise, levels);
+    let mut selection = describe(baseline, found, structure, data, noise, levels);
+    (selection.structures_tried, selection.structure_gain) = (tried, best);
+    selection
 }
 
 /// Adds a structure's shapes to a model and fits.
@@ -268,13 +293,13 @@ fn with_structure(from: &Fit, score: &StructureScore, data: &Observations, noise
 fn unnamed(
     baseline: &Fit,
     found: Fit,
+    left: &[StructureScore],
     data: &Observations,
     noise: Noise,
     levels: Levels,
 ) -> (Fit, Option<(Covariate, f64)>) {
     let explained = baseline.cost - found.cost;
     let least = levels.structure.max(levels.structure_share * explained);
-    let left = Screen::new(&found, data, noise).structures();
     let alone = if found.model.terms.is_empty() {
         Vec::new()
     } else {
@@ -392,6 +417,8 @@ fn describe(
     let family_probability = flips(&scores);
     Selection {
         family_probability,
+        structure_gain: 0.0,
+        structures_tried: 0,
         baseline,
         augmented,
         gains,

@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::effects::{LIBRARY, Structure, effect_named};
+use super::disturbance::Disturbance;
+use super::twin::forms::forms_of;
+use crate::effects::{LIBRARY, effect_named};
 use crate::published;
 
 /// Why a plan cannot be run.
@@ -77,6 +79,12 @@ pub struct NoisePlan {
     pub outlier_n: f64,
     /// Share of rows that are lost.
     pub lost_share: f64,
+    /// Correlation of neighbouring repetitions, 0..1.
+    pub autocorrelation: f64,
+    /// Logarithmic standard deviation of the repetition noise from series to series.
+    pub uneven: f64,
+    /// Series whose weight is written down as that of a neighbour.
+    pub mislabelled_series: u32,
     /// Heavy tails: Student's t with three degrees of freedom instead of a normal law, of the same quartiles.
     pub heavy_tails: bool,
 }
@@ -91,6 +99,9 @@ impl Default for NoisePlan {
             outlier_share: 0.002,
             outlier_n: 1.0,
             lost_share: 0.0,
+            autocorrelation: 0.0,
+            uneven: 0.0,
+            mislabelled_series: 0,
             heavy_tails: false,
         }
     }
@@ -105,6 +116,9 @@ pub struct EffectPlan {
     /// Its constants, in the order of its formula.
     #[serde(default)]
     pub values: Vec<f64>,
+    /// In which of its forms: 0 is that of effects.md, others bend otherwise than the model that is fitted.
+    #[serde(default)]
+    pub form: u8,
 }
 
 /// Constants of the paper's model on this rig.
@@ -161,19 +175,9 @@ pub struct Plan {
     /// What the paper's model lacks on it.
     pub effects: Vec<EffectPlan>,
     /// What nobody has named.
-    pub structures: Vec<StructurePlan>,
+    pub disturbances: Vec<Disturbance>,
     /// Noise.
     pub noise: NoisePlan,
-}
-
-/// A structure outside the vocabulary with its size.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StructurePlan {
-    /// Its size.
-    pub size: f64,
-    /// Its shape.
-    #[serde(flatten)]
-    pub structure: Structure,
 }
 
 impl Default for Plan {
@@ -191,7 +195,7 @@ impl Default for Plan {
             repetitions_spread: 3,
             constants: Constants::default(),
             effects: Vec::new(),
-            structures: Vec::new(),
+            disturbances: Vec::new(),
             noise: NoisePlan::default(),
         }
     }
@@ -261,6 +265,14 @@ impl Plan {
         if sizes.iter().any(|v| !v.is_finite() || *v < 0.0) {
             return bound("noise", format!("{sizes:?}"), ">= 0", "give standard deviations");
         }
+        if !(0.0..=0.99).contains(&n.autocorrelation) || !(0.0..=2.0).contains(&n.uneven) {
+            return bound(
+                "noise",
+                format!("autocorrelation {}, uneven {}", n.autocorrelation, n.uneven),
+                "0..0.99 and 0..2",
+                "0 is neither",
+            );
+        }
         if [n.outlier_share, n.lost_share].iter().any(|v| !(0.0..=0.9).contains(v)) {
             return bound(
                 "noise shares",
@@ -271,7 +283,13 @@ impl Plan {
         }
         for e in &self.effects {
             let remedy = match effect_named(&e.id) {
-                Some(effect) if effect.parameters().len() == e.values.len() => continue,
+                Some(effect) if effect.parameters().len() == e.values.len() => {
+                    let forms = forms_of(&e.id);
+                    if usize::from(e.form) < forms.len() {
+                        continue;
+                    }
+                    format!("form {} is unknown, it has 0 to {}: {}", e.form, forms.len() - 1, forms.join("; "))
+                }
                 Some(effect) => {
                     let names: Vec<&str> = effect.parameters().iter().map(|p| p.name).collect();
                     format!("it needs {} value(s): {}", names.len(), names.join(", "))
@@ -302,7 +320,7 @@ mod tests {
             ("layouts = [[16]]", "layouts"),
             ("[noise]\noutlier_share = 2", "noise shares"),
             ("[[effects]]\nid = \"gravity\"", "known are"),
-            ("[[effects]]\nid = \"run_in\"\nvalues = [1]", "2 value(s): k, r0"),
+            ("[[effects]]\nid = \"run_in\"\nvalues = [1]", "3 value(s): k, r0, c"),
             ("colour = 1", "unknown field"),
         ];
         for (text, expected) in cases {

@@ -6,11 +6,12 @@
 use super::fit::Fit;
 use super::noise::Noise;
 use super::observations::Observations;
+use super::screening::Screen;
 
-/// Standard deviations beyond which a series may be wrong as a whole.
-const FAR: f64 = 8.0;
-/// ... if no other one is off by more than this share of it.
-const ALONE: f64 = 0.4;
+/// Least gain, in whitened squares, of an offset of one series in both directions.
+const LEAST_GAIN: f64 = 60.0;
+/// How much more it must gain than any effect or structure.
+const AHEAD: f64 = 1.3;
 /// With fewer series none can be said to stand alone.
 const LEAST_SERIES: usize = 8;
 
@@ -26,19 +27,12 @@ pub(crate) fn cell_deviation(fitted: &Fit, data: &Observations, noise: Noise, ce
     (mean, (noise.repetition.at(load) / count.sqrt()).hypot(noise.series.at(load)))
 }
 
-/// The series that stands alone by more than noise and effects allow, if there is one.
-pub(super) fn isolated_series(fitted: &Fit, data: &Observations, noise: Noise) -> Option<usize> {
+/// The series whose own offsets explain what is left better than any effect or structure does, if there is one: a bad
+/// series is a hypothesis that competes with the others. `best_gain` is that of the best of those.
+pub(super) fn isolated_series(screen: &Screen<'_>, data: &Observations, best_gain: f64) -> Option<usize> {
     if data.series < LEAST_SERIES {
         return None;
     }
-    let mut worst = vec![0.0f64; data.series];
-    for (cell, rows) in data.cells.iter().enumerate() {
-        let Some(row) = rows.first().filter(|r| !data.is_aside(**r)) else { continue };
-        let (mean, sd) = cell_deviation(fitted, data, noise, cell);
-        let at = &mut worst[data.series_of[*row]];
-        *at = at.max((mean / sd).abs());
-    }
-    let (series, most) = worst.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let next = worst.iter().enumerate().filter(|(i, _)| *i != series).map(|(_, v)| *v).fold(0.0, f64::max);
-    (most > FAR && next < ALONE * most).then_some(series)
+    let (series, gain) = screen.series_offsets().into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (gain > LEAST_GAIN && gain > AHEAD * best_gain).then_some(series)
 }

@@ -176,31 +176,47 @@ impl<'a> Screen<'a> {
         scores
     }
 
+    /// Gain of free offsets of each series, one per direction, for the series that are not set aside.
+    pub(crate) fn series_offsets(&self) -> Vec<(usize, f64)> {
+        let mut columns = vec![Vec::new(); self.data.series];
+        for cell in &self.data.cells {
+            let Some(row) = cell.first().filter(|r| !self.data.is_aside(**r)) else { continue };
+            let mut column = vec![0.0; self.predicted.len()];
+            cell.iter().for_each(|r| column[*r] = 1.0);
+            columns[self.data.series_of[*row]].push(self.visible(column).0);
+        }
+        columns
+            .iter()
+            .enumerate()
+            .filter_map(|(series, columns)| least_squares(columns, &self.residual).map(|(gain, _)| (series, gain)))
+            .collect()
+    }
+
     /// Least squares of the residual on one or two visible columns.
     fn group(&self, group: Group, columns: &[Vec<f64>]) -> Option<StructureScore> {
         if columns.len() != group.len() || columns.is_empty() {
             return None;
         }
-        let a = dot(&columns[0], &columns[0]);
-        let u = dot(&columns[0], &self.residual);
-        // A shape that rests on one or two series is a bad run, not structure.
-        if a < 1e-9 {
-            return None;
-        }
-        let (gain, sizes) = if let Some(second) = columns.get(1) {
-            let (b, c, v) = (dot(&columns[0], second), dot(second, second), dot(second, &self.residual));
-            let det = a * c - b * b;
-            if det < 1e-6 * a * c {
-                (u * u / a, vec![u / a, 0.0])
-            } else {
-                let (k, l) = ((c * u - b * v) / det, (a * v - b * u) / det);
-                (k * u + l * v, vec![k, l])
-            }
-        } else {
-            (u * u / a, vec![u / a])
-        };
+        let (gain, sizes) = least_squares(columns, &self.residual)?;
         // A wave has two sizes, and there are hundreds of them at free frequencies: its gain must pay for both.
         let gain = if group.len() > 1 { gain - WAVE_TOLL } else { gain };
         Some(StructureScore { group, sizes, gain })
     }
+}
+
+/// Gain and sizes of one or two columns; `None` for none, or for one without length.
+fn least_squares(columns: &[Vec<f64>], residual: &[f64]) -> Option<(f64, Vec<f64>)> {
+    let first = columns.first()?;
+    let (a, u) = (dot(first, first), dot(first, residual));
+    if a < 1e-9 {
+        return None;
+    }
+    let Some(second) = columns.get(1) else { return Some((u * u / a, vec![u / a])) };
+    let (b, c, v) = (dot(first, second), dot(second, second), dot(second, residual));
+    let det = a * c - b * b;
+    if det < 1e-6 * a * c {
+        return Some((u * u / a, vec![u / a, 0.0]));
+    }
+    let (k, l) = ((c * u - b * v) / det, (a * v - b * u) / det);
+    Some((k * u + l * v, vec![k, l]))
 }

@@ -247,16 +247,34 @@ const MOST_ASIDE: usize = 3;
 
 /// Runs the whole search on a table. A series that is wrong as a whole is set aside and the search begins again.
 pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
-    let mut found = search_once(start, data, levels);
-    while data.aside() < MOST_ASIDE {
-        let Some(series) = isolated_series(&found.augmented, data, found.noise) else { break };
-        data.set_aside(series);
-        found = search_once(start, data, levels);
+    loop {
+        let names = search_names(start, data, levels);
+        let screen = Screen::new(&names.found, data, names.noise);
+        let left = screen.structures();
+        if data.aside() < MOST_ASIDE {
+            let structure = left.first().map_or(0.0, |s| s.gain);
+            let effect = screen.effects().iter().map(|s| s.gain).fold(structure, f64::max);
+            if let Some(series) = isolated_series(&screen, data, effect) {
+                data.set_aside(series);
+                continue;
+            }
+        }
+        let tried = (left.len(), left.first().map_or(0.0, |s| s.gain));
+        let (found, structure) = unnamed(&names.baseline, names.found, &left, data, names.noise, levels);
+        let mut selection = describe(names.baseline, found, structure, data, names.noise, levels);
+        (selection.structures_tried, selection.structure_gain) = tried;
+        return selection;
     }
-    found
 }
 
-fn search_once(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
+/// The refitted baseline, what the names make of it, and the noise.
+struct Names {
+    baseline: Fit,
+    found: Fit,
+    noise: Noise,
+}
+
+fn search_names(start: &Model, data: &mut Observations, levels: Levels) -> Names {
     let guess = Noise::constant(0.1, 0.03);
     let rough = fit(start, data, guess);
     let sd = data.weigh_outliers(&rough.residual_n);
@@ -271,12 +289,7 @@ fn search_once(start: &Model, data: &mut Observations, levels: Levels) -> Select
         baseline = fit(&baseline.model, data, noise);
         found = search(&baseline, data, noise, levels);
     }
-    let left = Screen::new(&found, data, noise).structures();
-    let (tried, best) = (left.len(), left.first().map_or(0.0, |s| s.gain));
-    let (found, structure) = unnamed(&baseline, found, &left, data, noise, levels);
-    let mut selection = describe(baseline, found, structure, data, noise, levels);
-    (selection.structures_tried, selection.structure_gain) = (tried, best);
-    selection
+    Names { baseline, found, noise }
 }
 
 /// Adds a structure's shapes to a model and fits.

@@ -130,6 +130,7 @@ fn null(name: &str, plan: &mut Plan) {
     if name.contains("outliers") {
         plan.noise.heavy_tails = true;
         plan.noise.outlier_share = 0.01;
+        plan.noise.outlier_n = 3.0;
     } else if name.contains("correlated") {
         plan.noise.autocorrelation = 0.4;
         plan.noise.uneven = 0.3;

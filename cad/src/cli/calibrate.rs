@@ -108,6 +108,9 @@ fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<
     Ok(files)
 }
 
+/// Series to check that the terminal lists.
+const SHOWN_SERIES: usize = 6;
+
 /// What the terminal shows.
 fn summary(report: &Report) -> String {
     let verdict = match report.verdict {
@@ -153,11 +156,14 @@ fn summary(report: &Report) -> String {
             e.bad_rows
         ));
     }
-    for bad in &report.bad_series {
+    for bad in report.bad_series.iter().take(SHOWN_SERIES) {
         text.push_str(&format!(
             "  check series {} {}: off by {:+.3} N ({:+.1} standard deviations)\n",
             bad.series, bad.direction, bad.offset_n, bad.standard_deviations
         ));
+    }
+    if let Some(more) = report.bad_series.len().checked_sub(SHOWN_SERIES).filter(|n| *n > 0) {
+        text.push_str(&format!("  and {more} more, see report.html\n"));
     }
     text
 }

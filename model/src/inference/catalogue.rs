@@ -70,13 +70,6 @@ fn time(groups: &mut Vec<Group>, points: &[Point]) {
             push(groups, Covariate::Time, &ALL, &Shape::TimeStep { at: *at });
         }
     }
-    // Another level for a while: between any two of two dozen places, not the whole session.
-    let edges: Vec<f64> = (0..=24).filter_map(|i| times.get((i * (times.len() - 1)) / 24).copied()).collect();
-    for (i, from) in edges.iter().enumerate().skip(1) {
-        for to in edges.iter().take(23).skip(i + 1).take(12) {
-            push(groups, Covariate::Time, &READING_AND_FRICTION, &Shape::TimeWindow { from: *from, to: *to });
-        }
-    }
     for i in 1..160 {
         let cycles = 0.5 * f64::from(i);
         push_wave(groups, Covariate::Time, &READING_AND_FRICTION, |quarter| Shape::TimeWave {

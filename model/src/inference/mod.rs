@@ -6,6 +6,7 @@ mod forward;
 mod isolation;
 mod noise;
 mod observations;
+mod own_form;
 mod projection;
 mod screening;
 mod selection;

@@ -20,6 +20,8 @@ pub struct Levels {
     pub further: f64,
     /// Least gain of a further one as a share of the first one's gain: below it, it may stem from the form.
     pub further_share: f64,
+    /// A gain above this share of the first one's is more than the form of an effect can bend.
+    pub beyond_form: f64,
     /// A rival fits worse by less than this.
     pub rival: f64,
     /// ... or by less than this share of what the effect explains.
@@ -28,6 +30,8 @@ pub struct Levels {
     pub structure: f64,
     /// Least gain of such a structure as a share of what the names explain.
     pub structure_share: f64,
+    /// By how much a structure alone must fit better than a name with its form bent.
+    pub outright: f64,
 }
 
 impl Default for Levels {
@@ -37,10 +41,12 @@ impl Default for Levels {
             flips: 0.1,
             further: 18.0,
             further_share: 0.004,
+            beyond_form: 0.04,
             rival: 9.0,
             rival_share: 0.002,
-            structure: 30.0,
+            structure: 26.0,
             structure_share: 0.02,
+            outright: 7.0,
         }
     }
 }
@@ -103,9 +109,18 @@ fn extensions(
     data: &Observations,
     noise: Noise,
     least: f64,
+    beyond_form: f64,
     most: usize,
 ) -> Vec<(&'static dyn Effect, Fit)> {
     let mut scores = Screen::new(from, data, noise).effects();
+    if !named(&from.model).is_empty() {
+        // What the names so far would explain by bending their own forms is not worth another name.
+        let guarded = Screen::guarded(from, data, noise).effects();
+        scores.retain(|s| {
+            s.gain > beyond_form
+                || guarded.iter().any(|g| g.effect.id() == s.effect.id() && g.gain > least)
+        });
+    }
     scores.retain(|s| s.gain > least);
     scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     scores.truncate(most);
@@ -137,7 +152,9 @@ fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit
         } else {
             levels.further.max(levels.further_share * gained)
         };
-        let Some((_, best)) = extensions(&current, data, noise, 0.3 * least, FITTED).into_iter().next()
+        // To first order alone: an effect that is not linear may gain more once fitted.
+        let screened = if named(&current.model).is_empty() { 0.3 } else { 0.8 } * least;
+        let Some((_, best)) = extensions(&current, data, noise, screened, levels.beyond_form * gained, FITTED).into_iter().next()
         else {
             break;
         };
@@ -145,7 +162,7 @@ fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit
             break;
         }
         current = best;
-        current = exchange(current, data, noise);
+        current = exchange(current, data, noise, levels.beyond_form * gained);
         current = prune(current, data, noise, levels.further.max(levels.further_share * gained));
     }
     current
@@ -174,7 +191,7 @@ fn prune(mut current: Fit, data: &Observations, noise: Noise, least: f64) -> Fit
 }
 
 /// Replaces a named effect by another one that fits better in its place.
-fn exchange(mut current: Fit, data: &Observations, noise: Noise) -> Fit {
+fn exchange(mut current: Fit, data: &Observations, noise: Noise, beyond_form: f64) -> Fit {
     if named(&current.model).len() < 2 {
         return current;
     }
@@ -184,7 +201,7 @@ fn exchange(mut current: Fit, data: &Observations, noise: Noise) -> Fit {
             if matches!(current.model.terms[i], Term::Named(_)) {
                 let without = fit(&current.model.without_term(i), data, noise);
                 let id = current.model.terms[i].id();
-                for (effect, other) in extensions(&without, data, noise, 8.0, 4) {
+                for (effect, other) in extensions(&without, data, noise, 8.0, beyond_form, 4) {
                     if effect.id() != id && other.cost < current.cost - 1.0 {
                         better = Some(other);
                         break;
@@ -249,18 +266,25 @@ const MOST_ASIDE: usize = 3;
 pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
     loop {
         let names = search_names(start, data, levels);
-        let screen = Screen::new(&names.found, data, names.noise);
-        let left = screen.structures();
+        let explained = names.baseline.cost - names.found.cost;
+        let open = Screen::new(&names.found, data, names.noise);
+        let guarded = Screen::guarded(&names.found, data, names.noise);
+        let mut left = open.structures();
+        let beyond = left.first().is_some_and(|s| s.gain > levels.beyond_form * explained);
+        if !named(&names.found.model).is_empty() && !beyond {
+            left = guarded.structures();
+        }
         if data.aside() < MOST_ASIDE {
             let structure = left.first().map_or(0.0, |s| s.gain);
-            let effect = screen.effects().iter().map(|s| s.gain).fold(structure, f64::max);
-            if let Some(series) = isolated_series(&screen, data, effect) {
+            let effect = open.effects().iter().map(|s| s.gain).fold(structure, f64::max);
+            if let Some(series) = isolated_series(&open, data, effect) {
                 data.set_aside(series);
                 continue;
             }
         }
+        let bent = guarded.bent_gain();
         let tried = (left.len(), left.first().map_or(0.0, |s| s.gain));
-        let (found, structure) = unnamed(&names.baseline, names.found, &left, data, names.noise, levels);
+        let (found, structure) = unnamed(&names.baseline, names.found, &left, bent, data, names.noise, levels);
         let mut selection = describe(names.baseline, found, structure, data, names.noise, levels);
         (selection.structures_tried, selection.structure_gain) = tried;
         return selection;
@@ -307,6 +331,7 @@ fn unnamed(
     baseline: &Fit,
     found: Fit,
     left: &[StructureScore],
+    bent_gain: f64,
     data: &Observations,
     noise: Noise,
     levels: Levels,
@@ -334,7 +359,9 @@ fn unnamed(
         let with = with_structure(baseline, score, data, noise);
         // One shape against several names: each name beyond the first must have paid for itself.
         let names = named(&found.model).len() as f64;
-        if with.cost < found.cost - 20.0 + 12.0 * (names - 1.0) || best.is_some() {
+        // The names may bend their forms before the shape is said to fit better than they do.
+        let margin = levels.outright + 0.06 * bent_gain - 12.0 * (names - 1.0);
+        if with.cost < found.cost - bent_gain - margin || best.is_some() {
             let gain = baseline.cost - with.cost;
             let extended = search(&with, data, noise, levels);
             let pruned = drop_all_superfluous(extended, data, noise, levels.further);

@@ -24,8 +24,15 @@ fn main() {
                 let plan = pinswitch_model::simulation::plan_of(&case, seed);
                 eprintln!(
                     "{:?} {} seed {seed}: {:?} gain {:.1} p {:.3} structure {:.1} aside {} truth {:?} {:?}",
-                    case.protocol, case.name, outcome.named, outcome.largest_gain, outcome.p_value,
-                    outcome.structure_gain, outcome.aside, plan.effects, plan.disturbances
+                    case.protocol,
+                    case.name,
+                    outcome.named,
+                    outcome.largest_gain,
+                    outcome.p_value,
+                    outcome.structure_gain,
+                    outcome.aside,
+                    plan.effects,
+                    plan.disturbances
                 );
             }
             outcomes.push(outcome);

@@ -1,11 +1,14 @@
 //! `pinswitch simulate PLAN.toml --out DIR` and `pinswitch simulate --study`.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use pinswitch_model::inference::Levels;
-use pinswitch_model::rig::PlateauTable;
-use pinswitch_model::simulation::{Case, Plan, Study, Truth, run_case, simulate, study_cases};
+use pinswitch_model::rig::{PlateauRow, PlateauTable};
+use pinswitch_model::simulation::{Case, Plan, RawRun, Study, Truth, run_case, simulate, study_cases};
 
 use super::{Failure, print};
 use crate::output::{OutputFile, write_set};
@@ -16,6 +19,7 @@ use crate::output::{OutputFile, write_set};
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch simulate plan.toml --out rig
+  pinswitch simulate plan.toml --out rig --raw
   pinswitch simulate --study 20")]
 pub(super) struct Arguments {
     /// The plan: layouts, loads, sweeps, speeds, dwells, effects with their sizes, noise, seed.
@@ -24,6 +28,9 @@ pub(super) struct Arguments {
     /// Folder for the tables.
     #[arg(long, value_name = "DIR", required_unless_present = "study")]
     out: Option<PathBuf>,
+    /// Also write raw 200 Hz logs with spikes, lost samples and bad moves: run.toml for `segment`, truth.csv, faults.json.
+    #[arg(long, conflicts_with = "study")]
+    raw: bool,
     /// Calibrate this many rigs of every kind and print what was said of them.
     #[arg(long, value_name = "SEEDS", conflicts_with_all = ["plan", "out"])]
     study: Option<u64>,
@@ -47,12 +54,38 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let plan = Plan::parse(&text, &name).map_err(Failure::bad_input)?;
     let simulated = simulate(&plan);
     let file = |name: &str, text: String| OutputFile { name: name.to_owned(), bytes: text.into_bytes() };
-    let files = [
+    let mut files = if arguments.raw { raw_files(&plan, &simulated.rows, &name)? } else { Vec::new() };
+    files.extend([
         file("plan.toml", text),
         file("plateaus-fresh.csv", PlateauTable::write(&simulated.fresh)),
         file("plateaus.csv", PlateauTable::write(&simulated.rows)),
-    ];
+    ]);
     write_set(out, &files).map_err(Failure::failed)
+}
+
+/// The run's description, its logs, their true plateaus, and what was put wrong into them.
+fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputFile>, Failure> {
+    let run = RawRun::new(plan, rows, name).map_err(Failure::bad_input)?;
+    let mut files = Vec::new();
+    let mut truth = "file,direction,repetition,force_N\n".to_owned();
+    let mut faults = serde_json::Map::new();
+    for log in (0..run.logs()).filter_map(|i| run.log(i)) {
+        let file = format!("{}.gz", log.file);
+        for (direction, repetition, force_n) in &log.truth {
+            let word = if direction.sign() > 0.0 { "concentric" } else { "eccentric" };
+            truth.push_str(&format!("{file},{word},{repetition},{force_n:.4}\n"));
+        }
+        faults.insert(file.clone(), serde_json::to_value(&log.faults).map_err(Failure::failed)?);
+        let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+        packed.write_all(log.text.as_bytes()).map_err(Failure::failed)?;
+        files.push(OutputFile { name: file, bytes: packed.finish().map_err(Failure::failed)? });
+    }
+    let mut json = serde_json::to_vec_pretty(&faults).map_err(Failure::failed)?;
+    json.push(b'\n');
+    files.push(OutputFile { name: "faults.json".to_owned(), bytes: json });
+    files.push(OutputFile { name: "truth.csv".to_owned(), bytes: truth.into_bytes() });
+    files.push(OutputFile { name: "run.toml".to_owned(), bytes: run.description(".gz").into_bytes() });
+    Ok(files)
 }
 
 /// The confusion matrix over all kinds of rig; rigs without effect count ten times, for the rate of false alarms.

@@ -25,7 +25,13 @@ impl Effect for RunIn {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::free("k", "1"), Parameter::bounded("r0", "1", 0.5, 12.0), Parameter::bounded("c", "1", -0.05, 1.05)] }
+        const {
+            &[
+                Parameter::free("k", "1"),
+                Parameter::bounded("r0", "1", 0.5, 12.0),
+                Parameter::bounded("c", "1", -0.05, 1.05),
+            ]
+        }
     }
 
     // One sign: friction is higher before it settles.

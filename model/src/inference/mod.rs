@@ -18,6 +18,6 @@ pub use forward::{Model, Term};
 pub(crate) use isolation::cell_deviation;
 pub use noise::{Noise, Spread};
 pub use observations::Observations;
+pub use selection::{Levels, Rival, Selection, select};
 pub(crate) use significance::degrees_of_freedom;
 pub use significance::family_p_value;
-pub use selection::{Levels, Rival, Selection, select};

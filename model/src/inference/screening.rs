@@ -79,7 +79,8 @@ impl<'a> Screen<'a> {
         let (rows, p) = (predicted.len(), model.coordinates.len());
         let bent = nuisances(&predicted);
         let mut basis = Projection::new(rows + p + bent.len());
-        let own = jacobian(model, data, &predicted).into_iter().zip(model.priors().iter().map(|prior| prior.sd));
+        let own =
+            jacobian(model, data, &predicted).into_iter().zip(model.priors().iter().map(|prior| prior.sd));
         for (j, (mut column, sd)) in own.chain(bent.into_iter().map(|b| (b, BEND))).enumerate() {
             noise.whiten(data, &mut column);
             column.resize(basis.len(), 0.0);
@@ -265,7 +266,9 @@ impl<'a> Screen<'a> {
         columns
             .iter()
             .enumerate()
-            .filter_map(|(series, columns)| least_squares(columns, &self.residual).map(|(gain, _)| (series, gain)))
+            .filter_map(|(series, columns)| {
+                least_squares(columns, &self.residual).map(|(gain, _)| (series, gain))
+            })
             .collect()
     }
 

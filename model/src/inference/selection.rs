@@ -40,8 +40,8 @@ impl Default for Levels {
             first_p: 0.012,
             flips: 0.1,
             further: 18.0,
-            further_share: 0.004,
-            beyond_form: 0.04,
+            further_share: 0.001,
+            beyond_form: 0.08,
             rival: 9.0,
             rival_share: 0.002,
             structure: 26.0,
@@ -117,8 +117,7 @@ fn extensions(
         // What the names so far would explain by bending their own forms is not worth another name.
         let guarded = Screen::guarded(from, data, noise).effects();
         scores.retain(|s| {
-            s.gain > beyond_form
-                || guarded.iter().any(|g| g.effect.id() == s.effect.id() && g.gain > least)
+            s.gain > beyond_form || guarded.iter().any(|g| g.effect.id() == s.effect.id() && g.gain > least)
         });
     }
     scores.retain(|s| s.gain > least);
@@ -154,7 +153,10 @@ fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit
         };
         // To first order alone: an effect that is not linear may gain more once fitted.
         let screened = if named(&current.model).is_empty() { 0.3 } else { 0.8 } * least;
-        let Some((_, best)) = extensions(&current, data, noise, screened, levels.beyond_form * gained, FITTED).into_iter().next()
+        let Some((_, best)) =
+            extensions(&current, data, noise, screened, levels.beyond_form * gained, FITTED)
+                .into_iter()
+                .next()
         else {
             break;
         };
@@ -284,7 +286,8 @@ pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selecti
         }
         let bent = guarded.bent_gain();
         let tried = (left.len(), left.first().map_or(0.0, |s| s.gain));
-        let (found, structure) = unnamed(&names.baseline, names.found, &left, bent, data, names.noise, levels);
+        let (found, structure) =
+            unnamed(&names.baseline, names.found, &left, bent, data, names.noise, levels);
         let mut selection = describe(names.baseline, found, structure, data, names.noise, levels);
         (selection.structures_tried, selection.structure_gain) = tried;
         return selection;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::disturbance::Disturbance;
+use super::raw::RawPlan;
 use super::twin::forms::forms_of;
 use crate::effects::{LIBRARY, effect_named};
 use crate::published;
@@ -178,6 +179,8 @@ pub struct Plan {
     pub disturbances: Vec<Disturbance>,
     /// Noise.
     pub noise: NoisePlan,
+    /// Sampling and faults of raw logs.
+    pub raw: RawPlan,
 }
 
 impl Default for Plan {
@@ -197,6 +200,7 @@ impl Default for Plan {
             effects: Vec::new(),
             disturbances: Vec::new(),
             noise: NoisePlan::default(),
+            raw: RawPlan::default(),
         }
     }
 }
@@ -281,6 +285,22 @@ impl Plan {
                 "give shares of the rows",
             );
         }
+        let r = &self.raw;
+        if !(20.0..=10_000.0).contains(&r.sample_rate_hz) {
+            return bound("raw.sample_rate_hz", r.sample_rate_hz.to_string(), "20..10000", "the rig has 200");
+        }
+        let shares = [r.spike_share, r.lost_share, r.odd_speed_share, r.missing_share];
+        if shares.iter().any(|v| !(0.0..=0.9).contains(v)) {
+            return bound("raw shares", format!("{shares:?}"), "0..0.9", "give shares of samples and logs");
+        }
+        if [r.sample_n, r.jitter_s].iter().any(|v| !(v.is_finite() && *v >= 0.0)) {
+            return bound(
+                "raw",
+                format!("sample_N {}, jitter_s {}", r.sample_n, r.jitter_s),
+                ">= 0",
+                "give standard deviations",
+            );
+        }
         for e in &self.effects {
             let remedy = match effect_named(&e.id) {
                 Some(effect) if effect.parameters().len() == e.values.len() => {
@@ -288,7 +308,12 @@ impl Plan {
                     if usize::from(e.form) < forms.len() {
                         continue;
                     }
-                    format!("form {} is unknown, it has 0 to {}: {}", e.form, forms.len() - 1, forms.join("; "))
+                    format!(
+                        "form {} is unknown, it has 0 to {}: {}",
+                        e.form,
+                        forms.len() - 1,
+                        forms.join("; ")
+                    )
                 }
                 Some(effect) => {
                     let names: Vec<&str> = effect.parameters().iter().map(|p| p.name).collect();

@@ -153,12 +153,7 @@ fn drawn(id: &str, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
 }
 
 /// Something outside the vocabulary.
-fn outside(
-    name: &str,
-    protocol: Protocol,
-    layouts: &[Vec<usize>],
-    random: &mut ChaCha8Rng,
-) -> Disturbance {
+fn outside(name: &str, protocol: Protocol, layouts: &[Vec<usize>], random: &mut ChaCha8Rng) -> Disturbance {
     let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
     let friction = random.random_range(0.08..0.25);
     let newtons = random.random_range(0.3..0.8);

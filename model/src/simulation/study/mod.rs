@@ -65,7 +65,8 @@ impl Study {
         let pairs = of(|t| matches!(t, Truth::Effects(ids) if ids.len() > 1));
         let confounded = of(|t| matches!(t, Truth::Confounded(_)));
         let outside = of(|t| matches!(t, Truth::Outside(_)));
-        let all: Vec<bool> = self.outcomes.iter().flat_map(|(_, o)| o).flat_map(|o| o.covered.clone()).collect();
+        let all: Vec<bool> =
+            self.outcomes.iter().flat_map(|(_, o)| o).flat_map(|o| o.covered.clone()).collect();
         let mut lines = vec![
             format!("rigs without effect: an alarm in {}", share(&nulls, |o| !o.exact)),
             format!("their probabilities by chance: {}", calibration_of_p(&nulls)),

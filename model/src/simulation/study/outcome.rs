@@ -4,7 +4,8 @@ use super::cases::{Case, Truth, plan_of};
 use crate::calibration::Verdict;
 use crate::effects::{LIBRARY, effect_named};
 use crate::inference::{
-    Levels, Model, Observations, Selection, Term, degrees_of_freedom, family_p_value, interval_half_widths, select,
+    Levels, Model, Observations, Selection, Term, degrees_of_freedom, family_p_value, interval_half_widths,
+    select,
 };
 use crate::rig::{Frame, PlateauTable};
 use crate::simulation::plan::Plan;

@@ -46,4 +46,3 @@ static STRENGTHS: [Strength; 21] = [
 pub(in crate::simulation) fn strengths() -> &'static [Strength] {
     &STRENGTHS
 }
-

@@ -22,10 +22,7 @@ pub(in crate::simulation) const FORMS: [(&str, &[&str]); 16] = [
     ("substrate_saturation", &["as its shape h says", "(1 + F/F0)^-k", "1/sqrt(1 + 2 k F/F0)"]),
     ("adhesion", &["c S on a device", "c (1 - w) S on a device"]),
     ("dwell_relaxation", &["1 + k ln(dwell/3 s)", "(dwell/3 s)^k"]),
-    (
-        "run_in",
-        &["exp(-(r-1)/r0) in each direction", "1/(1 + (r-1)/r0)", "r counts through both directions"],
-    ),
+    ("run_in", &["exp(-(r-1)/r0) in each direction", "1/(1 + (r-1)/r0)", "r counts through both directions"]),
     (
         "wear_drift",
         &["as its shape t says", "linear in the share of repetitions", "linear in the share of time"],

@@ -32,7 +32,7 @@ impl Study {
     /// The confusion matrix by case, in Markdown.
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "| protocol | rig | sets | right | honest | error after/before | said instead |\n|---|---|---|---|---|---|---|\n",
+            "| protocol | rig | sets | right | honest | error after/before | intervals that hold | said instead |\n|---|---|---|---|---|---|---|---|\n",
         );
         for (case, outcomes) in &self.outcomes {
             let exact = outcomes.iter().filter(|o| o.exact).count();
@@ -44,11 +44,12 @@ impl Study {
             }
             let other: Vec<String> = other.into_iter().map(|(said, k)| format!("{said} ({k})")).collect();
             text.push_str(&format!(
-                "| {} | {} | {} | {exact} | {honest} | {:.3} | {} |\n",
+                "| {} | {} | {} | {exact} | {honest} | {:.3} | {} | {} |\n",
                 format!("{:?}", case.protocol).to_lowercase(),
                 case.name,
                 outcomes.len(),
                 median_ratio(outcomes.iter()),
+                held(outcomes),
                 other.join("; ").replace('|', " or ")
             ));
         }
@@ -92,6 +93,15 @@ impl Study {
         ));
         lines.iter().map(|l| format!("- {l}\n")).collect()
     }
+}
+
+/// How many of the intervals hold the truth; empty without any.
+fn held(outcomes: &[Outcome]) -> String {
+    let all: Vec<bool> = outcomes.iter().flat_map(|o| o.covered.clone()).collect();
+    if all.is_empty() {
+        return String::new();
+    }
+    format!("{} of {}", all.iter().filter(|c| **c).count(), all.len())
 }
 
 /// How often the probability of the largest gain falls below some levels; it should as often as the level says.

@@ -10,7 +10,7 @@ use pinswitch_model::inference::Levels;
 use pinswitch_model::rig::PlateauTable;
 
 use super::{Failure, print};
-use crate::calibration_page::{page, plots};
+use crate::calibration_page::{UNEXPLAINED, page, plots, published_page, published_plot};
 use crate::output::{OutputFile, write_set};
 
 /// Refit the paper's model to a plateau table, trace what it misses to an effect, and report the error before and after.
@@ -74,7 +74,16 @@ fn published(out: &Path) -> Result<(), Failure> {
     }
     let mut json = serde_json::to_vec_pretty(&all).map_err(Failure::failed)?;
     json.push(b'\n');
-    let files = [OutputFile { name: "published.json".to_owned(), bytes: json }];
+    let plot = published_plot(&all).map_err(Failure::failed)?;
+    let html = published_page(&all, &plot);
+    let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
+    let files = [
+        file("report.html", html.into_bytes()),
+        file("maxima.svg", plot.svg.into_bytes()),
+        file("published.json", json),
+    ];
+    text.push_str("unexplained, see report.html:\n");
+    UNEXPLAINED.iter().for_each(|open| text.push_str(&format!("  {open}.\n")));
     write_set(out, &files).map_err(Failure::failed)?;
     print(text.as_bytes())
 }

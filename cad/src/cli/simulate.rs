@@ -8,7 +8,9 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use pinswitch_model::inference::Levels;
 use pinswitch_model::rig::{PlateauRow, PlateauTable};
-use pinswitch_model::simulation::{Case, Plan, RawRun, Study, Truth, run_case, simulate, study_cases};
+use pinswitch_model::simulation::{
+    Case, EffectPlan, Plan, RawRun, Study, Truth, run_case, simulate, study_cases,
+};
 
 use super::{Failure, print};
 use crate::output::{OutputFile, write_set};
@@ -18,13 +20,19 @@ use crate::output::{OutputFile, write_set};
 /// Writes plateaus.csv, plateaus-fresh.csv (rows without noise, to judge predictions by) and plan.toml.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
+  pinswitch simulate --effect coating_ploughing=0.02 --out rig
   pinswitch simulate plan.toml --out rig
   pinswitch simulate plan.toml --out rig --raw
   pinswitch simulate --study 20")]
 pub(super) struct Arguments {
-    /// The plan: layouts, loads, sweeps, speeds, dwells, effects with their sizes, noise, seed.
-    #[arg(required_unless_present = "study")]
+    /// The plan: layouts, loads, sweeps, speeds, dwells, effects with their sizes, noise, seed. Without one, the paper's rig.
     plan: Option<PathBuf>,
+    /// Put an effect into the rig, beside those of the plan: ID or ID=VALUE,VALUE in the order of its formula.
+    #[arg(long = "effect", value_name = "ID=VALUES", conflicts_with = "study")]
+    effects: Vec<String>,
+    /// Without a plan: loads up and down, several speeds and dwells, instead of the paper's protocol.
+    #[arg(long, conflicts_with_all = ["plan", "study"])]
+    randomised: bool,
     /// Folder for the tables.
     #[arg(long, value_name = "DIR", required_unless_present = "study")]
     out: Option<PathBuf>,
@@ -46,12 +54,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(seeds) = arguments.study {
         return study(arguments, seeds);
     }
-    let (Some(plan), Some(out)) = (&arguments.plan, &arguments.out) else {
-        return Err(Failure::bad_input("simulate needs a plan and --out, or --study"));
+    let Some(out) = &arguments.out else {
+        return Err(Failure::bad_input("simulate needs --out, or --study"));
     };
-    let name = plan.display().to_string();
-    let text = std::fs::read_to_string(plan).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
-    let plan = Plan::parse(&text, &name).map_err(Failure::bad_input)?;
+    let (plan, name) = plan(arguments)?;
+    let text = plan.to_text().map_err(Failure::failed)?;
     let simulated = simulate(&plan);
     let file = |name: &str, text: String| OutputFile { name: name.to_owned(), bytes: text.into_bytes() };
     let mut files = if arguments.raw { raw_files(&plan, &simulated.rows, &name)? } else { Vec::new() };
@@ -61,6 +68,31 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         file("plateaus.csv", PlateauTable::write(&simulated.rows)),
     ]);
     write_set(out, &files).map_err(Failure::failed)
+}
+
+/// The plan with the effects asked for, and its name in errors.
+fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
+    let (mut plan, name) = match &arguments.plan {
+        Some(path) => {
+            let name = path.display().to_string();
+            let text =
+                std::fs::read_to_string(path).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+            (Plan::parse(&text, &name).map_err(Failure::bad_input)?, name)
+        }
+        None if arguments.randomised => (Plan::randomised(), "--effect".to_owned()),
+        None => (Plan::default(), "--effect".to_owned()),
+    };
+    for effect in &arguments.effects {
+        let (id, values) = effect.split_once('=').unwrap_or((effect, ""));
+        let values: Result<Vec<f64>, _> =
+            values.split(',').filter(|v| !v.is_empty()).map(|v| v.trim().parse()).collect();
+        let values = values.map_err(|_| {
+            Failure::bad_input(format!("--effect {effect}: values are numbers, like coating_ploughing=0.02"))
+        })?;
+        plan.effects.push(EffectPlan { id: id.to_owned(), values, form: 0 });
+    }
+    plan.check(&name).map_err(Failure::bad_input)?;
+    Ok((plan, name))
 }
 
 /// The run's description, its logs, their true plateaus, and what was put wrong into them.

@@ -2,9 +2,10 @@
 
 use super::heldout::{SOUND_WEIGHT, held_out};
 use super::schema::{
-    BadSeries, DataSummary, EffectReport, Estimate, Extrapolation, Invisible, ModelReport, Report,
-    RivalReport, Verdict,
+    BadSeries, Candidate, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible, ModelReport,
+    Report, RivalReport, Verdict,
 };
+use super::transfer::layouts_left_out;
 use crate::effects::LIBRARY;
 use crate::inference::{
     Fit, Levels, Model, Noise, Observations, Selection, Term, cell_deviation, degrees_of_freedom,
@@ -104,9 +105,10 @@ pub fn calibrate_below(
     Ok(calibration)
 }
 
-/// A constant with its interval.
-fn estimate(value: f64, half_width: f64, unit: &str) -> Estimate {
-    Estimate { value, ci95: [value - half_width, value + half_width], unit: unit.to_owned() }
+/// A constant with its interval, which ends at the bounds of a shape.
+fn estimate(value: f64, half_width: f64, unit: &str, (least, most): (f64, f64)) -> Estimate {
+    let ci95 = [(value - half_width).max(least), (value + half_width).min(most)];
+    Estimate { value, ci95, unit: unit.to_owned() }
 }
 
 fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport, f64) {
@@ -128,14 +130,18 @@ fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport
         .names()
         .into_iter()
         .zip(fitted.model.values().into_iter().zip(widths))
-        .filter(|((name, _), _)| touched(name))
-        .map(|((name, unit), (value, width))| (name, estimate(value, width, unit)))
+        .enumerate()
+        .filter(|(_, ((name, _), _))| touched(name))
+        .map(|(i, ((name, unit), (value, width)))| {
+            (name, estimate(value, width, unit, fitted.model.bounds_of(i)))
+        })
         .collect();
     let report = ModelReport {
         rmse_n: (sum / f64::max(count, 1.0)).sqrt(),
         heldout_rmse_n: held.both_n(),
         heldout_series_rmse_n: held.series_n,
         heldout_loads_rmse_n: held.loads_n,
+        heldout_layouts_rmse_n: layouts_left_out(&fitted.model, data, noise),
         parameters,
     };
     (report, held.both_n())
@@ -172,8 +178,8 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Re
         noise,
         baseline,
         augmented,
+        candidates: candidates(selection, &effects, data),
         effects,
-        candidates: selection.candidates.iter().map(|(id, gain)| ((*id).to_owned(), *gain)).collect(),
         family_probability: selection.family_probability,
         invisible: selection
             .invisible
@@ -201,6 +207,38 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Re
         bad_series: bad_series(rows, selection, data),
         extrapolation: None,
     }
+}
+
+/// Every effect with what became of it.
+fn candidates(selection: &Selection, effects: &[EffectReport], data: &Observations) -> Vec<Candidate> {
+    let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
+    let fate = |id: &str, p: f64| {
+        if effects.iter().any(|e| e.id == id) {
+            Fate::Kept
+        } else if effects.iter().any(|e| e.rivals.iter().any(|r| r.id == id)) {
+            Fate::Rival
+        } else if p <= 0.015 {
+            Fate::Superfluous
+        } else if selection.invisible.iter().any(|(e, ..)| e.id() == id) {
+            Fate::Invisible
+        } else {
+            Fate::Chance
+        }
+    };
+    selection
+        .candidates
+        .iter()
+        .map(|(id, gain)| {
+            let p_value = family_p_value(*gain, LIBRARY.len(), degrees);
+            Candidate {
+                id: (*id).to_owned(),
+                gain: gain.max(0.0),
+                p_value,
+                gain_left: selection.leftover.iter().find(|l| l.0 == *id).map(|l| l.1.max(0.0)),
+                fate: fate(id, p_value),
+            }
+        })
+        .collect()
 }
 
 fn effects(

@@ -122,6 +122,18 @@ impl Model {
         model
     }
 
+    /// The same model with every constant but these held where it is.
+    #[must_use]
+    pub(crate) fn frozen_except(&self, free: &[usize]) -> Self {
+        let mut model = self.clone();
+        for (i, (prior, coordinate)) in model.priors.iter_mut().zip(&model.coordinates).enumerate() {
+            if !free.contains(&i) {
+                *prior = Prior { mean: *coordinate, sd: 1e-5 };
+            }
+        }
+        model
+    }
+
     /// Index of the first constant of a term.
     pub(crate) fn term_offset(&self, index: usize) -> usize {
         self.baseline_len() + self.terms[..index].iter().map(Term::constants).sum::<usize>()
@@ -178,6 +190,13 @@ impl Model {
             }
         }
         (coordinate, 1.0)
+    }
+
+    /// Bounds of a constant: those of a shape, zero for the baseline's, none for a size.
+    pub(crate) fn bounds_of(&self, index: usize) -> (f64, f64) {
+        let Some(beyond) = index.checked_sub(self.baseline_len()) else { return (0.0, f64::INFINITY) };
+        let bounds: Vec<_> = self.terms.iter().flat_map(Term::bounds).collect();
+        bounds.get(beyond).copied().flatten().unwrap_or((f64::NEG_INFINITY, f64::INFINITY))
     }
 
     /// Values of all constants.

@@ -28,6 +28,8 @@ pub struct Levels {
     pub rival_share: f64,
     /// Least gain of a structure that no name explains.
     pub structure: f64,
+    /// Probability by chance, over all structures tried, at which one is believed.
+    pub structure_p: f64,
     /// Least gain of such a structure as a share of what the names explain.
     pub structure_share: f64,
     /// By how much a structure alone must fit better than a name with its form bent.
@@ -45,6 +47,7 @@ impl Default for Levels {
             rival: 9.0,
             rival_share: 0.002,
             structure: 26.0,
+            structure_p: 0.01,
             structure_share: 0.02,
             outright: 7.0,
         }
@@ -77,6 +80,8 @@ pub struct Selection {
     pub structure: Option<(Covariate, f64)>,
     /// Every candidate with its gain over the baseline, best first.
     pub candidates: Vec<(&'static str, f64)>,
+    /// What each absent effect would still gain on top of what was found.
+    pub leftover: Vec<(&'static str, f64)>,
     /// Effects that this data cannot show: id, visible share, strength at a typical size.
     pub invisible: Vec<(&'static dyn Effect, f64, f64)>,
     /// Probability, by flipped signs of whole series, of the largest candidate without any effect.
@@ -149,7 +154,7 @@ fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit
         let least = if named(&current.model).is_empty() {
             first
         } else {
-            levels.further.max(levels.further_share * gained)
+            first.max(levels.further).max(levels.further_share * gained)
         };
         // To first order alone: an effect that is not linear may gain more once fitted.
         let screened = if named(&current.model).is_empty() { 0.3 } else { 0.8 } * least;
@@ -238,10 +243,17 @@ pub(crate) fn fit_baseline(model: &Model, data: &Observations, noise: Noise) -> 
     best
 }
 
+/// With fewer series and directions than these, only the model's own columns are taken out before noise is estimated.
+const LEAST_CELLS: usize = 50;
+
 /// Columns that could explain residuals, in newtons: the model's own, the library's, and coarse structure.
 fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
     let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let mut columns = super::fit::jacobian(&fitted.model, data, &predicted);
+    // So many columns would explain a few series altogether and leave no noise to estimate.
+    if data.cells.len() < LEAST_CELLS {
+        return columns;
+    }
     for effect in LIBRARY {
         for start in effect.starts(&fitted.model.frame) {
             let changed = fitted.model.with_term(Term::Named(effect), &start).predict(&data.points);
@@ -340,7 +352,10 @@ fn unnamed(
     levels: Levels,
 ) -> (Fit, Option<(Covariate, f64)>) {
     let explained = baseline.cost - found.cost;
-    let least = levels.structure.max(levels.structure_share * explained);
+    // With few series chance reaches further: the level of the study holds for dozens of them.
+    let degrees = degrees_of_freedom(data, baseline.model.coordinates.len());
+    let chance = gain_at(levels.structure_p, left.len().max(1), degrees);
+    let least = levels.structure.max(chance).max(levels.structure_share * explained);
     let alone = if found.model.terms.is_empty() {
         Vec::new()
     } else {
@@ -458,7 +473,10 @@ fn describe(
         .map(|s| (s.effect, s.visible_share, s.strength))
         .collect();
     let family_probability = flips(&scores);
+    let leftover =
+        Screen::new(&augmented, data, noise).effects().iter().map(|s| (s.effect.id(), s.gain)).collect();
     Selection {
+        leftover,
         family_probability,
         structure_gain: 0.0,
         structures_tried: 0,

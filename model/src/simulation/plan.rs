@@ -231,7 +231,20 @@ impl Plan {
         Ok(plan)
     }
 
-    fn check(&self, file: &str) -> Result<(), PlanError> {
+    /// The plan's text.
+    ///
+    /// # Errors
+    /// [`PlanError::Malformed`] if a value cannot be written as TOML.
+    pub fn to_text(&self) -> Result<String, PlanError> {
+        toml::to_string(self)
+            .map_err(|e| PlanError::Malformed { file: "plan.toml".to_owned(), problem: e.to_string() })
+    }
+
+    /// Checks every field. `file` is the name used in errors.
+    ///
+    /// # Errors
+    /// [`PlanError`] at the first field that cannot be used.
+    pub fn check(&self, file: &str) -> Result<(), PlanError> {
         let bound = |field, value: String, bound, remedy| {
             Err(PlanError::Bound { file: file.to_owned(), field, value, bound, remedy })
         };

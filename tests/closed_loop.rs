@@ -181,6 +181,9 @@ fn raw_logs_go_round_the_whole_loop() {
     assert_eq!(report(at)["effects"][0]["id"], "load_cell_offset", "{}", report(at)["effects"]);
 }
 
+/// Which lines of a table are kept.
+type Rows<'a> = &'a dyn Fn(&[&str]) -> bool;
+
 /// Two loads, one direction or one condition: an answer that names what it leaves open.
 #[test]
 fn too_little_data_gets_an_answer_with_open_questions() {
@@ -196,7 +199,7 @@ fn too_little_data_gets_an_answer_with_open_questions() {
         }
         std::fs::write(at.join("little.csv"), text).unwrap();
     };
-    let cases: [(&str, &dyn Fn(&[&str]) -> bool, &[&str]); 3] = [
+    let cases: [(&str, Rows<'_>, &[&str]); 3] = [
         (
             "two loads",
             &|c| c[4] == "251.2" || c[4] == "5002.5",

@@ -29,7 +29,7 @@ pub(crate) fn jacobian(model: &Model, data: &Observations, at: &[f64]) -> Vec<Ve
         .map(|j| {
             let step = 1e-5 * model.coordinates[j].abs().max(0.1);
             shifted.coordinates[j] = model.coordinates[j] + step;
-            let mut column = shifted.predict(&data.points);
+            let mut column = shifted.predict_changed(&data.points, at, j);
             shifted.coordinates[j] = model.coordinates[j];
             column.iter_mut().zip(at).for_each(|(c, a)| *c = (*c - a) / step);
             column

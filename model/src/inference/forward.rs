@@ -249,6 +249,31 @@ impl Model {
         points.iter().map(|point| self.read(&values, &offsets, point, false)).collect()
     }
 
+    /// Readings after one constant has changed, where `before` were those at the points: only conditions that the
+    /// constant touches are computed again.
+    pub(crate) fn predict_changed(&self, points: &[Point], before: &[f64], index: usize) -> Vec<f64> {
+        let values = self.values();
+        let offsets: Vec<usize> = (0..self.terms.len()).map(|i| self.term_offset(i)).collect();
+        let touched: Vec<bool> = (0..self.frame.conditions.len()).map(|c| self.touches(index, c)).collect();
+        points
+            .iter()
+            .zip(before)
+            .map(|(p, b)| if touched[p.condition] { self.read(&values, &offsets, p, false) } else { *b })
+            .collect()
+    }
+
+    /// Whether a constant enters the readings on a condition.
+    fn touches(&self, index: usize, condition: usize) -> bool {
+        let c = &self.frame.conditions[condition];
+        match index {
+            0 => c.has_pins(),
+            1 => c.surface == Surface::Silicone,
+            _ if index < 2 + 2 * self.frame.devices() => c.device == Some((index - 2) / 2),
+            _ if index < self.baseline_len() => self.plain[condition] == index,
+            _ => true,
+        }
+    }
+
     /// Tension of a part in newtons: effects of the switch in, effects of the rig out.
     pub fn predict_part(&self, points: &[Point]) -> Vec<f64> {
         let values = self.values();

@@ -2,33 +2,45 @@
 
 use std::fmt::Write;
 
-use pinswitch_model::calibration::{Calibration, Estimate, Report, Verdict};
+use pinswitch_model::calibration::{Calibration, Estimate, Fate, ModelReport, Report, Verdict};
+use pinswitch_model::effects::Covariate;
 
 use super::Plot;
 
 /// Text that cannot be taken for markup.
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Everything before the first heading of a page.
+pub(super) fn head(title: &str) -> String {
+    format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title><style>\
+         body{{font:16px/1.5 sans-serif;max-width:940px;margin:2em auto;padding:0 1em;color:#222}}\
+         h2{{margin-top:2em;border-bottom:2px solid #dde5ec;padding-bottom:.2em}}\
+         table{{border-collapse:collapse;margin:1em 0}}td,th{{border-bottom:1px solid #ccc;padding:.25em .8em;text-align:left}}\
+         td.n{{text-align:right;font-variant-numeric:tabular-nums}}\
+         .verdict{{background:#eef3f8;padding:.8em 1em;border-left:5px solid #005a9c}}figure{{margin:.6em 0}}\
+         .grid{{display:grid;grid-template-columns:1fr 1fr;gap:.4em}}.grid figure{{margin:0}}\
+         figcaption{{color:#555}}svg{{max-width:100%;height:auto}}.b{{color:#be5014}}.a{{color:#005a9c}}\
+         tr.kept td{{background:#e6f0f8}}tr.rival td{{background:#fbf1e8}}</style></head><body>\n",
+        escape(title)
+    )
 }
 
 /// The page.
 pub fn page(title: &str, calibration: &Calibration, plots: &[Plot]) -> String {
     let report = &calibration.report;
-    let mut html = String::from(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Calibration</title><style>\
-         body{font:16px/1.5 sans-serif;max-width:900px;margin:2em auto;padding:0 1em;color:#222}\
-         table{border-collapse:collapse;margin:1em 0}td,th{border-bottom:1px solid #ccc;padding:.25em .8em;text-align:left}\
-         .verdict{background:#eef3f8;padding:.8em 1em;border-left:5px solid #005a9c}figure{margin:1.5em 0}\
-         figcaption{color:#555}svg{max-width:100%;height:auto}.b{color:#be5014}.a{color:#005a9c}</style></head><body>\n",
-    );
+    let mut html = head("Calibration");
     let sections = [
         format!("<h1>{}: what the paper's model misses</h1>\n", escape(title)),
         conclusion(report),
         data(report),
-        figures(plots, "condition-", "Measured and predicted"),
-        figures(plots, "residual-", "Residual over each covariate"),
-        found(report),
+        conditions(plots),
+        residuals(plots),
         candidates(report),
+        found(report),
+        errors(report),
         constants(report),
         blind(report),
     ];
@@ -74,16 +86,25 @@ fn conclusion(report: &Report) -> String {
 
 fn data(report: &Report) -> String {
     let d = &report.data;
+    let n = &report.noise;
     let mut html = format!(
-        "<h2>The data</h2><p>{} rows in {} series on {} conditions; {} rows weighed down as outliers.</p>\n",
-        d.rows, d.series, d.conditions, d.outliers
+        "<h2>1. The data</h2><p>{} rows in {} series on {} conditions; {} rows weighed down as outliers. \
+         Noise, estimated: one repetition {:.3} N and {:.2} % of the load, a whole series and direction {:.3} N and {:.2} %.</p>\n",
+        d.rows,
+        d.series,
+        d.conditions,
+        d.outliers,
+        n.repetition.constant_n,
+        100.0 * n.repetition.per_load,
+        n.series.constant_n,
+        100.0 * n.series.per_load
     );
     if !report.bad_series.is_empty() {
-        html.push_str("<p>Series to look at (mislabelled weight, bad run):</p><ul>");
+        html.push_str("<p>Series to look at (mislabelled weight, bad run); they decide nothing:</p><ul>");
         for bad in &report.bad_series {
             let _ = write!(
                 html,
-                "<li>{} {}: off by {:+.3} N ({:+.1} standard deviations)</li>",
+                "<li>series {} {}: off by {:+.3} N ({:+.1} standard deviations)</li>",
                 escape(&bad.series),
                 bad.direction,
                 bad.offset_n,
@@ -95,31 +116,93 @@ fn data(report: &Report) -> String {
     html
 }
 
-fn figures(plots: &[Plot], prefix: &str, heading: &str) -> String {
-    let mut html = format!(
-        "<h2>{heading}</h2><p><span class=\"b\">The paper's model, refitted</span>; <span class=\"a\">the better model</span>.</p>\n"
-    );
-    for plot in plots.iter().filter(|p| p.file.starts_with(prefix)) {
-        let _ =
-            writeln!(html, "<figure>{}<figcaption>{}</figcaption></figure>", plot.svg, escape(&plot.caption));
+fn conditions(plots: &[Plot]) -> String {
+    let mut html = "<h2>2. Measured and predicted</h2><p>Mean readings (dots) above and below the load they hold, \
+                    <span class=\"b\">the paper's model, refitted</span>, and <span class=\"a\">the better model</span>, \
+                    on each condition: concentric above zero, eccentric below.</p>\n<div class=\"grid\">"
+        .to_owned();
+    for plot in plots.iter().filter(|p| p.file.starts_with("condition-")) {
+        let _ = writeln!(html, "<figure aria-label=\"{}\">{}</figure>", escape(&plot.caption), plot.svg);
+    }
+    html.push_str("</div>\n");
+    html
+}
+
+fn residuals(plots: &[Plot]) -> String {
+    let mut html = "<h2>3. Where the paper's model misses</h2><p>What is left of each reading, over everything that varied; \
+                    heavy dots are means. A course in the left panel is what the model lacks; the right panel should be flat.</p>\n"
+        .to_owned();
+    for plot in plots.iter().filter(|p| p.file.starts_with("residual-")) {
+        let _ = writeln!(html, "<figure aria-label=\"{}\">{}</figure>", escape(&plot.caption), plot.svg);
+    }
+    let fixed: Vec<&str> = Covariate::ALL
+        .iter()
+        .map(|c| c.word())
+        .filter(|word| !plots.iter().any(|p| p.file == format!("residual-{word}.svg")))
+        .collect();
+    if !fixed.is_empty() {
+        let _ = writeln!(html, "<p>Never varied here, and so never seen: {}.</p>", fixed.join(", "));
     }
     html
 }
 
+fn candidates(report: &Report) -> String {
+    let mut html = "<h2>4. The candidates</h2><p>What each effect alone would gain over the paper's model, in squares of the \
+                    noise, how likely chance gains as much over the whole vocabulary, and what it would still gain beside \
+                    those that were kept.</p><table><tr><th>effect</th><th>gain</th><th>by chance</th><th>gain left</th>\
+                    <th>decision</th></tr>\n"
+        .to_owned();
+    for c in &report.candidates {
+        let (class, decision) = match c.fate {
+            Fate::Kept => ("kept", "kept"),
+            Fate::Rival => ("rival", "a rival: explains the data as well as the one kept"),
+            Fate::Invisible => ("", "dropped: this data cannot show it"),
+            Fate::Chance => ("", "dropped: may be chance"),
+            Fate::Superfluous => ("", "dropped: superfluous beside what was kept"),
+        };
+        let left = c.gain_left.map_or_else(String::new, |g| format!("{g:.1}"));
+        let _ = writeln!(
+            html,
+            "<tr class=\"{class}\"><td>{}</td><td class=\"n\">{:.1}</td><td class=\"n\">{}</td><td class=\"n\">{left}</td><td>{decision}</td></tr>",
+            c.id,
+            c.gain,
+            probability(c.p_value)
+        );
+    }
+    html.push_str("</table>\n");
+    html
+}
+
+/// A probability as people write it.
+fn probability(p: f64) -> String {
+    if p < 1e-12 {
+        "&lt; 1e-12".to_owned()
+    } else if p < 0.001 {
+        format!("{p:.0e}")
+    } else {
+        format!("{p:.3}")
+    }
+}
+
 fn found(report: &Report) -> String {
-    let mut html = "<h2>What was found</h2>\n".to_owned();
+    let mut html = "<h2>5. What was found</h2>\n".to_owned();
     if report.effects.is_empty() {
         html.push_str("<p>Nothing beyond the noise.</p>\n");
     }
     for effect in &report.effects {
+        let side = match effect.side.as_deref() {
+            Some("switch") => "It belongs to the switch and stays in predicted curves.",
+            Some(_) => "It belongs to the rig and stays out of the curves of a printed part.",
+            None => "It has no name: a smooth correction stands in the model.",
+        };
         let _ = write!(
             html,
-            "<h3>{}</h3><p>Lies in {}. {}<br>Chance of such a gain without it, over the whole vocabulary: {:.1e}. \
-             Held-out error without it {:.4} N, with it {:.4} N.</p>{}",
+            "<h3>{}</h3><p>{}<br>It lies in {}. {side} Chance of such a gain without it: {}. \
+             Held-out error without it <b class=\"b\">{:.4} N</b>, with it <b class=\"a\">{:.4} N</b>.</p>{}",
             escape(&effect.id),
-            effect.covariate,
             escape(&effect.formula),
-            effect.p_value,
+            effect.covariate,
+            probability(effect.p_value),
             effect.error_before_n,
             effect.error_after_n,
             table(effect.parameters.iter())
@@ -127,7 +210,7 @@ fn found(report: &Report) -> String {
         for rival in &effect.rivals {
             let _ = writeln!(
                 html,
-                "<p>It may as well be <b>{}</b>: {}. The experiment that would settle it: {}.</p>",
+                "<p>It may as well be <b>{}</b>: {}.<br><b>The experiment that would settle it:</b> {}.</p>",
                 escape(&rival.id),
                 escape(&rival.why),
                 escape(&rival.experiment)
@@ -137,33 +220,51 @@ fn found(report: &Report) -> String {
     html
 }
 
-fn candidates(report: &Report) -> String {
-    let mut all: Vec<_> = report.candidates.iter().collect();
-    all.sort_by(|a, b| b.1.total_cmp(a.1));
-    let mut html =
-        "<h2>The candidates</h2><p>What each effect alone would gain over the paper's model, to first \
-                    order, in squares of the noise. Others fall away once the named ones are in.</p>\
-                    <table><tr><th>effect</th><th>gain</th><th></th></tr>\n"
-            .to_owned();
-    for (id, gain) in all {
-        let kept = if report.effects.iter().any(|e| e.id == *id) {
-            "kept"
-        } else if report.effects.iter().any(|e| e.rivals.iter().any(|r| r.id == *id)) {
-            "rival"
-        } else if *gain < 16.0 {
-            "within chance"
-        } else {
-            "superfluous beside what was kept"
-        };
-        let _ = writeln!(html, "<tr><td>{id}</td><td>{gain:.1}</td><td>{kept}</td></tr>");
+fn errors(report: &Report) -> String {
+    let mut html = "<h2>6. The error before and after</h2><p>Root mean square, in newtons. Whole layouts: friction and effects come from \
+                    the other layouts, only the threshold and range are the layout's own.</p>\
+                    <table><tr><th>judged on</th><th>before</th><th>after</th></tr>\n"
+        .to_owned();
+    let of = |m: &ModelReport| {
+        [
+            Some(m.rmse_n),
+            Some(m.heldout_series_rmse_n),
+            Some(m.heldout_loads_rmse_n),
+            m.heldout_layouts_rmse_n,
+        ]
+    };
+    let names =
+        ["the rows fitted", "whole series held out", "whole loads held out", "whole layouts held out"];
+    for ((name, before), after) in names.iter().zip(of(&report.baseline)).zip(of(&report.augmented)) {
+        if let (Some(before), Some(after)) = (before, after) {
+            let _ = writeln!(
+                html,
+                "<tr><td>{name}</td><td class=\"n b\">{before:.4}</td><td class=\"n a\">{after:.4}</td></tr>"
+            );
+        }
     }
     html.push_str("</table>\n");
+    if let Some(e) = &report.extrapolation {
+        let _ = writeln!(
+            html,
+            "<p>Fitted up to {:.1} N only and judged on the {} rows above: <span class=\"b\">{:.2} N</span> before, \
+             <span class=\"a\">{:.2} N</span> after (medians {:.2} and {:.2} N); {:.2} N without {} bad reading(s).</p>",
+            e.fitted_below_n,
+            e.rows,
+            e.rmse_before_n,
+            e.rmse_after_n,
+            e.median_before_n,
+            e.median_after_n,
+            e.rmse_after_without_bad_n,
+            e.bad_rows
+        );
+    }
     html
 }
 
 fn constants(report: &Report) -> String {
     format!(
-        "<h2>Constants</h2><h3>The paper's model, refitted</h3>{}<h3>The better model</h3>{}",
+        "<h2>7. Constants</h2><h3 class=\"b\">The paper's model, refitted</h3>{}<h3 class=\"a\">The better model</h3>{}",
         table(report.baseline.parameters.iter()),
         table(report.augmented.parameters.iter())
     )
@@ -172,10 +273,12 @@ fn constants(report: &Report) -> String {
 fn table<'a>(rows: impl Iterator<Item = (&'a String, &'a Estimate)>) -> String {
     let mut html =
         "<table><tr><th>constant</th><th>value</th><th>95 % interval</th><th>unit</th></tr>\n".to_owned();
+    let mut any = false;
     for (name, e) in rows {
+        any = true;
         let _ = writeln!(
             html,
-            "<tr><td>{}</td><td>{:.5}</td><td>{:.5} .. {:.5}</td><td>{}</td></tr>",
+            "<tr><td>{}</td><td class=\"n\">{:.4}</td><td class=\"n\">{:.4} .. {:.4}</td><td>{}</td></tr>",
             escape(name),
             e.value,
             e.ci95[0],
@@ -184,20 +287,25 @@ fn table<'a>(rows: impl Iterator<Item = (&'a String, &'a Estimate)>) -> String {
         );
     }
     html.push_str("</table>\n");
-    html
+    if any { html } else { String::new() }
 }
 
 fn blind(report: &Report) -> String {
-    let mut html = "<h2>What this data cannot see</h2><ul>\n".to_owned();
-    for i in &report.invisible {
-        let _ = writeln!(
-            html,
-            "<li><b>{}</b>: {}. To see it: {}.</li>",
-            i.id,
-            escape(&i.why),
-            escape(&i.experiment)
-        );
+    let mut html = "<h2>8. What this data cannot see, and what would</h2>\n".to_owned();
+    if !report.invisible.is_empty() {
+        html.push_str("<table><tr><th>effect</th><th>why not</th><th>what would show it</th></tr>\n");
+        for i in &report.invisible {
+            let _ = writeln!(
+                html,
+                "<tr><td>{}</td><td>{}</td><td>{}</td></tr>",
+                i.id,
+                escape(&i.why),
+                escape(&i.experiment)
+            );
+        }
+        html.push_str("</table>\n");
     }
+    html.push_str("<p>No data of such a rig can see, once the model is refitted:</p><ul>\n");
     for text in &report.never_visible {
         let _ = writeln!(html, "<li>{}.</li>", escape(text));
     }

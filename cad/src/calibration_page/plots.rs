@@ -4,16 +4,21 @@ use std::collections::BTreeMap;
 use std::error::Error;
 
 use pinswitch_model::calibration::Calibration;
-use pinswitch_model::rig::Point;
+use pinswitch_model::effects::Covariate;
+use pinswitch_model::rig::{Frame, Point};
 use plotters::prelude::*;
 
-/// Width and height of a figure in pixels.
-const SIZE: (u32, u32) = (860, 420);
-const BEFORE: RGBColor = RGBColor(190, 80, 20);
-const AFTER: RGBColor = RGBColor(0, 90, 156);
-const DATA: RGBColor = RGBColor(60, 60, 60);
+/// Width and height of a condition's figure in pixels.
+const CONDITION: (u32, u32) = (440, 300);
+/// Width and height of a pair of residual panels in pixels.
+const RESIDUAL: (u32, u32) = (900, 320);
+pub(super) const BEFORE: RGBColor = RGBColor(190, 80, 20);
+pub(super) const AFTER: RGBColor = RGBColor(0, 90, 156);
+pub(super) const DATA: RGBColor = RGBColor(60, 60, 60);
 /// Points of one residual panel at most; a table has thousands of rows.
 const SHOWN: usize = 900;
+/// Stretches of a covariate over which residuals are averaged.
+const STRETCHES: usize = 24;
 
 /// A figure cannot be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -31,49 +36,82 @@ pub struct Plot {
     pub svg: String,
 }
 
-/// How a covariate is read off a point.
-type Reader = fn(&Point) -> f64;
+/// How a covariate is read off a point, and how it is written at the axis.
+struct Axis {
+    label: String,
+    read: Box<dyn Fn(&Point) -> f64>,
+    /// Names of its values 0, 1, ..., if it has names.
+    names: Vec<String>,
+}
 
-/// All figures.
+impl Axis {
+    fn new(covariate: Covariate, frame: &Frame) -> Self {
+        let (stroke, session, speed) = (frame.stroke_mm, frame.session_s, frame.reference_speed_pct);
+        let plain = |label: &str, read: Box<dyn Fn(&Point) -> f64>| Self {
+            label: label.to_owned(),
+            read,
+            names: Vec::new(),
+        };
+        let named = |label: &str, names: Vec<String>, read: Box<dyn Fn(&Point) -> f64>| Self {
+            label: label.to_owned(),
+            read,
+            names,
+        };
+        match covariate {
+            Covariate::Load => plain("load (N)", Box::new(|p| p.load_n)),
+            Covariate::Repetition => plain("repetition", Box::new(|p| p.repetition)),
+            Covariate::Position => plain("position (mm)", Box::new(move |p| p.position * stroke)),
+            Covariate::Speed => plain("speed (%)", Box::new(move |p| speed * p.log_speed.exp())),
+            Covariate::Dwell => plain("dwell (s)", Box::new(|p| 3.0 * p.log_dwell.exp())),
+            Covariate::Time => plain("time (h)", Box::new(move |p| p.time * session / 3600.0)),
+            Covariate::Direction => named(
+                "direction",
+                ["eccentric", "concentric"].map(str::to_owned).to_vec(),
+                Box::new(|p| f64::from(u8::from(p.sign > 0.0))),
+            ),
+            Covariate::Sweep => named(
+                "sweep",
+                ["loads up", "loads down"].map(str::to_owned).to_vec(),
+                Box::new(|p| p.descending),
+            ),
+            Covariate::Condition => named(
+                "condition, numbered as above",
+                (1..=frame.conditions.len()).map(|n| n.to_string()).collect(),
+                Box::new(|p| p.condition as f64),
+            ),
+        }
+    }
+}
+
+/// All figures: one per condition, and one per covariate that varies.
 ///
 /// # Errors
 /// [`PlotFailure`] if the drawing library refuses a coordinate.
 pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotFailure> {
     let mut all = Vec::new();
     let failure = |e: Box<dyn Error>| PlotFailure(e.to_string());
-    for (index, condition) in calibration.selection.baseline.model.frame.conditions.iter().enumerate() {
+    let frame = &calibration.selection.baseline.model.frame;
+    for (index, condition) in frame.conditions.iter().enumerate() {
         let mut svg = String::new();
         curve(&mut svg, calibration, index).map_err(failure)?;
-        all.push(Plot {
-            file: format!("condition-{index}.svg"),
-            caption: format!(
-                "Tension minus load on {}: readings, the paper's model, the better model",
-                condition.name()
-            ),
-            svg,
-        });
+        all.push(Plot { file: format!("condition-{index}.svg"), caption: condition.name(), svg });
     }
-    let covariates: [(&str, Reader); 6] = [
-        ("load (N)", |p| p.load_n),
-        ("repetition", |p| p.repetition),
-        ("position (share of the stroke)", |p| p.position),
-        ("ln(speed / mean speed)", |p| p.log_speed),
-        ("ln(dwell / 3 s)", |p| p.log_dwell),
-        ("time (share of the session)", |p| p.time),
-    ];
-    for (name, of) in covariates {
+    for covariate in Covariate::ALL {
+        let axis = Axis::new(covariate, frame);
+        let range = calibration
+            .data
+            .points
+            .iter()
+            .map(|p| (axis.read)(p))
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |a, x| (a.0.min(x), a.1.max(x)));
+        if range.1 - range.0 < 1e-9 {
+            continue;
+        }
         let mut svg = String::new();
-        residual(&mut svg, calibration, name, of).map_err(failure)?;
-        let word = name.split([' ', '(']).next().unwrap_or(name);
-        let word = word.trim_start_matches("ln");
-        let word = if word.is_empty() {
-            name.trim_start_matches("ln(").split(' ').next().unwrap_or(name)
-        } else {
-            word
-        };
+        residual(&mut svg, calibration, &axis, range).map_err(failure)?;
         all.push(Plot {
-            file: format!("residual-{word}.svg"),
-            caption: format!("Residuals over {name}, before (left) and after (right)"),
+            file: format!("residual-{}.svg", covariate.word()),
+            caption: format!("over {}: before (left) and after (right)", covariate.word()),
             svg,
         });
     }
@@ -102,59 +140,107 @@ fn curve(svg: &mut String, calibration: &Calibration, condition: usize) -> Resul
         (low, high)
     };
     let (low, high) = (1..4).map(span).fold((0.0f64, 0.0f64), |a, b| (a.0.min(b.0), a.1.max(b.1)));
-    let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
+    let root = SVGBackend::with_string(svg, CONDITION).into_drawing_area();
     root.fill(&WHITE)?;
+    let name = format!(
+        "{}: {}",
+        condition + 1,
+        calibration.selection.baseline.model.frame.conditions[condition].name()
+    );
     let mut chart = ChartBuilder::on(&root)
-        .margin(12)
-        .x_label_area_size(40)
-        .y_label_area_size(56)
+        .margin(8)
+        .caption(name, ("sans-serif", 15))
+        .x_label_area_size(38)
+        .y_label_area_size(50)
         .build_cartesian_2d(0.0..span(0).1.max(1e-6) * 1.04, low * 1.1 - 0.05..high * 1.1 + 0.05)?;
     chart.configure_mesh().light_line_style(TRANSPARENT).x_desc("load F (N)").y_desc("T - F (N)").draw()?;
     for up in [false, true] {
         let of = |i: usize| lines.iter().filter(move |l| l.0 == up).map(move |l| (l.1[0], l.1[i]));
         chart.draw_series(LineSeries::new(of(2), BEFORE.stroke_width(2)))?;
         chart.draw_series(LineSeries::new(of(3), AFTER.stroke_width(2)))?;
-        chart.draw_series(of(1).map(|at| Circle::new(at, 4, DATA.filled())))?;
+        chart.draw_series(of(1).map(|at| Circle::new(at, 3, DATA.filled())))?;
     }
     root.present()?;
     Ok(())
 }
 
-/// Residuals over one covariate, before and after, on the same axes.
+/// Residuals over one covariate, before and after, on the same axes, with their mean.
 fn residual(
     svg: &mut String,
     calibration: &Calibration,
-    name: &str,
-    of: Reader,
+    axis: &Axis,
+    (least, most): (f64, f64),
 ) -> Result<(), Box<dyn Error>> {
     let (data, selection) = (&calibration.data, &calibration.selection);
-    let xs: Vec<f64> = data.points.iter().map(of).collect();
-    let (least, most) = xs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |a, x| (a.0.min(*x), a.1.max(*x)));
-    let pad = 0.03 * (most - least).max(1e-3);
+    let xs: Vec<f64> = data.points.iter().map(|p| (axis.read)(p)).collect();
+    let named = !axis.names.is_empty();
+    let pad = if named { 0.5 } else { 0.03 * (most - least) };
     let mut sizes: Vec<f64> = selection.baseline.residual_n.iter().map(|r| r.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     let high = sizes.get(sizes.len() * 995 / 1000).copied().unwrap_or(1.0).max(1e-3) * 1.1;
-    let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
+    let root = SVGBackend::with_string(svg, RESIDUAL).into_drawing_area();
     root.fill(&WHITE)?;
     let stride = data.points.len().div_ceil(SHOWN);
     let panels = root.split_evenly((1, 2));
-    let sides = [(&selection.baseline.residual_n, BEFORE), (&selection.augmented.residual_n, AFTER)];
-    for (panel, (residual, colour)) in panels.iter().zip(sides) {
+    let sides = [
+        (&selection.baseline.residual_n, BEFORE, "the paper's model, refitted"),
+        (&selection.augmented.residual_n, AFTER, "the better model"),
+    ];
+    for (panel, (residual, colour, title)) in panels.iter().zip(sides) {
         let mut chart = ChartBuilder::on(panel)
-            .margin(10)
-            .x_label_area_size(40)
-            .y_label_area_size(56)
+            .margin(8)
+            .caption(title, ("sans-serif", 14))
+            .x_label_area_size(38)
+            .y_label_area_size(50)
             .build_cartesian_2d(least - pad..most + pad, -high..high)?;
-        chart
-            .configure_mesh()
-            .light_line_style(TRANSPARENT)
-            .x_desc(name)
-            .y_desc("reading - model (N)")
-            .draw()?;
+        let format = |x: &f64| name_at(&axis.names, *x);
+        let mut mesh = chart.configure_mesh();
+        mesh.light_line_style(TRANSPARENT).x_desc(&axis.label).y_desc("reading - model (N)");
+        if named {
+            mesh.x_labels(2 * axis.names.len() + 1).x_label_formatter(&format).disable_x_mesh();
+        }
+        mesh.draw()?;
         let shown = (0..xs.len()).step_by(stride).filter(|i| residual[*i].abs() < high);
-        chart.draw_series(shown.map(|i| Circle::new((xs[i], residual[i]), 2, colour.mix(0.5).filled())))?;
+        // Names have no width of their own: their points are spread a little.
+        let spread = |i: usize| if named { 0.3 * ((i * 37 % 101) as f64 / 50.0 - 1.0) } else { 0.0 };
+        chart.draw_series(
+            shown.map(|i| Circle::new((xs[i] + spread(i), residual[i]), 2, colour.mix(0.3).filled())),
+        )?;
         chart.draw_series(LineSeries::new([(least - pad, 0.0), (most + pad, 0.0)], BLACK.stroke_width(1)))?;
+        let means = means(&xs, residual, &data.weights, least, most);
+        if !named {
+            chart.draw_series(LineSeries::new(means.iter().copied(), colour.stroke_width(2)))?;
+        }
+        chart.draw_series(means.iter().map(|at| Circle::new(*at, 4, colour.filled())))?;
     }
     root.present()?;
     Ok(())
+}
+
+/// The name of a value at an axis; nothing between two values.
+fn name_at(names: &[String], x: f64) -> String {
+    let near = x.round();
+    if (x - near).abs() > 0.05 || near < 0.0 {
+        return String::new();
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small whole number >= 0")]
+    names.get(near as usize).cloned().unwrap_or_default()
+}
+
+/// Weighted means of the residuals over stretches of a covariate.
+fn means(xs: &[f64], residual: &[f64], weights: &[f64], least: f64, most: f64) -> Vec<(f64, f64)> {
+    let mut sums = vec![[0.0; 3]; STRETCHES];
+    for ((x, r), w) in xs.iter().zip(residual).zip(weights) {
+        let share = (x - least) / (most - least).max(1e-12) * STRETCHES as f64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "0 to the number of stretches"
+        )]
+        let at = (share.max(0.0) as usize).min(STRETCHES - 1);
+        sums[at][0] += w;
+        sums[at][1] += w * x;
+        sums[at][2] += w * r;
+    }
+    sums.iter().filter(|s| s[0] > 0.5).map(|s| (s[1] / s[0], s[2] / s[0])).collect()
 }

@@ -10,7 +10,7 @@ use pinswitch_model::inference::Levels;
 use pinswitch_model::rig::PlateauTable;
 
 use super::{Failure, print};
-use crate::calibration_page::{page, plots};
+use crate::calibration_page::{UNEXPLAINED, page, plots, published_page, published_plot};
 use crate::output::{OutputFile, write_set};
 
 /// Refit the paper's model to a plateau table, trace what it misses to an effect, and report the error before and after.
@@ -74,7 +74,16 @@ fn published(out: &Path) -> Result<(), Failure> {
     }
     let mut json = serde_json::to_vec_pretty(&all).map_err(Failure::failed)?;
     json.push(b'\n');
-    let files = [OutputFile { name: "published.json".to_owned(), bytes: json }];
+    let plot = published_plot(&all).map_err(Failure::failed)?;
+    let html = published_page(&all, &plot);
+    let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
+    let files = [
+        file("report.html", html.into_bytes()),
+        file("maxima.svg", plot.svg.into_bytes()),
+        file("published.json", json),
+    ];
+    text.push_str("unexplained, see report.html:\n");
+    UNEXPLAINED.iter().for_each(|open| text.push_str(&format!("  {open}.\n")));
     write_set(out, &files).map_err(Failure::failed)?;
     print(text.as_bytes())
 }
@@ -107,6 +116,9 @@ fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<
     files.push(OutputFile { name: "report.json".to_owned(), bytes: json });
     Ok(files)
 }
+
+/// Series to check that the terminal lists.
+const SHOWN_SERIES: usize = 6;
 
 /// What the terminal shows.
 fn summary(report: &Report) -> String {
@@ -153,11 +165,14 @@ fn summary(report: &Report) -> String {
             e.bad_rows
         ));
     }
-    for bad in &report.bad_series {
+    for bad in report.bad_series.iter().take(SHOWN_SERIES) {
         text.push_str(&format!(
             "  check series {} {}: off by {:+.3} N ({:+.1} standard deviations)\n",
             bad.series, bad.direction, bad.offset_n, bad.standard_deviations
         ));
+    }
+    if let Some(more) = report.bad_series.len().checked_sub(SHOWN_SERIES).filter(|n| *n > 0) {
+        text.push_str(&format!("  and {more} more, see report.html\n"));
     }
     text
 }

@@ -128,6 +128,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             .and_then(|t| t.as_str().map(str::to_owned))
             .unwrap_or_default(),
     );
+    if let Some(model) = &arguments.model {
+        log::info!("the curve comes from {}", model.display());
+        curve.reasons.iter().for_each(|reason| log::info!("{reason}"));
+    }
     if arguments.json {
         let manifest = set.files.last().map(|f| f.bytes.clone()).unwrap_or_default();
         print(&manifest)?;

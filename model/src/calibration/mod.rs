@@ -6,12 +6,14 @@ mod part_curve;
 mod published_loop;
 mod report;
 mod schema;
+mod transfer;
 
 pub use heldout::{HeldOut, held_out};
 pub use model_file::{ModelFile, ModelFileError};
 pub use published_loop::{Explanation, explain_published};
 pub use report::{Calibration, CalibrationError, calibrate, calibrate_below};
 pub use schema::{
-    BadSeries, DataSummary, EffectReport, Estimate, Extrapolation, Invisible, ModelReport, Report,
-    RivalReport, Verdict,
+    BadSeries, Candidate, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible, ModelReport,
+    Report, RivalReport, Verdict,
 };
+pub use transfer::layouts_left_out;

@@ -1,15 +1,15 @@
 //! From a selection to its report: verdict, effects, rivals, blind spots, errors before and after.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF};
-
 use super::heldout::{SOUND_WEIGHT, held_out};
 use super::schema::{
-    BadSeries, DataSummary, EffectReport, Estimate, Extrapolation, Invisible, ModelReport, Report,
-    RivalReport, Verdict,
+    BadSeries, Candidate, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible, ModelReport,
+    Report, RivalReport, Verdict,
 };
+use super::transfer::layouts_left_out;
 use crate::effects::LIBRARY;
 use crate::inference::{
-    Fit, Levels, Model, Noise, Observations, Selection, Term, interval_half_widths, select,
+    Fit, Levels, Model, Noise, Observations, Selection, Term, cell_deviation, degrees_of_freedom,
+    family_p_value, interval_half_widths, select,
 };
 use crate::rig::{Frame, PlateauRow, Surface};
 
@@ -105,9 +105,10 @@ pub fn calibrate_below(
     Ok(calibration)
 }
 
-/// A constant with its interval.
-fn estimate(value: f64, half_width: f64, unit: &str) -> Estimate {
-    Estimate { value, ci95: [value - half_width, value + half_width], unit: unit.to_owned() }
+/// A constant with its interval, which ends at the bounds of a shape.
+fn estimate(value: f64, half_width: f64, unit: &str, (least, most): (f64, f64)) -> Estimate {
+    let ci95 = [(value - half_width).max(least), (value + half_width).min(most)];
+    Estimate { value, ci95, unit: unit.to_owned() }
 }
 
 fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport, f64) {
@@ -129,24 +130,21 @@ fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport
         .names()
         .into_iter()
         .zip(fitted.model.values().into_iter().zip(widths))
-        .filter(|((name, _), _)| touched(name))
-        .map(|((name, unit), (value, width))| (name, estimate(value, width, unit)))
+        .enumerate()
+        .filter(|(_, ((name, _), _))| touched(name))
+        .map(|(i, ((name, unit), (value, width)))| {
+            (name, estimate(value, width, unit, fitted.model.bounds_of(i)))
+        })
         .collect();
     let report = ModelReport {
         rmse_n: (sum / f64::max(count, 1.0)).sqrt(),
         heldout_rmse_n: held.both_n(),
         heldout_series_rmse_n: held.series_n,
         heldout_loads_rmse_n: held.loads_n,
+        heldout_layouts_rmse_n: layouts_left_out(&fitted.model, data, noise),
         parameters,
     };
     (report, held.both_n())
-}
-
-/// Tail probability of a gain with one constant, for any of the library's effects (Sidak).
-fn p_value(gain: f64) -> f64 {
-    let single = ChiSquared::new(1.0).map_or(1.0, |d| d.sf(gain.max(0.0)));
-    let all = -(LIBRARY.len() as f64 * (-single).ln_1p()).exp_m1();
-    all.clamp(0.0, 1.0)
 }
 
 fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Report {
@@ -180,8 +178,8 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Re
         noise,
         baseline,
         augmented,
+        candidates: candidates(selection, &effects, data),
         effects,
-        candidates: selection.candidates.iter().map(|(id, gain)| ((*id).to_owned(), *gain)).collect(),
         family_probability: selection.family_probability,
         invisible: selection
             .invisible
@@ -211,6 +209,38 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Re
     }
 }
 
+/// Every effect with what became of it.
+fn candidates(selection: &Selection, effects: &[EffectReport], data: &Observations) -> Vec<Candidate> {
+    let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
+    let fate = |id: &str, p: f64| {
+        if effects.iter().any(|e| e.id == id) {
+            Fate::Kept
+        } else if effects.iter().any(|e| e.rivals.iter().any(|r| r.id == id)) {
+            Fate::Rival
+        } else if p <= 0.015 {
+            Fate::Superfluous
+        } else if selection.invisible.iter().any(|(e, ..)| e.id() == id) {
+            Fate::Invisible
+        } else {
+            Fate::Chance
+        }
+    };
+    selection
+        .candidates
+        .iter()
+        .map(|(id, gain)| {
+            let p_value = family_p_value(*gain, LIBRARY.len(), degrees);
+            Candidate {
+                id: (*id).to_owned(),
+                gain: gain.max(0.0),
+                p_value,
+                gain_left: selection.leftover.iter().find(|l| l.0 == *id).map(|l| l.1.max(0.0)),
+                fate: fate(id, p_value),
+            }
+        })
+        .collect()
+}
+
 fn effects(
     selection: &Selection,
     data: &Observations,
@@ -218,6 +248,7 @@ fn effects(
     augmented: &ModelReport,
 ) -> Vec<EffectReport> {
     let model = &selection.augmented.model;
+    let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
     let mut found = Vec::new();
     let (mut named, mut unnamed) = (0, Vec::new());
     for (i, term) in model.terms.iter().enumerate() {
@@ -234,7 +265,7 @@ fn effects(
             covariate: effect.covariate().word().to_owned(),
             side: Some(effect.side().word().to_owned()),
             formula: effect.formula().to_owned(),
-            p_value: p_value(gain),
+            p_value: family_p_value(gain, LIBRARY.len(), degrees),
             parameters: effect
                 .parameters()
                 .iter()
@@ -272,7 +303,7 @@ fn effects(
             covariate: covariate.word().to_owned(),
             side: None,
             formula: shapes.join("; "),
-            p_value: p_value(gain - 12.0),
+            p_value: family_p_value(gain, selection.structures_tried, degrees),
             parameters: augmented
                 .parameters
                 .iter()
@@ -290,12 +321,8 @@ fn effects(
 /// Cells whose mean residual is beyond 4.5 standard deviations, or that hold a reading beyond 20.
 fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Vec<BadSeries> {
     let mut bad = Vec::new();
-    for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {
-        let weight: f64 = cell.iter().map(|r| data.weights[*r]).sum();
-        let mean =
-            cell.iter().map(|r| data.weights[*r] * selection.augmented.residual_n[*r]).sum::<f64>() / weight;
-        let sd =
-            (selection.noise.repetition.at(*load) / weight.sqrt()).hypot(selection.noise.series.at(*load));
+    for (index, (cell, load)) in data.cells.iter().zip(&data.cell_load_n).enumerate() {
+        let (mean, sd) = cell_deviation(&selection.augmented, data, selection.noise, index);
         let worst = cell
             .iter()
             .map(|r| selection.augmented.residual_n[*r])

@@ -59,6 +59,9 @@ pub struct ModelReport {
     /// On whole loads held out.
     #[serde(rename = "heldout_loads_rmse_N")]
     pub heldout_loads_rmse_n: f64,
+    /// On whole layouts held out, with friction and effects from the others; absent with fewer than two layouts.
+    #[serde(rename = "heldout_layouts_rmse_N", default, skip_serializing_if = "Option::is_none")]
+    pub heldout_layouts_rmse_n: Option<f64>,
     /// Constants by name.
     pub parameters: BTreeMap<String, Estimate>,
 }
@@ -86,7 +89,8 @@ pub struct EffectReport {
     pub side: Option<String>,
     /// Formula with source, or the shape of a structure in words.
     pub formula: String,
-    /// Probability of such a gain without the effect, over the whole vocabulary.
+    /// Probability of such a gain by chance, over all that was tried: Student's t with the number of series,
+    /// Sidak's correction. Held against simulated rigs without effect in `model/calibration.md`.
     pub p_value: f64,
     /// Its constants.
     pub parameters: BTreeMap<String, Estimate>,
@@ -98,6 +102,38 @@ pub struct EffectReport {
     pub error_after_n: f64,
     /// What else it could be.
     pub rivals: Vec<RivalReport>,
+}
+
+/// What became of a candidate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fate {
+    /// It is in the model.
+    Kept,
+    /// It explains the data as well as one that was kept.
+    Rival,
+    /// This data could not show it.
+    Invisible,
+    /// Its gain may be chance.
+    Chance,
+    /// What it would explain is explained by what was kept.
+    Superfluous,
+}
+
+/// One effect of the vocabulary before the decision.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// Its id.
+    pub id: String,
+    /// What it alone would gain over the baseline to first order, in squares of the noise.
+    pub gain: f64,
+    /// Probability of such a gain by chance over the vocabulary.
+    pub p_value: f64,
+    /// What it would still gain on top of the model found; absent for what is in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain_left: Option<f64>,
+    /// What became of it.
+    pub fate: Fate,
 }
 
 /// An effect that this data cannot show.
@@ -145,8 +181,8 @@ pub struct Report {
     pub augmented: ModelReport,
     /// What was found.
     pub effects: Vec<EffectReport>,
-    /// Candidates with their gain over the baseline to first order, in whitened squares.
-    pub candidates: BTreeMap<String, f64>,
+    /// Every effect of the vocabulary as a candidate, the strongest first.
+    pub candidates: Vec<Candidate>,
     /// Probability of the largest candidate without any effect, by flipped signs of whole series.
     pub family_probability: f64,
     /// What this data cannot see.

@@ -3,7 +3,7 @@
 use super::{ContactState, Covariate, Effect, Parameter, Side};
 use crate::rig::{Condition, Frame, Point};
 
-/// mu_s (1 + k exp(-(r - 1)/r0)) (effects.md)
+/// mu_s (1 + k exp(-(r - 1)/r0)), times c in the concentric half, 1 if it settles anew there (effects.md)
 #[derive(Debug)]
 pub(super) struct RunIn;
 
@@ -21,11 +21,17 @@ impl Effect for RunIn {
     }
 
     fn formula(&self) -> &'static str {
-        "mu_s (1 + k exp(-(r - 1)/r0)) (effects.md)"
+        "mu_s (1 + k exp(-(r - 1)/r0)), times c in the concentric half, 1 if it settles anew there (effects.md)"
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::free("k", "1"), Parameter::bounded("r0", "1", 0.5, 12.0)] }
+        const {
+            &[
+                Parameter::free("k", "1"),
+                Parameter::bounded("r0", "1", 0.5, 12.0),
+                Parameter::bounded("c", "1", -0.05, 1.05),
+            ]
+        }
     }
 
     // One sign: friction is higher before it settles.
@@ -34,7 +40,7 @@ impl Effect for RunIn {
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        vec![vec![0.1, 1.0], vec![0.1, 2.5], vec![0.1, 5.0], vec![0.1, 9.0]]
+        [1.0, 2.5, 5.0, 9.0].iter().flat_map(|r0| [1.0, 0.0].map(|c| vec![0.1, *r0, c])).collect()
     }
 
     fn confused_with(&self) -> &'static [&'static str] {
@@ -50,6 +56,7 @@ impl Effect for RunIn {
     }
 
     fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
-        state.mu_silicone *= (1.0 + k[0] * (-(point.repetition - 1.0) / k[1]).exp()).max(0.0);
+        let share = if point.sign > 0.0 { k[2] } else { 1.0 };
+        state.mu_silicone *= (1.0 + share * k[0] * (-(point.repetition - 1.0) / k[1]).exp()).max(0.0);
     }
 }

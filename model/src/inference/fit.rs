@@ -6,6 +6,7 @@ use super::forward::Model;
 use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
+use super::significance::degrees_of_freedom;
 use crate::rig::Point;
 
 /// A model fitted to data.
@@ -28,7 +29,7 @@ pub(crate) fn jacobian(model: &Model, data: &Observations, at: &[f64]) -> Vec<Ve
         .map(|j| {
             let step = 1e-5 * model.coordinates[j].abs().max(0.1);
             shifted.coordinates[j] = model.coordinates[j] + step;
-            let mut column = shifted.predict(&data.points);
+            let mut column = shifted.predict_changed(&data.points, at, j);
             shifted.coordinates[j] = model.coordinates[j];
             column.iter_mut().zip(at).for_each(|(c, a)| *c = (*c - a) / step);
             column
@@ -126,11 +127,12 @@ pub fn coordinate_covariance(fitted: &Fit, data: &Observations, noise: Noise) ->
     a.clone().cholesky().map_or_else(|| DMatrix::zeros(a.nrows(), a.ncols()), |c| c.inverse() * scale)
 }
 
-/// Half widths of 95 % intervals of all constants, in the constants' own units.
+/// Half widths of 95 % intervals of all constants, in the constants' own units: Student's t with the number of series.
 pub fn interval_half_widths(fitted: &Fit, data: &Observations, noise: Noise) -> Vec<f64> {
     let covariance = coordinate_covariance(fitted, data, noise);
+    let quantile = super::significance::gain_at(0.05, 1, degrees_of_freedom(data, covariance.nrows())).sqrt();
     (0..covariance.nrows())
-        .map(|i| 1.96 * covariance[(i, i)].max(0.0).sqrt() * fitted.model.value(i).1.abs())
+        .map(|i| quantile * covariance[(i, i)].max(0.0).sqrt() * fitted.model.value(i).1.abs())
         .collect()
 }
 

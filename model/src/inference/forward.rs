@@ -122,6 +122,18 @@ impl Model {
         model
     }
 
+    /// The same model with every constant but these held where it is.
+    #[must_use]
+    pub(crate) fn frozen_except(&self, free: &[usize]) -> Self {
+        let mut model = self.clone();
+        for (i, (prior, coordinate)) in model.priors.iter_mut().zip(&model.coordinates).enumerate() {
+            if !free.contains(&i) {
+                *prior = Prior { mean: *coordinate, sd: 1e-5 };
+            }
+        }
+        model
+    }
+
     /// Index of the first constant of a term.
     pub(crate) fn term_offset(&self, index: usize) -> usize {
         self.baseline_len() + self.terms[..index].iter().map(Term::constants).sum::<usize>()
@@ -180,6 +192,13 @@ impl Model {
         (coordinate, 1.0)
     }
 
+    /// Bounds of a constant: those of a shape, zero for the baseline's, none for a size.
+    pub(crate) fn bounds_of(&self, index: usize) -> (f64, f64) {
+        let Some(beyond) = index.checked_sub(self.baseline_len()) else { return (0.0, f64::INFINITY) };
+        let bounds: Vec<_> = self.terms.iter().flat_map(Term::bounds).collect();
+        bounds.get(beyond).copied().flatten().unwrap_or((f64::NEG_INFINITY, f64::INFINITY))
+    }
+
     /// Values of all constants.
     pub fn values(&self) -> Vec<f64> {
         (0..self.coordinates.len()).map(|i| self.value(i).0).collect()
@@ -228,6 +247,31 @@ impl Model {
         let values = self.values();
         let offsets: Vec<usize> = (0..self.terms.len()).map(|i| self.term_offset(i)).collect();
         points.iter().map(|point| self.read(&values, &offsets, point, false)).collect()
+    }
+
+    /// Readings after one constant has changed, where `before` were those at the points: only conditions that the
+    /// constant touches are computed again.
+    pub(crate) fn predict_changed(&self, points: &[Point], before: &[f64], index: usize) -> Vec<f64> {
+        let values = self.values();
+        let offsets: Vec<usize> = (0..self.terms.len()).map(|i| self.term_offset(i)).collect();
+        let touched: Vec<bool> = (0..self.frame.conditions.len()).map(|c| self.touches(index, c)).collect();
+        points
+            .iter()
+            .zip(before)
+            .map(|(p, b)| if touched[p.condition] { self.read(&values, &offsets, p, false) } else { *b })
+            .collect()
+    }
+
+    /// Whether a constant enters the readings on a condition.
+    fn touches(&self, index: usize, condition: usize) -> bool {
+        let c = &self.frame.conditions[condition];
+        match index {
+            0 => c.has_pins(),
+            1 => c.surface == Surface::Silicone,
+            _ if index < 2 + 2 * self.frame.devices() => c.device == Some((index - 2) / 2),
+            _ if index < self.baseline_len() => self.plain[condition] == index,
+            _ => true,
+        }
     }
 
     /// Tension of a part in newtons: effects of the switch in, effects of the rig out.

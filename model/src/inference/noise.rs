@@ -139,6 +139,9 @@ impl Noise {
         let (mut inside, mut between) = (Vec::new(), Vec::new());
         let mut loads = Vec::new();
         for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {
+            if cell.first().is_some_and(|r| data.is_aside(*r)) {
+                continue;
+            }
             let weight: f64 = cell.iter().map(|r| data.weights[*r]).sum();
             let root = weight.sqrt();
             // In the whitened scale the direction of the rows' root weights carries the cell's offset; what

@@ -21,7 +21,12 @@ pub struct Observations {
     pub weights: Vec<f64>,
     /// Roots of the weights.
     pub(crate) roots: Vec<f64>,
+    /// Series that are wrong as a whole and decide nothing.
+    aside: Vec<usize>,
 }
+
+/// Weight of the rows of a series set aside: they keep their place and have no say.
+const ASIDE: f64 = 1e-7;
 
 impl Observations {
     /// Groups a table; `None` if the frame lacks a condition.
@@ -46,6 +51,7 @@ impl Observations {
             cell_load_n,
             weights: ones.clone(),
             roots: ones,
+            aside: Vec::new(),
         })
     }
 
@@ -73,6 +79,32 @@ impl Observations {
             cells,
             weights: kept.iter().map(|i| self.weights[*i]).collect(),
             roots: kept.iter().map(|i| self.roots[*i]).collect(),
+            aside: self.aside.clone(),
+        }
+    }
+
+    /// Sets a series aside.
+    pub(crate) fn set_aside(&mut self, series: usize) {
+        self.aside.push(series);
+        self.apply_aside();
+    }
+
+    /// Whether the series of a row is set aside.
+    pub fn is_aside(&self, row: usize) -> bool {
+        self.aside.contains(&self.series_of[row])
+    }
+
+    /// Number of series set aside.
+    pub fn aside(&self) -> usize {
+        self.aside.len()
+    }
+
+    fn apply_aside(&mut self) {
+        for row in 0..self.points.len() {
+            if self.is_aside(row) {
+                self.weights[row] = ASIDE;
+                self.roots[row] = ASIDE.sqrt();
+            }
         }
     }
 
@@ -110,6 +142,7 @@ impl Observations {
             *weight = if z <= 3.2 { 1.0 } else { (3.2 / z).powi(3).max(1e-3) };
         }
         self.roots = self.weights.iter().map(|w| w.sqrt()).collect();
+        self.apply_aside();
         sd
     }
 }

@@ -15,6 +15,11 @@ impl Projection {
         Self { len, basis: Vec::new() }
     }
 
+    /// Length of the columns.
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
+
     /// Adds a column's new direction; returns whether it had one.
     pub(crate) fn absorb(&mut self, mut column: Vec<f64>) -> bool {
         debug_assert_eq!(column.len(), self.len);

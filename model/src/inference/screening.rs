@@ -6,11 +6,15 @@ use super::fit::{Fit, jacobian};
 use super::forward::Term;
 use super::noise::Noise;
 use super::observations::Observations;
+use super::own_form::{BEND, bent_copies};
 use super::projection::{Projection, dot};
 use crate::effects::{Channel, Covariate, Effect, LIBRARY, Shape, Structure};
 
 /// What a wave's gain is reduced by, in whitened squares.
 const WAVE_TOLL: f64 = 15.0;
+
+/// What a stretch of time's gain is reduced by: both its ends are free.
+const WINDOW_TOLL: f64 = 8.0;
 
 /// A fitted model with its whitened residual and the directions its constants can take.
 pub(crate) struct Screen<'a> {
@@ -20,6 +24,7 @@ pub(crate) struct Screen<'a> {
     basis: Projection,
     residual: Vec<f64>,
     predicted: Vec<f64>,
+    bent_gain: f64,
 }
 
 /// Score of a named effect.
@@ -53,15 +58,33 @@ pub(crate) struct StructureScore {
 }
 
 impl<'a> Screen<'a> {
+    /// Scores on top of a fit.
     pub(crate) fn new(fitted: &'a Fit, data: &'a Observations, noise: Noise) -> Self {
+        Self::with_nuisances(fitted, data, noise, |_| Vec::new())
+    }
+
+    /// Scores on top of a fit whose named effects may bend their own forms.
+    pub(crate) fn guarded(fitted: &'a Fit, data: &'a Observations, noise: Noise) -> Self {
+        Self::with_nuisances(fitted, data, noise, |predicted| bent_copies(&fitted.model, data, predicted))
+    }
+
+    fn with_nuisances(
+        fitted: &'a Fit,
+        data: &'a Observations,
+        noise: Noise,
+        nuisances: impl Fn(&[f64]) -> Vec<Vec<f64>>,
+    ) -> Self {
         let model = &fitted.model;
         let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
-        let p = model.coordinates.len();
-        let mut basis = Projection::new(predicted.len() + p);
-        for (j, mut column) in jacobian(model, data, &predicted).into_iter().enumerate() {
+        let (rows, p) = (predicted.len(), model.coordinates.len());
+        let bent = nuisances(&predicted);
+        let mut basis = Projection::new(rows + p + bent.len());
+        let own =
+            jacobian(model, data, &predicted).into_iter().zip(model.priors().iter().map(|prior| prior.sd));
+        for (j, (mut column, sd)) in own.chain(bent.into_iter().map(|b| (b, BEND))).enumerate() {
             noise.whiten(data, &mut column);
-            column.resize(predicted.len() + p, 0.0);
-            column[predicted.len() + j] = 1.0 / model.priors()[j].sd;
+            column.resize(basis.len(), 0.0);
+            column[rows + j] = 1.0 / sd;
             basis.absorb(column);
         }
         let mut residual = fitted.residual_n.clone();
@@ -69,8 +92,16 @@ impl<'a> Screen<'a> {
         residual.extend(
             model.coordinates.iter().zip(model.priors()).map(|(c, prior)| (prior.mean - c) / prior.sd),
         );
+        residual.resize(basis.len(), 0.0);
+        let before = dot(&residual, &residual);
         basis.remove(&mut residual);
-        Self { fitted, data, noise, basis, residual, predicted }
+        let bent_gain = before - dot(&residual, &residual);
+        Self { fitted, data, noise, basis, residual, predicted, bent_gain }
+    }
+
+    /// What the named effects would gain by bending their own forms, in whitened squares.
+    pub(crate) fn bent_gain(&self) -> f64 {
+        self.bent_gain
     }
 
     /// Whitens a column in newtons and removes what the model's constants can take over.
@@ -172,8 +203,73 @@ impl<'a> Screen<'a> {
                 self.group(group, &columns)
             })
             .collect();
+        for (channel, along) in &channels[..3] {
+            scores.extend(self.best_window(*channel, along));
+        }
         scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         scores
+    }
+
+    /// The best stretch of whole series, at another level than the rest: every pair of ends is tried, by sums over
+    /// the series, since whitening mixes the rows of a series only.
+    fn best_window(&self, channel: Channel, along: &[f64]) -> Option<StructureScore> {
+        let mut white = along.to_vec();
+        self.noise.whiten(self.data, &mut white);
+        let mut begins = vec![f64::INFINITY; self.data.series];
+        for (row, series) in self.data.series_of.iter().enumerate() {
+            begins[*series] = begins[*series].min(self.data.points[row].time);
+        }
+        let mut order: Vec<usize> = (0..self.data.series).filter(|s| begins[*s].is_finite()).collect();
+        order.sort_by(|a, b| begins[*a].total_cmp(&begins[*b]));
+        let basis = self.basis.basis();
+        // Of each series: score, squared length, and the share of each direction of the basis.
+        let mut sums = vec![vec![0.0; 2 + basis.len()]; self.data.series];
+        for (row, series) in self.data.series_of.iter().enumerate() {
+            let sum = &mut sums[*series];
+            sum[0] += white[row] * self.residual[row];
+            sum[1] += white[row] * white[row];
+            for (s, axis) in sum[2..].iter_mut().zip(basis) {
+                *s += white[row] * axis[row];
+            }
+        }
+        let mut best: Option<(f64, f64, usize, usize)> = None;
+        for from in 1..order.len() {
+            let mut total = vec![0.0; 2 + basis.len()];
+            // To the end of the session it would be a step, which stands in the catalogue.
+            for to in from + 1..order.len() {
+                total.iter_mut().zip(&sums[order[to - 1]]).for_each(|(t, s)| *t += s);
+                let visible = total[1] - dot(&total[2..], &total[2..]);
+                if to - from < 2 || visible < 4e-4 * total[1] || visible < 1e-9 {
+                    continue;
+                }
+                let gain = total[0] * total[0] / visible - WINDOW_TOLL;
+                if best.is_none_or(|b| gain > b.0) {
+                    best = Some((gain, total[0] / visible, from, to));
+                }
+            }
+        }
+        let (gain, size, from, to) = best?;
+        let form = Shape::TimeWindow { from: begins[order[from]] - 1e-9, to: begins[order[to]] - 1e-9 };
+        let group = vec![Structure { covariate: Covariate::Time, channel, form }];
+        Some(StructureScore { group, sizes: vec![size], gain })
+    }
+
+    /// Gain of free offsets of each series, one per direction, for the series that are not set aside.
+    pub(crate) fn series_offsets(&self) -> Vec<(usize, f64)> {
+        let mut columns = vec![Vec::new(); self.data.series];
+        for cell in &self.data.cells {
+            let Some(row) = cell.first().filter(|r| !self.data.is_aside(**r)) else { continue };
+            let mut column = vec![0.0; self.predicted.len()];
+            cell.iter().for_each(|r| column[*r] = 1.0);
+            columns[self.data.series_of[*row]].push(self.visible(column).0);
+        }
+        columns
+            .iter()
+            .enumerate()
+            .filter_map(|(series, columns)| {
+                least_squares(columns, &self.residual).map(|(gain, _)| (series, gain))
+            })
+            .collect()
     }
 
     /// Least squares of the residual on one or two visible columns.
@@ -181,26 +277,26 @@ impl<'a> Screen<'a> {
         if columns.len() != group.len() || columns.is_empty() {
             return None;
         }
-        let a = dot(&columns[0], &columns[0]);
-        let u = dot(&columns[0], &self.residual);
-        // A shape that rests on one or two series is a bad run, not structure.
-        if a < 1e-9 {
-            return None;
-        }
-        let (gain, sizes) = if let Some(second) = columns.get(1) {
-            let (b, c, v) = (dot(&columns[0], second), dot(second, second), dot(second, &self.residual));
-            let det = a * c - b * b;
-            if det < 1e-6 * a * c {
-                (u * u / a, vec![u / a, 0.0])
-            } else {
-                let (k, l) = ((c * u - b * v) / det, (a * v - b * u) / det);
-                (k * u + l * v, vec![k, l])
-            }
-        } else {
-            (u * u / a, vec![u / a])
-        };
+        let (gain, sizes) = least_squares(columns, &self.residual)?;
         // A wave has two sizes, and there are hundreds of them at free frequencies: its gain must pay for both.
         let gain = if group.len() > 1 { gain - WAVE_TOLL } else { gain };
         Some(StructureScore { group, sizes, gain })
     }
+}
+
+/// Gain and sizes of one or two columns; `None` for none, or for one without length.
+fn least_squares(columns: &[Vec<f64>], residual: &[f64]) -> Option<(f64, Vec<f64>)> {
+    let first = columns.first()?;
+    let (a, u) = (dot(first, first), dot(first, residual));
+    if a < 1e-9 {
+        return None;
+    }
+    let Some(second) = columns.get(1) else { return Some((u * u / a, vec![u / a])) };
+    let (b, c, v) = (dot(first, second), dot(second, second), dot(second, residual));
+    let det = a * c - b * b;
+    if det < 1e-6 * a * c {
+        return Some((u * u / a, vec![u / a, 0.0]));
+    }
+    let (k, l) = ((c * u - b * v) / det, (a * v - b * u) / det);
+    Some((k * u + l * v, vec![k, l]))
 }

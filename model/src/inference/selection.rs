@@ -2,43 +2,54 @@
 
 use super::fit::{Fit, fit};
 use super::forward::{Model, Term};
+use super::isolation::isolated_series;
 use super::noise::Noise;
 use super::observations::Observations;
 use super::screening::{Screen, StructureScore};
-use crate::effects::{Covariate, Effect};
+use super::significance::{degrees_of_freedom, gain_at};
+use crate::effects::{Covariate, Effect, LIBRARY};
 
 /// Levels of the decisions, in whitened squares; tuned by `pinswitch simulate --study`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levels {
-    /// Least gain of the first named effect.
-    pub first: f64,
+    /// Probability by chance, over the vocabulary, at which the first named effect is believed.
+    pub first_p: f64,
     /// Largest probability by sign flips at which a weak first effect is believed.
     pub flips: f64,
     /// Least gain of each further one.
     pub further: f64,
     /// Least gain of a further one as a share of the first one's gain: below it, it may stem from the form.
     pub further_share: f64,
+    /// A gain above this share of the first one's is more than the form of an effect can bend.
+    pub beyond_form: f64,
     /// A rival fits worse by less than this.
     pub rival: f64,
     /// ... or by less than this share of what the effect explains.
     pub rival_share: f64,
     /// Least gain of a structure that no name explains.
     pub structure: f64,
+    /// Probability by chance, over all structures tried, at which one is believed.
+    pub structure_p: f64,
     /// Least gain of such a structure as a share of what the names explain.
     pub structure_share: f64,
+    /// By how much a structure alone must fit better than a name with its form bent.
+    pub outright: f64,
 }
 
 impl Default for Levels {
     fn default() -> Self {
         Self {
-            first: 14.0,
+            first_p: 0.015,
             flips: 0.1,
             further: 18.0,
-            further_share: 0.004,
+            further_share: 0.001,
+            beyond_form: 0.08,
             rival: 9.0,
             rival_share: 0.002,
-            structure: 30.0,
+            structure: 26.0,
+            structure_p: 0.01,
             structure_share: 0.02,
+            outright: 7.0,
         }
     }
 }
@@ -69,10 +80,16 @@ pub struct Selection {
     pub structure: Option<(Covariate, f64)>,
     /// Every candidate with its gain over the baseline, best first.
     pub candidates: Vec<(&'static str, f64)>,
+    /// What each absent effect would still gain on top of what was found.
+    pub leftover: Vec<(&'static str, f64)>,
     /// Effects that this data cannot show: id, visible share, strength at a typical size.
     pub invisible: Vec<(&'static dyn Effect, f64, f64)>,
     /// Probability, by flipped signs of whole series, of the largest candidate without any effect.
     pub family_probability: f64,
+    /// Gain of the best structure without a name on top of what was found, in whitened squares.
+    pub structure_gain: f64,
+    /// Structures that were tried.
+    pub structures_tried: usize,
     /// The noise.
     pub noise: Noise,
 }
@@ -97,9 +114,17 @@ fn extensions(
     data: &Observations,
     noise: Noise,
     least: f64,
+    beyond_form: f64,
     most: usize,
 ) -> Vec<(&'static dyn Effect, Fit)> {
     let mut scores = Screen::new(from, data, noise).effects();
+    if !named(&from.model).is_empty() {
+        // What the names so far would explain by bending their own forms is not worth another name.
+        let guarded = Screen::guarded(from, data, noise).effects();
+        scores.retain(|s| {
+            s.gain > beyond_form || guarded.iter().any(|g| g.effect.id() == s.effect.id() && g.gain > least)
+        });
+    }
     scores.retain(|s| s.gain > least);
     scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     scores.truncate(most);
@@ -115,21 +140,28 @@ fn extensions(
 /// Adds named effects while each gains enough, then drops and exchanges.
 fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit {
     let mut current = start.clone();
+    let degrees = degrees_of_freedom(data, start.model.coordinates.len());
+    let first = gain_at(levels.first_p, LIBRARY.len(), degrees);
     let scores = Screen::new(start, data, noise).effects();
     let strongest = scores.iter().map(|s| s.gain).fold(0.0, f64::max);
     // A weak candidate that a few series carry alone is no effect, whatever the noise model says. With few series
     // flips cannot tell, and the noise model decides.
-    if strongest < 3.0 * levels.first && data.series >= 12 && flips(&scores) > levels.flips {
+    if strongest < 3.0 * first && data.series >= 12 && flips(&scores) > levels.flips {
         return current;
     }
     for _ in 0..4 {
         let gained = start.cost - current.cost;
         let least = if named(&current.model).is_empty() {
-            levels.first
+            first
         } else {
-            levels.further.max(levels.further_share * gained)
+            first.max(levels.further).max(levels.further_share * gained)
         };
-        let Some((_, best)) = extensions(&current, data, noise, 0.3 * least, FITTED).into_iter().next()
+        // To first order alone: an effect that is not linear may gain more once fitted.
+        let screened = if named(&current.model).is_empty() { 0.3 } else { 0.8 } * least;
+        let Some((_, best)) =
+            extensions(&current, data, noise, screened, levels.beyond_form * gained, FITTED)
+                .into_iter()
+                .next()
         else {
             break;
         };
@@ -137,7 +169,7 @@ fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit
             break;
         }
         current = best;
-        current = exchange(current, data, noise);
+        current = exchange(current, data, noise, levels.beyond_form * gained);
         current = prune(current, data, noise, levels.further.max(levels.further_share * gained));
     }
     current
@@ -166,7 +198,7 @@ fn prune(mut current: Fit, data: &Observations, noise: Noise, least: f64) -> Fit
 }
 
 /// Replaces a named effect by another one that fits better in its place.
-fn exchange(mut current: Fit, data: &Observations, noise: Noise) -> Fit {
+fn exchange(mut current: Fit, data: &Observations, noise: Noise, beyond_form: f64) -> Fit {
     if named(&current.model).len() < 2 {
         return current;
     }
@@ -176,7 +208,7 @@ fn exchange(mut current: Fit, data: &Observations, noise: Noise) -> Fit {
             if matches!(current.model.terms[i], Term::Named(_)) {
                 let without = fit(&current.model.without_term(i), data, noise);
                 let id = current.model.terms[i].id();
-                for (effect, other) in extensions(&without, data, noise, 8.0, 4) {
+                for (effect, other) in extensions(&without, data, noise, 8.0, beyond_form, 4) {
                     if effect.id() != id && other.cost < current.cost - 1.0 {
                         better = Some(other);
                         break;
@@ -211,11 +243,18 @@ pub(crate) fn fit_baseline(model: &Model, data: &Observations, noise: Noise) -> 
     best
 }
 
+/// With fewer series and directions than these, only the model's own columns are taken out before noise is estimated.
+const LEAST_CELLS: usize = 50;
+
 /// Columns that could explain residuals, in newtons: the model's own, the library's, and coarse structure.
 fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
     let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let mut columns = super::fit::jacobian(&fitted.model, data, &predicted);
-    for effect in crate::effects::LIBRARY {
+    // So many columns would explain a few series altogether and leave no noise to estimate.
+    if data.cells.len() < LEAST_CELLS {
+        return columns;
+    }
+    for effect in LIBRARY {
         for start in effect.starts(&fitted.model.frame) {
             let changed = fitted.model.with_term(Term::Named(effect), &start).predict(&data.points);
             columns.push(changed.iter().zip(&predicted).map(|(c, p)| c - p).collect());
@@ -234,8 +273,47 @@ fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
     columns
 }
 
-/// Runs the whole search on a table.
+/// Series that may be set aside; more than these are no accidents.
+const MOST_ASIDE: usize = 3;
+
+/// Runs the whole search on a table. A series that is wrong as a whole is set aside and the search begins again.
 pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
+    loop {
+        let names = search_names(start, data, levels);
+        let explained = names.baseline.cost - names.found.cost;
+        let open = Screen::new(&names.found, data, names.noise);
+        let guarded = Screen::guarded(&names.found, data, names.noise);
+        let mut left = open.structures();
+        let beyond = left.first().is_some_and(|s| s.gain > levels.beyond_form * explained);
+        if !named(&names.found.model).is_empty() && !beyond {
+            left = guarded.structures();
+        }
+        if data.aside() < MOST_ASIDE {
+            let structure = left.first().map_or(0.0, |s| s.gain);
+            let effect = open.effects().iter().map(|s| s.gain).fold(structure, f64::max);
+            if let Some(series) = isolated_series(&open, data, effect) {
+                data.set_aside(series);
+                continue;
+            }
+        }
+        let bent = guarded.bent_gain();
+        let tried = (left.len(), left.first().map_or(0.0, |s| s.gain));
+        let (found, structure) =
+            unnamed(&names.baseline, names.found, &left, bent, data, names.noise, levels);
+        let mut selection = describe(names.baseline, found, structure, data, names.noise, levels);
+        (selection.structures_tried, selection.structure_gain) = tried;
+        return selection;
+    }
+}
+
+/// The refitted baseline, what the names make of it, and the noise.
+struct Names {
+    baseline: Fit,
+    found: Fit,
+    noise: Noise,
+}
+
+fn search_names(start: &Model, data: &mut Observations, levels: Levels) -> Names {
     let guess = Noise::constant(0.1, 0.03);
     let rough = fit(start, data, guess);
     let sd = data.weigh_outliers(&rough.residual_n);
@@ -250,8 +328,7 @@ pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selecti
         baseline = fit(&baseline.model, data, noise);
         found = search(&baseline, data, noise, levels);
     }
-    let (found, structure) = unnamed(&baseline, found, data, noise, levels);
-    describe(baseline, found, structure, data, noise, levels)
+    Names { baseline, found, noise }
 }
 
 /// Adds a structure's shapes to a model and fits.
@@ -268,13 +345,17 @@ fn with_structure(from: &Fit, score: &StructureScore, data: &Observations, noise
 fn unnamed(
     baseline: &Fit,
     found: Fit,
+    left: &[StructureScore],
+    bent_gain: f64,
     data: &Observations,
     noise: Noise,
     levels: Levels,
 ) -> (Fit, Option<(Covariate, f64)>) {
     let explained = baseline.cost - found.cost;
-    let least = levels.structure.max(levels.structure_share * explained);
-    let left = Screen::new(&found, data, noise).structures();
+    // With few series chance reaches further: the level of the study holds for dozens of them.
+    let degrees = degrees_of_freedom(data, baseline.model.coordinates.len());
+    let chance = gain_at(levels.structure_p, left.len().max(1), degrees);
+    let least = levels.structure.max(chance).max(levels.structure_share * explained);
     let alone = if found.model.terms.is_empty() {
         Vec::new()
     } else {
@@ -296,7 +377,9 @@ fn unnamed(
         let with = with_structure(baseline, score, data, noise);
         // One shape against several names: each name beyond the first must have paid for itself.
         let names = named(&found.model).len() as f64;
-        if with.cost < found.cost - 20.0 + 12.0 * (names - 1.0) || best.is_some() {
+        // The names may bend their forms before the shape is said to fit better than they do.
+        let margin = levels.outright + 0.06 * bent_gain - 12.0 * (names - 1.0);
+        if with.cost < found.cost - bent_gain - margin || best.is_some() {
             let gain = baseline.cost - with.cost;
             let extended = search(&with, data, noise, levels);
             let pruned = drop_all_superfluous(extended, data, noise, levels.further);
@@ -390,8 +473,13 @@ fn describe(
         .map(|s| (s.effect, s.visible_share, s.strength))
         .collect();
     let family_probability = flips(&scores);
+    let leftover =
+        Screen::new(&augmented, data, noise).effects().iter().map(|s| (s.effect.id(), s.gain)).collect();
     Selection {
+        leftover,
         family_probability,
+        structure_gain: 0.0,
+        structures_tried: 0,
         baseline,
         augmented,
         gains,

@@ -67,12 +67,15 @@ pub enum TableError {
     },
     /// The loads cannot fix the baseline.
     #[error(
-        "{file}, column 'load_N': {found} different load(s); the baseline needs at least {needed}, \
-         add series with other weights"
+        "{file}, lines 2 to {last_line}, column 'load_N': {found} different load(s); the baseline needs at least {needed}, \
+         add series with other weights. One load leaves open how friction grows with load, where the switch stands, \
+         and every effect that lies in load"
     )]
     TooFewLoads {
         /// File name as given.
         file: String,
+        /// Last line of the table, counted from 1.
+        last_line: usize,
         /// How many there are.
         found: usize,
         /// How many are needed.
@@ -172,7 +175,12 @@ impl PlateauTable {
         loads.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
         let needed = 2;
         if loads.len() < needed {
-            return Err(TableError::TooFewLoads { file: file.to_owned(), found: loads.len(), needed });
+            return Err(TableError::TooFewLoads {
+                file: file.to_owned(),
+                last_line: self.rows.len() + 1,
+                found: loads.len(),
+                needed,
+            });
         }
         Ok(())
     }

@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::effects::{LIBRARY, Structure, effect_named};
+use super::disturbance::Disturbance;
+use super::raw::RawPlan;
+use super::twin::forms::forms_of;
+use crate::effects::{LIBRARY, effect_named};
 use crate::published;
 
 /// Why a plan cannot be run.
@@ -77,6 +80,12 @@ pub struct NoisePlan {
     pub outlier_n: f64,
     /// Share of rows that are lost.
     pub lost_share: f64,
+    /// Correlation of neighbouring repetitions, 0..1.
+    pub autocorrelation: f64,
+    /// Logarithmic standard deviation of the repetition noise from series to series.
+    pub uneven: f64,
+    /// Series whose weight is written down as that of a neighbour.
+    pub mislabelled_series: u32,
     /// Heavy tails: Student's t with three degrees of freedom instead of a normal law, of the same quartiles.
     pub heavy_tails: bool,
 }
@@ -91,6 +100,9 @@ impl Default for NoisePlan {
             outlier_share: 0.002,
             outlier_n: 1.0,
             lost_share: 0.0,
+            autocorrelation: 0.0,
+            uneven: 0.0,
+            mislabelled_series: 0,
             heavy_tails: false,
         }
     }
@@ -105,6 +117,9 @@ pub struct EffectPlan {
     /// Its constants, in the order of its formula.
     #[serde(default)]
     pub values: Vec<f64>,
+    /// In which of its forms: 0 is that of effects.md, others bend otherwise than the model that is fitted.
+    #[serde(default)]
+    pub form: u8,
 }
 
 /// Constants of the paper's model on this rig.
@@ -161,19 +176,11 @@ pub struct Plan {
     /// What the paper's model lacks on it.
     pub effects: Vec<EffectPlan>,
     /// What nobody has named.
-    pub structures: Vec<StructurePlan>,
+    pub disturbances: Vec<Disturbance>,
     /// Noise.
     pub noise: NoisePlan,
-}
-
-/// A structure outside the vocabulary with its size.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StructurePlan {
-    /// Its size.
-    pub size: f64,
-    /// Its shape.
-    #[serde(flatten)]
-    pub structure: Structure,
+    /// Sampling and faults of raw logs.
+    pub raw: RawPlan,
 }
 
 impl Default for Plan {
@@ -191,8 +198,9 @@ impl Default for Plan {
             repetitions_spread: 3,
             constants: Constants::default(),
             effects: Vec::new(),
-            structures: Vec::new(),
+            disturbances: Vec::new(),
             noise: NoisePlan::default(),
+            raw: RawPlan::default(),
         }
     }
 }
@@ -223,7 +231,20 @@ impl Plan {
         Ok(plan)
     }
 
-    fn check(&self, file: &str) -> Result<(), PlanError> {
+    /// The plan's text.
+    ///
+    /// # Errors
+    /// [`PlanError::Malformed`] if a value cannot be written as TOML.
+    pub fn to_text(&self) -> Result<String, PlanError> {
+        toml::to_string(self)
+            .map_err(|e| PlanError::Malformed { file: "plan.toml".to_owned(), problem: e.to_string() })
+    }
+
+    /// Checks every field. `file` is the name used in errors.
+    ///
+    /// # Errors
+    /// [`PlanError`] at the first field that cannot be used.
+    pub fn check(&self, file: &str) -> Result<(), PlanError> {
         let bound = |field, value: String, bound, remedy| {
             Err(PlanError::Bound { file: file.to_owned(), field, value, bound, remedy })
         };
@@ -261,6 +282,14 @@ impl Plan {
         if sizes.iter().any(|v| !v.is_finite() || *v < 0.0) {
             return bound("noise", format!("{sizes:?}"), ">= 0", "give standard deviations");
         }
+        if !(0.0..=0.99).contains(&n.autocorrelation) || !(0.0..=2.0).contains(&n.uneven) {
+            return bound(
+                "noise",
+                format!("autocorrelation {}, uneven {}", n.autocorrelation, n.uneven),
+                "0..0.99 and 0..2",
+                "0 is neither",
+            );
+        }
         if [n.outlier_share, n.lost_share].iter().any(|v| !(0.0..=0.9).contains(v)) {
             return bound(
                 "noise shares",
@@ -269,9 +298,36 @@ impl Plan {
                 "give shares of the rows",
             );
         }
+        let r = &self.raw;
+        if !(20.0..=10_000.0).contains(&r.sample_rate_hz) {
+            return bound("raw.sample_rate_hz", r.sample_rate_hz.to_string(), "20..10000", "the rig has 200");
+        }
+        let shares = [r.spike_share, r.lost_share, r.odd_speed_share, r.missing_share];
+        if shares.iter().any(|v| !(0.0..=0.9).contains(v)) {
+            return bound("raw shares", format!("{shares:?}"), "0..0.9", "give shares of samples and logs");
+        }
+        if [r.sample_n, r.jitter_s].iter().any(|v| !(v.is_finite() && *v >= 0.0)) {
+            return bound(
+                "raw",
+                format!("sample_N {}, jitter_s {}", r.sample_n, r.jitter_s),
+                ">= 0",
+                "give standard deviations",
+            );
+        }
         for e in &self.effects {
             let remedy = match effect_named(&e.id) {
-                Some(effect) if effect.parameters().len() == e.values.len() => continue,
+                Some(effect) if effect.parameters().len() == e.values.len() => {
+                    let forms = forms_of(&e.id);
+                    if usize::from(e.form) < forms.len() {
+                        continue;
+                    }
+                    format!(
+                        "form {} is unknown, it has 0 to {}: {}",
+                        e.form,
+                        forms.len() - 1,
+                        forms.join("; ")
+                    )
+                }
                 Some(effect) => {
                     let names: Vec<&str> = effect.parameters().iter().map(|p| p.name).collect();
                     format!("it needs {} value(s): {}", names.len(), names.join(", "))
@@ -302,7 +358,7 @@ mod tests {
             ("layouts = [[16]]", "layouts"),
             ("[noise]\noutlier_share = 2", "noise shares"),
             ("[[effects]]\nid = \"gravity\"", "known are"),
-            ("[[effects]]\nid = \"run_in\"\nvalues = [1]", "2 value(s): k, r0"),
+            ("[[effects]]\nid = \"run_in\"\nvalues = [1]", "3 value(s): k, r0, c"),
             ("colour = 1", "unknown field"),
         ];
         for (text, expected) in cases {

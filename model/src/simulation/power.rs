@@ -37,7 +37,7 @@ pub fn power(plan: &Plan, runs: u64, levels: Levels) -> Vec<Power> {
             if strength.size.1 > 0.0 { vec![strength.size.0, strength.size.1] } else { vec![f64::NAN] };
         for size in sizes {
             let mut values: Vec<f64> = if size.is_nan() { Vec::new() } else { vec![size] };
-            values.extend(strength.shape.map(|(least, most)| 0.5 * (least + most)));
+            values.extend(strength.shapes.iter().map(|(least, most)| 0.5 * (least + most)));
             all.push(one(plan, strength.id, values, runs, levels));
         }
     }
@@ -57,7 +57,7 @@ fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64, levels: Level
     for run in 0..runs {
         let mut planned = plan.clone();
         planned.seed = plan.seed.wrapping_add(run);
-        planned.effects.push(EffectPlan { id: id.to_owned(), values: values.clone() });
+        planned.effects.push(EffectPlan { id: id.to_owned(), values: values.clone(), form: 0 });
         let rows = simulate(&planned).rows;
         let frame = Frame::new(&rows);
         let Some(mut data) = Observations::new(&frame, &rows) else { continue };

@@ -5,12 +5,11 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 use super::plan::{Plan, Protocol};
+use super::twin::STROKE_MM;
 use crate::Direction;
 use crate::published;
 use crate::rig::{PlateauRow, Surface, Sweep};
 
-/// Stroke of the actuator in millimetres.
-const STROKE_MM: f64 = 152.4;
 /// Time of one move in seconds.
 const MOVE_S: f64 = 0.5;
 

@@ -7,10 +7,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
 use super::plan::Plan;
-use super::protocol;
-use crate::effects::effect_named;
-use crate::inference::{Model, Term};
-use crate::rig::{Frame, PlateauRow};
+use super::{protocol, twin};
+use crate::published;
+use crate::rig::PlateauRow;
 
 /// What a plan gives.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,12 +24,8 @@ pub struct Simulated {
 pub fn simulate(plan: &Plan) -> Simulated {
     let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
     let mut rows = protocol::rows(plan, &mut random);
-    let frame = Frame::new(&rows);
-    let model = model(plan, frame);
-    let points = model.frame.points(&rows).unwrap_or_default();
-    for (row, force) in rows.iter_mut().zip(model.predict(&points)) {
-        row.force_n = force;
-    }
+    let forces = twin::readings(plan, &rows);
+    rows.iter_mut().zip(forces).for_each(|(row, force)| row.force_n = force);
     let mut fresh = Vec::new();
     let share = 400.0 / rows.len().max(1) as f64;
     for row in &rows {
@@ -42,54 +37,53 @@ pub fn simulate(plan: &Plan) -> Simulated {
     Simulated { rows, fresh }
 }
 
-/// The plan's constants and effects as a model.
-fn model(plan: &Plan, frame: Frame) -> Model {
-    let mut model = Model::baseline(frame);
-    let mut values = model.values();
-    values[0] = plan.constants.mu_p;
-    values[1] = plan.constants.mu_s;
-    for device in 0..model.frame.devices() {
-        values[2 + 2 * device] *= plan.constants.half_load_factor.get(device).copied().unwrap_or(1.0);
-        values[3 + 2 * device] = plan.constants.steepness.get(device).copied().unwrap_or(4.64);
-    }
-    let fits = model.set_values(&values);
-    debug_assert!(fits, "the values are the model's own");
-    for effect in &plan.effects {
-        if let Some(known) = effect_named(&effect.id) {
-            model = model.with_term(Term::Named(known), &effect.values);
-        }
-    }
-    for s in &plan.structures {
-        model = model.with_term(Term::Structure(s.structure.clone()), &[s.size]);
-    }
-    model
-}
-
 /// Adds noise per repetition and per series and direction, gross errors, and loses rows.
 fn disturb(plan: &Plan, rows: &mut Vec<PlateauRow>, random: &mut ChaCha8Rng) {
     let noise = &plan.noise;
     let heavy = StudentT::new(3.0).ok();
-    let mut offsets = BTreeMap::new();
+    // Of each series and direction: its offset, its factor on the repetition noise, and the last repetition's noise.
+    let mut cells: BTreeMap<(String, bool), (f64, f64, f64)> = BTreeMap::new();
+    let rho = noise.autocorrelation;
     for row in rows.iter_mut() {
         let up = row.direction == crate::Direction::Concentric;
-        let offset: &mut f64 = offsets.entry((row.series.clone(), up)).or_insert_with(|| {
-            let unit: f64 = StandardNormal.sample(random);
-            unit * noise.series_n.hypot(noise.series_per_load * row.load_n)
+        let cell = cells.entry((row.series.clone(), up)).or_insert_with(|| {
+            let [offset, factor, before]: [f64; 3] = std::array::from_fn(|_| StandardNormal.sample(random));
+            let sd = noise.series_n.hypot(noise.series_per_load * row.load_n);
+            (offset * sd, (noise.uneven * factor).exp(), before)
         });
         let unit: f64 = match (noise.heavy_tails, &heavy) {
             // The quartiles of t with three degrees of freedom lie at 0.765, those of the normal law at 0.674.
             (true, Some(t)) => t.sample(random) * 0.674 / 0.765,
             _ => StandardNormal.sample(random),
         };
-        let mut error = *offset + unit * noise.repetition_n.hypot(noise.repetition_per_load * row.load_n);
+        cell.2 = rho * cell.2 + (1.0 - rho * rho).sqrt() * unit;
+        let sd = cell.1 * noise.repetition_n.hypot(noise.repetition_per_load * row.load_n);
+        let mut error = cell.0 + cell.2 * sd;
         if random.random::<f64>() < noise.outlier_share {
             let gross: f64 = StandardNormal.sample(random);
             error += noise.outlier_n * gross;
         }
         row.force_n += error;
     }
+    mislabel(plan, rows, random);
     if noise.lost_share > 0.0 {
         rows.retain(|_| random.random::<f64>() >= noise.lost_share);
+    }
+}
+
+/// Writes down a neighbouring weight for some series.
+fn mislabel(plan: &Plan, rows: &mut [PlateauRow], random: &mut ChaCha8Rng) {
+    let mut names: Vec<String> = rows.iter().map(|r| r.series.clone()).collect();
+    names.dedup();
+    for _ in 0..plan.noise.mislabelled_series {
+        let name = names[random.random_range(0..names.len())].clone();
+        let Some(mass_g) = rows.iter().find(|r| r.series == name).map(|r| r.load_mass_g) else { continue };
+        let at = plan.weights_g.partition_point(|w| *w < mass_g - 1e-9);
+        let other = if at + 1 < plan.weights_g.len() { at + 1 } else { at.saturating_sub(1) };
+        for row in rows.iter_mut().filter(|r| r.series == name) {
+            row.load_mass_g = plan.weights_g[other];
+            row.load_n = published::load_n(row.load_mass_g);
+        }
     }
 }
 

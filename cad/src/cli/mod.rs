@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use clap_verbosity_flag::{InfoLevel, Verbosity};
 
+mod batch;
 mod calibrate;
 mod check;
 mod completions;
@@ -13,6 +14,7 @@ mod failure;
 mod generate;
 mod init;
 mod layouts;
+mod merge;
 mod power;
 mod predict;
 mod predict_rows;
@@ -36,6 +38,8 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Generate(generate::Arguments),
+    Batch(batch::Arguments),
+    Merge(merge::Arguments),
     Predict(predict::Arguments),
     Check(check::Arguments),
     Render(render::Arguments),
@@ -58,6 +62,8 @@ pub fn run() -> ExitCode {
         .init();
     let outcome = match cli.command {
         Command::Generate(arguments) => generate::run(&arguments),
+        Command::Batch(arguments) => batch::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),

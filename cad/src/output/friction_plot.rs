@@ -20,6 +20,13 @@ const LIMIT_POINTS: u32 = 60;
 #[error("the friction plot cannot be drawn: {0}")]
 pub struct PlotError(String);
 
+impl PlotError {
+    /// The drawing library's complaint.
+    pub(crate) fn new(error: &dyn std::error::Error) -> Self {
+        Self(error.to_string())
+    }
+}
+
 /// Draws `curve` for `contact` as a self-contained SVG titled `name`.
 ///
 /// # Errors

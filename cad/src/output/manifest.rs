@@ -88,6 +88,8 @@ pub struct FrictionEntry {
     pub friction_n: f64,
     /// Its band there, N.
     pub band_n: [f64; 2],
+    /// Load from which the silicone makes half of the friction or more, N; absent if that lies outside the curve.
+    pub threshold_n: Option<f64>,
     /// The whole curve.
     pub curve_file: &'static str,
 }
@@ -101,6 +103,20 @@ pub struct FileEntry {
     pub bytes: usize,
     /// Its SHA-256, hexadecimal.
     pub sha256: String,
+    /// In a batch: the one file that all equal ones are links to, or stand for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub content: Option<String>,
+}
+
+/// Where a set belongs that was made as part of a batch.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BatchEntry {
+    /// SHA-256 of the sweep.
+    pub sweep_sha256: String,
+    /// Place in the sweep, from 0.
+    pub index: u64,
+    /// What is engraved.
+    pub label: String,
 }
 
 /// The manifest of a set.
@@ -112,6 +128,9 @@ pub struct Manifest {
     pub name: String,
     /// Program and version that made it.
     pub generator: String,
+    /// The batch that it is part of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub batch: Option<BatchEntry>,
     /// Every value that the user may set.
     pub settings: Vec<Setting>,
     /// What follows from them.
@@ -136,7 +155,7 @@ pub fn manifest(
     parts: &[(Part, Facts)],
     bill: Bill,
     curve: &FrictionCurve,
-    files: &[OutputFile],
+    files: Vec<FileEntry>,
 ) -> Manifest {
     let c = design.configuration();
     let parts: Vec<_> = parts.iter().map(|(part, facts)| part_entry(part, facts, c)).collect();
@@ -146,6 +165,7 @@ pub fn manifest(
         schema: "pinswitch.set/1",
         name: c.switch.name.clone(),
         generator: concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned(),
+        batch: None,
         settings: settings(c),
         derived: derived(design),
         mesh: MeshBound {
@@ -170,10 +190,11 @@ pub fn manifest(
             load_n: last(&curve.load_n),
             friction_n: last(&curve.friction_n),
             band_n: [last(&curve.band_low_n), last(&curve.band_high_n)],
+            threshold_n: threshold_n(curve),
             curve_file: "friction.csv",
         },
         warnings: design.warnings(),
-        files: files.iter().map(file_entry).collect(),
+        files,
     }
 }
 
@@ -191,10 +212,22 @@ fn part_entry(part: &Part, facts: &Facts, c: &Configuration) -> PartEntry {
     }
 }
 
-fn file_entry(file: &OutputFile) -> FileEntry {
-    let digest = Sha256::digest(&file.bytes);
-    let sha256 = digest.iter().map(|b| format!("{b:02x}")).collect();
-    FileEntry { file: file.name.clone(), bytes: file.bytes.len(), sha256 }
+impl FileEntry {
+    /// The entry of a file with these bytes.
+    pub fn of(file: &OutputFile) -> Self {
+        let digest = Sha256::digest(&file.bytes);
+        let sha256 = digest.iter().map(|b| format!("{b:02x}")).collect();
+        Self { file: file.name.clone(), bytes: file.bytes.len(), sha256, content: None }
+    }
+}
+
+/// The load from which the silicone makes half of the friction or more, N, between two points of the curve; `None` if
+/// it makes less at every load, or more at the lightest one already.
+pub fn threshold_n(curve: &FrictionCurve) -> Option<f64> {
+    let above = curve.silicone_share.iter().position(|share| *share >= 0.5).filter(|i| *i > 0)?;
+    let (low, high) = (curve.silicone_share[above - 1], curve.silicone_share[above]);
+    let (from, to) = (curve.load_n[above - 1], curve.load_n[above]);
+    Some(from + (to - from) * (0.5 - low) / (high - low))
 }
 
 fn settings(c: &Configuration) -> Vec<Setting> {
@@ -217,7 +250,7 @@ fn settings(c: &Configuration) -> Vec<Setting> {
 }
 
 /// A TOML value as JSON.
-fn plain(value: &toml_edit::Value) -> Value {
+pub(crate) fn plain(value: &toml_edit::Value) -> Value {
     match value {
         toml_edit::Value::Integer(i) => json!(i.value()),
         toml_edit::Value::Float(f) => json!(f.value()),
@@ -227,7 +260,8 @@ fn plain(value: &toml_edit::Value) -> Value {
     }
 }
 
-fn derived(design: &Design) -> Vec<Derived> {
+/// Every dimension of `design` that follows from its settings.
+pub fn derived(design: &Design) -> Vec<Derived> {
     let c = design.configuration();
     let pitch = c.segment.span_deg / c.segment.grooves as f64;
     let land =

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use exmex::{Express, FlatExVal, Val, parse_val};
+use exmex::{BinOp, Express, FlatEx, MakeOperators, Operator, Val, ValMatcher, ValOpsFactory};
 use pinswitch_model::FrictionCurve;
-use toml_edit::Value;
 
 use super::axis::complaint;
 use crate::config::{ConfigError, Configuration};
@@ -14,6 +13,34 @@ use crate::output::{derived, threshold_n};
 /// Names beside fields and derived dimensions.
 const PREDICTED: [&str; 5] = ["pin_count", "friction_n", "band_low_n", "band_high_n", "threshold_n"];
 
+type Value = Val<i32, f64>;
+type Expression = FlatEx<Value, Operators, ValMatcher>;
+
+/// The evaluator's operators, bound as everywhere else: comparisons before `&&` before `||`. On its own it joins
+/// conditions before it compares them.
+#[derive(Clone, Debug)]
+struct Operators;
+
+impl MakeOperators<Value> for Operators {
+    fn make<'a>() -> Vec<Operator<'a, Value>> {
+        let bound = |operator: Operator<'a, Value>| {
+            let Ok(BinOp { apply, prio, is_commutative }) = operator.bin() else { return operator };
+            let prio = match operator.repr() {
+                "||" => 11,
+                "&&" => 12,
+                "==" | "!=" | "<" | "<=" | ">" | ">=" => 15,
+                _ => 10 * prio,
+            };
+            let bin = BinOp { apply, prio, is_commutative };
+            match operator.unary() {
+                Ok(unary) => Operator::make_bin_unary(operator.repr(), bin, unary),
+                Err(_) => Operator::make_bin(operator.repr(), bin),
+            }
+        };
+        ValOpsFactory::<i32, f64>::make().into_iter().map(bound).collect()
+    }
+}
+
 /// A condition that every variant must fulfil.
 #[derive(Clone, Debug)]
 pub struct Constraint {
@@ -21,7 +48,7 @@ pub struct Constraint {
     text: String,
     /// Why, in the words of whoever wrote it.
     because: Option<String>,
-    expression: Arc<FlatExVal<i32, f64>>,
+    expression: Arc<Expression>,
     /// The names in it, in the order in which the expression wants their values.
     names: Vec<String>,
 }
@@ -58,7 +85,7 @@ impl Constraint {
             )
         };
         let expression =
-            parse_val::<i32, f64>(&braced).map_err(|e| refused(&format!("is no expression: {e}")))?;
+            Expression::parse(&braced).map_err(|e| refused(&format!("is no expression: {e}")))?;
         let names = expression.var_names().to_vec();
         // What is no condition is found before any variant is made: its type does not depend on the values.
         let ones = vec![Val::Float(1.0); names.len()];
@@ -95,7 +122,12 @@ impl Constraint {
 fn names() -> Vec<String> {
     let fields = Configuration::PARAMETERS
         .iter()
-        .filter(|p| matches!((p.get)(&Configuration::default()), Value::Integer(_) | Value::Float(_)))
+        .filter(|p| {
+            matches!(
+                (p.get)(&Configuration::default()),
+                toml_edit::Value::Integer(_) | toml_edit::Value::Float(_)
+            )
+        })
         .map(|p| p.path());
     let design = Design::new(Configuration::default());
     let dimensions = design.iter().flat_map(derived).map(|d| format!("{}_{}", d.name, d.unit));
@@ -169,6 +201,8 @@ mod tests {
             "contact_radius_mm == 22 && pin_count == 3",
             "friction_n > 10 && friction_n < 10.1",
             "threshold_n > 20 || 1 > 2",
+            "1 > 2 && 1 > 2 || shell.wall_mm < 7",
+            "-shell.wall_mm + 2 * 3 == 0",
             "max(shell.wall_mm, 3) <= 6.0",
         ] {
             assert_eq!(refusal(met), None, "{met}");

@@ -1,6 +1,6 @@
 //! Variants: which settings each one has, and the id and label by which it is known.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
@@ -13,10 +13,12 @@ use crate::config::{Configuration, to_toml};
 
 /// Letters of a code: no I, L, O or U, so that it can be read off a print (Crockford's base 32).
 const LETTERS: &[u8; 32] = b"0123456789ABCDEFGHJKMNPQRSTVWXYZ";
-/// Letters of an ordinary code.
-const CODE: usize = 7;
-/// Letters of a code where two ordinary ones are alike.
+/// Letters of a code: as many as fit on a published shell.
+const CODE: usize = 5;
+/// Letters of a code in a sweep of more than [`ORDINARY`] variants, which no label tells apart any more.
 const LONG_CODE: usize = 12;
+/// Variants up to which half of all ordinary codes are free.
+const ORDINARY: u64 = 1 << 24;
 /// Longest id: it names the variant's folder and its plot.
 const LONGEST_ID: usize = 40;
 
@@ -25,7 +27,7 @@ const LONGEST_ID: usize = 40;
 pub struct Variant {
     /// Its place in the sweep, from 0.
     pub index: u64,
-    /// Its settings in words, and a code: `width12_pins5.8.11-k7qx2m4`.
+    /// Its settings in words, and a code: `width12_pins5.8.11-k7qx2`.
     pub id: String,
     /// What is engraved on its parts: the code, unless the sweep sets `label.text`.
     pub label: String,
@@ -44,8 +46,10 @@ pub struct Variants {
     salt: Vec<u8>,
     /// Variants that repeat an earlier one.
     repeats: HashMap<u64, u64>,
-    /// Variants whose short code is also another's.
-    long: HashMap<u64, ()>,
+    /// Letters of every code.
+    letters: usize,
+    /// Codes of variants whose own one is already another's.
+    moved: HashMap<u64, u64>,
 }
 
 impl Variants {
@@ -54,19 +58,28 @@ impl Variants {
         let count = sweep.count().unwrap_or(u64::MAX);
         let salt =
             Sha256::digest([source.base.as_bytes(), to_toml(&sweep.base).as_bytes()].concat()).to_vec();
-        let mut all = Self { sweep, count, salt, repeats: HashMap::new(), long: HashMap::new() };
+        let letters = if count <= ORDINARY { CODE } else { LONG_CODE };
+        let mut all = Self { sweep, count, salt, repeats: HashMap::new(), letters, moved: HashMap::new() };
         let mut hashes: Vec<(u64, u64)> =
             (0..count).into_par_iter().map(|index| (all.hash(index), index)).collect();
         hashes.par_sort_unstable();
-        let shift = 64 - 5 * CODE;
-        for pair in hashes.windows(2) {
-            let ((a, first), (b, second)) = (pair[0], pair[1]);
-            if a == b {
-                let original = *all.repeats.get(&first).unwrap_or(&first);
-                all.repeats.insert(second, original);
-            } else if a >> shift == b >> shift {
-                all.long.insert(first, ());
-                all.long.insert(second, ());
+        let mut taken = HashSet::with_capacity(hashes.len());
+        let mut first = None;
+        for (hash, index) in hashes {
+            match first {
+                Some((before, original)) if before == hash => {
+                    all.repeats.insert(index, original);
+                }
+                _ => first = Some((hash, index)),
+            }
+            let mut turned = hash;
+            while !taken.insert(all.code_bits(turned)) {
+                // Knuth's linear congruential generator: it goes through all numbers.
+                turned =
+                    turned.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            }
+            if turned != hash {
+                all.moved.insert(index, turned);
             }
         }
         all
@@ -95,9 +108,10 @@ impl Variants {
             let accepted = (field.set)(&mut configuration, value);
             debug_assert!(accepted.is_ok());
         }
-        let letters = if self.long.contains_key(&index) { LONG_CODE } else { CODE };
-        let code = code(self.hash(index), letters);
-        let id = format!("{}-{}", self.words(index, LONGEST_ID - letters - 1), code.to_ascii_lowercase());
+        let hash = self.moved.get(&index).copied().unwrap_or_else(|| self.hash(index));
+        let code = code(hash, self.letters);
+        let words = self.words(index, LONGEST_ID - self.letters - 1);
+        let id = format!("{words}-{}", code.to_ascii_lowercase());
         if configuration.label.text.is_empty() {
             configuration.label.text.clone_from(&code);
         }
@@ -118,6 +132,11 @@ impl Variants {
         }
         all.reverse();
         all
+    }
+
+    /// The bits of a hash that its code shows.
+    fn code_bits(&self, hash: u64) -> u64 {
+        hash >> (64 - 5 * self.letters)
     }
 
     /// Hash of the settings: equal settings, whatever their place in the sweep, have equal hashes.
@@ -220,6 +239,15 @@ mod tests {
     }
 
     #[test]
+    fn codes_differ_even_where_hashes_are_alike() {
+        // Of 30,000 codes out of 2^25, about 13 pairs are alike at first.
+        let all = variants("[axes]\n\"tendon.length_mm\" = { from = 100, to = 400, count = 30000 }\n");
+        assert!(!all.moved.is_empty());
+        let labels: HashSet<_> = (0..all.count()).map(|i| all.get(i).label).collect();
+        assert_eq!(labels.len(), 30_000);
+    }
+
+    #[test]
     fn repeated_samples_are_known() {
         let all = variants(
             "[sample]\nmethod = \"random\"\ncount = 20\n[sample.axes]\n\"segment.grooves\" = { from = 3, to = 5 }\n",
@@ -229,6 +257,7 @@ mod tests {
         for i in 0..20 {
             if let Some(original) = all.get(i).repeats {
                 assert!(original < i && all.get(original).repeats.is_none());
+                assert_ne!(all.get(i).id, all.get(original).id);
                 assert_eq!(all.get(i).configuration.segment, all.get(original).configuration.segment);
             }
         }

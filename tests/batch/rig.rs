@@ -9,11 +9,11 @@ use std::process::{Command, Output};
 use sha2::{Digest, Sha256};
 
 /// Variants of [`SWEEP`] that cannot be built or are forbidden: 60 grooves overlap, 12 mm is too narrow.
-pub const REFUSED: usize = 12;
+pub(crate) const REFUSED: usize = 12;
 /// All variants of [`SWEEP`].
-pub const VARIANTS: usize = 24;
+pub(crate) const VARIANTS: usize = 24;
 
-pub const SWEEP: &str = r#"
+pub(crate) const SWEEP: &str = r#"
 [sweep]
 name = "small"
 base = "three-double"
@@ -29,31 +29,31 @@ parts = ["shell", "mould-ring", "support-left", "coupon"]
 require = "shell.width_mm >= 14 || tendon.length_mm > 0"
 "#;
 
-pub fn pinswitch(folder: &Path, arguments: &[&str]) -> Output {
+pub(crate) fn pinswitch(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_pinswitch")).args(arguments).current_dir(folder).output().unwrap()
 }
 
-pub fn done(folder: &Path, arguments: &[&str]) -> String {
+pub(crate) fn done(folder: &Path, arguments: &[&str]) -> String {
     let output = pinswitch(folder, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8([output.stdout, output.stderr].concat()).unwrap()
 }
 
 /// Exit code and everything that was said.
-pub fn ended(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+pub(crate) fn ended(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let output = pinswitch(folder, arguments);
     (output.status.code(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
 }
 
 /// A folder with the sweep in it.
-pub fn with_sweep(text: &str) -> tempfile::TempDir {
+pub(crate) fn with_sweep(text: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("sweep.toml"), text).unwrap();
     folder
 }
 
 /// SHA-256 of every file under `folder`, by its path.
-pub fn hashes(folder: &Path) -> BTreeMap<String, String> {
+pub(crate) fn hashes(folder: &Path) -> BTreeMap<String, String> {
     let mut all = BTreeMap::new();
     let mut left = vec![folder.to_owned()];
     while let Some(next) = left.pop() {
@@ -72,7 +72,7 @@ pub fn hashes(folder: &Path) -> BTreeMap<String, String> {
 }
 
 /// Differences between two folders, for a message.
-pub fn differences(a: &BTreeMap<String, String>, b: &BTreeMap<String, String>) -> Vec<String> {
+pub(crate) fn differences(a: &BTreeMap<String, String>, b: &BTreeMap<String, String>) -> Vec<String> {
     let names = a.keys().chain(b.keys());
     let mut all: Vec<_> = names.filter(|n| a.get(*n) != b.get(*n)).cloned().collect();
     all.sort();
@@ -81,7 +81,7 @@ pub fn differences(a: &BTreeMap<String, String>, b: &BTreeMap<String, String>) -
 }
 
 /// The rows of a table, by column.
-pub fn table(folder: &Path) -> Vec<BTreeMap<String, String>> {
+pub(crate) fn table(folder: &Path) -> Vec<BTreeMap<String, String>> {
     let text = std::fs::read(folder.join("variants.csv")).unwrap();
     let mut reader = csv::Reader::from_reader(text.as_slice());
     let header = reader.headers().unwrap().clone();

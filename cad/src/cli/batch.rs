@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Failure, print, print_json};
 use crate::batch::{
@@ -137,6 +137,9 @@ impl Progress {
         let bar = ProgressBar::new(count);
         let form = "{bar:30} {pos} of {len} variants, {per_sec}, {eta} left {msg}";
         bar.set_style(ProgressStyle::with_template(form).map_err(Failure::failed)?);
+        if log::max_level() < log::LevelFilter::Info {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
         bar.enable_steady_tick(Duration::from_millis(500));
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);

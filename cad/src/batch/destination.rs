@@ -84,6 +84,9 @@ impl Destination {
         store: Arc<dyn ObjectStore>,
         prefix: StorePath,
     ) -> Result<Self, DestinationError> {
+        // Built once for all: only the first call takes effect.
+        #[cfg(feature = "cloud")]
+        let _ = rustls::crypto::ring::default_provider().install_default();
         #[cfg(feature = "cloud")]
         let runtime =
             tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build().map_err(

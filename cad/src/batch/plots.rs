@@ -20,6 +20,17 @@ const LEGEND: i32 = 190;
 /// From low to high: even to the eye and to the colour-blind (viridis, without its palest end).
 const RAMP: [(f64, f64, f64); 5] =
     [(68.0, 1.0, 84.0), (59.0, 82.0, 139.0), (33.0, 145.0, 140.0), (94.0, 201.0, 98.0), (202.0, 190.0, 20.0)];
+/// Words have no order, and so have these (Okabe and Ito, told apart by the colour-blind).
+const PALETTE: [(u8, u8, u8); 8] = [
+    (0, 114, 178),
+    (213, 94, 0),
+    (0, 158, 115),
+    (204, 121, 167),
+    (86, 180, 233),
+    (230, 159, 0),
+    (60, 60, 60),
+    (190, 180, 20),
+];
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
@@ -31,6 +42,8 @@ struct Classes {
     labels: Vec<String>,
     /// Upper ends of intervals, or nothing for single values.
     ends: Vec<f64>,
+    /// Whether the values are numbers, which have an order.
+    ordered: bool,
 }
 
 impl Classes {
@@ -39,7 +52,7 @@ impl Classes {
     fn new(gallery: &Gallery, field: Option<usize>, most: usize) -> Self {
         let name = field.map(|i| gallery.fields[i].clone()).unwrap_or_default();
         let Some(i) = field else {
-            return Self { field, name, labels: vec![String::new()], ends: Vec::new() };
+            return Self { field, name, labels: vec![String::new()], ends: Vec::new(), ordered: true };
         };
         let mut values: Vec<&Setting> = Vec::new();
         for shown in gallery.made() {
@@ -48,7 +61,13 @@ impl Classes {
             }
         }
         if values.is_empty() {
-            return Self { field, name, labels: vec!["none was made".to_owned()], ends: Vec::new() };
+            return Self {
+                field,
+                name,
+                labels: vec!["none was made".to_owned()],
+                ends: Vec::new(),
+                ordered: true,
+            };
         }
         let mut numbers: Vec<f64> =
             values.iter().filter_map(|v| if let Setting::Number(x) = v { Some(*x) } else { None }).collect();
@@ -60,9 +79,10 @@ impl Classes {
             let ends: Vec<_> = (1..=classes).map(end).collect();
             let labels =
                 (0..classes).map(|k| format!("{} to {}", short(end(k)), short(end(k + 1)))).collect();
-            return Self { field, name, labels, ends };
+            return Self { field, name, labels, ends, ordered: true };
         }
-        let labels = if numbers.len() == values.len() {
+        let ordered = numbers.len() == values.len();
+        let labels = if ordered {
             numbers.into_iter().map(short).collect()
         } else {
             let mut labels: Vec<_> = values.iter().map(|v| label(v)).collect();
@@ -72,7 +92,7 @@ impl Classes {
             }
             labels
         };
-        Self { field, name, labels, ends: Vec::new() }
+        Self { field, name, labels, ends: Vec::new(), ordered }
     }
 
     /// The class of a variant.
@@ -91,6 +111,10 @@ impl Classes {
     }
 
     fn colour(&self, class: usize) -> RGBColor {
+        if !self.ordered {
+            let (red, green, blue) = PALETTE[class % PALETTE.len()];
+            return RGBColor(red, green, blue);
+        }
         #[allow(clippy::cast_precision_loss)]
         let share = class as f64 / (self.labels.len().max(2) - 1) as f64;
         ramp(share)

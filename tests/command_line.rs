@@ -176,7 +176,9 @@ fn a_template_written_out_generates_the_same_parts() {
 fn help_layouts_and_completions_teach() {
     let folder = tempfile::tempdir().unwrap();
     let help = done(folder.path(), &["--help"]);
-    for command in ["generate", "predict", "check", "layouts", "init", "render", "completions"] {
+    for command in
+        ["generate", "batch", "merge", "predict", "check", "layouts", "init", "render", "completions"]
+    {
         assert!(help.contains(command), "{command}");
         assert!(done(folder.path(), &[command, "--help"]).contains("Usage"));
     }

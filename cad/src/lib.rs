@@ -1,5 +1,6 @@
 //! From a pin configuration to printable parts with their predicted friction curve.
 
+pub mod batch;
 pub mod calibration_page;
 pub mod cli;
 pub mod config;

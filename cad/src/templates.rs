@@ -53,6 +53,9 @@ impl Template {
     }
 }
 
+/// The sweep from which a user starts a batch of their own.
+pub const SWEEP: &str = include_str!("../../templates/batch/sweep.toml");
+
 /// The text of the template called `name`; `reference` shows every parameter.
 pub fn text(name: &str) -> Option<String> {
     if name == "reference" {

@@ -7,6 +7,7 @@ use clap::Args;
 use super::source::text_of;
 use super::{Failure, print};
 use crate::output::write_file;
+use crate::templates::SWEEP;
 
 /// Write a template out, to start a configuration of your own.
 #[derive(Args, Debug)]
@@ -14,7 +15,8 @@ use crate::output::write_file;
   pinswitch init three-double --out my-switch.toml
   pinswitch init reference")]
 pub(super) struct Arguments {
-    /// Name of a template; `reference` shows every parameter with its unit, range, default and reason.
+    /// Name of a template; `reference` shows every parameter with its unit, range, default and reason,
+    /// `sweep` starts a batch.
     name: String,
     /// File to write; without it the template goes to standard output.
     #[arg(long, short, value_name = "FILE")]
@@ -25,7 +27,10 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (text, _) = text_of(&arguments.name)?;
+    let text = match arguments.name.as_str() {
+        "sweep" => SWEEP.to_owned(),
+        name => text_of(name)?.0,
+    };
     let Some(path) = &arguments.out else { return print(text.as_bytes()) };
     if path.exists() && !arguments.force {
         return Err(Failure::bad_input(format!("{}: exists; give --force to overwrite it", path.display())));

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use clap_verbosity_flag::{InfoLevel, Verbosity};
 
+mod batch;
 mod calibrate;
 mod check;
 mod completions;
@@ -16,6 +17,7 @@ mod generate;
 mod init;
 mod law;
 mod layouts;
+mod merge;
 mod physics;
 mod power;
 mod predict;
@@ -42,6 +44,8 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Generate(generate::Arguments),
+    Batch(batch::Arguments),
+    Merge(merge::Arguments),
     Predict(predict::Arguments),
     Design(design::Arguments),
     Finger(finger::Arguments),
@@ -68,6 +72,8 @@ pub fn run() -> ExitCode {
         .init();
     let outcome = match cli.command {
         Command::Generate(arguments) => generate::run(&arguments),
+        Command::Batch(arguments) => batch::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Design(arguments) => design::run(&arguments),
         Command::Finger(arguments) => finger::run(&arguments),

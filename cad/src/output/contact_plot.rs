@@ -20,7 +20,7 @@ const LOADS: [RGBColor; 4] =
 /// [`PlotError`] if the drawing library refuses a coordinate.
 pub fn contact_svg(title: &str, profiles: &[(f64, ContactProfile)]) -> Result<String, PlotError> {
     let mut svg = String::new();
-    draw(&mut svg, title, profiles).map_err(|e| PlotError::new(&e))?;
+    draw(&mut svg, title, profiles).map_err(|e| PlotError::new(&*e))?;
     Ok(shown_at_size(svg, SIZE))
 }
 

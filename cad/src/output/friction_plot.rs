@@ -27,8 +27,9 @@ const LIMIT_POINTS: u32 = 60;
 pub struct PlotError(String);
 
 impl PlotError {
-    pub(super) fn new(cause: &impl ToString) -> Self {
-        Self(cause.to_string())
+    /// The drawing library's complaint.
+    pub(crate) fn new(error: &dyn std::error::Error) -> Self {
+        Self(error.to_string())
     }
 }
 
@@ -43,7 +44,7 @@ pub fn friction_svg(
     others: &[FrictionCurve],
 ) -> Result<String, PlotError> {
     let mut svg = String::new();
-    draw(&mut svg, name, contact, curve, others).map_err(|e| PlotError::new(&e))?;
+    draw(&mut svg, name, contact, curve, others).map_err(|e| PlotError::new(&*e))?;
     Ok(shown_at_size(svg, SIZE))
 }
 

@@ -1,6 +1,6 @@
 //! `manifest.json`: everything that a person or a program needs to know of a set, and to check it.
 
-use pinswitch_model::{FrictionCurve, Law, Trust};
+use pinswitch_model::{FrictionCurve, Law, Transition, Trust};
 use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -90,6 +90,8 @@ pub struct FrictionEntry {
     pub friction_n: f64,
     /// Its band there, N.
     pub band_n: [f64; 2],
+    /// Load from which the silicone makes half of the friction or more, N; absent if that lies outside the curve.
+    pub threshold_n: Option<f64>,
     /// The whole curve.
     pub curve_file: &'static str,
     /// The other laws that apply, at the same load: beside the curve, never mixed into it.
@@ -122,6 +124,20 @@ pub struct FileEntry {
     pub bytes: usize,
     /// Its SHA-256, hexadecimal.
     pub sha256: String,
+    /// In a batch: the one file that all equal ones are links to, or stand for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub content: Option<String>,
+}
+
+/// Where a set belongs that was made as part of a batch.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BatchEntry {
+    /// SHA-256 of the sweep.
+    pub sweep_sha256: String,
+    /// Place in the sweep, from 0.
+    pub index: u64,
+    /// What is engraved.
+    pub label: String,
 }
 
 /// The manifest of a set.
@@ -133,6 +149,9 @@ pub struct Manifest {
     pub name: String,
     /// Program and version that made it.
     pub generator: String,
+    /// The batch that it is part of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub batch: Option<BatchEntry>,
     /// Every value that the user may set.
     pub settings: Vec<Setting>,
     /// What follows from them.
@@ -158,7 +177,7 @@ pub fn manifest(
     bill: Bill,
     curve: &FrictionCurve,
     others: &[FrictionCurve],
-    files: &[OutputFile],
+    files: Vec<FileEntry>,
 ) -> Manifest {
     let c = design.configuration();
     let parts: Vec<_> = parts.iter().map(|(part, facts)| part_entry(part, facts, c)).collect();
@@ -167,6 +186,7 @@ pub fn manifest(
         schema: "pinswitch.set/1",
         name: c.switch.name.clone(),
         generator: concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned(),
+        batch: None,
         settings: settings(c),
         derived: derived(design),
         mesh: MeshBound {
@@ -184,10 +204,11 @@ pub fn manifest(
             friction_n: last(&curve.friction_n),
             band_n: [last(&curve.band_low_n), last(&curve.band_high_n)],
             other_laws: others.iter().map(law_entry).collect(),
+            threshold_n: Transition::of(curve).map(|t| t.threshold_n),
             curve_file: "friction.csv",
         },
         warnings: design.warnings(),
-        files: files.iter().map(file_entry).collect(),
+        files,
     }
 }
 
@@ -223,7 +244,7 @@ fn source(law: Law) -> &'static str {
 
 /// Lists `files` in the manifest.
 pub(super) fn with_files(manifest: &mut Manifest, files: &[OutputFile]) {
-    manifest.files = files.iter().map(file_entry).collect();
+    manifest.files = files.iter().map(FileEntry::of).collect();
 }
 
 fn part_entry(part: &Part, facts: &Facts, c: &Configuration) -> PartEntry {
@@ -241,10 +262,13 @@ fn part_entry(part: &Part, facts: &Facts, c: &Configuration) -> PartEntry {
     }
 }
 
-fn file_entry(file: &OutputFile) -> FileEntry {
-    let digest = Sha256::digest(&file.bytes);
-    let sha256 = digest.iter().map(|b| format!("{b:02x}")).collect();
-    FileEntry { file: file.name.clone(), bytes: file.bytes.len(), sha256 }
+impl FileEntry {
+    /// The entry of a file with these bytes.
+    pub fn of(file: &OutputFile) -> Self {
+        let digest = Sha256::digest(&file.bytes);
+        let sha256 = digest.iter().map(|b| format!("{b:02x}")).collect();
+        Self { file: file.name.clone(), bytes: file.bytes.len(), sha256, content: None }
+    }
 }
 
 fn settings(c: &Configuration) -> Vec<Setting> {
@@ -267,7 +291,7 @@ fn settings(c: &Configuration) -> Vec<Setting> {
 }
 
 /// A TOML value as JSON.
-fn plain(value: &toml_edit::Value) -> Value {
+pub(crate) fn plain(value: &toml_edit::Value) -> Value {
     match value {
         toml_edit::Value::Integer(i) => json!(i.value()),
         toml_edit::Value::Float(f) => json!(f.value()),
@@ -277,7 +301,8 @@ fn plain(value: &toml_edit::Value) -> Value {
     }
 }
 
-fn derived(design: &Design) -> Vec<Derived> {
+/// Every dimension of `design` that follows from its settings.
+pub fn derived(design: &Design) -> Vec<Derived> {
     let c = design.configuration();
     let pitch = c.segment.span_deg / c.segment.grooves as f64;
     let land =

@@ -18,7 +18,10 @@ pub use formats::{Format, make_set_in};
 pub use friction_csv::friction_csv;
 pub use friction_plot::{PlotError, friction_svg};
 pub use guide::{Check, checks, printing_guide};
-pub use manifest::{Manifest, manifest};
+pub(crate) use manifest::plain;
+pub use manifest::{BatchEntry, Derived, FileEntry, Manifest, derived, manifest};
 pub use pareto_plot::pareto_svg;
-pub use set::{OutputFile, Set, SetError, curve_of, curves_beside, loads_of, make_set, make_set_with};
+pub use set::{
+    OutputFile, Set, SetError, curve_of, curves_beside, loads_of, make_set, make_set_with, mesh_file,
+};
 pub use write::{WriteError, write_file, write_set};

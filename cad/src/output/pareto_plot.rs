@@ -19,7 +19,7 @@ const SIZE: (u32, u32) = (760, 480);
 /// [`PlotError`] if the drawing library refuses a coordinate.
 pub fn pareto_svg(all: &[Candidate], chosen: &[Candidate]) -> Result<String, PlotError> {
     let mut svg = String::new();
-    draw(&mut svg, all, chosen).map_err(|e| PlotError::new(&e))?;
+    draw(&mut svg, all, chosen).map_err(|e| PlotError::new(&*e))?;
     Ok(shown_at_size(svg, SIZE))
 }
 

@@ -2,7 +2,7 @@
 
 use pinswitch_model::{Contact, FrictionCurve, Law, other_laws, predict};
 
-use super::{Manifest, PlotError, bill_of_materials, friction_csv, friction_svg, manifest};
+use super::{FileEntry, Manifest, PlotError, bill_of_materials, friction_csv, friction_svg, manifest};
 use crate::config::ConfigError;
 use crate::design::Design;
 use crate::mesh::stl_bytes;
@@ -110,16 +110,30 @@ pub fn make_set_with(design: &Design, curve: &FrictionCurve) -> Result<Set, SetE
     files.push(OutputFile { name: "friction.svg".to_owned(), bytes: svg.into_bytes() });
     let (layer_mm3, overfill_mm3) = parts::cavity_mm3(design);
     let bill = bill_of_materials(design, layer_mm3, overfill_mm3);
-    let manifest = manifest(design, &parts, bill, curve, &others, &files);
-    let mut bytes = serde_json::to_vec_pretty(&manifest).map_err(|e| SetError::Encoding(e.to_string()))?;
-    bytes.push(b'\n');
-    files.push(OutputFile { name: "manifest.json".to_owned(), bytes });
+    let entries = files.iter().map(FileEntry::of).collect();
+    let manifest = manifest(design, &parts, bill, curve, &others, entries);
+    files.push(OutputFile { name: "manifest.json".to_owned(), bytes: manifest.bytes()? });
     Ok(Set { manifest, files })
+}
+
+impl Manifest {
+    /// The manifest as indented JSON.
+    ///
+    /// # Errors
+    /// [`SetError::Encoding`] for a value that JSON cannot hold, which no valid design has.
+    pub fn bytes(&self) -> Result<Vec<u8>, SetError> {
+        let mut bytes = serde_json::to_vec_pretty(self).map_err(|e| SetError::Encoding(e.to_string()))?;
+        bytes.push(b'\n');
+        Ok(bytes)
+    }
 }
 
 /// The part as binary STL, examined before it is handed out. The search for self-intersections, which vertical walls
 /// over checked caps cannot have, is left to `pinswitch check` and the tests.
-fn mesh_file(part: &Part, design: &Design) -> Result<(Vec<u8>, Facts), SetError> {
+///
+/// # Errors
+/// [`SetError`]; a mesh that the oracle refuses is never handed out.
+pub fn mesh_file(part: &Part, design: &Design) -> Result<(Vec<u8>, Facts), SetError> {
     let mesh = part.print_mesh(design).map_err(|source| SetError::Cap { part: part.name.clone(), source })?;
     let expected = Expectation { intersections: false, ..part.expectation(design) };
     let found = examine(&mesh, &expected);

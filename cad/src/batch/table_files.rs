@@ -1,0 +1,181 @@
+//! The table as CSV and as Parquet, written row by row with bounded memory, and read back from Parquet.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+use std::sync::Arc;
+
+use bytes::Bytes;
+use parquet::basic::{Compression, ConvertedType, Repetition, Type as Physical};
+use parquet::column::writer::ColumnWriter;
+use parquet::data_type::ByteArray;
+use parquet::errors::ParquetError;
+use parquet::file::properties::{WriterProperties, WriterPropertiesPtr};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::record::Field;
+use parquet::record::reader::RowIter;
+use parquet::schema::types::{Type, TypePtr};
+
+use super::table::{Cell, Column, Kind, Row, Schema};
+
+/// Rows that are held in memory and written as one group.
+const GROUP_ROWS: usize = 4096;
+
+/// The table cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    /// CSV.
+    #[error("the table cannot be written as CSV: {0}")]
+    Csv(#[from] csv::Error),
+    /// Parquet.
+    #[error("the Parquet table cannot be written or read: {0}")]
+    Parquet(#[from] ParquetError),
+    /// A file.
+    #[error("the table cannot be written: {0}")]
+    File(#[from] std::io::Error),
+}
+
+/// Both files of a table, being written.
+pub struct TableWriter {
+    schema: Schema,
+    csv: csv::Writer<BufWriter<File>>,
+    parquet: SerializedFileWriter<BufWriter<File>>,
+    group: Vec<Row>,
+}
+
+impl TableWriter {
+    /// Starts both files.
+    ///
+    /// # Errors
+    /// [`TableError`] if a file cannot be made.
+    pub fn create(schema: &Schema, csv: &Path, parquet: &Path) -> Result<Self, TableError> {
+        let mut csv = csv::Writer::from_writer(BufWriter::new(File::create(csv)?));
+        csv.write_record(schema.columns().iter().map(|c| c.name.as_str()))?;
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_created_by(concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned())
+            .build();
+        let parquet = SerializedFileWriter::new(
+            BufWriter::new(File::create(parquet)?),
+            parquet_schema(schema)?,
+            WriterPropertiesPtr::new(properties),
+        )?;
+        Ok(Self { schema: schema.clone(), csv, parquet, group: Vec::new() })
+    }
+
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// [`TableError`], on a full disk for example.
+    pub fn push(&mut self, row: Row) -> Result<(), TableError> {
+        self.csv.write_record(row.iter().map(ToString::to_string))?;
+        self.group.push(row);
+        if self.group.len() == GROUP_ROWS { self.write_group() } else { Ok(()) }
+    }
+
+    /// Completes both files.
+    ///
+    /// # Errors
+    /// [`TableError`], on a full disk for example.
+    pub fn finish(mut self) -> Result<(), TableError> {
+        self.write_group()?;
+        self.csv.flush()?;
+        self.parquet.close()?;
+        Ok(())
+    }
+
+    fn write_group(&mut self) -> Result<(), TableError> {
+        let rows = std::mem::take(&mut self.group);
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let mut group = self.parquet.next_row_group()?;
+        for i in 0..self.schema.columns().len() {
+            let Some(mut column) = group.next_column()? else { break };
+            let present: Vec<_> = rows.iter().map(|row| &row[i]).collect();
+            let levels: Vec<i16> = present.iter().map(|c| i16::from(**c != Cell::Empty)).collect();
+            match column.untyped() {
+                ColumnWriter::DoubleColumnWriter(typed) => {
+                    let values: Vec<_> = present
+                        .iter()
+                        .filter_map(|c| if let Cell::Real(x) = c { Some(*x) } else { None })
+                        .collect();
+                    typed.write_batch(&values, Some(&levels), None)?;
+                }
+                ColumnWriter::Int64ColumnWriter(typed) => {
+                    let values: Vec<_> = present
+                        .iter()
+                        .filter_map(|c| if let Cell::Whole(x) = c { Some(*x) } else { None })
+                        .collect();
+                    typed.write_batch(&values, Some(&levels), None)?;
+                }
+                ColumnWriter::BoolColumnWriter(typed) => {
+                    let values: Vec<_> = present
+                        .iter()
+                        .filter_map(|c| if let Cell::Flag(x) = c { Some(*x) } else { None })
+                        .collect();
+                    typed.write_batch(&values, Some(&levels), None)?;
+                }
+                ColumnWriter::ByteArrayColumnWriter(typed) => {
+                    let values: Vec<ByteArray> =
+                        present.iter().filter_map(|c| c.text().map(ByteArray::from)).collect();
+                    typed.write_batch(&values, Some(&levels), None)?;
+                }
+                _ => {}
+            }
+            column.close()?;
+        }
+        group.close()?;
+        Ok(())
+    }
+}
+
+fn parquet_schema(schema: &Schema) -> Result<TypePtr, ParquetError> {
+    let field = |column: &Column| {
+        let (physical, converted) = match column.kind {
+            Kind::Text => (Physical::BYTE_ARRAY, ConvertedType::UTF8),
+            Kind::Real => (Physical::DOUBLE, ConvertedType::NONE),
+            Kind::Whole => (Physical::INT64, ConvertedType::NONE),
+            Kind::Flag => (Physical::BOOLEAN, ConvertedType::NONE),
+        };
+        Type::primitive_type_builder(&column.name, physical)
+            .with_converted_type(converted)
+            .with_repetition(Repetition::OPTIONAL)
+            .build()
+            .map(Arc::new)
+    };
+    let fields = schema.columns().iter().map(field).collect::<Result<_, _>>()?;
+    Type::group_type_builder("variants").with_fields(fields).build().map(Arc::new)
+}
+
+/// Rows of a Parquet table with the columns of `schema`, one after the other.
+///
+/// # Errors
+/// [`TableError`] for bytes that are no such table.
+pub fn read_rows(
+    bytes: Vec<u8>,
+    schema: &Schema,
+) -> Result<impl Iterator<Item = Result<Row, TableError>> + use<>, TableError> {
+    let reader = SerializedFileReader::new(Bytes::from(bytes))?;
+    let names: Vec<_> =
+        reader.metadata().file_metadata().schema().get_fields().iter().map(|f| f.name().to_owned()).collect();
+    if !names.iter().map(String::as_str).eq(schema.columns().iter().map(|c| c.name.as_str())) {
+        return Err(ParquetError::General("its columns are not those of this sweep".to_owned()).into());
+    }
+    let rows = RowIter::from_file_into(Box::new(reader)).map(|row| {
+        let row = row?;
+        Ok(row.get_column_iter().map(|(_, field)| cell(field)).collect())
+    });
+    Ok(rows)
+}
+
+fn cell(field: &Field) -> Cell {
+    match field {
+        Field::Str(text) => Cell::Text(text.clone()),
+        Field::Double(x) => Cell::Real(*x),
+        Field::Long(i) => Cell::Whole(*i),
+        Field::Bool(b) => Cell::Flag(*b),
+        _ => Cell::Empty,
+    }
+}

@@ -12,6 +12,7 @@ mod screening;
 mod selection;
 mod sign_flips;
 mod significance;
+mod unnamed;
 
 pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_sd_n};
 pub use forward::{Model, Term};

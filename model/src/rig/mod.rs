@@ -3,9 +3,11 @@
 mod frame;
 mod plateau_table;
 mod row;
+mod table_error;
 
 pub(crate) use frame::groups;
 pub use frame::{Condition, Frame, Point};
-pub use plateau_table::{PlateauTable, TableError};
+pub use plateau_table::PlateauTable;
 pub(crate) use row::direction_word;
 pub use row::{PlateauRow, Surface, Sweep};
+pub use table_error::TableError;

@@ -27,7 +27,7 @@ mod variant;
 pub use axis::{Field, Level};
 pub use constraint::Constraint;
 pub use content::Workshop;
-pub use destination::{Claim, Destination, DestinationError};
+pub use destination::{Claim, Destination, DestinationError, Folder, Store};
 pub use estimate::{Estimate, Measured, Refusals, estimate};
 pub use make::Outcome;
 pub use merge::{MergeError, merge};

@@ -1,0 +1,178 @@
+//! A folder of this machine, or of a network: temporary files beside the batch, renames, hard links, and a claim.
+
+use std::fs::File;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::{DestinationError, PARTIAL};
+
+/// A folder, with a folder inside it for files that are not yet whole.
+#[derive(Debug)]
+pub struct Folder {
+    pub(super) root: PathBuf,
+    partial: PathBuf,
+    counter: AtomicU64,
+}
+
+/// A destination held by this process; the folder for unfinished files goes when it is let go.
+#[derive(Debug)]
+pub struct Claim(Option<(File, PathBuf)>);
+
+impl Claim {
+    /// Of a place that needs none.
+    pub(super) fn needless() -> Self {
+        Self(None)
+    }
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        if let Some((_, partial)) = &self.0 {
+            // What cannot be removed is swept away by the next run.
+            let _ = std::fs::remove_dir_all(partial);
+        }
+    }
+}
+
+/// `Ok(None)` for a missing file, or one whose folder is something else.
+fn found<T>(outcome: std::io::Result<T>) -> std::io::Result<Option<T>> {
+    match outcome {
+        Ok(value) => Ok(Some(value)),
+        Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Ok(None),
+        Err(e) => Err(e),
+    }
+}
+
+/// Temporary files are private; what takes a name is an ordinary file.
+#[cfg(unix)]
+fn builder() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
+    builder
+}
+
+#[cfg(not(unix))]
+fn builder() -> tempfile::Builder<'static, 'static> {
+    tempfile::Builder::new()
+}
+
+impl Folder {
+    /// The folder `root`, whether it is there or not.
+    pub(super) fn new(root: &str, partial: &str) -> Self {
+        let root = PathBuf::from(root);
+        Self { partial: root.join(partial), root, counter: AtomicU64::new(0) }
+    }
+
+    pub(super) fn failed(&self, name: &str, error: &std::io::Error) -> DestinationError {
+        use ErrorKind::{PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
+        let hopeless =
+            matches!(error.kind(), PermissionDenied | QuotaExceeded | ReadOnlyFilesystem | StorageFull);
+        let place = if name.is_empty() { self.root.clone() } else { self.root.join(name) };
+        let problem = format!("cannot use it: {error}");
+        DestinationError { place: place.display().to_string(), problem, hopeless }
+    }
+
+    pub(super) fn get(&self, name: &str) -> std::io::Result<Option<Vec<u8>>> {
+        found(std::fs::read(self.root.join(name)))
+    }
+
+    pub(super) fn size(&self, name: &str) -> std::io::Result<Option<u64>> {
+        Ok(found(std::fs::metadata(self.root.join(name)))?.map(|facts| facts.len()))
+    }
+
+    pub(super) fn put(&self, name: &str, bytes: &[u8]) -> std::io::Result<()> {
+        let scratch = self.scratch();
+        let written = File::create(&scratch).and_then(|mut file| file.write_all(bytes));
+        let moved = written.and_then(|()| place(&scratch, &self.root.join(name)));
+        if moved.is_err() {
+            // The room on a full disk is given back at once.
+            let _ = std::fs::remove_file(&scratch);
+        }
+        moved
+    }
+
+    pub(super) fn link(&self, content: &str, name: &str) -> std::io::Result<()> {
+        let (content, target) = (self.root.join(content), self.root.join(name));
+        let linked = match std::fs::hard_link(&content, &target) {
+            Err(e) if e.kind() == ErrorKind::NotFound => {
+                target.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+                std::fs::hard_link(&content, &target)
+            }
+            done => done,
+        };
+        match linked {
+            Err(e) if matches!(e.kind(), ErrorKind::StorageFull | ErrorKind::NotADirectory) => Err(e),
+            // An older file stands there, the file has all the links it may have, or the file system knows none.
+            Err(_) => {
+                let scratch = self.scratch();
+                if std::fs::hard_link(&content, &scratch).is_err() {
+                    std::fs::copy(&content, &scratch)?;
+                }
+                place(&scratch, &target)?;
+                // Renaming a link onto another link of the same file does nothing, and leaves both.
+                let _ = std::fs::remove_file(&scratch);
+                Ok(())
+            }
+            Ok(()) => Ok(()),
+        }
+    }
+
+    pub(super) fn local_file(&self) -> std::io::Result<tempfile::NamedTempFile> {
+        std::fs::create_dir_all(&self.partial)?;
+        builder().tempfile_in(&self.partial)
+    }
+
+    pub(super) fn put_file(&self, name: &str, file: tempfile::NamedTempFile) -> std::io::Result<()> {
+        let target = self.root.join(name);
+        target.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+        file.persist(&target).map(drop).map_err(|e| e.error)
+    }
+
+    pub(super) fn folders(&self, folder: &str) -> std::io::Result<Vec<String>> {
+        let Some(entries) = found(std::fs::read_dir(self.root.join(folder)))? else { return Ok(Vec::new()) };
+        let folders = entries.filter_map(Result::ok).filter(|e| e.path().is_dir());
+        Ok(folders.map(|e| e.file_name().to_string_lossy().into_owned()).collect())
+    }
+
+    /// Whether there is nothing but unfinished files.
+    pub(super) fn is_empty(&self) -> std::io::Result<bool> {
+        let entries = match std::fs::read_dir(&self.root) {
+            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(true),
+            other => other?,
+        };
+        let mut names = entries.filter_map(Result::ok).map(|e| e.file_name());
+        Ok(names.all(|name| name.to_string_lossy().starts_with(PARTIAL)))
+    }
+
+    /// `None` if another process holds the same shard. What a killed run left half written is swept away.
+    pub(super) fn claim(&self) -> std::io::Result<Option<Claim>> {
+        std::fs::create_dir_all(&self.partial)?;
+        let lock = File::create(self.partial.join("lock"))?;
+        if lock.try_lock().is_err() {
+            return Ok(None);
+        }
+        for entry in std::fs::read_dir(&self.partial)?.filter_map(Result::ok) {
+            if entry.file_name() != "lock" {
+                std::fs::remove_file(entry.path())?;
+            }
+        }
+        Ok(Some(Claim(Some((lock, self.partial.clone())))))
+    }
+
+    /// A name for a file that is not yet whole.
+    fn scratch(&self) -> PathBuf {
+        self.partial.join(self.counter.fetch_add(1, Ordering::Relaxed).to_string())
+    }
+}
+
+/// Renames, and makes the folder only when it turns out to be missing.
+fn place(scratch: &Path, target: &Path) -> std::io::Result<()> {
+    match std::fs::rename(scratch, target) {
+        Err(e) if e.kind() == ErrorKind::NotFound => {
+            target.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+            std::fs::rename(scratch, target)
+        }
+        done => done,
+    }
+}

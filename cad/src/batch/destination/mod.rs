@@ -1,0 +1,276 @@
+//! Where a batch is written: a folder, or an object store. Every file appears whole or not at all.
+
+mod folder;
+mod store;
+
+use std::sync::Arc;
+
+use object_store::ObjectStore;
+use object_store::path::Path as StorePath;
+
+pub use folder::{Claim, Folder};
+pub use store::Store;
+
+/// Prefix of folders for files that are not yet whole.
+pub(super) const PARTIAL: &str = ".partial-";
+
+/// A place that cannot be read or written.
+#[derive(Debug, thiserror::Error)]
+#[error("{place}: {problem}")]
+pub struct DestinationError {
+    /// The file, with its destination.
+    pub place: String,
+    /// What went wrong.
+    pub problem: String,
+    /// Whether it would go wrong for every other file too: a full disk, a folder that must not be written.
+    pub hopeless: bool,
+}
+
+/// A destination of files, named by relative paths with `/`.
+#[derive(Debug)]
+pub enum Destination {
+    /// A folder of this machine, or of a network.
+    Folder(Folder),
+    /// An object store; equal files are kept once and named by the manifests.
+    Store(Store),
+}
+
+/// The same question to a folder or a store, and its failure with the name of the file.
+macro_rules! ask {
+    ($destination:expr, $name:expr, $place:ident => $answer:expr) => {
+        match $destination {
+            Destination::Folder($place) => $answer.map_err(|e| $place.failed($name, &e)),
+            Destination::Store($place) => $answer.map_err(|e| $place.failed($name, &e)),
+        }
+    };
+}
+
+impl Destination {
+    /// A folder's path, or a URL such as `file:///data/sweep`, `memory:///` or, with the feature `cloud`,
+    /// `s3://bucket/sweep`. `partial` names the folder for files that are not yet whole: one per running process.
+    ///
+    /// # Errors
+    /// [`DestinationError`] for a URL of no known store.
+    pub fn open(text: &str, partial: &str) -> Result<Self, DestinationError> {
+        let Some(url) = text.contains("://").then(|| url::Url::parse(text)) else {
+            return Ok(Self::Folder(Folder::new(text, partial)));
+        };
+        let refused = |problem: String| DestinationError {
+            place: text.to_owned(),
+            problem: format!(
+                "{problem}; give a folder, file:// or, in a build with --features cloud, s3://, gs:// or az://"
+            ),
+            hopeless: true,
+        };
+        let url = url.map_err(|e| refused(e.to_string()))?;
+        let ours = |key: &String| ["AWS_", "AZURE_", "GOOGLE_"].iter().any(|prefix| key.starts_with(prefix));
+        let environment = std::env::vars()
+            .filter(|(key, _)| ours(key))
+            .map(|(key, value)| (key.to_ascii_lowercase(), value));
+        let (store, prefix) =
+            object_store::parse_url_opts(&url, environment).map_err(|e| refused(e.to_string()))?;
+        Self::in_store(text, store.into(), prefix)
+    }
+
+    /// The prefix of a store that is already open.
+    ///
+    /// # Errors
+    /// [`DestinationError`] if the threads that a cloud store needs cannot be started.
+    pub fn in_store(
+        url: &str,
+        store: Arc<dyn ObjectStore>,
+        prefix: StorePath,
+    ) -> Result<Self, DestinationError> {
+        let failed = |e: std::io::Error| DestinationError {
+            place: url.to_owned(),
+            problem: e.to_string(),
+            hopeless: true,
+        };
+        Store::new(url, store, prefix).map(Self::Store).map_err(failed)
+    }
+
+    /// Whether equal files are linked, so that each variant's folder holds its parts; otherwise manifests name them.
+    pub fn links(&self) -> bool {
+        matches!(self, Self::Folder(_))
+    }
+
+    /// The whole file `name`; `None` if there is none.
+    ///
+    /// # Errors
+    /// [`DestinationError`] for a file that is there but cannot be read.
+    pub fn get(&self, name: &str) -> Result<Option<Vec<u8>>, DestinationError> {
+        ask!(self, name, place => place.get(name))
+    }
+
+    /// The size of file `name` in bytes; `None` if there is none.
+    ///
+    /// # Errors
+    /// [`DestinationError`] if that cannot be told.
+    pub fn size(&self, name: &str) -> Result<Option<u64>, DestinationError> {
+        ask!(self, name, place => place.size(name))
+    }
+
+    /// Writes file `name`, replacing an older one.
+    ///
+    /// # Errors
+    /// [`DestinationError`]; the older file is untouched.
+    pub fn put(&self, name: &str, bytes: &[u8]) -> Result<(), DestinationError> {
+        ask!(self, name, place => place.put(name, bytes))
+    }
+
+    /// Makes `name` the same file as `content`: a hard link, or a copy where the file system refuses one.
+    ///
+    /// # Errors
+    /// [`DestinationError`] if neither is possible.
+    pub fn link(&self, content: &str, name: &str) -> Result<(), DestinationError> {
+        match self {
+            Self::Folder(folder) => folder.link(content, name).map_err(|e| folder.failed(name, &e)),
+            // Manifests name the content: a second object would be paid for twice.
+            Self::Store(_) => Ok(()),
+        }
+    }
+
+    /// A file on this machine, to be filled and then handed to [`Self::put_file`].
+    ///
+    /// # Errors
+    /// [`DestinationError`] if none can be made.
+    pub fn local_file(&self) -> Result<tempfile::NamedTempFile, DestinationError> {
+        let made = match self {
+            Self::Folder(folder) => folder.local_file(),
+            Self::Store(_) => tempfile::NamedTempFile::new(),
+        };
+        made.map_err(|e| self.failed_locally("a temporary file", &e))
+    }
+
+    /// Moves a finished local file to `name`.
+    ///
+    /// # Errors
+    /// [`DestinationError`]; an older file is untouched.
+    pub fn put_file(&self, name: &str, file: tempfile::NamedTempFile) -> Result<(), DestinationError> {
+        match self {
+            Self::Folder(folder) => folder.put_file(name, file).map_err(|e| folder.failed(name, &e)),
+            Self::Store(_) => {
+                let bytes = std::fs::read(file.path()).map_err(|e| self.failed_locally(name, &e))?;
+                self.put(name, &bytes)
+            }
+        }
+    }
+
+    /// Names of the folders directly under `folder`.
+    ///
+    /// # Errors
+    /// [`DestinationError`] if that cannot be told.
+    pub fn folders(&self, folder: &str) -> Result<Vec<String>, DestinationError> {
+        let mut names = ask!(self, folder, place => place.folders(folder))?;
+        names.sort();
+        Ok(names)
+    }
+
+    /// Whether nothing is there yet.
+    ///
+    /// # Errors
+    /// [`DestinationError`] if that cannot be told.
+    pub fn is_empty(&self) -> Result<bool, DestinationError> {
+        ask!(self, "", place => place.is_empty())
+    }
+
+    /// Claims the destination for this process: nobody else writes the same shard at the same time, and what a killed
+    /// run left half written is swept away. The claim ends with the process, however that ends.
+    ///
+    /// # Errors
+    /// [`DestinationError`] if another process holds it, or nothing can be written there.
+    pub fn claim(&self) -> Result<Claim, DestinationError> {
+        let Self::Folder(folder) = self else { return Ok(Claim::needless()) };
+        let claim = folder.claim().map_err(|e| folder.failed("", &e))?;
+        claim.ok_or_else(|| DestinationError {
+            place: self.name(),
+            problem: "another run is writing the same shard here; wait for it or end it".to_owned(),
+            hopeless: true,
+        })
+    }
+
+    /// Its name, as given.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Folder(folder) => folder.root.display().to_string(),
+            Self::Store(store) => store.url.clone(),
+        }
+    }
+
+    fn failed_locally(&self, name: &str, error: &std::io::Error) -> DestinationError {
+        match self {
+            Self::Folder(folder) => folder.failed(name, error),
+            Self::Store(store) => DestinationError {
+                place: format!("{}/{name}", store.url),
+                problem: error.to_string(),
+                hopeless: true,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use object_store::memory::InMemory;
+    use std::io::Write;
+    use std::path::Path;
+
+    fn all(folder: &Path) -> Vec<Destination> {
+        let local = folder.join("store");
+        std::fs::create_dir(&local).unwrap();
+        let memory = Arc::new(InMemory::new());
+        vec![
+            Destination::open(folder.join("plain").to_str().unwrap(), ".partial-1-of-1").unwrap(),
+            Destination::open(&format!("file://{}", local.display()), "").unwrap(),
+            Destination::in_store("memory:///", memory, StorePath::from("sweep")).unwrap(),
+        ]
+    }
+
+    #[test]
+    fn every_destination_keeps_and_gives_files() {
+        let folder = tempfile::tempdir().unwrap();
+        for place in all(folder.path()) {
+            assert!(place.is_empty().unwrap());
+            let claim = place.claim().unwrap();
+            assert_eq!(place.get("a/b").unwrap(), None);
+            place.put("a/b", b"one").unwrap();
+            place.put("a/b", b"two").unwrap();
+            assert_eq!(place.get("a/b").unwrap().as_deref(), Some(&b"two"[..]));
+            assert_eq!(place.size("a/b").unwrap(), Some(3));
+            assert_eq!(place.size("a/c").unwrap(), None);
+            assert_eq!(place.folders("").unwrap_or_default().iter().filter(|n| *n == "a").count(), 1);
+            let mut file = place.local_file().unwrap();
+            file.write_all(b"table").unwrap();
+            place.put_file("t.csv", file).unwrap();
+            assert_eq!(place.get("t.csv").unwrap().as_deref(), Some(&b"table"[..]));
+            place.link("a/b", "v/c").unwrap();
+            place.link("a/b", "v/c").unwrap();
+            assert_eq!(place.size("v/c").unwrap(), place.links().then_some(3));
+            drop(claim);
+            assert!(!place.is_empty().unwrap());
+        }
+    }
+
+    #[test]
+    fn a_folder_is_claimed_once_and_swept() {
+        let folder = tempfile::tempdir().unwrap();
+        let open = |partial| Destination::open(folder.path().to_str().unwrap(), partial).unwrap();
+        let partial = folder.path().join(".partial-1-of-2");
+        std::fs::create_dir(&partial).unwrap();
+        std::fs::write(partial.join("7"), "half, by a run that was killed").unwrap();
+        let claim = open(".partial-1-of-2").claim().unwrap();
+        assert!(!partial.join("7").exists());
+        let second = open(".partial-1-of-2").claim();
+        assert!(second.unwrap_err().to_string().contains("another run is writing the same shard"));
+        assert!(open(".partial-2-of-2").claim().is_ok());
+        drop(claim);
+        assert!(!partial.exists() && open(".partial-1-of-2").claim().is_ok());
+    }
+
+    #[test]
+    fn unknown_stores_are_refused() {
+        let error = Destination::open("gopher://x/y", "").unwrap_err().to_string();
+        assert!(error.starts_with("gopher://x/y: "), "{error}");
+    }
+}

@@ -5,6 +5,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Failure, print, print_json};
@@ -53,8 +54,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut verdicts = Vec::new();
     let mut unreadable = Vec::new();
-    for file in &arguments.files {
-        match verdict(file, arguments) {
+    let found: Vec<_> = arguments.files.par_iter().map(|file| verdict(file, arguments)).collect();
+    for (file, found) in arguments.files.iter().zip(found) {
+        match found {
             Ok(verdict) => verdicts.push(verdict),
             Err(error) => unreadable.push(format!("{}: {error}", file.display())),
         }

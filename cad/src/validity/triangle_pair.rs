@@ -9,7 +9,10 @@ pub(super) type Corners = [(u32, Point3); 3];
 
 /// Whether the triangles meet anywhere but in the corners and edges that they share by number.
 pub(super) fn meet(s: &Corners, t: &Corners) -> bool {
-    let sides = |of: &Corners, plane: &Corners| of.map(|(_, p)| side(plane, p));
+    // A shared corner lies in the plane: exact arithmetic would take its longest way to say so.
+    let sides = |of: &Corners, plane: &Corners| {
+        of.map(|(i, p)| if plane.iter().any(|(j, _)| i == *j) { 0.0 } else { side(plane, p) })
+    };
     let (of_t, of_s) = (sides(t, s), sides(s, t));
     if one_sided(of_t) || one_sided(of_s) {
         return false;
@@ -37,6 +40,10 @@ fn coord(p: Point3) -> Coord3D<f64> {
 }
 
 fn side(plane: &Corners, p: Point3) -> f64 {
+    // Most facets that lie side by side are those of a cap, at one height to the last bit.
+    if (0..3).any(|axis| plane.iter().all(|(_, q)| q[axis] == p[axis])) {
+        return 0.0;
+    }
     orient3d(coord(plane[0].1), coord(plane[1].1), coord(plane[2].1), coord(p))
 }
 

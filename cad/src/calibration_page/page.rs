@@ -89,7 +89,7 @@ fn data(report: &Report) -> String {
     let n = &report.noise;
     let mut html = format!(
         "<h2>1. The data</h2><p>{} rows in {} series on {} conditions; {} rows weighed down as outliers. \
-         Noise, estimated: one repetition {:.3} N and {:.2} % of the load, a whole series and direction {:.3} N and {:.2} %.</p>\n",
+         Noise, estimated: one repetition {:.3} N and {:.2} % of the load, a whole series and direction {:.3} N and {:.2} %.{}</p>\n",
         d.rows,
         d.series,
         d.conditions,
@@ -97,7 +97,13 @@ fn data(report: &Report) -> String {
         n.repetition.constant_n,
         100.0 * n.repetition.per_load,
         n.series.constant_n,
-        100.0 * n.series.per_load
+        100.0 * n.series.per_load,
+        match n.correlation {
+            0.0 => String::new(),
+            rho => format!(
+                " A repetition resembles the one before it (correlation {rho:.2}): the rows say less than their number."
+            ),
+        }
     );
     if !report.bad_series.is_empty() {
         html.push_str("<p>Series to look at (mislabelled weight, bad run); they decide nothing:</p><ul>");

@@ -11,6 +11,7 @@ use pinswitch_model::rig::{PlateauRow, PlateauTable};
 use pinswitch_model::simulation::{
     Case, EffectPlan, Plan, RawRun, Study, Truth, run_case, simulate, study_cases,
 };
+use rayon::prelude::*;
 
 use super::{Failure, print};
 use crate::output::{OutputFile, write_set};
@@ -128,8 +129,10 @@ fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
         // There are four kinds of noise without effect.
         let count = if case.truth == Truth::Nothing { (10 * seeds).div_ceil(4) } else { seeds };
         let first = arguments.first_seed;
-        let outcomes: Vec<_> =
-            (first..first + count).filter_map(|s| run_case(&case, s, Levels::default())).collect();
+        let outcomes: Vec<_> = (first..first + count)
+            .into_par_iter()
+            .filter_map(|s| run_case(&case, s, Levels::default()))
+            .collect();
         log::info!("{:?} {}: {} rigs", case.protocol, case.name, outcomes.len());
         study.add(case, outcomes);
     }

@@ -142,16 +142,18 @@ fn draw(
     }
     for onset in points.iter().filter(|p| p.friction_n.is_none()) {
         let load = onset.load_n;
+        // The line ends at its words, below the legend.
+        let end = 0.36 * top;
         let text = TextStyle::from(("sans-serif", fine::<i32>(13))).pos(Pos::new(HPos::Left, VPos::Top));
         chart.draw_series(DashedLineSeries::new(
-            [(load, 0.0), (load, top)],
+            [(load, 0.0), (load, end)],
             fine::<u32>(2),
             fine::<u32>(3),
             BLACK.stroke_width(fine(1)),
         ))?;
         chart.draw_series(std::iter::once(Text::new(
             format!(" published onset {load:.2} N"),
-            (load, top * 0.36),
+            (load, end),
             text,
         )))?;
     }

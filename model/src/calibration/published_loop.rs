@@ -1,8 +1,10 @@
 //! The loop on the paper's own numbers: which effect explains most of what its model misses of its seven maxima.
 
-use nalgebra::{DMatrix, DVector};
+use std::convert::Infallible;
+
 use serde::Serialize;
 
+use crate::least_squares::minimise;
 use crate::published::{self, PublishedLayout};
 use crate::rig::{Condition, Surface};
 
@@ -81,30 +83,18 @@ fn pins_exponent(kind: Pins, factor: f64, layout: &PublishedLayout, load_n: f64,
     }
 }
 
-/// Least squares of the relative errors over the maxima for which `keep` holds, with weak priors.
-fn fit(kind: Pins, data: &[Maximum], keep: impl Fn(&Maximum) -> bool) -> [f64; 3] {
-    let mut at = [0.0; 3];
+/// Least squares of the relative errors over the maxima for which `keep` holds, with weak priors, which leave
+/// nothing undetermined.
+fn fit(kind: Pins, data: &[Maximum], keep: impl Fn(&Maximum) -> bool) -> Vec<f64> {
     let used: Vec<&Maximum> = data.iter().filter(|m| keep(m)).collect();
-    for _ in 0..30 {
-        let residual = |at: &[f64]| -> Vec<f64> {
-            let misses = used.iter().map(|m| (predict(kind, at, m, true) / m.friction_n - 1.0) / 0.05);
-            // What is known beforehand: half of a factor e on friction, a fifth on the thresholds.
-            misses.chain([at[0] / 0.5, at[1] / 0.5, at[2] / 0.2]).collect()
-        };
-        let base = residual(&at);
-        let mut j = DMatrix::zeros(base.len(), 3);
-        for k in 0..3 {
-            let mut moved = at;
-            moved[k] += 1e-6;
-            for (row, (a, b)) in residual(&moved).iter().zip(&base).enumerate() {
-                j[(row, k)] = (a - b) / 1e-6;
-            }
-        }
-        let gradient = j.transpose() * DVector::from_vec(base);
-        let Some(step) = (j.transpose() * j).cholesky().map(|c| c.solve(&gradient)) else { break };
-        at.iter_mut().zip(step.iter()).for_each(|(a, s)| *a -= s.clamp(-0.5, 0.5));
-    }
-    at
+    let residuals = |at: &[f64]| -> Result<Vec<f64>, Infallible> {
+        let misses = used.iter().map(|m| (predict(kind, at, m, true) / m.friction_n - 1.0) / 0.05);
+        // What is known beforehand: half of a factor e on friction, a fifth on the thresholds.
+        Ok(misses.chain([at[0] / 0.5, at[1] / 0.5, at[2] / 0.2]).collect())
+    };
+    let start = [0.0; 3];
+    let Ok(found) = minimise(&start, 1e-6, residuals);
+    found.map_or(start.to_vec(), |solution| solution.at)
 }
 
 /// Root mean square of relative errors, in percent.

@@ -2,8 +2,8 @@
 
 use super::heldout::{SOUND_WEIGHT, held_out};
 use super::schema::{
-    BadSeries, Candidate, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible, ModelReport,
-    Report, RivalReport, Verdict,
+    BadSeries, Candidate, DataSummary, EffectReport, Estimate, Fate, Invisible, ModelReport, Report,
+    RivalReport, Verdict,
 };
 use super::transfer::layouts_left_out;
 use crate::effects::LIBRARY;
@@ -56,53 +56,6 @@ pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, Cal
     let selection = select(&start, &mut data, levels);
     let report = report(rows, &selection, &data);
     Ok(Calibration { report, selection, data })
-}
-
-/// Calibrates on loads up to a share of the highest one and judges both models on the rest.
-///
-/// # Errors
-/// [`CalibrationError::TooFewRows`] if the rows below cannot fix the baseline.
-pub fn calibrate_below(
-    rows: &[PlateauRow],
-    share: f64,
-    levels: Levels,
-) -> Result<Calibration, CalibrationError> {
-    let highest = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
-    let (seen, rest): (Vec<_>, Vec<_>) = rows.iter().cloned().partition(|r| r.load_n <= share * highest);
-    let mut calibration = calibrate(&seen, levels)?;
-    let judge = |model: &Model| {
-        let points = model.frame.points(&rest).unwrap_or_default();
-        let mut sizes: Vec<f64> =
-            model.predict(&points).iter().zip(&rest).map(|(p, r)| (p - r.force_n).abs()).collect();
-        sizes.sort_by(f64::total_cmp);
-        let square: f64 = sizes.iter().map(|s| s * s).sum();
-        let median = sizes.get(sizes.len() / 2).copied().unwrap_or(f64::NAN);
-        ((square / sizes.len().max(1) as f64).sqrt(), median)
-    };
-    let before = judge(&calibration.selection.baseline.model);
-    let after = judge(&calibration.selection.augmented.model);
-    let noise = calibration.selection.noise;
-    let points = calibration.selection.augmented.model.frame.points(&rest).unwrap_or_default();
-    let predicted = calibration.selection.augmented.model.predict(&points);
-    let sound: Vec<f64> = predicted
-        .iter()
-        .zip(&rest)
-        .map(|(p, r)| (p - r.force_n, noise.at(r.load_n)))
-        .filter(|(miss, sd)| miss.abs() <= 20.0 * sd)
-        .map(|(miss, _)| miss)
-        .collect();
-    let without_bad = (sound.iter().map(|m| m * m).sum::<f64>() / sound.len().max(1) as f64).sqrt();
-    calibration.report.extrapolation = Some(Extrapolation {
-        fitted_below_n: share * highest,
-        rows: rest.len(),
-        rmse_before_n: before.0,
-        rmse_after_n: after.0,
-        rmse_after_without_bad_n: without_bad,
-        bad_rows: rest.len() - sound.len(),
-        median_before_n: before.1,
-        median_after_n: after.1,
-    });
-    Ok(calibration)
 }
 
 /// A constant with its interval, which ends at the bounds of a shape.

@@ -1,6 +1,7 @@
 //! From a table to the effects it shows: forward model, noise, fits, scores and selection.
 
 mod catalogue;
+mod correlation;
 mod fit;
 mod forward;
 mod isolation;

@@ -1,8 +1,10 @@
-//! The noise hierarchy: repetition noise, and an offset per series and direction; both may grow with load.
+//! The noise hierarchy: repetition noise, which may hang together from one to the next, and an offset per series and
+//! direction; both may grow with load.
 
 use serde::{Deserialize, Serialize};
 
 use super::Observations;
+use super::correlation::{self, unchain};
 use super::observations::median;
 use super::projection::Projection;
 
@@ -69,6 +71,9 @@ pub struct Noise {
     pub repetition: Spread,
     /// Of the offset that the rows of one series and direction share.
     pub series: Spread,
+    /// Correlation of a repetition with the next one of its series and direction.
+    #[serde(default)]
+    pub correlation: f64,
 }
 
 impl Noise {
@@ -77,6 +82,7 @@ impl Noise {
         Self {
             repetition: Spread { constant_n: repetition_n, per_load: 0.0 },
             series: Spread { constant_n: series_n, per_load: 0.0 },
+            correlation: 0.0,
         }
     }
 
@@ -92,20 +98,37 @@ impl Noise {
     }
 
     /// Whitens one value per row in place, `V^-1/2 v`: rows of one cell have covariance
-    /// `sigma^2 W^-1 + tau^2 1 1'`, whose inverse root is a weighted mean removed in part.
+    /// `sigma^2 W^-1/2 R W^-1/2 + tau^2 1 1'` with `R` that of a chain. Once the chain is undone, what is left of `1` is
+    /// one direction, and the inverse root takes a part of it out.
     pub(crate) fn whiten(self, data: &Observations, values: &mut [f64]) {
+        let (mut white, mut axis) = (Vec::new(), Vec::new());
         for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {
             let (s, t2) = (self.repetition.at(*load), self.series.at(*load).powi(2));
+            self.offset_axis(data, cell, &mut axis);
+            white.clear();
+            white.extend(cell.iter().map(|r| data.roots[*r] * values[*r]));
+            if self.correlation > 0.0 {
+                unchain(self.correlation, data, cell, &mut white);
+            }
             let (mut weight, mut sum) = (0.0, 0.0);
-            for &row in cell {
-                weight += data.weights[row];
-                sum += data.weights[row] * values[row];
+            for (a, v) in axis.iter().zip(&white) {
+                weight += a * a;
+                sum += a * v;
             }
             let removed = 1.0 - s / (s * s + t2 * weight).sqrt();
             let shift = removed * sum / weight;
-            for &row in cell {
-                values[row] = data.roots[row] * (values[row] - shift) / s;
+            for ((row, a), v) in cell.iter().zip(axis.iter()).zip(&white) {
+                values[*row] = (v - shift * a) / s;
             }
+        }
+    }
+
+    /// Direction of a cell's offset among its rows at unit variance, and so in the whitened scale.
+    fn offset_axis(self, data: &Observations, cell: &[usize], axis: &mut Vec<f64>) {
+        axis.clear();
+        axis.extend(cell.iter().map(|r| data.roots[*r]));
+        if self.correlation > 0.0 {
+            unchain(self.correlation, data, cell, axis);
         }
     }
 
@@ -118,36 +141,50 @@ impl Noise {
         explainable: &[Vec<f64>],
         start: Self,
     ) -> Self {
-        let mut noise = start;
+        let mut noise = Self { correlation: 0.0, ..start };
+        let mut last = Vec::new();
         for _ in 0..3 {
-            let mut projection = Projection::new(residual_n.len());
-            for column in explainable {
-                let mut white = column.clone();
-                noise.whiten(data, &mut white);
-                projection.absorb(white);
+            (noise, last) = noise.round(data, residual_n, explainable);
+        }
+        let correlation = correlation::estimate(data, &last);
+        if correlation > 0.0 {
+            noise.correlation = correlation;
+            for _ in 0..2 {
+                (noise, _) = noise.round(data, residual_n, explainable);
             }
-            let mut white = residual_n.to_vec();
-            noise.whiten(data, &mut white);
-            projection.remove(&mut white);
-            noise = noise.updated(data, &white, &projection);
         }
         noise
+    }
+
+    /// One round of the estimate, with the whitened residuals that it was made from.
+    fn round(self, data: &Observations, residual_n: &[f64], explainable: &[Vec<f64>]) -> (Self, Vec<f64>) {
+        let mut projection = Projection::new(residual_n.len());
+        for column in explainable {
+            let mut white = column.clone();
+            self.whiten(data, &mut white);
+            projection.absorb(white);
+        }
+        let mut white = residual_n.to_vec();
+        self.whiten(data, &mut white);
+        projection.remove(&mut white);
+        (self.updated(data, &white, &projection), white)
     }
 
     /// One step of the estimate from whitened, projected residuals.
     fn updated(self, data: &Observations, white: &[f64], projection: &Projection) -> Self {
         let (mut inside, mut between) = (Vec::new(), Vec::new());
-        let mut loads = Vec::new();
+        let mut axis = Vec::new();
         for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {
             if cell.first().is_some_and(|r| data.is_aside(*r)) {
                 continue;
             }
-            let weight: f64 = cell.iter().map(|r| data.weights[*r]).sum();
+            self.offset_axis(data, cell, &mut axis);
+            let weight: f64 = axis.iter().map(|a| a * a).sum();
             let root = weight.sqrt();
-            // In the whitened scale the direction of the rows' root weights carries the cell's offset; what
-            // the projection took from it and from the rest is given back.
+            // In the whitened scale one direction carries the cell's offset; what the projection took from it and
+            // from the rest is given back.
             let part = |v: &[f64]| {
-                let along = cell.iter().map(|r| v[*r] * data.roots[*r]).sum::<f64>() / root;
+                let along = cell.iter().zip(&axis).map(|(r, a)| v[*r] * a).sum::<f64>() / root;
                 (along * along, (cell.iter().map(|r| v[*r] * v[*r]).sum::<f64>() - along * along).max(0.0))
             };
             let (along2, rest2) = part(white);
@@ -166,7 +203,6 @@ impl Noise {
             if kept > 0.1 {
                 between.push((*load, (s2 / weight + t2) * along2 / kept, weight, kept));
             }
-            loads.push(*load);
         }
         let repetition = if inside.len() > 3 { Spread::estimate(&inside, 1e-6) } else { self.repetition };
         let between: Vec<_> = between
@@ -175,13 +211,43 @@ impl Noise {
             .collect();
         let least_n = 0.05 * repetition.constant_n;
         let series = if between.len() > 3 { Spread::estimate(&between, least_n) } else { self.series };
-        Self { repetition, series }
+        Self { repetition, series, ..self }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rig::Frame;
+    use crate::simulation::{Plan, simulate};
+
+    /// `V^-1/2 V V^-1/2' = 1` for the covariance that the documentation of `whiten` names.
+    #[test]
+    fn whitening_undoes_the_covariance() {
+        let rows = simulate(&Plan::default()).rows;
+        let rows: Vec<_> = rows.iter().filter(|r| r.series == rows[0].series).take(9).cloned().collect();
+        let frame = Frame::new(&rows);
+        let mut data = Observations::new(&frame, &rows).unwrap();
+        let n = rows.len();
+        data.weights = (0..n).map(|i| if i == 3 { 0.2 } else { 1.0 }).collect();
+        data.roots = data.weights.iter().map(|w| w.sqrt()).collect();
+        let noise = Noise { correlation: 0.6, ..Noise::constant(0.1, 0.3) };
+        let cell = data.cells[0].clone();
+        assert_eq!(cell.len(), n, "one series, one direction");
+        let covariance = nalgebra::DMatrix::from_fn(n, n, |i, j| {
+            let chain = 0.6f64.powi(i.abs_diff(j) as i32) / (data.roots[i] * data.roots[j]);
+            0.01 * chain + 0.09
+        });
+        let mut root = nalgebra::DMatrix::zeros(n, n);
+        for j in 0..n {
+            let mut unit = vec![0.0; n];
+            unit[j] = 1.0;
+            noise.whiten(&data, &mut unit);
+            (0..n).for_each(|i| root[(i, j)] = unit[i]);
+        }
+        let one = &root * covariance * root.transpose();
+        assert!((one - nalgebra::DMatrix::identity(n, n)).amax() < 1e-9);
+    }
 
     #[test]
     fn a_spread_is_found_in_squares_that_follow_it() {

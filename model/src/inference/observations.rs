@@ -39,6 +39,10 @@ impl Observations {
         for (row, cell) in cell_of.iter().enumerate() {
             cells[*cell].push(row);
         }
+        // Neighbours in time, whatever the order of the table.
+        for cell in &mut cells {
+            cell.sort_by(|a, b| points[*a].time.total_cmp(&points[*b].time));
+        }
         let force_n = rows.iter().map(|r| r.force_n).collect();
         let cell_load_n = loads(&cells, &points);
         let ones = vec![1.0; rows.len()];

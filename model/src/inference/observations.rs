@@ -25,6 +25,8 @@ pub struct Observations {
     aside: Vec<usize>,
 }
 
+/// Weight below which no row falls, so that its root stays a number; a reading a million times off has no say at it.
+const LEAST_WEIGHT: f64 = 1e-16;
 /// Weight of the rows of a series set aside: they keep their place and have no say.
 const ASIDE: f64 = 1e-7;
 
@@ -143,7 +145,7 @@ impl Observations {
             (0..4).map(|i| spread(&|load| part(load) == i).unwrap_or(sd).max(0.3 * sd)).collect();
         for ((weight, value), point) in self.weights.iter_mut().zip(&local).zip(&self.points) {
             let z = (value / parts[part(point.load_n)]).abs();
-            *weight = if z <= 3.2 { 1.0 } else { (3.2 / z).powi(3).max(1e-3) };
+            *weight = if z <= 3.2 { 1.0 } else { (3.2 / z).powi(3).max(LEAST_WEIGHT) };
         }
         self.roots = self.weights.iter().map(|w| w.sqrt()).collect();
         self.apply_aside();
@@ -174,6 +176,31 @@ pub(crate) fn median(values: &mut [f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::inference::{Levels, Model, interval_half_widths, select};
+    use crate::simulation::{EffectPlan, Plan, simulate};
+
+    /// One absurd reading of three thousand is weighed down so far that not even the intervals notice.
+    #[test]
+    fn a_spike_of_any_size_leaves_sizes_and_intervals_alone() {
+        let mut plan = Plan::default();
+        plan.effects.push(EffectPlan { id: "load_cell_gain".to_owned(), values: vec![0.03], form: 0 });
+        let rows = simulate(&plan).rows;
+        let found = |spike_n: f64| {
+            let mut rows = rows.clone();
+            rows[5].force_n += spike_n;
+            let frame = Frame::new(&rows);
+            let mut data = Observations::new(&frame, &rows).unwrap();
+            let found = select(&Model::baseline(frame), &mut data, Levels::default());
+            let widths = interval_half_widths(&found.augmented, &data, found.noise);
+            (found.augmented.model.values().pop().unwrap(), widths.last().copied().unwrap())
+        };
+        let (size, width) = found(0.0);
+        for spike_n in [3.0, 1e3, 1e5] {
+            let (with, wide) = found(spike_n);
+            assert!((with - size).abs() < 0.05 * width, "{with} instead of {size} with {spike_n} N");
+            assert!((wide / width - 1.0).abs() < 0.02, "{wide} instead of {width} with {spike_n} N");
+        }
+    }
 
     #[test]
     fn the_median_splits_the_values() {

@@ -1,5 +1,6 @@
 //! Reading and writing plateau tables (`plateaus.csv`, data.md 1).
 
+use std::collections::HashMap;
 use std::io::Read;
 
 use super::row::{PlateauRow, Surface, Sweep, direction_word};
@@ -23,6 +24,11 @@ pub(super) const COLUMNS: [&str; 13] = [
     "time_s",
     "force_N",
 ];
+
+/// Largest load and reading in newtons: ten tonnes is beyond any tendon.
+const MOST_N: f64 = 1e5;
+/// Longest time in seconds: thirty years, or a clock that counts from 1970.
+const MOST_S: f64 = 1e10;
 
 /// A plateau table with the cells as they were written, unknown columns included.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,11 +99,24 @@ impl PlateauTable {
             }
         }
         let (mut rows, mut cells) = (Vec::new(), Vec::new());
+        let mut lines = HashMap::new();
         for record in reader.records() {
             let record = record.map_err(malformed)?;
             let byte = record.position().map_or(0, csv::Position::byte);
             let cell = |index: usize| at[index].and_then(|i| record.get(i)).unwrap_or("");
-            rows.push(parse_row(&Cells { file, text: &text, byte, cell: &cell, force })?);
+            let line = Cells { file, text: &text, byte, cell: &cell, force };
+            let row = parse_row(&line)?;
+            // A reading that stands in the table twice counts twice, and no spread between the two says so.
+            let reading =
+                (row.series.clone(), row.direction.sign() > 0.0, row.repetition, row.time_s.to_bits());
+            if let (Force::Needed, Some(first)) = (force, lines.insert(reading, byte)) {
+                let first = line_at(&text, first);
+                let problem = format!(
+                    "stands in line {first} too, with the same series, direction and time; keep one, or number the repetitions"
+                );
+                return Err(line.refuse(9, problem));
+            }
+            rows.push(row);
             cells.push(record.iter().map(str::to_owned).collect());
         }
         if rows.is_empty() {
@@ -106,14 +125,19 @@ impl PlateauTable {
         Ok(Self { rows, header, cells })
     }
 
-    /// Refuses a table whose loads cannot fix a baseline.
+    /// Refuses a table that cannot fix a baseline.
     ///
     /// # Errors
-    /// [`TableError::TooFewLoads`] with fewer than two loads.
-    pub fn require_loads(&self, file: &str) -> Result<(), TableError> {
+    /// [`TableError::Stuck`] if all readings are the same, [`TableError::TooFewLoads`] with fewer than two loads.
+    pub fn require_baseline(&self, file: &str) -> Result<(), TableError> {
         let mut loads: Vec<f64> = self.rows.iter().map(|r| r.load_n).collect();
         loads.sort_by(f64::total_cmp);
         loads.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
+        if let Some(first) = self.rows.first().filter(|_| self.rows.len() > 1) {
+            if self.rows.iter().all(|r| r.force_n == first.force_n) {
+                return Err(TableError::Stuck { file: file.to_owned(), force_n: first.force_n });
+            }
+        }
         let needed = 2;
         if loads.len() < needed {
             return Err(TableError::TooFewLoads {
@@ -218,7 +242,8 @@ impl Cells<'_> {
         }
     }
 
-    fn number(&self, column: usize, least: f64) -> Result<f64, TableError> {
+    /// The number in a cell, within what a rig for tendons can yield.
+    fn number(&self, column: usize, least: f64, most: f64) -> Result<f64, TableError> {
         let value: f64 = (self.cell)(column)
             .parse()
             .map_err(|_| self.refuse(column, "is no number; write it like 12.5"))?;
@@ -227,6 +252,12 @@ impl Cells<'_> {
         }
         if value < least {
             return Err(self.refuse(column, format!("is below {least}; give a value of at least {least}")));
+        }
+        if value > most {
+            return Err(self.refuse(
+                column,
+                format!("is above {most}; give a value of at most {most}, in the column's unit"),
+            ));
         }
         Ok(value)
     }
@@ -267,9 +298,9 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
     if surface == Surface::Abs && pins.is_empty() {
         return Err(cells.refuse(2, "is empty on abs, where only pins carry the tendon; name the grooves"));
     }
-    let repetition = cells.number(9, 1.0)?;
-    if repetition.fract() != 0.0 || repetition > 1e6 {
-        return Err(cells.refuse(9, "is no whole number from 1 to 1000000; count the repetitions 1, 2, ..."));
+    let repetition = cells.number(9, 1.0, 1e6)?;
+    if repetition.fract() != 0.0 {
+        return Err(cells.refuse(9, "is no whole number; count the repetitions 1, 2, ..."));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number in 1..=1e6")]
     let repetition = repetition as u32;
@@ -278,17 +309,17 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
         surface,
         pins,
         sweep: cells.word(3, &[("up", Sweep::Up), ("down", Sweep::Down)])?,
-        load_mass_g: cells.number(4, 0.0)?,
-        load_n: cells.number(5, 0.0)?,
-        speed_pct: cells.number(6, 0.0)?,
-        dwell_s: cells.number(7, 0.0)?,
+        load_mass_g: cells.number(4, 0.0, 1e7)?,
+        load_n: cells.number(5, 0.0, MOST_N)?,
+        speed_pct: cells.number(6, 0.0, 1e6)?,
+        dwell_s: cells.number(7, 0.0, 1e6)?,
         direction: cells
             .word(8, &[("eccentric", Direction::Eccentric), ("concentric", Direction::Concentric)])?,
         repetition,
-        position_mm: cells.number(10, f64::NEG_INFINITY)?,
-        time_s: cells.number(11, f64::NEG_INFINITY)?,
+        position_mm: cells.number(10, -1e6, 1e6)?,
+        time_s: cells.number(11, -MOST_S, MOST_S)?,
         force_n: match cells.force {
-            Force::Needed => cells.number(12, f64::NEG_INFINITY)?,
+            Force::Needed => cells.number(12, -MOST_N, MOST_N)?,
             Force::Ignored => 0.0,
         },
     })
@@ -332,11 +363,32 @@ mod tests {
             ("silicone,,", "silicone,5;5,", "names a groove twice"),
             ("silicone,,", "silicone,16,", "grooves 1..15"),
             ("silicone,,", "abs,,", "only pins carry"),
+            ("2.3157", "1e300", "line 2, column 'force_N': '1e300' is above 100000"),
+            ("eccentric,1,", "eccentric,1.5,", "no whole number"),
         ];
         for (from, to, expected) in cases {
             let error = read(&format!("{HEADER}\n{}\n", LINE.replacen(from, to, 1))).unwrap_err().to_string();
             assert!(error.contains(expected) && error.starts_with("t.csv"), "{error}");
         }
+    }
+
+    #[test]
+    fn a_reading_that_stands_twice_is_refused_but_may_be_predicted_twice() {
+        let text = format!("{HEADER}\n{LINE}\n{LINE}\n");
+        let error = read(&text).unwrap_err().to_string();
+        assert!(error.starts_with("t.csv, line 3, column 'repetition': '1' stands in line 2 too"), "{error}");
+        assert_eq!(PlateauTable::read_conditions(text.as_bytes(), "t.csv").unwrap().rows.len(), 2);
+    }
+
+    #[test]
+    fn one_load_or_a_stuck_channel_fixes_no_baseline() {
+        let refuses = |from: &str, to: &str| {
+            let other = LINE.replacen("3.5", "7", 1).replacen(from, to, 1);
+            read(&format!("{HEADER}\n{LINE}\n{other}\n")).unwrap().require_baseline("t.csv")
+        };
+        assert!(matches!(refuses("2.3157", "2.4"), Err(TableError::TooFewLoads { found: 1, .. })));
+        assert!(matches!(refuses("3.0766", "5"), Err(TableError::Stuck { .. })));
+        assert!(refuses("3.0766,47,3,eccentric,1,6.93,7,2.3157", "5,47,3,eccentric,1,6.93,7,3.7").is_ok());
     }
 
     #[test]

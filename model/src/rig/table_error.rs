@@ -44,6 +44,16 @@ pub enum TableError {
         /// What is wrong.
         problem: String,
     },
+    /// Every reading is the same.
+    #[error(
+        "{file}, column 'force_N': every reading is {force_n}; the channel is stuck, check the load cell and its cable"
+    )]
+    Stuck {
+        /// File name as given.
+        file: String,
+        /// The reading in newtons.
+        force_n: f64,
+    },
     /// The loads cannot fix the baseline.
     #[error(
         "{file}, lines 2 to {last_line}, column 'load_N': {found} different load(s); the baseline needs at least {needed}, \

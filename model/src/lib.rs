@@ -25,6 +25,7 @@ mod law;
 mod layout_law;
 pub mod layout_search;
 pub mod least_squares;
+mod median;
 mod pattern;
 pub mod physics;
 pub mod published;

@@ -128,10 +128,16 @@ fn summary(report: &Report) -> String {
         Verdict::Ambiguous => "ambiguous: this data cannot tell rivals apart",
         Verdict::Unattributed => "unattributed: structure is left that no named effect explains",
     };
-    let mut text = format!(
-        "verdict: {verdict}\nheld-out error: {:.4} N before, {:.4} N after (noise {:.4} N)\n",
-        report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n, report.noise_floor_n
-    );
+    let held_out = [report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n];
+    let mut text = match held_out.map(|n| format!("{n:.4} N")) {
+        _ if held_out.iter().any(|n| n.is_nan()) => {
+            format!("verdict: {verdict}\nheld-out error: none, there is too little to hold anything out\n")
+        }
+        [before, after] => format!(
+            "verdict: {verdict}\nheld-out error: {before} before, {after} after (noise {:.4} N)\n",
+            report.noise_floor_n
+        ),
+    };
     for effect in &report.effects {
         let constants: Vec<String> = effect
             .parameters

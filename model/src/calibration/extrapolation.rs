@@ -3,6 +3,7 @@
 use super::report::{Calibration, CalibrationError, calibrate};
 use super::schema::Extrapolation;
 use crate::inference::{Levels, Model};
+use crate::median::median;
 use crate::rig::PlateauRow;
 
 /// Readings further off than this many standard deviations of noise are bad ones.
@@ -40,8 +41,8 @@ pub fn calibrate_below(
         rmse_after_n: root_mean_square(&after),
         rmse_after_without_bad_n: root_mean_square(&sound),
         bad_rows: rest.len() - sound.len(),
-        median_before_n: median_size(&before),
-        median_after_n: median_size(&after),
+        median_before_n: median(&mut sizes(&before)),
+        median_after_n: median(&mut sizes(&after)),
     });
     Ok(calibration)
 }
@@ -50,9 +51,6 @@ fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-/// Median of the absolute values.
-fn median_size(values: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    sizes.get(sizes.len() / 2).copied().unwrap_or(f64::NAN)
+fn sizes(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|v| v.abs()).collect()
 }

@@ -37,9 +37,10 @@ pub fn held_out(model: &Model, data: &Observations, noise: Noise) -> HeldOut {
 }
 
 impl HeldOut {
-    /// With too few loads to leave any out, the series stand for both.
+    /// With too few loads, or series, to leave any out, the others stand for both.
     fn without_gaps(self) -> Self {
-        if self.loads_n.is_nan() { Self { loads_n: self.series_n, ..self } } else { self }
+        let either = |a: f64, b: f64| if a.is_nan() { b } else { a };
+        Self { series_n: either(self.series_n, self.loads_n), loads_n: either(self.loads_n, self.series_n) }
     }
 }
 

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Observations;
 use super::correlation::{self, unchain};
-use super::observations::median;
 use super::projection::Projection;
+use crate::median::median;
 
 /// A variance that grows with the square of the load: `constant^2 + (per_load F)^2`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

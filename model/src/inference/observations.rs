@@ -1,5 +1,6 @@
 //! A table ready for inference: points, readings, and how the rows are grouped.
 
+use crate::median::median;
 use crate::rig::{Frame, PlateauRow, Point};
 
 /// Points and readings with their grouping.
@@ -158,21 +159,6 @@ fn loads(cells: &[Vec<usize>], points: &[Point]) -> Vec<f64> {
     cells.iter().map(|c| c.iter().map(|r| points[*r].load_n).sum::<f64>() / c.len().max(1) as f64).collect()
 }
 
-/// Median of the values; they are reordered. Zero without values.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    let (_, upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
-    let upper = *upper;
-    if values.len() % 2 == 1 {
-        return upper;
-    }
-    let lower = values[..middle].iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    (lower + upper) / 2.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -200,11 +186,5 @@ mod tests {
             assert!((with - size).abs() < 0.05 * width, "{with} instead of {size} with {spike_n} N");
             assert!((wide / width - 1.0).abs() < 0.02, "{wide} instead of {width} with {spike_n} N");
         }
-    }
-
-    #[test]
-    fn the_median_splits_the_values() {
-        assert_eq!(median(&mut [3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), 2.5);
     }
 }

@@ -2,6 +2,7 @@
 
 mod frame;
 mod plateau_table;
+mod plausible_table;
 mod row;
 mod table_error;
 

@@ -125,31 +125,6 @@ impl PlateauTable {
         Ok(Self { rows, header, cells })
     }
 
-    /// Refuses a table that cannot fix a baseline.
-    ///
-    /// # Errors
-    /// [`TableError::Stuck`] if all readings are the same, [`TableError::TooFewLoads`] with fewer than two loads.
-    pub fn require_baseline(&self, file: &str) -> Result<(), TableError> {
-        let mut loads: Vec<f64> = self.rows.iter().map(|r| r.load_n).collect();
-        loads.sort_by(f64::total_cmp);
-        loads.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
-        if let Some(first) = self.rows.first().filter(|_| self.rows.len() > 1) {
-            if self.rows.iter().all(|r| r.force_n == first.force_n) {
-                return Err(TableError::Stuck { file: file.to_owned(), force_n: first.force_n });
-            }
-        }
-        let needed = 2;
-        if loads.len() < needed {
-            return Err(TableError::TooFewLoads {
-                file: file.to_owned(),
-                last_line: self.rows.len() + 1,
-                found: loads.len(),
-                needed,
-            });
-        }
-        Ok(())
-    }
-
     /// Keeps the rows for which `keep` holds.
     pub fn retain(&mut self, keep: impl Fn(&PlateauRow) -> bool) {
         let kept: Vec<bool> = self.rows.iter().map(keep).collect();
@@ -378,17 +353,6 @@ mod tests {
         let error = read(&text).unwrap_err().to_string();
         assert!(error.starts_with("t.csv, line 3, column 'repetition': '1' stands in line 2 too"), "{error}");
         assert_eq!(PlateauTable::read_conditions(text.as_bytes(), "t.csv").unwrap().rows.len(), 2);
-    }
-
-    #[test]
-    fn one_load_or_a_stuck_channel_fixes_no_baseline() {
-        let refuses = |from: &str, to: &str| {
-            let other = LINE.replacen("3.5", "7", 1).replacen(from, to, 1);
-            read(&format!("{HEADER}\n{LINE}\n{other}\n")).unwrap().require_baseline("t.csv")
-        };
-        assert!(matches!(refuses("2.3157", "2.4"), Err(TableError::TooFewLoads { found: 1, .. })));
-        assert!(matches!(refuses("3.0766", "5"), Err(TableError::Stuck { .. })));
-        assert!(refuses("3.0766,47,3,eccentric,1,6.93,7,2.3157", "5,47,3,eccentric,1,6.93,7,3.7").is_ok());
     }
 
     #[test]

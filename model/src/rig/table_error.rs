@@ -44,19 +44,35 @@ pub enum TableError {
         /// What is wrong.
         problem: String,
     },
-    /// Every reading is the same.
+    /// The readings do not follow the loads.
     #[error(
-        "{file}, column 'force_N': every reading is {force_n}; the channel is stuck, check the load cell and its cable"
+        "{file}, column 'force_N': the reading changes by {slope:.2} N for each newton of load_N, {} to {} are possible; \
+         check the sign and the unit of both columns, and the load cell's cable", bounds.start(), bounds.end()
     )]
-    Stuck {
+    Unrelated {
         /// File name as given.
         file: String,
-        /// The reading in newtons.
-        force_n: f64,
+        /// Newtons per newton.
+        slope: f64,
+        /// What is possible.
+        bounds: std::ops::RangeInclusive<f64>,
+    },
+    /// Loads and masses contradict each other.
+    #[error(
+        "{file}, column 'load_N': the loads are {factor:.3} times what load_mass_g weighs, {} to {} are possible; \
+         give newtons and grams, or 0 for a mass that is not known", bounds.start(), bounds.end()
+    )]
+    LoadUnit {
+        /// File name as given.
+        file: String,
+        /// Load over weight.
+        factor: f64,
+        /// What is possible.
+        bounds: std::ops::RangeInclusive<f64>,
     },
     /// The loads cannot fix the baseline.
     #[error(
-        "{file}, lines 2 to {last_line}, column 'load_N': {found} different load(s); the baseline needs at least {needed}, \
+        "{file}, lines 2 to {last_line}, column 'load_N': {found} different load(s) above zero; the baseline needs at least {needed}, \
          add series with other weights. One load leaves open how friction grows with load, where the switch stands, \
          and every effect that lies in load"
     )]

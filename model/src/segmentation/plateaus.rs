@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::log::Log;
 use super::run_plan::Rig;
 use crate::Direction;
+use crate::median::median;
 
 /// One plateau.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -170,15 +171,6 @@ fn range(log: &Log, from_s: f64, to_s: f64) -> std::ops::Range<usize> {
 fn level(log: &Log, from_s: f64, to_s: f64) -> f64 {
     let mut values = log.position_mm[range(log, from_s, to_s)].to_vec();
     median(&mut values)
-}
-
-/// Median; the values are reordered. Zero without values.
-fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// Mean of the samples without those beyond 4.5 robust standard deviations, and how many are left.

@@ -11,6 +11,8 @@ pub use outcome::{Outcome, run_case};
 pub use strengths::Strength;
 pub(super) use strengths::strengths;
 
+use crate::median::median;
+
 /// Results by case.
 #[derive(Clone, Debug, Default)]
 pub struct Study {
@@ -116,6 +118,5 @@ fn calibration_of_p(nulls: &[&Outcome]) -> String {
 /// Median of the error after over the error before on fresh rows.
 fn median_ratio<'a>(outcomes: impl Iterator<Item = &'a Outcome>) -> f64 {
     let mut ratios: Vec<f64> = outcomes.map(|o| o.fresh_n[1] / o.fresh_n[0].max(1e-9)).collect();
-    ratios.sort_by(f64::total_cmp);
-    ratios.get(ratios.len() / 2).copied().unwrap_or(f64::NAN)
+    if ratios.is_empty() { f64::NAN } else { median(&mut ratios) }
 }

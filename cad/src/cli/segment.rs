@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             series.file, entry.eccentric, entry.concentric
         ));
         for finding in &found.findings {
-            summary.push_str(&format!("; {finding:?}"));
+            summary.push_str(&format!("; {finding}"));
         }
         summary.push('\n');
         report.push(serde_json::to_value(&entry).map_err(Failure::failed)?);

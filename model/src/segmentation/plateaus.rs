@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::finding::Finding;
 use super::log::Log;
 use super::run_plan::Rig;
 use crate::Direction;
@@ -23,56 +24,6 @@ pub struct Plateau {
     pub time_s: f64,
     /// Samples it rests on, spikes left out.
     pub samples: usize,
-}
-
-/// Something that is wrong with a log.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case", tag = "what")]
-pub enum Finding {
-    /// Samples that stand out from their plateau.
-    Spikes {
-        /// How many.
-        samples: usize,
-    },
-    /// Samples that are missing between time stamps.
-    LostSamples {
-        /// How many.
-        samples: usize,
-    },
-    /// Lines of the file that are no samples.
-    UnusableLines {
-        /// How many.
-        lines: usize,
-    },
-    /// A channel that stands at its end.
-    Clipped {
-        /// The force at which it stands, in newtons.
-        #[serde(rename = "force_N")]
-        force_n: f64,
-        /// Share of the samples.
-        share: f64,
-    },
-    /// A move of another length than the others in its direction.
-    OddSpeed {
-        /// Direction of the move.
-        direction: Direction,
-        /// The plateau after it.
-        repetition: u32,
-        /// Its length over the median length.
-        ratio: f64,
-    },
-    /// A pause that is too long: a repetition is missing.
-    MissingRepetition {
-        /// Direction of the move before it.
-        direction: Direction,
-        /// The repetition after which one is missing.
-        after: u32,
-    },
-    /// A rest too short or too broken to be read.
-    UnreadableRest {
-        /// Seconds since the log began.
-        time_s: f64,
-    },
 }
 
 /// Plateaus and findings of one log.

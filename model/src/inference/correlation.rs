@@ -14,9 +14,13 @@ const MOST: f64 = 0.95;
 /// Whitens the values of one cell in place, given at unit variance: each keeps what its predecessor does not foretell.
 /// A lost repetition leaves a gap, over which the correlation is `rho^gap`.
 pub(super) fn unchain(rho: f64, data: &Observations, cell: &[usize], values: &mut [f64]) {
+    let rest = |phi: f64| (1.0 - phi * phi).sqrt().recip();
+    let next = (rho, rest(rho));
     for i in (1..cell.len()).rev() {
-        let phi = rho.powf(gap(data, cell, i));
-        values[i] = (values[i] - phi * values[i - 1]) / (1.0 - phi * phi).sqrt();
+        let gap = gap(data, cell, i);
+        // Hardly any repetition is lost, and this is called for every column of every fit.
+        let (phi, scale) = if gap == 1.0 { next } else { (rho.powf(gap), rest(rho.powf(gap))) };
+        values[i] = (values[i] - phi * values[i - 1]) * scale;
     }
 }
 

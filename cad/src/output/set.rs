@@ -1,6 +1,7 @@
 //! Makes a whole set in memory: nothing is written before everything is known to be right.
 
 use pinswitch_model::{Contact, FrictionCurve, Law, other_laws, predict};
+use rayon::prelude::*;
 
 use super::{FileEntry, Manifest, PlotError, bill_of_materials, friction_csv, friction_svg, manifest};
 use crate::config::ConfigError;
@@ -98,8 +99,10 @@ pub fn make_set(design: &Design) -> Result<Set, SetError> {
 pub fn make_set_with(design: &Design, curve: &FrictionCurve) -> Result<Set, SetError> {
     let mut files = Vec::new();
     let mut parts = Vec::new();
-    for part in parts::printed(design)? {
-        let (bytes, facts) = mesh_file(&part, design)?;
+    let printed = parts::printed(design)?;
+    let meshes: Vec<_> = printed.par_iter().map(|part| mesh_file(part, design)).collect();
+    for (part, mesh) in printed.into_iter().zip(meshes) {
+        let (bytes, facts) = mesh?;
         files.push(OutputFile { name: format!("{}.stl", part.name), bytes });
         parts.push((part, facts));
     }

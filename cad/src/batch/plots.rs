@@ -4,7 +4,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::gallery::{Gallery, Setting, Shown};
-use crate::output::PlotError;
+use crate::output::{PlotError, drawable};
 
 /// The drawing library rounds to whole units: it draws this many to a pixel, so that lines are smooth.
 const FINE: i32 = 8;
@@ -173,7 +173,7 @@ pub(super) fn curves_svg(name: &str, gallery: &Gallery) -> Result<String, PlotEr
                 let caption = format!("{} = {}", short_field(&panels.name), panels.labels[class]);
                 chart.caption(caption, ("sans-serif", 13 * FINE));
             }
-            let mut chart = chart.build_cartesian_2d(0.0..heaviest, 0.0..top)?;
+            let mut chart = chart.build_cartesian_2d(drawable(0.0, heaviest), drawable(0.0, top))?;
             mesh(&mut chart, "load (N)", "friction (N)")?;
             let inside: Vec<_> = gallery.made().filter(|s| panels.of(s) == class).collect();
             for shown in inside.iter().step_by(inside.len().div_ceil(MOST_CURVES).max(1)) {
@@ -235,7 +235,7 @@ pub(super) fn threshold_svg(name: &str, gallery: &Gallery) -> Result<String, Plo
             .margin(6 * FINE)
             .x_label_area_size(38 * FINE)
             .y_label_area_size(46 * FINE)
-            .build_cartesian_2d(0.0..right, 0.0..top)?;
+            .build_cartesian_2d(drawable(0.0, right), drawable(0.0, top))?;
         mesh(
             &mut chart,
             "threshold: load at which the silicone makes half of the friction (N)",

@@ -6,6 +6,7 @@ use pinswitch_model::segmentation::{Log, Segmented};
 use plotters::prelude::*;
 
 use super::PlotFailure;
+use crate::output::drawable;
 
 /// Width and height in pixels.
 const SIZE: (u32, u32) = (1100, 360);
@@ -42,7 +43,7 @@ fn draw(svg: &mut String, name: &str, log: &Log, found: &Segmented) -> Result<()
         .caption(name, ("sans-serif", 16))
         .x_label_area_size(36)
         .y_label_area_size(52)
-        .build_cartesian_2d(0.0..end, least - pad..most + pad)?;
+        .build_cartesian_2d(drawable(0.0, end), drawable(least - pad, most + pad))?;
     chart.configure_mesh().light_line_style(TRANSPARENT).x_desc("time (s)").y_desc("force (N)").draw()?;
     chart.draw_series(LineSeries::new(line, RGBColor(150, 150, 150).stroke_width(1)))?;
     chart.draw_series(found.plateaus.iter().map(|p| {

@@ -8,6 +8,8 @@ use pinswitch_model::effects::Covariate;
 use pinswitch_model::rig::{Frame, Point};
 use plotters::prelude::*;
 
+use crate::output::drawable;
+
 /// Width and height of a condition's figure in pixels.
 const CONDITION: (u32, u32) = (440, 300);
 /// Width and height of a pair of residual panels in pixels.
@@ -152,7 +154,7 @@ fn curve(svg: &mut String, calibration: &Calibration, condition: usize) -> Resul
         .caption(name, ("sans-serif", 15))
         .x_label_area_size(38)
         .y_label_area_size(50)
-        .build_cartesian_2d(0.0..span(0).1.max(1e-6) * 1.04, low * 1.1 - 0.05..high * 1.1 + 0.05)?;
+        .build_cartesian_2d(drawable(0.0, 1.04 * span(0).1), drawable(1.1 * low - 0.05, 1.1 * high + 0.05))?;
     chart.configure_mesh().light_line_style(TRANSPARENT).x_desc("load F (N)").y_desc("T - F (N)").draw()?;
     for up in [false, true] {
         let of = |i: usize| lines.iter().filter(move |l| l.0 == up).map(move |l| (l.1[0], l.1[i]));
@@ -192,7 +194,7 @@ fn residual(
             .caption(title, ("sans-serif", 14))
             .x_label_area_size(38)
             .y_label_area_size(50)
-            .build_cartesian_2d(least - pad..most + pad, -high..high)?;
+            .build_cartesian_2d(drawable(least - pad, most + pad), drawable(-high, high))?;
         let format = |x: &f64| name_at(&axis.names, *x);
         let mut mesh = chart.configure_mesh();
         mesh.light_line_style(TRANSPARENT).x_desc(&axis.label).y_desc("reading - model (N)");

@@ -21,6 +21,7 @@ pub use guide::{Check, checks, printing_guide};
 pub(crate) use manifest::plain;
 pub use manifest::{BatchEntry, Derived, FileEntry, Manifest, derived, manifest};
 pub use pareto_plot::pareto_svg;
+pub(crate) use plot_scale::drawable;
 pub use set::{
     OutputFile, Set, SetError, curve_of, curves_beside, loads_of, make_set, make_set_with, mesh_file,
 };

@@ -77,10 +77,16 @@ fn conclusion(report: &Report) -> String {
             format!("No named effect explains what is left; it lies in {}.", places.join(", "))
         }
     };
+    let (before, after) = (report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n);
+    if before.is_nan() || after.is_nan() {
+        return format!(
+            "<p class=\"verdict\">{text}<br>There is too little to hold anything out of the fit: no error is known.</p>\n"
+        );
+    }
     format!(
         "<p class=\"verdict\">{text}<br>Error on series and loads held out of the fit: \
-         <b class=\"b\">{:.4} N</b> before, <b class=\"a\">{:.4} N</b> after; noise {:.4} N.</p>\n",
-        report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n, report.noise_floor_n
+         <b class=\"b\">{before:.4} N</b> before, <b class=\"a\">{after:.4} N</b> after; noise {:.4} N.</p>\n",
+        report.noise_floor_n
     )
 }
 

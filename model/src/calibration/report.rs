@@ -17,14 +17,15 @@ use crate::rig::{Frame, PlateauRow, Surface};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CalibrationError {
-    /// Fewer rows than the baseline has constants.
+    /// Too few rows for the baseline's constants and the noise beside them.
     #[error(
-        "{found} rows cannot fix the {needed} constants of the baseline; record more loads or repetitions"
+        "{found} rows cannot fix the baseline's constants and tell the noise beside them, {needed} can; \
+         record more loads or repetitions"
     )]
     TooFewRows {
         /// Rows given.
         found: usize,
-        /// Constants of the baseline.
+        /// Rows that could.
         needed: usize,
     },
 }
@@ -40,6 +41,9 @@ pub struct Calibration {
     pub data: Observations,
 }
 
+/// Rows beyond the baseline's constants without which any misfit would be many times a noise that nobody knows.
+const ROWS_FOR_NOISE: usize = 8;
+
 /// Calibrates a table.
 ///
 /// # Errors
@@ -47,7 +51,7 @@ pub struct Calibration {
 pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, CalibrationError> {
     let frame = Frame::new(rows);
     let start = Model::baseline(frame.clone());
-    let needed = start.values().len() + 2;
+    let needed = start.values().len() + ROWS_FOR_NOISE;
     let too_few = CalibrationError::TooFewRows { found: rows.len(), needed };
     let mut data = Observations::new(&frame, rows).ok_or_else(|| too_few.clone())?;
     if rows.len() < needed {

@@ -3,11 +3,11 @@
 #![allow(clippy::expect_used)]
 
 use divan::{Bencher, black_box};
-use pinswitch::batch::{
+use pinswitch_batch::{
     Destination, Options, Outcome, Shard, Sweep, SweepSource, Variants, Watch, partial_folder, run,
 };
-use pinswitch::design::Design;
-use pinswitch::output::mesh_file;
+use pinswitch_switch::design::Design;
+use pinswitch_switch::set::mesh_file;
 
 fn main() {
     divan::main();

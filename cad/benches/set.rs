@@ -3,12 +3,13 @@
 #![allow(clippy::expect_used)]
 
 use divan::{Bencher, black_box};
-use pinswitch::config::{Configuration, assign};
-use pinswitch::design::Design;
-use pinswitch::mesh::stl_bytes;
-use pinswitch::output::{curve_of, make_set, write_set};
-use pinswitch::parts::{Part, printed};
-use pinswitch::validity::{Expectation, examine};
+use pinswitch::write::write_set;
+use pinswitch_solid::files::stl_bytes;
+use pinswitch_solid::validity::{Expectation, examine};
+use pinswitch_switch::config::{Configuration, assign};
+use pinswitch_switch::design::Design;
+use pinswitch_switch::parts::{Part, printed};
+use pinswitch_switch::set::{curve_of, make_set};
 
 fn main() {
     divan::main();

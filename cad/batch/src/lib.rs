@@ -1,0 +1,58 @@
+//! Sweeps of many variants, made in parallel, taken up where they were stopped, on one machine or on many.
+//!
+//! It knows sweeps, destinations and tables; how a switch is built and predicted it leaves to `pinswitch-switch`.
+//!
+//! Data flows: sweep file → levels → variants → sets (equal parts once) → rows → table, plots, page.
+
+mod axis;
+mod constraint;
+mod content;
+mod destination;
+mod estimate;
+mod gallery;
+mod make;
+mod merge;
+mod page;
+mod plots;
+mod products;
+mod rows;
+mod run;
+mod sampling;
+mod shard;
+mod source;
+mod stamp;
+mod sweep;
+mod table;
+mod table_files;
+mod variant;
+
+pub use axis::{Field, Level};
+pub use constraint::Constraint;
+pub use content::{Workshop, mesh_file};
+pub use destination::{Claim, Destination, DestinationError, Folder, Store};
+pub use estimate::{Estimate, Measured, Refusals, estimate};
+pub use make::Outcome;
+pub use merge::{MergeError, merge};
+pub use products::{ProductError, Tally};
+pub use run::{Options, RunError, ShardStamp, Watch, partial_folder, run};
+pub use sampling::{Method, unit_points};
+pub use shard::{Shard, ShardError};
+pub use source::SweepSource;
+pub use stamp::{Stamp, StampError};
+pub use sweep::Sweep;
+pub use table::{Cell, Column, Kind, Row, Schema};
+pub use table_files::{TableError, TableWriter, read_rows};
+pub use variant::{Variant, Variants};
+
+/// Bytes as lower-case hexadecimal digits.
+fn hexadecimal(bytes: &[u8]) -> String {
+    use std::fmt::Write;
+    bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+#[cfg(test)]
+mod tests;

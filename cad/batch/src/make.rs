@@ -1,0 +1,179 @@
+//! One variant: refused, kept from an earlier run, or made.
+
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use super::content::{ContentError, Contents, Kept, Workshop, place_of};
+use super::destination::{Destination, DestinationError};
+use super::hexadecimal;
+use super::sweep::Sweep;
+use super::variant::{Variant, Variants};
+use pinswitch_model::FrictionCurve;
+use pinswitch_switch::built::BuildError;
+use pinswitch_switch::design::Design;
+use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
+use pinswitch_switch::formats::curve_files;
+use pinswitch_switch::parts::printed;
+use pinswitch_switch::prediction::{Prediction, curve_of};
+use pinswitch_switch::set::SetError;
+
+/// What became of a variant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// Its files are at the destination; this is its manifest.
+    Made {
+        /// The manifest's bytes.
+        manifest: Vec<u8>,
+        /// Whether an earlier run had made it.
+        before: bool,
+    },
+    /// It cannot be built, or a constraint forbids it.
+    Refused(String),
+    /// Making it failed.
+    Failed(String),
+}
+
+/// Makes variants at a destination.
+pub(super) struct Maker<'a> {
+    variants: &'a Variants,
+    sweep_sha256: &'a str,
+    destination: &'a Destination,
+    contents: Contents<'a>,
+    /// Whether an earlier run may have left variants.
+    resumed: bool,
+}
+
+/// The folder of a variant.
+pub(super) fn folder_of(id: &str) -> String {
+    format!("variants/{id}")
+}
+
+/// A design that fulfils the constraints of a sweep, with its predicted curve.
+///
+/// # Errors
+/// The reason for which the variant is refused.
+pub(super) fn accepted(variants: &Variants, variant: &Variant) -> Result<(Design, FrictionCurve), String> {
+    if let Some(original) = variant.repeats {
+        return Err(format!("repeats {}", variants.get(original).id));
+    }
+    let design = Design::new(variant.configuration.clone()).map_err(|e| e.to_string())?;
+    let curve = curve_of(&design);
+    match variants.sweep().constraints.iter().find_map(|c| c.refusal(&design, &curve)) {
+        Some(reason) => Err(reason),
+        None => Ok((design, curve)),
+    }
+}
+
+impl<'a> Maker<'a> {
+    /// A maker for `destination`; `resumed` says whether it may already hold variants of the same sweep.
+    pub(super) fn new(
+        variants: &'a Variants,
+        sweep_sha256: &'a str,
+        destination: &'a Destination,
+        resumed: bool,
+        workshop: Workshop,
+    ) -> Self {
+        Self { variants, sweep_sha256, destination, contents: Contents::new(destination, workshop), resumed }
+    }
+
+    /// Makes `variant` unless it is refused or already there.
+    ///
+    /// # Errors
+    /// [`DestinationError`] for what would stop every other variant too, such as a full disk.
+    pub(super) fn make(&self, variant: &Variant) -> Result<Outcome, DestinationError> {
+        let (design, curve) = match accepted(self.variants, variant) {
+            Ok(accepted) => accepted,
+            Err(reason) => return Ok(Outcome::Refused(reason)),
+        };
+        if let Some(manifest) = self.resumed.then(|| self.whole(variant)).transpose()?.flatten() {
+            return Ok(Outcome::Made { manifest, before: true });
+        }
+        match self.build(variant, &design, curve) {
+            Ok(manifest) => Ok(Outcome::Made { manifest, before: false }),
+            Err(ContentError::Destination(e)) if e.hopeless => Err(e),
+            Err(ContentError::Set(SetError::Build(BuildError::Configuration(e)))) => {
+                Ok(Outcome::Refused(e.to_string()))
+            }
+            Err(e) => Ok(Outcome::Failed(e.to_string())),
+        }
+    }
+
+    fn build(
+        &self,
+        variant: &Variant,
+        design: &Design,
+        curve: FrictionCurve,
+    ) -> Result<Vec<u8>, ContentError> {
+        let sweep: &Sweep = self.variants.sweep();
+        let mut parts = printed(design).map_err(|e| SetError::from(BuildError::from(e)))?;
+        parts.retain(|part| sweep.parts.contains(&part.name.as_str()));
+        let kept: Vec<_> =
+            parts.iter().map(|part| self.contents.keep(part, design)).collect::<Result<_, _>>()?;
+        let linked: Vec<_> =
+            parts.iter().zip(&kept).map(|(part, kept)| part_entry(&part.name, kept)).collect();
+        let prediction = Prediction::with_curve(design, curve);
+        let own = curve_files(design, &prediction, sweep.plots)?;
+        let facts = parts.iter().zip(kept.iter().map(|k| &k.facts));
+        let mut manifest = Manifest::new(design, facts, &prediction);
+        manifest.files.extend(linked.iter().cloned().chain(own.iter().map(FileEntry::of)));
+        manifest.batch = Some(BatchEntry {
+            sweep_sha256: self.sweep_sha256.to_owned(),
+            index: variant.index,
+            label: variant.label.clone(),
+        });
+        let bytes = manifest.bytes()?;
+        let folder = folder_of(&variant.id);
+        for file in own {
+            self.destination.put(&format!("{folder}/{}", file.name), &file.bytes)?;
+        }
+        for entry in linked {
+            if let Some(content) = &entry.content {
+                self.destination.link(content, &format!("{folder}/{}", entry.file))?;
+            }
+        }
+        // A variant with a manifest is whole: it comes last.
+        self.destination.put(&format!("{folder}/manifest.json"), &bytes)?;
+        Ok(bytes)
+    }
+
+    /// The manifest of a variant that an earlier run made, if all its files are still what it says.
+    fn whole(&self, variant: &Variant) -> Result<Option<Vec<u8>>, DestinationError> {
+        let folder = folder_of(&variant.id);
+        let Some(bytes) = self.destination.get(&format!("{folder}/manifest.json"))? else { return Ok(None) };
+        let Ok(manifest) = serde_json::from_slice::<Value>(&bytes) else { return Ok(None) };
+        let own = manifest["batch"]["sweep_sha256"] == self.sweep_sha256
+            && manifest["batch"]["index"] == variant.index;
+        let files = manifest["files"].as_array().filter(|_| own);
+        let Some(files) = files else { return Ok(None) };
+        for file in files {
+            if !self.is_whole(&folder, file)? {
+                log::warn!("{}: {} has changed and is made again", variant.id, file["file"]);
+                return Ok(None);
+            }
+        }
+        Ok(Some(bytes))
+    }
+
+    fn is_whole(&self, folder: &str, file: &Value) -> Result<bool, DestinationError> {
+        let name = file["file"].as_str().unwrap_or_default();
+        if let Some(content) = file["content"].as_str() {
+            if self.destination.size(content)? != file["bytes"].as_u64() {
+                return Ok(false);
+            }
+            if !self.destination.links() {
+                return Ok(true);
+            }
+        }
+        let found = self.destination.get(&format!("{folder}/{name}"))?;
+        Ok(found.is_some_and(|bytes| file["sha256"] == hexadecimal(&Sha256::digest(&bytes))))
+    }
+}
+
+fn part_entry(name: &str, kept: &Kept) -> FileEntry {
+    FileEntry {
+        file: format!("{name}.stl"),
+        bytes: kept.bytes,
+        sha256: kept.sha256.clone(),
+        content: Some(place_of(&kept.sha256)),
+    }
+}

@@ -1,0 +1,146 @@
+//! What a finished batch or shard leaves beside its variants: the table, and for a whole sweep the plots and the page.
+
+use std::collections::HashSet;
+
+use serde::Serialize;
+
+use super::destination::{Destination, DestinationError};
+use super::gallery::Gallery;
+use super::page::page;
+use super::plots::{curves_svg, threshold_svg};
+use super::table::{Row, Schema};
+use super::table_files::{TableError, TableWriter};
+use super::variant::Variants;
+use pinswitch_plot::PlotError;
+
+/// Why the products cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ProductError {
+    /// The table.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// A plot.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+    /// The destination.
+    #[error(transparent)]
+    Destination(#[from] DestinationError),
+}
+
+/// What came of a number of variants.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Tally {
+    /// Variants that are there.
+    pub made: u64,
+    /// Variants that cannot be built or are forbidden.
+    pub refused: u64,
+    /// Variants that failed.
+    pub failed: u64,
+    /// Part files of all variants.
+    pub parts: u64,
+    /// Different ones among them.
+    pub distinct_parts: u64,
+    /// Bytes of all part files.
+    pub part_bytes: u64,
+    /// Bytes of the different ones.
+    pub distinct_bytes: u64,
+}
+
+/// Takes rows in the order of the sweep and makes the products.
+pub(super) struct Products<'a> {
+    variants: &'a Variants,
+    destination: &'a Destination,
+    schema: Schema,
+    csv: tempfile::NamedTempFile,
+    parquet: tempfile::NamedTempFile,
+    table: TableWriter,
+    gallery: Gallery,
+    tally: Tally,
+    /// The first half of the hash of every part so far.
+    seen: HashSet<u64>,
+}
+
+impl<'a> Products<'a> {
+    /// Starts with no rows.
+    ///
+    /// # Errors
+    /// [`ProductError`] if temporary files cannot be made.
+    pub(super) fn new(variants: &'a Variants, destination: &'a Destination) -> Result<Self, ProductError> {
+        let schema = Schema::new(variants.sweep());
+        let (csv, parquet) = (destination.local_file()?, destination.local_file()?);
+        Ok(Self {
+            table: TableWriter::create(&schema, csv.path(), parquet.path())?,
+            gallery: Gallery::new(variants),
+            variants,
+            destination,
+            schema,
+            csv,
+            parquet,
+            tally: Tally::default(),
+            seen: HashSet::new(),
+        })
+    }
+
+    /// The columns of the rows.
+    pub(super) fn schema(&self) -> &Schema {
+        &self.schema
+    }
+
+    /// Adds the row of the next variant.
+    ///
+    /// # Errors
+    /// [`ProductError`] on a full disk, for example.
+    pub(super) fn push(&mut self, index: u64, row: Row) -> Result<(), ProductError> {
+        match self.schema.cell(&row, "status").text() {
+            Some("made") => self.tally.made += 1,
+            Some("refused") => self.tally.refused += 1,
+            _ => self.tally.failed += 1,
+        }
+        for part in self.schema.parts() {
+            let hash = self.schema.cell(&row, &format!("{part}.sha256")).text();
+            let hash = hash.and_then(|h| u64::from_str_radix(h.get(..16)?, 16).ok());
+            let bytes = self.schema.cell(&row, &format!("{part}.bytes")).number();
+            if let (Some(hash), Some(bytes)) = (hash, bytes) {
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                let bytes = bytes as u64;
+                self.tally.parts += 1;
+                self.tally.part_bytes += bytes;
+                if self.seen.insert(hash) {
+                    self.tally.distinct_parts += 1;
+                    self.tally.distinct_bytes += bytes;
+                }
+            }
+        }
+        self.gallery.add(self.variants, index, &self.schema, &row);
+        self.table.push(row)?;
+        Ok(())
+    }
+
+    /// Completes the table under `folder`, without plots and page.
+    ///
+    /// # Errors
+    /// [`ProductError`] on a full disk, for example.
+    pub(super) fn finish_table(self, folder: &str) -> Result<Tally, ProductError> {
+        self.table.finish()?;
+        self.destination.put_file(&format!("{folder}variants.csv"), self.csv)?;
+        self.destination.put_file(&format!("{folder}variants.parquet"), self.parquet)?;
+        Ok(self.tally)
+    }
+
+    /// Completes everything.
+    ///
+    /// # Errors
+    /// [`ProductError`] on a full disk, for example.
+    pub(super) fn finish(mut self) -> Result<Tally, ProductError> {
+        let gallery = std::mem::take(&mut self.gallery);
+        let name = self.variants.sweep().name.clone();
+        let destination = self.destination;
+        let tally = self.finish_table("")?;
+        let curves = curves_svg(&name, &gallery)?;
+        let threshold = threshold_svg(&name, &gallery)?;
+        destination.put("curves.svg", curves.as_bytes())?;
+        destination.put("threshold.svg", threshold.as_bytes())?;
+        destination.put("index.html", page(&name, &gallery, &tally, [&curves, &threshold]).as_bytes())?;
+        Ok(tally)
+    }
+}

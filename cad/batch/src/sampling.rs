@@ -1,0 +1,144 @@
+//! Seeded samples: Latin hypercube (McKay, Beckman and Conover 1979) and plain random.
+
+use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use toml_edit::{Item, Value};
+
+use super::axis::{self, Field, Level, Range, complaint};
+use pinswitch_switch::config::ConfigError;
+
+/// How points are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Every axis is cut into as many strata as there are points, and each stratum holds one point.
+    LatinHypercube,
+    /// Every coordinate on its own.
+    Random,
+}
+
+/// `count` points of the unit cube in `axes` dimensions; the same seed gives the same points on every machine.
+pub fn unit_points(method: Method, count: usize, axes: usize, seed: u64) -> Vec<Vec<f64>> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut points = vec![vec![0.0; axes]; count];
+    for axis in 0..axes {
+        let mut strata: Vec<usize> = (0..count).collect();
+        if method == Method::LatinHypercube {
+            strata.shuffle(&mut random);
+        }
+        for (point, stratum) in points.iter_mut().zip(strata) {
+            let within: f64 = random.random();
+            point[axis] = match method {
+                #[allow(clippy::cast_precision_loss)]
+                Method::LatinHypercube => (stratum as f64 + within) / count as f64,
+                Method::Random => within,
+            };
+        }
+    }
+    points
+}
+
+/// What a coordinate of the unit cube stands for.
+enum Space {
+    Choices(Vec<Value>),
+    Range(Range),
+}
+
+/// The rows of a sample over `axes`: lists are choices, ranges are continuous, on a grid if they give `step`.
+///
+/// # Errors
+/// [`ConfigError`] for an axis that cannot be sampled.
+pub(super) fn sample<'a>(
+    method: Method,
+    count: usize,
+    seed: u64,
+    axes: impl Iterator<Item = (&'a str, &'a Item)>,
+) -> Result<Level, ConfigError> {
+    let mut fields = Vec::new();
+    let mut spaces = Vec::new();
+    for (path, item) in axes {
+        let field = axis::field(path)?;
+        spaces.push(space(field, item)?);
+        fields.push(field);
+    }
+    if fields.is_empty() || count == 0 {
+        return Err(complaint(
+            "sample",
+            None,
+            "is empty",
+            "give count and at least one field under [sample.axes]",
+        ));
+    }
+    let rows = unit_points(method, count, fields.len(), seed)
+        .into_iter()
+        .map(|point| {
+            let coordinates = point.iter().zip(&spaces).zip(&fields);
+            coordinates.map(|((share, space), field)| axis::accepted(field, &space.at(*share))).collect()
+        })
+        .collect::<Result<_, _>>()?;
+    Ok(Level { fields, rows })
+}
+
+fn space(field: Field, item: &Item) -> Result<Space, ConfigError> {
+    if let Some(list) = item.as_array() {
+        return Ok(Space::Choices(axis::listed(field, list)?));
+    }
+    let range = axis::range(field, item)?;
+    if range.count.is_some() {
+        return Err(complaint(
+            &format!("{}.count", field.path()),
+            None,
+            "has no place in a sample",
+            "give the number of points as sample.count",
+        ));
+    }
+    Ok(Space::Range(range))
+}
+
+impl Space {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
+    fn at(&self, share: f64) -> Value {
+        match self {
+            Self::Choices(all) => all[((share * all.len() as f64) as usize).min(all.len() - 1)].clone(),
+            Self::Range(range) => range.value(range.drawn(share)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_latin_hypercube_puts_one_point_in_every_stratum(count in 1usize..60, axes in 1usize..6, seed: u64) {
+            let points = unit_points(Method::LatinHypercube, count, axes, seed);
+            for axis in 0..axes {
+                let mut strata: Vec<_> = points.iter().map(|p| (p[axis] * count as f64) as usize).collect();
+                strata.sort_unstable();
+                prop_assert_eq!(strata, (0..count).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn the_seed_decides() {
+        let draw = |seed| unit_points(Method::Random, 5, 2, seed);
+        assert_eq!(draw(1), draw(1));
+        assert_ne!(draw(1), draw(2));
+    }
+
+    #[test]
+    fn values_lie_in_their_ranges_and_on_their_grid() {
+        let width: Item = Item::Value("{ from = 10, to = 12.3, step = 0.5 }".parse().unwrap());
+        let slots: Item = Item::Value("[\"all\", \"occupied\"]".parse().unwrap());
+        let axes = [("shell.width_mm", &width), ("support.slots", &slots)];
+        let level = sample(Method::LatinHypercube, 40, 3, axes.into_iter()).unwrap();
+        for row in &level.rows {
+            let x = row[0].as_float().unwrap();
+            assert!((10.0..=12.0).contains(&x) && (x * 2.0).fract() == 0.0, "{x}");
+        }
+        assert_eq!(level.rows.iter().filter(|r| r[1].as_str() == Some("all")).count(), 20);
+    }
+}

@@ -1,0 +1,127 @@
+//! What a sweep is made of, as text: its own file, the configuration under it, its rows. Kept in `batch.json`, so that
+//! a batch can be taken up or merged without the files it was started from.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use toml_edit::Document;
+
+use super::hexadecimal;
+use pinswitch_switch::config::{ConfigError, Configuration, Place, read, to_toml};
+use pinswitch_switch::templates;
+
+/// The texts of a sweep.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SweepSource {
+    /// Name of the sweep: as given, or the stem of its file.
+    pub name: String,
+    /// Name of the sweep's file, for complaints.
+    pub file: String,
+    /// The sweep's file.
+    pub sweep: String,
+    /// The base configuration with its preset, as TOML.
+    pub base: String,
+    /// Name and text of the CSV of rows.
+    pub rows: Option<(String, String)>,
+}
+
+impl SweepSource {
+    /// Reads the sweep at `path` and every file that it names, relative to its own folder.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the file that cannot be read, or the field that names none.
+    pub fn read(path: &Path) -> Result<Self, ConfigError> {
+        let file = path.display().to_string();
+        let sweep = std::fs::read_to_string(path).map_err(|e| unreadable(&file, &e))?;
+        let document: Document<String> = sweep.parse().map_err(|e: toml_edit::TomlError| {
+            ConfigError::syntax(Place::new(&file, &sweep, e.span().map_or(0, |s| s.start)), e.message())
+        })?;
+        let word = |table: &str, key: &str| {
+            let item = document.get(table)?.as_table_like()?.get(key)?;
+            Some(item.as_str().unwrap_or_default().to_owned())
+        };
+        let folder = path.parent().unwrap_or_else(|| Path::new("."));
+        let base = match word("sweep", "base") {
+            Some(name) => text_of("sweep.base", &name, folder)?,
+            None => (String::new(), "defaults".to_owned()),
+        };
+        let preset =
+            word("sweep", "preset").map(|name| text_of("sweep.preset", &name, folder)).transpose()?;
+        let rows = word("rows", "file")
+            .map(|name| {
+                let path = folder.join(&name);
+                std::fs::read_to_string(&path)
+                    .map(|text| (name.clone(), text))
+                    .map_err(|e| missing("rows.file", &name, &format!("cannot be read: {e}")))
+            })
+            .transpose()?;
+        let stem = path.file_stem().map_or_else(|| "batch".into(), |s| s.to_string_lossy());
+        Ok(Self {
+            name: word("sweep", "name").unwrap_or_else(|| stem.into_owned()),
+            base: to_toml(&overlaid(&base, preset.as_ref())?),
+            file,
+            sweep,
+            rows,
+        })
+    }
+
+    /// SHA-256 of everything that decides what the variants are, and of the program's version.
+    pub fn digest(&self) -> String {
+        let mut hash = Sha256::new();
+        let rows = self.rows.as_ref().map_or("", |(_, text)| text);
+        for text in [env!("CARGO_PKG_VERSION"), &self.name, &self.sweep, &self.base, rows] {
+            hash.update((text.len() as u64).to_le_bytes());
+            hash.update(text);
+        }
+        hexadecimal(&hash.finalize())
+    }
+}
+
+/// The base over the preset: what the base gives wins.
+fn overlaid(
+    (base, file): &(String, String),
+    preset: Option<&(String, String)>,
+) -> Result<Configuration, ConfigError> {
+    let (over, given) = read(base, file)?;
+    let Some((text, name)) = preset else { return Ok(over) };
+    let (mut all, _) = read(text, name)?;
+    for parameter in Configuration::PARAMETERS.iter().filter(|p| given.gives(&p.path())) {
+        (parameter.set)(&mut all, &(parameter.get)(&over))
+            .map_err(|remedy| ConfigError::new(parameter.path(), "", remedy))?;
+    }
+    Ok(all)
+}
+
+/// The text of a file beside the sweep or of a template, with its name.
+fn text_of(field: &str, name: &str, folder: &Path) -> Result<(String, String), ConfigError> {
+    let path = folder.join(name);
+    if path.is_file() {
+        let text = std::fs::read_to_string(&path).map_err(|e| unreadable(name, &e))?;
+        return Ok((text, name.to_owned()));
+    }
+    templates::text(name)
+        .map(|text| (text, name.to_owned()))
+        .ok_or_else(|| missing(field, name, "is neither a file beside the sweep nor a template"))
+}
+
+fn missing(field: &str, name: &str, problem: &str) -> ConfigError {
+    ConfigError {
+        field: field.to_owned(),
+        value: Some(format!("{name:?}")),
+        problem: problem.to_owned(),
+        remedy: "give a path relative to the sweep's file; `pinswitch layouts` lists the templates"
+            .to_owned(),
+        place: None,
+    }
+}
+
+fn unreadable(file: &str, error: &std::io::Error) -> ConfigError {
+    ConfigError {
+        field: file.to_owned(),
+        value: None,
+        problem: format!("cannot be read: {error}"),
+        remedy: "give the path of a sweep; see `pinswitch batch --help`".to_owned(),
+        place: None,
+    }
+}

@@ -1,0 +1,246 @@
+//! The table of all variants: one row each, whatever became of it; the columns depend on the sweep only.
+
+use serde_json::Value as Json;
+use sha2::{Digest, Sha256};
+
+use super::hexadecimal;
+use super::make::Outcome;
+use super::sweep::Sweep;
+use super::variant::Variant;
+use pinswitch_switch::config::Configuration;
+use pinswitch_switch::design::Design;
+use pinswitch_switch::documents::{derived, plain};
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Words.
+    Text,
+    /// A number with unit, as its name says.
+    Real,
+    /// A count.
+    Whole,
+    /// Yes or no.
+    Flag,
+}
+
+/// One column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Its name; fields are called as in a configuration.
+    pub name: String,
+    /// What it holds.
+    pub kind: Kind,
+}
+
+/// One cell; empty where a variant has no such value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// Nothing.
+    Empty,
+    /// Words.
+    Text(String),
+    /// A number.
+    Real(f64),
+    /// A count.
+    Whole(i64),
+    /// Yes or no.
+    Flag(bool),
+}
+
+/// A row, with one cell per column.
+pub type Row = Vec<Cell>;
+
+/// Facts of a variant's friction, with their key in the manifest.
+const FRICTION: [(&str, Kind); 5] = [
+    ("law", Kind::Text),
+    ("trust", Kind::Text),
+    ("load_n", Kind::Real),
+    ("friction_n", Kind::Real),
+    ("threshold_n", Kind::Real),
+];
+/// Facts of every part.
+const PART: [(&str, Kind); 6] = [
+    ("volume_mm3", Kind::Real),
+    ("mass_g", Kind::Real),
+    ("mesh_volume_mm3", Kind::Real),
+    ("triangles", Kind::Whole),
+    ("bytes", Kind::Whole),
+    ("sha256", Kind::Text),
+];
+
+/// The columns of a table.
+#[derive(Clone, Debug)]
+pub struct Schema {
+    columns: Vec<Column>,
+    parts: Vec<&'static str>,
+}
+
+impl Schema {
+    /// The columns of the table of `sweep`.
+    pub fn new(sweep: &Sweep) -> Self {
+        let mut columns = Vec::new();
+        let mut add = |name: String, kind: Kind| columns.push(Column { name, kind });
+        add("index".to_owned(), Kind::Whole);
+        for name in ["id", "label", "status", "reason"] {
+            add(name.to_owned(), Kind::Text);
+        }
+        for parameter in Configuration::PARAMETERS.iter().filter(|p| p.path() != "switch.name") {
+            add(parameter.path(), kind_of(&(parameter.get)(&Configuration::default())));
+        }
+        for name in dimensions() {
+            add(name, Kind::Real);
+        }
+        for (key, kind) in FRICTION {
+            add(if key.contains("_n") { key.to_owned() } else { format!("friction_{key}") }, kind);
+        }
+        for name in
+            ["band_low_n", "band_high_n", "printed_mass_g", "silicone_pour_ml", "largest_volume_error"]
+        {
+            add(name.to_owned(), Kind::Real);
+        }
+        add("warnings".to_owned(), Kind::Whole);
+        for part in &sweep.parts {
+            for (key, kind) in PART {
+                add(format!("{part}.{key}"), kind);
+            }
+        }
+        add("manifest_sha256".to_owned(), Kind::Text);
+        Self { columns, parts: sweep.parts.clone() }
+    }
+
+    /// All columns.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The parts that have columns.
+    pub fn parts(&self) -> &[&'static str] {
+        &self.parts
+    }
+
+    /// Where column `name` stands.
+    pub fn position(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|c| c.name == name)
+    }
+
+    /// The cell of `row` in column `name`.
+    pub fn cell<'r>(&self, row: &'r [Cell], name: &str) -> &'r Cell {
+        self.position(name).and_then(|i| row.get(i)).unwrap_or(&Cell::Empty)
+    }
+
+    /// The row of a variant.
+    pub fn row(&self, variant: &Variant, outcome: &Outcome) -> Row {
+        let (status, reason, manifest) = match outcome {
+            Outcome::Made { manifest, .. } => ("made", Cell::Empty, Some(manifest)),
+            Outcome::Refused(reason) => ("refused", Cell::Text(reason.clone()), None),
+            Outcome::Failed(reason) => ("failed", Cell::Text(reason.clone()), None),
+        };
+        let text = |t: &str| Cell::Text(t.to_owned());
+        let mut row = vec![
+            Cell::Whole(i64::try_from(variant.index).unwrap_or(i64::MAX)),
+            text(&variant.id),
+            text(&variant.label),
+            text(status),
+            reason,
+        ];
+        for parameter in Configuration::PARAMETERS.iter().filter(|p| p.path() != "switch.name") {
+            let value = (parameter.get)(&variant.configuration);
+            row.push(cell(&plain(&value), kind_of(&value)));
+        }
+        if let Some(bytes) = manifest {
+            // Our own manifest: it is JSON.
+            let facts: Json = serde_json::from_slice(bytes).unwrap_or_default();
+            self.add_facts(&mut row, &facts);
+            row.push(Cell::Text(hexadecimal(&Sha256::digest(bytes))));
+        }
+        row.resize(self.columns.len(), Cell::Empty);
+        row
+    }
+
+    fn add_facts(&self, row: &mut Row, facts: &Json) {
+        let all = |list: &'static str| facts[list].as_array().map(Vec::as_slice).unwrap_or_default();
+        row.extend(all("derived").iter().map(|d| cell(&d["value"], Kind::Real)));
+        let friction = &facts["friction"];
+        row.extend(FRICTION.iter().map(|(key, kind)| cell(&friction[*key], *kind)));
+        row.extend((0..2).map(|i| cell(&friction["band_n"][i], Kind::Real)));
+        let parts = all("parts");
+        row.push(Cell::Real(parts.iter().filter_map(|p| p["mass_g"].as_f64()).sum()));
+        row.push(cell(&facts["bill_of_materials"]["silicone"]["pour_ml"], Kind::Real));
+        row.push(cell(&facts["mesh"]["largest_volume_error"], Kind::Real));
+        row.push(Cell::Whole(i64::try_from(all("warnings").len()).unwrap_or(0)));
+        for name in &self.parts {
+            let part = parts.iter().find(|p| p["name"] == *name).unwrap_or(&Json::Null);
+            let file = all("files").iter().find(|f| f["file"] == part["file"] && !part.is_null());
+            let file = file.unwrap_or(&Json::Null);
+            for (key, kind) in PART {
+                let fact = match key {
+                    "mesh_volume_mm3" => &part["mesh"]["volume_mm3"],
+                    "triangles" => &part["mesh"]["triangles"],
+                    "bytes" | "sha256" => &file[key],
+                    _ => &part[key],
+                };
+                row.push(cell(fact, kind));
+            }
+        }
+    }
+}
+
+/// Names of the derived dimensions, with their units.
+fn dimensions() -> Vec<String> {
+    let design = Design::new(Configuration::default());
+    design.iter().flat_map(derived).map(|d| format!("{}_{}", d.name, d.unit)).collect()
+}
+
+fn kind_of(value: &toml_edit::Value) -> Kind {
+    match value {
+        toml_edit::Value::Integer(_) => Kind::Whole,
+        toml_edit::Value::Float(_) => Kind::Real,
+        toml_edit::Value::Boolean(_) => Kind::Flag,
+        _ => Kind::Text,
+    }
+}
+
+fn cell(value: &Json, kind: Kind) -> Cell {
+    let found = match kind {
+        Kind::Real => value.as_f64().map(Cell::Real),
+        Kind::Whole => value.as_i64().map(Cell::Whole),
+        Kind::Flag => value.as_bool().map(Cell::Flag),
+        Kind::Text if value.is_null() => None,
+        Kind::Text => Some(Cell::Text(value.as_str().map_or_else(|| value.to_string(), str::to_owned))),
+    };
+    found.unwrap_or(Cell::Empty)
+}
+
+impl std::fmt::Display for Cell {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Empty => Ok(()),
+            Self::Text(text) => f.write_str(text),
+            // The shortest text that reads back to the same number.
+            Self::Real(x) => write!(f, "{x}"),
+            Self::Whole(i) => write!(f, "{i}"),
+            Self::Flag(b) => write!(f, "{b}"),
+        }
+    }
+}
+
+impl Cell {
+    /// The number in it.
+    #[allow(clippy::cast_precision_loss)]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Real(x) => Some(*x),
+            Self::Whole(i) => Some(*i as f64),
+            _ => None,
+        }
+    }
+
+    /// The words in it.
+    pub fn text(&self) -> Option<&str> {
+        match self {
+            Self::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+}

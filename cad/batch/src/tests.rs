@@ -1,0 +1,105 @@
+//! Whole runs in memory: an object store, and workshops that fail.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use object_store::memory::InMemory;
+use object_store::path::Path;
+
+use super::*;
+use pinswitch_solid::validity::Facts;
+use pinswitch_switch::design::Design;
+use pinswitch_switch::parts::Part;
+use pinswitch_switch::set::SetError;
+
+fn plan() -> (Variants, SweepSource) {
+    let source = SweepSource {
+        name: "memory".to_owned(),
+        file: "memory.toml".to_owned(),
+        sweep: "[sweep]\nparts = [\"shell\", \"coupon\"]\n[axes]\n\"layout.pins\" = [[], [8], [7, 9]]\n\
+                \"shell.width_mm\" = [12, 13]\n"
+            .to_owned(),
+        base: String::new(),
+        rows: None,
+    };
+    (Variants::new(Sweep::new(&source).unwrap(), &source), source)
+}
+
+struct Counted(AtomicU64);
+
+impl Watch for Counted {
+    fn done(&self, _: &Outcome) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+    fn stopped(&self) -> bool {
+        false
+    }
+}
+
+fn options(shard: Shard, fail_fast: bool, workshop: Workshop) -> Options {
+    Options { shard, threads: 2, fail_fast, workshop }
+}
+
+fn in_memory(store: &Arc<InMemory>) -> Destination {
+    Destination::in_store("memory:///", store.clone(), Path::from("sweep")).unwrap()
+}
+
+/// Shells 13 mm wide cannot be made: one way or the other.
+fn fails(part: &Part, design: &Design) -> Result<(Vec<u8>, Facts), SetError> {
+    if part.name == "shell" && design.configuration().shell.width_mm == 13.0 {
+        return Err(SetError::Encoding("no paper left".to_owned()));
+    }
+    mesh_file(part, design)
+}
+
+fn panics(part: &Part, design: &Design) -> Result<(Vec<u8>, Facts), SetError> {
+    assert!(part.name != "shell" || design.configuration().shell.width_mm != 13.0, "a fault on purpose");
+    mesh_file(part, design)
+}
+
+#[test]
+fn shards_in_memory_merge_to_one_run() {
+    let (variants, source) = plan();
+    let (whole, shards) = (Arc::new(InMemory::new()), Arc::new(InMemory::new()));
+    let watch = Counted(AtomicU64::new(0));
+    let tally =
+        run(&variants, &source, &in_memory(&whole), options(Shard::WHOLE, false, mesh_file), &watch).unwrap();
+    assert_eq!((tally.made, tally.parts, tally.distinct_parts), (6, 12, 7));
+    for shard in ["1/2", "2/2"] {
+        let options = options(shard.parse().unwrap(), false, mesh_file);
+        run(&variants, &source, &in_memory(&shards), options, &watch).unwrap();
+    }
+    assert_eq!(watch.0.load(Ordering::Relaxed), 12);
+    let merged = merge(&[in_memory(&shards)], &in_memory(&shards)).unwrap();
+    assert_eq!(merged, tally);
+    for product in ["variants.csv", "variants.parquet", "index.html", "curves.svg", "threshold.svg"] {
+        let bytes = |store| in_memory(store).get(product).unwrap().unwrap();
+        assert_eq!(bytes(&whole), bytes(&shards), "{product}");
+    }
+}
+
+#[test]
+fn a_variant_that_fails_costs_no_other() {
+    let (variants, source) = plan();
+    for (workshop, reason) in [
+        (fails as Workshop, "cannot put a file together: no paper left"),
+        (panics as Workshop, "a fault of the program; please report the configuration"),
+    ] {
+        let destination = in_memory(&Arc::new(InMemory::new()));
+        let watch = Counted(AtomicU64::new(0));
+        let tally =
+            run(&variants, &source, &destination, options(Shard::WHOLE, false, workshop), &watch).unwrap();
+        assert_eq!((tally.made, tally.failed, tally.refused), (3, 3, 0));
+        let table = String::from_utf8(destination.get("variants.csv").unwrap().unwrap()).unwrap();
+        assert_eq!(table.matches(&format!("failed,{reason}")).count(), 3, "{table}");
+        // Mended, the same run makes the rest.
+        let tally =
+            run(&variants, &source, &destination, options(Shard::WHOLE, false, mesh_file), &watch).unwrap();
+        assert_eq!((tally.made, tally.failed), (6, 0));
+
+        let destination = in_memory(&Arc::new(InMemory::new()));
+        let ended = run(&variants, &source, &destination, options(Shard::WHOLE, true, workshop), &watch);
+        assert!(matches!(ended, Err(RunError::Failed { reason: r, .. }) if r == reason));
+        assert!(destination.get("variants.csv").unwrap().is_none());
+    }
+}

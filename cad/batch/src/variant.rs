@@ -1,0 +1,285 @@
+//! Variants: which settings each one has, and the id and label by which it is known.
+
+use std::collections::{HashMap, HashSet};
+
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+use toml_edit::Value;
+
+use super::axis::Field;
+use super::source::SweepSource;
+use super::sweep::Sweep;
+use pinswitch_switch::config::{Configuration, to_toml};
+
+/// Letters of codes: no I, L, O or U, so that they can be read off a print, and neither M nor W, whose strokes leave
+/// less than a printed line between them where a shell has room for small letters only.
+const LETTERS: &[u8; 30] = b"0123456789ABCDEFGHJKNPQRSTVXYZ";
+/// Letters of a code: as many as fit on a published shell.
+const CODE: usize = 5;
+/// Letters of a code in a sweep of more than [`ORDINARY`] variants, which no label tells apart any more.
+const LONG_CODE: usize = 12;
+/// Variants up to which half of all ordinary codes are free.
+const ORDINARY: u64 = 12_000_000;
+/// Longest id: it names the variant's folder and its plot.
+const LONGEST_ID: usize = 40;
+
+/// One variant of a sweep.
+#[derive(Clone, Debug)]
+pub struct Variant {
+    /// Its place in the sweep, from 0.
+    pub index: u64,
+    /// Its settings in words, and a code: `width12_pins5.8.11-k7qx2`.
+    pub id: String,
+    /// What is engraved on its parts: the code, unless the sweep sets `label.text`.
+    pub label: String,
+    /// Its configuration, not yet known to be buildable.
+    pub configuration: Configuration,
+    /// The variant that this one repeats.
+    pub repeats: Option<u64>,
+}
+
+/// All variants of a sweep; each is put together when it is asked for.
+#[derive(Debug)]
+pub struct Variants {
+    sweep: Sweep,
+    count: u64,
+    /// SHA-256 of the base.
+    salt: Vec<u8>,
+    /// Variants that repeat an earlier one.
+    repeats: HashMap<u64, u64>,
+    /// Letters of every code.
+    letters: usize,
+    /// Codes of variants whose own one is already another's.
+    moved: HashMap<u64, u64>,
+}
+
+impl Variants {
+    /// Counts the variants and settles their codes.
+    pub fn new(sweep: Sweep, source: &SweepSource) -> Self {
+        let count = sweep.count().unwrap_or(u64::MAX);
+        let salt =
+            Sha256::digest([source.base.as_bytes(), to_toml(&sweep.base).as_bytes()].concat()).to_vec();
+        let letters = if count <= ORDINARY { CODE } else { LONG_CODE };
+        let mut all = Self { sweep, count, salt, repeats: HashMap::new(), letters, moved: HashMap::new() };
+        let mut hashes: Vec<(u64, u64)> =
+            (0..count).into_par_iter().map(|index| (all.hash(index), index)).collect();
+        hashes.par_sort_unstable();
+        let mut taken = HashSet::with_capacity(hashes.len());
+        let mut first = None;
+        for (hash, index) in hashes {
+            match first {
+                Some((before, original)) if before == hash => {
+                    all.repeats.insert(index, original);
+                }
+                _ => first = Some((hash, index)),
+            }
+            let mut turned = hash;
+            while !taken.insert(all.number(turned)) {
+                // Knuth's linear congruential generator: it goes through all numbers.
+                turned =
+                    turned.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            }
+            if turned != hash {
+                all.moved.insert(index, turned);
+            }
+        }
+        all
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The sweep that they come from.
+    pub fn sweep(&self) -> &Sweep {
+        &self.sweep
+    }
+
+    /// Fields that vary.
+    pub fn fields(&self) -> impl Iterator<Item = Field> + '_ {
+        self.sweep.levels.iter().flat_map(|l| l.fields.iter().copied())
+    }
+
+    /// Variant `index`, which is below [`Self::count`].
+    pub fn get(&self, index: u64) -> Variant {
+        let mut configuration = self.sweep.base.clone();
+        for (field, value) in self.settings(index) {
+            // Every value was accepted when the sweep was read.
+            let accepted = (field.set)(&mut configuration, value);
+            debug_assert!(accepted.is_ok());
+        }
+        let hash = self.moved.get(&index).copied().unwrap_or_else(|| self.hash(index));
+        let code = code(self.number(hash), self.letters);
+        let words = self.words(index, LONGEST_ID - self.letters - 1);
+        let id = format!("{words}-{}", code.to_ascii_lowercase());
+        if configuration.label.text.is_empty() {
+            configuration.label.text.clone_from(&code);
+        }
+        configuration.switch.name.clone_from(&id);
+        let label = configuration.label.text.clone();
+        Variant { index, id, label, configuration, repeats: self.repeats.get(&index).copied() }
+    }
+
+    /// What varies, with the values of variant `index`.
+    pub fn settings(&self, index: u64) -> Vec<(Field, &Value)> {
+        let mut rest = index;
+        let mut all = Vec::new();
+        for level in self.sweep.levels.iter().rev() {
+            let rows = level.rows.len() as u64;
+            let row = &level.rows[usize::try_from(rest % rows).unwrap_or_default()];
+            rest /= rows;
+            all.extend(level.fields.iter().copied().zip(row).rev());
+        }
+        all.reverse();
+        all
+    }
+
+    /// The number that the code of a hash shows.
+    fn number(&self, hash: u64) -> u64 {
+        hash % (0..self.letters).fold(1, |all, _| all * LETTERS.len() as u64)
+    }
+
+    /// Hash of the settings: equal settings, whatever their place in the sweep, have equal hashes.
+    fn hash(&self, index: u64) -> u64 {
+        let mut settings: Vec<_> = self
+            .settings(index)
+            .into_iter()
+            .map(|(field, value)| format!("{}={value}\n", field.path()))
+            .collect();
+        settings.sort_unstable();
+        let mut hash = Sha256::new_with_prefix(&self.salt);
+        settings.iter().for_each(|s| hash.update(s));
+        hash.finalize().iter().take(8).fold(0, |sum, byte| sum << 8 | u64::from(*byte))
+    }
+
+    /// The settings in words of at most `longest` characters.
+    fn words(&self, index: u64, longest: usize) -> String {
+        let mut text = String::new();
+        for (field, value) in self.settings(index) {
+            let piece = format!("{}{}", short_key(field.key), short_value(value));
+            let with = if text.is_empty() { piece } else { format!("{text}_{piece}") };
+            if with.len() > longest {
+                break;
+            }
+            text = with;
+        }
+        if text.is_empty() { "variant".to_owned() } else { text }
+    }
+}
+
+/// A key without its unit.
+fn short_key(key: &str) -> String {
+    const UNITS: [&str; 7] = ["_mm", "_deg", "_n", "_g", "_pct", "_a", "_cm3"];
+    let stem = UNITS.iter().find_map(|unit| key.strip_suffix(unit)).unwrap_or(key);
+    stem.replace('_', "-")
+}
+
+/// A value for a folder's name: four decimals are enough, the code tells the rest.
+fn short_value(value: &Value) -> String {
+    let text = match value {
+        Value::Float(x) => format!("{}", (x.value() * 1e4).round() / 1e4),
+        Value::Array(list) => {
+            list.iter().map(|v| v.to_string().trim().to_owned()).collect::<Vec<_>>().join(".")
+        }
+        Value::String(s) => format!("-{}", s.value()),
+        other => other.to_string().trim().to_owned(),
+    };
+    text.chars().map(|c| if c.is_ascii_alphanumeric() || "-.".contains(c) { c } else { '-' }).collect()
+}
+
+/// `number` in `letters` letters.
+fn code(mut number: u64, letters: usize) -> String {
+    let mut code = Vec::with_capacity(letters);
+    for _ in 0..letters {
+        let digit = usize::try_from(number % LETTERS.len() as u64).unwrap_or_default();
+        code.push(char::from(LETTERS[digit]));
+        number /= LETTERS.len() as u64;
+    }
+    code.into_iter().rev().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn variants(sweep: &str) -> Variants {
+        let source = SweepSource {
+            name: "s".to_owned(),
+            file: "s.toml".to_owned(),
+            sweep: sweep.to_owned(),
+            base: String::new(),
+            rows: None,
+        };
+        Variants::new(Sweep::new(&source).unwrap(), &source)
+    }
+
+    #[test]
+    fn ids_are_readable_different_and_keep_when_the_sweep_grows() {
+        let ids = |axes: &str| -> Vec<String> {
+            let all = variants(axes);
+            (0..all.count()).map(|i| all.get(i).id).collect()
+        };
+        let few = ids("[axes]\n\"shell.width_mm\" = [12, 14]\n\"layout.pins\" = [[5, 8, 11], []]\n");
+        assert!(few[0].starts_with("width12_pins5.8.11-"), "{few:?}");
+        assert!(few[1].starts_with("width12_pins-"), "{few:?}");
+        let more =
+            ids("[axes]\n\"layout.pins\" = [[3], [5, 8, 11], []]\n\"shell.width_mm\" = [10, 12, 14]\n");
+        let code = |id: &str| id.rsplit('-').next().unwrap().to_owned();
+        let codes: Vec<_> = more.iter().map(|id| code(id)).collect();
+        assert!(few.iter().all(|id| codes.contains(&code(id))));
+        assert_eq!(more.iter().collect::<std::collections::HashSet<_>>().len(), 9);
+        assert!(more.iter().all(|id| id.len() <= LONGEST_ID));
+    }
+
+    #[test]
+    fn labels_differ_and_a_given_label_stays() {
+        let all = variants("[axes]\n\"shell.width_mm\" = { from = 10, to = 14, step = 0.01 }\n");
+        let labels: std::collections::HashSet<_> = (0..all.count()).map(|i| all.get(i).label).collect();
+        assert_eq!(labels.len(), 401);
+        assert!(labels.iter().all(|l| l.len() == CODE));
+        let own = variants("[axes]\n\"label.text\" = [\"A\", \"B\"]\n");
+        assert_eq!(own.get(1).label, "B");
+    }
+
+    #[test]
+    fn codes_differ_even_where_hashes_are_alike() {
+        // Of 30,000 codes out of 30^5, about 19 pairs are alike at first.
+        let all = variants("[axes]\n\"tendon.length_mm\" = { from = 100, to = 400, count = 30000 }\n");
+        assert!(!all.moved.is_empty());
+        let labels: HashSet<_> = (0..all.count()).map(|i| all.get(i).label).collect();
+        assert_eq!(labels.len(), 30_000);
+    }
+
+    #[test]
+    fn repeated_samples_are_known() {
+        let all = variants(
+            "[sample]\nmethod = \"random\"\ncount = 20\n[sample.axes]\n\"segment.grooves\" = { from = 3, to = 5 }\n",
+        );
+        let repeated = (0..20).filter(|i| all.get(*i).repeats.is_some()).count();
+        assert_eq!(repeated, 17);
+        for i in 0..20 {
+            if let Some(original) = all.get(i).repeats {
+                assert!(original < i && all.get(original).repeats.is_none());
+                assert_ne!(all.get(i).id, all.get(original).id);
+                assert_eq!(all.get(i).configuration.segment, all.get(original).configuration.segment);
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_combination_comes_once(a in 1usize..5, b in 1usize..5, c in 1usize..5) {
+            let axis = |field: &str, n: usize| format!("\"{field}\" = {{ from = 10, to = 12, count = {n} }}\n");
+            let text = format!(
+                "[axes]\n{}{}{}",
+                axis("shell.width_mm", a), axis("support.plate_mm", b), axis("tendon.length_mm", c)
+            );
+            let all = variants(&text);
+            prop_assert_eq!(all.count(), (a * b * c) as u64);
+            let ids: std::collections::HashSet<_> = (0..all.count()).map(|i| all.get(i).id).collect();
+            prop_assert_eq!(ids.len(), a * b * c);
+        }
+    }
+}

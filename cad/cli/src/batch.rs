@@ -1,0 +1,240 @@
+//! `pinswitch batch SWEEP`.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::{Failure, print, print_json};
+use pinswitch_batch::{
+    Destination, Estimate, Options, Outcome, RunError, Shard, Sweep, SweepSource, Tally, Variants, Watch,
+    estimate, mesh_file, partial_folder, run as run_batch,
+};
+
+/// More variants than this want --yes.
+const MOST_WITHOUT_YES: u64 = 10_000;
+/// Without a terminal, progress is told this often.
+const TELL_EVERY: Duration = Duration::from_secs(10);
+
+/// Make every variant of a sweep: parts, curves, one table of all, plots, and a page to look through them.
+///
+/// A sweep is a base configuration with axes (lists, ranges), a seeded sample (Latin hypercube or random) or a CSV of
+/// rows over it, and constraints. DIR gets variants/ID/ with the parts, curve and manifest of each, variants.csv and
+/// variants.parquet, curves.svg, threshold.svg and index.html. Equal parts are made once and linked. A run that was
+/// stopped, or killed, is taken up by the same command and ends with the same files.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pinswitch batch sweep.toml --out out/sweep --dry-run
+  pinswitch batch sweep.toml --out out/sweep
+  pinswitch batch sweep.toml --out s3://bucket/sweep --shard 2/8   (then: pinswitch merge s3://bucket/sweep)
+  pinswitch init sweep --out sweep.toml")]
+pub(super) struct Arguments {
+    /// The sweep's TOML file; `pinswitch init sweep` writes one to start from.
+    sweep: PathBuf,
+    /// Folder or object store to write to; the same one takes up a run that was stopped.
+    #[arg(long, short, value_name = "DIR|URL", required_unless_present = "dry_run")]
+    out: Option<String>,
+    /// Say how many variants, how long, how large, and what would be refused and why; write nothing.
+    #[arg(long)]
+    dry_run: bool,
+    /// Print the estimate of --dry-run, or the tally at the end, as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Make only block K of N; `pinswitch merge` joins them.
+    #[arg(long, value_name = "K/N", default_value_t = Shard::WHOLE)]
+    shard: Shard,
+    /// Threads [default: one per processor].
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    threads: usize,
+    /// Stop at the first variant that fails.
+    #[arg(long)]
+    fail_fast: bool,
+    /// Make more than 10000 variants.
+    #[arg(long)]
+    yes: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = SweepSource::read(&arguments.sweep).map_err(Failure::bad_input)?;
+    let sweep = Sweep::new(&source).map_err(Failure::bad_input)?;
+    let count = sweep.count().unwrap_or(u64::MAX);
+    let own = arguments.shard.range(count);
+    if own.end - own.start > MOST_WITHOUT_YES && !arguments.yes {
+        return Err(Failure::bad_input(format!(
+            "{}: {} variants are more than {MOST_WITHOUT_YES}; give --yes if you mean it, or --shard",
+            arguments.sweep.display(),
+            own.end - own.start,
+        )));
+    }
+    if arguments.shard.range(count).is_empty() {
+        return Err(Failure::bad_input(format!(
+            "--shard {} has no variant: the sweep has {count}; give fewer shards",
+            arguments.shard
+        )));
+    }
+    let variants = Variants::new(sweep, &source);
+    if arguments.dry_run {
+        return dry_run(arguments, &variants);
+    }
+    let out = arguments.out.as_deref().unwrap_or_default();
+    let destination = Destination::open(out, &partial_folder(arguments.shard)).map_err(Failure::bad_input)?;
+    let progress = Progress::new(own.end - own.start)?;
+    let options = Options {
+        shard: arguments.shard,
+        threads: arguments.threads,
+        fail_fast: arguments.fail_fast,
+        workshop: mesh_file,
+    };
+    let outcome = run_batch(&variants, &source, &destination, options, &progress);
+    progress.bar.finish_and_clear();
+    let tally = outcome.map_err(|e| match e {
+        RunError::Stamp(_) | RunError::Unusable(_) => Failure::bad_input(e),
+        other => Failure::failed(other),
+    })?;
+    report(arguments, out, &tally, &progress)
+}
+
+fn report(arguments: &Arguments, out: &str, tally: &Tally, progress: &Progress) -> Result<(), Failure> {
+    if arguments.json {
+        print_json(tally)?;
+    }
+    log::info!("{out}: {} variants made, {} refused, {} failed", tally.made, tally.refused, tally.failed);
+    log::info!(
+        "{} part files, {} of them different: {} kept in {}",
+        tally.parts,
+        tally.distinct_parts,
+        size(tally.part_bytes as f64),
+        size(tally.distinct_bytes as f64)
+    );
+    let (seconds, before) = (progress.start.elapsed().as_secs_f64(), progress.before.load(Ordering::Relaxed));
+    let new = progress.bar.position() - before;
+    log::info!("{new} in {seconds:.1} s, {:.0} a second; {before} were there before", new as f64 / seconds);
+    if tally.failed > 0 {
+        return Err(Failure::failed(format!(
+            "{} variants failed; column reason of variants.csv says why, the same command tries them again",
+            tally.failed
+        )));
+    }
+    Ok(())
+}
+
+/// The bar on a terminal, lines in a pipe, and Ctrl-C.
+struct Progress {
+    bar: ProgressBar,
+    start: Instant,
+    before: AtomicU64,
+    stop: Arc<AtomicBool>,
+    /// Seconds after the start at which the next line is due, where there is no terminal.
+    due_s: AtomicU64,
+}
+
+impl Progress {
+    fn new(count: u64) -> Result<Self, Failure> {
+        let bar = ProgressBar::new(count);
+        let form = "{bar:30} {pos} of {len} variants, {per_sec}, {eta} left {msg}";
+        bar.set_style(ProgressStyle::with_template(form).map_err(Failure::failed)?);
+        if log::max_level() < log::LevelFilter::Info {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        bar.enable_steady_tick(Duration::from_millis(500));
+        let stop = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&stop);
+        ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::Relaxed) {
+                // Asked twice: every file on disk is whole at any moment.
+                std::process::exit(1);
+            }
+            eprintln!("finishing what is begun; once more stops at once");
+        })
+        .map_err(Failure::failed)?;
+        Ok(Self {
+            bar,
+            start: Instant::now(),
+            before: AtomicU64::new(0),
+            stop,
+            due_s: AtomicU64::new(TELL_EVERY.as_secs()),
+        })
+    }
+}
+
+impl Watch for Progress {
+    fn done(&self, outcome: &Outcome) {
+        if matches!(outcome, Outcome::Made { before: true, .. }) {
+            self.before.fetch_add(1, Ordering::Relaxed);
+        }
+        self.bar.inc(1);
+        let (elapsed, due) = (self.start.elapsed(), self.due_s.load(Ordering::Relaxed));
+        let next = elapsed.as_secs() + TELL_EVERY.as_secs();
+        let exchange = |due| self.due_s.compare_exchange(due, next, Ordering::Relaxed, Ordering::Relaxed);
+        if self.bar.is_hidden() && elapsed.as_secs() >= due && exchange(due).is_ok() {
+            let (done, of) = (self.bar.position(), self.bar.length().unwrap_or(0));
+            let rate = done as f64 / elapsed.as_secs_f64();
+            let left = Duration::from_secs_f64((of.saturating_sub(done)) as f64 / rate.max(1e-9));
+            log::info!("{done} of {of} variants, {rate:.0} a second, {} left", HumanDuration(left));
+        }
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}
+
+fn dry_run(arguments: &Arguments, variants: &Variants) -> Result<(), Failure> {
+    let pool =
+        rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build().map_err(Failure::failed)?;
+    let threads = pool.current_num_threads();
+    let estimate =
+        pool.install(|| estimate(variants, arguments.shard, threads, mesh_file)).map_err(Failure::failed)?;
+    if arguments.json { print_json(&estimate) } else { print(describe(variants, &estimate).as_bytes()) }
+}
+
+fn describe(variants: &Variants, estimate: &Estimate) -> String {
+    let sweep = variants.sweep();
+    let fields: Vec<_> = variants.fields().map(|f| f.path()).collect();
+    let mut text = format!("{}: {} variants over {}\n", sweep.name, estimate.variants, fields.join(", "));
+    let refused: u64 = estimate.refused.iter().map(|r| r.count).sum();
+    if estimate.checked < estimate.variants {
+        text += &format!("checked are {} of them, evenly taken\n", estimate.checked);
+    }
+    text += &format!("refused: {refused}\n");
+    for kind in &estimate.refused {
+        text +=
+            &format!("  {} for {}, such as {}:\n    {}\n", kind.count, kind.kind, kind.example, kind.reason);
+    }
+    text += &format!("made: {}\n", estimate.made);
+    if let Some(measured) = &estimate.measured {
+        text += &format!(
+            "time: about {} on {} threads; {:.1} ms a variant, measured on {}\n",
+            time(estimate.seconds),
+            estimate.threads,
+            measured.seconds_per_variant * 1e3,
+            measured.variants
+        );
+        text += &format!(
+            "size: about {}; {} a variant, of {} before equal parts are linked\n",
+            size(estimate.bytes),
+            size(measured.bytes_per_variant),
+            size(measured.bytes_unshared)
+        );
+    }
+    text
+}
+
+fn time(seconds: f64) -> String {
+    if seconds < 120.0 {
+        format!("{seconds:.1} s")
+    } else {
+        HumanDuration(Duration::from_secs_f64(seconds)).to_string()
+    }
+}
+
+fn size(bytes: f64) -> String {
+    match bytes {
+        b if b < 1e6 => format!("{:.0} kB", b / 1e3),
+        b if b < 1e9 => format!("{:.1} MB", b / 1e6),
+        b => format!("{:.1} GB", b / 1e9),
+    }
+}

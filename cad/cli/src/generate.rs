@@ -1,0 +1,113 @@
+//! `pinswitch generate CONFIG`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+
+use super::law::LawChoice;
+use super::predict_rows::calibrated_curve;
+use super::source::Source;
+use super::{Failure, print};
+use crate::write::write_set;
+use pinswitch_switch::built::{BuildError, Built};
+use pinswitch_switch::formats::{ALL, FORMATS, Inclusion, named};
+use pinswitch_switch::prediction::Prediction;
+use pinswitch_switch::set::Set;
+
+/// Make the printable parts of a configuration, with their predicted friction curve.
+///
+/// Writes one folder: the parts as binary STL (millimetres, print orientation) and on one plate as 3MF, friction.csv and
+/// friction.svg (the predicted curve with its band), drawing.svg, PRINTING.md with pictures, report.html (open it in a
+/// browser), and manifest.json (every parameter, derived dimension, volume, hash, and the bill of materials). Nothing is
+/// written if anything is wrong.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pinswitch generate three-double
+  pinswitch generate my-switch.toml --out parts --preset printer-fff-0.4
+  pinswitch generate three-double --format stl,step
+  pinswitch generate three-double --set layout.pins=[4,8,12] --set support.slots=occupied")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+    /// Folder to write into [default: out/NAME].
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// A model.toml written by `calibrate`: the curve comes from it, without the effects of the rig.
+    #[arg(long, value_name = "TOML", conflicts_with = "law")]
+    model: Option<PathBuf>,
+    /// Kinds of files to write, beside curve and manifest.
+    #[arg(long, value_parser = formats(), value_name = "FORMAT", value_delimiter = ',', default_values = default_formats())]
+    format: Vec<String>,
+    #[command(flatten)]
+    law: LawChoice,
+    /// Print the manifest as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The formats by name, from their registry.
+fn formats() -> PossibleValuesParser {
+    let all = PossibleValue::new(ALL).help("Everything");
+    let by_name = FORMATS.iter().filter(|f| f.inclusion != Inclusion::Always);
+    let values: Vec<_> = by_name.map(|f| PossibleValue::new(f.name).help(f.about)).chain([all]).collect();
+    PossibleValuesParser::new(values)
+}
+
+/// The formats that are written where none is named.
+fn default_formats() -> Vec<&'static str> {
+    FORMATS.iter().filter(|f| f.inclusion == Inclusion::Default).map(|f| f.name).collect()
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let design = arguments.source.design()?;
+    let prediction = match &arguments.model {
+        Some(model) => Prediction::with_curve(&design, calibrated_curve(&design, model)?),
+        None => arguments.law.prediction(&design)?,
+    };
+    let built = Built::new(design).map_err(|e| match e {
+        BuildError::Configuration(e) => Failure::bad_input(e),
+        other => Failure::failed(other),
+    })?;
+    let design = built.design();
+    let names: Vec<&str> = arguments.format.iter().map(String::as_str).collect();
+    let formats = named(&names).map_err(Failure::bad_input)?;
+    let set = Set::new(&built, &prediction, &formats).map_err(Failure::failed)?;
+    let folder = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("out").join(&design.configuration().switch.name));
+    write_set(&folder, &set.files).map_err(Failure::failed)?;
+    for warning in &set.manifest.warnings {
+        log::warn!("{warning}");
+    }
+    for part in &set.manifest.parts {
+        log::debug!("{}: {:.3} mm3, {} triangles", part.file, part.volume_mm3, part.mesh.triangles);
+        for note in &part.notes {
+            log::warn!("{}: {note}", part.file);
+        }
+    }
+    let friction = &set.manifest.friction;
+    log::info!(
+        "{}: {} parts; {:.2} N of friction at {:.2} N of load ({:.2} to {:.2} N, {})",
+        folder.display(),
+        set.manifest.parts.len(),
+        friction.friction_n,
+        friction.load_n,
+        friction.band_n[0],
+        friction.band_n[1],
+        serde_json::to_value(friction.trust)
+            .ok()
+            .and_then(|t| t.as_str().map(str::to_owned))
+            .unwrap_or_default(),
+    );
+    if let Some(model) = &arguments.model {
+        log::info!("the curve comes from {}", model.display());
+        prediction.curve.reasons.iter().for_each(|reason| log::info!("{reason}"));
+    }
+    if arguments.json {
+        let manifest = set.files.last().map(|f| f.bytes.clone()).unwrap_or_default();
+        print(&manifest)?;
+    }
+    Ok(())
+}

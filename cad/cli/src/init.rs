@@ -1,0 +1,39 @@
+//! `pinswitch init NAME`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::source::text_of;
+use super::{Failure, print};
+use crate::write::write_file;
+use pinswitch_switch::templates::SWEEP;
+
+/// Write a template out, to start a configuration of your own.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pinswitch init three-double --out my-switch.toml
+  pinswitch init reference")]
+pub(super) struct Arguments {
+    /// Name of a template; `reference` shows every parameter with its unit, range, default and reason,
+    /// `sweep` starts a batch.
+    name: String,
+    /// File to write; without it the template goes to standard output.
+    #[arg(long, short, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite the file if it exists.
+    #[arg(long)]
+    force: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let text = match arguments.name.as_str() {
+        "sweep" => SWEEP.to_owned(),
+        name => text_of(name)?.0,
+    };
+    let Some(path) = &arguments.out else { return print(text.as_bytes()) };
+    if path.exists() && !arguments.force {
+        return Err(Failure::bad_input(format!("{}: exists; give --force to overwrite it", path.display())));
+    }
+    write_file(path, text.as_bytes()).map_err(Failure::failed)
+}

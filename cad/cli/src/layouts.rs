@@ -1,0 +1,94 @@
+//! `pinswitch layouts`.
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{Failure, print, print_json};
+use pinswitch_switch::templates::{Kind, TEMPLATES};
+
+use pinswitch_model::published::{self, PublishedLayout};
+
+/// List the published layouts and the templates that ship with the program.
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// A published layout as printed.
+#[derive(Serialize)]
+struct Layout {
+    name: &'static str,
+    pins: usize,
+    pitch_deg: f64,
+    grooves: &'static [usize],
+    device_max_n: f64,
+    pins_max_n: f64,
+}
+
+/// A template as printed.
+#[derive(Serialize)]
+struct Entry {
+    name: &'static str,
+    about: &'static str,
+}
+
+#[derive(Serialize)]
+struct Listing {
+    layouts: Vec<Layout>,
+    conditions: Vec<Entry>,
+    printers: Vec<Entry>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let listing = listing();
+    if arguments.json {
+        return print_json(&listing);
+    }
+    let mut text = "Published layouts (friction at 49.67 N, measured):\n".to_owned();
+    for l in &listing.layouts {
+        text += &format!(
+            "  {:<14} {} pins, {:.2} deg apart, grooves {:<22} {:.3} N, on the rigid proxy {:.3} N\n",
+            l.name,
+            l.pins,
+            l.pitch_deg,
+            format!("{:?}", l.grooves),
+            l.device_max_n,
+            l.pins_max_n
+        );
+    }
+    for (title, entries) in
+        [("Templates", &listing.conditions), ("Printers, for --preset", &listing.printers)]
+    {
+        text += &format!("\n{title}:\n");
+        for entry in entries {
+            text += &format!("  {:<24} {}\n", entry.name, entry.about);
+        }
+    }
+    text += "\nreference shows every parameter: pinswitch init reference\n";
+    print(text.as_bytes())
+}
+
+fn listing() -> Listing {
+    let layout = |l: &PublishedLayout| Layout {
+        name: l.name,
+        pins: l.pins,
+        pitch_deg: l.pitch_rad().to_degrees(),
+        grooves: l.grooves,
+        device_max_n: l.device_max_n,
+        pins_max_n: l.pins_max_n,
+    };
+    let of = |kind: Kind| {
+        TEMPLATES
+            .iter()
+            .filter(|t| t.kind == kind)
+            .map(|t| Entry { name: t.name, about: t.about() })
+            .collect()
+    };
+    Listing {
+        layouts: published::LAYOUTS.iter().map(layout).collect(),
+        conditions: of(Kind::Published),
+        printers: of(Kind::Printer),
+    }
+}

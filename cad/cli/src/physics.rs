@@ -1,0 +1,124 @@
+//! `pinswitch physics`: the physics behind the curves, made again and shown.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use pinswitch_model::physics::hypotheses::{Finding, hypotheses};
+use pinswitch_model::physics::{
+    Bed, FitError, LayoutLeftOut, MaximaFit, contact_profile, fit_maxima, leave_one_layout_out,
+};
+use pinswitch_model::{Direction, Substrate};
+use serde::Serialize;
+
+use super::source::Source;
+use super::{Failure, print, print_json};
+use crate::write::write_set;
+use pinswitch_plot::contact_svg;
+use pinswitch_switch::set::OutputFile;
+
+/// Loads of the profile, as shares of the heaviest.
+const PROFILE_LOADS: [f64; 4] = [0.1, 0.3, 0.6, 1.0];
+
+/// Show the physics: its constants, what it says of layouts left out, and what the tendon does outside the pins.
+///
+/// Fits the three constants to the seven published maxima again, leaves each layout out in turn, and asks every hypothesis
+/// about the tendon's path about all published facts. With --out, draws the tendon over the pins of a configuration.
+#[derive(Args, Debug)]
+#[command(mut_arg("config", |a| a.required(false).default_value("three-double")))]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+    /// Folder for contact.svg and physics.json.
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Everything that is shown.
+#[derive(Serialize)]
+struct Report {
+    bed: Bed,
+    fit: MaximaFit,
+    left_out: Vec<LayoutLeftOut>,
+    hypotheses: Vec<Finding>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let design = arguments.source.design()?;
+    let report = report().map_err(Failure::failed)?;
+    if let Some(folder) = &arguments.out {
+        let contact = design.contact();
+        if contact.substrate() == Substrate::Abs || contact.pins().count() == 0 {
+            return Err(Failure::bad_input(
+                "--out draws a tendon over pins on silicone; give a configuration with pins and layout.substrate = \"silicone\"",
+            ));
+        }
+        let heaviest = design.configuration().friction.load_max_n;
+        let profiles = PROFILE_LOADS
+            .iter()
+            .map(|share| {
+                let load = share * heaviest;
+                contact_profile(contact, load, Direction::Eccentric).map(|profile| (load, profile))
+            })
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(Failure::failed)?;
+        let title = format!("{}: the tendon over its pins", design.configuration().switch.name);
+        let svg = contact_svg(&title, &profiles).map_err(Failure::failed)?;
+        let mut json = serde_json::to_vec_pretty(&report).map_err(Failure::failed)?;
+        json.push(b'\n');
+        let files = [("contact.svg", svg.into_bytes()), ("physics.json", json)]
+            .map(|(name, bytes)| OutputFile { name: name.to_owned(), bytes });
+        write_set(folder, &files).map_err(Failure::failed)?;
+        log::info!("{}: contact.svg, physics.json", folder.display());
+    }
+    if arguments.json { print_json(&report) } else { print(text(&report).as_bytes()) }
+}
+
+fn report() -> Result<Report, FitError> {
+    let bed = Bed::published();
+    Ok(Report {
+        bed,
+        fit: fit_maxima(&bed)?,
+        left_out: leave_one_layout_out(&bed)?,
+        hypotheses: hypotheses().iter().map(|h| h.test()).collect::<Result<_, _>>()?,
+    })
+}
+
+fn text(report: &Report) -> String {
+    let (fit, percent) = (&report.fit, |share: f64| format!("{:+.1} %", 100.0 * share));
+    let sd = |i: usize| 100.0 * fit.covariance[i][i].sqrt();
+    let mut text = format!(
+        "Constants, fitted to the seven published maxima (RMS error {:.1} %):\n\
+         \x20 kappa  {:.4} N^-0.5  +- {:.1} %   ploughing of the coating by a pin, mu = kappa sqrt(N)\n\
+         \x20 mu_s   {:.4}         +- {:.1} %   coated tendon on silicone\n\
+         \x20 N0     {:.2} N         +- {:.1} %   force that sinks a pin flush\n\n",
+        100.0 * fit.rms,
+        fit.constants.kappa_per_sqrt_n,
+        sd(0),
+        fit.constants.mu_silicone,
+        sd(1),
+        fit.constants.flush_force_n,
+        sd(2)
+    );
+    text += "Maximum                      fitted    layout left out\n";
+    for (name, error) in &fit.errors {
+        let left_out = report
+            .left_out
+            .iter()
+            .find(|l| name.starts_with(l.layout))
+            .map(|l| percent(if name.ends_with("device") { l.device_error } else { l.pins_error }));
+        text += &format!("{name:<28} {:<9} {}\n", percent(*error), left_out.unwrap_or_default());
+    }
+    text += "\nWhat does the tendon do outside the pins? The same constants fitted under each hypothesis:\n";
+    for finding in &report.hypotheses {
+        let verdict = if finding.survives() { "survives" } else { "falls" };
+        text += &format!("{verdict:<9} {}\n", finding.hypothesis.name);
+        for fact in &finding.contradicts {
+            text += &format!("            against {fact}\n");
+        }
+    }
+    text += "No hypothesis explains why three-double ends 14 % above three-single.\n";
+    text
+}

@@ -1,0 +1,99 @@
+//! `pinswitch predict --model MODEL --rows TABLE --out FILE`: readings from a calibrated model.
+
+use std::path::{Path, PathBuf};
+
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+use pinswitch_model::calibration::ModelFile;
+use pinswitch_model::rig::{PlateauTable, Surface};
+use pinswitch_model::{FrictionCurve, Substrate, published};
+
+use super::source::Source;
+use super::{Failure, print};
+use crate::write::write_file;
+use pinswitch_switch::design::Design;
+use pinswitch_switch::prediction::loads_n;
+
+/// Rows of a plateau table, predicted by a calibrated model.
+#[derive(Args, Clone, Debug)]
+pub(super) struct Rows {
+    /// A model.toml or baseline.toml written by `calibrate`.
+    #[arg(long, value_name = "TOML", requires = "rows")]
+    model: Option<PathBuf>,
+    /// A plateau table whose rows are predicted; its force_N is not used.
+    #[arg(long, value_name = "CSV", requires = "model")]
+    rows: Option<PathBuf>,
+    /// Where the table with predicted_N and sd_N goes; standard output if absent.
+    #[arg(long, value_name = "CSV", requires = "rows")]
+    out: Option<PathBuf>,
+}
+
+/// A configuration, which is needed only when no rows are given.
+#[derive(Clone, Debug)]
+pub(super) struct SourceUnlessRows(pub(super) Option<Source>);
+
+impl FromArgMatches for SourceUnlessRows {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        matches.contains_id("config").then(|| Source::from_arg_matches(matches)).transpose().map(Self)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for SourceUnlessRows {
+    fn augment_args(command: Command) -> Command {
+        Source::augment_args(command).mut_arg("config", |config| {
+            config.required(false).required_unless_present("rows").conflicts_with("rows")
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl Rows {
+    /// Predicts the rows if rows are asked for; `None` if the command is about a configuration.
+    pub(super) fn run(&self) -> Option<Result<(), Failure>> {
+        let (model, rows) = self.model.as_ref().zip(self.rows.as_ref())?;
+        Some(self.predict(model, rows))
+    }
+
+    fn predict(&self, model: &Path, rows: &Path) -> Result<(), Failure> {
+        let (model_name, rows_name) = (model.display().to_string(), rows.display().to_string());
+        let text =
+            std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{model_name}: {e}")))?;
+        let model = ModelFile::parse(&text, &model_name).map_err(Failure::bad_input)?;
+        let file = std::fs::File::open(rows).map_err(|e| Failure::bad_input(format!("{rows_name}: {e}")))?;
+        let table = PlateauTable::read_conditions(file, &rows_name).map_err(Failure::bad_input)?;
+        let (predicted, sd) = model.predict(&table.rows, &model_name).map_err(Failure::bad_input)?;
+        let csv = table.with_columns(&["predicted_N", "sd_N"], &[predicted, sd], 5);
+        match &self.out {
+            Some(path) => write_file(path, csv.as_bytes()).map_err(Failure::failed),
+            None => print(csv.as_bytes()),
+        }
+    }
+}
+
+/// The curve of a design by a calibrated model: effects of the switch in, effects of the rig out.
+pub(super) fn calibrated_curve(design: &Design, model: &Path) -> Result<FrictionCurve, Failure> {
+    let name = model.display().to_string();
+    let text = std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
+    let surface = match design.contact().substrate() {
+        Substrate::Silicone => Surface::Silicone,
+        Substrate::Abs => Surface::Abs,
+    };
+    let wrap_deg = design.contact().wrap_rad().to_degrees();
+    if (wrap_deg - published::WRAP_ANGLE_DEG).abs() > 0.005 {
+        return Err(Failure::bad_input(format!(
+            "layout.wrap_angle_deg = {wrap_deg:.2} is not the {} deg of the calibrated rig; leave out --model",
+            published::WRAP_ANGLE_DEG
+        )));
+    }
+    let mut pins = design.configuration().layout.pins.clone();
+    pins.sort_unstable();
+    file.part_curve(surface, &pins, &loads_n(design), &name).map_err(Failure::bad_input)
+}

@@ -1,0 +1,64 @@
+//! `pinswitch render CONFIG`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::Failure;
+use super::source::Source;
+use crate::write::write_file;
+use pinswitch_solid::render::{View, render};
+use pinswitch_switch::built::{BuildError, Built};
+use pinswitch_switch::scene::{assembled, plate};
+
+/// Draw a picture of the parts as PNG: assembled, pulled apart, or laid out as printed.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pinswitch render three-double --out assembly.png
+  pinswitch render three-double --scene plate --out plate.png --rise 55")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+    /// File to write.
+    #[arg(long, short, value_name = "FILE")]
+    out: PathBuf,
+    /// What to draw.
+    #[arg(long, value_enum, default_value_t = Scene::Exploded)]
+    scene: Scene,
+    /// Turn about the vertical axis, in degrees.
+    #[arg(long, value_name = "DEG", default_value_t = 30.0, allow_negative_numbers = true)]
+    turn: f64,
+    /// Height of the eye above the horizon, in degrees.
+    #[arg(long, value_name = "DEG", default_value_t = 40.0, allow_negative_numbers = true)]
+    rise: f64,
+    /// Width of the picture in pixels; the height is three quarters of it.
+    #[arg(long, value_name = "PIXELS", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(64..=8000))]
+    width: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Scene {
+    /// Everything in its place.
+    Assembled,
+    /// Supports and layer pulled away from the shell.
+    Exploded,
+    /// All printed parts side by side, in print orientation.
+    Plate,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let design = arguments.source.design()?;
+    let built = Built::new(design).map_err(|e| match e {
+        BuildError::Configuration(e) => Failure::bad_input(e),
+        other => Failure::failed(other),
+    })?;
+    let bodies = match arguments.scene {
+        Scene::Assembled => assembled(&built, 0.0),
+        Scene::Exploded => assembled(&built, 1.0),
+        Scene::Plate => plate(&built),
+    };
+    let view = View { turn_deg: arguments.turn, rise_deg: arguments.rise };
+    let picture = render(&bodies, view, arguments.width, arguments.width * 3 / 4);
+    let bytes = picture.png().map_err(Failure::failed)?;
+    write_file(&arguments.out, &bytes).map_err(Failure::failed)
+}

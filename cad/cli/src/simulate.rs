@@ -1,0 +1,141 @@
+//! `pinswitch simulate PLAN.toml --out DIR` and `pinswitch simulate --study`.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use pinswitch_model::inference::Levels;
+use pinswitch_model::rig::{PlateauRow, PlateauTable};
+use pinswitch_model::simulation::{
+    Case, EffectPlan, Plan, RawRun, Study, Truth, run_case, simulate, study_cases,
+};
+use rayon::prelude::*;
+
+use super::{Failure, print};
+use crate::write::write_set;
+use pinswitch_switch::set::OutputFile;
+
+/// Simulate a friction rig with known effects and noise, or study the calibrator on many of them.
+///
+/// Writes plateaus.csv, plateaus-fresh.csv (rows without noise, to judge predictions by) and plan.toml.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pinswitch simulate --effect coating_ploughing=0.02 --out rig
+  pinswitch simulate plan.toml --out rig
+  pinswitch simulate plan.toml --out rig --raw
+  pinswitch simulate --study 20")]
+pub(super) struct Arguments {
+    /// The plan: layouts, loads, sweeps, speeds, dwells, effects with their sizes, noise, seed. Without one, the paper's rig.
+    plan: Option<PathBuf>,
+    /// Put an effect into the rig, beside those of the plan: ID or ID=VALUE,VALUE in the order of its formula.
+    #[arg(long = "effect", value_name = "ID=VALUES", conflicts_with = "study")]
+    effects: Vec<String>,
+    /// Without a plan: loads up and down, several speeds and dwells, instead of the paper's protocol.
+    #[arg(long, conflicts_with_all = ["plan", "study"])]
+    randomised: bool,
+    /// Folder for the tables.
+    #[arg(long, value_name = "DIR", required_unless_present = "study")]
+    out: Option<PathBuf>,
+    /// Also write raw 200 Hz logs with spikes, lost samples and bad moves: run.toml for `segment`, truth.csv, faults.json.
+    #[arg(long, conflicts_with = "study")]
+    raw: bool,
+    /// Calibrate this many rigs of every kind and print what was said of them.
+    #[arg(long, value_name = "SEEDS", conflicts_with_all = ["plan", "out"])]
+    study: Option<u64>,
+    /// In a study, the first seed; others than those a level was tuned on give a fair figure.
+    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "study")]
+    first_seed: u64,
+    /// In a study, only the kinds of rig whose name contains this.
+    #[arg(long, value_name = "NAME", requires = "study")]
+    only: Option<String>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(seeds) = arguments.study {
+        return study(arguments, seeds);
+    }
+    let Some(out) = &arguments.out else {
+        return Err(Failure::bad_input("simulate needs --out, or --study"));
+    };
+    let (plan, name) = plan(arguments)?;
+    let text = plan.to_text().map_err(Failure::failed)?;
+    let simulated = simulate(&plan);
+    let file = |name: &str, text: String| OutputFile { name: name.to_owned(), bytes: text.into_bytes() };
+    let mut files = if arguments.raw { raw_files(&plan, &simulated.rows, &name)? } else { Vec::new() };
+    files.extend([
+        file("plan.toml", text),
+        file("plateaus-fresh.csv", PlateauTable::write(&simulated.fresh)),
+        file("plateaus.csv", PlateauTable::write(&simulated.rows)),
+    ]);
+    write_set(out, &files).map_err(Failure::failed)
+}
+
+/// The plan with the effects asked for, and its name in errors.
+fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
+    let (mut plan, name) = match &arguments.plan {
+        Some(path) => {
+            let name = path.display().to_string();
+            let text =
+                std::fs::read_to_string(path).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+            (Plan::parse(&text, &name).map_err(Failure::bad_input)?, name)
+        }
+        None if arguments.randomised => (Plan::randomised(), "--effect".to_owned()),
+        None => (Plan::default(), "--effect".to_owned()),
+    };
+    for effect in &arguments.effects {
+        let (id, values) = effect.split_once('=').unwrap_or((effect, ""));
+        let values: Result<Vec<f64>, _> =
+            values.split(',').filter(|v| !v.is_empty()).map(|v| v.trim().parse()).collect();
+        let values = values.map_err(|_| {
+            Failure::bad_input(format!("--effect {effect}: values are numbers, like coating_ploughing=0.02"))
+        })?;
+        plan.effects.push(EffectPlan { id: id.to_owned(), values, form: 0 });
+    }
+    plan.check(&name).map_err(Failure::bad_input)?;
+    Ok((plan, name))
+}
+
+/// The run's description, its logs, their true plateaus, and what was put wrong into them.
+fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputFile>, Failure> {
+    let run = RawRun::new(plan, rows, name).map_err(Failure::bad_input)?;
+    let mut files = Vec::new();
+    let mut truth = "file,direction,repetition,force_N\n".to_owned();
+    let mut faults = serde_json::Map::new();
+    for log in (0..run.logs()).filter_map(|i| run.log(i)) {
+        let file = format!("{}.gz", log.file);
+        for (direction, repetition, force_n) in &log.truth {
+            let word = if direction.sign() > 0.0 { "concentric" } else { "eccentric" };
+            truth.push_str(&format!("{file},{word},{repetition},{force_n:.4}\n"));
+        }
+        faults.insert(file.clone(), serde_json::to_value(&log.faults).map_err(Failure::failed)?);
+        let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+        packed.write_all(log.text.as_bytes()).map_err(Failure::failed)?;
+        files.push(OutputFile { name: file, bytes: packed.finish().map_err(Failure::failed)? });
+    }
+    let mut json = serde_json::to_vec_pretty(&faults).map_err(Failure::failed)?;
+    json.push(b'\n');
+    files.push(OutputFile { name: "faults.json".to_owned(), bytes: json });
+    files.push(OutputFile { name: "truth.csv".to_owned(), bytes: truth.into_bytes() });
+    files.push(OutputFile { name: "run.toml".to_owned(), bytes: run.description(".gz").into_bytes() });
+    Ok(files)
+}
+
+/// The confusion matrix over all kinds of rig; rigs without effect count ten times, for the rate of false alarms.
+fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
+    let mut study = Study::default();
+    let wanted = |case: &Case| arguments.only.as_ref().is_none_or(|o| case.name.contains(o.as_str()));
+    for case in study_cases().into_iter().filter(wanted) {
+        // There are four kinds of noise without effect.
+        let count = if case.truth == Truth::Nothing { (10 * seeds).div_ceil(4) } else { seeds };
+        let first = arguments.first_seed;
+        let outcomes: Vec<_> = (first..first + count)
+            .into_par_iter()
+            .filter_map(|s| run_case(&case, s, Levels::default()))
+            .collect();
+        log::info!("{:?} {}: {} rigs", case.protocol, case.name, outcomes.len());
+        study.add(case, outcomes);
+    }
+    print(format!("{}\n{}", study.table(), study.summary()).as_bytes())
+}

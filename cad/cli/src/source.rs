@@ -1,0 +1,108 @@
+//! Where a configuration comes from: a file or a template, a preset under it, single values over it.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::Failure;
+use pinswitch_switch::config::{Configuration, Places, assign, read, to_toml};
+use pinswitch_switch::design::Design;
+use pinswitch_switch::templates;
+
+/// A configuration and what is laid over it.
+#[derive(Args, Clone, Debug)]
+pub(super) struct Source {
+    /// A TOML file, or the name of a template (see `pinswitch layouts`).
+    config: String,
+    /// A template or file whose values lie under the configuration, such as printer-fff-0.4.
+    #[arg(long, value_name = "NAME|FILE")]
+    preset: Option<String>,
+    /// Set one value, as in --set shell.width_mm=12; may be repeated.
+    #[arg(long = "set", value_name = "TABLE.KEY=VALUE")]
+    assignments: Vec<String>,
+    /// Chord tolerance of the meshes in mm: how far they may lie from the true curves.
+    #[arg(long, value_name = "MM")]
+    tolerance: Option<f64>,
+}
+
+impl Source {
+    /// The configuration of this name alone, with nothing laid over it.
+    pub(super) fn named(config: &str) -> Self {
+        Self { config: config.to_owned(), preset: None, assignments: Vec::new(), tolerance: None }
+    }
+
+    /// The file that the configuration is read from; `None` for a template.
+    pub(super) fn file(&self) -> Option<PathBuf> {
+        Some(PathBuf::from(&self.config)).filter(|path| path.exists())
+    }
+
+    /// Reads, overlays and validates.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] names file, line, field, value, bound and remedy.
+    pub(super) fn design(&self) -> Result<Design, Failure> {
+        let (text, file) = text_of(&self.config)?;
+        let (mut configuration, places) = read(&text, &file).map_err(Failure::bad_input)?;
+        if let Some(preset) = &self.preset {
+            configuration = under(preset, &configuration)?;
+        }
+        if !places.gives("switch.name") {
+            configuration.switch.name = stem(&file);
+        }
+        for assignment in &self.assignments {
+            assign(&mut configuration, assignment).map_err(Failure::bad_input)?;
+        }
+        if let Some(mm) = self.tolerance {
+            assign(&mut configuration, &format!("mesh.chord_tolerance_mm={mm:?}"))
+                .map_err(|e| Failure::bad_input(e.to_string().replacen("--set", "--tolerance", 1)))?;
+        }
+        Design::new(configuration).map_err(|e| Failure::bad_input(placed(e, &places, &file)))
+    }
+}
+
+/// A complaint with the place of its field in the file, or at least the file.
+fn placed(error: pinswitch_switch::config::ConfigError, places: &Places, file: &str) -> String {
+    match places.of(&error.field) {
+        Some(place) => error.at(place.clone()).to_string(),
+        None => format!("{file}: {error}"),
+    }
+}
+
+/// `configuration` over `preset`: what differs from the defaults wins.
+fn under(preset: &str, configuration: &Configuration) -> Result<Configuration, Failure> {
+    let (text, file) = text_of(preset)?;
+    let (mut base, _) = read(&text, &file).map_err(Failure::bad_input)?;
+    let (over, own) = (to_toml(configuration), Configuration::default());
+    let (_, given) = read(&over, &file).map_err(Failure::bad_input)?;
+    for parameter in Configuration::PARAMETERS {
+        let value = (parameter.get)(configuration);
+        if given.gives(&parameter.path()) || value.to_string() != (parameter.get)(&own).to_string() {
+            (parameter.set)(&mut base, &value).map_err(Failure::bad_input)?;
+        }
+    }
+    Ok(base)
+}
+
+/// The text of a file or template, and the name to use for it in complaints.
+pub(super) fn text_of(name: &str) -> Result<(String, String), Failure> {
+    let path = Path::new(name);
+    if path.exists() {
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| Failure::bad_input(format!("{name}: cannot read: {e}")))?;
+        return Ok((text, name.to_owned()));
+    }
+    let bare = name.strip_prefix("templates/").unwrap_or(name);
+    let bare = bare.strip_suffix(".toml").unwrap_or(bare);
+    templates::text(bare).map(|text| (text, name.to_owned())).ok_or_else(|| {
+        let names = templates::names();
+        let near = names.iter().max_by(|a, b| strsim::jaro_winkler(bare, a).total_cmp(&strsim::jaro_winkler(bare, b)));
+        let near = near.copied().unwrap_or_default();
+        Failure::bad_input(format!(
+            "{name}: no such file or template; the nearest template is {near:?}, `pinswitch layouts` lists all"
+        ))
+    })
+}
+
+fn stem(file: &str) -> String {
+    PathBuf::from(file).file_stem().map_or_else(|| "switch".to_owned(), |s| s.to_string_lossy().into_owned())
+}

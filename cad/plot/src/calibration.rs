@@ -1,0 +1,248 @@
+//! Plots of a calibration: friction per condition, and residuals over each covariate before and after.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+
+use pinswitch_model::calibration::Calibration;
+use pinswitch_model::effects::Covariate;
+use pinswitch_model::rig::{Frame, Point};
+use plotters::prelude::*;
+
+use super::scale::drawable;
+
+/// Width and height of a condition's figure in pixels.
+const CONDITION: (u32, u32) = (440, 300);
+/// Width and height of a pair of residual panels in pixels.
+const RESIDUAL: (u32, u32) = (900, 320);
+pub(super) const BEFORE: RGBColor = RGBColor(190, 80, 20);
+pub(super) const AFTER: RGBColor = RGBColor(0, 90, 156);
+pub(super) const DATA: RGBColor = RGBColor(60, 60, 60);
+/// Points of one residual panel at most; a table has thousands of rows.
+const SHOWN: usize = 900;
+/// Stretches of a covariate over which residuals are averaged.
+const STRETCHES: usize = 24;
+
+/// A figure cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+#[error("a plot of the calibration cannot be drawn: {0}")]
+pub struct PlotFailure(pub(super) String);
+
+/// One figure.
+#[derive(Clone, Debug)]
+pub struct Plot {
+    /// Name of its file.
+    pub file: String,
+    /// What it shows.
+    pub caption: String,
+    /// The figure.
+    pub svg: String,
+}
+
+/// How a covariate is read off a point, and how it is written at the axis.
+struct Axis {
+    label: String,
+    read: Box<dyn Fn(&Point) -> f64>,
+    /// Names of its values 0, 1, ..., if it has names.
+    names: Vec<String>,
+}
+
+impl Axis {
+    fn new(covariate: Covariate, frame: &Frame) -> Self {
+        let (stroke, session, speed) = (frame.stroke_mm, frame.session_s, frame.reference_speed_pct);
+        let plain = |label: &str, read: Box<dyn Fn(&Point) -> f64>| Self {
+            label: label.to_owned(),
+            read,
+            names: Vec::new(),
+        };
+        let named = |label: &str, names: Vec<String>, read: Box<dyn Fn(&Point) -> f64>| Self {
+            label: label.to_owned(),
+            read,
+            names,
+        };
+        match covariate {
+            Covariate::Load => plain("load (N)", Box::new(|p| p.load_n)),
+            Covariate::Repetition => plain("repetition", Box::new(|p| p.repetition)),
+            Covariate::Position => plain("position (mm)", Box::new(move |p| p.position * stroke)),
+            Covariate::Speed => plain("speed (%)", Box::new(move |p| speed * p.log_speed.exp())),
+            Covariate::Dwell => plain("dwell (s)", Box::new(|p| 3.0 * p.log_dwell.exp())),
+            Covariate::Time => plain("time (h)", Box::new(move |p| p.time * session / 3600.0)),
+            Covariate::Direction => named(
+                "direction",
+                ["eccentric", "concentric"].map(str::to_owned).to_vec(),
+                Box::new(|p| f64::from(u8::from(p.sign > 0.0))),
+            ),
+            Covariate::Sweep => named(
+                "sweep",
+                ["loads up", "loads down"].map(str::to_owned).to_vec(),
+                Box::new(|p| p.descending),
+            ),
+            Covariate::Condition => named(
+                "condition, numbered as above",
+                (1..=frame.conditions.len()).map(|n| n.to_string()).collect(),
+                Box::new(|p| p.condition as f64),
+            ),
+        }
+    }
+}
+
+/// All figures: one per condition, and one per covariate that varies.
+///
+/// # Errors
+/// [`PlotFailure`] if the drawing library refuses a coordinate.
+pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotFailure> {
+    let mut all = Vec::new();
+    let failure = |e: Box<dyn Error>| PlotFailure(e.to_string());
+    let frame = &calibration.selection.baseline.model.frame;
+    for (index, condition) in frame.conditions.iter().enumerate() {
+        let mut svg = String::new();
+        curve(&mut svg, calibration, index).map_err(failure)?;
+        all.push(Plot { file: format!("condition-{index}.svg"), caption: condition.name(), svg });
+    }
+    for covariate in Covariate::ALL {
+        let axis = Axis::new(covariate, frame);
+        let range = calibration
+            .data
+            .points
+            .iter()
+            .map(|p| (axis.read)(p))
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |a, x| (a.0.min(x), a.1.max(x)));
+        if range.1 - range.0 < 1e-9 {
+            continue;
+        }
+        let mut svg = String::new();
+        residual(&mut svg, calibration, &axis, range).map_err(failure)?;
+        all.push(Plot {
+            file: format!("residual-{}.svg", covariate.word()),
+            caption: format!("over {}: before (left) and after (right)", covariate.word()),
+            svg,
+        });
+    }
+    Ok(all)
+}
+
+/// Mean readings per load and direction of one condition with both models.
+fn curve(svg: &mut String, calibration: &Calibration, condition: usize) -> Result<(), Box<dyn Error>> {
+    let (data, selection) = (&calibration.data, &calibration.selection);
+    // Per direction and load: sums of readings, of the baseline and of the augmented model, and their number.
+    let mut means: BTreeMap<(bool, u64), [f64; 5]> = BTreeMap::new();
+    for (i, p) in data.points.iter().enumerate().filter(|(_, p)| p.condition == condition) {
+        let y = data.force_n[i];
+        let entry = means.entry((p.sign > 0.0, p.load_n.to_bits())).or_insert([0.0; 5]);
+        let values =
+            [p.load_n, y, y - selection.baseline.residual_n[i], y - selection.augmented.residual_n[i], 1.0];
+        entry.iter_mut().zip(values).for_each(|(e, v)| *e += v);
+    }
+    let lines: Vec<(bool, [f64; 4])> = means
+        .into_iter()
+        .map(|((up, _), [load, y, b, a, n])| (up, [load / n, (y - load) / n, (b - load) / n, (a - load) / n]))
+        .collect();
+    let span = |i: usize| {
+        let low = lines.iter().map(|l| l.1[i]).fold(0.0f64, f64::min);
+        let high = lines.iter().map(|l| l.1[i]).fold(0.0f64, f64::max);
+        (low, high)
+    };
+    let (low, high) = (1..4).map(span).fold((0.0f64, 0.0f64), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let root = SVGBackend::with_string(svg, CONDITION).into_drawing_area();
+    root.fill(&WHITE)?;
+    let name = format!(
+        "{}: {}",
+        condition + 1,
+        calibration.selection.baseline.model.frame.conditions[condition].name()
+    );
+    let mut chart = ChartBuilder::on(&root)
+        .margin(8)
+        .caption(name, ("sans-serif", 15))
+        .x_label_area_size(38)
+        .y_label_area_size(50)
+        .build_cartesian_2d(drawable(0.0, 1.04 * span(0).1), drawable(1.1 * low - 0.05, 1.1 * high + 0.05))?;
+    chart.configure_mesh().light_line_style(TRANSPARENT).x_desc("load F (N)").y_desc("T - F (N)").draw()?;
+    for up in [false, true] {
+        let of = |i: usize| lines.iter().filter(move |l| l.0 == up).map(move |l| (l.1[0], l.1[i]));
+        chart.draw_series(LineSeries::new(of(2), BEFORE.stroke_width(2)))?;
+        chart.draw_series(LineSeries::new(of(3), AFTER.stroke_width(2)))?;
+        chart.draw_series(of(1).map(|at| Circle::new(at, 3, DATA.filled())))?;
+    }
+    root.present()?;
+    Ok(())
+}
+
+/// Residuals over one covariate, before and after, on the same axes, with their mean.
+fn residual(
+    svg: &mut String,
+    calibration: &Calibration,
+    axis: &Axis,
+    (least, most): (f64, f64),
+) -> Result<(), Box<dyn Error>> {
+    let (data, selection) = (&calibration.data, &calibration.selection);
+    let xs: Vec<f64> = data.points.iter().map(|p| (axis.read)(p)).collect();
+    let named = !axis.names.is_empty();
+    let pad = if named { 0.5 } else { 0.03 * (most - least) };
+    let mut sizes: Vec<f64> = selection.baseline.residual_n.iter().map(|r| r.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let high = sizes.get(sizes.len() * 995 / 1000).copied().unwrap_or(1.0).max(1e-3) * 1.1;
+    let root = SVGBackend::with_string(svg, RESIDUAL).into_drawing_area();
+    root.fill(&WHITE)?;
+    let stride = data.points.len().div_ceil(SHOWN);
+    let panels = root.split_evenly((1, 2));
+    let sides = [
+        (&selection.baseline.residual_n, BEFORE, "the paper's model, refitted"),
+        (&selection.augmented.residual_n, AFTER, "the better model"),
+    ];
+    for (panel, (residual, colour, title)) in panels.iter().zip(sides) {
+        let mut chart = ChartBuilder::on(panel)
+            .margin(8)
+            .caption(title, ("sans-serif", 14))
+            .x_label_area_size(38)
+            .y_label_area_size(50)
+            .build_cartesian_2d(drawable(least - pad, most + pad), drawable(-high, high))?;
+        let format = |x: &f64| name_at(&axis.names, *x);
+        let mut mesh = chart.configure_mesh();
+        mesh.light_line_style(TRANSPARENT).x_desc(&axis.label).y_desc("reading - model (N)");
+        if named {
+            mesh.x_labels(2 * axis.names.len() + 1).x_label_formatter(&format).disable_x_mesh();
+        }
+        mesh.draw()?;
+        let shown = (0..xs.len()).step_by(stride).filter(|i| residual[*i].abs() < high);
+        // Names have no width of their own: their points are spread a little.
+        let spread = |i: usize| if named { 0.3 * ((i * 37 % 101) as f64 / 50.0 - 1.0) } else { 0.0 };
+        chart.draw_series(
+            shown.map(|i| Circle::new((xs[i] + spread(i), residual[i]), 2, colour.mix(0.3).filled())),
+        )?;
+        chart.draw_series(LineSeries::new([(least - pad, 0.0), (most + pad, 0.0)], BLACK.stroke_width(1)))?;
+        let means = means(&xs, residual, &data.weights, least, most);
+        if !named {
+            chart.draw_series(LineSeries::new(means.iter().copied(), colour.stroke_width(2)))?;
+        }
+        chart.draw_series(means.iter().map(|at| Circle::new(*at, 4, colour.filled())))?;
+    }
+    root.present()?;
+    Ok(())
+}
+
+/// The name of a value at an axis; nothing between two values.
+fn name_at(names: &[String], x: f64) -> String {
+    let near = x.round();
+    if (x - near).abs() > 0.05 || near < 0.0 {
+        return String::new();
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small whole number >= 0")]
+    names.get(near as usize).cloned().unwrap_or_default()
+}
+
+/// Weighted means of the residuals over stretches of a covariate.
+fn means(xs: &[f64], residual: &[f64], weights: &[f64], least: f64, most: f64) -> Vec<(f64, f64)> {
+    let mut sums = vec![[0.0; 3]; STRETCHES];
+    for ((x, r), w) in xs.iter().zip(residual).zip(weights) {
+        let share = (x - least) / (most - least).max(1e-12) * STRETCHES as f64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "0 to the number of stretches"
+        )]
+        let at = (share.max(0.0) as usize).min(STRETCHES - 1);
+        sums[at][0] += w;
+        sums[at][1] += w * x;
+        sums[at][2] += w * r;
+    }
+    sums.iter().filter(|s| s[0] > 0.5).map(|s| (s[1] / s[0], s[2] / s[0])).collect()
+}

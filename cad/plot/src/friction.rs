@@ -1,0 +1,188 @@
+//! The friction curve as a figure: curve and band, the limits of both materials, and what the paper measured.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use pinswitch_model::{Contact, FrictionCurve, Law, Trust, capstan_friction_n, published, published_points};
+
+use super::scale::{drawn_size, fine, shown_at_size};
+
+/// Width and height of the figure in pixels.
+const SIZE: (u32, u32) = (760, 480);
+const CURVE: RGBColor = RGBColor(0, 90, 156);
+const PINS: RGBColor = RGBColor(90, 90, 90);
+const SILICONE: RGBColor = RGBColor(178, 74, 0);
+/// Lines of other laws, in the order of [`Law`].
+const OTHERS: [(Law, RGBColor); 3] = [
+    (Law::Paper, RGBColor(0, 120, 90)),
+    (Law::Layout, RGBColor(140, 60, 150)),
+    (Law::Physics, RGBColor(190, 20, 60)),
+];
+/// Points of a limit line.
+const LIMIT_POINTS: u32 = 60;
+
+/// The figure cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+#[error("the friction plot cannot be drawn: {0}")]
+pub struct PlotError(String);
+
+impl PlotError {
+    /// The error of the drawing library.
+    pub fn new(error: &dyn std::error::Error) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// Draws `curve` for `contact` with its band as a self-contained SVG titled `name`, the `others` beside it as thin lines.
+///
+/// # Errors
+/// [`PlotError`] if the drawing library refuses a coordinate.
+pub fn friction_svg(
+    name: &str,
+    contact: &Contact,
+    curve: &FrictionCurve,
+    others: &[FrictionCurve],
+) -> Result<String, PlotError> {
+    let mut svg = String::new();
+    draw(&mut svg, name, contact, curve, others).map_err(|e| PlotError::new(&*e))?;
+    Ok(shown_at_size(svg, SIZE))
+}
+
+fn draw(
+    svg: &mut String,
+    name: &str,
+    contact: &Contact,
+    curve: &FrictionCurve,
+    others: &[FrictionCurve],
+) -> Result<(), Box<dyn std::error::Error>> {
+    let root = SVGBackend::with_string(svg, drawn_size(SIZE)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let highest_load = curve.load_n.last().copied().unwrap_or(1.0) * 1.03;
+    let limit = |mu: f64, load: f64| capstan_friction_n(load, mu * contact.wrap_rad());
+    let points = published_points(contact);
+    let measured = points.iter().filter_map(|p| p.friction_n).fold(0.0, f64::max);
+    let top = curve.band_high_n.iter().copied().fold(limit(published::MU_SILICONE, highest_load), f64::max);
+    let mut chart = ChartBuilder::on(&root)
+        .margin(fine::<u32>(14))
+        .caption(format!("{name}: friction over load"), ("sans-serif", fine::<i32>(19)))
+        .x_label_area_size(fine::<u32>(44))
+        .y_label_area_size(fine::<u32>(52))
+        .build_cartesian_2d(0.0..highest_load, 0.0..(top.max(measured) * 1.04))?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.10).stroke_width(fine(1)))
+        .x_desc("load F (N)")
+        .y_desc("friction D = (F_c - F_e)/2 (N)")
+        .x_label_formatter(&|v| format!("{v:.0}"))
+        .y_label_formatter(&|v| format!("{v:.0}"))
+        .set_all_tick_mark_size(fine::<u32>(5))
+        .axis_style(BLACK.stroke_width(fine(1)))
+        .label_style(("sans-serif", fine::<i32>(14)))
+        .axis_desc_style(("sans-serif", fine::<i32>(15)))
+        .draw()?;
+
+    let upper = curve.load_n.iter().copied().zip(curve.band_high_n.iter().copied());
+    let lower = curve.load_n.iter().copied().zip(curve.band_low_n.iter().copied());
+    let band: Vec<_> = upper.chain(lower.rev()).collect();
+    chart
+        .draw_series(std::iter::once(Polygon::new(band, CURVE.mix(0.18))))?
+        .label(format!("band ({})", trust_word(curve.trust)))
+        .legend(|(x, y)| {
+            Rectangle::new(
+                [(x, y - fine::<i32>(5)), (x + fine::<i32>(22), y + fine::<i32>(5))],
+                CURVE.mix(0.18).filled(),
+            )
+        });
+
+    for (mu, colour, label) in [
+        (published::MU_SILICONE, SILICONE, "silicone alone (capstan)"),
+        (published::MU_PINS, PINS, "pins alone (capstan)"),
+    ] {
+        let line = (0..=LIMIT_POINTS).map(|i| {
+            let load = highest_load * f64::from(i) / f64::from(LIMIT_POINTS);
+            (load, limit(mu, load))
+        });
+        chart
+            .draw_series(DashedLineSeries::new(
+                line,
+                fine::<u32>(6),
+                fine::<u32>(4),
+                colour.stroke_width(fine(1)),
+            ))?
+            .label(label)
+            .legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(1)))
+            });
+    }
+
+    for other in others {
+        let colour = OTHERS.iter().find(|(law, _)| *law == other.law).map_or(BLACK, |(_, colour)| *colour);
+        let line = other.load_n.iter().copied().zip(other.friction_n.iter().copied());
+        chart
+            .draw_series(LineSeries::new(line, colour.stroke_width(fine(1))))?
+            .label(format!("{}, for comparison", law_words(other.law)))
+            .legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(1)))
+            });
+    }
+
+    let line: Vec<_> = curve.load_n.iter().copied().zip(curve.friction_n.iter().copied()).collect();
+    chart
+        .draw_series(LineSeries::new(line, CURVE.stroke_width(fine(3))))?
+        .label(law_words(curve.law))
+        .legend(|(x, y)| PathElement::new([(x, y), (x + fine::<i32>(22), y)], CURVE.stroke_width(fine(3))));
+
+    let maxima: Vec<_> = points.iter().filter_map(|p| Some((p.load_n, p.friction_n?))).collect();
+    if !maxima.is_empty() {
+        chart
+            .draw_series(maxima.iter().map(|p| Circle::new(*p, fine::<i32>(5), BLACK.filled())))?
+            .label("published maximum (measured)")
+            .legend(|(x, y)| Circle::new((x + fine::<i32>(11), y), fine::<i32>(5), BLACK.filled()));
+    }
+    for onset in points.iter().filter(|p| p.friction_n.is_none()) {
+        let load = onset.load_n;
+        // The line ends at its words, below the legend.
+        let end = 0.36 * top;
+        let text = TextStyle::from(("sans-serif", fine::<i32>(13))).pos(Pos::new(HPos::Left, VPos::Top));
+        chart.draw_series(DashedLineSeries::new(
+            [(load, 0.0), (load, end)],
+            fine::<u32>(2),
+            fine::<u32>(3),
+            BLACK.stroke_width(fine(1)),
+        ))?;
+        chart.draw_series(std::iter::once(Text::new(
+            format!(" published onset {load:.2} N"),
+            (load, end),
+            text,
+        )))?;
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .margin(fine::<i32>(10))
+        .legend_area_size(fine::<u32>(26))
+        .background_style(WHITE.mix(0.9))
+        .border_style(BLACK.mix(0.3).stroke_width(fine(1)))
+        .label_font(("sans-serif", fine::<i32>(14)))
+        .draw()?;
+    root.present()?;
+    Ok(())
+}
+
+fn trust_word(trust: Trust) -> &'static str {
+    match trust {
+        Trust::Published => "published layout",
+        Trust::Interpolated => "interpolated",
+        Trust::Extrapolated => "extrapolated: a guess",
+    }
+}
+
+fn law_words(law: Law) -> &'static str {
+    match law {
+        Law::Paper => "the paper's model",
+        Law::Layout => "layout law",
+        Law::Physics => "physics",
+        Law::Calibrated => "calibrated model",
+    }
+}

@@ -1,0 +1,13 @@
+//! Files of any solid or mesh: STL, 3MF, STEP and DXF, as bytes.
+
+mod dxf;
+mod plate;
+mod step;
+mod stl;
+mod three_mf;
+
+pub use dxf::dxf;
+pub use plate::lay_out;
+pub use step::{StepPart, step_assembly, step_part};
+pub use stl::{StlError, StlFile, read_stl, stl_bytes};
+pub use three_mf::{Object, Package, ThreeMfError, three_mf};

@@ -1,0 +1,140 @@
+//! Binary STL out, binary or ASCII STL in.
+
+use std::collections::HashMap;
+use std::io::{Read, Seek};
+
+use stl_io::{Normal, Triangle, Vertex};
+
+use crate::mesh::{Mesh, Point3, Vector3};
+
+/// Why a file is no STL.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StlError {
+    /// The file cannot be read as STL, binary or ASCII.
+    #[error("not a readable STL: {0}")]
+    Unreadable(#[from] std::io::Error),
+    /// The file holds fewer or more bytes than its triangle count says.
+    #[error("the header announces {announced} triangles, which take {expected} bytes; the file has {found}")]
+    Length {
+        /// Triangles that the header announces.
+        announced: u32,
+        /// Bytes that they take.
+        expected: u64,
+        /// Bytes in the file.
+        found: u64,
+    },
+    /// The file is an STL without a single triangle.
+    #[error("the STL holds no triangle")]
+    Empty,
+}
+
+/// What an STL file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StlFile {
+    /// The triangles; corners with identical coordinates are one vertex.
+    pub mesh: Mesh,
+    /// Facets whose stored normal contradicts the order of their corners.
+    pub contrary_normals: usize,
+}
+
+/// The mesh as binary STL: single precision, unit normals, an empty header.
+#[allow(clippy::cast_possible_truncation)]
+pub fn stl_bytes(mesh: &Mesh) -> std::io::Result<Vec<u8>> {
+    let facets: Vec<Triangle> = mesh
+        .facets()
+        .map(|corners| {
+            let [a, b, c] = corners;
+            let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+            Triangle {
+                normal: Normal::new([normal.x as f32, normal.y as f32, normal.z as f32]),
+                vertices: corners.map(|p| Vertex::new([p.x as f32, p.y as f32, p.z as f32])),
+            }
+        })
+        .collect();
+    let mut bytes = Vec::with_capacity(84 + 50 * facets.len());
+    stl_io::write_stl(&mut bytes, facets.iter())?;
+    Ok(bytes)
+}
+
+/// Reads a binary or ASCII STL. Corners with identical coordinates become one vertex; nothing is repaired.
+///
+/// # Errors
+/// [`StlError`] if the file is no STL, cut short, or empty.
+pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {
+    check_length(source)?;
+    let StlFile { mut mesh, mut contrary_normals } = StlFile::default();
+    let mut known: HashMap<[u32; 3], u32> = HashMap::new();
+    for facet in stl_io::create_stl_reader(source)? {
+        let facet = facet?;
+        let corners = facet.vertices.map(|v| {
+            // Adding zero turns -0 into +0, so that both are one vertex.
+            let [x, y, z] = v.0.map(|c| c + 0.0);
+            let next = mesh.positions.len();
+            *known.entry([x, y, z].map(f32::to_bits)).or_insert_with(|| {
+                mesh.positions.push(Point3::new(x.into(), y.into(), z.into()));
+                u32::try_from(next).unwrap_or(u32::MAX)
+            })
+        });
+        mesh.triangles.push(corners);
+        let [a, b, c] = mesh.corners(corners);
+        let stored = Vector3::from(facet.normal.0.map(f64::from));
+        contrary_normals += usize::from((b - a).cross(&(c - a)).dot(&stored) < 0.0);
+    }
+    if mesh.triangles.is_empty() { Err(StlError::Empty) } else { Ok(StlFile { mesh, contrary_normals }) }
+}
+
+/// A binary STL says how long it is; a file cut short must not pass for a smaller part.
+fn check_length(source: &mut (impl Read + Seek)) -> Result<(), StlError> {
+    let found = source.seek(std::io::SeekFrom::End(0))?;
+    source.rewind()?;
+    let mut head = Vec::with_capacity(84);
+    source.by_ref().take(84).read_to_end(&mut head)?;
+    source.rewind()?;
+    let ascii = head.starts_with(b"solid") && !head.contains(&0);
+    if let (false, Some(count)) = (ascii, head.get(80..84).and_then(|b| b.try_into().ok())) {
+        let announced = u32::from_le_bytes(count);
+        let expected = 84 + 50 * u64::from(announced);
+        // Some programs append bytes; a reader ignores them, and so do we.
+        if expected > found {
+            return Err(StlError::Length { announced, expected, found });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Cursor;
+
+    fn tetrahedron() -> Mesh {
+        let positions = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
+        Mesh::new(
+            positions.map(|(x, y, z)| Point3::new(x, y, z)).to_vec(),
+            vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+        )
+    }
+
+    #[test]
+    fn a_mesh_survives_the_round_trip() {
+        let bytes = stl_bytes(&tetrahedron()).unwrap();
+        assert_eq!(bytes.len(), 84 + 4 * 50);
+        let back = read_stl(&mut Cursor::new(bytes)).unwrap().mesh;
+        assert_eq!((back.positions.len(), back.triangles.len()), (4, 4));
+        for volume in back.axis_volumes_mm3() {
+            assert!((volume - 1.0 / 6.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn broken_files_are_refused() {
+        let bytes = stl_bytes(&tetrahedron()).unwrap();
+        let read = |bytes: &[u8]| read_stl(&mut Cursor::new(bytes.to_vec()));
+        assert!(matches!(read(&bytes[..150]), Err(StlError::Length { announced: 4, .. })));
+        assert!(matches!(read(b""), Err(StlError::Unreadable(_))));
+        assert!(matches!(read(b"solid x\nfacet normal 0 0 z\n"), Err(StlError::Unreadable(_))));
+        assert!(matches!(read(b"solid x\nendsolid x\n"), Err(StlError::Empty)));
+        assert!(matches!(read(&stl_bytes(&Mesh::default()).unwrap()), Err(StlError::Empty)));
+    }
+}

@@ -1,0 +1,196 @@
+//! 3MF (core specification 1.4): every printed part as a named object on one plate, in one deterministic package.
+
+use std::fmt::Write as _;
+use std::io::{Cursor, Write as _};
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
+
+use super::plate::lay_out;
+use crate::mesh::Mesh;
+
+/// A printed part.
+#[derive(Clone, Debug)]
+pub struct Object<'a> {
+    /// Its name, shown by slicers.
+    pub name: &'a str,
+    /// Its part number: stable over runs, different for different configurations.
+    pub part_number: String,
+    /// Its mesh in print orientation.
+    pub mesh: &'a Mesh,
+}
+
+/// What a package holds besides its objects.
+#[derive(Clone, Debug, Default)]
+pub struct Package {
+    /// Title, designer, description, licence: names of the core specification, with their values.
+    pub metadata: Vec<(&'static str, String)>,
+    /// Metadata of our own, in a namespace of our own.
+    pub own_metadata: Vec<(&'static str, String)>,
+    /// A picture, as PNG.
+    pub thumbnail: Vec<u8>,
+    /// Files that travel along, by name in `Metadata/`: the friction curve, the manifest.
+    pub attachments: Vec<(String, Vec<u8>)>,
+}
+
+/// A package cannot be put together.
+#[derive(Debug, thiserror::Error)]
+#[error("3MF: {0}")]
+pub struct ThreeMfError(#[from] zip::result::ZipError);
+
+const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+/// Namespace of our own metadata.
+const OWN: &str = "urn:pinswitch:configuration:1";
+const RELATIONSHIPS: &str = "http://schemas.openxmlformats.org/package/2006/relationships";
+const MODEL_TYPE: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+const THUMBNAIL_TYPE: &str =
+    "http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail";
+/// Relationship of an attachment that means nothing to a printer.
+const ATTACHMENT_TYPE: &str = "urn:pinswitch:attachment:1";
+
+/// The bytes of a 3MF file with `objects` laid out on a plate. The same input gives the same bytes.
+///
+/// # Errors
+/// [`ThreeMfError`] if the archive cannot be written.
+pub fn three_mf(objects: &[Object<'_>], package: &Package) -> Result<Vec<u8>, ThreeMfError> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    // The archive's epoch: time stamps would make every run differ.
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Deflated)
+        .last_modified_time(DateTime::default())
+        .unix_permissions(0o644);
+    let mut add = |name: &str, bytes: &[u8]| -> Result<(), ThreeMfError> {
+        archive.start_file(name, options)?;
+        archive.write_all(bytes).map_err(zip::result::ZipError::from)?;
+        Ok(())
+    };
+    add("[Content_Types].xml", content_types(package).as_bytes())?;
+    add("_rels/.rels", root_relationships(package).as_bytes())?;
+    add("3D/3dmodel.model", model(objects, package).as_bytes())?;
+    if !package.attachments.is_empty() {
+        add("3D/_rels/3dmodel.model.rels", attachment_relationships(package).as_bytes())?;
+    }
+    if !package.thumbnail.is_empty() {
+        add("Metadata/thumbnail.png", &package.thumbnail)?;
+    }
+    for (name, bytes) in &package.attachments {
+        add(&format!("Metadata/{name}"), bytes)?;
+    }
+    Ok(archive.finish()?.into_inner())
+}
+
+const DECLARATION: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+
+fn content_types(package: &Package) -> String {
+    let mut types = vec![
+        ("rels", "application/vnd.openxmlformats-package.relationships+xml"),
+        ("model", "application/vnd.ms-package.3dmanufacturing-3dmodel+xml"),
+    ];
+    if !package.thumbnail.is_empty() {
+        types.push(("png", "image/png"));
+    }
+    for (extension, content) in [("csv", "text/csv"), ("svg", "image/svg+xml"), ("json", "application/json")]
+    {
+        if package.attachments.iter().any(|(name, _)| name.ends_with(&format!(".{extension}"))) {
+            types.push((extension, content));
+        }
+    }
+    let defaults = types.iter().fold(String::new(), |mut text, (extension, content)| {
+        let _ = write!(text, r#"<Default Extension="{extension}" ContentType="{content}"/>"#);
+        text
+    });
+    format!(
+        r#"{DECLARATION}<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">{defaults}</Types>"#
+    )
+}
+
+fn root_relationships(package: &Package) -> String {
+    let thumbnail = if package.thumbnail.is_empty() {
+        String::new()
+    } else {
+        format!(r#"<Relationship Id="thumbnail" Type="{THUMBNAIL_TYPE}" Target="/Metadata/thumbnail.png"/>"#)
+    };
+    format!(
+        r#"{DECLARATION}<Relationships xmlns="{RELATIONSHIPS}"><Relationship Id="model" Type="{MODEL_TYPE}" Target="/3D/3dmodel.model"/>{thumbnail}</Relationships>"#
+    )
+}
+
+fn attachment_relationships(package: &Package) -> String {
+    let all = package.attachments.iter().enumerate().fold(String::new(), |mut text, (i, (name, _))| {
+        let _ = write!(
+            text,
+            r#"<Relationship Id="attachment{i}" Type="{ATTACHMENT_TYPE}" Target="/Metadata/{}"/>"#,
+            escaped(name)
+        );
+        text
+    });
+    format!(r#"{DECLARATION}<Relationships xmlns="{RELATIONSHIPS}">{all}</Relationships>"#)
+}
+
+fn model(objects: &[Object<'_>], package: &Package) -> String {
+    let mut text =
+        format!(r#"{DECLARATION}<model unit="millimeter" xml:lang="en-US" xmlns="{CORE}" xmlns:ps="{OWN}">"#);
+    text.push('\n');
+    let own = package.own_metadata.iter().map(|(name, value)| (format!("ps:{name}"), value));
+    let core = package.metadata.iter().map(|(name, value)| ((*name).to_owned(), value));
+    for (name, value) in core.chain(own) {
+        let _ = writeln!(text, r#"<metadata name="{}">{}</metadata>"#, escaped(&name), escaped(value));
+    }
+    text.push_str("<resources>\n");
+    for (i, object) in objects.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            r#"<object id="{}" type="model" name="{}" partnumber="{}"><mesh><vertices>"#,
+            i + 1,
+            escaped(object.name),
+            escaped(&object.part_number)
+        );
+        for p in &object.mesh.positions {
+            // As in the STL: single precision, in the fewest digits that read back.
+            let _ =
+                writeln!(text, r#"<vertex x="{}" y="{}" z="{}"/>"#, single(p.x), single(p.y), single(p.z));
+        }
+        text.push_str("</vertices><triangles>\n");
+        for [a, b, c] in &object.mesh.triangles {
+            let _ = writeln!(text, r#"<triangle v1="{a}" v2="{b}" v3="{c}"/>"#);
+        }
+        text.push_str("</triangles></mesh></object>\n");
+    }
+    text.push_str("</resources>\n<build>\n");
+    let meshes: Vec<&Mesh> = objects.iter().map(|o| o.mesh).collect();
+    for (i, by) in lay_out(&meshes).iter().enumerate() {
+        // Rounded up to whole micrometres, so that rounding leaves nothing outside the positive octant.
+        let at = by.map(|v| (v * 1e3).ceil() / 1e3);
+        let _ = writeln!(
+            text,
+            r#"<item objectid="{}" transform="1 0 0 0 1 0 0 0 1 {} {} {}"/>"#,
+            i + 1,
+            at.x,
+            at.y,
+            at.z
+        );
+    }
+    text.push_str("</build>\n</model>\n");
+    text
+}
+
+/// A coordinate in single precision; a negative zero is a zero.
+#[allow(clippy::cast_possible_truncation)]
+fn single(value: f64) -> f32 {
+    value as f32 + 0.0
+}
+
+/// `text` for an XML attribute or element.
+fn escaped(text: &str) -> String {
+    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() && c != '\n' && c != '\t' => {}
+            c => out.push(c),
+        }
+        out
+    })
+}

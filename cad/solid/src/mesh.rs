@@ -1,0 +1,74 @@
+//! Indexed triangle meshes.
+
+/// A point in space, in millimetres.
+pub type Point3 = nalgebra::Point3<f64>;
+/// A displacement in space, in millimetres.
+pub type Vector3 = nalgebra::Vector3<f64>;
+
+/// A triangle mesh; triangles run counter-clockwise seen from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Vertices in millimetres.
+    pub positions: Vec<Point3>,
+    /// Vertex numbers of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// A mesh from vertices and triangles.
+    pub fn new(positions: Vec<Point3>, triangles: Vec<[u32; 3]>) -> Self {
+        Self { positions, triangles }
+    }
+
+    /// The corners of triangle `t`.
+    pub fn corners(&self, t: [u32; 3]) -> [Point3; 3] {
+        t.map(|i| self.positions[i as usize])
+    }
+
+    /// Corners of every triangle.
+    pub fn facets(&self) -> impl Iterator<Item = [Point3; 3]> + '_ {
+        self.triangles.iter().map(|t| self.corners(*t))
+    }
+
+    /// Volume in mm³ by the divergence theorem along x, y and z. The three agree if the mesh is closed.
+    pub fn axis_volumes_mm3(&self) -> [f64; 3] {
+        // Measured from the middle of the bounding box, so that a part far from the origin loses no digits.
+        let middle = self.bounds().map_or(Point3::origin(), |(low, high)| nalgebra::center(&low, &high));
+        let mut sums = Vector3::zeros();
+        for [a, b, c] in self.facets() {
+            let normal = (b - a).cross(&(c - a)) / 2.0;
+            let centroid = ((a - middle) + (b - middle) + (c - middle)) / 3.0;
+            sums += normal.component_mul(&centroid);
+        }
+        [sums.x, sums.y, sums.z]
+    }
+
+    /// Volume in mm³, the mean of the three axis integrals.
+    pub fn volume_mm3(&self) -> f64 {
+        self.axis_volumes_mm3().iter().sum::<f64>() / 3.0
+    }
+
+    /// Surface in mm².
+    pub fn surface_mm2(&self) -> f64 {
+        self.facets().map(|[a, b, c]| (b - a).cross(&(c - a)).norm() / 2.0).sum()
+    }
+
+    /// Lower and upper corner of the bounding box; `None` without vertices.
+    pub fn bounds(&self) -> Option<(Point3, Point3)> {
+        self.positions.iter().map(|p| (*p, *p)).reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))
+    }
+
+    /// The mesh moved by `by`.
+    #[must_use]
+    pub fn translated(mut self, by: Vector3) -> Self {
+        self.positions.iter_mut().for_each(|p| *p += by);
+        self
+    }
+
+    /// The mesh turned half round about the y axis.
+    #[must_use]
+    pub fn flipped_about_y(mut self) -> Self {
+        self.positions.iter_mut().for_each(|p| *p = Point3::new(-p.x, p.y, -p.z));
+        self
+    }
+}

@@ -1,0 +1,158 @@
+//! A design with everything built once: each part's solid, its mesh, and what the mesh measures.
+//!
+//! Every format takes a [`Built`]; none builds or tessellates a part again.
+
+use crate::config::ConfigError;
+use crate::design::Design;
+use crate::parallel::map_each;
+use crate::parts::{Part, Role, printed, reference_bodies};
+use pinswitch_solid::files::stl_bytes;
+use pinswitch_solid::mesh::Mesh;
+use pinswitch_solid::solid::CapError;
+use pinswitch_solid::validity::{Expectation, Facts, Fault, examine};
+
+/// Why a design cannot be built.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// The configuration asks for something that cannot be built.
+    #[error(transparent)]
+    Configuration(#[from] ConfigError),
+    /// Contours of a part cross: a bound is missing, and this is a fault of the program.
+    #[error("{part}: {source}; please report the configuration")]
+    Cap {
+        /// The part.
+        part: String,
+        /// Where.
+        source: CapError,
+    },
+    /// A mesh is not valid: a fault of the program.
+    #[error("{part}: invalid mesh: {fault}; please report the configuration")]
+    Invalid {
+        /// The part.
+        part: String,
+        /// What is wrong.
+        fault: Fault,
+    },
+}
+
+/// A body with its mesh about the pulley's axis, standing on z = 0.
+#[derive(Clone, Debug)]
+pub struct MeshedBody {
+    /// The body.
+    pub part: Part,
+    /// Its mesh.
+    pub mesh: Mesh,
+}
+
+impl MeshedBody {
+    fn new(part: Part, design: &Design) -> Result<Self, BuildError> {
+        let mesh = part.mesh(design).map_err(|source| BuildError::Cap { part: part.name.clone(), source })?;
+        Ok(Self { part, mesh })
+    }
+}
+
+/// A printed part, meshed and examined.
+#[derive(Clone, Debug)]
+pub struct BuiltPart {
+    /// The part with its mesh about the pulley's axis.
+    pub body: MeshedBody,
+    /// The mesh as it is written: on the print bed.
+    pub print_mesh: Mesh,
+    /// What the written mesh measures.
+    pub facts: Facts,
+}
+
+impl BuiltPart {
+    /// Meshes `part` and examines the mesh. The search for self-intersections, which vertical walls over checked caps
+    /// cannot have, is left to `pinswitch check` and the tests.
+    ///
+    /// # Errors
+    /// [`BuildError`]; a mesh that the oracle refuses is never returned.
+    pub fn new(part: Part, design: &Design) -> Result<Self, BuildError> {
+        let body = MeshedBody::new(part, design)?;
+        let print_mesh = body.mesh.clone().translated(body.part.print_shift_mm());
+        let expected = Expectation { intersections: false, ..body.part.expectation(design) };
+        let found = examine(&print_mesh, &expected);
+        match found.faults.into_iter().next() {
+            Some(fault) => Err(BuildError::Invalid { part: body.part.name, fault }),
+            None => Ok(Self { body, print_mesh, facts: found.facts }),
+        }
+    }
+
+    /// The part.
+    pub const fn part(&self) -> &Part {
+        &self.body.part
+    }
+
+    /// The binary STL of the part.
+    ///
+    /// # Errors
+    /// The writer's error; memory does not fail.
+    pub fn stl(&self) -> std::io::Result<Vec<u8>> {
+        stl_bytes(&self.print_mesh)
+    }
+}
+
+/// A design with its printed parts and reference bodies.
+///
+/// ```
+/// use pinswitch_switch::{built::Built, config::Configuration, design::Design};
+///
+/// let built = Built::new(Design::new(Configuration::default())?)?;
+/// let shell = &built.printed()[0];
+/// assert_eq!(shell.part().name, "shell");
+/// // A mesh and the exact solid agree within the chord tolerance.
+/// assert!((shell.facts.volume_mm3 / shell.part().solid.volume_mm3() - 1.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Built {
+    design: Design,
+    printed: Vec<BuiltPart>,
+    reference: Vec<MeshedBody>,
+}
+
+impl Built {
+    /// Builds, meshes and examines everything that `design` asks for.
+    ///
+    /// # Errors
+    /// [`BuildError`]; nothing is returned if one part cannot be built.
+    pub fn new(design: Design) -> Result<Self, BuildError> {
+        let printed = map_each(printed(&design)?, |part| BuiltPart::new(part, &design))
+            .into_iter()
+            .collect::<Result<_, _>>()?;
+        let reference = reference_bodies(&design)?
+            .into_iter()
+            .map(|part| MeshedBody::new(part, &design))
+            .collect::<Result<_, _>>()?;
+        Ok(Self { design, printed, reference })
+    }
+
+    /// The design.
+    pub const fn design(&self) -> &Design {
+        &self.design
+    }
+
+    /// The printed parts, in the order of [`crate::parts::PRINTED_PARTS`].
+    pub fn printed(&self) -> &[BuiltPart] {
+        &self.printed
+    }
+
+    /// Layer and pins.
+    pub fn reference(&self) -> &[MeshedBody] {
+        &self.reference
+    }
+
+    /// Every body of the assembly with its place, printed ones first. The proxy stands in for the silicone only where
+    /// there is none.
+    pub fn assembly(&self) -> impl Iterator<Item = &MeshedBody> {
+        let has_layer = self.reference.iter().any(|b| b.part.role == Role::Layer);
+        self.printed
+            .iter()
+            .map(|p| &p.body)
+            .filter(move |b| !(has_layer && b.part.role == Role::Proxy))
+            .chain(&self.reference)
+            .filter(|b| b.part.pose.is_some())
+    }
+}

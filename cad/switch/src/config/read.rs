@@ -1,0 +1,142 @@
+//! Reading a configuration from TOML: every complaint names file, line, field, value, bound and remedy.
+
+use std::ops::Range;
+
+use toml_edit::{Document, Item, TableLike, Value};
+
+use super::parameter::Parameter;
+use super::parameters::Configuration;
+use super::{ConfigError, Place};
+
+/// Reads `text`; `file` names it in complaints.
+///
+/// # Errors
+/// [`ConfigError`] for text that is no TOML, an unknown key, or a value out of its range.
+pub fn read(text: &str, file: &str) -> Result<(Configuration, Places), ConfigError> {
+    let at = |span: Option<Range<usize>>| Place::new(file, text, span.map_or(0, |s| s.start));
+    let document: Document<String> =
+        text.parse().map_err(|e: toml_edit::TomlError| ConfigError::syntax(at(e.span()), e.message()))?;
+    let mut configuration = Configuration::default();
+    let mut places = Places::default();
+    for (table, item) in document.as_table().iter() {
+        let place = at(key_span(document.as_table(), table));
+        if !sections().contains(&table) {
+            return Err(unknown(table, &sections(), "table", place));
+        }
+        let Some(entries) = item.as_table_like() else {
+            return Err(
+                ConfigError::new(table, display(item), format!("write it as a table: [{table}]")).at(place)
+            );
+        };
+        for (key, item) in entries.iter() {
+            let place = at(item.span().or_else(|| key_span(entries, key)));
+            let parameter = find(table, key, at(key_span(entries, key)))?;
+            let value = item.as_value().ok_or_else(|| {
+                ConfigError::new(parameter.path(), display(item), "give a single value".to_owned())
+                    .at(place.clone())
+            })?;
+            set(&mut configuration, parameter, value).map_err(|e| e.at(place.clone()))?;
+            places.0.push((parameter.path(), place));
+        }
+    }
+    Ok((configuration, places))
+}
+
+/// Sets `section.key=value` in `configuration`, as `--set` does.
+///
+/// # Errors
+/// [`ConfigError`] for an unknown key or a value out of its range.
+pub fn assign(configuration: &mut Configuration, assignment: &str) -> Result<(), ConfigError> {
+    let place = Place { file: "--set".to_owned(), line: None };
+    let (path, value) = assignment.split_once('=').ok_or_else(|| {
+        ConfigError::syntax(place.clone(), &format!("{assignment:?} is no assignment; write table.key=value"))
+    })?;
+    let (table, key) = path.trim().split_once('.').unwrap_or(("", path.trim()));
+    if !sections().contains(&table) {
+        return Err(unknown(table, &sections(), "table", place));
+    }
+    let parameter = find(table, key, place.clone())?;
+    // A bare word is taken as text, so that --set support.slots=occupied works without quotes in quotes.
+    let value = value.trim().parse::<Value>().unwrap_or_else(|_| Value::from(value.trim()));
+    set(configuration, parameter, &value).map_err(|e| e.at(place))
+}
+
+impl Configuration {
+    /// The value of the parameter called `path`, as a person would write it; `None` for no parameter.
+    pub fn shown(&self, path: &str) -> Option<String> {
+        let parameter = Self::PARAMETERS.iter().find(|p| p.path() == path)?;
+        Some(match (parameter.get)(self) {
+            Value::Float(number) => number.value().to_string(),
+            other => other.decorated("", "").to_string(),
+        })
+    }
+}
+
+/// Where each value that a file gives stands in it.
+#[derive(Clone, Debug, Default)]
+pub struct Places(Vec<(String, Place)>);
+
+impl Places {
+    /// Whether the file gives `field`.
+    pub fn gives(&self, field: &str) -> bool {
+        self.of(field).is_some()
+    }
+
+    /// Where `field` stands, if the file gives it.
+    pub fn of(&self, field: &str) -> Option<&Place> {
+        self.0.iter().find(|(path, _)| path == field).map(|(_, place)| place)
+    }
+}
+
+fn set(
+    c: &mut Configuration,
+    parameter: &Parameter<Configuration>,
+    value: &Value,
+) -> Result<(), ConfigError> {
+    (parameter.set)(c, value).map_err(|remedy| {
+        ConfigError::new(parameter.path(), value.clone().decorated("", "").to_string(), remedy)
+    })
+}
+
+fn sections() -> Vec<&'static str> {
+    let mut all: Vec<_> = Configuration::PARAMETERS.iter().map(|p| p.section).collect();
+    all.dedup();
+    all
+}
+
+fn find(table: &str, key: &str, place: Place) -> Result<&'static Parameter<Configuration>, ConfigError> {
+    let in_table = || Configuration::PARAMETERS.iter().filter(|p| p.section == table);
+    in_table().find(|p| p.key == key).ok_or_else(|| {
+        let keys: Vec<_> = in_table().map(|p| p.key).collect();
+        let mut error = unknown(key, &keys, "key", place);
+        error.field = format!("{table}.{key}");
+        error
+    })
+}
+
+/// An unknown word, with the nearest known one.
+fn unknown(word: &str, known: &[&str], what: &str, place: Place) -> ConfigError {
+    let nearest =
+        known.iter().max_by(|a, b| strsim::jaro_winkler(word, a).total_cmp(&strsim::jaro_winkler(word, b)));
+    let remedy = match nearest {
+        Some(near) if strsim::jaro_winkler(word, near) > 0.7 => {
+            format!("did you mean {near:?}? templates/reference.toml lists all")
+        }
+        _ => format!("known are {}", known.join(", ")),
+    };
+    ConfigError {
+        field: word.to_owned(),
+        value: None,
+        problem: format!("is no known {what}"),
+        remedy,
+        place: Some(place),
+    }
+}
+
+fn key_span(table: &dyn TableLike, key: &str) -> Option<Range<usize>> {
+    table.get_key_value(key).and_then(|(key, item)| key.span().or_else(|| item.span()))
+}
+
+fn display(item: &Item) -> String {
+    item.type_name().to_owned()
+}

@@ -1,0 +1,123 @@
+//! Rules for the ends of sectors, the mould, and the loads.
+
+use super::shell::LEAST_INNER_RADIUS_MM;
+use super::{Assessment, Inspection, Rule, Severity, require};
+use crate::config::MouldKind;
+
+/// Largest shift of a sector's ends, as a share of its inner radius: beyond it they miss the circle.
+const LARGEST_SHIFT: f64 = 0.9;
+/// How far the base or the basin of a mould reaches beyond what it holds.
+const MOULD_MARGIN_MM: f64 = 1.0;
+/// What must stay open behind a sector, so that its ends do not meet.
+const LEAST_GAP_MM: f64 = 0.5;
+
+pub(super) const RULES: &[Rule] = &[
+    Rule { field: "segment.end_margin_mm", severity: Severity::Error, assess: ends_in_sector },
+    Rule { field: "segment.span_deg", severity: Severity::Error, assess: ends_apart },
+    Rule { field: "mould.wall_mm", severity: Severity::Error, assess: room_in_tray },
+    Rule { field: "mould.wall_mm", severity: Severity::Error, assess: mould_ends_in_sector },
+    Rule { field: "segment.span_deg", severity: Severity::Error, assess: mould_ends_apart },
+    Rule { field: "friction.load_min_n", severity: Severity::Error, assess: load_range },
+];
+
+/// A sector whose ends are shifted parallel to radial planes: at its inner radius they are furthest around the axis, and
+/// must neither leave the circle nor meet behind it.
+struct Ends {
+    inner_mm: f64,
+    shift_mm: f64,
+}
+
+impl Ends {
+    /// Of shell and supports.
+    fn of_sector(i: &Inspection<'_>) -> Self {
+        Self { inner_mm: i.inner_radius_mm(), shift_mm: i.configuration().segment.end_margin_mm }
+    }
+
+    /// Of the mould, which goes around the sector with a wall at both ends; `None` without one.
+    fn of_mould(i: &Inspection<'_>) -> Option<Self> {
+        let c = i.configuration();
+        let scale = 1.0 / (1.0 - c.mould.shrinkage_pct / 100.0);
+        let margin = c.segment.end_margin_mm * scale;
+        match c.mould.kind {
+            MouldKind::None => None,
+            MouldKind::OnePiece => {
+                let depth = i.layer_width_mm() * scale;
+                let around = c.mould.wall_mm + MOULD_MARGIN_MM + depth * c.mould.draft_deg.to_radians().tan();
+                Some(Self { inner_mm: c.shell.outer_radius_mm * scale - around, shift_mm: margin + around })
+            }
+            MouldKind::Split => {
+                let inner = i.inner_radius_mm();
+                Some(Self {
+                    inner_mm: inner - MOULD_MARGIN_MM.min(inner / 2.0),
+                    shift_mm: margin + c.mould.wall_mm + MOULD_MARGIN_MM,
+                })
+            }
+        }
+    }
+
+    fn assess_shift(&self, remedies: &str) -> Assessment {
+        let most = LARGEST_SHIFT * self.inner_mm;
+        require(self.shift_mm <= most, || {
+            (
+                format!(
+                    "shifts the ends by {:.3} mm, at an inner radius of {:.3} mm",
+                    self.shift_mm, self.inner_mm
+                ),
+                format!("lower it by {:.3}{remedies}", self.shift_mm - most),
+            )
+        })
+    }
+
+    fn assess_gap(&self, half_span_rad: f64, remedies: &str) -> Assessment {
+        let half_rad = half_span_rad + (self.shift_mm / self.inner_mm).asin();
+        let most_rad = std::f64::consts::PI - (LEAST_GAP_MM / 2.0 / self.inner_mm).min(1.0).asin();
+        require(half_rad <= most_rad, || {
+            (
+                format!("lets the ends meet behind the axis; {LEAST_GAP_MM} mm must stay between them"),
+                format!("lower it by {:.1}{remedies}", 2.0 * (half_rad - most_rad).to_degrees()),
+            )
+        })
+    }
+}
+
+fn ends_in_sector(i: &Inspection<'_>) -> Assessment {
+    Ends::of_sector(i).assess_shift(" or lower shell.wall_mm")
+}
+
+fn ends_apart(i: &Inspection<'_>) -> Assessment {
+    Ends::of_sector(i).assess_gap(i.half_span_rad(), " or raise shell.outer_radius_mm")
+}
+
+fn room_in_tray(i: &Inspection<'_>) -> Assessment {
+    let Some(ends) = Ends::of_mould(i).filter(|_| i.configuration().mould.kind == MouldKind::OnePiece) else {
+        return Assessment::NotApplicable;
+    };
+    require(ends.inner_mm >= LEAST_INNER_RADIUS_MM, || {
+        (
+            "leaves no room inside the inner wall of the mould".to_owned(),
+            format!("lower it by {:.3}", LEAST_INNER_RADIUS_MM - ends.inner_mm),
+        )
+    })
+}
+
+fn mould_ends_in_sector(i: &Inspection<'_>) -> Assessment {
+    Ends::of_mould(i).map_or(Assessment::NotApplicable, |ends| {
+        ends.assess_shift(", lower shell.wall_mm, or set mould.kind = \"none\"")
+    })
+}
+
+fn mould_ends_apart(i: &Inspection<'_>) -> Assessment {
+    Ends::of_mould(i).map_or(Assessment::NotApplicable, |ends| {
+        ends.assess_gap(i.half_span_rad(), ", raise shell.outer_radius_mm, or set mould.kind = \"none\"")
+    })
+}
+
+fn load_range(i: &Inspection<'_>) -> Assessment {
+    let f = &i.configuration().friction;
+    require(f.load_min_n < f.load_max_n, || {
+        (
+            format!("is not below friction.load_max_n = {}", f.load_max_n),
+            "lower it or raise friction.load_max_n".to_owned(),
+        )
+    })
+}

@@ -1,0 +1,131 @@
+//! Rules for pins, layer and tendon.
+
+use super::{Assessment, Inspection, Rule, Severity, require};
+
+/// Gap that the tendon needs on both sides of it.
+const TENDON_GAP_MM: f64 = 0.5;
+/// A rope bent sharper than this, pulley over rope diameter, breaks soon (cad/doc/print-limits.md).
+const LEAST_BEND_RATIO: f64 = 10.0;
+/// Below this ratio of pulley to rope diameter a wire rope tires early (cad/doc/print-limits.md).
+const GOOD_BEND_RATIO: f64 = 20.0;
+/// Silicone left between the bottom of its grooves and its inner face.
+const LEAST_LAYER_MM: f64 = 0.5;
+
+pub(super) const RULES: &[Rule] = &[
+    Rule { field: "layout.pins", severity: Severity::Error, assess: pins_in_grooves },
+    Rule { field: "layout.pins", severity: Severity::Error, assess: one_pin_per_groove },
+    Rule { field: "pins.diameter_mm", severity: Severity::Error, assess: pin_fits_groove },
+    Rule { field: "silicone.thickness_mm", severity: Severity::Error, assess: layer_thickness },
+    Rule { field: "shell.width_mm", severity: Severity::Error, assess: layer_width },
+    Rule { field: "layout.wrap_angle_deg", severity: Severity::Error, assess: wrap_within_segment },
+    Rule { field: "tendon.rope_diameter_mm", severity: Severity::Error, assess: tendon_in_channel },
+    Rule { field: "tendon.rope_diameter_mm", severity: Severity::Error, assess: tendon_bend },
+    Rule { field: "shell.outer_radius_mm", severity: Severity::Warning, assess: early_wear },
+];
+
+fn pins_in_grooves(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let outside = c.layout.pins.iter().find(|p| **p < 1 || **p > c.segment.grooves);
+    require(outside.is_none(), || {
+        (
+            format!(
+                "has groove {}; the segment has grooves 1 to {}",
+                outside.copied().unwrap_or_default(),
+                c.segment.grooves
+            ),
+            "move the pin or raise segment.grooves".to_owned(),
+        )
+    })
+}
+
+fn one_pin_per_groove(i: &Inspection<'_>) -> Assessment {
+    let pins = &i.configuration().layout.pins;
+    let twice = pins.iter().find(|p| pins.iter().filter(|q| q == p).count() > 1);
+    require(twice.is_none(), || {
+        (
+            format!("puts two pins in groove {}", twice.copied().unwrap_or_default()),
+            "name every groove once".to_owned(),
+        )
+    })
+}
+
+fn pin_fits_groove(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let most = 2.0 * c.segment.groove_radius_mm - c.pins.tolerance_mm;
+    require(c.pins.diameter_mm <= most, || {
+        (
+            format!("is wider than its groove: {most:.3} mm is the most with the pin's tolerance"),
+            "use thinner pins or raise segment.groove_radius_mm".to_owned(),
+        )
+    })
+}
+
+fn layer_thickness(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let least = c.segment.groove_radius_mm + LEAST_LAYER_MM;
+    require(c.silicone.thickness_mm >= least, || {
+        (
+            format!("leaves less than {LEAST_LAYER_MM} mm of silicone under its grooves"),
+            format!("raise it to {least:.3} or lower segment.groove_radius_mm"),
+        )
+    })
+}
+
+fn layer_width(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let width = i.layer_width_mm();
+    let least = 2.0 * c.support.lip_depth_mm + 2.0 * c.print.least_wall_mm;
+    require(width >= least, || {
+        (
+            format!("leaves a layer of {width:.3} mm; the lips and the mould need {least:.3} mm"),
+            "raise it or lower silicone.side_clearance_mm or support.lip_depth_mm".to_owned(),
+        )
+    })
+}
+
+fn wrap_within_segment(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    require(c.layout.wrap_angle_deg <= c.segment.span_deg, || {
+        (
+            format!("is beyond the segment of {} deg", c.segment.span_deg),
+            "lower it or raise segment.span_deg".to_owned(),
+        )
+    })
+}
+
+fn tendon_in_channel(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let channel = c.shell.width_mm - 2.0 * c.support.lip_depth_mm;
+    let most = channel - 2.0 * TENDON_GAP_MM;
+    let tendon = i.tendon_diameter_mm();
+    require(tendon <= most, || {
+        (
+            format!(
+                "makes a tendon of {tendon:.3} mm, wider than the channel of {channel:.3} mm takes ({most:.3} mm)"
+            ),
+            "use a thinner tendon, raise shell.width_mm or lower support.lip_depth_mm".to_owned(),
+        )
+    })
+}
+
+fn tendon_bend(i: &Inspection<'_>) -> Assessment {
+    let most = 2.0 * i.contact_radius_mm() / LEAST_BEND_RATIO;
+    require(i.tendon_diameter_mm() <= most, || {
+        (
+            format!(
+                "makes a tendon that the pulley bends too sharply: {most:.3} mm is the most at this radius"
+            ),
+            "use a thinner tendon or raise shell.outer_radius_mm".to_owned(),
+        )
+    })
+}
+
+fn early_wear(i: &Inspection<'_>) -> Assessment {
+    let ratio = i.bend_ratio();
+    require(ratio >= GOOD_BEND_RATIO, || {
+        (
+            format!("pulley over tendon diameter is {ratio:.1}; ropes last from {GOOD_BEND_RATIO} on"),
+            "raise shell.outer_radius_mm".to_owned(),
+        )
+    })
+}

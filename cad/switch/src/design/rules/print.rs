@@ -1,0 +1,157 @@
+//! Rules of the printer: what it can make, what it makes well, and what a person should look at.
+
+use super::{Assessment, Inspection, Rule, Severity, require};
+
+/// Least chamfer of a bottom edge.
+const LEAST_CHAMFER_MM: f64 = 0.02;
+/// Space beyond the mould's outer wall that its keys and the plate's margin take on the bed.
+const BED_MARGIN_MM: f64 = 3.0;
+/// Longest bridge that prints without sagging, mm (cad/doc/print-limits.md).
+const LONGEST_BRIDGE_MM: f64 = 10.0;
+/// Gaps under this are closed by slicers, mm (cad/doc/print-limits.md).
+const LEAST_GAP_MM: f64 = 0.1;
+/// Wall around a screw hole that holds well, mm.
+const GOOD_RIM_MM: f64 = 1.0;
+
+pub(super) const RULES: &[Rule] = &[
+    Rule { field: "print.elephant_foot_mm", severity: Severity::Error, assess: chamfer_prints },
+    Rule { field: "print.bed_mm", severity: Severity::Error, assess: parts_on_bed },
+    Rule { field: "label.stroke_mm", severity: Severity::Warning, assess: label_stroke },
+    Rule { field: "print.layer_mm", severity: Severity::Warning, assess: layers_per_groove },
+    Rule { field: "print.line_mm", severity: Severity::Checklist, assess: line_of_nozzle },
+    Rule { field: "print.layer_mm", severity: Severity::Checklist, assess: layer_of_nozzle },
+    Rule { field: "support.slot_clearance_mm", severity: Severity::Checklist, assess: open_slots },
+    Rule { field: "support.slot_floor_mm", severity: Severity::Checklist, assess: slot_floor },
+    Rule { field: "pins.diameter_mm", severity: Severity::Checklist, assess: bridges },
+    Rule { field: "shell.outer_radius_mm", severity: Severity::Checklist, assess: lands },
+    Rule { field: "shell.wall_mm", severity: Severity::Checklist, assess: rim_of_holes },
+];
+
+/// A line of the checklist: the same statement, kept or not.
+fn check(is_kept: bool, statement: String, remedy: &str) -> Assessment {
+    if is_kept {
+        Assessment::Kept(statement)
+    } else {
+        Assessment::Broken { problem: statement, remedy: remedy.to_owned() }
+    }
+}
+
+/// A chamfer is left out or large enough to print: a sliver of one would also be thinner than a facet may be.
+fn chamfer_prints(i: &Inspection<'_>) -> Assessment {
+    let chamfer = i.configuration().print.elephant_foot_mm;
+    require(chamfer == 0.0 || chamfer >= LEAST_CHAMFER_MM, || {
+        (
+            format!("is too small to print; the least is {LEAST_CHAMFER_MM} mm"),
+            format!("raise it to {LEAST_CHAMFER_MM}, or set 0 to leave the chamfer out"),
+        )
+    })
+}
+
+fn parts_on_bed(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let mould = i.contact_radius_mm() + c.mould.wall_mm + c.mould.key_diameter_mm + BED_MARGIN_MM;
+    let reach = i.support_radius_mm().max(mould);
+    let half = i.half_span_rad().min(std::f64::consts::FRAC_PI_2);
+    let width = 2.0 * reach * half.sin() + 2.0 * (c.segment.end_margin_mm + c.mould.wall_mm);
+    require(2.0 * reach <= c.print.bed_mm || width <= c.print.bed_mm, || {
+        (
+            format!("is smaller than the parts, which are {width:.1} mm wide"),
+            "use a larger printer or lower shell.outer_radius_mm or segment.span_deg".to_owned(),
+        )
+    })
+}
+
+fn label_stroke(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    require(!c.label.engrave || c.label.stroke_mm >= c.print.line_mm, || {
+        (
+            format!(
+                "label.stroke_mm = {} is under one printed line ({} mm)",
+                c.label.stroke_mm, c.print.line_mm
+            ),
+            "raise it".to_owned(),
+        )
+    })
+}
+
+fn layers_per_groove(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    require(4.0 * c.print.layer_mm <= 2.0 * c.segment.groove_radius_mm, || {
+        (
+            format!("the grooves are narrower than four layers of print.layer_mm = {}", c.print.layer_mm),
+            "use thinner layers".to_owned(),
+        )
+    })
+}
+
+fn line_of_nozzle(i: &Inspection<'_>) -> Assessment {
+    let p = &i.configuration().print;
+    check(
+        p.line_mm >= p.nozzle_mm,
+        format!("a line of {} mm from a nozzle of {} mm", p.line_mm, p.nozzle_mm),
+        "raise print.line_mm to the nozzle or more",
+    )
+}
+
+fn layer_of_nozzle(i: &Inspection<'_>) -> Assessment {
+    let p = &i.configuration().print;
+    check(
+        p.layer_mm <= 0.8 * p.nozzle_mm,
+        format!("layers of {} mm, at most four fifths of the nozzle", p.layer_mm),
+        "lower print.layer_mm",
+    )
+}
+
+fn open_slots(i: &Inspection<'_>) -> Assessment {
+    let clearance = i.configuration().support.slot_clearance_mm;
+    check(
+        clearance >= LEAST_GAP_MM,
+        format!("slots {clearance} mm wider than the pins; slicers close gaps under {LEAST_GAP_MM:.2} mm"),
+        "raise support.slot_clearance_mm",
+    )
+}
+
+fn slot_floor(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    check(
+        c.support.slot_floor_mm >= 3.0 * c.print.layer_mm,
+        format!("slot floors of {} mm, three layers or more", c.support.slot_floor_mm),
+        "raise support.slot_floor_mm",
+    )
+}
+
+fn bridges(i: &Inspection<'_>) -> Assessment {
+    i.widest_bridge_mm.map_or(Assessment::NotApplicable, |bridge| {
+        check(
+            bridge <= LONGEST_BRIDGE_MM,
+            format!("ceilings of up to {bridge:.2} mm to bridge, up to {LONGEST_BRIDGE_MM} mm print well"),
+            "lower pins.diameter_mm or mould.key_diameter_mm",
+        )
+    })
+}
+
+fn lands(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    if c.segment.grooves < 2 {
+        return Assessment::NotApplicable;
+    }
+    let (land, two_lines) = (i.land_mm(), 2.0 * c.print.line_mm);
+    check(
+        land >= two_lines,
+        format!("lands of {land:.2} mm between grooves, two lines are {two_lines:.2} mm"),
+        "raise shell.outer_radius_mm or lower segment.grooves",
+    )
+}
+
+fn rim_of_holes(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    if c.fasteners.count == 0 {
+        return Assessment::NotApplicable;
+    }
+    let rim = (c.shell.wall_mm - c.segment.groove_radius_mm - c.fasteners.hole_diameter_mm) / 2.0;
+    check(
+        rim >= GOOD_RIM_MM,
+        format!("{rim:.2} mm of wall around the screw holes, {GOOD_RIM_MM:.1} is good"),
+        "raise shell.wall_mm or lower fasteners.hole_diameter_mm",
+    )
+}

@@ -1,0 +1,166 @@
+//! Rules for the side supports, their slots and the fasteners.
+
+use super::{Assessment, Inspection, Rule, Severity, least_wall_mm, require};
+use crate::config::SlotKind;
+
+/// Wall left around a fastener hole (cad/doc/print-limits.md).
+const HOLE_EDGE_MM: f64 = 0.5;
+/// Beyond this clearance the pins walk noticeably (cad/doc/print-limits.md).
+const WIDE_CLEARANCE_MM: f64 = 0.3;
+
+pub(super) const RULES: &[Rule] = &[
+    Rule { field: "support.rise_mm", severity: Severity::Error, assess: slots_in_plate },
+    Rule { field: "support.slot_clearance_mm", severity: Severity::Error, assess: land_between_slots },
+    Rule { field: "segment.end_margin_mm", severity: Severity::Error, assess: wall_beyond_slots },
+    Rule { field: "support.slot_floor_mm", severity: Severity::Error, assess: blind_slot_depth },
+    Rule { field: "support.travel_margin_mm", severity: Severity::Error, assess: slot_travel },
+    Rule { field: "support.plate_mm", severity: Severity::Error, assess: pin_engagement },
+    Rule { field: "fasteners.hole_diameter_mm", severity: Severity::Error, assess: holes_in_wall },
+    Rule { field: "fasteners.end_distance_mm", severity: Severity::Error, assess: holes_in_sector },
+    Rule { field: "fasteners.count", severity: Severity::Error, assess: holes_apart },
+    Rule { field: "support.slot_clearance_mm", severity: Severity::Warning, assess: wide_clearance },
+];
+
+fn slots_in_plate(i: &Inspection<'_>) -> Assessment {
+    let (slot, wall) = (i.slot(), least_wall_mm(i.configuration(), 1.0));
+    let outer_edge = i.support_radius_mm() - slot.outer_mm - slot.width_mm / 2.0;
+    require(outer_edge >= wall, || {
+        (
+            format!(
+                "lets the slots leave the plate: {outer_edge:.3} mm is left outside them, {wall:.3} mm is the least"
+            ),
+            format!("raise it by {:.3}", wall - outer_edge),
+        )
+    })
+}
+
+fn land_between_slots(i: &Inspection<'_>) -> Assessment {
+    let (slot, wall) = (i.slot(), least_wall_mm(i.configuration(), 1.0));
+    let half = slot.width_mm / 2.0;
+    let land = 2.0 * (slot.inner_mm - half) * (i.pitch_rad() / 2.0).sin() - 2.0 * half;
+    require(i.configuration().segment.grooves < 2 || land >= wall, || {
+        (
+            format!("leaves {land:.3} mm between neighbouring slots; {wall:.3} mm is the least"),
+            "lower it, use fewer grooves, or raise shell.outer_radius_mm".to_owned(),
+        )
+    })
+}
+
+fn wall_beyond_slots(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let slot = i.slot();
+    let half = slot.width_mm / 2.0;
+    let end = (slot.inner_mm - half) * i.half_pitch_rad().sin() + c.segment.end_margin_mm - half;
+    let least = least_wall_mm(c, 0.5);
+    require(end >= least, || {
+        (
+            format!("leaves {end:.3} mm beyond the outermost slot; {least:.3} mm is the least"),
+            format!("raise it by {:.3}", least - end),
+        )
+    })
+}
+
+fn blind_slot_depth(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let depth = i.slot().depth_mm;
+    require(c.support.slot_kind != SlotKind::Blind || depth >= least_wall_mm(c, 1.0), || {
+        (
+            format!("leaves a slot of {depth:.3} mm in a plate of {} mm", c.support.plate_mm),
+            "lower it, raise support.plate_mm, or use through slots".to_owned(),
+        )
+    })
+}
+
+/// A pin at the end of its slot must not reach the shell.
+fn slot_travel(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let left = c.silicone.thickness_mm - c.pins.diameter_mm - c.support.travel_margin_mm;
+    require(left >= 0.0, || {
+        (
+            format!("lets a sunk pin reach {:.3} mm into the shell", -left),
+            "lower it, use thinner pins, or raise silicone.thickness_mm".to_owned(),
+        )
+    })
+}
+
+fn pin_engagement(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let engagement = (i.pin_length_mm() - c.shell.width_mm) / 2.0;
+    let least = c.pins.diameter_mm;
+    require(engagement >= least, || {
+        (
+            format!(
+                "holds the pins by {engagement:.3} mm at each end; one diameter, {least:.3} mm, is the least"
+            ),
+            "raise it or lower support.slot_floor_mm or pins.end_play_mm".to_owned(),
+        )
+    })
+}
+
+/// Wall that must stay around a fastener hole.
+fn hole_edge_mm(i: &Inspection<'_>) -> f64 {
+    HOLE_EDGE_MM.max(least_wall_mm(i.configuration(), 1.0))
+}
+
+fn holes_in_wall(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    if c.fasteners.count == 0 {
+        return Assessment::NotApplicable;
+    }
+    let edge = hole_edge_mm(i);
+    let radial = c.shell.wall_mm - c.segment.groove_radius_mm - 2.0 * edge;
+    // The slots of the supports may reach below the shell's face.
+    let slot = i.slot();
+    let under_slots = 2.0 * (slot.inner_mm - slot.width_mm / 2.0 - edge - i.fastener_radius_mm());
+    let most = radial.min(under_slots);
+    require(c.fasteners.hole_diameter_mm <= most, || {
+        (
+            format!("does not fit in the wall: {most:.3} mm is the most with {edge} mm around it"),
+            "use a smaller screw, raise shell.wall_mm, or set fasteners.count = 0".to_owned(),
+        )
+    })
+}
+
+fn holes_in_sector(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    if c.fasteners.count == 0 {
+        return Assessment::NotApplicable;
+    }
+    let needed = c.fasteners.hole_diameter_mm / 2.0 + hole_edge_mm(i);
+    require(c.fasteners.end_distance_mm + c.segment.end_margin_mm >= needed, || {
+        (
+            "lets the outermost hole leave the sector".to_owned(),
+            format!("raise it to {:.3}", needed - c.segment.end_margin_mm),
+        )
+    })
+}
+
+fn holes_apart(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    if c.fasteners.count == 0 {
+        return Assessment::NotApplicable;
+    }
+    let (diameter, edge) = (c.fasteners.hole_diameter_mm, hole_edge_mm(i));
+    let needed = diameter + edge;
+    let angles = i.fastener_angles_rad();
+    let apart = |w: &[f64]| 2.0 * i.fastener_radius_mm() * ((w[1] - w[0]) / 2.0).sin();
+    let crowded = angles.windows(2).any(|w| w[1] <= w[0] || apart(w) < needed);
+    let single = c.fasteners.count == 1
+        && i.fastener_radius_mm() * i.half_span_rad().min(1.5).sin() < needed / 2.0 + edge;
+    require(!crowded && !single, || {
+        (
+            format!("holes of {diameter} mm do not fit on an arc of {} deg", c.segment.span_deg),
+            "lower it, lower fasteners.end_distance_mm, or set it to 0".to_owned(),
+        )
+    })
+}
+
+fn wide_clearance(i: &Inspection<'_>) -> Assessment {
+    let clearance = i.configuration().support.slot_clearance_mm;
+    require(clearance <= WIDE_CLEARANCE_MM, || {
+        (
+            format!("support.slot_clearance_mm = {clearance} lets the pins walk"),
+            "print the coupon and lower it".to_owned(),
+        )
+    })
+}

@@ -1,0 +1,9 @@
+//! What stands in words and numbers beside the parts: manifest, bill of materials, friction table.
+
+mod bill;
+mod friction_csv;
+mod manifest;
+
+pub use bill::{Bill, bill_of_materials};
+pub use friction_csv::friction_csv;
+pub use manifest::{BatchEntry, Derived, FileEntry, Manifest, PartEntry, derived, plain};

@@ -1,0 +1,218 @@
+//! What the page shows, as data: meshes, places, the tendon over its loads, curves and tables.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use pinswitch_model::physics::contact_profile;
+use pinswitch_model::{Direction, FrictionCurve, PublishedPoint, Substrate, published_points};
+use serde::Serialize;
+
+use crate::built::{Built, MeshedBody};
+use crate::design::Design;
+use crate::design::rules::{Check, checklist};
+use crate::documents::{Manifest, friction_csv};
+use crate::parts::{Material, Role};
+use crate::prediction::Prediction;
+use crate::set::SetError;
+use pinswitch_solid::mesh::{Mesh, Vector3};
+use pinswitch_solid::pose::Pose;
+use pinswitch_solid::profile::polar;
+
+/// Loads at which pins and tendon are shown.
+const STATES: usize = 25;
+
+/// The lightest load that is shown, as a share of the heaviest: an unloaded tendon has no shape.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// Everything on the page.
+#[derive(Debug, Serialize)]
+pub struct PageData {
+    live: Option<u64>,
+    layout: String,
+    meshes: Vec<MeshData>,
+    bodies: Vec<Body>,
+    contact: ContactStates,
+    curve: FrictionCurve,
+    other_laws: Vec<FrictionCurve>,
+    published: Vec<PublishedPoint>,
+    friction_csv: String,
+    checks: Vec<Check>,
+    manifest: Manifest,
+}
+
+/// A mesh in single precision, little-endian and base64; `file` is its STL, if it is printed.
+#[derive(Debug, Serialize)]
+struct MeshData {
+    file: Option<String>,
+    positions: String,
+    triangles: String,
+}
+
+/// A body of the assembly.
+#[derive(Debug, Serialize)]
+struct Body {
+    name: String,
+    material: Material,
+    colour: [u8; 3],
+    mesh: usize,
+    /// From its mesh into the assembly, column by column.
+    matrix: [f64; 16],
+    #[serde(rename = "way_out")]
+    explode_offset: [f64; 3],
+    sink: Option<Sink>,
+}
+
+/// How a pin sinks: where to, and how deep at each load.
+#[derive(Debug, Serialize)]
+struct Sink {
+    towards: [f64; 2],
+    depth_mm: Vec<f64>,
+}
+
+/// The tendon over its bed at several loads; empty without pins on silicone.
+#[derive(Debug, Default, Serialize)]
+struct ContactStates {
+    load_n: Vec<f64>,
+    angle_rad: Vec<f64>,
+    gap_mm: Vec<Vec<f64>>,
+    axis_radius_mm: f64,
+    tendon_radius_mm: f64,
+    half_wrap_rad: f64,
+    z_mm: f64,
+    #[serde(skip)]
+    pin_depth_mm: Vec<Vec<f64>>,
+}
+
+impl PageData {
+    /// The data of a page; `live` is the version of a live preview that follows its configuration.
+    pub fn new(built: &Built, prediction: &Prediction, manifest: &Manifest, live: Option<u64>) -> Self {
+        let design = built.design();
+        let contact = contact_states(design);
+        let stl = |name: &str| Some(format!("{name}.stl"));
+        let mut meshes: Vec<MeshData> =
+            built.printed().iter().map(|p| encoded(&p.print_mesh, stl(&p.part().name))).collect();
+        let mut bodies = Vec::new();
+        for body in built.assembly() {
+            let Some(pose) = body.part.pose else { continue };
+            let own = built.printed().iter().position(|p| std::ptr::eq(&p.body, body));
+            let (mesh, matrix) = match own {
+                Some(mesh) => (mesh, into_assembly(body, pose)),
+                None => {
+                    meshes.push(encoded(&pose.apply(body.mesh.clone()), None));
+                    (meshes.len() - 1, nalgebra::Matrix4::identity())
+                }
+            };
+            bodies.push(Body {
+                name: body.part.name.clone(),
+                material: body.part.material(),
+                colour: body.part.role.colour(),
+                mesh,
+                matrix: <[f64; 16]>::try_from(matrix.as_slice()).unwrap_or_default(),
+                explode_offset: body.part.role.explode_offset_mm().into(),
+                sink: sink(body.part.role, design, &contact),
+            });
+        }
+        let c = design.configuration();
+        Self {
+            live,
+            layout: format!("pins in grooves {:?} of {}", c.layout.pins, c.segment.grooves),
+            meshes,
+            bodies,
+            contact,
+            curve: prediction.curve.clone(),
+            other_laws: prediction.others.clone(),
+            published: published_points(design.contact())
+                .into_iter()
+                .filter(|p| p.friction_n.is_some())
+                .collect(),
+            friction_csv: friction_csv(&prediction.curve),
+            checks: checklist(design, manifest.widest_bridge_mm()),
+            manifest: manifest.clone(),
+        }
+    }
+
+    /// The name of the set.
+    pub(super) fn title(&self) -> &str {
+        &self.manifest.name
+    }
+
+    /// The data as JSON.
+    ///
+    /// # Errors
+    /// [`SetError::Encoding`] for a value that JSON cannot hold, which no valid design has.
+    pub fn json(&self) -> Result<String, SetError> {
+        serde_json::to_string(self).map_err(SetError::encoding)
+    }
+}
+
+/// How a pin sinks; nothing for other bodies, or where the physics has no solution.
+fn sink(role: Role, design: &Design, contact: &ContactStates) -> Option<Sink> {
+    let Role::Pin { index } = role else { return None };
+    let depth_mm: Vec<f64> =
+        contact.pin_depth_mm.iter().filter_map(|pins| pins.get(index).copied()).collect();
+    let outwards = polar(1.0, *design.pin_angles_rad().get(index)?);
+    (!depth_mm.is_empty()).then_some(Sink { towards: [-outwards.x, -outwards.y], depth_mm })
+}
+
+/// From the print mesh, whose bounding box stands on the middle of the bed, into the assembly.
+fn into_assembly(body: &MeshedBody, pose: Pose) -> nalgebra::Matrix4<f64> {
+    let back = body.part.solid.bounds().map_or(Vector3::zeros(), |(low, high)| {
+        let middle = nalgebra::center(&low, &high);
+        Vector3::new(middle.x, middle.y, low.z)
+    });
+    let turn = if pose.flipped { Vector3::new(-1.0, 1.0, -1.0) } else { Vector3::new(1.0, 1.0, 1.0) };
+    let lift = nalgebra::Matrix4::new_translation(&Vector3::new(0.0, 0.0, pose.z_mm));
+    lift * nalgebra::Matrix4::new_nonuniform_scaling(&turn) * nalgebra::Matrix4::new_translation(&back)
+}
+
+#[allow(clippy::cast_possible_truncation)]
+fn encoded(mesh: &Mesh, file: Option<String>) -> MeshData {
+    let positions: Vec<u8> =
+        mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).flat_map(|v| (v as f32).to_le_bytes()).collect();
+    let triangles: Vec<u8> = mesh.triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
+    MeshData { file, positions: STANDARD.encode(positions), triangles: STANDARD.encode(triangles) }
+}
+
+/// Shapes of the tendon by the physics; nothing where it has no solution.
+fn contact_states(design: &Design) -> ContactStates {
+    let contact = design.contact();
+    if contact.substrate() == Substrate::Abs || contact.pins().count() == 0 {
+        return ContactStates::default();
+    }
+    let f = &design.configuration().friction;
+    let (lightest, heaviest) = (f.load_min_n.max(LEAST_SHARE * f.load_max_n), f.load_max_n);
+    let load_n: Vec<f64> =
+        (0..STATES).map(|i| lightest + (heaviest - lightest) * i as f64 / (STATES - 1) as f64).collect();
+    let profiles: Result<Vec<_>, _> =
+        load_n.iter().map(|load| contact_profile(contact, *load, Direction::Eccentric)).collect();
+    let Ok(profiles) = profiles else { return ContactStates::default() };
+    let bed = contact.bed();
+    // Only pins that the tendon touches sink; numbers in the configuration count all of them.
+    let touched: Vec<f64> = contact.pins().angles_rad().to_vec();
+    let pin_depth_mm = profiles
+        .iter()
+        .map(|p| {
+            let gap_at = |angle: f64| {
+                let i = p.angle_rad.partition_point(|a| *a < angle - 1e-9).min(p.gap_mm.len() - 1);
+                p.gap_mm[i]
+            };
+            design
+                .pin_angles_rad()
+                .iter()
+                .map(|angle| {
+                    let touches = touched.iter().any(|t| (t - angle).abs() < 1e-9);
+                    if touches { (bed.protrusion_mm() - gap_at(*angle)).max(0.0) } else { 0.0 }
+                })
+                .collect()
+        })
+        .collect();
+    ContactStates {
+        angle_rad: profiles.first().map(|p| p.angle_rad.clone()).unwrap_or_default(),
+        gap_mm: profiles.into_iter().map(|p| p.gap_mm).collect(),
+        load_n,
+        axis_radius_mm: bed.axis_radius_mm(),
+        tendon_radius_mm: bed.tendon_radius_mm,
+        half_wrap_rad: contact.wrap_rad() / 2.0,
+        z_mm: design.configuration().shell.width_mm / 2.0,
+        pin_depth_mm,
+    }
+}

@@ -1,0 +1,30 @@
+//! A friction switch from its configuration to its parts, built once, and every document made from them.
+//!
+//! It knows switches: configurations, their rules, their parts, curves and files. It does no input or output, reads no
+//! clock and no environment, and starts no thread of its own but with the feature `parallel`.
+//!
+//! Data flows one way: [`config`] → [`design`] → [`parts`] → [`built`] → [`set`], with the [`prediction`] beside.
+//!
+//! ```
+//! use pinswitch_switch::{built::Built, config, design::Design, formats, prediction::Prediction, set::Set};
+//!
+//! let (configuration, _) = config::read("[layout]\npins = [5, 8, 11]\n", "mine.toml")?;
+//! let built = Built::new(Design::new(configuration)?)?;
+//! let prediction = Prediction::of(built.design());
+//! let set = Set::new(&built, &prediction, &formats::named(&["stl", "3mf"])?)?;
+//! assert!(set.files.iter().any(|f| f.name == "assembly.3mf"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod built;
+pub mod config;
+pub mod design;
+pub mod documents;
+pub mod formats;
+pub mod inverse;
+mod parallel;
+pub mod parts;
+pub mod prediction;
+pub mod scene;
+pub mod set;
+pub mod templates;

@@ -1,0 +1,233 @@
+//! Engraved labels: letters as pockets, laid along an arc or a line, where they do not matter.
+
+use i_overlay::mesh::float::stroke::offset::StrokeOffset;
+use i_overlay::mesh::float::style::{LineCap, LineJoin, StrokeStyle};
+
+use super::stroke_font::{HEIGHT, WIDTH, strokes};
+use crate::design::Design;
+use pinswitch_solid::profile::{Contour, Point2, Vector2, polar};
+use pinswitch_solid::solid::{RingId, Solid};
+
+/// Angle between the points of a round stroke end, radians.
+const ROUND_RAD: f64 = 0.5;
+/// Letters smaller than this are not legible in a print, mm.
+const LEAST_HEIGHT_MM: f64 = 1.5;
+/// Wall between a letter and the edge of its zone, mm.
+const EDGE_MM: f64 = 0.5;
+/// Width of a letter over its height.
+const ASPECT: f64 = 0.58;
+/// Points of a letter's outline that are closer than this are one point, mm.
+const MERGE_MM: f64 = 0.02;
+
+/// A flat place on a part where a label may go.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Zone {
+    /// Between two radii and two angles about the axis.
+    Arc { inner_mm: f64, outer_mm: f64, from_rad: f64, to_rad: f64 },
+    /// A rectangle about a middle.
+    Flat { middle: Point2, length_mm: f64, height_mm: f64 },
+}
+
+/// What an engraving leaves: the rings at the top to be holes of the cap there, and a note if nothing was engraved.
+pub(super) struct Engraved {
+    pub(super) rings: Vec<RingId>,
+    pub(super) note: Option<String>,
+}
+
+impl Zone {
+    pub(super) fn flat(middle: Point2, length_mm: f64, height_mm: f64) -> Self {
+        Self::Flat { middle, length_mm, height_mm }
+    }
+
+    /// The widest free stretch of the wall between the fastener holes, inside `outer_mm`.
+    pub(super) fn between_fasteners(design: &Design, outer_mm: f64) -> Self {
+        let c = design.configuration();
+        let radius = design.fastener_radius_mm();
+        let beside = c.fasteners.hole_diameter_mm / 2.0 / radius;
+        let half = design.half_span_rad();
+        let mut from = vec![-half];
+        let mut to = Vec::new();
+        for angle in design.fastener_angles_rad() {
+            to.push(angle - beside);
+            from.push(angle + beside);
+        }
+        to.push(half);
+        let widest = from.into_iter().zip(to).fold((0.0, 0.0), |best: (f64, f64), gap| {
+            // Equal gaps: the first, whatever the rounding.
+            if gap.1 - gap.0 > best.1 - best.0 + 1e-9 { gap } else { best }
+        });
+        Self::Arc { inner_mm: design.inner_radius_mm(), outer_mm, from_rad: widest.0, to_rad: widest.1 }
+    }
+
+    /// Length along the feet of letters of `letter_mm`, and height across them, in mm.
+    fn size_mm(&self, letter_mm: f64) -> (f64, f64) {
+        match *self {
+            Self::Flat { length_mm, height_mm, .. } => (length_mm, height_mm),
+            // Letters lean apart: their inner edges are the closest.
+            Self::Arc { inner_mm, outer_mm, from_rad, to_rad } => {
+                let foot =
+                    f64::midpoint(inner_mm, outer_mm) - (letter_mm / 2.0).min((outer_mm - inner_mm) / 2.0);
+                ((to_rad - from_rad) * foot, outer_mm - inner_mm)
+            }
+        }
+    }
+
+    /// Radius of the letters' feet, mm: letters lean apart, so that there they are closest.
+    fn foot_mm(&self, letter_mm: f64) -> f64 {
+        match *self {
+            Self::Flat { .. } => f64::INFINITY,
+            Self::Arc { inner_mm, outer_mm, .. } => {
+                f64::midpoint(inner_mm, outer_mm) - (letter_mm / 2.0).min((outer_mm - inner_mm) / 2.0)
+            }
+        }
+    }
+
+    /// Brings a point of a letter (`x` and `y` from its middle) onto the part; the letter's foot lies `along_mm` along
+    /// the line from its middle.
+    fn place(&self, along_mm: f64, letter_mm: f64, [x, y]: [f64; 2]) -> Point2 {
+        match *self {
+            Self::Flat { middle, .. } => middle + Vector2::new(along_mm + x, y),
+            Self::Arc { inner_mm, outer_mm, from_rad, to_rad } => {
+                let radius = f64::midpoint(inner_mm, outer_mm);
+                let angle = f64::midpoint(from_rad, to_rad) + along_mm / self.foot_mm(letter_mm);
+                let up = polar(1.0, angle).coords;
+                let right = Vector2::new(up.y, -up.x);
+                Point2::from(up * (radius + y) + right * x)
+            }
+        }
+    }
+}
+
+/// Engraves the design's label into the face at `top_mm`.
+pub(super) fn engrave(solid: &mut Solid, design: &Design, zone: &Zone, top_mm: f64) -> Engraved {
+    engrave_text(solid, design, &design.label(), zone, top_mm)
+}
+
+/// Engraves `text` as large as configured, smaller where the zone is small, or not at all with a note.
+pub(super) fn engrave_text(
+    solid: &mut Solid,
+    design: &Design,
+    text: &str,
+    zone: &Zone,
+    top_mm: f64,
+) -> Engraved {
+    let c = design.configuration();
+    if !c.label.engrave {
+        return Engraved { rings: Vec::new(), note: None };
+    }
+    let stroke = c.label.stroke_mm;
+    let (length, height) = zone.size_mm(c.label.height_mm + stroke);
+    let letters = text.chars().count() as f64;
+    // Strokes of a letter are two grid units apart, letters four and a gap: both must leave a wall between strokes.
+    let gap = stroke + c.print.least_wall_mm;
+    let by_length = ((length - 2.0 * EDGE_MM + gap - stroke) / letters - gap) / ASPECT;
+    let size = c.label.height_mm.min(height - 2.0 * EDGE_MM - stroke).min(by_length);
+    let advance = size * ASPECT + gap;
+    let fits = size >= (gap * HEIGHT / 2.0).max(LEAST_HEIGHT_MM);
+    let deep_enough = top_mm - c.label.depth_mm >= c.print.least_wall_mm;
+    if !fits || !deep_enough {
+        return Engraved {
+            rings: Vec::new(),
+            note: Some(format!("the label {text:?} does not fit and is left out")),
+        };
+    }
+    let mut rings = Vec::new();
+    for (i, letter) in text.chars().enumerate() {
+        let middle = (i as f64 - (letters - 1.0) / 2.0) * advance;
+        for shape in letter_shapes(letter, size, stroke) {
+            let mut contours = shape.iter().map(|points| {
+                Contour::polygon(points.iter().map(|p| zone.place(middle, size + stroke, *p)).collect())
+            });
+            let Some(outline) = contours.next().map(|c| run(c, Sense::Clockwise)) else { continue };
+            let islands: Vec<_> = contours.map(|c| run(c, Sense::CounterClockwise)).collect();
+            rings.push(solid.pocket(&outline, &islands, top_mm - c.label.depth_mm, top_mm));
+        }
+    }
+    Engraved { rings, note: None }
+}
+
+/// The outlines of a letter's strokes, united: each shape is its outline, then its islands, in mm about the letter's
+/// middle.
+fn letter_shapes(letter: char, height_mm: f64, stroke_mm: f64) -> Vec<Vec<Vec<[f64; 2]>>> {
+    let (along, up) = (height_mm * ASPECT / WIDTH, height_mm / HEIGHT);
+    let paths: Vec<Vec<[f64; 2]>> = strokes(letter)
+        .unwrap_or_default()
+        .iter()
+        .map(|run| run.iter().map(|[x, y]| [(x - WIDTH / 2.0) * along, (y - HEIGHT / 2.0) * up]).collect())
+        .collect();
+    let style = StrokeStyle::new(stroke_mm)
+        .line_join(LineJoin::Round(ROUND_RAD))
+        .start_cap(LineCap::Round(ROUND_RAD))
+        .end_cap(LineCap::Round(ROUND_RAD));
+    let shapes: Vec<Vec<Vec<[f64; 2]>>> = paths.stroke(style, false);
+    shapes.into_iter().map(|shape| shape.into_iter().map(|c| merged(&c)).collect()).collect()
+}
+
+/// Which way a contour runs.
+#[derive(Clone, Copy, PartialEq)]
+enum Sense {
+    Clockwise,
+    CounterClockwise,
+}
+
+/// The contour, run in the given sense: a pocket is a hole in the part, its islands are outlines.
+fn run(contour: Contour, sense: Sense) -> Contour {
+    let is = if contour.area_mm2() > 0.0 { Sense::CounterClockwise } else { Sense::Clockwise };
+    if is == sense { contour } else { contour.reversed() }
+}
+
+/// Leaves out points that all but coincide with their neighbour.
+fn merged(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < MERGE_MM;
+    let mut kept: Vec<[f64; 2]> = Vec::with_capacity(points.len());
+    for p in points {
+        if kept.last().is_none_or(|last| !near(*last, *p)) {
+            kept.push(*p);
+        }
+    }
+    while kept.len() > 3 && near(kept[0], kept[kept.len() - 1]) {
+        kept.pop();
+    }
+    kept
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Configuration;
+    use pinswitch_solid::solid::Facing;
+    use pinswitch_solid::validity::{Expectation, examine};
+
+    #[test]
+    fn no_letter_has_a_part_inside_its_island() {
+        for letter in (' '..='~').filter(|l| strokes(*l).is_some()) {
+            let shapes = letter_shapes(letter, 3.0, 0.5);
+            let area = |points: &Vec<[f64; 2]>| {
+                Contour::polygon(points.iter().map(|[x, y]| Point2::new(*x, *y)).collect()).area_mm2().abs()
+            };
+            for shape in &shapes {
+                assert!(shape.iter().skip(1).all(|island| area(island) < area(&shape[0])), "{letter}");
+            }
+            // Only the colon and the equals sign have two parts; an island with a part in it would make two.
+            assert!(shapes.len() <= 1 || ":=".contains(letter), "{letter}: {}", shapes.len());
+        }
+    }
+    #[test]
+    fn every_letter_leaves_walls_that_print() {
+        let design = Design::new(Configuration::default()).unwrap();
+        let outline = Contour::polygon(
+            [(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0)].map(|(x, y)| Point2::new(x, y)).to_vec(),
+        );
+        for letter in ('!'..='~').filter(|l| strokes(*l).is_some()) {
+            let mut solid = Solid::new();
+            let (bottom, top) = solid.extrude(&outline, 0.0, 2.0);
+            solid.cap(Facing::Down, bottom, &[]);
+            let zone = Zone::flat(Point2::new(4.0, 4.0), 8.0, 8.0);
+            let engraved = engrave_text(&mut solid, &design, &letter.to_string(), &zone, 2.0);
+            assert!(engraved.note.is_none());
+            solid.cap(Facing::Up, top, &engraved.rings);
+            let printable = Expectation { bodies: Some(1), min_wall_mm: 0.4, ..Expectation::default() };
+            let found = examine(&solid.mesh(design.tolerance()).unwrap(), &printable);
+            assert!(found.is_valid(), "{letter}: {:?}", found.faults);
+        }
+    }
+}

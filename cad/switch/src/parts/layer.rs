@@ -1,0 +1,44 @@
+//! The silicone layer and its rigid proxy: one shape (geometry.md, parts 2 and 5).
+
+use super::{Part, Pose, Role, Sector, swallowed};
+use crate::config::ConfigError;
+use crate::design::Design;
+use pinswitch_solid::profile::Contour;
+use pinswitch_solid::solid::Solid;
+
+/// The sector that the layer fills, before its grooves are cut.
+pub(super) fn layer_sector(design: &Design) -> Sector {
+    Sector {
+        inner_mm: design.shell_radius_mm(),
+        outer_mm: design.contact_radius_mm(),
+        half_span_rad: design.half_span_rad(),
+        end_shift_mm: design.configuration().segment.end_margin_mm,
+    }
+}
+
+/// Smooth inside, half-round grooves outside, where the pins lie.
+fn outline(design: &Design) -> Contour {
+    let groove = design.configuration().segment.groove_radius_mm;
+    layer_sector(design).grooved(&design.groove_angles_rad(), groove)
+}
+
+fn pose(design: &Design) -> Option<Pose> {
+    Some(Pose::upright(design.configuration().silicone.side_clearance_mm))
+}
+
+/// The cast layer, as a reference body.
+///
+/// # Errors
+/// None for a valid design.
+pub fn silicone_layer(design: &Design) -> Result<Part, ConfigError> {
+    let solid = Solid::prism(&outline(design), &[], 0.0, design.layer_width_mm(), 0.0)
+        .map_err(swallowed("segment.groove_radius_mm"))?;
+    Ok(Part::new("silicone-layer", Role::Layer, solid, pose(design)))
+}
+
+pub(super) fn proxy(design: &Design) -> Result<Part, ConfigError> {
+    let chamfer = design.configuration().print.elephant_foot_mm;
+    let solid = Solid::prism(&outline(design), &[], 0.0, design.layer_width_mm(), chamfer)
+        .map_err(swallowed("print.elephant_foot_mm"))?;
+    Ok(Part::new("proxy", Role::Proxy, solid, pose(design)))
+}

@@ -1,0 +1,113 @@
+//! The parts of a switch: exact solids in print orientation, and where each one sits in the assembly.
+//!
+//! A printed part is one file and one entry of [`PRINTED_PARTS`].
+
+mod coupon;
+mod guide_pulley;
+mod label;
+mod layer;
+mod mould;
+mod part;
+mod sector;
+mod shell;
+mod stroke_font;
+mod support;
+
+use crate::config::{ConfigError, Configuration, MouldKind, SubstrateKind};
+use crate::design::Design;
+use pinswitch_solid::pose::Pose;
+use pinswitch_solid::profile::{Contour, OffsetError, polar};
+use pinswitch_solid::solid::Solid;
+
+pub use layer::silicone_layer;
+pub use mould::cavity_mm3;
+pub use part::{Material, Part, Role};
+pub use sector::Sector;
+
+/// A printed part: when a configuration asks for it, and how it is built.
+pub struct PrintedPart {
+    /// Name, and stem of its files.
+    pub name: &'static str,
+    /// Whether a configuration asks for it.
+    pub is_wanted: fn(&Configuration) -> bool,
+    build: fn(&Design) -> Result<Part, ConfigError>,
+}
+
+/// Every printed part, in the order in which a set lists them.
+pub const PRINTED_PARTS: [PrintedPart; 10] = [
+    PrintedPart { name: "shell", is_wanted: |_| true, build: shell::shell },
+    PrintedPart { name: "mould-core", is_wanted: has_split_mould, build: mould::core },
+    PrintedPart { name: "mould-ring", is_wanted: has_split_mould, build: mould::ring },
+    PrintedPart { name: "mould-lid", is_wanted: has_split_mould, build: mould::lid },
+    PrintedPart { name: "mould-tray", is_wanted: has_tray, build: mould::one_piece },
+    PrintedPart { name: "support-left", is_wanted: |_| true, build: support::left },
+    PrintedPart { name: "support-right", is_wanted: |_| true, build: support::right },
+    PrintedPart { name: "proxy", is_wanted: |c| c.parts.proxy || is_rigid(c), build: layer::proxy },
+    PrintedPart { name: "coupon", is_wanted: |c| c.parts.coupon, build: coupon::coupon },
+    PrintedPart {
+        name: "guide-pulley",
+        is_wanted: |c| c.parts.guide_pulley,
+        build: guide_pulley::guide_pulley,
+    },
+];
+
+fn is_rigid(c: &Configuration) -> bool {
+    c.layout.substrate == SubstrateKind::Abs
+}
+
+fn has_split_mould(c: &Configuration) -> bool {
+    !is_rigid(c) && c.mould.kind == MouldKind::Split
+}
+
+fn has_tray(c: &Configuration) -> bool {
+    !is_rigid(c) && c.mould.kind == MouldKind::OnePiece
+}
+
+/// Every printed part that `design` asks for.
+///
+/// # Errors
+/// [`ConfigError`] if a chamfer, draft or offset swallows an edge.
+pub fn printed(design: &Design) -> Result<Vec<Part>, ConfigError> {
+    let wanted = PRINTED_PARTS.iter().filter(|p| (p.is_wanted)(design.configuration()));
+    wanted.map(|p| (p.build)(design)).collect()
+}
+
+/// The bodies that are not printed, for the assembly and the bill of materials: layer and pins.
+///
+/// # Errors
+/// [`ConfigError`] if an offset swallows an edge.
+pub fn reference_bodies(design: &Design) -> Result<Vec<Part>, ConfigError> {
+    let c = design.configuration();
+    let mut bodies = Vec::new();
+    if !is_rigid(c) {
+        bodies.push(silicone_layer(design)?);
+    }
+    let z_mm = (c.shell.width_mm - design.pin_length_mm()) / 2.0;
+    for (index, angle) in design.pin_angles_rad().into_iter().enumerate() {
+        let outline = Contour::circle(polar(design.contact_radius_mm(), angle), c.pins.diameter_mm / 2.0);
+        let solid = Solid::prism(&outline, &[], 0.0, design.pin_length_mm(), 0.0)
+            .map_err(swallowed("pins.diameter_mm"))?;
+        let pose = Some(Pose::upright(z_mm));
+        bodies.push(Part::new(format!("pin-{}", index + 1), Role::Pin { index }, solid, pose));
+    }
+    Ok(bodies)
+}
+
+/// The error about `field` when an offset that depends on it swallows an edge.
+fn swallowed(field: &'static str) -> impl Fn(OffsetError) -> ConfigError {
+    move |e| ConfigError {
+        field: field.to_owned(),
+        value: None,
+        problem: format!("is too large for this geometry: {e}"),
+        remedy: format!("lower {field}"),
+        place: None,
+    }
+}
+
+/// Clockwise circles on `radius_mm` at `angles_rad`, for holes.
+fn holes_at(radius_mm: f64, angles_rad: &[f64], hole_radius_mm: f64) -> Vec<Contour> {
+    angles_rad.iter().map(|a| Contour::circle(polar(radius_mm, *a), hole_radius_mm).reversed()).collect()
+}
+
+#[cfg(test)]
+mod tests;

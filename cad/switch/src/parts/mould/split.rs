@@ -1,0 +1,113 @@
+//! The split mould's core (base and inner wall) and ring (ribbed outer wall and end walls).
+
+use super::super::label::{Zone, engrave};
+use super::super::sector::{End, grooved_face};
+use super::super::{Part, Role, Sector, swallowed};
+use super::{Cavity, keys};
+use crate::config::ConfigError;
+use crate::design::Design;
+use pinswitch_solid::profile::{Contour, Pen, Point2};
+use pinswitch_solid::solid::{Facing, Solid};
+
+/// The base reaches this far beyond what stands on it, mm.
+const BASE_MARGIN_MM: f64 = 1.0;
+
+/// The block that shapes the layer's smooth inner face; the ring's end walls rest on its face beyond the cavity.
+fn core_sector(design: &Design, cavity: &Cavity) -> Sector {
+    Sector {
+        inner_mm: design.inner_radius_mm(),
+        outer_mm: cavity.sector.inner_mm,
+        end_shift_mm: cavity.sector.end_shift_mm + design.configuration().mould.wall_mm,
+        ..cavity.sector
+    }
+}
+
+/// The base under core and ring, and the lid above them.
+pub(super) fn plate_sector(design: &Design, cavity: &Cavity) -> Sector {
+    Sector { outer_mm: cavity.sector.outer_mm + keys::ring_wall_mm(design), ..core_sector(design, cavity) }
+}
+
+pub(in crate::parts) fn core(design: &Design) -> Result<Part, ConfigError> {
+    let c = design.configuration();
+    let cavity = Cavity::of(design);
+    let base = plate_sector(design, &cavity).grown(
+        BASE_MARGIN_MM.min(design.inner_radius_mm() / 2.0),
+        BASE_MARGIN_MM,
+        BASE_MARGIN_MM,
+    );
+    let (floor, top) = (c.mould.floor_mm, c.mould.floor_mm + cavity.depth_mm);
+    let mut solid = Solid::new();
+    let (bottom, deck) = solid
+        .extrude_chamfered(&base.outline(), 0.0, floor, c.print.elephant_foot_mm)
+        .map_err(swallowed("print.elephant_foot_mm"))?;
+    solid.cap(Facing::Down, bottom, &[]);
+    let mut standing = keys::pegs(&mut solid, design, floor).map_err(swallowed("mould.key_height_mm"))?;
+    let (foot, head) = solid.extrude(&core_sector(design, &cavity).outline(), floor, top);
+    standing.push(foot);
+    solid.cap(Facing::Up, deck, &standing);
+    let zone = Zone::Arc {
+        inner_mm: design.inner_radius_mm(),
+        outer_mm: cavity.sector.inner_mm,
+        from_rad: -design.half_span_rad(),
+        to_rad: design.half_span_rad(),
+    };
+    let engraved = engrave(&mut solid, design, &zone, top);
+    solid.cap(Facing::Up, head, &engraved.rings);
+    let mut part = Part::new("mould-core", Role::Mould, solid, None);
+    part.notes.extend(engraved.note);
+    Ok(part)
+}
+
+pub(in crate::parts) fn ring(design: &Design) -> Result<Part, ConfigError> {
+    let c = design.configuration();
+    let cavity = Cavity::of(design);
+    let height = cavity.depth_mm;
+    if height < keys::least_height_mm(design) {
+        return Err(ConfigError {
+            field: "mould.key_height_mm".to_owned(),
+            value: Some(c.mould.key_height_mm.to_string()),
+            problem: format!("does not fit in a ring of {height:.3} mm"),
+            remedy: format!(
+                "lower it by {:.3} or set mould.kind = \"one-piece\"",
+                keys::least_height_mm(design) - height
+            ),
+            place: None,
+        });
+    }
+    let key = swallowed("mould.key_height_mm");
+    let mut solid = Solid::new();
+    let (bottom, top) = solid
+        .extrude_chamfered(&ring_outline(design, &cavity), 0.0, height, c.print.elephant_foot_mm)
+        .map_err(swallowed("print.elephant_foot_mm"))?;
+    let mouths = keys::blind_holes(&mut solid, design, 0.0).map_err(&key)?;
+    solid.cap(Facing::Down, bottom, &mouths);
+    let pegs = keys::pegs(&mut solid, design, height).map_err(&key)?;
+    solid.cap(Facing::Up, top, &pegs);
+    Ok(Part::new("mould-ring", Role::Mould, solid, None))
+}
+
+/// The ring seen from above, counter-clockwise: outside round, along the left end wall, over the ribs, and back
+/// along the right end wall. The end walls stop short of the core by the print clearance.
+fn ring_outline(design: &Design, cavity: &Cavity) -> Contour {
+    let outside = plate_sector(design, cavity);
+    let inside = cavity.sector;
+    let rest = inside.inner_mm + design.configuration().mould.clearance_mm;
+    let axis = Point2::origin();
+    let pen = Pen::at(outside.corner(rest, End::Positive))
+        .line_to(outside.corner(outside.outer_mm, End::Positive))
+        .arc_to(axis, outside.corner(outside.outer_mm, End::Negative), true)
+        .line_to(outside.corner(rest, End::Negative))
+        .arc_to(axis, inside.corner(rest, End::Negative), false)
+        .line_to(inside.corner(inside.outer_mm, End::Negative));
+    ribbed_face(pen, cavity)
+        .line_to(inside.corner(rest, End::Positive))
+        .arc_to(axis, outside.corner(rest, End::Positive), false)
+        .close()
+}
+
+/// The face with the ribs that form the layer's grooves, from negative to positive angles.
+fn ribbed_face(pen: Pen, cavity: &Cavity) -> Pen {
+    let (radius, last) =
+        (cavity.sector.outer_mm, cavity.sector.corner(cavity.sector.outer_mm, End::Positive));
+    grooved_face(pen, radius, &cavity.groove_angles_rad, cavity.groove_radius_mm, last, false)
+}

@@ -1,0 +1,94 @@
+//! Bad input: one clear error that names field, value, bound and remedy, exit code 2, and nothing written.
+
+use crate::harness::ended;
+
+/// Runs `generate` on `text`; returns the exit code, standard error, and what was written.
+fn generate(text: &str) -> (Option<i32>, String, usize) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("my.toml"), text).unwrap();
+    let (code, said) = ended(folder.path(), &["generate", "my.toml", "--out", "set"]);
+    (code, said, std::fs::read_dir(folder.path()).unwrap().count() - 1)
+}
+
+/// Every rule of cad/doc/dimensions.md that refuses a configuration.
+const REFUSED: [(&str, &[&str]); 25] = [
+    ("[segment]\ngrooves = 40", &["my.toml:2: segment.grooves = 40", "overlap", "lower it to"]),
+    (
+        "[segment]\nend_margin_mm = 0\n[print]\nelephant_foot_mm = 0.3",
+        &["my.toml:2: segment.end_margin_mm = 0", "raise it by"],
+    ),
+    ("[shell]\nouter_radius_mm = 14", &["support.slot_clearance_mm = 0.2", "between neighbouring slots"]),
+    ("[shell]\nwall_mm = 1.2", &["my.toml:2: shell.wall_mm = 1.2", "under the grooves", "raise it to 1.400"]),
+    ("[shell]\nwall_mm = 19.5", &["shell.wall_mm = 19.5", "lower it to 19.000"]),
+    ("[layout]\npins = [5, 5]", &["my.toml:2: layout.pins = [5, 5]", "two pins in groove 5"]),
+    ("[layout]\npins = [5, 16]", &["layout.pins = [5, 16]", "grooves 1 to 15"]),
+    ("[layout]\npins = [0]", &["layout.pins = [0]", "groove 0"]),
+    ("[pins]\ndiameter_mm = 1.2", &["pins.diameter_mm = 1.2", "wider than its groove", "0.990"]),
+    ("[silicone]\nthickness_mm = 0.8", &["silicone.thickness_mm = 0.8", "raise it to 1.000"]),
+    ("[support]\nrise_mm = 0.5", &["support.rise_mm = 0.5", "leave the plate", "raise it by"]),
+    ("[support]\ntravel_margin_mm = 1.5", &["support.travel_margin_mm = 1.5", "into the shell"]),
+    ("[support]\nslot_floor_mm = 2.9", &["support.slot_floor_mm = 2.9", "through slots"]),
+    ("[support]\nplate_mm = 1.5", &["support.plate_mm = 1.5", "holds the pins by"]),
+    (
+        "[tendon]\nrope_diameter_mm = 6.0\n[shell]\nwidth_mm = 6.0",
+        &["tendon.rope_diameter_mm = 6", "channel"],
+    ),
+    ("[tendon]\nrope_diameter_mm = 5.0", &["tendon.rope_diameter_mm = 5", "too sharply"]),
+    ("[layout]\nwrap_angle_deg = 95.0", &["layout.wrap_angle_deg = 95", "beyond the segment of 89.45 deg"]),
+    ("[shell]\nwidth_mm = nan", &["my.toml:2: shell.width_mm = nan", "2 to 100"]),
+    ("[shell]\nwidth_mm = inf", &["shell.width_mm = inf", "2 to 100"]),
+    ("[fasteners]\nhole_diameter_mm = 5.0", &["fasteners.hole_diameter_mm = 5", "wall"]),
+    ("[fasteners]\ncount = 12", &["fasteners.count = 12", "do not fit"]),
+    ("[fasteners]\nend_distance_mm = 1.5", &["fasteners.end_distance_mm = 1.5", "raise it to"]),
+    ("[friction]\nload_min_n = 60", &["friction.load_min_n = 60", "load_max_n = 49.671"]),
+    ("[print]\nbed_mm = 50\n[shell]\nouter_radius_mm = 60", &["print.bed_mm = 50", "wide"]),
+    ("[layout]\nsubstrate = \"abs\"\npins = []", &["layout.pins = []", "no pin within the wrap"]),
+];
+
+#[test]
+fn every_bound_is_one_clear_error_and_nothing_is_written() {
+    for (text, words) in REFUSED {
+        let (code, error, written) = generate(text);
+        assert_eq!(code, Some(2), "{text}: {error}");
+        assert_eq!(written, 0, "{text}");
+        let errors: Vec<_> = error.lines().filter(|l| l.starts_with("error: ")).collect();
+        assert_eq!(errors.len(), 1, "{text}: {error}");
+        assert!(errors[0].contains("my.toml") && errors[0].contains(';'), "{}", errors[0]);
+        for word in words {
+            assert!(errors[0].contains(word), "{word} is not in {}", errors[0]);
+        }
+    }
+}
+
+#[test]
+fn unreadable_configurations_are_refused() {
+    for (text, word) in [
+        ("[shell", "syntax"),
+        ("[shell]\nwidht_mm = 3", "did you mean \"width_mm\"?"),
+        ("[sehll]\nwidth_mm = 3", "did you mean \"shell\"?"),
+        ("[shell]\nwidth_mm = \"14\"", "without quotes"),
+        ("\u{0}", "syntax"),
+    ] {
+        let (code, error, written) = generate(text);
+        assert!(code == Some(2) && error.contains(word), "{text:?}: {error}");
+        assert_eq!(written, 0);
+    }
+}
+
+#[test]
+fn arguments_and_places_that_cannot_be_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, error) = ended(folder.path(), &["generate", "three-dubble"]);
+    assert!(code == Some(2) && error.contains("nearest template is \"three-double\""), "{error}");
+    let (code, error) = ended(folder.path(), &["generate", "three-double", "--set", "shell.width_mm=1"]);
+    assert!(code == Some(2) && error.contains("--set: shell.width_mm = 1"), "{error}");
+    let (code, error) = ended(folder.path(), &["generate", "three-double", "--tolerance", "1"]);
+    assert!(code == Some(2) && error.contains("--tolerance: mesh.chord_tolerance_mm"), "{error}");
+    let (code, _) = ended(folder.path(), &["generate"]);
+    assert_eq!(code, Some(2));
+    // A file stands where the folder should be: the work cannot be done, which is no fault of the configuration.
+    std::fs::write(folder.path().join("taken"), "mine").unwrap();
+    let (code, error) = ended(folder.path(), &["generate", "three-double", "--out", "taken"]);
+    assert!(code == Some(1) && error.contains("taken"), "{error}");
+    assert_eq!(std::fs::read_to_string(folder.path().join("taken")).unwrap(), "mine");
+}

@@ -1,0 +1,160 @@
+//! Sweeps and destinations that cannot be used: one clear error each, exit code 2 or 1, and nothing is lost.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::harness::{SWEEP, differences, done, ended, hashes, with_sweep};
+
+/// The one line of an error, and its exit code.
+fn refused(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let (code, said) = ended(folder, arguments);
+    let errors: Vec<_> = said.lines().filter(|l| l.starts_with("error: ")).collect();
+    assert_eq!(errors.len(), 1, "{said}");
+    (code, errors[0].to_owned())
+}
+
+#[test]
+fn sweeps_that_make_no_sense_are_refused() {
+    let axes = |text: &str| format!("[axes]\n{text}\n");
+    for (sweep, expected) in [
+        (
+            axes("\"shell.with_mm\" = [1]"),
+            "sweep.toml:2: shell.with_mm is no known field; did you mean \"shell.width_mm\"?",
+        ),
+        (
+            axes("\"support.slots\" = { from = 1, to = 3, step = 1 }"),
+            "sweep.toml:2: support.slots takes no numbers, so no range; give a list of values",
+        ),
+        (
+            axes("\"shell.width_mm\" = [\"wide\"]"),
+            "sweep.toml:2: shell.width_mm = \"wide\" is not accepted; give a number within 2 to 100",
+        ),
+        (axes("\"shell.width_mm\" = []"), "sweep.toml:2: shell.width_mm = [] is an empty axis"),
+        (axes(""), "sweep.toml:1: sweep is empty"),
+        (String::new(), "sweep.toml:1: sweep is empty"),
+        (
+            axes("\"shell.width_mm\" = { from = 16, to = 12, step = 1 }"),
+            "sweep.toml:2: shell.width_mm = 16 to 12 runs backwards; write from = 12, to = 16",
+        ),
+        (axes("\"shell.width_mm\" = [12, 500]"), "sweep.toml:2: shell.width_mm = 500 is not accepted"),
+        ("[axis]\n".to_owned(), "sweep.toml:1: axis is no table of a sweep; known are sweep, set, axes"),
+        ("[sweep]\nbasis = 1\n".to_owned(), "sweep.toml:2: sweep.basis is no known key"),
+        ("[sweep]\nbase = \"four-double\"\n".to_owned(), "sweep.base = \"four-double\" is neither a file"),
+        (
+            "[sweep]\nparts = [\"shel\"]\n[axes]\n\"shell.width_mm\" = [12]\n".to_owned(),
+            "sweep.toml:1: sweep.parts = \"shel\" is no part",
+        ),
+        ("[rows]\nfile = \"no.csv\"\n".to_owned(), "rows.file = \"no.csv\" cannot be read"),
+        ("[sample]\ncount = 5\n".to_owned(), "sweep.toml:1: sample is empty"),
+        (
+            "[sample]\nmethod = \"sobol\"\ncount = 5\n".to_owned(),
+            "sweep.toml:1: sample.method = \"sobol\" is no method",
+        ),
+        (
+            format!(
+                "{}[sample]\ncount = 2\n[sample.axes]\n\"shell.width_mm\" = [12]\n",
+                axes("\"shell.width_mm\" = [12]")
+            ),
+            "shell.width_mm varies twice",
+        ),
+        (
+            format!("{}[[constraints]]\nrequire = \"shell.width > 3\"\n", axes("\"shell.width_mm\" = [12]")),
+            "sweep.toml:3: constraints.require = \"shell.width > 3\" has the unknown name \"shell.width\"",
+        ),
+        ("[axes\n".to_owned(), "sweep.toml:1: syntax"),
+    ] {
+        let folder = with_sweep(&sweep);
+        let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
+        assert_eq!(code, Some(2), "{error}");
+        assert!(error.starts_with(&format!("error: {expected}")), "{error}\nexpected {expected}");
+        assert!(!folder.path().join("b").exists());
+    }
+}
+
+#[test]
+fn too_many_variants_want_a_yes() {
+    let folder = with_sweep("[axes]\n\"shell.width_mm\" = { from = 10, to = 30, step = 0.001 }\n");
+    let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
+    assert_eq!(code, Some(2));
+    assert_eq!(
+        error,
+        "error: sweep.toml: 20001 variants are more than 10000; give --yes if you mean it, or --shard"
+    );
+    assert!(!folder.path().join("b").exists());
+}
+
+#[test]
+fn shards_that_are_none_are_refused() {
+    let folder = with_sweep(SWEEP);
+    let (code, said) = ended(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "4/3"]);
+    assert!(code == Some(2) && said.contains("\"4/3\" is no shard; give K/N"), "{said}");
+    let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "1/99"]);
+    assert!(code == Some(2) && error.contains("--shard 1/99 has no variant: the sweep has 24"), "{error}");
+}
+
+#[test]
+fn a_folder_with_something_else_is_left_alone() {
+    let folder = with_sweep(SWEEP);
+    let path = folder.path();
+    done(path, &["batch", "sweep.toml", "--out", "b"]);
+    let before = hashes(&path.join("b"));
+    std::fs::write(path.join("other.toml"), SWEEP.replace("\"small\"", "\"other\"")).unwrap();
+    let (code, error) = refused(path, &["batch", "other.toml", "--out", "b"]);
+    assert_eq!(code, Some(2));
+    assert_eq!(error, "error: b holds another sweep (\"small\"); give another --out, nothing was changed");
+    std::fs::create_dir(path.join("papers")).unwrap();
+    std::fs::write(path.join("papers/thesis"), "dear").unwrap();
+    let (code, error) = refused(path, &["batch", "sweep.toml", "--out", "papers"]);
+    assert_eq!(code, Some(2));
+    assert_eq!(
+        error,
+        "error: papers holds files that are no batch; give an empty or new --out, nothing was changed"
+    );
+    assert_eq!(std::fs::read_dir(path.join("papers")).unwrap().count(), 1);
+    assert_eq!(differences(&before, &hashes(&path.join("b"))), Vec::<String>::new());
+    let (code, error) = refused(path, &["merge", "papers"]);
+    assert!(code == Some(2) && error.contains("papers holds no batch: there is no batch.json"), "{error}");
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_refused() {
+    let folder = with_sweep(SWEEP);
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    // A file is no folder, and nobody writes into /proc, not even an administrator.
+    for out in ["file/b", "/proc/b", "gopher://bucket/b", "s4://bucket/b"] {
+        let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", out]);
+        assert!(code == Some(2) && error.starts_with(&format!("error: {out}: ")), "{error}");
+    }
+}
+
+#[test]
+fn a_full_disk_stops_the_run_and_room_lets_it_go_on() {
+    let folder = with_sweep(SWEEP);
+    let (path, disk) = (folder.path(), folder.path().join("disk"));
+    std::fs::create_dir(&disk).unwrap();
+    let mount = |options: &str| {
+        let run = Command::new("mount").args(["-t", "tmpfs", "-o", options, "tmpfs"]).arg(&disk).output();
+        run.is_ok_and(|o| o.status.success())
+    };
+    if !mount("size=1m") {
+        println!("SKIPPED: only an administrator can mount a small disk");
+        return;
+    }
+    let outcome = std::panic::catch_unwind(|| {
+        let (code, error) = refused(path, &["batch", "sweep.toml", "--out", "disk/b"]);
+        assert!(mount("remount,size=50m"));
+        let resumed = ended(path, &["batch", "sweep.toml", "--out", "disk/b"]);
+        (code, error, resumed, hashes(&disk.join("b")))
+    });
+    assert!(Command::new("umount").arg(&disk).status().unwrap().success());
+    let (code, error, resumed, files) = outcome.unwrap();
+    assert_eq!(code, Some(1), "{error}");
+    assert!(
+        error.contains("No space left on device")
+            && error.contains("make room and give the same command again"),
+        "{error}"
+    );
+    assert_eq!(resumed.0, Some(0), "{}", resumed.1);
+    done(path, &["batch", "sweep.toml", "--out", "whole"]);
+    assert_eq!(differences(&hashes(&path.join("whole")), &files), Vec::<String>::new());
+}

@@ -1,0 +1,210 @@
+//! The real binary, end to end: what README shows, what the files hold, and that every run writes the same bytes.
+
+use crate::harness::{done, files, json, pinswitch, printed, repository, sha256};
+use serde_json::Value;
+
+#[test]
+fn readme_s_first_command_makes_a_complete_checked_set() {
+    let folder = tempfile::tempdir().unwrap();
+    // As from a clone: the template is a file there.
+    let template = repository("templates/three-double.toml");
+    done(folder.path(), &["generate", template.to_str().unwrap()]);
+    let set = folder.path().join("out/three-double");
+    let written = files(&set);
+    for name in [
+        "shell.stl",
+        "mould-core.stl",
+        "mould-ring.stl",
+        "mould-lid.stl",
+        "support-left.stl",
+        "support-right.stl",
+        "proxy.stl",
+        "coupon.stl",
+        "friction.csv",
+        "friction.svg",
+        "manifest.json",
+        "assembly.3mf",
+        "drawing.svg",
+        "PRINTING.md",
+        "assembly.png",
+        "plate.png",
+        "report.html",
+    ] {
+        assert!(written.contains_key(name), "{name} is missing");
+    }
+    assert_eq!(written.len(), 17, "{:?}", written.keys());
+
+    let manifest: Value = serde_json::from_slice(&written["manifest.json"]).unwrap();
+    let listed = manifest["files"].as_array().unwrap();
+    assert_eq!(listed.len(), written.len() - 1);
+    for file in listed {
+        let bytes = &written[file["file"].as_str().unwrap()];
+        assert_eq!(file["sha256"], sha256(bytes));
+    }
+    assert_eq!(manifest["bill_of_materials"]["pins"]["number"], 3);
+    assert_eq!(manifest["friction"]["trust"], "published");
+    assert!(manifest["mesh"]["largest_volume_error"].as_f64().unwrap() < 1e-4);
+
+    let stl: Vec<_> = written.keys().filter(|n| n.ends_with(".stl")).cloned().collect();
+    let mut check = vec!["check", "--bodies", "1"];
+    check.extend(stl.iter().map(String::as_str));
+    let verdict = done(&set, &check);
+    assert_eq!(verdict.matches(": valid;").count(), stl.len(), "{verdict}");
+}
+
+#[test]
+fn every_run_writes_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a", "b"] {
+        done(folder.path(), &["generate", "six-single", "--out", name]);
+    }
+    assert_eq!(files(&folder.path().join("a")), files(&folder.path().join("b")));
+}
+
+#[test]
+fn the_seven_conditions_predict_what_the_paper_s_model_says() {
+    let folder = tempfile::tempdir().unwrap();
+    // The paper's model, model/doc/friction-laws.md: D at the heaviest load.
+    for (name, friction) in [
+        ("six-single", "4.07"),
+        ("three-double", "10.01"),
+        ("three-single", "8.90"),
+        ("silicone-only", "13.45"),
+        ("proxy-six-single", "2.77"),
+        ("proxy-three-double", "2.77"),
+        ("proxy-three-single", "2.77"),
+    ] {
+        let curve = json(folder.path(), &["predict", name, "--json"]);
+        assert_eq!((curve["law"].as_str(), curve["trust"].as_str()), (Some("paper"), Some("published")));
+        let column = |key: &str| {
+            curve[key].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect::<Vec<_>>()
+        };
+        let (load, d) = (column("load_n"), column("friction_n"));
+        assert!((load.last().unwrap() - 49.671).abs() < 1e-9);
+        assert_eq!(format!("{:.2}", d.last().unwrap()), friction, "{name}");
+        let (e, c, low, high) =
+            (column("eccentric_n"), column("concentric_n"), column("band_low_n"), column("band_high_n"));
+        for i in 0..load.len() {
+            assert!(((c[i] - e[i]) / 2.0 - d[i]).abs() < 1e-9 && low[i] <= d[i] && d[i] <= high[i]);
+        }
+    }
+}
+
+#[test]
+fn other_layouts_say_how_far_to_trust_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let trust = |set: &str| {
+        let curve = json(folder.path(), &["predict", "three-double", "--set", set, "--json"]);
+        (curve["law"].as_str().unwrap().to_owned(), curve["trust"].as_str().unwrap().to_owned())
+    };
+    assert_eq!(trust("layout.pins=[5,7,9,11]"), ("layout".into(), "interpolated".into()));
+    assert_eq!(trust("layout.pins=[5,6]"), ("physics".into(), "extrapolated".into()));
+    assert_eq!(trust("silicone.thickness_mm=3"), ("physics".into(), "extrapolated".into()));
+}
+
+#[test]
+fn presets_and_values_lie_over_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [
+        "generate",
+        "three-double",
+        "--preset",
+        "printer-fff-0.4",
+        "--set",
+        "shell.width_mm=12",
+        "--tolerance",
+        "0.02",
+        "--out",
+        "set",
+        "--json",
+    ];
+    let manifest = json(folder.path(), &arguments);
+    let setting = |field: &str| {
+        let all = manifest["settings"].as_array().unwrap();
+        all.iter().find(|s| s["field"] == field).unwrap().clone()
+    };
+    assert_eq!(setting("print.elephant_foot_mm")["value"], 0.2);
+    assert_eq!(setting("layout.pins")["value"], serde_json::json!([5, 8, 11]));
+    assert_eq!(setting("shell.width_mm")["value"], 12.0);
+    assert_eq!(setting("shell.width_mm")["origin"], "configured");
+    assert_eq!(setting("mesh.chord_tolerance_mm")["value"], 0.02);
+    assert_eq!(setting("shell.outer_radius_mm")["origin"], "assumed");
+    assert_eq!(setting("segment.span_deg")["origin"], "published");
+}
+
+#[test]
+fn a_template_written_out_generates_the_same_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    done(folder.path(), &["init", "three-single", "--out", "mine.toml"]);
+    done(folder.path(), &["generate", "mine.toml", "--out", "a"]);
+    done(folder.path(), &["generate", "three-single", "--out", "b"]);
+    assert_eq!(files(&folder.path().join("a")), files(&folder.path().join("b")));
+    let again = pinswitch(folder.path(), &["init", "three-single", "--out", "mine.toml"]);
+    assert_eq!(again.status.code(), Some(2));
+}
+
+#[test]
+fn help_layouts_and_completions_teach() {
+    let folder = tempfile::tempdir().unwrap();
+    let help = printed(folder.path(), &["--help"]);
+    for command in
+        ["generate", "batch", "merge", "predict", "check", "layouts", "init", "render", "completions"]
+    {
+        assert!(help.contains(command), "{command}");
+        assert!(printed(folder.path(), &[command, "--help"]).contains("Usage"));
+    }
+    let layouts = done(folder.path(), &["layouts"]);
+    assert!(
+        layouts.contains("three-double")
+            && layouts.contains("9.667 N")
+            && layouts.contains("printer-fff-0.4")
+    );
+    assert_eq!(json(folder.path(), &["layouts", "--json"])["conditions"].as_array().unwrap().len(), 7);
+    for shell in ["bash", "zsh", "fish"] {
+        assert!(done(folder.path(), &["completions", shell]).contains("pinswitch"));
+    }
+    let reference = done(folder.path(), &["init", "reference"]);
+    assert!(reference.contains("outer_radius_mm = 20.0") && reference.contains("Origin: assumed"));
+}
+
+#[test]
+fn pictures_are_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    for scene in ["assembled", "exploded", "plate"] {
+        done(
+            folder.path(),
+            &["render", "three-double", "--scene", scene, "--width", "200", "--out", "p.png"],
+        );
+        assert!(std::fs::read(folder.path().join("p.png")).unwrap().starts_with(b"\x89PNG"));
+    }
+}
+
+#[test]
+fn check_names_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    done(folder.path(), &["generate", "three-double", "--out", "set"]);
+    let shell = std::fs::read(folder.path().join("set/shell.stl")).unwrap();
+    // One facet less: a hole.
+    let mut holed = shell.clone();
+    holed.truncate(shell.len() - 50);
+    let count = u32::from_le_bytes(shell[80..84].try_into().unwrap()) - 1;
+    holed[80..84].copy_from_slice(&count.to_le_bytes());
+    std::fs::write(folder.path().join("holed.stl"), holed).unwrap();
+    std::fs::write(folder.path().join("cut.stl"), &shell[..shell.len() / 2]).unwrap();
+    let check = |arguments: &[&str]| {
+        let output = pinswitch(folder.path(), arguments);
+        let text = [output.stdout, output.stderr].concat();
+        (output.status.code(), String::from_utf8(text).unwrap())
+    };
+    let (code, text) = check(&["check", "holed.stl"]);
+    assert!(
+        code == Some(1) && text.contains("NOT VALID") && text.contains("3 edges have one facet only"),
+        "{text}"
+    );
+    let (code, text) = check(&["check", "cut.stl"]);
+    assert!(code == Some(2) && text.contains("header announces"), "{text}");
+    assert_eq!(check(&["check", "no-such.stl"]).0, Some(2));
+    assert_eq!(check(&["check", "set/shell.stl", "--bodies", "2"]).0, Some(1));
+    let verdict = json(folder.path(), &["check", "set/shell.stl", "--json"]);
+    assert_eq!(verdict[0]["valid"], true);
+}

@@ -1,0 +1,90 @@
+//! What the code and the documents cite is there: every path to a document resolves, every effect has its section.
+
+use std::path::{Path, PathBuf};
+
+use crate::harness::{binary, repository};
+
+/// Texts of this repository that may cite a document; generated and foreign ones are left out.
+fn texts(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() {
+            if !["target", "out", ".git", "node_modules"].contains(&name.as_str()) {
+                texts(&path, found);
+            }
+        } else if [".rs", ".md", ".toml", ".html", ".js", ".py", ".cff"].iter().any(|e| name.ends_with(e))
+            && !name.contains(".min.")
+        {
+            found.push(path);
+        }
+    }
+}
+
+/// Words of a text that end in `.md`, without what surrounds them.
+fn cited(text: &str) -> impl Iterator<Item = &str> {
+    let is_path = |c: char| c.is_ascii_alphanumeric() || "._-/".contains(c);
+    text.split(move |c| !is_path(c)).filter(|word| word.len() > 3 && word.ends_with(".md"))
+}
+
+#[test]
+fn every_cited_document_is_there() {
+    // What runs write, and the name of a variable in a pattern.
+    const WRITTEN: [&str; 1] = ["PRINTING.md"];
+    let mut files = Vec::new();
+    texts(&repository(""), &mut files);
+    let mut citations = 0;
+    for file in &files {
+        let Ok(text) = std::fs::read_to_string(file) else { continue };
+        for path in cited(&text).filter(|path| !WRITTEN.contains(path) && !path.starts_with('.')) {
+            let beside = file.parent().unwrap().join(path);
+            assert!(
+                beside.exists() || repository(path).exists(),
+                "{} cites {path}, which is not there",
+                file.display()
+            );
+            citations += 1;
+        }
+    }
+    assert!(citations > 50, "only {citations} citations were found");
+}
+
+#[test]
+fn every_link_between_documents_resolves() {
+    let mut files = Vec::new();
+    texts(&repository(""), &mut files);
+    let mut links = 0;
+    for file in files.iter().filter(|f| f.extension().is_some_and(|e| e == "md")) {
+        let text = std::fs::read_to_string(file).unwrap();
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            if link.starts_with("http") || link.starts_with('#') || link.contains(' ') {
+                continue;
+            }
+            let path = link.split('#').next().unwrap();
+            assert!(file.parent().unwrap().join(path).exists(), "{} links {link}", file.display());
+            links += 1;
+        }
+    }
+    assert!(links > 20, "only {links} links were found");
+}
+
+#[test]
+fn every_effect_has_its_section() {
+    let catalogue = std::fs::read_to_string(repository("model/doc/effect-catalogue.md")).unwrap();
+    for effect in pinswitch_model::effects::LIBRARY {
+        assert!(catalogue.contains(&format!("### {}\n", effect.id)), "{} has no section", effect.id);
+    }
+}
+
+#[test]
+fn readme_lists_every_command() {
+    let help = String::from_utf8(binary().arg("--help").output().unwrap().stdout).unwrap();
+    let commands = help.lines().skip_while(|l| *l != "Commands:").skip(1).take_while(|l| !l.is_empty());
+    let readme = std::fs::read_to_string(repository("README.md")).unwrap();
+    for command in commands.filter_map(|l| l.split_whitespace().next()).filter(|c| *c != "help") {
+        assert!(
+            readme.contains(&format!("pinswitch {command}")) || readme.contains(&format!("`{command}`")),
+            "{command}"
+        );
+    }
+}

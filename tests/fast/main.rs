@@ -1,0 +1,23 @@
+//! Everything that takes seconds: the real binary end to end, the bytes it writes, what README and documents say.
+//!
+//! A new test goes here unless it takes more than some seconds (`slow`) or needs a program that nobody here wrote
+//! (`programs`). tests/README.md says which file protects what.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../harness/mod.rs"]
+mod harness;
+
+mod bad_input;
+mod batch;
+mod batch_bad_input;
+mod command_line;
+mod documents;
+mod fit;
+mod formats;
+mod golden;
+mod inverse;
+mod pictures;
+mod readme;
+mod reference_shell;
+mod segment_raw;

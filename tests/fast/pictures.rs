@@ -1,0 +1,97 @@
+//! The pictures of README and the documents are what the program draws today.
+//!
+//! `PINSWITCH_ACCEPT=1 cargo test --test fast pictures` makes all of them again; the two photographs of pages need
+//! chromium. Without it the test compares drawings byte for byte, and photographs by the hash of the page they show.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::harness::{browser, done, repository, sha256};
+
+/// A picture in `cad/doc`, and the file of a run that it is.
+const DRAWN: [(&str, &str); 6] = [
+    ("exploded.png", "out/three-double/assembly.png"),
+    ("plate.png", "out/three-double/plate.png"),
+    ("friction.svg", "out/three-double/friction.svg"),
+    ("contact.svg", "physics/contact.svg"),
+    ("pareto.svg", "designs/pareto.svg"),
+    ("sweep.svg", "batch/curves.svg"),
+];
+/// A photograph in `cad/doc`, the page that it shows, and the size of the window.
+const PHOTOGRAPHED: [(&str, &str, &str); 2] = [
+    ("page.png", "out/three-double/report.html", "1200,1225"),
+    ("calibration.png", "calibrated/report.html", "985,1167"),
+];
+/// Hashes of the pages that were photographed.
+const PAGES: &str = "photographed-pages.sha256";
+
+fn photograph(page: &Path, picture: &Path, size: &str) {
+    let chromium = browser().expect("photographs need chromium; Debian's package is called chromium");
+    let profile = tempfile::tempdir().unwrap();
+    let done = Command::new(chromium)
+        .args([
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--enable-unsafe-swiftshader",
+            "--no-first-run",
+        ])
+        .args([
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+            "--hide-scrollbars",
+        ])
+        .arg(format!("--user-data-dir={}", profile.path().display()))
+        .args(["--virtual-time-budget=6000", &format!("--window-size={size}")])
+        .arg(format!("--screenshot={}", picture.display()))
+        .arg(format!("file://{}", page.display()))
+        .output()
+        .unwrap();
+    assert!(done.status.success() && picture.exists(), "{}", String::from_utf8_lossy(&done.stderr));
+}
+
+#[test]
+fn pictures_are_what_the_program_draws() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |arguments: &str| done(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+    run("-q generate three-double");
+    run("-q physics three-double --out physics");
+    run("-q design --threshold 26 --max-friction 8.5 --pins 3..6 --best 3 --out designs");
+    run("init sweep --out sweep.toml");
+    run("-q batch sweep.toml --out batch");
+    run("-q simulate --randomised --effect coating_ploughing=0.024 --effect load_cell_offset=0.8 --out rig");
+    run("-q calibrate rig/plateaus.csv --out calibrated");
+    let documents = repository("cad/doc");
+    let accept = std::env::var_os("PINSWITCH_ACCEPT").is_some();
+    for (picture, made) in DRAWN {
+        let bytes = std::fs::read(folder.path().join(made)).unwrap();
+        if accept {
+            std::fs::write(documents.join(picture), bytes).unwrap();
+        } else {
+            assert!(
+                std::fs::read(documents.join(picture)).unwrap() == bytes,
+                "cad/doc/{picture} is stale: run PINSWITCH_ACCEPT=1 cargo test --test fast pictures"
+            );
+        }
+    }
+    let pages: String = PHOTOGRAPHED
+        .iter()
+        .map(|(picture, page, size)| {
+            let page = folder.path().join(page);
+            if accept {
+                photograph(&page, &documents.join(picture), size);
+            }
+            format!("{}  {picture}\n", sha256(&std::fs::read(page).unwrap()))
+        })
+        .collect();
+    if accept {
+        std::fs::write(documents.join(PAGES), pages).unwrap();
+    } else {
+        let known = std::fs::read_to_string(documents.join(PAGES)).unwrap();
+        assert_eq!(
+            known, pages,
+            "photographs are stale: run PINSWITCH_ACCEPT=1 cargo test --test fast pictures"
+        );
+    }
+}

@@ -1,0 +1,81 @@
+//! README as a stranger follows it: every block is run in order in one folder, and shows what README shows.
+
+use std::path::Path;
+
+use crate::harness::{binary, repository};
+
+/// A command of README, and the lines that it shows under it; `...` stands for any further lines.
+struct Shown {
+    command: String,
+    output: Option<Vec<String>>,
+}
+
+/// The commands of all `sh` and `console` blocks, in order.
+fn commands(readme: &str) -> Vec<Shown> {
+    let mut all: Vec<Shown> = Vec::new();
+    let mut block = "";
+    for line in readme.lines() {
+        match (block, line.trim_end()) {
+            ("", fence) => block = fence.strip_prefix("```").unwrap_or_default(),
+            (_, "```") => block = "",
+            ("sh", command) => all.push(Shown { command: command.to_owned(), output: None }),
+            ("console", line) => match line.strip_prefix("$ ") {
+                Some(command) => {
+                    all.push(Shown { command: command.to_owned(), output: Some(Vec::new()) });
+                }
+                None => {
+                    let shown = all.last_mut().and_then(|s| s.output.as_mut());
+                    shown.expect("a command stands first").push(line.to_owned());
+                }
+            },
+            _ => {}
+        }
+    }
+    all
+}
+
+/// Runs a command in a folder; returns what it prints. The test command is the one that runs this test.
+fn run(folder: &Path, command: &str) -> Option<String> {
+    let command = command.split(" #").next().unwrap_or(command).trim();
+    if command.starts_with("cargo test") {
+        let ci = std::fs::read_to_string(repository(".ci/run")).unwrap();
+        assert!(ci.contains("'^cargo test'"), "CI takes its test command from README");
+        return None;
+    }
+    let arguments = command.strip_prefix("cargo run --release -- ").or(command.strip_prefix("pinswitch "));
+    let arguments =
+        arguments.unwrap_or_else(|| panic!("README shows {command:?}, which is no pinswitch command"));
+    let run = binary().args(arguments.split_whitespace()).current_dir(folder).output().unwrap();
+    Some(String::from_utf8([run.stderr, run.stdout].concat()).unwrap())
+}
+
+#[test]
+fn every_block_does_what_readme_shows() {
+    let readme = std::fs::read_to_string(repository("README.md")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    // As in a clone: the templates lie there.
+    std::fs::create_dir(folder.path().join("templates")).unwrap();
+    for entry in std::fs::read_dir(repository("templates")).unwrap().map(Result::unwrap) {
+        if entry.path().is_file() {
+            std::fs::copy(entry.path(), folder.path().join("templates").join(entry.file_name())).unwrap();
+        }
+    }
+    let shown = commands(&readme);
+    assert!(shown.len() >= 15, "README shows {} commands", shown.len());
+    for Shown { command, output } in shown {
+        let Some(printed) = run(folder.path(), &command) else { continue };
+        let Some(output) = output else {
+            assert!(!printed.contains("error"), "{command}: {printed}");
+            continue;
+        };
+        let printed: Vec<_> = printed.lines().map(str::trim_end).collect();
+        let (expected, whole) = match output.split_last() {
+            Some((last, before)) if last == "..." => (before, false),
+            _ => (&output[..], true),
+        };
+        let expected: Vec<_> = expected.iter().map(|l| l.trim_end()).collect();
+        assert!(printed.len() >= expected.len(), "{command}: {printed:#?}");
+        assert_eq!(printed[..expected.len()], expected[..], "{command}");
+        assert!(!whole || printed.len() == expected.len(), "{command}: {printed:#?}");
+    }
+}

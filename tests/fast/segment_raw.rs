@@ -1,0 +1,70 @@
+//! Raw logs to plateaus, end to end, judged by the true plateaus.
+
+use crate::harness::{binary, repository};
+
+/// True plateaus of the two logs kept here: `tests/data/raw` are copies from the rig data.
+const TRUTH: &str = include_str!("../data/raw/truth.csv");
+
+fn run_toml(files: [&str; 2]) -> String {
+    format!(
+        "[rig]\nwrap_angle_deg = 63.89\nsample_rate_hz = 200.0\nhook_mass_g = 62.53\nstroke_mm = 152.4\non_s = 0.5\n\
+         dwell_s = 3.0\n\n[[series]]\nfile = \"{}\"\nsubstrate = \"silicone\"\npins = []\nload_mass_g = 5002.5\n\
+         speed_pct = 57\nsweep = \"up\"\n\n[[series]]\nfile = \"{}\"\nsubstrate = \"silicone\"\npins = [5, 8, 11]\n\
+         load_mass_g = 2505.4\nspeed_pct = 52\nsweep = \"up\"\n",
+        files[0], files[1]
+    )
+}
+
+#[test]
+fn every_repetition_is_found_within_a_fiftieth_of_a_newton() {
+    let files = ["silicone_5002g.csv.gz", "device-three-double_2505g.csv.gz"];
+    let folder = tempfile::tempdir().unwrap();
+    let raw = repository("tests/data/raw");
+    for file in files {
+        std::fs::copy(raw.join(file), folder.path().join(file)).unwrap();
+    }
+    let run = folder.path().join("run.toml");
+    std::fs::write(&run, run_toml(files)).unwrap();
+    let out = folder.path().join("plateaus.csv");
+    let done = binary().arg("segment").arg(&run).arg("--out").arg(&out).output().unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let table = std::fs::read_to_string(&out).unwrap();
+    let mut found = std::collections::BTreeMap::new();
+    for line in table.lines().skip(1) {
+        let c: Vec<&str> = line.split(',').collect();
+        let file = files[c[0].parse::<usize>().unwrap()];
+        found.insert(format!("{file},{},{}", c[8], c[9]), c[12].parse::<f64>().unwrap());
+    }
+    let (mut sum, mut count) = (0.0, 0);
+    for line in TRUTH.lines().skip(1).filter(|l| files.iter().any(|f| l.starts_with(f))) {
+        let (key, force) = line.rsplit_once(',').unwrap();
+        let read = found.remove(key).unwrap_or_else(|| panic!("{key} was not found"));
+        sum += (read - force.parse::<f64>().unwrap()).powi(2);
+        count += 1;
+    }
+    assert!(found.is_empty(), "not in the log: {found:?}");
+    assert!(count > 80);
+    let rms = (sum / f64::from(count)).sqrt();
+    assert!(rms < 0.02, "{rms}");
+    assert!(folder.path().join("plateaus.json").exists());
+    assert!(folder.path().join("plateaus-silicone_5002g.svg").exists());
+}
+
+#[test]
+fn a_missing_log_or_column_is_named_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("run.toml");
+    std::fs::write(&run, run_toml(["a.csv", "b.csv"])).unwrap();
+    let out = folder.path().join("out.csv");
+    let segment = || {
+        let mut command = binary();
+        let done = command.arg("segment").arg(&run).arg("--out").arg(&out).output().unwrap();
+        assert_eq!(done.status.code(), Some(2));
+        String::from_utf8_lossy(&done.stderr).into_owned()
+    };
+    assert!(segment().contains("a.csv"));
+    std::fs::write(folder.path().join("a.csv"), "time_s,force_N,position_mm\n0,1,2\n").unwrap();
+    let message = segment();
+    assert!(message.contains("a.csv") && message.contains("power_W"), "{message}");
+    assert!(!out.exists());
+}

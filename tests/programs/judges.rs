@@ -1,0 +1,122 @@
+//! Programs that nobody here wrote judge our parts, and our oracle judges meshes that nobody here made. The judges lie
+//! in `../shared/tools`; where they are absent, or not installed, the tests say so and pass.
+
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::harness::{beside_repository, done, ended, files, say_skipped};
+
+/// The Python that `../shared/tools/setup_judges.sh` installs the judges into.
+fn judges_python() -> Option<&'static Path> {
+    let python = Path::new("/tmp/judges-venv/bin/python");
+    if !python.exists() {
+        say_skipped(&format!("{} is not here; ../shared/tools/setup_judges.sh makes it", python.display()));
+    }
+    python.exists().then_some(python)
+}
+
+#[test]
+fn slicers_and_mesh_checkers_accept_the_three_layouts() {
+    let Some(judge) = beside_repository("tools/judge_mesh.py") else { return };
+    let installed = Command::new("prusa-slicer").arg("--help").output().is_ok_and(|o| o.status.success());
+    if !installed {
+        say_skipped("prusa-slicer is not installed; ../shared/tools/setup_judges.sh installs the judges");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    // Parts but for the supports and their labels are equal between the layouts: the others add those that differ.
+    for (layout, parts) in [
+        (
+            "three-double",
+            &[
+                "shell",
+                "mould-core",
+                "mould-ring",
+                "mould-lid",
+                "support-left",
+                "support-right",
+                "proxy",
+                "coupon",
+            ][..],
+        ),
+        ("six-single", &["shell", "support-left"][..]),
+        ("three-single", &["shell", "support-right"][..]),
+    ] {
+        done(folder.path(), &["-q", "generate", layout, "--out", layout]);
+        let files: Vec<_> = parts.iter().map(|p| folder.path().join(format!("{layout}/{p}.stl"))).collect();
+        let output = Command::new("python3")
+            .arg(&judge)
+            .args(&files)
+            .args(["--only", "admesh,prusa_info,prusa_slice,trimesh,manifold3d,pymeshlab"])
+            .args(["--require", "prusa_info,prusa_slice"])
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{layout}: {}", String::from_utf8_lossy(&output.stdout));
+    }
+}
+
+#[test]
+fn our_oracle_finds_every_defect_of_the_test_meshes() {
+    let Some(maker) = beside_repository("tools/make_test_meshes.py") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let Some(venv) = judges_python() else { return };
+    let made = Command::new(venv).arg(&maker).arg(folder.path()).output().unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    let expected: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("expected.json")).unwrap()).unwrap();
+    let mut judged = 0;
+    for (name, entry) in expected.as_object().unwrap().iter().filter(|(name, _)| name.ends_with(".stl")) {
+        let good = entry["good"].as_bool().unwrap();
+        let code = ended(folder.path(), &["check", name]).0;
+        assert_eq!(code == Some(0), good, "{name}: {}, exit code {code:?}", entry["defect"]);
+        judged += 1;
+    }
+    assert!(judged >= 20, "only {judged} meshes");
+}
+
+/// Slicers, lib3mf's strict reader and OCCT judge the three layouts, where they are installed.
+#[test]
+fn readers_of_3mf_and_step_accept_the_three_layouts() {
+    let Some(judge) = beside_repository("tools/judge_mesh.py") else { return };
+    let Some(python) = judges_python() else { return };
+    for layout in ["six-single", "three-double", "three-single"] {
+        let folder = tempfile::tempdir().unwrap();
+        let files = {
+            done(folder.path(), &["generate", layout, "--format", "3mf,step", "--out", "set"]);
+            files(&folder.path().join("set"))
+        };
+        let manifest: Value = serde_json::from_slice(&files["manifest.json"]).unwrap();
+        let ask = |file: &str, extra: &[&str]| {
+            let output = Command::new(python)
+                .arg(&judge)
+                .arg(folder.path().join("set").join(file))
+                .args(extra)
+                .output()
+                .unwrap();
+            (output.status.success(), String::from_utf8_lossy(&output.stdout).into_owned())
+        };
+        let judged = |file: &str, extra: &[&str]| {
+            let (fine, said) = ask(file, extra);
+            assert!(fine, "{layout}: {file}: {said}");
+        };
+        // pymeshlab reads the last object of a package only, and is left out.
+        judged("assembly.3mf", &["--only", "prusa_info,prusa_slice,lib3mf,opc3mf,manifold3d"]);
+        for part in manifest["parts"].as_array().unwrap() {
+            let file = part["file"].as_str().unwrap().replace(".stl", ".step");
+            let volume = part["volume_mm3"].to_string();
+            judged(&file, &["--only", "ocp", "--volume", &volume, "--rtol", "1e-9"]);
+        }
+        // The bodies of an assembly touch, which the analyser of boolean arguments counts as self-interference; everything
+        // else must hold: it reads, is valid, its shells are closed, and no two bodies overlap.
+        let (_, said) = ask("assembly.step", &["--only", "ocp"]);
+        let complaints: Vec<&str> = said.lines().filter(|l| l.contains(" FAIL ")).collect();
+        assert!(
+            complaints
+                .iter()
+                .all(|l| l.trim_end().ends_with("(self-interference or small edges)") && !l.contains(';')),
+            "{layout}: {said}"
+        );
+    }
+}

@@ -1,0 +1,182 @@
+//! The page in a real browser, where one is installed: it renders, its controls work, and nothing is logged as an error.
+
+use crate::harness::browser;
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Moves every control and leaves what it found in the title.
+const EXERCISE: &str = r#"<script>
+addEventListener('load', () => setTimeout(() => {
+  const set = (id, value) => { const e = document.getElementById(id); e.value = value; e.dispatchEvent(new Event('input')); };
+  const seen = {};
+  const first = document.getElementById('load-value').textContent;
+  set('load', 0.2);
+  seen.load = document.getElementById('load-value').textContent !== first;
+  const pin = () => assembly.bodies.find((n) => n.userData.body.name === 'pin-2').matrix.elements.slice(12, 15).join();
+  const light = pin();
+  set('load', 1);
+  seen.sinks = pin() !== light;
+  const shell = () => assembly.bodies.find((n) => n.userData.body.name === 'support-right').matrix.elements[14];
+  const home = shell();
+  set('explode', 1);
+  seen.apart = shell() !== home;
+  const eye = assembly.camera.position.x;
+  set('turn', 120); set('tilt', -20);
+  seen.turned = assembly.camera.position.x !== eye;
+  const section = document.getElementById('section');
+  section.checked = true; section.dispatchEvent(new Event('input'));
+  seen.cut = assembly.bodies.every((n) => n.userData.materials.every((m) => m.clippingPlanes.length === 1));
+  const box = document.querySelector('#bodies input');
+  box.click();
+  seen.hidden = !assembly.bodies[0].visible;
+  seen.canvas = document.querySelectorAll('canvas').length === 2;
+  seen.rows = document.querySelectorAll('#table tbody tr').length === 101;
+  seen.saves = document.querySelectorAll('#files button').length === 10;
+  seen.labels = [...document.querySelectorAll('input')].every((i) => i.labels.length === 1);
+  seen.errors = document.body.dataset.errors === '0';
+  document.title = 'exercised ' + Object.entries(seen).filter(([, ok]) => !ok).map(([name]) => name).join(' ') + ' end';
+}, 300));
+</script>"#;
+
+fn browse(name: &str, file: &Path, extra: &[&str]) -> String {
+    let profile = tempfile::tempdir().unwrap();
+    let output = Command::new(name)
+        .args([
+            "--headless",
+            "--no-sandbox",
+            "--use-angle=swiftshader",
+            "--enable-unsafe-swiftshader",
+            "--hide-scrollbars",
+        ])
+        .args(["--virtual-time-budget=8000", "--window-size=1200,1900"])
+        .arg(format!("--user-data-dir={}", profile.path().display()))
+        .args(extra)
+        .arg(format!("file://{}", file.display()))
+        .output()
+        .unwrap();
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn pinswitch(folder: &Path, arguments: &[&str]) {
+    let output = crate::harness::binary().args(arguments).current_dir(folder).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn the_page_works_in_a_browser() {
+    let Some(name) = browser() else {
+        crate::harness::say_skipped("no chromium here; Debian's package is called chromium");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    pinswitch(folder.path(), &["generate", "three-double", "--format", "page", "--out", "set"]);
+    let page = std::fs::read_to_string(folder.path().join("set/report.html")).unwrap();
+    assert!(page.len() < 2_000_000, "{} bytes", page.len());
+    let exercised = folder.path().join("exercised.html");
+    std::fs::write(&exercised, page.replace("</body>", &format!("{EXERCISE}</body>"))).unwrap();
+    let dom = browse(name, &exercised, &["--dump-dom"]);
+    let title = dom.split("<title>").nth(1).and_then(|t| t.split("</title>").next()).unwrap_or("no title");
+    assert_eq!(title.split_whitespace().collect::<Vec<_>>(), ["exercised", "end"], "these controls failed");
+    // Kept for a person to look at, light and dark.
+    let kept = crate::harness::repository("out/page");
+    std::fs::create_dir_all(&kept).unwrap();
+    for (mode, flag) in [
+        ("light", "--blink-settings=preferredColorScheme=1"),
+        ("dark", "--blink-settings=preferredColorScheme=0"),
+    ] {
+        let picture = kept.join(format!("{mode}.png"));
+        browse(
+            name,
+            &folder.path().join("set/report.html"),
+            &[flag, &format!("--screenshot={}", picture.display())],
+        );
+        assert!(std::fs::metadata(&picture).unwrap().len() > 30_000, "{mode}: an empty picture");
+    }
+}
+
+/// A running preview, ended with the test.
+struct Preview {
+    child: Child,
+    address: String,
+}
+
+impl Drop for Preview {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Preview {
+    fn start(folder: &Path, config: &str) -> Self {
+        let mut child = crate::harness::binary()
+            .args(["view", config, "--port", "0"])
+            .current_dir(folder)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut line = Vec::new();
+        let stdout = child.stdout.as_mut().unwrap();
+        let mut byte = [0];
+        while stdout.read_exact(&mut byte).is_ok() && byte[0] != b'\n' {
+            line.push(byte[0]);
+        }
+        let address = String::from_utf8(line).unwrap().replace("http://", "");
+        Self { child, address }
+    }
+
+    fn get(&self, path: &str) -> String {
+        let mut stream = TcpStream::connect(&self.address).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
+        // HTTP 1.0: the answer ends with the connection, and comes in one piece.
+        write!(stream, "GET {path} HTTP/1.0\r\n\r\n").unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        answer.split_once("\r\n\r\n").map(|(_, body)| body.to_owned()).unwrap()
+    }
+
+    fn state(&self, after: u64) -> serde_json::Value {
+        serde_json::from_str(&self.get(&format!("/state?after={after}"))).unwrap()
+    }
+}
+
+#[test]
+fn the_preview_follows_its_file_and_keeps_the_last_good_state() {
+    let folder = tempfile::tempdir().unwrap();
+    pinswitch(folder.path(), &["init", "three-double", "--out", "mine.toml"]);
+    let preview = Preview::start(folder.path(), "mine.toml");
+    assert!(preview.get("/").contains("<!doctype html>"));
+    let file = folder.path().join("mine.toml");
+    let good = std::fs::read_to_string(&file).unwrap();
+
+    std::fs::write(&file, good.replace("[5, 8, 11]", "[6, 8, 10]")).unwrap();
+    let begun = Instant::now();
+    let state = preview.state(1);
+    println!("a changed parameter is shown after {:?}", begun.elapsed());
+    assert_eq!(state["version"], 2);
+    assert!(state["data"]["layout"].as_str().unwrap().contains("[6, 8, 10]"));
+
+    std::fs::write(&file, good.replace("[5, 8, 11]", "[5, 99]")).unwrap();
+    let state = preview.state(2);
+    assert!(state["trouble"].as_str().unwrap().contains("layout.pins"), "{}", state["trouble"]);
+    assert!(state["data"].is_null());
+    // The page itself still shows the last good state.
+    assert!(preview.get("/").contains("[6, 8, 10]"));
+
+    std::fs::write(&file, &good).unwrap();
+    let state = preview.state(3);
+    assert!(state["trouble"].is_null() && state["data"]["layout"].as_str().unwrap().contains("[5, 8, 11]"));
+}
+
+#[test]
+fn a_port_in_use_is_one_clear_error() {
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port().to_string();
+    let output = crate::harness::binary().args(["view", "three-double", "--port", &port]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("give another port"));
+}

@@ -1,0 +1,181 @@
+//! The recipes for many machines: a Slurm of one node really runs the job array, a schema checks the Kubernetes Job.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::harness::{SWEEP, differences, done, hashes, with_sweep};
+
+fn recipe(name: &str) -> PathBuf {
+    crate::harness::repository("templates/batch").join(name).canonicalize().unwrap()
+}
+
+/// A Slurm on loopback: its daemons end with it.
+struct Slurm {
+    folder: PathBuf,
+    daemons: Vec<Child>,
+}
+
+impl Slurm {
+    /// Starts munged, slurmctld and slurmd, or says why it cannot.
+    fn start(folder: &Path) -> Result<Self, String> {
+        for program in ["munged", "slurmctld", "slurmd", "sbatch", "sinfo"] {
+            let found = Command::new("sh").args(["-c", &format!("command -v {program}")]).output().unwrap();
+            if !found.status.success() {
+                return Err(format!("{program} is not installed (Debian: apt-get install slurm-wlm munge)"));
+            }
+        }
+        let user = Command::new("id").arg("-u").output().unwrap().stdout;
+        if String::from_utf8_lossy(&user).trim() != "0" {
+            return Err("slurmd wants to be run by an administrator".to_owned());
+        }
+        let host = String::from_utf8(Command::new("hostname").output().unwrap().stdout).unwrap();
+        let (host, at) = (host.trim(), folder.display());
+        for inner in ["state", "spool"] {
+            std::fs::create_dir_all(folder.join(inner)).unwrap();
+        }
+        let mut key = vec![0; 1024];
+        std::fs::File::open("/dev/urandom").unwrap().read_exact(&mut key).unwrap();
+        std::fs::write(folder.join("munge.key"), key).unwrap();
+        let mode = Command::new("chmod").arg("400").arg(folder.join("munge.key")).status().unwrap();
+        assert!(mode.success());
+        let configuration = format!(
+            "ClusterName=loopback\nSlurmctldHost={host}(127.0.0.1)\nSlurmctldPort=26817\nSlurmdPort=26818\n\
+             SlurmUser=root\nSlurmdUser=root\nAuthType=auth/munge\nAuthInfo=socket={at}/munge.socket\n\
+             CredType=cred/munge\nStateSaveLocation={at}/state\nSlurmdSpoolDir={at}/spool\n\
+             SlurmctldPidFile={at}/slurmctld.pid\nSlurmdPidFile={at}/slurmd.pid\n\
+             SlurmctldLogFile={at}/slurmctld.log\nSlurmdLogFile={at}/slurmd.log\n\
+             ProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nSelectType=select/cons_tres\n\
+             SelectTypeParameters=CR_CPU\nReturnToService=2\n\
+             SchedulerType=sched/builtin\nSchedulerParameters=sched_interval=1,batch_sched_delay=0\nMinJobAge=10\nMailProg=/bin/true\n\
+             NodeName={host} NodeAddr=127.0.0.1 CPUs=2 RealMemory=1000 State=UNKNOWN\n\
+             PartitionName=loopback Nodes={host} Default=YES MaxTime=INFINITE State=UP\n"
+        );
+        std::fs::write(folder.join("slurm.conf"), configuration).unwrap();
+        let mut slurm = Self { folder: folder.to_owned(), daemons: Vec::new() };
+        let munge = [
+            "key-file=munge.key",
+            "socket=munge.socket",
+            "pid-file=munged.pid",
+            "log-file=munged.log",
+            "seed-file=munged.seed",
+        ];
+        let munge: Vec<_> =
+            munge.iter().map(|o| format!("--{}", o.replace('=', &format!("={at}/")))).collect();
+        slurm.daemon("munged", &[&["--foreground".to_owned(), "--force".to_owned()][..], &munge].concat())?;
+        std::thread::sleep(Duration::from_secs(1));
+        slurm.daemon("slurmctld", &["-D".to_owned()])?;
+        slurm.daemon("slurmd", &["-D".to_owned(), "-N".to_owned(), host.to_owned()])?;
+        let start = Instant::now();
+        while !slurm.say("sinfo", &["-h", "-o", "%t"]).contains("idle") {
+            if start.elapsed() > Duration::from_secs(60) {
+                let log = std::fs::read_to_string(folder.join("slurmctld.log")).unwrap_or_default();
+                return Err(format!("Slurm does not come up here: {log}"));
+            }
+            std::thread::sleep(Duration::from_millis(300));
+        }
+        Ok(slurm)
+    }
+
+    fn daemon(&mut self, program: &str, arguments: &[String]) -> Result<(), String> {
+        let child = self
+            .command(program)
+            .args(arguments)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .map_err(|e| format!("{program} cannot be started: {e}"))?;
+        self.daemons.push(child);
+        Ok(())
+    }
+
+    fn command(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        command.env("SLURM_CONF", self.folder.join("slurm.conf")).current_dir(&self.folder);
+        command
+    }
+
+    fn say(&self, program: &str, arguments: &[&str]) -> String {
+        let output = self.command(program).args(arguments).output().unwrap();
+        String::from_utf8([output.stdout, output.stderr].concat()).unwrap()
+    }
+}
+
+impl Drop for Slurm {
+    fn drop(&mut self) {
+        for daemon in self.daemons.iter_mut().rev() {
+            let _ = daemon.kill();
+            let _ = daemon.wait();
+        }
+    }
+}
+
+#[test]
+fn a_slurm_job_array_makes_what_one_run_makes() {
+    let folder = with_sweep(SWEEP);
+    let path = folder.path();
+    let slurm = match Slurm::start(path) {
+        Ok(slurm) => slurm,
+        Err(reason) => {
+            println!("SKIPPED: {reason}");
+            return;
+        }
+    };
+    // The two commands of the recipe's head.
+    let binary = env!("CARGO_BIN_EXE_pinswitch");
+    let export = format!("--export=ALL,PINSWITCH={binary},SWEEP=sweep.toml,OUT=array");
+    let script = recipe("slurm.sbatch");
+    let array = slurm.say("sbatch", &["--parsable", "--array=1-3", &export, script.to_str().unwrap()]);
+    let array = array.trim();
+    assert!(array.parse::<u32>().is_ok(), "{array}");
+    let after = format!("--dependency=afterok:{array}");
+    let merge = format!("'{binary}' merge \"$OUT\"");
+    let merged =
+        slurm.say("sbatch", &["--parsable", "--wait", &after, "--export=ALL,OUT=array", "--wrap", &merge]);
+    let logs = || -> String {
+        let files = std::fs::read_dir(path).unwrap().map(|e| e.unwrap().path());
+        files
+            .filter(|p| p.extension().is_some_and(|e| e == "out"))
+            .map(|p| std::fs::read_to_string(p).unwrap())
+            .collect()
+    };
+    assert!(path.join("array/index.html").exists(), "{merged}: {}", logs());
+    drop(slurm);
+    done(path, &["batch", "sweep.toml", "--out", "whole"]);
+    let mut array = hashes(&path.join("array"));
+    array.retain(|name, _| !name.starts_with("shards/"));
+    assert_eq!(differences(&hashes(&path.join("whole")), &array), Vec::<String>::new());
+}
+
+#[test]
+fn the_kubernetes_job_is_what_its_schema_wants() {
+    let packed = include_bytes!("../data/kubernetes/job-batch-v1.34.json.gz");
+    let mut schema = String::new();
+    flate2::read::GzDecoder::new(&packed[..]).read_to_string(&mut schema).unwrap();
+    let schema: serde_json::Value = serde_json::from_str(&schema).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let text = std::fs::read_to_string(recipe("kubernetes-job.yaml")).unwrap();
+    let job: serde_json::Value = serde_saphyr::from_str(&text).unwrap();
+    let errors: Vec<_> = validator.iter_errors(&job).map(|e| e.to_string()).collect();
+    assert!(errors.is_empty(), "{errors:?}");
+    // The schema is strict: a slip is found.
+    let slip: serde_json::Value =
+        serde_saphyr::from_str(&text.replace("completionMode", "completionsMode")).unwrap();
+    assert!(!validator.is_valid(&slip));
+    let spec = &job["spec"];
+    let command = spec["template"]["spec"]["containers"][0]["args"][0].as_str().unwrap();
+    assert_eq!(spec["completionMode"], "Indexed");
+    assert!(command.contains(&format!("+ 1))/{}\"", spec["completions"])), "{command}");
+    // The command's arguments are ours: every pod's shard, with a shell in between.
+    for (index, shard) in [("0", "1/8"), ("7", "8/8")] {
+        let shown = command.replace("exec pinswitch", "echo");
+        let said =
+            Command::new("sh").args(["-c", &shown]).env("JOB_COMPLETION_INDEX", index).output().unwrap();
+        let said = String::from_utf8(said.stdout).unwrap();
+        assert_eq!(
+            said.trim(),
+            format!("batch /sweep/sweep.toml --out s3://bucket/sweep --shard {shard} --yes")
+        );
+    }
+}

@@ -1,0 +1,241 @@
+//! The closed loop on simulated rigs, by the command line: simulate, segment, calibrate, predict, generate.
+
+use crate::harness::expect_code;
+use serde_json::Value;
+use std::path::Path;
+use std::process::Output;
+
+/// Runs the command line in a folder, which must end with this exit code.
+fn pinswitch(code: i32, folder: &Path, arguments: &str) -> Output {
+    expect_code(code, folder, &arguments.split_whitespace().collect::<Vec<_>>())
+}
+
+fn report(folder: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.join("cal/report.json")).unwrap()).unwrap()
+}
+
+/// Simulates a rig with these options and calibrates it.
+fn verdict(folder: &Path, options: &str) -> (String, Vec<String>, Value) {
+    pinswitch(0, folder, &format!("simulate {options} --out rig"));
+    pinswitch(0, folder, "calibrate rig/plateaus.csv --out cal");
+    let report = report(folder);
+    let mut ids: Vec<String> = report["effects"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .flat_map(|e| {
+            let rivals = e["rivals"].as_array().unwrap().iter().map(|r| r["id"].clone());
+            std::iter::once(e["id"].clone()).chain(rivals).collect::<Vec<_>>()
+        })
+        .map(|id| id.as_str().unwrap().to_owned())
+        .collect();
+    ids.sort();
+    (report["verdict"].as_str().unwrap().to_owned(), ids, report)
+}
+
+#[test]
+fn every_verdict_is_reached_on_simulated_rigs() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let unnamed =
+        "seed = 4\n[[disturbances]]\nsize = 0.2\n[disturbances.kind.spot]\nat = 0.4\nwidth = 0.12\n";
+    std::fs::write(at.join("spot.toml"), unnamed).unwrap();
+    let cases = [
+        ("", "none", &[][..]),
+        ("--randomised", "none", &[]),
+        ("--randomised --effect load_cell_offset=0.8", "attributed", &["load_cell_offset"]),
+        ("--effect adhesion=0.5", "attributed", &["adhesion"]),
+        ("--effect rate_dependence=0.5", "ambiguous", &["fixture_compliance", "rate_dependence"]),
+        ("--randomised --effect rate_dependence=0.5", "attributed", &["rate_dependence"]),
+        ("spot.toml", "unattributed", &["unattributed"]),
+    ];
+    for (options, expected, effects) in cases {
+        let (verdict, ids, report) = verdict(at, options);
+        let ids: Vec<&str> = ids.iter().map(String::as_str).collect();
+        assert_eq!((verdict.as_str(), &ids[..]), (expected, effects), "{options}");
+        for effect in report["effects"].as_array().unwrap() {
+            assert!(effect["p_value"].as_f64().unwrap() < 0.02, "{effect}");
+            assert!(effect["error_after_N"].as_f64() < effect["error_before_N"].as_f64(), "{effect}");
+            if expected == "ambiguous" {
+                assert!(effect["rivals"][0]["experiment"].as_str().unwrap().len() > 10, "{effect}");
+            }
+        }
+        if expected == "unattributed" {
+            assert_eq!(report["effects"][0]["covariate"], "position");
+        }
+        let layouts = |m: &str| report[m]["heldout_layouts_rmse_N"].as_f64().unwrap();
+        assert!(layouts("augmented") <= 1.02 * layouts("baseline"), "{options}");
+    }
+}
+
+/// A weight written down wrong must not be given the name of an effect, and is listed.
+#[test]
+fn a_mislabelled_weight_is_set_aside_and_listed() {
+    let folder = tempfile::tempdir().unwrap();
+    for (seed, protocol) in [(11, "paper"), (12, "randomised")] {
+        let plan = format!("seed = {seed}\nprotocol = \"{protocol}\"\n[noise]\nmislabelled_series = 1\n");
+        std::fs::write(folder.path().join("plan.toml"), plan).unwrap();
+        let (verdict, ids, report) = verdict(folder.path(), "plan.toml");
+        assert_eq!(verdict, "none", "{ids:?}");
+        let bad = report["bad_series"].as_array().unwrap();
+        // Beside single bad readings, one series is off in both directions.
+        let of = |direction: &str| -> Vec<&str> {
+            bad.iter()
+                .filter(|b| b["direction"] == direction)
+                .map(|b| b["series"].as_str().unwrap())
+                .collect()
+        };
+        let both = of("eccentric").into_iter().filter(|s| of("concentric").contains(s)).count();
+        assert_eq!(both, 1, "{bad:?}");
+        assert!(bad.iter().all(|b| b["standard_deviations"].as_f64().unwrap().abs() > 8.0), "{bad:?}");
+    }
+}
+
+/// Effects of the switch reach the curve of a printed part, effects of the rig do not, and the output says which.
+#[test]
+fn predictions_come_from_the_better_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let options = "--randomised --effect coating_ploughing=0.024 --effect load_cell_offset=1.2";
+    let (verdict, ids, _) = verdict(at, options);
+    assert_eq!(
+        (verdict.as_str(), ids.join(" ")),
+        ("attributed", "coating_ploughing load_cell_offset".to_owned())
+    );
+    let errors = ["baseline", "model"].map(|model| {
+        let rows = "--rows rig/plateaus-fresh.csv --out p.csv";
+        pinswitch(0, at, &format!("predict --model cal/{model}.toml {rows}"));
+        let text = std::fs::read_to_string(at.join("p.csv")).unwrap();
+        let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+        assert_eq!(header[header.len() - 2..], ["predicted_N", "sd_N"]);
+        let truth = header.iter().position(|h| *h == "force_N").unwrap();
+        let misses: Vec<f64> = text
+            .lines()
+            .skip(1)
+            .map(|l| l.split(',').map(|c| c.parse().unwrap_or(f64::NAN)).collect::<Vec<f64>>())
+            .map(|c| (c[truth] - c[c.len() - 2]).powi(2))
+            .collect();
+        (misses.iter().sum::<f64>() / misses.len() as f64).sqrt()
+    });
+    assert!(errors[1] < 0.1 * errors[0], "{errors:?}");
+    // The same part by a model with the rig's offset and by one without: the offset is out of both.
+    let output = pinswitch(0, at, "generate three-double --model cal/model.toml --out set -v");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("effects of the switch are in the curve: coating_ploughing"), "{said}");
+    assert!(said.contains("effects of the measurement stay out of it: load_cell_offset"), "{said}");
+    let manifest = std::fs::read_to_string(at.join("set/manifest.json")).unwrap();
+    assert!(manifest.contains("stay out of it: load_cell_offset"), "{manifest}");
+    let curve = std::fs::read_to_string(at.join("set/friction.csv")).unwrap();
+    let header: Vec<&str> = curve.lines().next().unwrap().split(',').collect();
+    let at_column = |name: &str| {
+        header.iter().position(|h| h.starts_with(name)).unwrap_or_else(|| panic!("{name}: {header:?}"))
+    };
+    let last: Vec<f64> =
+        curve.lines().last().unwrap().split(',').map(|c| c.parse().unwrap_or(f64::NAN)).collect();
+    let (load, eccentric, concentric) =
+        (last[at_column("load")], last[at_column("eccentric")], last[at_column("concentric")]);
+    // An offset of 1.2 N would shift both directions alike: G = sqrt(Fe Fc) equals the load whatever the friction is.
+    assert!(((eccentric * concentric).sqrt() - load).abs() < 0.6, "{load} {eccentric} {concentric}");
+}
+
+/// Raw logs with bad moves, through segmentation, to a calibration.
+#[test]
+fn raw_logs_go_round_the_whole_loop() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let plan = "seed = 3\nlayouts = [[5, 8, 11]]\nweights_g = [503.6, 1503.9, 2505.4, 3508.6, 5002.5]\n\
+                speeds_pct = [52]\n[raw]\nodd_speed_share = 0.3\nmissing_share = 0.3\n[[effects]]\n\
+                id = \"load_cell_offset\"\nvalues = [1.4]\n";
+    std::fs::write(at.join("plan.toml"), plan).unwrap();
+    pinswitch(0, at, "simulate plan.toml --out rig --raw");
+    pinswitch(0, at, "segment rig/run.toml --out found.csv");
+    let found = std::fs::read_to_string(at.join("found.csv")).unwrap();
+    let truth = std::fs::read_to_string(at.join("rig/truth.csv")).unwrap();
+    assert_eq!(found.lines().count(), truth.lines().count());
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (f, t) in found.lines().zip(truth.lines()).skip(1) {
+        let (f, t): (Vec<&str>, Vec<&str>) = (f.split(',').collect(), t.split(',').collect());
+        assert_eq!((f[8], f[9]), (t[1], t[2]));
+        sum += (f[12].parse::<f64>().unwrap() - t[3].parse::<f64>().unwrap()).powi(2);
+        count += 1.0;
+    }
+    assert!(f64::sqrt(sum / count) < 0.02, "{}", f64::sqrt(sum / count));
+    let sidecar: Value = serde_json::from_slice(&std::fs::read(at.join("found.json")).unwrap()).unwrap();
+    let faults: Value = serde_json::from_slice(&std::fs::read(at.join("rig/faults.json")).unwrap()).unwrap();
+    for entry in sidecar["series"].as_array().unwrap() {
+        let file = entry["file"].as_str().unwrap();
+        let seen = |what: &str| entry["findings"].as_array().unwrap().iter().any(|f| f["what"] == what);
+        assert_eq!(seen("missing_repetition"), faults[file]["missing_after"].is_array(), "{entry}");
+        assert_eq!(seen("odd_speed"), faults[file]["odd_speed"].is_array(), "{entry}");
+        assert!(seen("lost_samples"), "{entry}");
+    }
+    pinswitch(0, at, "calibrate found.csv --out cal");
+    assert_eq!(report(at)["effects"][0]["id"], "load_cell_offset", "{}", report(at)["effects"]);
+}
+
+/// Which lines of a table are kept.
+type Rows<'a> = &'a dyn Fn(&[&str]) -> bool;
+
+/// Two loads, one direction or one condition: an answer that names what it leaves open.
+#[test]
+fn too_little_data_gets_an_answer_with_open_questions() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    pinswitch(0, at, "simulate --out rig");
+    let all = std::fs::read_to_string(at.join("rig/plateaus.csv")).unwrap();
+    let keep = |test: &dyn Fn(&[&str]) -> bool| {
+        let mut text = all.lines().next().unwrap().to_owned() + "\n";
+        for line in all.lines().skip(1).filter(|l| test(&l.split(',').collect::<Vec<_>>())) {
+            text.push_str(line);
+            text.push('\n');
+        }
+        std::fs::write(at.join("little.csv"), text).unwrap();
+    };
+    let cases: [(&str, Rows<'_>, &[&str]); 3] = [
+        (
+            "two loads",
+            &|c| c[4] == "251.2" || c[4] == "5002.5",
+            &["dwell_relaxation", "switching_hysteresis"],
+        ),
+        ("one direction", &|c| c[8] == "eccentric", &["dwell_relaxation", "direction_asymmetry"]),
+        (
+            "one condition",
+            &|c| c[1] == "silicone" && c[2].is_empty(),
+            &["coating_stiffening", "polygon_bending"],
+        ),
+    ];
+    for (name, test, open) in cases {
+        keep(test);
+        pinswitch(0, at, "calibrate little.csv --out cal");
+        let report = report(at);
+        assert!(
+            ["none", "ambiguous"].contains(&report["verdict"].as_str().unwrap()),
+            "{name}: {}",
+            report["effects"]
+        );
+        let invisible: Vec<&str> =
+            report["invisible"].as_array().unwrap().iter().map(|i| i["id"].as_str().unwrap()).collect();
+        assert!(open.iter().all(|id| invisible.contains(id)), "{name}: {invisible:?}");
+    }
+    keep(&|c| c[4] == "251.2");
+    std::fs::remove_dir_all(at.join("cal")).unwrap();
+    let refused = pinswitch(2, at, "calibrate little.csv --out cal");
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(message.contains("load_N") && message.contains("leaves open"), "{message}");
+    assert!(!at.join("cal").exists());
+}
+
+#[test]
+fn effects_asked_for_are_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    for (options, expected) in [
+        ("--effect gravity=1", "known are"),
+        ("--effect run_in=0.1", "3 value(s)"),
+        ("--effect adhesion=much", "values are numbers"),
+    ] {
+        let output = pinswitch(2, folder.path(), &format!("simulate {options} --out rig"));
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(message.contains(expected), "{message}");
+        assert!(!folder.path().join("rig").exists());
+    }
+}

@@ -1,0 +1,11 @@
+//! What takes minutes: the closed loop on many rigs, random configurations, batches that are killed.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../harness/mod.rs"]
+mod harness;
+
+mod batch_kill;
+mod closed_loop;
+mod random_configurations;
+mod undeclared_effect;

@@ -1,0 +1,237 @@
+//! The undeclared-effect test: the calibrator gets a plateau table only, and must say what the paper's model lacks.
+//! The tables are copies of rig sets (their README allows it); what was put into each stands beside its test.
+
+use crate::harness::{beside_repository, expect_code, repository};
+use serde_json::Value;
+use std::ffi::OsStr;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+/// Unpacks a rig set into a folder.
+fn unpack(name: &str, folder: &Path) -> PathBuf {
+    let packed = repository("tests/data").join(format!("{name}.csv.gz"));
+    let mut text = String::new();
+    flate2::read::MultiGzDecoder::new(std::fs::File::open(packed).unwrap())
+        .read_to_string(&mut text)
+        .unwrap();
+    let path = folder.join(format!("{name}.csv"));
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+/// Runs the command line, which must end with this exit code.
+fn pinswitch(code: i32, arguments: &[&dyn AsRef<OsStr>]) -> Output {
+    let arguments: Vec<&OsStr> = arguments.iter().map(|a| a.as_ref().as_ref()).collect();
+    expect_code(code, Path::new("."), &arguments)
+}
+
+/// Runs `calibrate` and returns the report.
+fn calibrate(table: &Path, out: &Path) -> Value {
+    pinswitch(0, &[&"calibrate", &table, &"--out", &out]);
+    for file in ["report.html", "residuals.csv", "baseline.toml", "model.toml"] {
+        assert!(out.join(file).exists(), "{file}");
+    }
+    serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap()
+}
+
+fn ids(report: &Value) -> Vec<String> {
+    let mut ids: Vec<String> =
+        report["effects"].as_array().unwrap().iter().map(|e| e["id"].as_str().unwrap().to_owned()).collect();
+    ids.sort();
+    ids
+}
+
+/// Root mean square error of a model on fresh rows, by the command line.
+fn fresh_error(model: &Path, fresh: &Path, folder: &Path) -> f64 {
+    let out = folder.join("predicted.csv");
+    pinswitch(0, &[&"predict", &"--model", &model, &"--rows", &fresh, &"--out", &out]);
+    let text = std::fs::read_to_string(out).unwrap();
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|h| *h == name).unwrap();
+    let (truth, predicted, sd) = (column("force_N"), column("predicted_N"), column("sd_N"));
+    let (mut sum, mut count) = (0.0, 0.0);
+    for line in lines {
+        let cells: Vec<f64> = line.split(',').map(|c| c.parse().unwrap_or(f64::NAN)).collect();
+        assert!(cells[sd] > 0.0);
+        sum += (cells[truth] - cells[predicted]).powi(2);
+        count += 1.0;
+    }
+    f64::sqrt(sum / count)
+}
+
+/// One set: verdict, effects, and by how much the error on fresh rows falls.
+fn judge(name: &str, verdict: &str, effects: &[&str], ratio: f64) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let report = calibrate(&unpack(name, folder.path()), &out);
+    assert_eq!(report["verdict"], verdict, "{name}: {:?}", ids(&report));
+    assert_eq!(ids(&report), effects, "{name}");
+    let fresh = unpack(&format!("{name}-fresh"), folder.path());
+    let before = fresh_error(&out.join("baseline.toml"), &fresh, folder.path());
+    let after = fresh_error(&out.join("model.toml"), &fresh, folder.path());
+    assert!(after <= ratio * before, "{name}: {before} before, {after} after");
+    report
+}
+
+#[test]
+fn a_rig_without_any_effect_is_left_alone() {
+    judge("set-01", "none", &[], 1.0);
+}
+
+#[test]
+fn ploughing_is_named_and_the_error_falls() {
+    judge("set-04", "attributed", &["coating_ploughing"], 0.1);
+}
+
+#[test]
+fn hysteresis_is_named_where_loads_descend() {
+    judge("set-09", "attributed", &["switching_hysteresis"], 0.5);
+}
+
+/// Speed follows load in this protocol: no fit can tell, and the report says which experiment would.
+#[test]
+fn a_confounded_design_is_called_ambiguous_with_the_experiment_that_settles_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = calibrate(&unpack("set-13", folder.path()), &folder.path().join("out"));
+    assert_eq!(report["verdict"], "ambiguous");
+    let effect = &report["effects"][0];
+    let mut set = vec![effect["id"].as_str().unwrap()];
+    set.extend(effect["rivals"].as_array().unwrap().iter().map(|r| r["id"].as_str().unwrap()));
+    assert!(set.contains(&"rate_dependence") && set.contains(&"fixture_compliance"), "{set:?}");
+    assert!(effect["rivals"][0]["experiment"].as_str().unwrap().contains("several speeds at one load"));
+}
+
+#[test]
+fn two_effects_at_once_are_both_named() {
+    judge("set-14", "attributed", &["substrate_saturation", "thermal_drift"], 0.15);
+}
+
+#[test]
+fn what_no_name_explains_is_unattributed_with_its_covariate() {
+    for (name, covariate, ratio) in [("set-15", "time", 0.3), ("set-16", "position", 0.3)] {
+        let report = judge(name, "unattributed", &["unattributed"], ratio);
+        assert_eq!(report["effects"][0]["covariate"], covariate, "{name}");
+    }
+}
+
+/// Readings dealt out anew among the rows of one kind (condition, load, direction) keep the baseline and lose
+/// every trace of time, speed, repetition and position.
+#[test]
+fn permuted_data_gives_no_effect_of_time_speed_or_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = unpack("set-16", folder.path());
+    let text = std::fs::read_to_string(&path).unwrap();
+    let mut lines: Vec<Vec<String>> =
+        text.lines().map(|l| l.split(',').map(str::to_owned).collect()).collect();
+    let header = lines.remove(0);
+    let mut groups = std::collections::BTreeMap::<_, Vec<usize>>::new();
+    for (i, l) in lines.iter().enumerate() {
+        groups.entry((l[1].clone(), l[2].clone(), l[5].clone(), l[8].clone())).or_default().push(i);
+    }
+    // A fixed shuffle: a multiplicative generator orders the rows of each kind.
+    let mut state = 12_345u64;
+    for rows in groups.values() {
+        let mut order: Vec<(u64, usize)> = rows
+            .iter()
+            .map(|r| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (state >> 20, *r)
+            })
+            .collect();
+        order.sort_unstable();
+        let forces: Vec<String> = order.iter().map(|(_, r)| lines[*r][12].clone()).collect();
+        rows.iter().zip(forces).for_each(|(r, f)| lines[*r][12] = f);
+    }
+    let mut shuffled = header.join(",") + "\n";
+    lines.iter().for_each(|l| shuffled.push_str(&(l.join(",") + "\n")));
+    std::fs::write(&path, shuffled).unwrap();
+    let report = calibrate(&path, &folder.path().join("out"));
+    let traces = ["position", "repetition", "time", "speed"];
+    for effect in report["effects"].as_array().unwrap() {
+        assert!(!traces.contains(&effect["covariate"].as_str().unwrap()), "{effect}");
+    }
+}
+
+#[test]
+fn the_same_table_gives_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = unpack("set-09", folder.path());
+    let (one, two) = (folder.path().join("one"), folder.path().join("two"));
+    calibrate(&table, &one);
+    calibrate(&table, &two);
+    for entry in std::fs::read_dir(&one).unwrap() {
+        let name = entry.unwrap().file_name();
+        assert_eq!(
+            std::fs::read(one.join(&name)).unwrap(),
+            std::fs::read(two.join(&name)).unwrap(),
+            "{name:?}"
+        );
+    }
+}
+
+#[test]
+fn unusable_tables_are_refused_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = std::fs::read_to_string(unpack("set-01", folder.path())).unwrap();
+    let lines: Vec<&str> = good.lines().collect();
+    let one_load: Vec<&str> = lines.iter().take(20).copied().collect();
+    let cases = [
+        (String::new(), "no rows"),
+        (good.replacen("force_N", "force", 1), "force_N"),
+        (good.replacen(",silicone,", ",rubber,", 1), "line 2"),
+        (one_load.join("\n"), "load_N"),
+    ];
+    for (i, (text, expected)) in cases.iter().enumerate() {
+        let table = folder.path().join(format!("bad-{i}.csv"));
+        std::fs::write(&table, text).unwrap();
+        let out = folder.path().join(format!("out-{i}"));
+        let run = pinswitch(2, &[&"calibrate", &table, &"--out", &out]);
+        let message = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(message.contains(expected) && message.contains("bad-"), "{message}");
+        assert!(!out.exists(), "{message}");
+    }
+}
+
+/// One condition, few loads, one direction: an answer that says what it leaves open.
+#[test]
+fn little_data_gets_an_answer_with_its_blind_spots() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = std::fs::read_to_string(unpack("set-01", folder.path())).unwrap();
+    let mut lines = good.lines();
+    let mut text = lines.next().unwrap().to_owned() + "\n";
+    for line in lines.filter(|l| l.contains(",silicone,,") && l.contains("eccentric")) {
+        text.push_str(line);
+        text.push('\n');
+    }
+    let table = folder.path().join("little.csv");
+    std::fs::write(&table, text).unwrap();
+    let report = calibrate(&table, &folder.path().join("out"));
+    let blind: Vec<&str> =
+        report["invisible"].as_array().unwrap().iter().map(|i| i["id"].as_str().unwrap()).collect();
+    for id in ["coating_stiffening", "switching_hysteresis", "direction_asymmetry", "dwell_relaxation"] {
+        assert!(blind.contains(&id), "{id} not among {blind:?}");
+    }
+}
+
+/// A real machine: the data may not be copied, so it is read where it is and skipped where it is not.
+#[test]
+fn a_real_machine_needs_a_drag_and_its_bad_run_is_flagged() {
+    let Some(table) = beside_repository("data/real/davinci_tool4.csv") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let report = calibrate(&table, &folder.path().join("out"));
+    assert!(report["augmented"]["heldout_rmse_N"].as_f64().unwrap() < 2.0);
+    assert!(report["baseline"]["heldout_rmse_N"].as_f64().unwrap() > 15.0);
+    assert!(
+        report["bad_series"].as_array().unwrap().iter().any(|b| b["series"] == "7"),
+        "{}",
+        report["bad_series"]
+    );
+    let below = folder.path().join("below");
+    pinswitch(0, &[&"calibrate", &table, &"--out", &below, &"--fit-below", &"60"]);
+    let report: Value = serde_json::from_slice(&std::fs::read(below.join("report.json")).unwrap()).unwrap();
+    let judged = &report["extrapolation"];
+    assert!(judged["rmse_after_without_bad_N"].as_f64().unwrap() < 2.0, "{judged}");
+    assert!(judged["rmse_before_N"].as_f64().unwrap() > 15.0, "{judged}");
+}

@@ -2,6 +2,7 @@
 
 pub(crate) mod parallel;
 mod stl;
+mod stl_facets;
 mod vertex_join;
 
 pub use stl::{StlError, StlFile, read_stl, stl_bytes};

@@ -18,11 +18,11 @@ pub(super) struct VertexJoin {
 }
 
 impl VertexJoin {
-    /// Room for `vertices`.
-    pub(super) fn reserve(&mut self, vertices: usize) {
-        self.vertices.reserve(vertices);
+    /// Makes room for so many vertices more.
+    pub(super) fn reserve(&mut self, additional: usize) {
         let Self { vertices, numbers, hasher } = self;
-        numbers.reserve(vertices.capacity(), |i| hasher.hash_one(vertices[*i as usize]));
+        vertices.reserve(additional);
+        numbers.reserve(additional, |i| hasher.hash_one(vertices[*i as usize]));
     }
 
     /// The number of the vertex at `corner`; vertices are numbered as they come.
@@ -43,9 +43,14 @@ impl VertexJoin {
             .get()
     }
 
+    /// All vertices by their numbers.
+    pub(super) fn iter(&self) -> impl Iterator<Item = [f32; 3]> + '_ {
+        self.vertices.iter().map(|v| v.map(f32::from_bits))
+    }
+
     /// The positions of all vertices.
     pub(super) fn into_positions(self) -> Vec<Point3> {
-        self.vertices.into_iter().map(|v| point(v.map(f32::from_bits))).collect()
+        self.iter().map(point).collect()
     }
 }
 

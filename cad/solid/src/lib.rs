@@ -5,6 +5,7 @@
 
 pub mod files;
 pub mod mesh;
+mod parallel;
 pub mod pose;
 pub mod profile;
 pub mod render;

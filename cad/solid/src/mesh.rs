@@ -22,7 +22,8 @@ impl Mesh {
 
     /// The corners of triangle `t`.
     pub fn corners(&self, t: [u32; 3]) -> [Point3; 3] {
-        t.map(|i| self.positions[i as usize])
+        let [a, b, c] = t;
+        [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 
     /// Corners of every triangle.
@@ -32,20 +33,17 @@ impl Mesh {
 
     /// Volume in mm³ by the divergence theorem along x, y and z. The three agree if the mesh is closed.
     pub fn axis_volumes_mm3(&self) -> [f64; 3] {
-        // Measured from the middle of the bounding box, so that a part far from the origin loses no digits.
-        let middle = self.bounds().map_or(Point3::origin(), |(low, high)| nalgebra::center(&low, &high));
-        let mut sums = Vector3::zeros();
-        for [a, b, c] in self.facets() {
-            let normal = (b - a).cross(&(c - a)) / 2.0;
-            let centroid = ((a - middle) + (b - middle) + (c - middle)) / 3.0;
-            sums += normal.component_mul(&centroid);
-        }
-        [sums.x, sums.y, sums.z]
+        axis_volumes_about(self.middle(), self.facets())
     }
 
     /// Volume in mm³, the mean of the three axis integrals.
     pub fn volume_mm3(&self) -> f64 {
-        self.axis_volumes_mm3().iter().sum::<f64>() / 3.0
+        mean(self.axis_volumes_mm3())
+    }
+
+    /// Middle of the bounding box; the origin without vertices.
+    pub(crate) fn middle(&self) -> Point3 {
+        self.bounds().map_or(Point3::origin(), |(low, high)| nalgebra::center(&low, &high))
     }
 
     /// Surface in mm².
@@ -71,4 +69,21 @@ impl Mesh {
         self.positions.iter_mut().for_each(|p| *p = Point3::new(-p.x, p.y, -p.z));
         self
     }
+}
+
+/// Volume in mm³ of a closed surface along x, y and z, measured from `middle`: from the middle of its bounding box, a
+/// part far from the origin loses no digits.
+pub(crate) fn axis_volumes_about(middle: Point3, facets: impl Iterator<Item = [Point3; 3]>) -> [f64; 3] {
+    let mut sums = Vector3::zeros();
+    for [a, b, c] in facets {
+        let normal = (b - a).cross(&(c - a)) / 2.0;
+        let centroid = ((a - middle) + (b - middle) + (c - middle)) / 3.0;
+        sums += normal.component_mul(&centroid);
+    }
+    [sums.x, sums.y, sums.z]
+}
+
+/// The mean of what is measured along three axes.
+pub(crate) fn mean(axes: [f64; 3]) -> f64 {
+    axes.iter().sum::<f64>() / 3.0
 }

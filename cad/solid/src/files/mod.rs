@@ -4,7 +4,9 @@ mod dxf;
 mod plate;
 mod step;
 mod stl;
+mod stl_facets;
 mod three_mf;
+mod vertex_join;
 
 pub use dxf::dxf;
 pub use plate::lay_out;

@@ -1,11 +1,11 @@
 //! Binary STL out, binary or ASCII STL in.
 
-use std::collections::HashMap;
 use std::io::{Read, Seek};
 
 use stl_io::{Normal, Triangle, Vertex};
 
-use crate::mesh::{Mesh, Point3, Vector3};
+use super::stl_facets::{Facets, HEADER, RECORD, announced, read_binary};
+use crate::mesh::Mesh;
 
 /// Why a file is no STL.
 #[derive(Debug, thiserror::Error)]
@@ -62,50 +62,61 @@ pub fn stl_bytes(mesh: &Mesh) -> std::io::Result<Vec<u8>> {
 /// # Errors
 /// [`StlError`] if the file is no STL, cut short, or empty.
 pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {
-    check_length(source)?;
-    let StlFile { mut mesh, mut contrary_normals } = StlFile::default();
-    let mut known: HashMap<[u32; 3], u32> = HashMap::new();
-    for facet in stl_io::create_stl_reader(source)? {
-        let facet = facet?;
-        let corners = facet.vertices.map(|v| {
-            // Adding zero turns -0 into +0, so that both are one vertex.
-            let [x, y, z] = v.0.map(|c| c + 0.0);
-            let next = mesh.positions.len();
-            *known.entry([x, y, z].map(f32::to_bits)).or_insert_with(|| {
-                mesh.positions.push(Point3::new(x.into(), y.into(), z.into()));
-                u32::try_from(next).unwrap_or(u32::MAX)
-            })
-        });
-        mesh.triangles.push(corners);
-        let [a, b, c] = mesh.corners(corners);
-        let stored = Vector3::from(facet.normal.0.map(f64::from));
-        contrary_normals += usize::from((b - a).cross(&(c - a)).dot(&stored) < 0.0);
-    }
-    if mesh.triangles.is_empty() { Err(StlError::Empty) } else { Ok(StlFile { mesh, contrary_normals }) }
+    let head = Head::read(source)?;
+    head.check_length()?;
+    let facets = if head.may_be_ascii() {
+        let mut facets = Facets::default();
+        for facet in stl_io::create_stl_reader(source)? {
+            let facet = facet?;
+            facets.add(facet.normal.0, facet.vertices.map(|v| v.0));
+        }
+        facets
+    } else {
+        read_binary(source, head.length)?
+    };
+    facets.finish().ok_or(StlError::Empty)
 }
 
-/// A binary STL says how long it is; a file cut short must not pass for a smaller part.
-fn check_length(source: &mut (impl Read + Seek)) -> Result<(), StlError> {
-    let found = source.seek(std::io::SeekFrom::End(0))?;
-    source.rewind()?;
-    let mut head = Vec::with_capacity(84);
-    source.by_ref().take(84).read_to_end(&mut head)?;
-    source.rewind()?;
-    let ascii = head.starts_with(b"solid") && !head.contains(&0);
-    if let (false, Some(count)) = (ascii, head.get(80..84).and_then(|b| b.try_into().ok())) {
-        let announced = u32::from_le_bytes(count);
-        let expected = 84 + 50 * u64::from(announced);
-        // Some programs append bytes; a reader ignores them, and so do we.
-        if expected > found {
-            return Err(StlError::Length { announced, expected, found });
-        }
+/// How a file begins, and how long it is.
+struct Head {
+    bytes: Vec<u8>,
+    length: u64,
+}
+
+impl Head {
+    /// Reads the head and returns to the start.
+    fn read(source: &mut (impl Read + Seek)) -> std::io::Result<Self> {
+        let length = source.seek(std::io::SeekFrom::End(0))?;
+        source.rewind()?;
+        let mut bytes = Vec::with_capacity(HEADER);
+        source.by_ref().take(HEADER as u64).read_to_end(&mut bytes)?;
+        source.rewind()?;
+        Ok(Self { bytes, length })
     }
-    Ok(())
+
+    /// Whether it may be ASCII, which is for `stl_io` to tell: binary files begin like this too.
+    fn may_be_ascii(&self) -> bool {
+        self.bytes.starts_with(b"solid ")
+    }
+
+    /// A binary STL says how long it is; a file cut short must not pass for a smaller part.
+    fn check_length(&self) -> Result<(), StlError> {
+        let ascii = self.bytes.starts_with(b"solid") && !self.bytes.contains(&0);
+        if let (false, Some(announced)) = (ascii, announced(&self.bytes)) {
+            let expected = HEADER as u64 + RECORD as u64 * u64::from(announced);
+            // Some programs append bytes; a reader ignores them, and so do we.
+            if expected > self.length {
+                return Err(StlError::Length { announced, expected, found: self.length });
+            }
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Point3;
     use std::io::Cursor;
 
     fn tetrahedron() -> Mesh {

@@ -1,52 +1,61 @@
 //! Half-edges: every edge has exactly two facets, which run along it in opposite senses.
 
-use std::collections::BTreeMap;
-
+use super::stars::Star;
+use super::tally::Tally;
 use super::{Fault, place};
 use crate::mesh::Mesh;
 
-/// Times an edge is used from its smaller to its larger vertex, and back.
-#[derive(Clone, Copy, Default)]
-struct Uses {
-    along: usize,
-    against: usize,
+/// Edges that are not paired, by what is wrong with them. An edge is named by its lesser and its greater vertex.
+#[derive(Default)]
+pub(super) struct Edges {
+    open: Tally<(u32, u32)>,
+    crowded: Tally<(u32, u32)>,
+    flipped: Tally<(u32, u32)>,
 }
 
-pub(super) fn unpaired(mesh: &Mesh) -> Vec<Fault> {
-    let mut uses: BTreeMap<(u32, u32), Uses> = BTreeMap::new();
-    for t in &mesh.triangles {
-        for (a, b) in half_edges(*t) {
-            let entry = uses.entry((a.min(b), a.max(b))).or_default();
-            if a < b { entry.along += 1 } else { entry.against += 1 }
+impl Edges {
+    /// Counts the edges from the middle of the star to greater vertices.
+    pub(super) fn see(&mut self, star: &Star) {
+        for (far, spokes) in star.edges().filter(|(far, _)| *far >= star.middle) {
+            let along = spokes.iter().filter(|s| s.outgoing()).count();
+            let edge = (star.middle, far);
+            // An edge from a vertex to itself has each of its half-edges here twice, as it leaves and as it arrives.
+            let (along, facets) = if far == star.middle { (0, along) } else { (along, spokes.len()) };
+            match facets {
+                1 => self.open.add(edge),
+                2 if along == 1 => {}
+                2 => self.flipped.add(edge),
+                _ => self.crowded.add(edge),
+            }
         }
     }
-    let all = |wrong: fn(&Uses) -> bool, check, what: &str| {
-        let mut bad = uses.iter().filter(|(_, u)| wrong(u));
-        let (edge, _) = bad.next()?;
-        let count = 1 + bad.count();
-        let [a, b] = [edge.0, edge.1].map(|i| mesh.positions[i as usize]);
-        Some(Fault {
-            check,
-            count,
-            at_mm: place(nalgebra::center(&a, &b)),
-            detail: format!("{count} edges {what}, the first {:.4} mm long", (b - a).norm()),
-        })
-    };
-    [
-        all(|u| u.along + u.against == 1, "open edge", "have one facet only: there is a hole"),
-        all(|u| u.along + u.against > 2, "non-manifold edge", "have more than two facets"),
-        all(
-            |u| u.along + u.against == 2 && u.along != 1,
-            "flipped facet",
-            "have two facets that face opposite ways",
-        ),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
-}
 
-/// The three half-edges of a triangle.
-pub(super) fn half_edges([a, b, c]: [u32; 3]) -> [(u32, u32); 3] {
-    [(a, b), (b, c), (c, a)]
+    /// Adds what the stars further on show.
+    pub(super) fn append(&mut self, later: Self) {
+        self.open.append(later.open);
+        self.crowded.append(later.crowded);
+        self.flipped.append(later.flipped);
+    }
+
+    pub(super) fn faults(self, mesh: &Mesh) -> Vec<Fault> {
+        let fault = |bad: Tally<(u32, u32)>, check, what: &str| {
+            let edge = bad.first?;
+            let [a, b] = [edge.0, edge.1].map(|i| mesh.positions[i as usize]);
+            let count = bad.count;
+            Some(Fault {
+                check,
+                count,
+                at_mm: place(nalgebra::center(&a, &b)),
+                detail: format!("{count} edges {what}, the first {:.4} mm long", (b - a).norm()),
+            })
+        };
+        [
+            fault(self.open, "open edge", "have one facet only: there is a hole"),
+            fault(self.crowded, "non-manifold edge", "have more than two facets"),
+            fault(self.flipped, "flipped facet", "have two facets that face opposite ways"),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
 }

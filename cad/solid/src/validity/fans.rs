@@ -1,62 +1,60 @@
 //! Vertices: the facets around each one form a single fan.
 
+use super::stars::Star;
+use super::tally::Tally;
 use super::{Fault, place};
 use crate::mesh::Mesh;
 
 /// Vertices in which two parts of the surface touch without sharing an edge.
-pub(super) fn split_vertices(mesh: &Mesh) -> Option<Fault> {
-    let around = facets_around(mesh);
-    let split: Vec<usize> = (0..mesh.positions.len()).filter(|v| fans(mesh, &around, *v) > 1).collect();
-    split.first().map(|v| Fault {
-        check: "non-manifold vertex",
-        count: split.len(),
-        at_mm: place(mesh.positions[*v]),
-        detail: format!("{} vertices join parts of the surface that share no edge there", split.len()),
-    })
+#[derive(Default)]
+pub(super) struct Fans {
+    split: Tally<u32>,
+    /// Room to work in: for each facet of a star one that it hangs together with; itself if it leads its group.
+    leaders: Vec<usize>,
 }
 
-/// Facet numbers around each vertex, packed: those of vertex `v` are `facets[starts[v]..starts[v + 1]]`.
-struct Around {
-    starts: Vec<usize>,
-    facets: Vec<usize>,
-}
-
-fn facets_around(mesh: &Mesh) -> Around {
-    let mut starts = vec![0; mesh.positions.len() + 1];
-    for v in mesh.triangles.iter().flatten() {
-        starts[*v as usize + 1] += 1;
-    }
-    for v in 1..starts.len() {
-        starts[v] += starts[v - 1];
-    }
-    let mut next = starts.clone();
-    let mut facets = vec![0; 3 * mesh.triangles.len()];
-    for (f, t) in mesh.triangles.iter().enumerate() {
-        for v in t {
-            facets[next[*v as usize]] = f;
-            next[*v as usize] += 1;
+impl Fans {
+    pub(super) fn see(&mut self, star: &Star) {
+        if self.groups(star) > 1 {
+            self.split.add(star.middle);
         }
     }
-    Around { starts, facets }
-}
 
-/// Number of groups of facets around vertex `v` that hang together through edges at `v`.
-fn fans(mesh: &Mesh, around: &Around, v: usize) -> usize {
-    let facets = &around.facets[around.starts[v]..around.starts[v + 1]];
-    let shares_edge = |f: usize, g: usize| {
-        let others = mesh.triangles[f].iter().filter(|i| **i as usize != v);
-        others.filter(|i| mesh.triangles[g].contains(i)).count() > 0
-    };
-    let mut left: Vec<usize> = facets.to_vec();
-    let mut groups = 0;
-    while let Some(seed) = left.pop() {
-        groups += 1;
-        let mut front = vec![seed];
-        while let Some(f) = front.pop() {
-            let (joined, rest) = left.into_iter().partition(|g| shares_edge(f, *g));
-            left = rest;
-            front.extend::<Vec<usize>>(joined);
+    /// Number of groups of facets that hang together through edges at the middle.
+    fn groups(&mut self, star: &Star) -> usize {
+        self.leaders.clear();
+        self.leaders.extend(0..star.facets.len());
+        let mut groups = star.facets.len();
+        for (_, spokes) in star.edges().filter(|(far, _)| *far != star.middle) {
+            for two in spokes.windows(2) {
+                let (a, b) = (self.leader(two[0].place()), self.leader(two[1].place()));
+                groups -= usize::from(a != b);
+                self.leaders[b] = a;
+            }
         }
+        groups
     }
-    groups
+
+    fn leader(&mut self, mut place: usize) -> usize {
+        while self.leaders[place] != place {
+            self.leaders[place] = self.leaders[self.leaders[place]];
+            place = self.leaders[place];
+        }
+        place
+    }
+
+    /// Adds what the stars further on show.
+    pub(super) fn append(&mut self, later: Self) {
+        self.split.append(later.split);
+    }
+
+    pub(super) fn fault(self, mesh: &Mesh) -> Option<Fault> {
+        let Tally { count, first } = self.split;
+        first.map(|v| Fault {
+            check: "non-manifold vertex",
+            count,
+            at_mm: place(mesh.positions[v as usize]),
+            detail: format!("{count} vertices join parts of the surface that share no edge there"),
+        })
+    }
 }

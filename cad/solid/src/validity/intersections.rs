@@ -1,49 +1,58 @@
 //! Facets that pass through each other.
 
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
-
-use super::triangle_pair::{Corners, meet};
+use super::facet_tree::{FacetTree, boxes_meet, corner_box};
+use super::triangle_pair::{Corners, meet, surely_apart};
 use super::{Fault, place};
-use crate::mesh::{Mesh, Point3};
+use crate::mesh::Mesh;
+use crate::parallel;
 
-/// The bounding box of a facet with its number.
-pub(super) type FacetBox = GeomWithData<Rectangle<[f64; 3]>, usize>;
-
-/// All facets by their bounding boxes.
-pub(super) fn facet_tree(mesh: &Mesh) -> RTree<FacetBox> {
-    let boxes = mesh.facets().enumerate().map(|(i, [a, b, c])| {
-        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
-        GeomWithData::new(Rectangle::from_corners(low.coords.into(), high.coords.into()), i)
-    });
-    RTree::bulk_load(boxes.collect())
+/// Pairs that cross, and the least number of a facet among them.
+struct Crossings {
+    count: usize,
+    first: usize,
 }
 
-pub(super) fn crossing_facets(mesh: &Mesh) -> Option<Fault> {
-    let tree = facet_tree(mesh);
-    let corners = |i: usize| -> Corners {
-        let t = mesh.triangles[i];
-        t.map(|v| (v, mesh.positions[v as usize]))
-    };
-    let same = |i: usize, j: usize| mesh.triangles[i].iter().all(|v| mesh.triangles[j].contains(v));
-    let mut count = 0;
-    let mut first: Option<Point3> = None;
-    for i in 0..mesh.triangles.len() {
-        let s = corners(i);
-        let (low, high) = (s[0].1.inf(&s[1].1).inf(&s[2].1).coords, s[0].1.sup(&s[1].1).sup(&s[2].1).coords);
-        let near = tree.locate_in_envelope_intersecting(&AABB::from_corners(low.into(), high.into()));
-        // Facets on the same corners are counted as repeated, not as crossing.
-        for j in near.map(|other| other.data).filter(|j| *j > i && !same(i, *j)) {
-            if meet(&s, &corners(j)) {
-                count += 1;
-                first.get_or_insert(s[0].1);
-            }
+pub(super) fn crossing_facets(mesh: &Mesh, tree: &FacetTree) -> Option<Fault> {
+    let parts = parallel::in_chunks(tree.leaves(), |leaves| {
+        let mut found = Crossings { count: 0, first: usize::MAX };
+        let mut near = Vec::new();
+        for leaf in leaves {
+            tree.pairs_from(leaf, &mut near, |a, b| {
+                if cross(mesh, tree, a, b) {
+                    found.count += 1;
+                    found.first = found.first.min(tree.facet(a)).min(tree.facet(b));
+                }
+            });
         }
-    }
-    first.map(|at| Fault {
+        found
+    });
+    let count: usize = parts.iter().map(|part| part.count).sum();
+    let first = parts.iter().map(|part| part.first).min()?;
+    (count > 0).then(|| Fault {
         check: "self-intersection",
         count,
-        at_mm: place(at),
+        at_mm: place(mesh.positions[mesh.triangles[first][0] as usize]),
         detail: format!("{count} pairs of facets pass through each other"),
     })
+}
+
+/// Whether the facets in two slots pass through each other.
+fn cross(mesh: &Mesh, tree: &FacetTree, a: usize, b: usize) -> bool {
+    let corners = |slot: usize| -> Corners {
+        let [x, y, z] = mesh.triangles[tree.facet(slot)];
+        let at = |v: u32| (v, mesh.positions[v as usize]);
+        [at(x), at(y), at(z)]
+    };
+    let (s, t) = (corners(a), corners(b));
+    if surely_apart((&s, tree.plane(a)), (&t, tree.plane(b))) {
+        return false;
+    }
+    let (i, j, s, t) = match (tree.facet(a), tree.facet(b)) {
+        (i, j) if i < j => (i, j, s, t),
+        (i, j) => (j, i, t, s),
+    };
+    // Facets on the same corners are counted as repeated, not as crossing.
+    let same = s.iter().all(|(v, _)| t.iter().any(|(w, _)| v == w));
+    // The tree's boxes are rounded outward. So few facets meet that their exact boxes are worth a look only now.
+    !same && meet(&s, &t) && boxes_meet(corner_box(mesh, i), corner_box(mesh, j))
 }

@@ -4,15 +4,21 @@
 
 mod bodies;
 mod edges;
+mod facet_tree;
 mod facets;
 mod fans;
 mod intersections;
+mod plane;
+mod stars;
+mod tally;
 mod triangle_pair;
 mod walls;
 
 use serde::Serialize;
 
-use crate::mesh::{Mesh, Point3};
+use crate::mesh::{Mesh, Point3, mean};
+use crate::parallel;
+use facet_tree::FacetTree;
 
 /// What a mesh is held against.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,43 +124,56 @@ pub fn examine(mesh: &Mesh, expected: &Expectation) -> Examination {
         found.faults.push(fault);
         return found;
     }
-    measure(mesh, &mut found.facts);
-    found.faults.extend(facets::wrong_unit(&found.facts, expected.longest_side_mm));
-    let degenerate = facets::degenerate(mesh, expected.min_height_mm);
-    let repeated = facets::repeated(mesh);
-    let edge_faults = edges::unpaired(mesh);
-    let closed = edge_faults.is_empty();
-    found.faults.extend(degenerate.into_iter().chain(repeated).chain(edge_faults));
-    found.faults.extend(fans::split_vertices(mesh));
-    if closed {
-        let split = bodies::split(mesh);
-        found.facts.bodies = split.bodies;
-        found.facts.voids = split.voids;
-        found.faults.extend(split.fault);
-        found.faults.extend(volume_faults(mesh, expected));
-        found.faults.extend(bodies::unexpected(split.bodies, expected.bodies));
-    }
-    if expected.intersections {
-        found.faults.extend(intersections::crossing_facets(mesh));
-    }
-    if expected.min_wall_mm > 0.0 {
-        found.faults.extend(walls::thin(mesh, expected.min_wall_mm));
-    }
+    let (on_surface, in_space) = parallel::both(
+        mesh.triangles.len(),
+        || examine_surface(mesh, expected, &mut found.facts),
+        || examine_space(mesh, expected),
+    );
+    found.faults.extend(on_surface.into_iter().chain(in_space));
     found
 }
 
-fn measure(mesh: &Mesh, facts: &mut Facts) {
-    facts.volume_mm3 = mesh.volume_mm3();
+/// What the facets show by themselves and by the vertices that they share.
+fn examine_surface(mesh: &Mesh, expected: &Expectation, facts: &mut Facts) -> Vec<Fault> {
+    let heights = facets::heights(mesh, expected.min_height_mm);
+    let axes_mm3 = mesh.axis_volumes_mm3();
+    facts.volume_mm3 = mean(axes_mm3);
     facts.surface_mm2 = mesh.surface_mm2();
-    facts.min_height_mm = mesh.facets().map(facets::height_mm).fold(f64::INFINITY, f64::min);
+    facts.min_height_mm = heights.least_mm;
     if let Some((low, high)) = mesh.bounds() {
         facts.low_mm = low.coords.into();
         facts.high_mm = high.coords.into();
     }
+    let stars = stars::examine(mesh);
+    let closed = stars.edges.is_empty();
+    let mut faults = Vec::new();
+    faults.extend(facets::wrong_unit(facts, expected.longest_side_mm));
+    faults.extend(facets::degenerate(mesh, &heights, expected.min_height_mm));
+    faults.extend(stars.repeated.into_iter().chain(stars.edges).chain(stars.vertices));
+    if closed {
+        let split = bodies::split(mesh, facts.volume_mm3);
+        facts.bodies = split.bodies;
+        facts.voids = split.voids;
+        faults.extend(split.fault);
+        faults.extend(volume_faults(axes_mm3, expected));
+        faults.extend(bodies::unexpected(split.bodies, expected.bodies));
+    }
+    faults
 }
 
-fn volume_faults(mesh: &Mesh, expected: &Expectation) -> Vec<Fault> {
-    let axes = mesh.axis_volumes_mm3();
+/// What facets do to others that need not share a vertex with them.
+fn examine_space(mesh: &Mesh, expected: &Expectation) -> Vec<Fault> {
+    let walls = expected.min_wall_mm > 0.0;
+    if !(expected.intersections || walls) {
+        return Vec::new();
+    }
+    let tree = FacetTree::new(mesh);
+    let crossing = expected.intersections.then(|| intersections::crossing_facets(mesh, &tree)).flatten();
+    let thin = walls.then(|| walls::thin(mesh, &tree, expected.min_wall_mm)).flatten();
+    crossing.into_iter().chain(thin).collect()
+}
+
+fn volume_faults(axes: [f64; 3], expected: &Expectation) -> Vec<Fault> {
     let (least, most) = axes.iter().fold((f64::MAX, f64::MIN), |(l, m), v| (l.min(*v), m.max(*v)));
     let mut faults = Vec::new();
     if most - least > AXIS_AGREEMENT * most.abs().max(1e-9) {
@@ -166,7 +185,7 @@ fn volume_faults(mesh: &Mesh, expected: &Expectation) -> Vec<Fault> {
         });
     }
     if let Some((volume, bound)) = expected.volume_mm3 {
-        let off = mesh.volume_mm3() - volume;
+        let off = mean(axes) - volume;
         if off.abs() > bound {
             faults.push(Fault {
                 check: "volume",

@@ -2,32 +2,55 @@
 
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use super::plane::Plane;
 use crate::mesh::Point3;
 
 /// A triangle with the numbers of its corners.
 pub(super) type Corners = [(u32, Point3); 3];
 
+/// Whether plain floating point already shows that the triangles do not [`meet`]: the corners that they do not share lie
+/// on one side.
+///
+/// Triangles with an area whose planes differ meet in the line of both planes. If one of them has all its own corners
+/// on one side of the other's plane, it has on that line a shared corner at most, or a shared edge.
+pub(super) fn surely_apart((s, s_plane): (&Corners, &Plane), (t, t_plane): (&Corners, &Plane)) -> bool {
+    let beside = |of: &Corners, other: &Corners, plane: &Plane| {
+        let own = of.iter().filter(|(i, _)| other.iter().all(|(j, _)| i != j));
+        plane.has_beside(other[0].1, own.map(|(_, p)| *p))
+    };
+    s_plane.is_certain() && t_plane.is_certain() && (beside(t, s, s_plane) || beside(s, t, t_plane))
+}
+
 /// Whether the triangles meet anywhere but in the corners and edges that they share by number.
 pub(super) fn meet(s: &Corners, t: &Corners) -> bool {
-    // A shared corner lies in the plane: exact arithmetic would take its longest way to say so.
-    let sides = |of: &Corners, plane: &Corners| {
-        of.map(|(i, p)| if plane.iter().any(|(j, _)| i == *j) { 0.0 } else { side(plane, p) })
-    };
-    let (of_t, of_s) = (sides(t, s), sides(s, t));
-    if one_sided(of_t) || one_sided(of_s) {
+    let of_t = sides(t, s);
+    if one_sided(of_t) {
         return false;
     }
-    if of_t == [0.0; 3] {
-        return overlap_in_plane(s, t);
-    }
+    // A shared corner lies in the plane, so only triangles without one can still be one-sided from `t`.
     let shared = s.iter().filter(|(i, _)| t.iter().any(|(j, _)| i == j)).count();
+    let in_plane = of_t == [0.0; 3];
     match shared {
-        0 => pierces(s, t) || pierces(t, s),
+        0 => {
+            let of_s = sides(s, t);
+            match one_sided(of_s) {
+                true => false,
+                false if in_plane => overlap_in_plane(s, t),
+                false => pierces(s, of_s, t) || pierces(t, of_t, s),
+            }
+        }
+        _ if in_plane => overlap_in_plane(s, t),
         // From a shared corner, an intersection must leave one triangle through its opposite edge.
-        1 => opposite_edge_pierces(s, t) || opposite_edge_pierces(t, s),
+        1 => opposite_edge_pierces(t, of_t, s) || opposite_edge_pierces(s, sides(s, t), t),
         // Two planes through a shared edge meet nowhere else.
         _ => false,
     }
+}
+
+/// On which side of `plane` each corner of `of` lies. A shared corner lies in the plane: exact arithmetic would take
+/// its longest way to say so.
+fn sides(of: &Corners, plane: &Corners) -> [f64; 3] {
+    of.map(|(i, p)| if plane.iter().any(|(j, _)| i == *j) { 0.0 } else { side(plane, p) })
 }
 
 /// Strictly on one side: no contact.
@@ -51,26 +74,28 @@ fn edges(t: &Corners) -> [(Point3, Point3); 3] {
     [(t[0].1, t[1].1), (t[1].1, t[2].1), (t[2].1, t[0].1)]
 }
 
-fn pierces(from: &Corners, into: &Corners) -> bool {
-    edges(from).iter().any(|(p, q)| segment_meets(*p, *q, into))
+/// Whether an edge of `from`, whose corners lie on these `sides` of `into`, meets it.
+fn pierces(from: &Corners, sides: [f64; 3], into: &Corners) -> bool {
+    (0..3).any(|i| segment_meets([i, (i + 1) % 3], from, sides, into))
 }
 
-fn opposite_edge_pierces(from: &Corners, into: &Corners) -> bool {
-    let far: Vec<Point3> =
-        from.iter().filter(|(i, _)| into.iter().all(|(j, _)| i != j)).map(|(_, p)| *p).collect();
-    match far[..] {
-        [p, q] => segment_meets(p, q, into),
+/// The same for the edge between the two corners that are not shared.
+fn opposite_edge_pierces(from: &Corners, sides: [f64; 3], into: &Corners) -> bool {
+    let own = |k: &usize| into.iter().all(|(j, _)| from[*k].0 != *j);
+    let mut far = (0..3).filter(own);
+    match (far.next(), far.next(), far.next()) {
+        (Some(p), Some(q), None) => segment_meets([p, q], from, sides, into),
         _ => false,
     }
 }
 
-/// Whether the segment and the triangle have a point in common.
-fn segment_meets(p: Point3, q: Point3, t: &Corners) -> bool {
-    let (at_p, at_q) = (side(t, p), side(t, q));
-    if at_p * at_q > 0.0 {
+/// Whether the segment between two corners of `from` and the triangle have a point in common.
+fn segment_meets([i, j]: [usize; 2], from: &Corners, sides: [f64; 3], t: &Corners) -> bool {
+    if sides[i] * sides[j] > 0.0 {
         return false;
     }
-    if at_p == 0.0 && at_q == 0.0 {
+    let (p, q) = (from[i].1, from[j].1);
+    if sides[i] == 0.0 && sides[j] == 0.0 {
         return segment_meets_in_plane(p, q, t);
     }
     let turns = edges(t).map(|(a, b)| orient3d(coord(p), coord(q), coord(a), coord(b)));

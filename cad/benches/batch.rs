@@ -4,7 +4,7 @@
 
 use divan::{Bencher, black_box};
 use pinswitch_batch::{
-    Destination, Options, Outcome, Shard, Sweep, SweepSource, Variants, Watch, partial_folder, run,
+    Destination, Observer, Options, Outcome, Shard, Sweep, SweepSource, Variants, partial_folder, run,
 };
 use pinswitch_switch::design::Design;
 use pinswitch_switch::set::mesh_file;
@@ -49,16 +49,16 @@ fn plan(sweep: &str) -> (Variants, SweepSource) {
 
 struct Unwatched;
 
-impl Watch for Unwatched {
-    fn done(&self, _: &Outcome) {}
-    fn stopped(&self) -> bool {
+impl Observer for Unwatched {
+    fn variant_done(&self, _: &Outcome) {}
+    fn stop_requested(&self) -> bool {
         false
     }
 }
 
 fn hundred(bencher: Bencher, sweep: &str) {
     let (variants, source) = plan(sweep);
-    let options = Options { shard: Shard::WHOLE, threads: 0, fail_fast: true, workshop: mesh_file };
+    let options = Options { shard: Shard::WHOLE, threads: 0, fail_fast: true, mesh_maker: mesh_file };
     bencher.with_inputs(|| tempfile::tempdir().expect("a temporary folder")).bench_local_refs(|folder| {
         let place = folder.path().join("b").display().to_string();
         let destination = Destination::open(&place, &partial_folder(Shard::WHOLE)).expect("a folder");

@@ -9,7 +9,7 @@ use pinswitch_solid::validity::{Expectation, examine};
 use pinswitch_switch::config::{Configuration, assign};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::parts::{Part, printed};
-use pinswitch_switch::set::{curve_of, make_set};
+use pinswitch_switch::set::{make_set, predicted_curve};
 
 fn main() {
     divan::main();
@@ -63,7 +63,7 @@ fn shell_oracle_with_intersections(bencher: Bencher) {
 #[divan::bench]
 fn friction_curve(bencher: Bencher) {
     let design = design();
-    bencher.bench_local(|| curve_of(black_box(&design), design.contact()));
+    bencher.bench_local(|| predicted_curve(black_box(&design), design.contact()));
 }
 
 #[divan::bench]

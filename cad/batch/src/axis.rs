@@ -1,4 +1,4 @@
-//! Levels of a sweep: the values that one field takes, or that several take together.
+//! Axes of a sweep: the values that one field takes, or that several take together.
 
 use toml_edit::{Item, Value};
 
@@ -6,28 +6,28 @@ use pinswitch_switch::config::parameter::Parameter;
 use pinswitch_switch::config::{ConfigError, Configuration};
 
 /// A parameter of the configuration.
-pub type Field = &'static Parameter<Configuration>;
+pub type ParameterRef = &'static Parameter<Configuration>;
 
-/// Steps beyond which a range is a slip of the pen.
-const MOST_STEPS: f64 = 1e7;
+/// Number of steps beyond which a range is taken for a typing error.
+const MAX_STEPS: f64 = 1e7;
 
 /// One dimension of a sweep: fields, and the values that they take together, row by row.
 #[derive(Clone)]
-pub struct Level {
+pub struct SweepAxis {
     /// The fields that vary.
-    pub fields: Vec<Field>,
+    pub fields: Vec<ParameterRef>,
     /// One value per field in every row.
     pub rows: Vec<Vec<Value>>,
 }
 
-impl std::fmt::Debug for Level {
+impl std::fmt::Debug for SweepAxis {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let fields: Vec<_> = self.fields.iter().map(|p| p.path()).collect();
         write!(f, "{} rows of {}", self.rows.len(), fields.join(", "))
     }
 }
 
-/// A stretch of numbers.
+/// A range of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
     /// First value.
@@ -48,10 +48,10 @@ pub(super) struct Range {
 ///
 /// # Errors
 /// [`ConfigError`] for a field that does not exist, or that a batch sets itself.
-pub(super) fn field(path: &str) -> Result<Field, ConfigError> {
+pub(super) fn field(path: &str) -> Result<ParameterRef, ConfigError> {
     let all = Configuration::PARAMETERS;
     if path == "switch.name" {
-        return Err(complaint(
+        return Err(config_error(
             path,
             None,
             "is set by the batch itself, to each variant's id",
@@ -64,7 +64,7 @@ pub(super) fn field(path: &str) -> Result<Field, ConfigError> {
             .map(|p| p.path())
             .max_by(|a, b| strsim::jaro_winkler(path, a).total_cmp(&strsim::jaro_winkler(path, b)));
         let near = near.unwrap_or_default();
-        complaint(
+        config_error(
             path,
             None,
             "is no known field",
@@ -74,7 +74,7 @@ pub(super) fn field(path: &str) -> Result<Field, ConfigError> {
 }
 
 /// Whether `field` takes numbers, and if so whether they are whole.
-pub(super) fn numeric(field: Field) -> Option<bool> {
+pub(super) fn numeric(field: ParameterRef) -> Option<bool> {
     match (field.get)(&Configuration::default()) {
         Value::Integer(_) => Some(true),
         Value::Float(_) => Some(false),
@@ -86,7 +86,7 @@ pub(super) fn numeric(field: Field) -> Option<bool> {
 ///
 /// # Errors
 /// [`ConfigError`] with the accepted range.
-pub(super) fn accepted(field: Field, value: &Value) -> Result<Value, ConfigError> {
+pub(super) fn accepted(field: ParameterRef, value: &Value) -> Result<Value, ConfigError> {
     let mut scratch = Configuration::default();
     (field.set)(&mut scratch, value).map_err(|remedy| {
         ConfigError::new(field.path(), value.clone().decorated("", "").to_string(), remedy)
@@ -98,14 +98,14 @@ pub(super) fn accepted(field: Field, value: &Value) -> Result<Value, ConfigError
 ///
 /// # Errors
 /// [`ConfigError`] for values that the field does not accept, an empty or repeating list, or a bad range.
-pub(super) fn axis(path: &str, item: &Item) -> Result<Level, ConfigError> {
+pub(super) fn axis(path: &str, item: &Item) -> Result<SweepAxis, ConfigError> {
     let field = field(path)?;
     let values = match item.as_value() {
         Some(Value::Array(list)) => listed(field, list)?,
         _ => {
             let range = range(field, item)?;
             if range.step.is_none() && range.count.is_none() {
-                return Err(complaint(
+                return Err(config_error(
                     path,
                     None,
                     "has neither step nor count",
@@ -116,20 +116,25 @@ pub(super) fn axis(path: &str, item: &Item) -> Result<Level, ConfigError> {
             numbers.into_iter().map(|x| accepted(field, &range.value(x))).collect::<Result<_, _>>()?
         }
     };
-    Ok(Level { fields: vec![field], rows: values.into_iter().map(|v| vec![v]).collect() })
+    Ok(SweepAxis { fields: vec![field], rows: values.into_iter().map(|v| vec![v]).collect() })
 }
 
 /// The values of a list.
-pub(super) fn listed(field: Field, list: &toml_edit::Array) -> Result<Vec<Value>, ConfigError> {
+pub(super) fn listed(field: ParameterRef, list: &toml_edit::Array) -> Result<Vec<Value>, ConfigError> {
     let path = field.path();
     if list.is_empty() {
-        return Err(complaint(&path, Some("[]"), "is an empty axis", "give at least one value"));
+        return Err(config_error(&path, Some("[]"), "is an empty axis", "give at least one value"));
     }
     let values: Vec<_> = list.iter().map(|v| accepted(field, v)).collect::<Result<_, _>>()?;
     for (i, value) in values.iter().enumerate() {
         let text = value.to_string();
         if values[..i].iter().any(|v| v.to_string() == text) {
-            return Err(complaint(&path, Some(&text), "stands twice in the list", "name every value once"));
+            return Err(config_error(
+                &path,
+                Some(&text),
+                "stands twice in the list",
+                "name every value once",
+            ));
         }
     }
     Ok(values)
@@ -139,10 +144,10 @@ pub(super) fn listed(field: Field, list: &toml_edit::Array) -> Result<Vec<Value>
 ///
 /// # Errors
 /// [`ConfigError`] for a field of words, a missing or unknown key, or a range that runs backwards.
-pub(super) fn range(field: Field, item: &Item) -> Result<Range, ConfigError> {
+pub(super) fn range(field: ParameterRef, item: &Item) -> Result<Range, ConfigError> {
     let path = field.path();
     let Some(whole) = numeric(field) else {
-        return Err(complaint(
+        return Err(config_error(
             &path,
             None,
             "takes no numbers, so no range",
@@ -151,11 +156,11 @@ pub(super) fn range(field: Field, item: &Item) -> Result<Range, ConfigError> {
     };
     let form = "write a list, or { from = .., to = .., step = .. } or { from = .., to = .., count = .. }";
     let Some(table) = item.as_table_like() else {
-        return Err(complaint(&path, Some(&item.to_string()), "is no axis", form));
+        return Err(config_error(&path, Some(&item.to_string()), "is no axis", form));
     };
     const KEYS: [&str; 5] = ["from", "to", "step", "count", "spacing"];
     if let Some((key, _)) = table.iter().find(|(key, _)| !KEYS.contains(key)) {
-        return Err(complaint(&format!("{path}.{key}"), None, "is no key of a range", form));
+        return Err(config_error(&format!("{path}.{key}"), None, "is no key of a range", form));
     }
     #[allow(clippy::cast_precision_loss)]
     let number = |key: &str| -> Result<Option<f64>, ConfigError> {
@@ -163,11 +168,11 @@ pub(super) fn range(field: Field, item: &Item) -> Result<Range, ConfigError> {
         let number = item.as_float().or_else(|| item.as_integer().map(|i| i as f64));
         number.filter(|x| x.is_finite()).map(Some).ok_or_else(|| {
             let text = item.to_string();
-            complaint(&format!("{path}.{key}"), Some(text.trim()), "is no number", "give a finite number")
+            config_error(&format!("{path}.{key}"), Some(text.trim()), "is no number", "give a finite number")
         })
     };
     let (Some(from), Some(to)) = (number("from")?, number("to")?) else {
-        return Err(complaint(&path, None, "lacks from or to", form));
+        return Err(config_error(&path, None, "lacks from or to", form));
     };
     let step = number("step")?;
     let count = match table.get("count") {
@@ -175,7 +180,7 @@ pub(super) fn range(field: Field, item: &Item) -> Result<Range, ConfigError> {
         Some(item) => Some(
             item.as_integer().and_then(|n| usize::try_from(n).ok()).filter(|n| *n >= 1).ok_or_else(|| {
                 let text = item.to_string();
-                complaint(&format!("{path}.count"), Some(text.trim()), "is no count", "give 1 or more")
+                config_error(&format!("{path}.count"), Some(text.trim()), "is no count", "give 1 or more")
             })?,
         ),
     };
@@ -183,7 +188,7 @@ pub(super) fn range(field: Field, item: &Item) -> Result<Range, ConfigError> {
         None | Some(Some("linear")) => false,
         Some(Some("log")) => true,
         Some(_) => {
-            return Err(complaint(
+            return Err(config_error(
                 &format!("{path}.spacing"),
                 None,
                 "is no spacing",
@@ -192,7 +197,7 @@ pub(super) fn range(field: Field, item: &Item) -> Result<Range, ConfigError> {
         }
     };
     if from > to {
-        return Err(complaint(
+        return Err(config_error(
             &path,
             Some(&format!("{from} to {to}")),
             "runs backwards",
@@ -200,7 +205,7 @@ pub(super) fn range(field: Field, item: &Item) -> Result<Range, ConfigError> {
         ));
     }
     if let Some(step) = step.filter(|s| *s <= 0.0) {
-        return Err(complaint(
+        return Err(config_error(
             &format!("{path}.step"),
             Some(&step.to_string()),
             "leads nowhere",
@@ -208,7 +213,7 @@ pub(super) fn range(field: Field, item: &Item) -> Result<Range, ConfigError> {
         ));
     }
     if logarithmic && (from <= 0.0 || step.is_some()) {
-        return Err(complaint(
+        return Err(config_error(
             &path,
             None,
             "cannot be logarithmic",
@@ -216,7 +221,7 @@ pub(super) fn range(field: Field, item: &Item) -> Result<Range, ConfigError> {
         ));
     }
     if step.is_some() && count.is_some() {
-        return Err(complaint(&path, None, "has both step and count", "keep one of them"));
+        return Err(config_error(&path, None, "has both step and count", "keep one of them"));
     }
     let range = Range { from, to, step, count, logarithmic, whole };
     for end in [from, to] {
@@ -239,15 +244,15 @@ impl Range {
         } else {
             self.from + (self.to - self.from) * share
         };
-        if self.whole { x.round() } else { clean(x) }
+        if self.whole { x.round() } else { without_float_noise(x) }
     }
 
-    /// The value that a coordinate of a sample stands for: with a grid, all its values are equally likely.
-    pub(super) fn drawn(&self, share: f64) -> f64 {
+    /// The value for a coordinate of a sample; on a grid, all values are equally likely.
+    pub(super) fn sampled_value(&self, share: f64) -> f64 {
         match self.step.or(self.whole.then_some(1.0)) {
             Some(step) => {
                 let last = ((self.to - self.from) / step + 1e-9).floor();
-                clean(self.from + step * (share * (last + 1.0)).floor().min(last))
+                without_float_noise(self.from + step * (share * (last + 1.0)).floor().min(last))
             }
             None => self.at(share),
         }
@@ -257,25 +262,27 @@ impl Range {
     fn values(&self, path: &str) -> Result<Vec<f64>, ConfigError> {
         if let Some(step) = self.step {
             let steps = ((self.to - self.from) / step + 1e-9).floor();
-            if steps > MOST_STEPS {
-                return Err(complaint(
+            if steps > MAX_STEPS {
+                return Err(config_error(
                     path,
                     Some(&format!("{} to {} by {step}", self.from, self.to)),
                     "has more than ten million values",
                     "raise step",
                 ));
             }
-            return Ok((0..=steps as usize).map(|i| clean(self.from + step * i as f64)).collect());
+            return Ok((0..=steps as usize)
+                .map(|i| without_float_noise(self.from + step * i as f64))
+                .collect());
         }
         let count = self.count.unwrap_or(1);
-        if count > MOST_STEPS as usize {
-            return Err(complaint(path, Some(&count.to_string()), "is too many values", "lower count"));
+        if count > MAX_STEPS as usize {
+            return Err(config_error(path, Some(&count.to_string()), "is too many values", "lower count"));
         }
         let last = (count.max(2) - 1) as f64;
         let mut values: Vec<_> = (0..count).map(|i| self.at(i as f64 / last)).collect();
         values.dedup();
         if values.len() < count {
-            return Err(complaint(
+            return Err(config_error(
                 path,
                 Some(&format!("{count} values from {} to {}", self.from, self.to)),
                 "holds fewer different values",
@@ -287,12 +294,12 @@ impl Range {
 }
 
 /// `x` without the noise of binary fractions: 0.3, not 0.30000000000000004.
-fn clean(x: f64) -> f64 {
+fn without_float_noise(x: f64) -> f64 {
     format!("{x:.12e}").parse().unwrap_or(x)
 }
 
-/// A complaint about an axis.
-pub(super) fn complaint(field: &str, value: Option<&str>, problem: &str, remedy: &str) -> ConfigError {
+/// An error in an axis.
+pub(super) fn config_error(field: &str, value: Option<&str>, problem: &str, remedy: &str) -> ConfigError {
     ConfigError {
         field: field.to_owned(),
         value: value.map(|v| v.trim().to_owned()),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use exmex::{BinOp, Express, FlatEx, MakeOperators, Operator, Val, ValMatcher, ValOpsFactory};
 use pinswitch_model::{FrictionCurve, Transition};
 
-use super::axis::complaint;
+use super::axis::config_error;
 use pinswitch_switch::config::{ConfigError, Configuration};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::derived;
@@ -16,7 +16,7 @@ const PREDICTED: [&str; 5] = ["pin_count", "friction_n", "band_low_n", "band_hig
 type Value = Val<i32, f64>;
 type Expression = FlatEx<Value, Operators, ValMatcher>;
 
-/// The evaluator's operators, bound as everywhere else: comparisons before `&&` before `||`. On its own it joins
+/// The evaluator's operators with the usual precedence: comparisons before `&&` before `||`. By default it joins
 /// conditions before it compares them.
 #[derive(Clone, Debug)]
 struct Operators;
@@ -46,7 +46,7 @@ impl MakeOperators<Value> for Operators {
 pub struct Constraint {
     /// As written.
     text: String,
-    /// Why, in the words of whoever wrote it.
+    /// Why, as the sweep says.
     because: Option<String>,
     expression: Arc<Expression>,
     /// The names in it, in the order in which the expression wants their values.
@@ -60,12 +60,12 @@ impl Constraint {
     /// [`ConfigError`] for an unknown name, or what is no expression.
     pub fn new(text: &str, because: Option<String>) -> Result<Self, ConfigError> {
         let known = names();
-        let (braced, unknown) = brace(text, &known);
+        let (braced, unknown) = brace_names(text, &known);
         if let Some(name) = unknown {
             let near = known
                 .iter()
                 .max_by(|a, b| strsim::jaro_winkler(&name, a).total_cmp(&strsim::jaro_winkler(&name, b)));
-            return Err(complaint(
+            return Err(config_error(
                 "constraints.require",
                 Some(&format!("{text:?}")),
                 &format!("has the unknown name {name:?}"),
@@ -77,7 +77,7 @@ impl Constraint {
             ));
         }
         let refused = |problem: &str| {
-            complaint(
+            config_error(
                 "constraints.require",
                 Some(&format!("{text:?}")),
                 problem,
@@ -87,7 +87,7 @@ impl Constraint {
         let expression =
             Expression::parse(&braced).map_err(|e| refused(&format!("is no expression: {e}")))?;
         let names = expression.var_names().to_vec();
-        // What is no condition is found before any variant is made: its type does not depend on the values.
+        // An expression that is no condition is refused before any variant is made: its type does not depend on the values.
         let ones = vec![Val::Float(1.0); names.len()];
         match expression.eval(&ones) {
             Ok(Val::Bool(_)) => {}
@@ -153,7 +153,7 @@ fn quantity(name: &str, design: &Design, curve: &FrictionCurve) -> Option<f64> {
 }
 
 /// `text` with every known name in braces, as the evaluator wants names with dots; and the first unknown name.
-fn brace(text: &str, known: &[String]) -> (String, Option<String>) {
+fn brace_names(text: &str, known: &[String]) -> (String, Option<String>) {
     const FUNCTIONS: [&str; 13] =
         ["abs", "sqrt", "min", "max", "round", "floor", "ceil", "exp", "ln", "sin", "cos", "if", "else"];
     let mut out = String::new();
@@ -184,13 +184,13 @@ fn brace(text: &str, known: &[String]) -> (String, Option<String>) {
 mod tests {
     use super::*;
     use pinswitch_switch::config::assign;
-    use pinswitch_switch::prediction::curve_of;
+    use pinswitch_switch::prediction::predicted_curve;
 
     fn refusal(text: &str) -> Option<String> {
         let mut c = Configuration::default();
         assign(&mut c, "layout.pins=[5, 8, 11]").unwrap();
         let design = Design::new(c).unwrap();
-        let curve = curve_of(&design);
+        let curve = predicted_curve(&design);
         Constraint::new(text, Some("the mandrel".to_owned())).unwrap().refusal(&design, &curve)
     }
 

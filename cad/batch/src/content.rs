@@ -7,39 +7,39 @@ use sha2::{Digest, Sha256};
 
 use super::destination::{Destination, DestinationError};
 use super::hexadecimal;
-use pinswitch_solid::validity::Facts;
+use pinswitch_solid::validity::MeshFacts;
 use pinswitch_switch::built::BuiltPart;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::parts::Part;
 use pinswitch_switch::set::SetError;
 
-/// Recipes that are remembered, about 500 bytes each; what is forgotten is made again, to the same bytes.
-const REMEMBERED: usize = 50_000;
+/// Recipes kept in the cache, about 500 bytes each; an evicted part is made again, with the same bytes.
+const CACHED_RECIPES: usize = 50_000;
 
 /// Makes the mesh file of a part: [`mesh_file`], or a stand-in that fails, in tests.
-pub type Workshop = fn(&Part, &Design) -> Result<(Vec<u8>, Facts), SetError>;
+pub type MeshMaker = fn(&Part, &Design) -> Result<(Vec<u8>, MeshFacts), SetError>;
 
 /// The part as binary STL, meshed and examined, with what the mesh measures.
 ///
 /// # Errors
 /// [`SetError`]; a mesh that the oracle refuses is never returned.
-pub fn mesh_file(part: &Part, design: &Design) -> Result<(Vec<u8>, Facts), SetError> {
+pub fn mesh_file(part: &Part, design: &Design) -> Result<(Vec<u8>, MeshFacts), SetError> {
     let built = BuiltPart::new(part.clone(), design)?;
     Ok((built.stl().map_err(SetError::encoding)?, built.facts))
 }
 
-/// A part that lies at the destination.
+/// A part stored at the destination.
 #[derive(Clone, Debug)]
-pub(super) struct Kept {
+pub(super) struct StoredPart {
     /// SHA-256 of its bytes.
     pub sha256: String,
     /// Its size.
     pub bytes: usize,
     /// What its mesh measures.
-    pub facts: Facts,
+    pub facts: MeshFacts,
 }
 
-/// Why a part is not there.
+/// Why a part could not be stored.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ContentError {
     /// It cannot be made.
@@ -51,33 +51,33 @@ pub(super) enum ContentError {
 }
 
 /// The parts of a batch at a destination.
-pub(super) struct Contents<'a> {
+pub(super) struct PartStore<'a> {
     destination: &'a Destination,
-    workshop: Workshop,
-    known: Cache<[u8; 32], Arc<Kept>>,
+    mesh_maker: MeshMaker,
+    known: Cache<[u8; 32], Arc<StoredPart>>,
 }
 
-/// Where the STL with this hash lies.
-pub(super) fn place_of(sha256: &str) -> String {
+/// Path of the STL with this hash.
+pub(super) fn content_path(sha256: &str) -> String {
     format!("parts/{}/{sha256}.stl", sha256.get(..2).unwrap_or_default())
 }
 
-impl<'a> Contents<'a> {
-    /// An empty memory of what lies at `destination`.
-    pub(super) fn new(destination: &'a Destination, workshop: Workshop) -> Self {
-        Self { destination, workshop, known: Cache::new(REMEMBERED) }
+impl<'a> PartStore<'a> {
+    /// An empty cache for `destination`.
+    pub(super) fn new(destination: &'a Destination, mesh_maker: MeshMaker) -> Self {
+        Self { destination, mesh_maker, known: Cache::new(CACHED_RECIPES) }
     }
 
-    /// The part at the destination, made there if need be. Threads that want the same part wait for the first.
+    /// Stores the part unless it is stored already. Threads that need the same part wait for the first.
     ///
     /// # Errors
     /// [`ContentError`] if it cannot be made or written.
-    pub(super) fn keep(&self, part: &Part, design: &Design) -> Result<Arc<Kept>, ContentError> {
+    pub(super) fn keep(&self, part: &Part, design: &Design) -> Result<Arc<StoredPart>, ContentError> {
         self.known.get_or_insert_with(&recipe(part, design), || {
-            let (bytes, facts) = (self.workshop)(part, design)?;
+            let (bytes, facts) = (self.mesh_maker)(part, design)?;
             let sha256 = hexadecimal(&Sha256::digest(&bytes));
-            self.write(&place_of(&sha256), &bytes)?;
-            Ok(Arc::new(Kept { sha256, bytes: bytes.len(), facts }))
+            self.write(&content_path(&sha256), &bytes)?;
+            Ok(Arc::new(StoredPart { sha256, bytes: bytes.len(), facts }))
         })
     }
 
@@ -140,12 +140,12 @@ mod tests {
     fn a_part_is_made_once_and_a_damaged_file_is_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let destination = Destination::open(folder.path().to_str().unwrap(), ".partial").unwrap();
-        let _claim = destination.claim().unwrap();
+        let _lock = destination.lock().unwrap();
         let design = design(&[]);
         let part = &printed(&design).unwrap()[0];
-        let keep = || Contents::new(&destination, mesh_file).keep(part, &design).unwrap();
+        let keep = || PartStore::new(&destination, mesh_file).keep(part, &design).unwrap();
         let kept = keep();
-        let path = folder.path().join(place_of(&kept.sha256));
+        let path = folder.path().join(content_path(&kept.sha256));
         let whole = std::fs::read(&path).unwrap();
         assert_eq!(whole.len(), kept.bytes);
         std::fs::write(&path, vec![0; kept.bytes]).unwrap();

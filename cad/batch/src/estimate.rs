@@ -6,22 +6,22 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::content::Workshop;
+use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
-use super::make::{Maker, Outcome, accepted};
+use super::make::{Outcome, VariantMaker, accepted};
 use super::shard::Shard;
 use super::variant::Variants;
 
-/// Variants that are checked one by one; of more, so many are taken evenly.
-const MOST_CHECKED: u64 = 100_000;
-/// Variants that are made first, so that what is shared is there.
-const WARMING: usize = 8;
-/// Variants that are made then, and measured.
-const MEASURED: usize = 24;
+/// At most this many variants are checked; of a larger sweep, an even sample.
+const MAX_CHECKED: u64 = 100_000;
+/// Variants made first, so that shared parts exist.
+const WARM_UP_VARIANTS: usize = 8;
+/// Variants made after those, and measured.
+const MEASURED_VARIANTS: usize = 24;
 
 /// Variants that are refused for the same kind of reason.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Refusals {
+pub struct RefusalGroup {
     /// The field, constraint or kind.
     pub kind: String,
     /// How many of those checked.
@@ -53,7 +53,7 @@ pub struct Estimate {
     /// How many of them were checked.
     pub checked: u64,
     /// How many of the checked ones would be refused, by kind, most first.
-    pub refused: Vec<Refusals>,
+    pub refused: Vec<RefusalGroup>,
     /// Absent if no variant can be made.
     pub measured: Option<Measured>,
     /// Threads.
@@ -74,11 +74,11 @@ pub fn estimate(
     variants: &Variants,
     shard: Shard,
     threads: usize,
-    workshop: Workshop,
+    mesh_maker: MeshMaker,
 ) -> Result<Estimate, DestinationError> {
     let range = shard.range(variants.count());
     let count = range.end - range.start;
-    let every = count.div_ceil(MOST_CHECKED).max(1);
+    let every = count.div_ceil(MAX_CHECKED).max(1);
     let checked: Vec<(u64, Option<String>)> = (0..count.div_ceil(every))
         .into_par_iter()
         .map(|i| {
@@ -87,7 +87,7 @@ pub fn estimate(
         })
         .collect();
     let good: Vec<u64> = checked.iter().filter(|(_, reason)| reason.is_none()).map(|(i, _)| *i).collect();
-    let measured = measure(variants, &good, workshop)?;
+    let measured = measure(variants, &good, mesh_maker)?;
     #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let made = (count as f64 * good.len() as f64 / checked.len().max(1) as f64).round() as u64;
     #[allow(clippy::cast_precision_loss)]
@@ -104,11 +104,11 @@ pub fn estimate(
     })
 }
 
-fn refusals(variants: &Variants, checked: &[(u64, Option<String>)]) -> Vec<Refusals> {
-    let mut kinds: BTreeMap<String, Refusals> = BTreeMap::new();
+fn refusals(variants: &Variants, checked: &[(u64, Option<String>)]) -> Vec<RefusalGroup> {
+    let mut kinds: BTreeMap<String, RefusalGroup> = BTreeMap::new();
     for (index, reason) in checked.iter().filter_map(|(i, r)| Some((*i, r.as_ref()?))) {
-        let kind = kind_of(reason);
-        let entry = kinds.entry(kind.clone()).or_insert_with(|| Refusals {
+        let kind = reason_kind(reason);
+        let entry = kinds.entry(kind.clone()).or_insert_with(|| RefusalGroup {
             kind,
             count: 0,
             example: variants.get(index).id,
@@ -122,7 +122,7 @@ fn refusals(variants: &Variants, checked: &[(u64, Option<String>)]) -> Vec<Refus
 }
 
 /// A reason without its numbers.
-fn kind_of(reason: &str) -> String {
+fn reason_kind(reason: &str) -> String {
     if reason.starts_with("repeats ") {
         return "repeats another variant".to_owned();
     }
@@ -132,12 +132,12 @@ fn kind_of(reason: &str) -> String {
     reason.split(' ').next().unwrap_or_default().to_owned()
 }
 
-/// Makes a few variants, evenly taken, and sees what each of the later ones costs.
+/// Makes an even sample of variants and measures what each of the later ones costs.
 #[allow(clippy::cast_precision_loss)]
 fn measure(
     variants: &Variants,
     good: &[u64],
-    workshop: Workshop,
+    mesh_maker: MeshMaker,
 ) -> Result<Option<Measured>, DestinationError> {
     if good.is_empty() {
         return Ok(None);
@@ -145,17 +145,17 @@ fn measure(
     let failed = |e: std::io::Error| DestinationError {
         place: "the temporary folder".to_owned(),
         problem: e.to_string(),
-        hopeless: true,
+        is_fatal: true,
     };
     let folder = tempfile::tempdir().map_err(failed)?;
     let destination = Destination::open(&folder.path().display().to_string(), ".partial-dry-run")?;
-    let _claim = destination.claim()?;
-    let maker = Maker::new(variants, "", &destination, false, workshop);
-    let chosen: Vec<u64> = (0..good.len().min(WARMING + MEASURED))
-        .map(|i| good[i * good.len() / good.len().min(WARMING + MEASURED)])
+    let _lock = destination.lock()?;
+    let maker = VariantMaker::new(variants, "", &destination, false, mesh_maker);
+    let chosen: Vec<u64> = (0..good.len().min(WARM_UP_VARIANTS + MEASURED_VARIANTS))
+        .map(|i| good[i * good.len() / good.len().min(WARM_UP_VARIANTS + MEASURED_VARIANTS)])
         .collect();
     // With few variants there is nothing to warm up with: the shared parts count in full.
-    let (first, rest) = chosen.split_at(if chosen.len() > WARMING { WARMING } else { 0 });
+    let (first, rest) = chosen.split_at(if chosen.len() > WARM_UP_VARIANTS { WARM_UP_VARIANTS } else { 0 });
     let make = |indices: &[u64]| -> Result<f64, DestinationError> {
         let sizes: Result<Vec<f64>, _> = indices
             .par_iter()
@@ -172,7 +172,7 @@ fn measure(
         Ok(sizes?.iter().sum())
     };
     make(first)?;
-    let before = size_of(folder.path());
+    let before = folder_size(folder.path());
     let start = Instant::now();
     let unshared = make(rest)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -180,19 +180,19 @@ fn measure(
     Ok(Some(Measured {
         variants: rest.len(),
         seconds_per_variant: seconds / n,
-        bytes_per_variant: (size_of(folder.path()) - before) / n,
+        bytes_per_variant: (folder_size(folder.path()) - before) / n,
         bytes_unshared: unshared / n,
     }))
 }
 
 /// Bytes of all files under `folder`; links to one file count once.
 #[allow(clippy::cast_precision_loss)]
-fn size_of(folder: &std::path::Path) -> f64 {
+fn folder_size(folder: &std::path::Path) -> f64 {
     let Ok(entries) = std::fs::read_dir(folder) else { return 0.0 };
     entries
         .filter_map(Result::ok)
         .map(|entry| match entry.file_type() {
-            Ok(kind) if kind.is_dir() => size_of(&entry.path()),
+            Ok(kind) if kind.is_dir() => folder_size(&entry.path()),
             // Every part of a variant is a link to one under parts/.
             Ok(_) if entry.path().extension().is_some_and(|e| e == "stl") && !in_parts(&entry.path()) => 0.0,
             _ => entry.metadata().map_or(0.0, |m| m.len() as f64),

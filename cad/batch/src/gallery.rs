@@ -8,14 +8,14 @@ use pinswitch_model::predict;
 use pinswitch_switch::design::Design;
 
 /// Most variants that are shown; beyond it every second, third, ... one is.
-const MOST_SHOWN: u64 = 5000;
+const MAX_SHOWN: u64 = 5000;
 /// Points of a shown curve.
 const POINTS: usize = 25;
 
 /// A value of a field that varies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub(super) enum Setting {
+pub(super) enum SettingValue {
     /// A number.
     Number(f64),
     /// Anything else, as written.
@@ -24,7 +24,7 @@ pub(super) enum Setting {
 
 /// A variant as it is shown; curve and numbers are absent unless it was made. Forces in newtons.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Shown {
+pub(super) struct GalleryEntry {
     /// Its id.
     pub id: String,
     /// What is engraved.
@@ -35,7 +35,7 @@ pub(super) struct Shown {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// The fields that vary, in the order of [`Gallery::fields`].
-    pub settings: Vec<Setting>,
+    pub settings: Vec<SettingValue>,
     /// Friction at the heaviest load with the edges of its band: middle, low, high.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_n: Option<[f64; 3]>,
@@ -63,10 +63,10 @@ pub(super) struct Gallery {
     pub fields: Vec<String>,
     /// Number of variants of the sweep.
     pub of: u64,
-    /// Every which one is shown.
+    /// One in this many is shown.
     pub every: u64,
     /// Those shown.
-    pub shown: Vec<Shown>,
+    pub shown: Vec<GalleryEntry>,
 }
 
 impl Gallery {
@@ -75,12 +75,12 @@ impl Gallery {
         Self {
             fields: variants.fields().map(|f| f.path()).collect(),
             of: variants.count(),
-            every: variants.count().div_ceil(MOST_SHOWN).max(1),
+            every: variants.count().div_ceil(MAX_SHOWN).max(1),
             shown: Vec::new(),
         }
     }
 
-    /// Shows variant `index`, if it is its turn.
+    /// Adds variant `index` if it is one of those shown.
     pub(super) fn add(&mut self, variants: &Variants, index: u64, schema: &Schema, row: &Row) {
         if !index.is_multiple_of(self.every) {
             return;
@@ -91,10 +91,12 @@ impl Gallery {
         let made = cell("status").text() == Some("made");
         let curve = made.then(|| curve(variants, index)).flatten();
         let settings = self.fields.iter().map(|name| match cell(name) {
-            Cell::Text(words) => Setting::Words(words.clone()),
-            other => other.number().map_or_else(|| Setting::Words(other.to_string()), Setting::Number),
+            Cell::Text(words) => SettingValue::Words(words.clone()),
+            other => {
+                other.number().map_or_else(|| SettingValue::Words(other.to_string()), SettingValue::Number)
+            }
         });
-        self.shown.push(Shown {
+        self.shown.push(GalleryEntry {
             settings: settings.collect(),
             id: text("id").unwrap_or_default(),
             label: text("label").unwrap_or_default(),
@@ -113,7 +115,7 @@ impl Gallery {
     }
 
     /// The variants with a curve.
-    pub(super) fn made(&self) -> impl Iterator<Item = &Shown> {
+    pub(super) fn made(&self) -> impl Iterator<Item = &GalleryEntry> {
         self.shown.iter().filter(|s| s.loads_n.is_some())
     }
 }

@@ -1,8 +1,8 @@
-//! Sweeps of many variants, made in parallel, taken up where they were stopped, on one machine or on many.
+//! Sweeps of many variants, made in parallel, resumed where they were stopped, on one machine or on many.
 //!
 //! It knows sweeps, destinations and tables; how a switch is built and predicted it leaves to `pinswitch-switch`.
 //!
-//! Data flows: sweep file → levels → variants → sets (equal parts once) → rows → table, plots, page.
+//! Data flows: sweep file → axes → variants → sets (equal parts once) → rows → table, plots, page.
 
 mod axis;
 mod constraint;
@@ -26,21 +26,21 @@ mod table;
 mod table_files;
 mod variant;
 
-pub use axis::{Field, Level};
+pub use axis::{ParameterRef, SweepAxis};
 pub use constraint::Constraint;
-pub use content::{Workshop, mesh_file};
-pub use destination::{Claim, Destination, DestinationError, Folder, Store};
-pub use estimate::{Estimate, Measured, Refusals, estimate};
+pub use content::{MeshMaker, mesh_file};
+pub use destination::{Destination, DestinationError, DestinationLock, Folder, Store};
+pub use estimate::{Estimate, Measured, RefusalGroup, estimate};
 pub use make::Outcome;
 pub use merge::{MergeError, merge};
 pub use products::{ProductError, Tally};
-pub use run::{Options, RunError, ShardStamp, Watch, partial_folder, run};
+pub use run::{Observer, Options, RunError, ShardStamp, partial_folder, run};
 pub use sampling::{Method, unit_points};
 pub use shard::{Shard, ShardError};
 pub use source::SweepSource;
 pub use stamp::{Stamp, StampError};
 pub use sweep::Sweep;
-pub use table::{Cell, Column, Kind, Row, Schema};
+pub use table::{Cell, Column, ColumnType, Row, Schema};
 pub use table_files::{TableError, TableWriter, read_rows};
 pub use variant::{Variant, Variants};
 

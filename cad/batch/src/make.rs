@@ -3,7 +3,7 @@
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use super::content::{ContentError, Contents, Kept, Workshop, place_of};
+use super::content::{ContentError, MeshMaker, PartStore, StoredPart, content_path};
 use super::destination::{Destination, DestinationError};
 use super::hexadecimal;
 use super::sweep::Sweep;
@@ -14,7 +14,7 @@ use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::formats::curve_files;
 use pinswitch_switch::parts::printed;
-use pinswitch_switch::prediction::{Prediction, curve_of};
+use pinswitch_switch::prediction::{Prediction, predicted_curve};
 use pinswitch_switch::set::SetError;
 
 /// What became of a variant.
@@ -24,7 +24,7 @@ pub enum Outcome {
     Made {
         /// The manifest's bytes.
         manifest: Vec<u8>,
-        /// Whether an earlier run had made it.
+        /// Whether it was made by an earlier run.
         before: bool,
     },
     /// It cannot be built, or a constraint forbids it.
@@ -34,17 +34,17 @@ pub enum Outcome {
 }
 
 /// Makes variants at a destination.
-pub(super) struct Maker<'a> {
+pub(super) struct VariantMaker<'a> {
     variants: &'a Variants,
     sweep_sha256: &'a str,
     destination: &'a Destination,
-    contents: Contents<'a>,
+    contents: PartStore<'a>,
     /// Whether an earlier run may have left variants.
     resumed: bool,
 }
 
 /// The folder of a variant.
-pub(super) fn folder_of(id: &str) -> String {
+pub(super) fn variant_folder(id: &str) -> String {
     format!("variants/{id}")
 }
 
@@ -57,23 +57,29 @@ pub(super) fn accepted(variants: &Variants, variant: &Variant) -> Result<(Design
         return Err(format!("repeats {}", variants.get(original).id));
     }
     let design = Design::new(variant.configuration.clone()).map_err(|e| e.to_string())?;
-    let curve = curve_of(&design);
+    let curve = predicted_curve(&design);
     match variants.sweep().constraints.iter().find_map(|c| c.refusal(&design, &curve)) {
         Some(reason) => Err(reason),
         None => Ok((design, curve)),
     }
 }
 
-impl<'a> Maker<'a> {
+impl<'a> VariantMaker<'a> {
     /// A maker for `destination`; `resumed` says whether it may already hold variants of the same sweep.
     pub(super) fn new(
         variants: &'a Variants,
         sweep_sha256: &'a str,
         destination: &'a Destination,
         resumed: bool,
-        workshop: Workshop,
+        mesh_maker: MeshMaker,
     ) -> Self {
-        Self { variants, sweep_sha256, destination, contents: Contents::new(destination, workshop), resumed }
+        Self {
+            variants,
+            sweep_sha256,
+            destination,
+            contents: PartStore::new(destination, mesh_maker),
+            resumed,
+        }
     }
 
     /// Makes `variant` unless it is refused or already there.
@@ -90,7 +96,7 @@ impl<'a> Maker<'a> {
         }
         match self.build(variant, &design, curve) {
             Ok(manifest) => Ok(Outcome::Made { manifest, before: false }),
-            Err(ContentError::Destination(e)) if e.hopeless => Err(e),
+            Err(ContentError::Destination(e)) if e.is_fatal => Err(e),
             Err(ContentError::Set(SetError::Build(BuildError::Configuration(e)))) => {
                 Ok(Outcome::Refused(e.to_string()))
             }
@@ -122,7 +128,7 @@ impl<'a> Maker<'a> {
             label: variant.label.clone(),
         });
         let bytes = manifest.bytes()?;
-        let folder = folder_of(&variant.id);
+        let folder = variant_folder(&variant.id);
         for file in own {
             self.destination.put(&format!("{folder}/{}", file.name), &file.bytes)?;
         }
@@ -138,7 +144,7 @@ impl<'a> Maker<'a> {
 
     /// The manifest of a variant that an earlier run made, if all its files are still what it says.
     fn whole(&self, variant: &Variant) -> Result<Option<Vec<u8>>, DestinationError> {
-        let folder = folder_of(&variant.id);
+        let folder = variant_folder(&variant.id);
         let Some(bytes) = self.destination.get(&format!("{folder}/manifest.json"))? else { return Ok(None) };
         let Ok(manifest) = serde_json::from_slice::<Value>(&bytes) else { return Ok(None) };
         let own = manifest["batch"]["sweep_sha256"] == self.sweep_sha256
@@ -169,11 +175,11 @@ impl<'a> Maker<'a> {
     }
 }
 
-fn part_entry(name: &str, kept: &Kept) -> FileEntry {
+fn part_entry(name: &str, kept: &StoredPart) -> FileEntry {
     FileEntry {
         file: format!("{name}.stl"),
         bytes: kept.bytes,
         sha256: kept.sha256.clone(),
-        content: Some(place_of(&kept.sha256)),
+        content: Some(content_path(&kept.sha256)),
     }
 }

@@ -61,13 +61,13 @@ pub enum MergeError {
     Destination(#[from] DestinationError),
 }
 
-/// A finished shard and where it lies.
-struct Found<'a> {
+/// A finished shard and its place.
+struct FinishedShard<'a> {
     stamp: ShardStamp,
     place: &'a Destination,
 }
 
-impl Found<'_> {
+impl FinishedShard<'_> {
     fn name(&self) -> String {
         format!("{} of {}", self.stamp.shard, self.place.name())
     }
@@ -89,13 +89,13 @@ pub fn merge(places: &[Destination], target: &Destination) -> Result<Tally, Merg
                     shard: format!("{folder} of {}", place.name()),
                     problem: e.to_string(),
                 })?;
-                found.push(Found { stamp, place });
+                found.push(FinishedShard { stamp, place });
             }
         }
     }
     found.sort_by_key(|f| (f.stamp.variants.start, f.stamp.variants.end));
     cover(&found, &stamp)?;
-    let _claim = target.claim()?;
+    let _lock = target.lock()?;
     stamp.put(target)?;
     let mut products = Products::new(&variants, target)?;
     let schema = products.schema().clone();
@@ -136,9 +136,9 @@ fn one_sweep(places: &[Destination]) -> Result<Stamp, MergeError> {
 }
 
 /// Whether the shards hold every variant once.
-fn cover(found: &[Found<'_>], stamp: &Stamp) -> Result<(), MergeError> {
+fn cover(found: &[FinishedShard<'_>], stamp: &Stamp) -> Result<(), MergeError> {
     let mut next = 0;
-    let mut before: Option<&Found<'_>> = None;
+    let mut before: Option<&FinishedShard<'_>> = None;
     let gap = |from: u64, to: u64| {
         let of = found.first().map(|f| f.stamp.shard);
         let hint = of.map_or_else(

@@ -3,7 +3,7 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::gallery::{Gallery, Setting, Shown};
+use super::gallery::{Gallery, GalleryEntry, SettingValue};
 use pinswitch_plot::{PlotError, drawable};
 
 /// The drawing library rounds to whole units: it draws this many to a pixel, so that lines are smooth.
@@ -11,9 +11,9 @@ const FINE: i32 = 8;
 /// Size of a panel in pixels.
 const PANEL: (i32, i32) = (260, 190);
 /// Most panels; values beyond are put into as many classes.
-const MOST_PANELS: usize = 12;
+const MAX_PANELS: usize = 12;
 /// Most curves in a panel, evenly taken.
-const MOST_CURVES: usize = 40;
+const MAX_CURVES: usize = 40;
 /// Room for the title, and for the legend on the right, in pixels.
 const TITLE: i32 = 46;
 const LEGEND: i32 = 190;
@@ -54,7 +54,7 @@ impl Classes {
         let Some(i) = field else {
             return Self { field, name, labels: vec![String::new()], ends: Vec::new(), ordered: true };
         };
-        let mut values: Vec<&Setting> = Vec::new();
+        let mut values: Vec<&SettingValue> = Vec::new();
         for shown in gallery.made() {
             if !values.contains(&&shown.settings[i]) {
                 values.push(&shown.settings[i]);
@@ -69,8 +69,10 @@ impl Classes {
                 ordered: true,
             };
         }
-        let mut numbers: Vec<f64> =
-            values.iter().filter_map(|v| if let Setting::Number(x) = v { Some(*x) } else { None }).collect();
+        let mut numbers: Vec<f64> = values
+            .iter()
+            .filter_map(|v| if let SettingValue::Number(x) = v { Some(*x) } else { None })
+            .collect();
         numbers.sort_by(f64::total_cmp);
         if values.len() > most && numbers.len() == values.len() {
             let classes = most.min(6);
@@ -96,11 +98,11 @@ impl Classes {
     }
 
     /// The class of a variant.
-    fn of(&self, shown: &Shown) -> usize {
+    fn of(&self, shown: &GalleryEntry) -> usize {
         let last = self.labels.len().saturating_sub(1);
         match self.field.map(|i| &shown.settings[i]) {
             None => 0,
-            Some(Setting::Number(x)) if !self.ends.is_empty() => {
+            Some(SettingValue::Number(x)) if !self.ends.is_empty() => {
                 self.ends.iter().position(|end| x <= end).unwrap_or(last)
             }
             Some(value) => {
@@ -130,10 +132,10 @@ fn ramp(share: f64) -> RGBColor {
     RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
-fn label(setting: &Setting) -> String {
+fn label(setting: &SettingValue) -> String {
     match setting {
-        Setting::Number(x) => short(*x),
-        Setting::Words(words) => words.clone(),
+        SettingValue::Number(x) => short(*x),
+        SettingValue::Words(words) => words.clone(),
     }
 }
 
@@ -149,7 +151,7 @@ fn short(x: f64) -> String {
 pub(super) fn curves_svg(name: &str, gallery: &Gallery) -> Result<String, PlotError> {
     let ranked = by_effect(gallery);
     let (facet, shade) = (ranked.get(1).copied(), ranked.first().copied());
-    let panels = Classes::new(gallery, facet, MOST_PANELS);
+    let panels = Classes::new(gallery, facet, MAX_PANELS);
     let colours = Classes::new(gallery, shade, 8);
     let single = panels.labels.len() == 1;
     let columns = panels.labels.len().min(4);
@@ -176,7 +178,7 @@ pub(super) fn curves_svg(name: &str, gallery: &Gallery) -> Result<String, PlotEr
             let mut chart = chart.build_cartesian_2d(drawable(0.0, heaviest), drawable(0.0, top))?;
             mesh(&mut chart, "load (N)", "friction (N)")?;
             let inside: Vec<_> = gallery.made().filter(|s| panels.of(s) == class).collect();
-            for shown in inside.iter().step_by(inside.len().div_ceil(MOST_CURVES).max(1)) {
+            for shown in inside.iter().step_by(inside.len().div_ceil(MAX_CURVES).max(1)) {
                 let colour = colours.colour(colours.of(shown));
                 chart.draw_series(LineSeries::new(
                     points(shown),
@@ -188,7 +190,7 @@ pub(super) fn curves_svg(name: &str, gallery: &Gallery) -> Result<String, PlotEr
     })
 }
 
-/// The fields, those first whose values tell most of the friction at the heaviest load: by the variance between the
+/// The fields, those first that explain most of the friction at the heaviest load: by the variance between the
 /// means of their classes, and as listed where that is equal.
 #[allow(clippy::cast_precision_loss)]
 fn by_effect(gallery: &Gallery) -> Vec<usize> {
@@ -255,7 +257,7 @@ pub(super) fn threshold_svg(name: &str, gallery: &Gallery) -> Result<String, Plo
     })
 }
 
-fn points(shown: &Shown) -> Vec<(f64, f64)> {
+fn points(shown: &GalleryEntry) -> Vec<(f64, f64)> {
     let [from, to] = shown.loads_n.unwrap_or_default();
     #[allow(clippy::cast_precision_loss)]
     let last = (shown.curve_n.len().max(2) - 1) as f64;

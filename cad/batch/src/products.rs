@@ -27,7 +27,7 @@ pub enum ProductError {
     Destination(#[from] DestinationError),
 }
 
-/// What came of a number of variants.
+/// Totals over a number of variants.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Tally {
     /// Variants that are there.
@@ -46,7 +46,7 @@ pub struct Tally {
     pub distinct_bytes: u64,
 }
 
-/// Takes rows in the order of the sweep and makes the products.
+/// Collects rows in the order of the sweep and writes the products.
 pub(super) struct Products<'a> {
     variants: &'a Variants,
     destination: &'a Destination,

@@ -2,15 +2,15 @@
 
 use toml_edit::Value;
 
-use super::axis::{self, Field, Level, complaint};
+use super::axis::{self, ParameterRef, SweepAxis, config_error};
 use pinswitch_switch::config::{ConfigError, Place};
 
-/// Reads the rows in `text`; `file` names them in complaints.
+/// Reads the rows in `text`; `file` names them in errors.
 ///
 /// # Errors
 /// [`ConfigError`] with file and line for a column that is no field, a value that it does not accept, a row that is
 /// too short, or no rows.
-pub(super) fn rows(text: &str, file: &str) -> Result<Level, ConfigError> {
+pub(super) fn rows(text: &str, file: &str) -> Result<SweepAxis, ConfigError> {
     let mut reader =
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
     let at = |line: u64| Place { file: file.to_owned(), line: usize::try_from(line).ok() };
@@ -19,7 +19,7 @@ pub(super) fn rows(text: &str, file: &str) -> Result<Level, ConfigError> {
         ConfigError::syntax(at(line), &e.to_string())
     };
     let header = reader.headers().map_err(broken)?.clone();
-    let fields: Vec<Field> =
+    let fields: Vec<ParameterRef> =
         header.iter().map(|name| axis::field(name).map_err(|e| e.at(at(1)))).collect::<Result<_, _>>()?;
     let mut rows = Vec::new();
     for record in reader.records() {
@@ -37,10 +37,10 @@ pub(super) fn rows(text: &str, file: &str) -> Result<Level, ConfigError> {
     }
     if rows.is_empty() {
         return Err(
-            complaint("rows", None, "holds no row", "write one variant a line under the header").at(at(1))
+            config_error("rows", None, "holds no row", "write one variant a line under the header").at(at(1))
         );
     }
-    Ok(Level { fields, rows })
+    Ok(SweepAxis { fields, rows })
 }
 
 #[cfg(test)]

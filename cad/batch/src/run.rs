@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::content::Workshop;
+use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
-use super::make::{Maker, Outcome};
+use super::make::{Outcome, VariantMaker};
 use super::products::{ProductError, Products, Tally};
 use super::shard::Shard;
 use super::source::SweepSource;
@@ -18,7 +18,7 @@ use super::table::{Row, Schema};
 use super::variant::Variants;
 
 /// Variants whose rows are in memory at the same time.
-const AT_ONCE: u64 = 512;
+const CHUNK_VARIANTS: u64 = 512;
 
 /// How a batch is run.
 #[derive(Clone, Copy, Debug)]
@@ -30,18 +30,18 @@ pub struct Options {
     /// Whether the first variant that fails ends the run.
     pub fail_fast: bool,
     /// What makes the parts.
-    pub workshop: Workshop,
+    pub mesh_maker: MeshMaker,
 }
 
-/// Who watches a run, and may stop it.
-pub trait Watch: Sync {
+/// Observes a run, and may stop it.
+pub trait Observer: Sync {
     /// One more variant is done.
-    fn done(&self, outcome: &Outcome);
-    /// Whether to begin no further variant.
-    fn stopped(&self) -> bool;
+    fn variant_done(&self, outcome: &Outcome);
+    /// Whether no further variant should be started.
+    fn stop_requested(&self) -> bool;
 }
 
-/// Why a run did not come to its end. What is written so far stays, and the same command takes it up.
+/// Why a run did not finish. What has been written stays, and the same command resumes it.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The destination is not for this sweep.
@@ -63,7 +63,7 @@ pub enum RunError {
     /// Table, plots or page cannot be made.
     #[error("{0}; the variants are there: the same command again makes the rest")]
     Products(#[from] ProductError),
-    /// Somebody stopped it.
+    /// The user stopped it.
     #[error("stopped: {done} of {of} variants are there; the same command again makes the rest")]
     Stopped {
         /// Variants that are done.
@@ -71,7 +71,7 @@ pub enum RunError {
         /// Variants of the run.
         of: u64,
     },
-    /// A variant failed, and that was to end the run.
+    /// A variant failed, and the run was to stop at the first failure.
     #[error("{id}: {reason}; --fail-fast ends the run here")]
     Failed {
         /// The variant.
@@ -109,35 +109,36 @@ pub fn run(
     source: &SweepSource,
     destination: &Destination,
     options: Options,
-    watch: &dyn Watch,
+    observer: &dyn Observer,
 ) -> Result<Tally, RunError> {
     // A folder with something else in it is left as it is, before anything is written there.
     let stamp = Stamp::new(source, variants.count());
     refuse_foreign(&stamp, destination)?;
-    let _claim = destination.claim().map_err(RunError::Unusable)?;
+    let _lock = destination.lock().map_err(RunError::Unusable)?;
     let resumed = stamp.put(destination)?;
     let range = options.shard.range(variants.count());
-    let maker = Maker::new(variants, &stamp.sweep_sha256, destination, resumed, options.workshop);
+    let maker = VariantMaker::new(variants, &stamp.sweep_sha256, destination, resumed, options.mesh_maker);
     let mut products = Products::new(variants, destination)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
     let (mut done, of) = (0, range.end - range.start);
     let schema = products.schema().clone();
-    for start in range.clone().step_by(usize::try_from(AT_ONCE).unwrap_or(1)) {
-        let chunk = start..range.end.min(start + AT_ONCE);
-        let results = pool.install(|| make_chunk(chunk.clone(), variants, &maker, &schema, options, watch));
-        let finished = results.iter().filter(|r| matches!(r, Ended::Row(_))).count() as u64;
+    for start in range.clone().step_by(usize::try_from(CHUNK_VARIANTS).unwrap_or(1)) {
+        let chunk = start..range.end.min(start + CHUNK_VARIANTS);
+        let results =
+            pool.install(|| make_chunk(chunk.clone(), variants, &maker, &schema, options, observer));
+        let finished = results.iter().filter(|r| matches!(r, VariantResult::Row(_))).count() as u64;
         for (index, result) in chunk.zip(results) {
             match result {
-                Ended::Row(row) => products.push(index, row)?,
-                Ended::Failed { id, reason } => return Err(RunError::Failed { id, reason }),
-                Ended::Hopeless(source) => {
+                VariantResult::Row(row) => products.push(index, row)?,
+                VariantResult::Failed { id, reason } => return Err(RunError::Failed { id, reason }),
+                VariantResult::Fatal(source) => {
                     return Err(RunError::Destination { source, done: done + finished, of });
                 }
-                Ended::NotBegun => {}
+                VariantResult::NotStarted => {}
             }
         }
         done += finished;
-        if watch.stopped() && done < of {
+        if observer.stop_requested() && done < of {
             return Err(RunError::Stopped { done, of });
         }
     }
@@ -172,46 +173,46 @@ impl From<DestinationError> for RunError {
     }
 }
 
-/// How a variant's turn ended.
-enum Ended {
+/// What became of one variant of a chunk.
+enum VariantResult {
     Row(Row),
     Failed { id: String, reason: String },
-    Hopeless(DestinationError),
-    NotBegun,
+    Fatal(DestinationError),
+    NotStarted,
 }
 
 fn make_chunk(
     chunk: Range<u64>,
     variants: &Variants,
-    maker: &Maker<'_>,
+    maker: &VariantMaker<'_>,
     schema: &Schema,
     options: Options,
-    watch: &dyn Watch,
-) -> Vec<Ended> {
+    observer: &dyn Observer,
+) -> Vec<VariantResult> {
     let halt = AtomicBool::new(false);
     chunk
         .into_par_iter()
         .map(|index| {
-            if watch.stopped() || halt.load(Ordering::Relaxed) {
-                return Ended::NotBegun;
+            if observer.stop_requested() || halt.load(Ordering::Relaxed) {
+                return VariantResult::NotStarted;
             }
             let variant = variants.get(index);
-            // A fault of the program in one variant must not cost the others.
+            // A panic in one variant must not lose the others.
             let outcome = catch_unwind(AssertUnwindSafe(|| maker.make(&variant))).unwrap_or_else(|_| {
                 Ok(Outcome::Failed("a fault of the program; please report the configuration".to_owned()))
             });
             match outcome {
                 Err(error) => {
                     halt.store(true, Ordering::Relaxed);
-                    Ended::Hopeless(error)
+                    VariantResult::Fatal(error)
                 }
                 Ok(Outcome::Failed(reason)) if options.fail_fast => {
                     halt.store(true, Ordering::Relaxed);
-                    Ended::Failed { id: variant.id, reason }
+                    VariantResult::Failed { id: variant.id, reason }
                 }
                 Ok(outcome) => {
-                    watch.done(&outcome);
-                    Ended::Row(schema.row(&variant, &outcome))
+                    observer.variant_done(&outcome);
+                    VariantResult::Row(schema.row(&variant, &outcome))
                 }
             }
         })

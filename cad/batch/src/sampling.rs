@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use toml_edit::{Item, Value};
 
-use super::axis::{self, Field, Level, Range, complaint};
+use super::axis::{self, ParameterRef, Range, SweepAxis, config_error};
 use pinswitch_switch::config::ConfigError;
 
 /// How points are drawn.
@@ -53,7 +53,7 @@ pub(super) fn sample<'a>(
     count: usize,
     seed: u64,
     axes: impl Iterator<Item = (&'a str, &'a Item)>,
-) -> Result<Level, ConfigError> {
+) -> Result<SweepAxis, ConfigError> {
     let mut fields = Vec::new();
     let mut spaces = Vec::new();
     for (path, item) in axes {
@@ -62,7 +62,7 @@ pub(super) fn sample<'a>(
         fields.push(field);
     }
     if fields.is_empty() || count == 0 {
-        return Err(complaint(
+        return Err(config_error(
             "sample",
             None,
             "is empty",
@@ -76,16 +76,16 @@ pub(super) fn sample<'a>(
             coordinates.map(|((share, space), field)| axis::accepted(field, &space.at(*share))).collect()
         })
         .collect::<Result<_, _>>()?;
-    Ok(Level { fields, rows })
+    Ok(SweepAxis { fields, rows })
 }
 
-fn space(field: Field, item: &Item) -> Result<Space, ConfigError> {
+fn space(field: ParameterRef, item: &Item) -> Result<Space, ConfigError> {
     if let Some(list) = item.as_array() {
         return Ok(Space::Choices(axis::listed(field, list)?));
     }
     let range = axis::range(field, item)?;
     if range.count.is_some() {
-        return Err(complaint(
+        return Err(config_error(
             &format!("{}.count", field.path()),
             None,
             "has no place in a sample",
@@ -100,7 +100,7 @@ impl Space {
     fn at(&self, share: f64) -> Value {
         match self {
             Self::Choices(all) => all[((share * all.len() as f64) as usize).min(all.len() - 1)].clone(),
-            Self::Range(range) => range.value(range.drawn(share)),
+            Self::Range(range) => range.value(range.sampled_value(share)),
         }
     }
 }

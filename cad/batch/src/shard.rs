@@ -12,7 +12,7 @@ pub struct Shard {
     of: u64,
 }
 
-/// Text that names no shard.
+/// Text that is not a shard.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is no shard; give K/N with K from 1 to N, as in --shard 2/8")]
 pub struct ShardError(String);

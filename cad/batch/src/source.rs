@@ -1,5 +1,5 @@
 //! What a sweep is made of, as text: its own file, the configuration under it, its rows. Kept in `batch.json`, so that
-//! a batch can be taken up or merged without the files it was started from.
+//! a batch can be resumed or merged without the files it was started from.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use pinswitch_switch::templates;
 pub struct SweepSource {
     /// Name of the sweep: as given, or the stem of its file.
     pub name: String,
-    /// Name of the sweep's file, for complaints.
+    /// Name of the sweep's file, for errors.
     pub file: String,
     /// The sweep's file.
     pub sweep: String,
@@ -43,11 +43,11 @@ impl SweepSource {
         };
         let folder = path.parent().unwrap_or_else(|| Path::new("."));
         let base = match word("sweep", "base") {
-            Some(name) => text_of("sweep.base", &name, folder)?,
+            Some(name) => read_text("sweep.base", &name, folder)?,
             None => (String::new(), "defaults".to_owned()),
         };
         let preset =
-            word("sweep", "preset").map(|name| text_of("sweep.preset", &name, folder)).transpose()?;
+            word("sweep", "preset").map(|name| read_text("sweep.preset", &name, folder)).transpose()?;
         let rows = word("rows", "file")
             .map(|name| {
                 let path = folder.join(&name);
@@ -59,7 +59,7 @@ impl SweepSource {
         let stem = path.file_stem().map_or_else(|| "batch".into(), |s| s.to_string_lossy());
         Ok(Self {
             name: word("sweep", "name").unwrap_or_else(|| stem.into_owned()),
-            base: to_toml(&overlaid(&base, preset.as_ref())?),
+            base: to_toml(&with_preset(&base, preset.as_ref())?),
             file,
             sweep,
             rows,
@@ -78,15 +78,15 @@ impl SweepSource {
     }
 }
 
-/// The base over the preset: what the base gives wins.
-fn overlaid(
+/// The base over the preset: what the base sets wins.
+fn with_preset(
     (base, file): &(String, String),
     preset: Option<&(String, String)>,
 ) -> Result<Configuration, ConfigError> {
     let (over, given) = read(base, file)?;
     let Some((text, name)) = preset else { return Ok(over) };
     let (mut all, _) = read(text, name)?;
-    for parameter in Configuration::PARAMETERS.iter().filter(|p| given.gives(&p.path())) {
+    for parameter in Configuration::PARAMETERS.iter().filter(|p| given.sets(&p.path())) {
         (parameter.set)(&mut all, &(parameter.get)(&over))
             .map_err(|remedy| ConfigError::new(parameter.path(), "", remedy))?;
     }
@@ -94,7 +94,7 @@ fn overlaid(
 }
 
 /// The text of a file beside the sweep or of a template, with its name.
-fn text_of(field: &str, name: &str, folder: &Path) -> Result<(String, String), ConfigError> {
+fn read_text(field: &str, name: &str, folder: &Path) -> Result<(String, String), ConfigError> {
     let path = folder.join(name);
     if path.is_file() {
         let text = std::fs::read_to_string(&path).map_err(|e| unreadable(name, &e))?;

@@ -1,4 +1,4 @@
-//! `batch.json`: which sweep a destination holds, with all that is needed to take it up again.
+//! `batch.json`: which sweep a destination holds, with all that is needed to resume it.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,13 +7,13 @@ use super::source::SweepSource;
 
 /// Name of the stamp.
 pub(super) const STAMP: &str = "batch.json";
-/// Form of the stamp.
+/// Name and version of the stamp's schema.
 const SCHEMA: &str = "pinswitch.batch/1";
 
 /// The stamp of a destination.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
-    /// Form of this file.
+    /// Name and version of this file's schema.
     pub schema: String,
     /// Program and version.
     pub generator: String,
@@ -48,7 +48,7 @@ pub enum StampError {
         /// The destination.
         place: String,
     },
-    /// The stamp is broken.
+    /// The stamp cannot be read.
     #[error("{place}/{STAMP}: {problem}; give another --out")]
     Unreadable {
         /// The destination.
@@ -83,7 +83,7 @@ impl Stamp {
         serde_json::from_slice(&bytes).map_err(|e| StampError::Unreadable { place, problem: e.to_string() })
     }
 
-    /// Stamps an empty destination; gives whether it already held this sweep.
+    /// Stamps an empty destination; returns whether it already held this sweep.
     ///
     /// # Errors
     /// [`StampError`] if it holds anything else.

@@ -1,10 +1,10 @@
-//! A sweep: a base configuration, the levels over it, and the constraints that every variant must fulfil.
+//! A sweep: a base configuration, the axes over it, and the constraints that every variant must fulfil.
 
 use std::ops::Range;
 
 use toml_edit::{Document, Item, TableLike};
 
-use super::axis::{self, Level, complaint};
+use super::axis::{self, SweepAxis, config_error};
 use super::constraint::Constraint;
 use super::rows::rows;
 use super::sampling::{Method, sample};
@@ -24,7 +24,7 @@ pub struct Sweep {
     /// Whether every variant gets its own `friction.svg`.
     pub plots: bool,
     /// The dimensions; the last varies fastest.
-    pub levels: Vec<Level>,
+    pub axes: Vec<SweepAxis>,
     /// What every variant must fulfil.
     pub constraints: Vec<Constraint>,
 }
@@ -59,26 +59,26 @@ impl Sweep {
         for (path, item) in fields(table("set")) {
             let field = axis::field(&path).map_err(located(item))?;
             let value = item.as_value().ok_or_else(|| {
-                located(item)(complaint(&path, None, "is no single value", "write \"table.key\" = value"))
+                located(item)(config_error(&path, None, "is no single value", "write \"table.key\" = value"))
             })?;
             let value = axis::accepted(field, value).map_err(located(item))?;
             (field.set)(&mut base, &value).map_err(|r| located(item)(ConfigError::new(&path, "", r)))?;
         }
-        let mut levels = Vec::new();
+        let mut axes = Vec::new();
         if let Some((name, text)) = &source.rows {
-            levels.push(rows(text, name)?);
+            axes.push(rows(text, name)?);
         }
         for (path, item) in fields(table("axes")) {
-            levels.push(axis::axis(&path, item).map_err(located(item))?);
+            axes.push(axis::axis(&path, item).map_err(located(item))?);
         }
         if let Some(table) = table("sample") {
             let item = document.get("sample").unwrap_or(&Item::None);
-            levels.push(sampled(table).map_err(located(item))?);
+            axes.push(sampled(table).map_err(located(item))?);
         }
-        no_field_twice(&levels)?;
-        if levels.is_empty() {
+        no_field_twice(&axes)?;
+        if axes.is_empty() {
             let problem = "is empty: no [axes], [sample] or [rows]";
-            return Err(complaint("sweep", None, problem, "name at least one field with its values")
+            return Err(config_error("sweep", None, problem, "name at least one field with its values")
                 .at(place(source, None)));
         }
         let sweep = table("sweep");
@@ -88,14 +88,14 @@ impl Sweep {
             base,
             parts: parts(sweep).map_err(located(item))?,
             plots: sweep.and_then(|t| t.get("plots")).and_then(Item::as_bool).unwrap_or(false),
-            levels,
+            axes,
             constraints: constraints(source, &document)?,
         })
     }
 
     /// The number of variants; `None` if it is beyond counting.
     pub fn count(&self) -> Option<u64> {
-        self.levels.iter().try_fold(1u64, |n, level| n.checked_mul(level.rows.len() as u64))
+        self.axes.iter().try_fold(1u64, |n, level| n.checked_mul(level.rows.len() as u64))
     }
 }
 
@@ -129,7 +129,7 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Conf
         let Some((_, keys)) = TABLES.iter().find(|(table, _)| *table == name) else {
             let known = TABLES.map(|(table, _)| table).join(", ");
             return Err(
-                complaint(name, None, "is no table of a sweep", &format!("known are {known}")).at(place)
+                config_error(name, None, "is no table of a sweep", &format!("known are {known}")).at(place)
             );
         };
         let tables: Vec<&dyn TableLike> = match item.as_array_of_tables() {
@@ -137,20 +137,20 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Conf
             None => item.as_table_like().into_iter().collect(),
         };
         if tables.is_empty() {
-            return Err(complaint(name, None, "is no table", &format!("write [{name}]")).at(place));
+            return Err(config_error(name, None, "is no table", &format!("write [{name}]")).at(place));
         }
         for (key, item) in tables.iter().flat_map(|t| t.iter()).filter(|_| !keys.is_empty()) {
             if !keys.contains(&key) {
                 let place = self::place(source, item.span());
                 let known = format!("known are {}", keys.join(", "));
-                return Err(complaint(&format!("{name}.{key}"), None, "is no known key", &known).at(place));
+                return Err(config_error(&format!("{name}.{key}"), None, "is no known key", &known).at(place));
             }
         }
     }
     Ok(())
 }
 
-fn sampled(table: &dyn TableLike) -> Result<Level, ConfigError> {
+fn sampled(table: &dyn TableLike) -> Result<SweepAxis, ConfigError> {
     let whole = |key: &str| table.get(key).and_then(Item::as_integer);
     let method = match table.get("method").and_then(Item::as_str) {
         Some("latin-hypercube") | None => Method::LatinHypercube,
@@ -158,22 +158,27 @@ fn sampled(table: &dyn TableLike) -> Result<Level, ConfigError> {
         Some(other) => {
             let value = format!("{other:?}");
             let remedy = "give \"latin-hypercube\" or \"random\"";
-            return Err(complaint("sample.method", Some(&value), "is no method", remedy));
+            return Err(config_error("sample.method", Some(&value), "is no method", remedy));
         }
     };
     let count = whole("count").and_then(|n| usize::try_from(n).ok()).unwrap_or(0);
     if count > 10_000_000 {
-        return Err(complaint("sample.count", Some(&count.to_string()), "is over ten million", "lower it"));
+        return Err(config_error(
+            "sample.count",
+            Some(&count.to_string()),
+            "is over ten million",
+            "lower it",
+        ));
     }
     let seed = whole("seed").unwrap_or(0).unsigned_abs();
     let axes = fields(table.get("axes").and_then(Item::as_table_like));
     sample(method, count, seed, axes.iter().map(|(path, item)| (path.as_str(), *item)))
 }
 
-fn no_field_twice(levels: &[Level]) -> Result<(), ConfigError> {
-    let all: Vec<_> = levels.iter().flat_map(|l| l.fields.iter().map(|f| f.path())).collect();
+fn no_field_twice(axes: &[SweepAxis]) -> Result<(), ConfigError> {
+    let all: Vec<_> = axes.iter().flat_map(|l| l.fields.iter().map(|f| f.path())).collect();
     match all.iter().enumerate().find(|(i, path)| all[..*i].contains(path)) {
-        Some((_, path)) => Err(complaint(
+        Some((_, path)) => Err(config_error(
             path,
             None,
             "varies twice",
@@ -189,7 +194,7 @@ fn checked_name(name: &str) -> Result<String, ConfigError> {
     if !name.is_empty() && name.len() <= 60 && name.chars().all(good) {
         return Ok(name.to_owned());
     }
-    Err(complaint(
+    Err(config_error(
         "sweep.name",
         Some(&format!("{name:?}")),
         "is no name",
@@ -204,9 +209,9 @@ fn parts(sweep: Option<&dyn TableLike>) -> Result<Vec<&'static str>, ConfigError
         "give a list of {}",
         part_names().iter().map(|n| format!("{n:?}")).collect::<Vec<_>>().join(", ")
     );
-    let asked = asked.ok_or_else(|| complaint("sweep.parts", None, "is no list of names", &known))?;
+    let asked = asked.ok_or_else(|| config_error("sweep.parts", None, "is no list of names", &known))?;
     if let Some(unknown) = asked.iter().find(|name| !part_names().contains(name)) {
-        return Err(complaint("sweep.parts", Some(&format!("{unknown:?}")), "is no part", &known));
+        return Err(config_error("sweep.parts", Some(&format!("{unknown:?}")), "is no part", &known));
     }
     Ok(part_names().into_iter().filter(|name| asked.contains(name)).collect())
 }
@@ -214,7 +219,7 @@ fn parts(sweep: Option<&dyn TableLike>) -> Result<Vec<&'static str>, ConfigError
 fn constraints(source: &SweepSource, document: &Document<String>) -> Result<Vec<Constraint>, ConfigError> {
     let Some(tables) = document.get("constraints") else { return Ok(Vec::new()) };
     let tables = tables.as_array_of_tables().ok_or_else(|| {
-        complaint("constraints", None, "is no list of tables", "write [[constraints]] before each")
+        config_error("constraints", None, "is no list of tables", "write [[constraints]] before each")
             .at(place(source, tables.span()))
     })?;
     tables

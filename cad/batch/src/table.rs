@@ -9,19 +9,19 @@ use super::sweep::Sweep;
 use super::variant::Variant;
 use pinswitch_switch::config::Configuration;
 use pinswitch_switch::design::Design;
-use pinswitch_switch::documents::{derived, plain};
+use pinswitch_switch::documents::{derived, toml_to_json};
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ColumnType {
     /// Words.
     Text,
     /// A number with unit, as its name says.
     Real,
     /// A count.
-    Whole,
+    Integer,
     /// Yes or no.
-    Flag,
+    Boolean,
 }
 
 /// One column.
@@ -30,7 +30,7 @@ pub struct Column {
     /// Its name; fields are called as in a configuration.
     pub name: String,
     /// What it holds.
-    pub kind: Kind,
+    pub kind: ColumnType,
 }
 
 /// One cell; empty where a variant has no such value.
@@ -43,30 +43,30 @@ pub enum Cell {
     /// A number.
     Real(f64),
     /// A count.
-    Whole(i64),
+    Integer(i64),
     /// Yes or no.
-    Flag(bool),
+    Boolean(bool),
 }
 
 /// A row, with one cell per column.
 pub type Row = Vec<Cell>;
 
 /// Facts of a variant's friction, with their key in the manifest.
-const FRICTION: [(&str, Kind); 5] = [
-    ("law", Kind::Text),
-    ("trust", Kind::Text),
-    ("load_n", Kind::Real),
-    ("friction_n", Kind::Real),
-    ("threshold_n", Kind::Real),
+const FRICTION: [(&str, ColumnType); 5] = [
+    ("law", ColumnType::Text),
+    ("trust", ColumnType::Text),
+    ("load_n", ColumnType::Real),
+    ("friction_n", ColumnType::Real),
+    ("threshold_n", ColumnType::Real),
 ];
 /// Facts of every part.
-const PART: [(&str, Kind); 6] = [
-    ("volume_mm3", Kind::Real),
-    ("mass_g", Kind::Real),
-    ("mesh_volume_mm3", Kind::Real),
-    ("triangles", Kind::Whole),
-    ("bytes", Kind::Whole),
-    ("sha256", Kind::Text),
+const PART: [(&str, ColumnType); 6] = [
+    ("volume_mm3", ColumnType::Real),
+    ("mass_g", ColumnType::Real),
+    ("mesh_volume_mm3", ColumnType::Real),
+    ("triangles", ColumnType::Integer),
+    ("bytes", ColumnType::Integer),
+    ("sha256", ColumnType::Text),
 ];
 
 /// The columns of a table.
@@ -80,16 +80,16 @@ impl Schema {
     /// The columns of the table of `sweep`.
     pub fn new(sweep: &Sweep) -> Self {
         let mut columns = Vec::new();
-        let mut add = |name: String, kind: Kind| columns.push(Column { name, kind });
-        add("index".to_owned(), Kind::Whole);
+        let mut add = |name: String, kind: ColumnType| columns.push(Column { name, kind });
+        add("index".to_owned(), ColumnType::Integer);
         for name in ["id", "label", "status", "reason"] {
-            add(name.to_owned(), Kind::Text);
+            add(name.to_owned(), ColumnType::Text);
         }
         for parameter in Configuration::PARAMETERS.iter().filter(|p| p.path() != "switch.name") {
             add(parameter.path(), kind_of(&(parameter.get)(&Configuration::default())));
         }
         for name in dimensions() {
-            add(name, Kind::Real);
+            add(name, ColumnType::Real);
         }
         for (key, kind) in FRICTION {
             add(if key.contains("_n") { key.to_owned() } else { format!("friction_{key}") }, kind);
@@ -97,15 +97,15 @@ impl Schema {
         for name in
             ["band_low_n", "band_high_n", "printed_mass_g", "silicone_pour_ml", "largest_volume_error"]
         {
-            add(name.to_owned(), Kind::Real);
+            add(name.to_owned(), ColumnType::Real);
         }
-        add("warnings".to_owned(), Kind::Whole);
+        add("warnings".to_owned(), ColumnType::Integer);
         for part in &sweep.parts {
             for (key, kind) in PART {
                 add(format!("{part}.{key}"), kind);
             }
         }
-        add("manifest_sha256".to_owned(), Kind::Text);
+        add("manifest_sha256".to_owned(), ColumnType::Text);
         Self { columns, parts: sweep.parts.clone() }
     }
 
@@ -138,7 +138,7 @@ impl Schema {
         };
         let text = |t: &str| Cell::Text(t.to_owned());
         let mut row = vec![
-            Cell::Whole(i64::try_from(variant.index).unwrap_or(i64::MAX)),
+            Cell::Integer(i64::try_from(variant.index).unwrap_or(i64::MAX)),
             text(&variant.id),
             text(&variant.label),
             text(status),
@@ -146,7 +146,7 @@ impl Schema {
         ];
         for parameter in Configuration::PARAMETERS.iter().filter(|p| p.path() != "switch.name") {
             let value = (parameter.get)(&variant.configuration);
-            row.push(cell(&plain(&value), kind_of(&value)));
+            row.push(cell(&toml_to_json(&value), kind_of(&value)));
         }
         if let Some(bytes) = manifest {
             // Our own manifest: it is JSON.
@@ -160,15 +160,15 @@ impl Schema {
 
     fn add_facts(&self, row: &mut Row, facts: &Json) {
         let all = |list: &'static str| facts[list].as_array().map(Vec::as_slice).unwrap_or_default();
-        row.extend(all("derived").iter().map(|d| cell(&d["value"], Kind::Real)));
+        row.extend(all("derived").iter().map(|d| cell(&d["value"], ColumnType::Real)));
         let friction = &facts["friction"];
         row.extend(FRICTION.iter().map(|(key, kind)| cell(&friction[*key], *kind)));
-        row.extend((0..2).map(|i| cell(&friction["band_n"][i], Kind::Real)));
+        row.extend((0..2).map(|i| cell(&friction["band_n"][i], ColumnType::Real)));
         let parts = all("parts");
         row.push(Cell::Real(parts.iter().filter_map(|p| p["mass_g"].as_f64()).sum()));
-        row.push(cell(&facts["bill_of_materials"]["silicone"]["pour_ml"], Kind::Real));
-        row.push(cell(&facts["mesh"]["largest_volume_error"], Kind::Real));
-        row.push(Cell::Whole(i64::try_from(all("warnings").len()).unwrap_or(0)));
+        row.push(cell(&facts["bill_of_materials"]["silicone"]["pour_ml"], ColumnType::Real));
+        row.push(cell(&facts["mesh"]["largest_volume_error"], ColumnType::Real));
+        row.push(Cell::Integer(i64::try_from(all("warnings").len()).unwrap_or(0)));
         for name in &self.parts {
             let part = parts.iter().find(|p| p["name"] == *name).unwrap_or(&Json::Null);
             let file = all("files").iter().find(|f| f["file"] == part["file"] && !part.is_null());
@@ -192,22 +192,22 @@ fn dimensions() -> Vec<String> {
     design.iter().flat_map(derived).map(|d| format!("{}_{}", d.name, d.unit)).collect()
 }
 
-fn kind_of(value: &toml_edit::Value) -> Kind {
+fn kind_of(value: &toml_edit::Value) -> ColumnType {
     match value {
-        toml_edit::Value::Integer(_) => Kind::Whole,
-        toml_edit::Value::Float(_) => Kind::Real,
-        toml_edit::Value::Boolean(_) => Kind::Flag,
-        _ => Kind::Text,
+        toml_edit::Value::Integer(_) => ColumnType::Integer,
+        toml_edit::Value::Float(_) => ColumnType::Real,
+        toml_edit::Value::Boolean(_) => ColumnType::Boolean,
+        _ => ColumnType::Text,
     }
 }
 
-fn cell(value: &Json, kind: Kind) -> Cell {
+fn cell(value: &Json, kind: ColumnType) -> Cell {
     let found = match kind {
-        Kind::Real => value.as_f64().map(Cell::Real),
-        Kind::Whole => value.as_i64().map(Cell::Whole),
-        Kind::Flag => value.as_bool().map(Cell::Flag),
-        Kind::Text if value.is_null() => None,
-        Kind::Text => Some(Cell::Text(value.as_str().map_or_else(|| value.to_string(), str::to_owned))),
+        ColumnType::Real => value.as_f64().map(Cell::Real),
+        ColumnType::Integer => value.as_i64().map(Cell::Integer),
+        ColumnType::Boolean => value.as_bool().map(Cell::Boolean),
+        ColumnType::Text if value.is_null() => None,
+        ColumnType::Text => Some(Cell::Text(value.as_str().map_or_else(|| value.to_string(), str::to_owned))),
     };
     found.unwrap_or(Cell::Empty)
 }
@@ -219,8 +219,8 @@ impl std::fmt::Display for Cell {
             Self::Text(text) => f.write_str(text),
             // The shortest text that reads back to the same number.
             Self::Real(x) => write!(f, "{x}"),
-            Self::Whole(i) => write!(f, "{i}"),
-            Self::Flag(b) => write!(f, "{b}"),
+            Self::Integer(i) => write!(f, "{i}"),
+            Self::Boolean(b) => write!(f, "{b}"),
         }
     }
 }
@@ -231,7 +231,7 @@ impl Cell {
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Real(x) => Some(*x),
-            Self::Whole(i) => Some(*i as f64),
+            Self::Integer(i) => Some(*i as f64),
             _ => None,
         }
     }

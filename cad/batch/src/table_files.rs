@@ -17,7 +17,7 @@ use parquet::record::Field;
 use parquet::record::reader::RowIter;
 use parquet::schema::types::{Type, TypePtr};
 
-use super::table::{Cell, Column, Kind, Row, Schema};
+use super::table::{Cell, Column, ColumnType, Row, Schema};
 
 /// Rows that are held in memory and written as one group.
 const GROUP_ROWS: usize = 4096;
@@ -106,14 +106,14 @@ impl TableWriter {
                 ColumnWriter::Int64ColumnWriter(typed) => {
                     let values: Vec<_> = present
                         .iter()
-                        .filter_map(|c| if let Cell::Whole(x) = c { Some(*x) } else { None })
+                        .filter_map(|c| if let Cell::Integer(x) = c { Some(*x) } else { None })
                         .collect();
                     typed.write_batch(&values, Some(&levels), None)?;
                 }
                 ColumnWriter::BoolColumnWriter(typed) => {
                     let values: Vec<_> = present
                         .iter()
-                        .filter_map(|c| if let Cell::Flag(x) = c { Some(*x) } else { None })
+                        .filter_map(|c| if let Cell::Boolean(x) = c { Some(*x) } else { None })
                         .collect();
                     typed.write_batch(&values, Some(&levels), None)?;
                 }
@@ -134,10 +134,10 @@ impl TableWriter {
 fn parquet_schema(schema: &Schema) -> Result<TypePtr, ParquetError> {
     let field = |column: &Column| {
         let (physical, converted) = match column.kind {
-            Kind::Text => (Physical::BYTE_ARRAY, ConvertedType::UTF8),
-            Kind::Real => (Physical::DOUBLE, ConvertedType::NONE),
-            Kind::Whole => (Physical::INT64, ConvertedType::NONE),
-            Kind::Flag => (Physical::BOOLEAN, ConvertedType::NONE),
+            ColumnType::Text => (Physical::BYTE_ARRAY, ConvertedType::UTF8),
+            ColumnType::Real => (Physical::DOUBLE, ConvertedType::NONE),
+            ColumnType::Integer => (Physical::INT64, ConvertedType::NONE),
+            ColumnType::Boolean => (Physical::BOOLEAN, ConvertedType::NONE),
         };
         Type::primitive_type_builder(&column.name, physical)
             .with_converted_type(converted)
@@ -174,8 +174,8 @@ fn cell(field: &Field) -> Cell {
     match field {
         Field::Str(text) => Cell::Text(text.clone()),
         Field::Double(x) => Cell::Real(*x),
-        Field::Long(i) => Cell::Whole(*i),
-        Field::Bool(b) => Cell::Flag(*b),
+        Field::Long(i) => Cell::Integer(*i),
+        Field::Bool(b) => Cell::Boolean(*b),
         _ => Cell::Empty,
     }
 }

@@ -7,7 +7,7 @@ use object_store::memory::InMemory;
 use object_store::path::Path;
 
 use super::*;
-use pinswitch_solid::validity::Facts;
+use pinswitch_solid::validity::MeshFacts;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::parts::Part;
 use pinswitch_switch::set::SetError;
@@ -27,17 +27,17 @@ fn plan() -> (Variants, SweepSource) {
 
 struct Counted(AtomicU64);
 
-impl Watch for Counted {
-    fn done(&self, _: &Outcome) {
+impl Observer for Counted {
+    fn variant_done(&self, _: &Outcome) {
         self.0.fetch_add(1, Ordering::Relaxed);
     }
-    fn stopped(&self) -> bool {
+    fn stop_requested(&self) -> bool {
         false
     }
 }
 
-fn options(shard: Shard, fail_fast: bool, workshop: Workshop) -> Options {
-    Options { shard, threads: 2, fail_fast, workshop }
+fn options(shard: Shard, fail_fast: bool, mesh_maker: MeshMaker) -> Options {
+    Options { shard, threads: 2, fail_fast, mesh_maker }
 }
 
 fn in_memory(store: &Arc<InMemory>) -> Destination {
@@ -45,14 +45,14 @@ fn in_memory(store: &Arc<InMemory>) -> Destination {
 }
 
 /// Shells 13 mm wide cannot be made: one way or the other.
-fn fails(part: &Part, design: &Design) -> Result<(Vec<u8>, Facts), SetError> {
+fn fails(part: &Part, design: &Design) -> Result<(Vec<u8>, MeshFacts), SetError> {
     if part.name == "shell" && design.configuration().shell.width_mm == 13.0 {
         return Err(SetError::Encoding("no paper left".to_owned()));
     }
     mesh_file(part, design)
 }
 
-fn panics(part: &Part, design: &Design) -> Result<(Vec<u8>, Facts), SetError> {
+fn panics(part: &Part, design: &Design) -> Result<(Vec<u8>, MeshFacts), SetError> {
     assert!(part.name != "shell" || design.configuration().shell.width_mm != 13.0, "a fault on purpose");
     mesh_file(part, design)
 }
@@ -81,14 +81,14 @@ fn shards_in_memory_merge_to_one_run() {
 #[test]
 fn a_variant_that_fails_costs_no_other() {
     let (variants, source) = plan();
-    for (workshop, reason) in [
-        (fails as Workshop, "cannot put a file together: no paper left"),
-        (panics as Workshop, "a fault of the program; please report the configuration"),
+    for (mesh_maker, reason) in [
+        (fails as MeshMaker, "cannot put a file together: no paper left"),
+        (panics as MeshMaker, "a fault of the program; please report the configuration"),
     ] {
         let destination = in_memory(&Arc::new(InMemory::new()));
         let watch = Counted(AtomicU64::new(0));
         let tally =
-            run(&variants, &source, &destination, options(Shard::WHOLE, false, workshop), &watch).unwrap();
+            run(&variants, &source, &destination, options(Shard::WHOLE, false, mesh_maker), &watch).unwrap();
         assert_eq!((tally.made, tally.failed, tally.refused), (3, 3, 0));
         let table = String::from_utf8(destination.get("variants.csv").unwrap().unwrap()).unwrap();
         assert_eq!(table.matches(&format!("failed,{reason}")).count(), 3, "{table}");
@@ -98,7 +98,7 @@ fn a_variant_that_fails_costs_no_other() {
         assert_eq!((tally.made, tally.failed), (6, 0));
 
         let destination = in_memory(&Arc::new(InMemory::new()));
-        let ended = run(&variants, &source, &destination, options(Shard::WHOLE, true, workshop), &watch);
+        let ended = run(&variants, &source, &destination, options(Shard::WHOLE, true, mesh_maker), &watch);
         assert!(matches!(ended, Err(RunError::Failed { reason: r, .. }) if r == reason));
         assert!(destination.get("variants.csv").unwrap().is_none());
     }

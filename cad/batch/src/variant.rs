@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use toml_edit::Value;
 
-use super::axis::Field;
+use super::axis::ParameterRef;
 use super::source::SweepSource;
 use super::sweep::Sweep;
 use pinswitch_switch::config::{Configuration, to_toml};
@@ -16,10 +16,10 @@ use pinswitch_switch::config::{Configuration, to_toml};
 const LETTERS: &[u8; 30] = b"0123456789ABCDEFGHJKNPQRSTVXYZ";
 /// Letters of a code: as many as fit on a published shell.
 const CODE: usize = 5;
-/// Letters of a code in a sweep of more than [`ORDINARY`] variants, which no label tells apart any more.
+/// Letters of a code in a sweep of more than [`MAX_SHORT_CODES`] variants, which no label tells apart any more.
 const LONG_CODE: usize = 12;
-/// Variants up to which half of all ordinary codes are free.
-const ORDINARY: u64 = 12_000_000;
+/// Variants up to which half of all short codes are free.
+const MAX_SHORT_CODES: u64 = 12_000_000;
 /// Longest id: it names the variant's folder and its plot.
 const LONGEST_ID: usize = 40;
 
@@ -32,7 +32,7 @@ pub struct Variant {
     pub id: String,
     /// What is engraved on its parts: the code, unless the sweep sets `label.text`.
     pub label: String,
-    /// Its configuration, not yet known to be buildable.
+    /// Its configuration, not yet validated.
     pub configuration: Configuration,
     /// The variant that this one repeats.
     pub repeats: Option<u64>,
@@ -49,7 +49,7 @@ pub struct Variants {
     repeats: HashMap<u64, u64>,
     /// Letters of every code.
     letters: usize,
-    /// Codes of variants whose own one is already another's.
+    /// Codes of variants whose own code was taken.
     moved: HashMap<u64, u64>,
 }
 
@@ -59,7 +59,7 @@ impl Variants {
         let count = sweep.count().unwrap_or(u64::MAX);
         let salt =
             Sha256::digest([source.base.as_bytes(), to_toml(&sweep.base).as_bytes()].concat()).to_vec();
-        let letters = if count <= ORDINARY { CODE } else { LONG_CODE };
+        let letters = if count <= MAX_SHORT_CODES { CODE } else { LONG_CODE };
         let mut all = Self { sweep, count, salt, repeats: HashMap::new(), letters, moved: HashMap::new() };
         let mut hashes: Vec<(u64, u64)> =
             (0..count).into_par_iter().map(|index| (all.hash(index), index)).collect();
@@ -86,7 +86,7 @@ impl Variants {
         all
     }
 
-    /// How many there are.
+    /// Number of variants.
     pub fn count(&self) -> u64 {
         self.count
     }
@@ -97,8 +97,8 @@ impl Variants {
     }
 
     /// Fields that vary.
-    pub fn fields(&self) -> impl Iterator<Item = Field> + '_ {
-        self.sweep.levels.iter().flat_map(|l| l.fields.iter().copied())
+    pub fn fields(&self) -> impl Iterator<Item = ParameterRef> + '_ {
+        self.sweep.axes.iter().flat_map(|l| l.fields.iter().copied())
     }
 
     /// Variant `index`, which is below [`Self::count`].
@@ -122,10 +122,10 @@ impl Variants {
     }
 
     /// What varies, with the values of variant `index`.
-    pub fn settings(&self, index: u64) -> Vec<(Field, &Value)> {
+    pub fn settings(&self, index: u64) -> Vec<(ParameterRef, &Value)> {
         let mut rest = index;
         let mut all = Vec::new();
-        for level in self.sweep.levels.iter().rev() {
+        for level in self.sweep.axes.iter().rev() {
             let rows = level.rows.len() as u64;
             let row = &level.rows[usize::try_from(rest % rows).unwrap_or_default()];
             rest /= rows;
@@ -135,7 +135,7 @@ impl Variants {
         all
     }
 
-    /// The number that the code of a hash shows.
+    /// The number that the code of a hash stands for.
     fn number(&self, hash: u64) -> u64 {
         hash % (0..self.letters).fold(1, |all, _| all * LETTERS.len() as u64)
     }

@@ -10,14 +10,14 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Failure, print, print_json};
 use pinswitch_batch::{
-    Destination, Estimate, Options, Outcome, RunError, Shard, Sweep, SweepSource, Tally, Variants, Watch,
+    Destination, Estimate, Observer, Options, Outcome, RunError, Shard, Sweep, SweepSource, Tally, Variants,
     estimate, mesh_file, partial_folder, run as run_batch,
 };
 
 /// More variants than this want --yes.
-const MOST_WITHOUT_YES: u64 = 10_000;
-/// Without a terminal, progress is told this often.
-const TELL_EVERY: Duration = Duration::from_secs(10);
+const MAX_WITHOUT_YES: u64 = 10_000;
+/// Interval of progress lines where there is no terminal.
+const PROGRESS_INTERVAL: Duration = Duration::from_secs(10);
 
 /// Make every variant of a sweep: parts, curves, one table of all, plots, and a page to look through them.
 ///
@@ -62,9 +62,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let sweep = Sweep::new(&source).map_err(Failure::bad_input)?;
     let count = sweep.count().unwrap_or(u64::MAX);
     let own = arguments.shard.range(count);
-    if own.end - own.start > MOST_WITHOUT_YES && !arguments.yes {
+    if own.end - own.start > MAX_WITHOUT_YES && !arguments.yes {
         return Err(Failure::bad_input(format!(
-            "{}: {} variants are more than {MOST_WITHOUT_YES}; give --yes if you mean it, or --shard",
+            "{}: {} variants are more than {MAX_WITHOUT_YES}; give --yes if you mean it, or --shard",
             arguments.sweep.display(),
             own.end - own.start,
         )));
@@ -86,7 +86,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         shard: arguments.shard,
         threads: arguments.threads,
         fail_fast: arguments.fail_fast,
-        workshop: mesh_file,
+        mesh_maker: mesh_file,
     };
     let outcome = run_batch(&variants, &source, &destination, options, &progress);
     progress.bar.finish_and_clear();
@@ -121,7 +121,7 @@ fn report(arguments: &Arguments, out: &str, tally: &Tally, progress: &Progress) 
     Ok(())
 }
 
-/// The bar on a terminal, lines in a pipe, and Ctrl-C.
+/// Progress as a bar on a terminal or as lines in a pipe, and Ctrl-C.
 struct Progress {
     bar: ProgressBar,
     start: Instant,
@@ -155,19 +155,19 @@ impl Progress {
             start: Instant::now(),
             before: AtomicU64::new(0),
             stop,
-            due_s: AtomicU64::new(TELL_EVERY.as_secs()),
+            due_s: AtomicU64::new(PROGRESS_INTERVAL.as_secs()),
         })
     }
 }
 
-impl Watch for Progress {
-    fn done(&self, outcome: &Outcome) {
+impl Observer for Progress {
+    fn variant_done(&self, outcome: &Outcome) {
         if matches!(outcome, Outcome::Made { before: true, .. }) {
             self.before.fetch_add(1, Ordering::Relaxed);
         }
         self.bar.inc(1);
         let (elapsed, due) = (self.start.elapsed(), self.due_s.load(Ordering::Relaxed));
-        let next = elapsed.as_secs() + TELL_EVERY.as_secs();
+        let next = elapsed.as_secs() + PROGRESS_INTERVAL.as_secs();
         let exchange = |due| self.due_s.compare_exchange(due, next, Ordering::Relaxed, Ordering::Relaxed);
         if self.bar.is_hidden() && elapsed.as_secs() >= due && exchange(due).is_ok() {
             let (done, of) = (self.bar.position(), self.bar.length().unwrap_or(0));
@@ -177,7 +177,7 @@ impl Watch for Progress {
         }
     }
 
-    fn stopped(&self) -> bool {
+    fn stop_requested(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 }

@@ -121,7 +121,7 @@ fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<
 /// Series to check that the terminal lists.
 const SHOWN_SERIES: usize = 6;
 
-/// What the terminal shows.
+/// The summary for the terminal.
 fn summary(report: &Report) -> String {
     let verdict = match report.verdict {
         Verdict::None => "none: the paper's model explains the data down to its noise",

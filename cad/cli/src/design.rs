@@ -13,7 +13,7 @@ use crate::write::write_set;
 use pinswitch_plot::pareto_svg;
 use pinswitch_switch::config::to_toml;
 use pinswitch_switch::design::Design;
-use pinswitch_switch::inverse::{Found, Proposal, find, search_of};
+use pinswitch_switch::inverse::{Proposal, SearchResult, find, search_for};
 use pinswitch_switch::set::OutputFile;
 
 /// Find pin layouts that switch where you want them to.
@@ -75,7 +75,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             pins.0, pins.1
         )));
     }
-    let search = search_of(&design, pins);
+    let search = search_for(&design, pins);
     if search.grooves.len() > MOST_GROOVES {
         return Err(Failure::bad_input(format!(
             "segment.grooves: the tendon touches {} grooves, and 2^{0} patterns are too many; lower segment.grooves until \
@@ -133,7 +133,7 @@ fn design(arguments: &Arguments) -> Result<Design, Failure> {
     Design::new(configuration).map_err(|e| Failure::bad_input(format!("--load-range: {e}")))
 }
 
-fn files(found: &Found, report: &Report<'_>) -> Result<Vec<OutputFile>, Failure> {
+fn files(found: &SearchResult, report: &Report<'_>) -> Result<Vec<OutputFile>, Failure> {
     let mut files: Vec<OutputFile> = found
         .proposals
         .iter()

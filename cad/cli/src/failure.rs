@@ -30,7 +30,7 @@ impl Failure {
         }
     }
 
-    /// Prints the message on standard error and gives the exit code.
+    /// Prints the message on standard error and returns the exit code.
     pub(super) fn report(&self) -> ExitCode {
         let (message, code) = match self {
             Self::Failed(message) => (message, 1),

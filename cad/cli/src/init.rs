@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::source::text_of;
+use super::source::read_text;
 use super::{Failure, print};
 use crate::write::write_file;
 use pinswitch_switch::templates::SWEEP;
@@ -29,7 +29,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let text = match arguments.name.as_str() {
         "sweep" => SWEEP.to_owned(),
-        name => text_of(name)?.0,
+        name => read_text(name)?.0,
     };
     let Some(path) = &arguments.out else { return print(text.as_bytes()) };
     if path.exists() && !arguments.force {

@@ -37,20 +37,20 @@ impl LawChoice {
             Some(Name::Layout) => Law::Layout,
             Some(Name::Physics) => Law::Physics,
         };
-        Prediction::by(law, design).map_err(|e| Failure::bad_input(format!("--law {}: {e}", word(law))))
+        Prediction::by(law, design).map_err(|e| Failure::bad_input(format!("--law {}: {e}", law_name(law))))
     }
 }
 
-/// The chosen law beside the others, at the heaviest load: `paper 10.01 N; others: layout 10.29, physics 8.92`.
+/// The chosen law and the others at the heaviest load: `paper 10.01 N; others: layout 10.29, physics 8.92`.
 pub(super) fn side_by_side(curve: &FrictionCurve, others: &[FrictionCurve]) -> String {
     let last = |c: &FrictionCurve| c.friction_n.last().copied().unwrap_or_default();
     let load = curve.load_n.last().copied().unwrap_or_default();
-    let beside: Vec<_> = others.iter().map(|c| format!("{} {:.2} N", word(c.law), last(c))).collect();
+    let beside: Vec<_> = others.iter().map(|c| format!("{} {:.2} N", law_name(c.law), last(c))).collect();
     let tail = if beside.is_empty() { String::new() } else { format!(" ({})", beside.join(", ")) };
-    format!("law {}: {:.2} N of friction at {load:.2} N of load{tail}", word(curve.law), last(curve))
+    format!("law {}: {:.2} N of friction at {load:.2} N of load{tail}", law_name(curve.law), last(curve))
 }
 
-fn word(law: Law) -> &'static str {
+fn law_name(law: Law) -> &'static str {
     match law {
         Law::Paper => "paper",
         Law::Layout => "layout",

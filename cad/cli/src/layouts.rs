@@ -4,7 +4,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{Failure, print, print_json};
-use pinswitch_switch::templates::{Kind, TEMPLATES};
+use pinswitch_switch::templates::{TEMPLATES, TemplateKind};
 
 use pinswitch_model::published::{self, PublishedLayout};
 
@@ -79,16 +79,16 @@ fn listing() -> Listing {
         device_max_n: l.device_max_n,
         pins_max_n: l.pins_max_n,
     };
-    let of = |kind: Kind| {
+    let of = |kind: TemplateKind| {
         TEMPLATES
             .iter()
             .filter(|t| t.kind == kind)
-            .map(|t| Entry { name: t.name, about: t.about() })
+            .map(|t| Entry { name: t.name, about: t.description() })
             .collect()
     };
     Listing {
         layouts: published::LAYOUTS.iter().map(layout).collect(),
-        conditions: of(Kind::Published),
-        printers: of(Kind::Printer),
+        conditions: of(TemplateKind::Published),
+        printers: of(TemplateKind::Printer),
     }
 }

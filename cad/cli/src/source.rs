@@ -41,12 +41,12 @@ impl Source {
     /// # Errors
     /// [`Failure::BadInput`] names file, line, field, value, bound and remedy.
     pub(super) fn design(&self) -> Result<Design, Failure> {
-        let (text, file) = text_of(&self.config)?;
+        let (text, file) = read_text(&self.config)?;
         let (mut configuration, places) = read(&text, &file).map_err(Failure::bad_input)?;
         if let Some(preset) = &self.preset {
-            configuration = under(preset, &configuration)?;
+            configuration = over_preset(preset, &configuration)?;
         }
-        if !places.gives("switch.name") {
+        if !places.sets("switch.name") {
             configuration.switch.name = stem(&file);
         }
         for assignment in &self.assignments {
@@ -60,7 +60,7 @@ impl Source {
     }
 }
 
-/// A complaint with the place of its field in the file, or at least the file.
+/// The error with the place of its field in the file, or at least the file.
 fn placed(error: pinswitch_switch::config::ConfigError, places: &Places, file: &str) -> String {
     match places.of(&error.field) {
         Some(place) => error.at(place.clone()).to_string(),
@@ -69,22 +69,22 @@ fn placed(error: pinswitch_switch::config::ConfigError, places: &Places, file: &
 }
 
 /// `configuration` over `preset`: what differs from the defaults wins.
-fn under(preset: &str, configuration: &Configuration) -> Result<Configuration, Failure> {
-    let (text, file) = text_of(preset)?;
+fn over_preset(preset: &str, configuration: &Configuration) -> Result<Configuration, Failure> {
+    let (text, file) = read_text(preset)?;
     let (mut base, _) = read(&text, &file).map_err(Failure::bad_input)?;
     let (over, own) = (to_toml(configuration), Configuration::default());
     let (_, given) = read(&over, &file).map_err(Failure::bad_input)?;
     for parameter in Configuration::PARAMETERS {
         let value = (parameter.get)(configuration);
-        if given.gives(&parameter.path()) || value.to_string() != (parameter.get)(&own).to_string() {
+        if given.sets(&parameter.path()) || value.to_string() != (parameter.get)(&own).to_string() {
             (parameter.set)(&mut base, &value).map_err(Failure::bad_input)?;
         }
     }
     Ok(base)
 }
 
-/// The text of a file or template, and the name to use for it in complaints.
-pub(super) fn text_of(name: &str) -> Result<(String, String), Failure> {
+/// The text of a file or template, and the name to use for it in errors.
+pub(super) fn read_text(name: &str) -> Result<(String, String), Failure> {
     let path = Path::new(name);
     if path.exists() {
         let text = std::fs::read_to_string(path)

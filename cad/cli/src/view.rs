@@ -16,10 +16,10 @@ use pinswitch_switch::formats::named;
 use pinswitch_switch::formats::page::{PageData, page_html};
 use pinswitch_switch::set::Set;
 
-/// How often the configuration is looked at.
-const LOOK: Duration = Duration::from_millis(40);
-/// How long a question for the next state waits before it is asked again.
-const WAIT: Duration = Duration::from_secs(20);
+/// How often the file is polled.
+const POLL_INTERVAL: Duration = Duration::from_millis(40);
+/// How long a request for the next state is held before the browser repeats it.
+const LONG_POLL_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Show the page of a configuration on this machine, and rebuild it whenever the file changes.
 ///
@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     port: u16,
 }
 
-/// The last good page and what is wrong with the configuration since.
+/// The last valid page and the error since then, if any.
 #[derive(Default)]
 struct State {
     version: u64,
@@ -60,12 +60,12 @@ impl Shared {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The JSON that answers a question for what comes after `version`; waits for it, but not for ever.
+    /// The JSON of the state after `version`; waits for it, with a timeout.
     fn after(&self, version: u64) -> String {
         let state = self.lock();
         let (state, _) = self
             .changed
-            .wait_timeout_while(state, WAIT, |s| s.version <= version)
+            .wait_timeout_while(state, LONG_POLL_TIMEOUT, |s| s.version <= version)
             .unwrap_or_else(PoisonError::into_inner);
         let data = if state.version > version && state.trouble.is_none() { &state.data } else { "null" };
         let trouble = serde_json::to_string(&state.trouble).unwrap_or_else(|_| "null".to_owned());
@@ -88,11 +88,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(file) = arguments.source.file() {
         log::info!("following {}; end with Ctrl-C", file.display());
         let (shared, arguments) = (Arc::clone(&shared), arguments.clone());
-        std::thread::spawn(move || follow(&shared, &arguments, &file));
+        std::thread::spawn(move || rebuild_on_change(&shared, &arguments, &file));
     }
     for request in server.incoming_requests() {
         let shared = Arc::clone(&shared);
-        std::thread::spawn(move || answer(request, &shared));
+        std::thread::spawn(move || respond(request, &shared));
     }
     Ok(())
 }
@@ -111,10 +111,10 @@ fn build(arguments: &Arguments, version: u64) -> Result<(String, String), Failur
 }
 
 /// Rebuilds whenever the file's bytes change.
-fn follow(shared: &Shared, arguments: &Arguments, file: &Path) {
+fn rebuild_on_change(shared: &Shared, arguments: &Arguments, file: &Path) {
     let mut known = std::fs::read(file).ok();
     loop {
-        std::thread::sleep(LOOK);
+        std::thread::sleep(POLL_INTERVAL);
         let now = std::fs::read(file).ok();
         // A file that is missing for a moment is one that an editor is saving.
         if now.is_none() || now == known {
@@ -140,7 +140,7 @@ fn follow(shared: &Shared, arguments: &Arguments, file: &Path) {
     }
 }
 
-fn answer(request: Request, shared: &Shared) {
+fn respond(request: Request, shared: &Shared) {
     let url = request.url().to_owned();
     let (path, query) = url.split_once('?').unwrap_or((&url, ""));
     let response = match path {
@@ -151,7 +151,7 @@ fn answer(request: Request, shared: &Shared) {
         }
         _ => Response::from_string("no such page").with_status_code(404),
     };
-    // A reader that has gone away is no failure.
+    // A closed connection is no failure.
     let _ = request.respond(response);
 }
 

@@ -87,7 +87,7 @@ fn draw(
     let band: Vec<_> = upper.chain(lower.rev()).collect();
     chart
         .draw_series(std::iter::once(Polygon::new(band, CURVE.mix(0.18))))?
-        .label(format!("band ({})", trust_word(curve.trust)))
+        .label(format!("band ({})", trust_label(curve.trust)))
         .legend(|(x, y)| {
             Rectangle::new(
                 [(x, y - fine::<i32>(5)), (x + fine::<i32>(22), y + fine::<i32>(5))],
@@ -121,7 +121,7 @@ fn draw(
         let line = other.load_n.iter().copied().zip(other.friction_n.iter().copied());
         chart
             .draw_series(LineSeries::new(line, colour.stroke_width(fine(1))))?
-            .label(format!("{}, for comparison", law_words(other.law)))
+            .label(format!("{}, for comparison", law_label(other.law)))
             .legend(move |(x, y)| {
                 PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(1)))
             });
@@ -130,7 +130,7 @@ fn draw(
     let line: Vec<_> = curve.load_n.iter().copied().zip(curve.friction_n.iter().copied()).collect();
     chart
         .draw_series(LineSeries::new(line, CURVE.stroke_width(fine(3))))?
-        .label(law_words(curve.law))
+        .label(law_label(curve.law))
         .legend(|(x, y)| PathElement::new([(x, y), (x + fine::<i32>(22), y)], CURVE.stroke_width(fine(3))));
 
     let maxima: Vec<_> = points.iter().filter_map(|p| Some((p.load_n, p.friction_n?))).collect();
@@ -170,7 +170,7 @@ fn draw(
     Ok(())
 }
 
-fn trust_word(trust: Trust) -> &'static str {
+fn trust_label(trust: Trust) -> &'static str {
     match trust {
         Trust::Published => "published layout",
         Trust::Interpolated => "interpolated",
@@ -178,7 +178,7 @@ fn trust_word(trust: Trust) -> &'static str {
     }
 }
 
-fn law_words(law: Law) -> &'static str {
+fn law_label(law: Law) -> &'static str {
     match law {
         Law::Paper => "the paper's model",
         Law::Layout => "layout law",

@@ -9,7 +9,7 @@ use crate::parts::{Part, Role, printed, reference_bodies};
 use pinswitch_solid::files::stl_bytes;
 use pinswitch_solid::mesh::Mesh;
 use pinswitch_solid::solid::CapError;
-use pinswitch_solid::validity::{Expectation, Facts, Fault, examine};
+use pinswitch_solid::validity::{Expectation, Fault, MeshFacts, examine};
 
 /// Why a design cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -60,7 +60,7 @@ pub struct BuiltPart {
     /// The mesh as it is written: on the print bed.
     pub print_mesh: Mesh,
     /// What the written mesh measures.
-    pub facts: Facts,
+    pub facts: MeshFacts,
 }
 
 impl BuiltPart {

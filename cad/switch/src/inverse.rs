@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::config::{Configuration, SubstrateKind};
 use crate::design::Design;
 use crate::parallel::map_each;
-use crate::prediction::curve_of;
+use crate::prediction::predicted_curve;
 
 /// Candidates of the sweep that are judged by the law that predicts them, besides all even and centred ones.
 const JUDGED: usize = 150;
@@ -48,10 +48,10 @@ pub struct Proposal {
     pub configuration: Configuration,
 }
 
-/// What a search gave.
+/// The result of a search.
 #[derive(Clone, Debug)]
-pub struct Found {
-    /// Every pattern that the tendon can tell apart.
+pub struct SearchResult {
+    /// Every pattern that differs in where it touches the tendon.
     pub candidates: Vec<Candidate>,
     /// Patterns of all grooves that these stand for.
     pub patterns: u64,
@@ -60,7 +60,7 @@ pub struct Found {
 }
 
 /// The search that `design`'s grooves, wrap and loads allow, for this many pins.
-pub fn search_of(design: &Design, pins: (usize, usize)) -> Search {
+pub fn search_for(design: &Design, pins: (usize, usize)) -> Search {
     let half = design.contact().wrap_rad() / 2.0;
     let numbered = design.groove_angles_rad().into_iter().enumerate().map(|(i, angle)| (i + 1, angle));
     let f = &design.configuration().friction;
@@ -75,7 +75,7 @@ pub fn search_of(design: &Design, pins: (usize, usize)) -> Search {
 }
 
 /// Searches all patterns for the `best` designs closest to `wanted`; `tune` also varies the pitch of each of them.
-pub fn find(design: &Design, search: &Search, wanted: Wanted, best: usize, tune: bool) -> Found {
+pub fn find(design: &Design, search: &Search, wanted: Wanted, best: usize, tune: bool) -> SearchResult {
     let candidates = search.sweep();
     let mut ranked: Vec<&Candidate> = candidates.iter().collect();
     let miss = |c: &Candidate| wanted.miss(c.threshold_n, c.friction_n);
@@ -101,7 +101,7 @@ pub fn find(design: &Design, search: &Search, wanted: Wanted, best: usize, tune:
         rank(&mut proposals);
     }
     let untouched = configuration.segment.grooves - search.grooves.len();
-    Found { patterns: (candidates.len() as u64) << untouched.min(32), candidates, proposals }
+    SearchResult { patterns: (candidates.len() as u64) << untouched.min(32), candidates, proposals }
 }
 
 /// Best first: those whose bands hold what was wanted, by what to expect of them; of equals, the one with fewer pins.
@@ -123,7 +123,7 @@ fn is_even_and_centred(search: &Search, candidate: &Candidate) -> bool {
 fn propose(mut configuration: Configuration, wanted: Wanted, ratio: f64) -> Option<Proposal> {
     configuration.layout.substrate = SubstrateKind::Silicone;
     let design = Design::new(configuration).ok()?;
-    let curve: FrictionCurve = curve_of(&design);
+    let curve: FrictionCurve = predicted_curve(&design);
     let transition = Transition::of(&curve);
     let last = |column: &[f64]| column.last().copied();
     let friction_n = last(&curve.friction_n)?;

@@ -29,7 +29,7 @@ pub struct Prediction {
 impl Prediction {
     /// The prediction of `design` by the best supported law.
     pub fn of(design: &Design) -> Self {
-        Self::with_curve(design, curve_of(design))
+        Self::with_curve(design, predicted_curve(design))
     }
 
     /// The prediction of `design` by `law`.
@@ -48,7 +48,7 @@ impl Prediction {
 }
 
 /// The curve of `design` by the best supported law, without the others.
-pub fn curve_of(design: &Design) -> FrictionCurve {
+pub fn predicted_curve(design: &Design) -> FrictionCurve {
     predict(design.contact(), &loads_n(design))
 }
 

@@ -4,7 +4,7 @@ use crate::config::reference_toml;
 
 /// What a template is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TemplateKind {
     /// One of the paper's seven conditions.
     Published,
     /// Settings of a printer, to lie under a layout.
@@ -17,7 +17,7 @@ pub struct Template {
     /// Its name, without ending.
     pub name: &'static str,
     /// What it is for.
-    pub kind: Kind,
+    pub kind: TemplateKind,
     /// Its text; the first line says what it is.
     pub text: &'static str,
 }
@@ -26,7 +26,7 @@ macro_rules! template {
     ($kind:ident, $name:literal) => {
         Template {
             name: $name,
-            kind: Kind::$kind,
+            kind: TemplateKind::$kind,
             text: include_str!(concat!("../../../templates/", $name, ".toml")),
         }
     };
@@ -47,8 +47,8 @@ pub const TEMPLATES: [Template; 10] = [
 ];
 
 impl Template {
-    /// What the template says of itself.
-    pub fn about(&self) -> &'static str {
+    /// The template's one-line description.
+    pub fn description(&self) -> &'static str {
         self.text.lines().next().unwrap_or_default().trim_start_matches("# ")
     }
 }
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn the_seven_conditions_are_published_ones() {
-        let conditions: Vec<_> = TEMPLATES.iter().filter(|t| t.kind == Kind::Published).collect();
+        let conditions: Vec<_> = TEMPLATES.iter().filter(|t| t.kind == TemplateKind::Published).collect();
         assert_eq!(conditions.len(), 7);
         for template in conditions {
             let (configuration, _) = read(template.text, template.name).unwrap();

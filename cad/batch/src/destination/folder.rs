@@ -1,4 +1,4 @@
-//! A folder of this machine, or of a network: temporary files beside the batch, renames, hard links, and a claim.
+//! A folder of this machine, or of a network: temporary files beside the batch, renames, hard links, and a lock.
 
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -15,21 +15,21 @@ pub struct Folder {
     counter: AtomicU64,
 }
 
-/// A destination held by this process; the folder for unfinished files goes when it is let go.
+/// A lock on a destination; dropping it removes the folder for unfinished files.
 #[derive(Debug)]
-pub struct Claim(Option<(File, PathBuf)>);
+pub struct DestinationLock(Option<(File, PathBuf)>);
 
-impl Claim {
-    /// Of a place that needs none.
-    pub(super) fn needless() -> Self {
+impl DestinationLock {
+    /// For a destination that needs none.
+    pub(super) fn not_needed() -> Self {
         Self(None)
     }
 }
 
-impl Drop for Claim {
+impl Drop for DestinationLock {
     fn drop(&mut self) {
         if let Some((_, partial)) = &self.0 {
-            // What cannot be removed is swept away by the next run.
+            // What cannot be removed is removed by the next run.
             let _ = std::fs::remove_dir_all(partial);
         }
     }
@@ -66,11 +66,11 @@ impl Folder {
 
     pub(super) fn failed(&self, name: &str, error: &std::io::Error) -> DestinationError {
         use ErrorKind::{PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
-        let hopeless =
+        let is_fatal =
             matches!(error.kind(), PermissionDenied | QuotaExceeded | ReadOnlyFilesystem | StorageFull);
         let place = if name.is_empty() { self.root.clone() } else { self.root.join(name) };
         let problem = format!("cannot use it: {error}");
-        DestinationError { place: place.display().to_string(), problem, hopeless }
+        DestinationError { place: place.display().to_string(), problem, is_fatal }
     }
 
     pub(super) fn get(&self, name: &str) -> std::io::Result<Option<Vec<u8>>> {
@@ -86,7 +86,7 @@ impl Folder {
         let written = File::create(&scratch).and_then(|mut file| file.write_all(bytes));
         let moved = written.and_then(|()| place(&scratch, &self.root.join(name)));
         if moved.is_err() {
-            // The room on a full disk is given back at once.
+            // On a full disk the space is freed at once.
             let _ = std::fs::remove_file(&scratch);
         }
         moved
@@ -103,7 +103,7 @@ impl Folder {
         };
         match linked {
             Err(e) if matches!(e.kind(), ErrorKind::StorageFull | ErrorKind::NotADirectory) => Err(e),
-            // An older file stands there, the file has all the links it may have, or the file system knows none.
+            // An older file is there, the number of links is at its limit, or the file system has no hard links.
             Err(_) => {
                 let scratch = self.scratch();
                 if std::fs::hard_link(&content, &scratch).is_err() {
@@ -145,8 +145,8 @@ impl Folder {
         Ok(names.all(|name| name.to_string_lossy().starts_with(PARTIAL)))
     }
 
-    /// `None` if another process holds the same shard. What a killed run left half written is swept away.
-    pub(super) fn claim(&self) -> std::io::Result<Option<Claim>> {
+    /// `None` if another process holds the same shard. Unfinished files of a killed run are removed.
+    pub(super) fn lock(&self) -> std::io::Result<Option<DestinationLock>> {
         std::fs::create_dir_all(&self.partial)?;
         let lock = File::create(self.partial.join("lock"))?;
         if lock.try_lock().is_err() {
@@ -157,7 +157,7 @@ impl Folder {
                 std::fs::remove_file(entry.path())?;
             }
         }
-        Ok(Some(Claim(Some((lock, self.partial.clone())))))
+        Ok(Some(DestinationLock(Some((lock, self.partial.clone())))))
     }
 
     /// A name for a file that is not yet whole.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use object_store::ObjectStore;
 use object_store::path::Path as StorePath;
 
-pub use folder::{Claim, Folder};
+pub use folder::{DestinationLock, Folder};
 pub use store::Store;
 
 /// Prefix of folders for files that are not yet whole.
@@ -22,8 +22,8 @@ pub struct DestinationError {
     pub place: String,
     /// What went wrong.
     pub problem: String,
-    /// Whether it would go wrong for every other file too: a full disk, a folder that must not be written.
-    pub hopeless: bool,
+    /// Whether every other file would fail too: a full disk, a read-only folder.
+    pub is_fatal: bool,
 }
 
 /// A destination of files, named by relative paths with `/`.
@@ -35,7 +35,7 @@ pub enum Destination {
     Store(Store),
 }
 
-/// The same question to a folder or a store, and its failure with the name of the file.
+/// Forwards a call to the folder or the store, and adds the file's name to its error.
 macro_rules! ask {
     ($destination:expr, $name:expr, $place:ident => $answer:expr) => {
         match $destination {
@@ -60,7 +60,7 @@ impl Destination {
             problem: format!(
                 "{problem}; give a folder, file:// or, in a build with --features cloud, s3://, gs:// or az://"
             ),
-            hopeless: true,
+            is_fatal: true,
         };
         let url = url.map_err(|e| refused(e.to_string()))?;
         let ours = |key: &String| ["AWS_", "AZURE_", "GOOGLE_"].iter().any(|prefix| key.starts_with(prefix));
@@ -84,7 +84,7 @@ impl Destination {
         let failed = |e: std::io::Error| DestinationError {
             place: url.to_owned(),
             problem: e.to_string(),
-            hopeless: true,
+            is_fatal: true,
         };
         Store::new(url, store, prefix).map(Self::Store).map_err(failed)
     }
@@ -105,7 +105,7 @@ impl Destination {
     /// The size of file `name` in bytes; `None` if there is none.
     ///
     /// # Errors
-    /// [`DestinationError`] if that cannot be told.
+    /// [`DestinationError`] if that cannot be determined.
     pub fn size(&self, name: &str) -> Result<Option<u64>, DestinationError> {
         ask!(self, name, place => place.size(name))
     }
@@ -125,7 +125,7 @@ impl Destination {
     pub fn link(&self, content: &str, name: &str) -> Result<(), DestinationError> {
         match self {
             Self::Folder(folder) => folder.link(content, name).map_err(|e| folder.failed(name, &e)),
-            // Manifests name the content: a second object would be paid for twice.
+            // Manifests name the content: a second object would cost storage twice.
             Self::Store(_) => Ok(()),
         }
     }
@@ -139,7 +139,7 @@ impl Destination {
             Self::Folder(folder) => folder.local_file(),
             Self::Store(_) => tempfile::NamedTempFile::new(),
         };
-        made.map_err(|e| self.failed_locally("a temporary file", &e))
+        made.map_err(|e| self.local_error("a temporary file", &e))
     }
 
     /// Moves a finished local file to `name`.
@@ -150,7 +150,7 @@ impl Destination {
         match self {
             Self::Folder(folder) => folder.put_file(name, file).map_err(|e| folder.failed(name, &e)),
             Self::Store(_) => {
-                let bytes = std::fs::read(file.path()).map_err(|e| self.failed_locally(name, &e))?;
+                let bytes = std::fs::read(file.path()).map_err(|e| self.local_error(name, &e))?;
                 self.put(name, &bytes)
             }
         }
@@ -159,7 +159,7 @@ impl Destination {
     /// Names of the folders directly under `folder`.
     ///
     /// # Errors
-    /// [`DestinationError`] if that cannot be told.
+    /// [`DestinationError`] if that cannot be determined.
     pub fn folders(&self, folder: &str) -> Result<Vec<String>, DestinationError> {
         let mut names = ask!(self, folder, place => place.folders(folder))?;
         names.sort();
@@ -169,23 +169,23 @@ impl Destination {
     /// Whether nothing is there yet.
     ///
     /// # Errors
-    /// [`DestinationError`] if that cannot be told.
+    /// [`DestinationError`] if that cannot be determined.
     pub fn is_empty(&self) -> Result<bool, DestinationError> {
         ask!(self, "", place => place.is_empty())
     }
 
-    /// Claims the destination for this process: nobody else writes the same shard at the same time, and what a killed
-    /// run left half written is swept away. The claim ends with the process, however that ends.
+    /// Locks the destination for this process: no other process writes the same shard at the same time, and what a killed
+    /// run left half written is removed. The lock ends with the process, however that ends.
     ///
     /// # Errors
     /// [`DestinationError`] if another process holds it, or nothing can be written there.
-    pub fn claim(&self) -> Result<Claim, DestinationError> {
-        let Self::Folder(folder) = self else { return Ok(Claim::needless()) };
-        let claim = folder.claim().map_err(|e| folder.failed("", &e))?;
+    pub fn lock(&self) -> Result<DestinationLock, DestinationError> {
+        let Self::Folder(folder) = self else { return Ok(DestinationLock::not_needed()) };
+        let claim = folder.lock().map_err(|e| folder.failed("", &e))?;
         claim.ok_or_else(|| DestinationError {
             place: self.name(),
             problem: "another run is writing the same shard here; wait for it or end it".to_owned(),
-            hopeless: true,
+            is_fatal: true,
         })
     }
 
@@ -197,13 +197,13 @@ impl Destination {
         }
     }
 
-    fn failed_locally(&self, name: &str, error: &std::io::Error) -> DestinationError {
+    fn local_error(&self, name: &str, error: &std::io::Error) -> DestinationError {
         match self {
             Self::Folder(folder) => folder.failed(name, error),
             Self::Store(store) => DestinationError {
                 place: format!("{}/{name}", store.url),
                 problem: error.to_string(),
-                hopeless: true,
+                is_fatal: true,
             },
         }
     }
@@ -232,7 +232,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for place in all(folder.path()) {
             assert!(place.is_empty().unwrap());
-            let claim = place.claim().unwrap();
+            let claim = place.lock().unwrap();
             assert_eq!(place.get("a/b").unwrap(), None);
             place.put("a/b", b"one").unwrap();
             place.put("a/b", b"two").unwrap();
@@ -259,13 +259,13 @@ mod tests {
         let partial = folder.path().join(".partial-1-of-2");
         std::fs::create_dir(&partial).unwrap();
         std::fs::write(partial.join("7"), "half, by a run that was killed").unwrap();
-        let claim = open(".partial-1-of-2").claim().unwrap();
+        let claim = open(".partial-1-of-2").lock().unwrap();
         assert!(!partial.join("7").exists());
-        let second = open(".partial-1-of-2").claim();
+        let second = open(".partial-1-of-2").lock();
         assert!(second.unwrap_err().to_string().contains("another run is writing the same shard"));
-        assert!(open(".partial-2-of-2").claim().is_ok());
+        assert!(open(".partial-2-of-2").lock().is_ok());
         drop(claim);
-        assert!(!partial.exists() && open(".partial-1-of-2").claim().is_ok());
+        assert!(!partial.exists() && open(".partial-1-of-2").lock().is_ok());
     }
 
     #[test]

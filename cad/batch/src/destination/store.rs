@@ -20,7 +20,7 @@ pub struct Store {
 impl Store {
     /// The prefix of a store that is already open.
     pub(super) fn new(url: &str, store: Arc<dyn ObjectStore>, prefix: Path) -> std::io::Result<Self> {
-        // Who does the encryption is settled once for the process: only the first call takes effect.
+        // The provider of encryption is set once for the process: only the first call takes effect.
         #[cfg(feature = "cloud")]
         let _ = rustls::crypto::ring::default_provider().install_default();
         Ok(Self {
@@ -33,7 +33,7 @@ impl Store {
     }
 
     pub(super) fn failed(&self, name: &str, error: &Error) -> DestinationError {
-        DestinationError { place: format!("{}/{name}", self.url), problem: error.to_string(), hopeless: true }
+        DestinationError { place: format!("{}/{name}", self.url), problem: error.to_string(), is_fatal: true }
     }
 
     pub(super) fn get(&self, name: &str) -> Result<Option<Vec<u8>>, Error> {
@@ -65,7 +65,7 @@ impl Store {
             .fold(self.prefix.clone(), |path, part| path.join(part))
     }
 
-    /// Waits for an answer. Folders and memory need no runtime; clouds do.
+    /// Blocks until the future is ready. Folders and memory need no runtime; clouds do.
     fn wait<T>(&self, answer: impl Future<Output = T>) -> T {
         #[cfg(feature = "cloud")]
         let _inside = self.runtime.enter();

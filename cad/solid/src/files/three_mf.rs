@@ -29,7 +29,7 @@ pub struct Package {
     pub own_metadata: Vec<(&'static str, String)>,
     /// A picture, as PNG.
     pub thumbnail: Vec<u8>,
-    /// Files that travel along, by name in `Metadata/`: the friction curve, the manifest.
+    /// Attached files, by name in `Metadata/`: the friction curve.
     pub attachments: Vec<(String, Vec<u8>)>,
 }
 

@@ -19,9 +19,9 @@ pub struct OffsetError {
     pub y: f64,
 }
 
-/// An edge moved to the left, not yet trimmed to its new corners.
+/// An offset edge, not yet trimmed to its new corners.
 #[derive(Clone, Copy, Debug)]
-enum Moved {
+enum OffsetEdge {
     Line { through: Point2, along: Vector2 },
     Circle { centre: Point2, radius_mm: f64 },
 }
@@ -36,11 +36,11 @@ impl Contour {
         let n = self.edges().len();
         let fault = |i: usize| OffsetError { distance_mm, x: self.corners()[i].x, y: self.corners()[i].y };
         let moved: Vec<_> =
-            (0..n).map(|i| self.moved_edge(i, distance_mm).ok_or(fault(i))).collect::<Result<_, _>>()?;
+            (0..n).map(|i| self.offset_edge(i, distance_mm).ok_or(fault(i))).collect::<Result<_, _>>()?;
         let corners: Vec<_> = (0..n)
             .map(|i| {
                 let before = (i + n - 1) % n;
-                self.moved_corner(before, i, &moved, distance_mm).ok_or(fault(i))
+                self.offset_corner(before, i, &moved, distance_mm).ok_or(fault(i))
             })
             .collect::<Result<_, _>>()?;
         let edges: Vec<_> = (0..n)
@@ -60,20 +60,26 @@ impl Contour {
         }
     }
 
-    fn moved_edge(&self, i: usize, distance_mm: f64) -> Option<Moved> {
+    fn offset_edge(&self, i: usize, distance_mm: f64) -> Option<OffsetEdge> {
         match &self.edges()[i] {
             Edge::Line => {
                 let along = self.tangents(i).0;
-                Some(Moved::Line { through: self.corners()[i] + left(along) * distance_mm, along })
+                Some(OffsetEdge::Line { through: self.corners()[i] + left(along) * distance_mm, along })
             }
             Edge::Arc(arc) => {
                 let radius_mm = arc.radius_mm - distance_mm * arc.sweep_rad.signum();
-                (radius_mm > 0.0).then_some(Moved::Circle { centre: arc.centre, radius_mm })
+                (radius_mm > 0.0).then_some(OffsetEdge::Circle { centre: arc.centre, radius_mm })
             }
         }
     }
 
-    fn moved_corner(&self, before: usize, after: usize, moved: &[Moved], distance_mm: f64) -> Option<Point2> {
+    fn offset_corner(
+        &self,
+        before: usize,
+        after: usize,
+        moved: &[OffsetEdge],
+        distance_mm: f64,
+    ) -> Option<Point2> {
         let corner = self.corners()[after];
         let (into, out) = (self.tangents(before).1, self.tangents(after).0);
         if (into.perp(&out)).abs() < SMOOTH_RAD && into.dot(&out) > 0.0 {
@@ -102,18 +108,18 @@ fn left(along: Vector2) -> Vector2 {
 }
 
 /// The points in which two moved edges meet, none to two.
-fn meet(a: Moved, b: Moved) -> [Option<Point2>; 2] {
+fn meet(a: OffsetEdge, b: OffsetEdge) -> [Option<Point2>; 2] {
     match (a, b) {
-        (Moved::Line { through: p, along: d }, Moved::Line { through: q, along: e }) => {
+        (OffsetEdge::Line { through: p, along: d }, OffsetEdge::Line { through: q, along: e }) => {
             let cross = d.perp(&e);
             [(cross.abs() > SMOOTH_RAD).then(|| p + d * ((q - p).perp(&e) / cross)), None]
         }
-        (Moved::Line { through, along }, Moved::Circle { centre, radius_mm })
-        | (Moved::Circle { centre, radius_mm }, Moved::Line { through, along }) => {
+        (OffsetEdge::Line { through, along }, OffsetEdge::Circle { centre, radius_mm })
+        | (OffsetEdge::Circle { centre, radius_mm }, OffsetEdge::Line { through, along }) => {
             let foot = through + along * (centre - through).dot(&along);
             on_chord(foot, along, radius_mm.powi(2) - (foot - centre).norm_squared())
         }
-        (Moved::Circle { centre: p, radius_mm: r }, Moved::Circle { centre: q, radius_mm: s }) => {
+        (OffsetEdge::Circle { centre: p, radius_mm: r }, OffsetEdge::Circle { centre: q, radius_mm: s }) => {
             let apart = (q - p).norm();
             if apart == 0.0 {
                 return [None, None];

@@ -27,7 +27,7 @@ pub enum CapError {
     },
 }
 
-/// Triangulates the region between `loops` (the outline and its holes, in any sense of rotation); gives triangles
+/// Triangulates the region between `loops` (the outline and its holes, in any orientation); returns triangles
 /// of indices into the concatenated points, counter-clockwise.
 pub(super) fn triangulate(loops: &[&[Point2]], z_mm: f64) -> Result<Vec<[usize; 3]>, CapError> {
     let points: Vec<_> = loops.concat().iter().map(|p| SpadePoint::new(p.x, p.y)).collect();

@@ -1,6 +1,6 @@
 //! Solids made of contours at heights: walls between two rings, and flat caps with holes.
 //!
-//! The same [`Solid`] gives the closed-form volume, the mesh (watertight by construction: walls and caps share
+//! The same [`Solid`] yields the closed-form volume, the mesh (watertight by construction: walls and caps share
 //! their ring's vertices by index) and, with the feature `brep`, the exact boundary representation.
 
 #[cfg(feature = "brep")]
@@ -80,7 +80,7 @@ impl Solid {
         self.caps.push(Cap { facing, rings });
     }
 
-    /// A vertical wall over `contour` from `from_mm` to `to_mm`; gives its lower and upper ring.
+    /// A vertical wall over `contour` from `from_mm` to `to_mm`; returns its lower and upper ring.
     pub fn extrude(&mut self, contour: &Contour, from_mm: f64, to_mm: f64) -> (RingId, RingId) {
         let (lower, upper) = (self.ring(contour.clone(), from_mm), self.ring(contour.clone(), to_mm));
         self.wall(lower, upper);
@@ -127,7 +127,7 @@ impl Solid {
         Ok(solid)
     }
 
-    /// Walls of holes that go right through; gives their lower and upper rings.
+    /// Walls of holes that go right through; returns their lower and upper rings.
     ///
     /// # Errors
     /// [`OffsetError`] if the chamfer swallows an edge.
@@ -144,7 +144,7 @@ impl Solid {
     }
 
     /// A pocket with a flat floor, sunk from `top_mm` to `floor_mm`: `outline` runs clockwise, islands inside it
-    /// counter-clockwise and as high as the top. Gives the ring at its top, to be a hole of the cap there.
+    /// counter-clockwise and as high as the top. Returns the ring at its top, a hole in the cap there.
     pub fn pocket(&mut self, outline: &Contour, islands: &[Contour], floor_mm: f64, top_mm: f64) -> RingId {
         let (floor, top) = self.extrude(outline, floor_mm, top_mm);
         let mut feet = Vec::new();
@@ -157,8 +157,8 @@ impl Solid {
         top
     }
 
-    /// A boss with a flat top, raised from `foot_mm` to `top_mm` over `outline` (counter-clockwise). Gives the ring
-    /// at its foot, to be a hole of the cap that it stands on.
+    /// A boss with a flat top, raised from `foot_mm` to `top_mm` over `outline` (counter-clockwise). Returns the ring
+    /// at its foot, a hole in the cap that it stands on.
     pub fn boss(&mut self, outline: &Contour, foot_mm: f64, top_mm: f64) -> RingId {
         let (foot, top) = self.extrude(outline, foot_mm, top_mm);
         self.cap(Facing::Up, top, &[]);
@@ -195,7 +195,7 @@ impl Solid {
 
     /// Pieces per edge of each ring, from `pieces` of its contour; rings that walls join get the same numbers, the
     /// larger ones, so that the wall between them is a strip.
-    fn levelled(&self, pieces: impl Fn(&Contour) -> Vec<usize>) -> Vec<Vec<usize>> {
+    fn matched_counts(&self, pieces: impl Fn(&Contour) -> Vec<usize>) -> Vec<Vec<usize>> {
         let mut numbers: Vec<_> = self.rings.iter().map(|r| pieces(&r.contour)).collect();
         loop {
             let mut settled = true;

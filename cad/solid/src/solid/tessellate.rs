@@ -17,7 +17,7 @@ impl Solid {
     /// # Errors
     /// [`CapError`] if contours of one cap cross or touch.
     pub fn mesh(&self, tolerance: ChordTolerance) -> Result<Mesh, CapError> {
-        let chords = self.levelled(|contour| contour.chords(tolerance));
+        let chords = self.matched_counts(|contour| contour.chords(tolerance));
         let mut positions = Vec::new();
         let rings: Vec<_> = self
             .rings

@@ -7,8 +7,8 @@ use super::{Fault, place};
 use crate::mesh::{Mesh, Point3, axis_volumes_about, mean};
 use crate::parallel;
 
-/// How a closed mesh falls apart.
-pub(super) struct Split {
+/// How a closed mesh splits into bodies.
+pub(super) struct BodySplit {
     pub(super) bodies: usize,
     pub(super) voids: usize,
     pub(super) fault: Option<Fault>,
@@ -16,7 +16,7 @@ pub(super) struct Split {
 
 /// Splits a closed mesh of that volume into its connected surfaces. One that lies in no other, or in an even number of
 /// others, bounds a body and must face outward; one in an odd number bounds a void and must face inward.
-pub(super) fn split(mesh: &Mesh, volume_mm3: f64) -> Split {
+pub(super) fn split(mesh: &Mesh, volume_mm3: f64) -> BodySplit {
     let triangles = by_surface(mesh);
     let surfaces: Vec<Surface> = match &triangles[..] {
         [triangles] => vec![Surface { mesh, triangles, bounds: None, volume_mm3 }],
@@ -30,7 +30,7 @@ pub(super) fn split(mesh: &Mesh, volume_mm3: f64) -> Split {
             |i: usize| (0..surfaces.len()).filter(|j| *j != i && surfaces[*j].encloses(&surfaces[i])).count();
         range.map(depth).collect::<Vec<_>>()
     });
-    let mut split = Split { bodies: 0, voids: 0, fault: None };
+    let mut split = BodySplit { bodies: 0, voids: 0, fault: None };
     let mut wrong = Vec::new();
     for (surface, depth) in surfaces.iter().zip(depths.concat()) {
         let is_void = depth % 2 == 1;
@@ -56,7 +56,7 @@ pub(super) fn split(mesh: &Mesh, volume_mm3: f64) -> Split {
     split
 }
 
-pub(super) fn unexpected(found: usize, expected: Option<usize>) -> Option<Fault> {
+pub(super) fn wrong_count(found: usize, expected: Option<usize>) -> Option<Fault> {
     let expected = expected?;
     (found != expected).then(|| Fault {
         check: "bodies",

@@ -1,7 +1,7 @@
 //! Single facets: finite, not degenerate, not repeated.
 
 use super::stars::Star;
-use super::{Facts, Fault, place};
+use super::{Fault, MeshFacts, place};
 use crate::mesh::{Mesh, Point3};
 use crate::parallel;
 
@@ -11,7 +11,7 @@ pub(super) fn height_mm([a, b, c]: [Point3; 3]) -> f64 {
     if longest == 0.0 { 0.0 } else { (b - a).cross(&(c - a)).norm() / longest }
 }
 
-pub(super) fn none(mesh: &Mesh) -> Option<Fault> {
+pub(super) fn empty(mesh: &Mesh) -> Option<Fault> {
     mesh.triangles.is_empty().then(|| Fault {
         check: "empty",
         count: 0,
@@ -31,7 +31,7 @@ pub(super) fn not_finite(mesh: &Mesh) -> Option<Fault> {
 }
 
 /// A mesh that is far too small or too large to be in millimetres.
-pub(super) fn wrong_unit(facts: &Facts, (least, most): (f64, f64)) -> Option<Fault> {
+pub(super) fn implausible_size(facts: &MeshFacts, (least, most): (f64, f64)) -> Option<Fault> {
     let longest = (0..3).map(|i| facts.high_mm[i] - facts.low_mm[i]).fold(0.0, f64::max);
     (longest < least || longest > most).then(|| Fault {
         check: "size",
@@ -46,7 +46,7 @@ pub(super) fn wrong_unit(facts: &Facts, (least, most): (f64, f64)) -> Option<Fau
 /// Heights of all facets.
 pub(super) struct Heights {
     /// The least of them, mm; infinite without a facet.
-    pub(super) least_mm: f64,
+    pub(super) min_thickness_mm: f64,
     degenerate: usize,
     /// The thinnest degenerate facet, the first of equal ones, with its height.
     worst: Option<(usize, f64)>,
@@ -54,10 +54,10 @@ pub(super) struct Heights {
 
 pub(super) fn heights(mesh: &Mesh, min_height_mm: f64) -> Heights {
     let parts = parallel::in_chunks(mesh.triangles.len(), |range| {
-        let mut found = Heights { least_mm: f64::INFINITY, degenerate: 0, worst: None };
+        let mut found = Heights { min_thickness_mm: f64::INFINITY, degenerate: 0, worst: None };
         for f in range {
             let height = height_mm(mesh.corners(mesh.triangles[f]));
-            found.least_mm = found.least_mm.min(height);
+            found.min_thickness_mm = found.min_thickness_mm.min(height);
             if height < min_height_mm {
                 found.degenerate += 1;
                 found.worst = thinner(found.worst, Some((f, height)));
@@ -66,7 +66,7 @@ pub(super) fn heights(mesh: &Mesh, min_height_mm: f64) -> Heights {
         found
     });
     Heights {
-        least_mm: parts.iter().map(|part| part.least_mm).fold(f64::INFINITY, f64::min),
+        min_thickness_mm: parts.iter().map(|part| part.min_thickness_mm).fold(f64::INFINITY, f64::min),
         degenerate: parts.iter().map(|part| part.degenerate).sum(),
         worst: parts.iter().map(|part| part.worst).fold(None, thinner),
     }

@@ -12,7 +12,7 @@ struct Crossings {
     first: usize,
 }
 
-pub(super) fn crossing_facets(mesh: &Mesh, tree: &FacetTree) -> Option<Fault> {
+pub(super) fn self_intersections(mesh: &Mesh, tree: &FacetTree) -> Option<Fault> {
     let parts = parallel::in_chunks(tree.leaves(), |leaves| {
         let mut found = Crossings { count: 0, first: usize::MAX };
         let mut near = Vec::new();

@@ -1,4 +1,4 @@
-//! The one oracle for meshes: is this a valid, printable solid, and if not what is wrong, where, and how much.
+//! The examination of meshes: is this a valid, printable solid, and if not what is wrong, where, and how much.
 //!
 //! Tests and `pinswitch check` ask the same [`examine`]. Nothing is repaired.
 
@@ -20,7 +20,7 @@ use crate::mesh::{Mesh, Point3, mean};
 use crate::parallel;
 use facet_tree::FacetTree;
 
-/// What a mesh is held against.
+/// What a mesh is compared with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expectation {
     /// Number of bodies; `None` accepts any.
@@ -75,7 +75,7 @@ impl std::fmt::Display for Fault {
 
 /// What a mesh measures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Facts {
+pub struct MeshFacts {
     /// Number of triangles.
     pub triangles: usize,
     /// Number of vertices.
@@ -100,7 +100,7 @@ pub struct Facts {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Examination {
     /// What the mesh measures.
-    pub facts: Facts,
+    pub facts: MeshFacts,
     /// What is wrong; empty for a valid mesh.
     pub faults: Vec<Fault>,
 }
@@ -120,7 +120,7 @@ pub fn examine(mesh: &Mesh, expected: &Expectation) -> Examination {
     let mut found = Examination::default();
     found.facts.triangles = mesh.triangles.len();
     found.facts.vertices = mesh.positions.len();
-    if let Some(fault) = facets::not_finite(mesh).or_else(|| facets::none(mesh)) {
+    if let Some(fault) = facets::not_finite(mesh).or_else(|| facets::empty(mesh)) {
         found.faults.push(fault);
         return found;
     }
@@ -134,12 +134,12 @@ pub fn examine(mesh: &Mesh, expected: &Expectation) -> Examination {
 }
 
 /// What the facets show by themselves and by the vertices that they share.
-fn examine_surface(mesh: &Mesh, expected: &Expectation, facts: &mut Facts) -> Vec<Fault> {
+fn examine_surface(mesh: &Mesh, expected: &Expectation, facts: &mut MeshFacts) -> Vec<Fault> {
     let heights = facets::heights(mesh, expected.min_height_mm);
     let axes_mm3 = mesh.axis_volumes_mm3();
     facts.volume_mm3 = mean(axes_mm3);
     facts.surface_mm2 = mesh.surface_mm2();
-    facts.min_height_mm = heights.least_mm;
+    facts.min_height_mm = heights.min_thickness_mm;
     if let Some((low, high)) = mesh.bounds() {
         facts.low_mm = low.coords.into();
         facts.high_mm = high.coords.into();
@@ -147,7 +147,7 @@ fn examine_surface(mesh: &Mesh, expected: &Expectation, facts: &mut Facts) -> Ve
     let stars = stars::examine(mesh);
     let closed = stars.edges.is_empty();
     let mut faults = Vec::new();
-    faults.extend(facets::wrong_unit(facts, expected.longest_side_mm));
+    faults.extend(facets::implausible_size(facts, expected.longest_side_mm));
     faults.extend(facets::degenerate(mesh, &heights, expected.min_height_mm));
     faults.extend(stars.repeated.into_iter().chain(stars.edges).chain(stars.vertices));
     if closed {
@@ -156,7 +156,7 @@ fn examine_surface(mesh: &Mesh, expected: &Expectation, facts: &mut Facts) -> Ve
         facts.voids = split.voids;
         faults.extend(split.fault);
         faults.extend(volume_faults(axes_mm3, expected));
-        faults.extend(bodies::unexpected(split.bodies, expected.bodies));
+        faults.extend(bodies::wrong_count(split.bodies, expected.bodies));
     }
     faults
 }
@@ -168,8 +168,8 @@ fn examine_space(mesh: &Mesh, expected: &Expectation) -> Vec<Fault> {
         return Vec::new();
     }
     let tree = FacetTree::new(mesh);
-    let crossing = expected.intersections.then(|| intersections::crossing_facets(mesh, &tree)).flatten();
-    let thin = walls.then(|| walls::thin(mesh, &tree, expected.min_wall_mm)).flatten();
+    let crossing = expected.intersections.then(|| intersections::self_intersections(mesh, &tree)).flatten();
+    let thin = walls.then(|| walls::thin_walls(mesh, &tree, expected.min_wall_mm)).flatten();
     crossing.into_iter().chain(thin).collect()
 }
 

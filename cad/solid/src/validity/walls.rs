@@ -16,7 +16,7 @@ struct Thin {
 }
 
 /// Looks inward from the middle of every facet for a facing one closer than `min_wall_mm`.
-pub(super) fn thin(mesh: &Mesh, tree: &FacetTree, min_wall_mm: f64) -> Option<Fault> {
+pub(super) fn thin_walls(mesh: &Mesh, tree: &FacetTree, min_wall_mm: f64) -> Option<Fault> {
     let parts = parallel::in_chunks(tree.leaves(), |leaves| {
         let mut found = Thin { count: 0, worst: None };
         let mut near = Vec::new();

@@ -28,7 +28,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// A complaint about one field: its value, what is wrong, and the remedy.
+/// An error in one field: its value, what is wrong, and the remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConfigError {
     /// The field, such as `shell.width_mm`.
@@ -66,7 +66,7 @@ impl ConfigError {
         }
     }
 
-    /// The same complaint, placed.
+    /// The same error with its place.
     #[must_use]
     pub fn at(mut self, place: Place) -> Self {
         self.place.get_or_insert(place);

@@ -7,7 +7,7 @@ mod read;
 mod reference;
 
 pub use error::{ConfigError, Place};
-pub use parameter::{Origin, Words};
+pub use parameter::{Choice, Origin};
 pub use parameters::{Configuration, MouldKind, SlotKind, Slots, SubstrateKind};
 pub use read::{Places, assign, read};
 pub use reference::{reference_toml, to_toml};

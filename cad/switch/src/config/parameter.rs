@@ -65,7 +65,7 @@ impl<C> Parameter<C> {
 }
 
 /// A type that a parameter can have.
-pub trait Field: Sized {
+pub trait ParameterValue: Sized {
     /// Bounds of the type: a range for numbers, nothing for words.
     type Bounds;
     /// Reads a TOML value within bounds, or says what would be accepted.
@@ -78,7 +78,7 @@ pub trait Field: Sized {
 
 type Range<T> = std::ops::RangeInclusive<T>;
 
-impl Field for f64 {
+impl ParameterValue for f64 {
     type Bounds = Range<f64>;
 
     fn read(value: &Value, bounds: &Self::Bounds) -> Result<Self, String> {
@@ -100,7 +100,7 @@ impl Field for f64 {
     }
 }
 
-impl Field for usize {
+impl ParameterValue for usize {
     type Bounds = Range<usize>;
 
     fn read(value: &Value, bounds: &Self::Bounds) -> Result<Self, String> {
@@ -119,7 +119,7 @@ impl Field for usize {
     }
 }
 
-impl Field for bool {
+impl ParameterValue for bool {
     type Bounds = ();
 
     fn read(value: &Value, (): &()) -> Result<Self, String> {
@@ -135,7 +135,7 @@ impl Field for bool {
     }
 }
 
-impl Field for String {
+impl ParameterValue for String {
     /// Longest accepted text.
     type Bounds = usize;
 
@@ -158,7 +158,7 @@ impl Field for String {
     }
 }
 
-impl Field for Vec<usize> {
+impl ParameterValue for Vec<usize> {
     type Bounds = ();
 
     fn read(value: &Value, (): &()) -> Result<Self, String> {
@@ -179,24 +179,24 @@ impl Field for Vec<usize> {
 }
 
 /// A choice between words.
-pub trait Words: Sized + Copy + PartialEq + 'static {
+pub trait Choice: Sized + Copy + PartialEq + 'static {
     /// Every choice with its word.
-    const WORDS: &'static [(Self, &'static str)];
+    const NAMES: &'static [(Self, &'static str)];
 
     /// The word of this choice.
-    fn word(self) -> &'static str {
-        Self::WORDS.iter().find(|(choice, _)| *choice == self).map_or("", |(_, word)| word)
+    fn as_str(self) -> &'static str {
+        Self::NAMES.iter().find(|(choice, _)| *choice == self).map_or("", |(_, word)| word)
     }
 
     /// The choice that `word` names; the error lists the words.
     fn choose(word: Option<&str>) -> Result<Self, String> {
-        let found = Self::WORDS.iter().find(|(_, w)| Some(*w) == word);
+        let found = Self::NAMES.iter().find(|(_, w)| Some(*w) == word);
         found.map(|(choice, _)| *choice).ok_or_else(|| format!("give {}", Self::all()))
     }
 
     /// All words, quoted.
     fn all() -> String {
-        Self::WORDS.iter().map(|(_, word)| format!("{word:?}")).collect::<Vec<_>>().join(" or ")
+        Self::NAMES.iter().map(|(_, word)| format!("{word:?}")).collect::<Vec<_>>().join(" or ")
     }
 }
 
@@ -207,20 +207,20 @@ macro_rules! words {
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum $name { $($(#[$vdoc])* $variant),+ }
 
-        impl $crate::config::parameter::Words for $name {
-            const WORDS: &'static [(Self, &'static str)] = &[$((Self::$variant, $word)),+];
+        impl $crate::config::parameter::Choice for $name {
+            const NAMES: &'static [(Self, &'static str)] = &[$((Self::$variant, $word)),+];
         }
 
-        impl $crate::config::parameter::Field for $name {
+        impl $crate::config::parameter::ParameterValue for $name {
             type Bounds = ();
             fn read(value: &toml_edit::Value, (): &()) -> Result<Self, String> {
-                <Self as $crate::config::parameter::Words>::choose(value.as_str())
+                <Self as $crate::config::parameter::Choice>::choose(value.as_str())
             }
             fn write(&self) -> toml_edit::Value {
-                toml_edit::Value::from($crate::config::parameter::Words::word(*self))
+                toml_edit::Value::from($crate::config::parameter::Choice::as_str(*self))
             }
             fn describe((): &()) -> String {
-                <Self as $crate::config::parameter::Words>::all()
+                <Self as $crate::config::parameter::Choice>::all()
             }
         }
     };
@@ -256,11 +256,11 @@ macro_rules! configuration {
                     section: stringify!($table),
                     key: stringify!($field),
                     origin: $crate::config::parameter::Origin::$origin,
-                    range: || <$Type as $crate::config::parameter::Field>::describe(&$bounds),
+                    range: || <$Type as $crate::config::parameter::ParameterValue>::describe(&$bounds),
                     reason: $reason,
-                    get: |c| $crate::config::parameter::Field::write(&c.$table.$field),
+                    get: |c| $crate::config::parameter::ParameterValue::write(&c.$table.$field),
                     set: |c, value| {
-                        c.$table.$field = <$Type as $crate::config::parameter::Field>::read(value, &$bounds)?;
+                        c.$table.$field = <$Type as $crate::config::parameter::ParameterValue>::read(value, &$bounds)?;
                         Ok(())
                     },
                 },

@@ -1,4 +1,4 @@
-//! Reading a configuration from TOML: every complaint names file, line, field, value, bound and remedy.
+//! Reading a configuration from TOML: every error names file, line, field, value, bound and remedy.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use super::parameter::Parameter;
 use super::parameters::Configuration;
 use super::{ConfigError, Place};
 
-/// Reads `text`; `file` names it in complaints.
+/// Reads `text`; `file` names it in errors.
 ///
 /// # Errors
 /// [`ConfigError`] for text that is no TOML, an unknown key, or a value out of its range.
@@ -72,17 +72,17 @@ impl Configuration {
     }
 }
 
-/// Where each value that a file gives stands in it.
+/// The place of each value that a file sets.
 #[derive(Clone, Debug, Default)]
 pub struct Places(Vec<(String, Place)>);
 
 impl Places {
-    /// Whether the file gives `field`.
-    pub fn gives(&self, field: &str) -> bool {
+    /// Whether the file sets `field`.
+    pub fn sets(&self, field: &str) -> bool {
         self.of(field).is_some()
     }
 
-    /// Where `field` stands, if the file gives it.
+    /// The place of `field`, if the file sets it.
     pub fn of(&self, field: &str) -> Option<&Place> {
         self.0.iter().find(|(path, _)| path == field).map(|(_, place)| place)
     }

@@ -11,7 +11,7 @@ use crate::design::Design;
 use crate::parts::{Material, Part};
 use crate::prediction::Prediction;
 use crate::set::{OutputFile, SetError};
-use pinswitch_solid::validity::Facts;
+use pinswitch_solid::validity::MeshFacts;
 
 /// One value that the user may set.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -30,7 +30,7 @@ pub struct Setting {
 
 /// One dimension that follows from the settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Derived {
+pub struct DerivedDimension {
     /// Its name.
     pub name: &'static str,
     /// Its value.
@@ -61,8 +61,8 @@ pub struct PartEntry {
     /// Widest ceiling to be bridged when it is printed, mm.
     pub widest_bridge_mm: f64,
     /// The mesh as written.
-    pub mesh: Facts,
-    /// What a person should know.
+    pub mesh: MeshFacts,
+    /// Notes for the user.
     pub notes: Vec<String>,
 }
 
@@ -131,7 +131,7 @@ pub struct FileEntry {
     pub content: Option<String>,
 }
 
-/// Where a set belongs that was made as part of a batch.
+/// The batch that a set was made in.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct BatchEntry {
     /// SHA-256 of the sweep.
@@ -145,7 +145,7 @@ pub struct BatchEntry {
 /// The manifest of a set.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Manifest {
-    /// Form of this file.
+    /// Name and version of this file's schema.
     pub schema: &'static str,
     /// Name of the set.
     pub name: String,
@@ -157,7 +157,7 @@ pub struct Manifest {
     /// Every value that the user may set.
     pub settings: Vec<Setting>,
     /// What follows from them.
-    pub derived: Vec<Derived>,
+    pub derived: Vec<DerivedDimension>,
     /// The parts.
     pub parts: Vec<PartEntry>,
     /// The bound on their meshes.
@@ -176,7 +176,7 @@ impl Manifest {
     /// The manifest of a design with its printed parts and their meshes' facts; no file is listed yet.
     pub fn new<'a>(
         design: &Design,
-        parts: impl IntoIterator<Item = (&'a Part, &'a Facts)>,
+        parts: impl IntoIterator<Item = (&'a Part, &'a MeshFacts)>,
         prediction: &Prediction,
     ) -> Self {
         let c = design.configuration();
@@ -259,7 +259,7 @@ fn source(law: Law) -> &'static str {
     }
 }
 
-fn part_entry(part: &Part, facts: &Facts, c: &Configuration) -> PartEntry {
+fn part_entry(part: &Part, facts: &MeshFacts, c: &Configuration) -> PartEntry {
     let volume_mm3 = part.solid.volume_mm3();
     PartEntry {
         name: part.name.clone(),
@@ -292,7 +292,7 @@ fn settings(c: &Configuration) -> Vec<Setting> {
             let as_default = value.to_string() == (p.get)(&defaults).to_string();
             Setting {
                 field: p.path(),
-                value: plain(&value),
+                value: toml_to_json(&value),
                 unit: p.unit(),
                 // The published layouts are data of the paper, whichever of them a configuration names.
                 origin: if as_default { p.origin.to_string() } else { "configured".to_owned() },
@@ -303,23 +303,23 @@ fn settings(c: &Configuration) -> Vec<Setting> {
 }
 
 /// A TOML value as JSON.
-pub fn plain(value: &toml_edit::Value) -> Value {
+pub fn toml_to_json(value: &toml_edit::Value) -> Value {
     match value {
         toml_edit::Value::Integer(i) => json!(i.value()),
         toml_edit::Value::Float(f) => json!(f.value()),
         toml_edit::Value::Boolean(b) => json!(b.value()),
-        toml_edit::Value::Array(list) => list.iter().map(plain).collect(),
+        toml_edit::Value::Array(list) => list.iter().map(toml_to_json).collect(),
         other => json!(other.as_str().unwrap_or_default()),
     }
 }
 
 /// Every dimension of `design` that follows from its settings.
-pub fn derived(design: &Design) -> Vec<Derived> {
+pub fn derived(design: &Design) -> Vec<DerivedDimension> {
     let c = design.configuration();
     let pitch = c.segment.span_deg / c.segment.grooves as f64;
     let land = design.land_mm();
     let slot = design.slot();
-    let entry = |name, value, unit, origin, from| Derived { name, value, unit, origin, from };
+    let entry = |name, value, unit, origin, from| DerivedDimension { name, value, unit, origin, from };
     use Origin::{Assumed, Chosen, Published};
     vec![
         entry("groove_pitch", pitch, "deg", Published, "segment.span_deg / segment.grooves"),

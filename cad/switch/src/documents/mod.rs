@@ -6,4 +6,4 @@ mod manifest;
 
 pub use bill::{Bill, bill_of_materials};
 pub use friction_csv::friction_csv;
-pub use manifest::{BatchEntry, Derived, FileEntry, Manifest, PartEntry, derived, plain};
+pub use manifest::{BatchEntry, DerivedDimension, FileEntry, Manifest, PartEntry, derived, toml_to_json};

@@ -28,7 +28,7 @@ const MARGIN_MM: f64 = 16.0;
 /// Width of the sheet, mm: A2 on its side.
 const SHEET_MM: f64 = 594.0;
 /// Least width of a cell, so that its texts fit, mm.
-const LEAST_CELL_MM: f64 = 92.0;
+const MIN_CELL_MM: f64 = 92.0;
 
 /// A part's place on the sheet.
 struct Cell {
@@ -45,7 +45,7 @@ fn drawing_svg(title: &str, parts: &[&Part]) -> String {
     for part in parts {
         let Some((low, high)) = part.solid.bounds() else { continue };
         let size = high - low;
-        let width = (size.x * SCALE + 2.0 * MARGIN_MM).max(LEAST_CELL_MM);
+        let width = (size.x * SCALE + 2.0 * MARGIN_MM).max(MIN_CELL_MM);
         let height = (size.y + size.z) * SCALE + 3.0 * MARGIN_MM + 26.0;
         if x + width > SHEET_MM - 8.0 && x > 8.0 {
             (x, y, row) = (8.0, y + row + 6.0, 0.0);

@@ -31,7 +31,7 @@ pub enum Inclusion {
     Named,
 }
 
-/// A kind of file that a set may hold.
+/// A file format of a set.
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
     /// Its name on the command line.

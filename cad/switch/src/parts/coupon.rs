@@ -1,7 +1,7 @@
 //! The fit coupon: slots of 0.10 to 0.40 mm clearance and three grooves, to find what a printer needs.
 
 use super::label::{Zone, engrave_text};
-use super::{Part, Role, swallowed};
+use super::{Part, Role, offset_error};
 use crate::config::ConfigError;
 use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Pen, Point2};
@@ -32,7 +32,7 @@ pub(super) fn coupon(design: &Design) -> Result<Part, ConfigError> {
     let chamfer = c.print.elephant_foot_mm;
 
     let mut solid = Solid::new();
-    let foot = swallowed("print.elephant_foot_mm");
+    let foot = offset_error("print.elephant_foot_mm");
     let outline = strip(length, height, groove);
     let (bottom, top) = solid.extrude_chamfered(&outline, 0.0, thickness, chamfer).map_err(&foot)?;
     let place = |i: usize| WALL_MM / 2.0 + pitch * (i as f64 + 0.5);

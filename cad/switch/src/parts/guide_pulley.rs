@@ -1,6 +1,6 @@
 //! The rig's guide pulley: radius 22 mm, with a seat for a 608 bearing (geometry.md, part 7).
 
-use super::{Part, Role, swallowed};
+use super::{Part, Role, offset_error};
 use crate::config::ConfigError;
 use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Point2};
@@ -28,7 +28,7 @@ pub(super) fn guide_pulley(design: &Design) -> Result<Part, ConfigError> {
     let chamfer = design.configuration().print.elephant_foot_mm;
     let circle = |radius: f64| Contour::circle(Point2::origin(), radius);
     let mut solid = Solid::new();
-    let foot = swallowed("print.elephant_foot_mm");
+    let foot = offset_error("print.elephant_foot_mm");
     let (bottom, lower_rim) = solid.extrude_chamfered(&circle(outer), 0.0, rim, chamfer).map_err(&foot)?;
     let (groove_foot, groove_head) = solid.extrude(&circle(RADIUS_MM), rim + depth, rim + depth + flat);
     let (upper_rim, top) = solid.extrude(&circle(outer), rim + 2.0 * depth + flat, width);

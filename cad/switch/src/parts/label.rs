@@ -11,7 +11,7 @@ use pinswitch_solid::solid::{RingId, Solid};
 /// Angle between the points of a round stroke end, radians.
 const ROUND_RAD: f64 = 0.5;
 /// Letters smaller than this are not legible in a print, mm.
-const LEAST_HEIGHT_MM: f64 = 1.5;
+const MIN_HEIGHT_MM: f64 = 1.5;
 /// Wall between a letter and the edge of its zone, mm.
 const EDGE_MM: f64 = 0.5;
 /// Width of a letter over its height.
@@ -28,8 +28,8 @@ pub(super) enum Zone {
     Flat { middle: Point2, length_mm: f64, height_mm: f64 },
 }
 
-/// What an engraving leaves: the rings at the top to be holes of the cap there, and a note if nothing was engraved.
-pub(super) struct Engraved {
+/// The result of an engraving: the rings at the top, which are holes in the cap there, and a note if nothing was engraved.
+pub(super) struct Engraving {
     pub(super) rings: Vec<RingId>,
     pub(super) note: Option<String>,
 }
@@ -99,7 +99,7 @@ impl Zone {
 }
 
 /// Engraves the design's label into the face at `top_mm`.
-pub(super) fn engrave(solid: &mut Solid, design: &Design, zone: &Zone, top_mm: f64) -> Engraved {
+pub(super) fn engrave(solid: &mut Solid, design: &Design, zone: &Zone, top_mm: f64) -> Engraving {
     engrave_text(solid, design, &design.label(), zone, top_mm)
 }
 
@@ -110,10 +110,10 @@ pub(super) fn engrave_text(
     text: &str,
     zone: &Zone,
     top_mm: f64,
-) -> Engraved {
+) -> Engraving {
     let c = design.configuration();
     if !c.label.engrave {
-        return Engraved { rings: Vec::new(), note: None };
+        return Engraving { rings: Vec::new(), note: None };
     }
     let stroke = c.label.stroke_mm;
     let (length, height) = zone.size_mm(c.label.height_mm + stroke);
@@ -123,10 +123,10 @@ pub(super) fn engrave_text(
     let by_length = ((length - 2.0 * EDGE_MM + gap - stroke) / letters - gap) / ASPECT;
     let size = c.label.height_mm.min(height - 2.0 * EDGE_MM - stroke).min(by_length);
     let advance = size * ASPECT + gap;
-    let fits = size >= (gap * HEIGHT / 2.0).max(LEAST_HEIGHT_MM);
+    let fits = size >= (gap * HEIGHT / 2.0).max(MIN_HEIGHT_MM);
     let deep_enough = top_mm - c.label.depth_mm >= c.print.least_wall_mm;
     if !fits || !deep_enough {
-        return Engraved {
+        return Engraving {
             rings: Vec::new(),
             note: Some(format!("the label {text:?} does not fit and is left out")),
         };
@@ -138,12 +138,14 @@ pub(super) fn engrave_text(
             let mut contours = shape.iter().map(|points| {
                 Contour::polygon(points.iter().map(|p| zone.place(middle, size + stroke, *p)).collect())
             });
-            let Some(outline) = contours.next().map(|c| run(c, Sense::Clockwise)) else { continue };
-            let islands: Vec<_> = contours.map(|c| run(c, Sense::CounterClockwise)).collect();
+            let Some(outline) = contours.next().map(|c| oriented(c, Orientation::Clockwise)) else {
+                continue;
+            };
+            let islands: Vec<_> = contours.map(|c| oriented(c, Orientation::CounterClockwise)).collect();
             rings.push(solid.pocket(&outline, &islands, top_mm - c.label.depth_mm, top_mm));
         }
     }
-    Engraved { rings, note: None }
+    Engraving { rings, note: None }
 }
 
 /// The outlines of a letter's strokes, united: each shape is its outline, then its islands, in mm about the letter's
@@ -160,24 +162,24 @@ fn letter_shapes(letter: char, height_mm: f64, stroke_mm: f64) -> Vec<Vec<Vec<[f
         .start_cap(LineCap::Round(ROUND_RAD))
         .end_cap(LineCap::Round(ROUND_RAD));
     let shapes: Vec<Vec<Vec<[f64; 2]>>> = paths.stroke(style, false);
-    shapes.into_iter().map(|shape| shape.into_iter().map(|c| merged(&c)).collect()).collect()
+    shapes.into_iter().map(|shape| shape.into_iter().map(|c| without_near_duplicates(&c)).collect()).collect()
 }
 
-/// Which way a contour runs.
+/// Orientation of a contour.
 #[derive(Clone, Copy, PartialEq)]
-enum Sense {
+enum Orientation {
     Clockwise,
     CounterClockwise,
 }
 
-/// The contour, run in the given sense: a pocket is a hole in the part, its islands are outlines.
-fn run(contour: Contour, sense: Sense) -> Contour {
-    let is = if contour.area_mm2() > 0.0 { Sense::CounterClockwise } else { Sense::Clockwise };
+/// The contour in the given orientation: a pocket is a hole in the part, its islands are outlines.
+fn oriented(contour: Contour, sense: Orientation) -> Contour {
+    let is = if contour.area_mm2() > 0.0 { Orientation::CounterClockwise } else { Orientation::Clockwise };
     if is == sense { contour } else { contour.reversed() }
 }
 
-/// Leaves out points that all but coincide with their neighbour.
-fn merged(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+/// Drops points that nearly coincide with their neighbour.
+fn without_near_duplicates(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < MERGE_MM;
     let mut kept: Vec<[f64; 2]> = Vec::with_capacity(points.len());
     for p in points {

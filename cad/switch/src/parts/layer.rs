@@ -1,6 +1,6 @@
 //! The silicone layer and its rigid proxy: one shape (geometry.md, parts 2 and 5).
 
-use super::{Part, Pose, Role, Sector, swallowed};
+use super::{Part, Pose, Role, Sector, offset_error};
 use crate::config::ConfigError;
 use crate::design::Design;
 use pinswitch_solid::profile::Contour;
@@ -32,13 +32,13 @@ fn pose(design: &Design) -> Option<Pose> {
 /// None for a valid design.
 pub fn silicone_layer(design: &Design) -> Result<Part, ConfigError> {
     let solid = Solid::prism(&outline(design), &[], 0.0, design.layer_width_mm(), 0.0)
-        .map_err(swallowed("segment.groove_radius_mm"))?;
+        .map_err(offset_error("segment.groove_radius_mm"))?;
     Ok(Part::new("silicone-layer", Role::Layer, solid, pose(design)))
 }
 
 pub(super) fn proxy(design: &Design) -> Result<Part, ConfigError> {
     let chamfer = design.configuration().print.elephant_foot_mm;
     let solid = Solid::prism(&outline(design), &[], 0.0, design.layer_width_mm(), chamfer)
-        .map_err(swallowed("print.elephant_foot_mm"))?;
+        .map_err(offset_error("print.elephant_foot_mm"))?;
     Ok(Part::new("proxy", Role::Proxy, solid, pose(design)))
 }

@@ -86,7 +86,7 @@ pub fn reference_bodies(design: &Design) -> Result<Vec<Part>, ConfigError> {
     for (index, angle) in design.pin_angles_rad().into_iter().enumerate() {
         let outline = Contour::circle(polar(design.contact_radius_mm(), angle), c.pins.diameter_mm / 2.0);
         let solid = Solid::prism(&outline, &[], 0.0, design.pin_length_mm(), 0.0)
-            .map_err(swallowed("pins.diameter_mm"))?;
+            .map_err(offset_error("pins.diameter_mm"))?;
         let pose = Some(Pose::upright(z_mm));
         bodies.push(Part::new(format!("pin-{}", index + 1), Role::Pin { index }, solid, pose));
     }
@@ -94,7 +94,7 @@ pub fn reference_bodies(design: &Design) -> Result<Vec<Part>, ConfigError> {
 }
 
 /// The error about `field` when an offset that depends on it swallows an edge.
-fn swallowed(field: &'static str) -> impl Fn(OffsetError) -> ConfigError {
+fn offset_error(field: &'static str) -> impl Fn(OffsetError) -> ConfigError {
     move |e| ConfigError {
         field: field.to_owned(),
         value: None,

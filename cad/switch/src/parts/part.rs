@@ -90,7 +90,7 @@ pub struct Part {
     pub solid: Solid,
     /// Where it sits in the assembly; `None` for tools such as the mould.
     pub pose: Option<Pose>,
-    /// What a person should know about it.
+    /// Notes on it for the user.
     pub notes: Vec<String>,
 }
 
@@ -104,7 +104,7 @@ impl Part {
         self.role.material()
     }
 
-    /// What its mesh is held against: one body, and the exact volume within what the chord tolerance allows.
+    /// What its mesh is compared with: one body, and the exact volume within what the chord tolerance allows.
     pub fn expectation(&self, design: &Design) -> Expectation {
         let bound = self.solid.volume_bound_mm3(design.tolerance());
         Expectation {

@@ -1,7 +1,7 @@
 //! The rigid shell: a grooved sector of an annulus with fastener holes (geometry.md, part 1).
 
 use super::label::{Zone, engrave};
-use super::{Part, Pose, Role, Sector, holes_at, swallowed};
+use super::{Part, Pose, Role, Sector, holes_at, offset_error};
 use crate::config::ConfigError;
 use crate::design::Design;
 use pinswitch_solid::solid::{Facing, Solid};
@@ -25,7 +25,7 @@ pub(super) fn shell(design: &Design) -> Result<Part, ConfigError> {
         c.fasteners.hole_diameter_mm / 2.0,
     );
     let (width, chamfer) = (c.shell.width_mm, c.print.elephant_foot_mm);
-    let foot = swallowed("print.elephant_foot_mm");
+    let foot = offset_error("print.elephant_foot_mm");
     let mut solid = Solid::new();
     let (bottom, top) = solid.extrude_chamfered(&outline, 0.0, width, chamfer).map_err(&foot)?;
     let (bottoms, mut tops) = solid.through_holes(&holes, 0.0, width, chamfer).map_err(&foot)?;

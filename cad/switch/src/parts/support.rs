@@ -3,7 +3,7 @@
 
 use super::label::{Zone, engrave};
 use super::shell::wall_sector;
-use super::{Part, Pose, Role, holes_at, swallowed};
+use super::{Part, Pose, Role, holes_at, offset_error};
 use crate::config::{ConfigError, SlotKind};
 use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Pen, Point2, Vector2, polar};
@@ -55,9 +55,9 @@ fn support(design: &Design, side: Side) -> Result<Part, ConfigError> {
         SlotKind::Through => through.extend(slots),
         SlotKind::Blind => blind = slots,
     }
-    let foot = swallowed("print.elephant_foot_mm");
+    let foot = offset_error("print.elephant_foot_mm");
     let mut solid = Solid::new();
-    let rounded = swallowed("support.corner_radius_mm");
+    let rounded = offset_error("support.corner_radius_mm");
     let (bottom, top) = solid.extrude_chamfered(&outline, 0.0, plate, chamfer).map_err(&rounded)?;
     let (bottoms, mut tops) = solid.through_holes(&through, 0.0, plate, chamfer).map_err(&foot)?;
     solid.cap(Facing::Down, bottom, &bottoms);
@@ -95,12 +95,12 @@ fn slot(design: &Design, angle_rad: f64) -> Contour {
     let slot = design.slot();
     let (inner, outer) = (polar(slot.inner_mm, angle_rad), polar(slot.outer_mm, angle_rad));
     let along = (outer - inner).normalize();
-    let aside = Vector2::new(-along.y, along.x) * (slot.width_mm / 2.0);
-    Pen::at(inner - aside)
-        .line_to(outer - aside)
-        .arc_to(outer, outer + aside, true)
-        .line_to(inner + aside)
-        .arc_to(inner, inner - aside, true)
+    let sideways = Vector2::new(-along.y, along.x) * (slot.width_mm / 2.0);
+    Pen::at(inner - sideways)
+        .line_to(outer - sideways)
+        .arc_to(outer, outer + sideways, true)
+        .line_to(inner + sideways)
+        .arc_to(inner, inner - sideways, true)
         .close()
         .reversed()
 }

@@ -22,7 +22,7 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// Adds an entity and gives its number.
+    /// Adds an entity and returns its number.
     pub(super) fn add(&mut self, entity: &str) -> Id {
         self.last += 1;
         let _ = writeln!(self.data, "#{}={entity};", self.last);

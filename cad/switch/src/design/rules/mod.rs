@@ -13,7 +13,7 @@ use super::Dimensions;
 use crate::config::{ConfigError, Configuration};
 
 /// What chamfers on both sides leave of a wall on the bed.
-const LEAST_FOOT_MM: f64 = 0.05;
+const MIN_FOOT_MM: f64 = 0.05;
 
 /// Where a rule is shown, and what it costs to break it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,7 +156,7 @@ fn require(is_kept: bool, reason: impl FnOnce() -> (String, String)) -> Assessme
 /// The least thickness of a wall that may be as thin as `lines` times the thinnest accepted one: chamfers on both of
 /// its bottom edges must leave it a foot.
 fn least_wall_mm(c: &Configuration, lines: f64) -> f64 {
-    (lines * c.print.least_wall_mm).max(2.0 * c.print.elephant_foot_mm + LEAST_FOOT_MM)
+    (lines * c.print.least_wall_mm).max(2.0 * c.print.elephant_foot_mm + MIN_FOOT_MM)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Rules for the ends of sectors, the mould, and the loads.
 
-use super::shell::LEAST_INNER_RADIUS_MM;
+use super::shell::MIN_INNER_RADIUS_MM;
 use super::{Assessment, Inspection, Rule, Severity, require};
 use crate::config::MouldKind;
 
@@ -9,7 +9,7 @@ const LARGEST_SHIFT: f64 = 0.9;
 /// How far the base or the basin of a mould reaches beyond what it holds.
 const MOULD_MARGIN_MM: f64 = 1.0;
 /// What must stay open behind a sector, so that its ends do not meet.
-const LEAST_GAP_MM: f64 = 0.5;
+const MIN_GAP_MM: f64 = 0.5;
 
 pub(super) const RULES: &[Rule] = &[
     Rule { field: "segment.end_margin_mm", severity: Severity::Error, assess: ends_in_sector },
@@ -70,10 +70,10 @@ impl Ends {
 
     fn assess_gap(&self, half_span_rad: f64, remedies: &str) -> Assessment {
         let half_rad = half_span_rad + (self.shift_mm / self.inner_mm).asin();
-        let most_rad = std::f64::consts::PI - (LEAST_GAP_MM / 2.0 / self.inner_mm).min(1.0).asin();
+        let most_rad = std::f64::consts::PI - (MIN_GAP_MM / 2.0 / self.inner_mm).min(1.0).asin();
         require(half_rad <= most_rad, || {
             (
-                format!("lets the ends meet behind the axis; {LEAST_GAP_MM} mm must stay between them"),
+                format!("lets the ends meet behind the axis; {MIN_GAP_MM} mm must stay between them"),
                 format!("lower it by {:.1}{remedies}", 2.0 * (half_rad - most_rad).to_degrees()),
             )
         })
@@ -92,10 +92,10 @@ fn room_in_tray(i: &Inspection<'_>) -> Assessment {
     let Some(ends) = Ends::of_mould(i).filter(|_| i.configuration().mould.kind == MouldKind::OnePiece) else {
         return Assessment::NotApplicable;
     };
-    require(ends.inner_mm >= LEAST_INNER_RADIUS_MM, || {
+    require(ends.inner_mm >= MIN_INNER_RADIUS_MM, || {
         (
             "leaves no room inside the inner wall of the mould".to_owned(),
-            format!("lower it by {:.3}", LEAST_INNER_RADIUS_MM - ends.inner_mm),
+            format!("lower it by {:.3}", MIN_INNER_RADIUS_MM - ends.inner_mm),
         )
     })
 }

@@ -5,11 +5,11 @@ use super::{Assessment, Inspection, Rule, Severity, require};
 /// Gap that the tendon needs on both sides of it.
 const TENDON_GAP_MM: f64 = 0.5;
 /// A rope bent sharper than this, pulley over rope diameter, breaks soon (cad/doc/print-limits.md).
-const LEAST_BEND_RATIO: f64 = 10.0;
+const MIN_BEND_RATIO: f64 = 10.0;
 /// Below this ratio of pulley to rope diameter a wire rope tires early (cad/doc/print-limits.md).
 const GOOD_BEND_RATIO: f64 = 20.0;
 /// Silicone left between the bottom of its grooves and its inner face.
-const LEAST_LAYER_MM: f64 = 0.5;
+const MIN_LAYER_MM: f64 = 0.5;
 
 pub(super) const RULES: &[Rule] = &[
     Rule { field: "layout.pins", severity: Severity::Error, assess: pins_in_grooves },
@@ -62,10 +62,10 @@ fn pin_fits_groove(i: &Inspection<'_>) -> Assessment {
 
 fn layer_thickness(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
-    let least = c.segment.groove_radius_mm + LEAST_LAYER_MM;
+    let least = c.segment.groove_radius_mm + MIN_LAYER_MM;
     require(c.silicone.thickness_mm >= least, || {
         (
-            format!("leaves less than {LEAST_LAYER_MM} mm of silicone under its grooves"),
+            format!("leaves less than {MIN_LAYER_MM} mm of silicone under its grooves"),
             format!("raise it to {least:.3} or lower segment.groove_radius_mm"),
         )
     })
@@ -109,7 +109,7 @@ fn tendon_in_channel(i: &Inspection<'_>) -> Assessment {
 }
 
 fn tendon_bend(i: &Inspection<'_>) -> Assessment {
-    let most = 2.0 * i.contact_radius_mm() / LEAST_BEND_RATIO;
+    let most = 2.0 * i.contact_radius_mm() / MIN_BEND_RATIO;
     require(i.tendon_diameter_mm() <= most, || {
         (
             format!(

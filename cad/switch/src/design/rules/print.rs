@@ -3,13 +3,13 @@
 use super::{Assessment, Inspection, Rule, Severity, require};
 
 /// Least chamfer of a bottom edge.
-const LEAST_CHAMFER_MM: f64 = 0.02;
+const MIN_CHAMFER_MM: f64 = 0.02;
 /// Space beyond the mould's outer wall that its keys and the plate's margin take on the bed.
 const BED_MARGIN_MM: f64 = 3.0;
 /// Longest bridge that prints without sagging, mm (cad/doc/print-limits.md).
 const LONGEST_BRIDGE_MM: f64 = 10.0;
 /// Gaps under this are closed by slicers, mm (cad/doc/print-limits.md).
-const LEAST_GAP_MM: f64 = 0.1;
+const MIN_GAP_MM: f64 = 0.1;
 /// Wall around a screw hole that holds well, mm.
 const GOOD_RIM_MM: f64 = 1.0;
 
@@ -39,10 +39,10 @@ fn check(is_kept: bool, statement: String, remedy: &str) -> Assessment {
 /// A chamfer is left out or large enough to print: a sliver of one would also be thinner than a facet may be.
 fn chamfer_prints(i: &Inspection<'_>) -> Assessment {
     let chamfer = i.configuration().print.elephant_foot_mm;
-    require(chamfer == 0.0 || chamfer >= LEAST_CHAMFER_MM, || {
+    require(chamfer == 0.0 || chamfer >= MIN_CHAMFER_MM, || {
         (
-            format!("is too small to print; the least is {LEAST_CHAMFER_MM} mm"),
-            format!("raise it to {LEAST_CHAMFER_MM}, or set 0 to leave the chamfer out"),
+            format!("is too small to print; the least is {MIN_CHAMFER_MM} mm"),
+            format!("raise it to {MIN_CHAMFER_MM}, or set 0 to leave the chamfer out"),
         )
     })
 }
@@ -105,8 +105,8 @@ fn layer_of_nozzle(i: &Inspection<'_>) -> Assessment {
 fn open_slots(i: &Inspection<'_>) -> Assessment {
     let clearance = i.configuration().support.slot_clearance_mm;
     check(
-        clearance >= LEAST_GAP_MM,
-        format!("slots {clearance} mm wider than the pins; slicers close gaps under {LEAST_GAP_MM:.2} mm"),
+        clearance >= MIN_GAP_MM,
+        format!("slots {clearance} mm wider than the pins; slicers close gaps under {MIN_GAP_MM:.2} mm"),
         "raise support.slot_clearance_mm",
     )
 }

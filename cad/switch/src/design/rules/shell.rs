@@ -3,7 +3,7 @@
 use super::{Assessment, Inspection, Rule, Severity, least_wall_mm, require};
 
 /// Least radius inside the shell: below it there is no room for a core.
-pub(super) const LEAST_INNER_RADIUS_MM: f64 = 1.0;
+pub(super) const MIN_INNER_RADIUS_MM: f64 = 1.0;
 
 pub(super) const RULES: &[Rule] = &[
     Rule { field: "shell.wall_mm", severity: Severity::Error, assess: inner_radius },
@@ -16,10 +16,10 @@ pub(super) const RULES: &[Rule] = &[
 
 fn inner_radius(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
-    let most = c.shell.outer_radius_mm - LEAST_INNER_RADIUS_MM;
+    let most = c.shell.outer_radius_mm - MIN_INNER_RADIUS_MM;
     require(c.shell.wall_mm <= most, || {
         (
-            format!("leaves less than {LEAST_INNER_RADIUS_MM} mm of radius inside the shell"),
+            format!("leaves less than {MIN_INNER_RADIUS_MM} mm of radius inside the shell"),
             format!("lower it to {most:.3} or raise shell.outer_radius_mm"),
         )
     })
@@ -51,13 +51,13 @@ fn land(i: &Inspection<'_>) -> Assessment {
             ),
             format!(
                 "lower it to {}, raise shell.outer_radius_mm, or lower segment.groove_radius_mm",
-                most_grooves(i, needed)
+                max_grooves(i, needed)
             ),
         )
     })
 }
 
-fn most_grooves(i: &Inspection<'_>, needed_mm: f64) -> usize {
+fn max_grooves(i: &Inspection<'_>, needed_mm: f64) -> usize {
     let c = i.configuration();
     let span = c.segment.span_deg.to_radians();
     (1..c.segment.grooves)

@@ -21,7 +21,7 @@ use pinswitch_solid::profile::polar;
 const STATES: usize = 25;
 
 /// The lightest load that is shown, as a share of the heaviest: an unloaded tendon has no shape.
-const LEAST_SHARE: f64 = 1e-3;
+const MIN_SHARE: f64 = 1e-3;
 
 /// Everything on the page.
 #[derive(Debug, Serialize)]
@@ -179,7 +179,7 @@ fn contact_states(design: &Design) -> ContactStates {
         return ContactStates::default();
     }
     let f = &design.configuration().friction;
-    let (lightest, heaviest) = (f.load_min_n.max(LEAST_SHARE * f.load_max_n), f.load_max_n);
+    let (lightest, heaviest) = (f.load_min_n.max(MIN_SHARE * f.load_max_n), f.load_max_n);
     let load_n: Vec<f64> =
         (0..STATES).map(|i| lightest + (heaviest - lightest) * i as f64 / (STATES - 1) as f64).collect();
     let profiles: Result<Vec<_>, _> =

@@ -36,7 +36,7 @@ fn head(foot: &Contour, height_mm: f64) -> Result<Contour, OffsetError> {
     foot.offset(height_mm * TAPER)
 }
 
-/// Keys that stand on the face at `z_mm`; gives their feet, to be holes of that face's cap.
+/// Keys that stand on the face at `z_mm`; returns their feet, which are holes in that face's cap.
 pub(super) fn pegs(solid: &mut Solid, design: &Design, z_mm: f64) -> Result<Vec<RingId>, OffsetError> {
     let height = design.configuration().mould.key_height_mm;
     feet(design, 0.0)
@@ -51,7 +51,7 @@ pub(super) fn pegs(solid: &mut Solid, design: &Design, z_mm: f64) -> Result<Vec<
         .collect()
 }
 
-/// Blind holes for the keys in the face at `z_mm` below; gives their mouths.
+/// Blind holes for the keys in the face at `z_mm` below; returns their mouths.
 pub(super) fn blind_holes(solid: &mut Solid, design: &Design, z_mm: f64) -> Result<Vec<RingId>, OffsetError> {
     let m = &design.configuration().mould;
     let depth = m.key_height_mm + HEAD_PLAY_MM;

@@ -1,6 +1,6 @@
 //! The split mould's lid: it sets the layer's width, with a pouring funnel and vents at both ends.
 
-use super::super::{Part, Role, swallowed};
+use super::super::{Part, Role, offset_error};
 use super::split::plate_sector;
 use super::{Cavity, keys};
 use crate::config::ConfigError;
@@ -44,7 +44,7 @@ fn openings(design: &Design, plate: &Contour) -> Result<Openings, ConfigError> {
     let room = neighbours.map(|other| gap_mm(&spout, other)).fold(f64::INFINITY, f64::min);
     let wanted = (c.mould.pour_width_mm - width) / 2.0;
     let widening = wanted.min(room - c.print.least_wall_mm).clamp(0.0, c.mould.floor_mm);
-    let mouth = spout.offset(widening).map_err(swallowed("mould.pour_width_mm"))?;
+    let mouth = spout.offset(widening).map_err(offset_error("mould.pour_width_mm"))?;
     Ok(Openings { keys, vents, spout, mouth })
 }
 
@@ -64,7 +64,7 @@ pub(in crate::parts) fn lid(design: &Design) -> Result<Part, ConfigError> {
     let c = design.configuration();
     let thickness = c.mould.floor_mm;
     let chamfer = c.print.elephant_foot_mm;
-    let foot = swallowed("print.elephant_foot_mm");
+    let foot = offset_error("print.elephant_foot_mm");
     let plate = plate_sector(design, &Cavity::of(design)).outline();
     let o = openings(design, &plate)?;
     let holes = [o.keys, o.vents].concat();

@@ -1,6 +1,6 @@
 //! The mould in one piece: a tray with a basin above the cavity.
 
-use super::super::{Part, Role, swallowed};
+use super::super::{Part, Role, offset_error};
 use super::Cavity;
 use crate::config::ConfigError;
 use crate::design::Design;
@@ -11,7 +11,7 @@ use pinswitch_solid::solid::{Facing, Solid};
 const LEDGE_MM: f64 = 1.0;
 
 /// The hollow of the tray: cavity foot, cavity mouth and basin, counter-clockwise.
-struct Hollow {
+struct TrayCavity {
     cavity: Cavity,
     draft_mm: f64,
     foot: Contour,
@@ -19,19 +19,19 @@ struct Hollow {
     basin: Contour,
 }
 
-fn hollow(design: &Design) -> Hollow {
+fn tray_cavity(design: &Design) -> TrayCavity {
     let cavity = Cavity::of(design);
     let draft_mm = cavity.depth_mm * design.configuration().mould.draft_deg.to_radians().tan();
     let ribs = |sector: super::Sector| sector.grooved(&cavity.groove_angles_rad, cavity.groove_radius_mm);
     // Inner and end walls lean; the ribbed wall shapes the contact and stays upright.
     let wide = cavity.sector.grown(draft_mm, 0.0, draft_mm);
     let (foot, mouth) = (ribs(cavity.sector), ribs(wide));
-    Hollow { draft_mm, foot, mouth, basin: wide.grown(LEDGE_MM, LEDGE_MM, LEDGE_MM).outline(), cavity }
+    TrayCavity { draft_mm, foot, mouth, basin: wide.grown(LEDGE_MM, LEDGE_MM, LEDGE_MM).outline(), cavity }
 }
 
 /// What the tray holds when it is full to the brim, mm³.
 pub(super) fn filled_mm3(design: &Design) -> f64 {
-    let Hollow { cavity, foot, mouth, basin, .. } = hollow(design);
+    let TrayCavity { cavity, foot, mouth, basin, .. } = tray_cavity(design);
     let mut solid = Solid::new();
     let (foot, mouth) = (solid.ring(foot, 0.0), solid.ring(mouth, cavity.depth_mm));
     solid.wall(foot, mouth);
@@ -40,7 +40,7 @@ pub(super) fn filled_mm3(design: &Design) -> f64 {
 
 pub(in super::super) fn one_piece(design: &Design) -> Result<Part, ConfigError> {
     let m = &design.configuration().mould;
-    let Hollow { cavity, draft_mm, foot, mouth, basin } = hollow(design);
+    let TrayCavity { cavity, draft_mm, foot, mouth, basin } = tray_cavity(design);
     let wall = m.wall_mm + LEDGE_MM + draft_mm;
     let body = cavity.sector.grown(wall, m.wall_mm + LEDGE_MM, wall).outline();
     let (floor, ledge) = (m.floor_mm, m.floor_mm + cavity.depth_mm);
@@ -50,7 +50,7 @@ pub(in super::super) fn one_piece(design: &Design) -> Result<Part, ConfigError> 
 
     let mut solid = Solid::new();
     let (bottom, brim) =
-        solid.extrude_chamfered(&body, 0.0, top, chamfer).map_err(swallowed("print.elephant_foot_mm"))?;
+        solid.extrude_chamfered(&body, 0.0, top, chamfer).map_err(offset_error("print.elephant_foot_mm"))?;
     solid.cap(Facing::Down, bottom, &[]);
     let cavity_foot = solid.ring(foot.reversed(), floor);
     let cavity_mouth = solid.ring(mouth.reversed(), ledge);

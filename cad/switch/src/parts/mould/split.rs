@@ -2,7 +2,7 @@
 
 use super::super::label::{Zone, engrave};
 use super::super::sector::{End, grooved_face};
-use super::super::{Part, Role, Sector, swallowed};
+use super::super::{Part, Role, Sector, offset_error};
 use super::{Cavity, keys};
 use crate::config::ConfigError;
 use crate::design::Design;
@@ -39,9 +39,9 @@ pub(in crate::parts) fn core(design: &Design) -> Result<Part, ConfigError> {
     let mut solid = Solid::new();
     let (bottom, deck) = solid
         .extrude_chamfered(&base.outline(), 0.0, floor, c.print.elephant_foot_mm)
-        .map_err(swallowed("print.elephant_foot_mm"))?;
+        .map_err(offset_error("print.elephant_foot_mm"))?;
     solid.cap(Facing::Down, bottom, &[]);
-    let mut standing = keys::pegs(&mut solid, design, floor).map_err(swallowed("mould.key_height_mm"))?;
+    let mut standing = keys::pegs(&mut solid, design, floor).map_err(offset_error("mould.key_height_mm"))?;
     let (foot, head) = solid.extrude(&core_sector(design, &cavity).outline(), floor, top);
     standing.push(foot);
     solid.cap(Facing::Up, deck, &standing);
@@ -74,11 +74,11 @@ pub(in crate::parts) fn ring(design: &Design) -> Result<Part, ConfigError> {
             place: None,
         });
     }
-    let key = swallowed("mould.key_height_mm");
+    let key = offset_error("mould.key_height_mm");
     let mut solid = Solid::new();
     let (bottom, top) = solid
         .extrude_chamfered(&ring_outline(design, &cavity), 0.0, height, c.print.elephant_foot_mm)
-        .map_err(swallowed("print.elephant_foot_mm"))?;
+        .map_err(offset_error("print.elephant_foot_mm"))?;
     let mouths = keys::blind_holes(&mut solid, design, 0.0).map_err(&key)?;
     solid.cap(Facing::Down, bottom, &mouths);
     let pegs = keys::pegs(&mut solid, design, height).map_err(&key)?;

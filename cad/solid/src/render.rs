@@ -35,8 +35,8 @@ pub struct Picture {
 
 /// Samples per pixel, along each side.
 const SAMPLES: usize = 2;
-/// Rows of pixels that are drawn at a time: their samples fit in the processor's cache.
-const BAND_ROWS: usize = 16;
+/// Rows of samples that are drawn at a time: they fit in the processor's cache.
+const BAND_SAMPLES: usize = 16 * SAMPLES;
 /// Share of the picture that is left free around the bodies.
 const MARGIN: f64 = 0.06;
 const BACKGROUND: [f32; 3] = [250.0, 250.0, 248.0];
@@ -68,12 +68,13 @@ pub fn render(bodies: &[Body], view: View, width: u32, height: u32) -> Picture {
     let faces = visible_faces(bodies, view, columns, rows);
     let mut pixels = Vec::with_capacity(width as usize * height as usize * 3);
     let mut band = Band::new(columns);
-    for first in (0..rows).step_by(BAND_ROWS * SAMPLES) {
-        let last = (first + BAND_ROWS * SAMPLES).min(rows);
+    for (number, faces_of_band) in by_band(&faces, rows).into_iter().enumerate() {
+        let first = number * BAND_SAMPLES;
+        let last = (first + BAND_SAMPLES).min(rows);
         // One row more than is shown: an edge is seen against the sample below.
         band.clear(first, (last + 1).min(rows));
-        for (number, face) in faces.iter().enumerate() {
-            band.fill(face, number);
+        for face in faces_of_band {
+            band.fill(&faces[face as usize], face);
         }
         band.shade(last - first, &faces, &mut pixels);
     }
@@ -82,10 +83,10 @@ pub fn render(bodies: &[Body], view: View, width: u32, height: u32) -> Picture {
 
 /// A triangle that faces the camera, in samples of the picture, with its depth as a plane.
 struct Face {
-    /// Corners, across and down.
+    /// Corners from the highest to the lowest: across and down.
     corners: [[f64; 2]; 3],
-    /// Rows between which it lies.
-    rows: (f64, f64),
+    /// How far across the sides run for each row: highest to lowest corner, highest to middle, middle to lowest.
+    slopes: [f64; 3],
     /// Depth in mm at the picture's origin, and its slope across and down.
     depth: [f64; 3],
     colour: [f32; 3],
@@ -127,6 +128,22 @@ fn visible_faces(bodies: &[Body], view: View, columns: usize, rows: usize) -> Ve
     .collect()
 }
 
+/// Numbers of the faces that each band of rows shows, in the order of the faces.
+#[allow(clippy::cast_possible_truncation)]
+fn by_band(faces: &[Face], rows: usize) -> Vec<Vec<u32>> {
+    let mut bands = vec![Vec::new(); rows.div_ceil(BAND_SAMPLES)];
+    for (number, face) in (0u32..).zip(faces) {
+        // The first row of a band also belongs to the band above it.
+        let (highest, lowest) = face.rows();
+        let first = first_from(highest - 1.0, rows).saturating_sub(1) / BAND_SAMPLES;
+        let last = first_from(lowest, rows) / BAND_SAMPLES;
+        for band in bands.iter_mut().take(last + 1).skip(first) {
+            band.push(number);
+        }
+    }
+    bands
+}
+
 impl Face {
     /// `None` for a triangle that is seen edge on.
     fn new([a, b, c]: [Point3; 3], colour: [f32; 3]) -> Option<Self> {
@@ -137,23 +154,35 @@ impl Face {
         }
         let across = (ab.z * ac.y - ac.z * ab.y) / area;
         let down = (ab.x * ac.z - ac.x * ab.z) / area;
+        let mut corners = [a, b, c].map(|p| [p.x, p.y]);
+        corners.sort_by(|p, q| p[1].total_cmp(&q[1]));
+        let [top, middle, bottom] = corners;
+        // A side along a row is never met by one.
+        let slope = |p: [f64; 2], q: [f64; 2]| if q[1] > p[1] { (q[0] - p[0]) / (q[1] - p[1]) } else { 0.0 };
         Some(Self {
-            corners: [a, b, c].map(|p| [p.x, p.y]),
-            rows: (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y)),
+            corners,
+            slopes: [slope(top, bottom), slope(top, middle), slope(middle, bottom)],
             depth: [a.z - across * a.x - down * a.y, across, down],
             colour,
         })
     }
 
-    /// Where a horizontal line at `y` enters and leaves the triangle; `None` if it misses it.
-    fn span(&self, y: f64) -> Option<(f64, f64)> {
-        let [a, b, c] = self.corners;
-        [(a, b), (b, c), (c, a)]
-            .into_iter()
-            .filter(|(u, v)| (u[1] <= y) != (v[1] <= y))
-            .map(|(u, v)| u[0] + (v[0] - u[0]) * (y - u[1]) / (v[1] - u[1]))
-            .map(|x| (x, x))
-            .reduce(|(low, high), (x, _)| (low.min(x), high.max(x)))
+    /// The row of its highest corner and that of its lowest.
+    const fn rows(&self) -> (f64, f64) {
+        (self.corners[0][1], self.corners[2][1])
+    }
+
+    /// Where a horizontal line at `y`, between highest and lowest corner, enters and leaves the triangle. Faces that share
+    /// a side agree on it: it is always followed from its higher end.
+    fn span(&self, y: f64) -> (f64, f64) {
+        let [top, middle, _] = self.corners;
+        let long = top[0] + self.slopes[0] * (y - top[1]);
+        let short = if y < middle[1] {
+            top[0] + self.slopes[1] * (y - top[1])
+        } else {
+            middle[0] + self.slopes[2] * (y - middle[1])
+        };
+        (long.min(short), long.max(short))
     }
 }
 
@@ -179,17 +208,14 @@ impl Band {
     }
 
     /// Fills the samples whose middle lies in `face`; the nearer sample stays.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    fn fill(&mut self, face: &Face, number: usize) {
-        let clamp = |v: f64, most: usize| v.clamp(0.0, most as f64) as usize;
+    #[allow(clippy::cast_possible_truncation)]
+    fn fill(&mut self, face: &Face, number: u32) {
         let top = self.first_row as f64 + 0.5;
-        for row in
-            clamp((face.rows.0 - top).ceil(), self.rows)..clamp((face.rows.1 - top).floor() + 1.0, self.rows)
-        {
+        let (highest, lowest) = face.rows();
+        for row in first_from(highest - top, self.rows)..first_from(lowest - top, self.rows) {
             let y = top + row as f64;
-            let Some((left, right)) = face.span(y) else { continue };
-            let (from, to) =
-                (clamp((left - 0.5).ceil(), self.columns), clamp((right - 0.5).ceil(), self.columns));
+            let (left, right) = face.span(y);
+            let (from, to) = (first_from(left - 0.5, self.columns), first_from(right - 0.5, self.columns));
             let start = row * self.columns;
             let depths = &mut self.depths[start + from..start + to.max(from)];
             let faces = &mut self.faces[start + from..start + to.max(from)];
@@ -198,7 +224,7 @@ impl Band {
             for (known, owner) in depths.iter_mut().zip(faces) {
                 if depth as f32 > *known {
                     *known = depth as f32;
-                    *owner = number as u32;
+                    *owner = number;
                 }
                 depth += across;
             }
@@ -206,33 +232,61 @@ impl Band {
     }
 
     /// Appends the pixels of `rows` rows of samples: the mean of a pixel's samples, darkened at steps in depth.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     fn shade(&self, rows: usize, faces: &[Face], pixels: &mut Vec<u8>) {
         for row in (0..rows).step_by(SAMPLES) {
+            let lines: [&[f32]; SAMPLES + 1] = std::array::from_fn(|i| {
+                // Below the last row there is none, and so no step to see: it stands for itself.
+                let i = (row + i).min(self.rows - 1);
+                &self.depths[i * self.columns..(i + 1) * self.columns]
+            });
             for column in (0..self.columns).step_by(SAMPLES) {
-                let mut sum = [0.0f32; 3];
-                for sample in 0..SAMPLES * SAMPLES {
-                    let i = (row + sample / SAMPLES) * self.columns + column + sample % SAMPLES;
-                    let covered = self.depths[i] > NOTHING;
-                    let colour = if covered { faces[self.faces[i] as usize].colour } else { BACKGROUND };
-                    let shade = if self.is_edge(i) { EDGE_SHADE } else { 1.0 };
-                    (0..3).for_each(|k| sum[k] += colour[k] * shade);
+                // One column more than the pixel has, but for the last.
+                let seen = column..(column + SAMPLES + 1).min(self.columns);
+                if lines.iter().all(|line| line[seen.clone()].iter().all(|depth| *depth == NOTHING)) {
+                    pixels.extend(BACKGROUND.map(to_byte));
+                } else {
+                    pixels.extend(self.pixel(row, column, &lines, faces).map(to_byte));
                 }
-                // Half is added and the rest cut off, which rounds: no colour is negative or above 255.
-                pixels.extend(sum.map(|v| (v / (SAMPLES * SAMPLES) as f32 + 0.5) as u8));
             }
         }
     }
 
-    /// Whether the sample to the right or below lies on another face: a jump in depth.
-    fn is_edge(&self, i: usize) -> bool {
-        let jump = |j: usize| {
-            let (a, b) = (self.depths[i], self.depths[j]);
-            a != b && ((a == NOTHING) != (b == NOTHING) || (a - b).abs() > EDGE_MM)
-        };
-        let right = !(i + 1).is_multiple_of(self.columns) && jump(i + 1);
-        right || (i + self.columns < self.depths.len() && jump(i + self.columns))
+    /// The colour of the pixel whose first sample stands in this row and column.
+    fn pixel(&self, row: usize, column: usize, lines: &[&[f32]; SAMPLES + 1], faces: &[Face]) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        for (i, j) in (0..SAMPLES * SAMPLES).map(|sample| (sample / SAMPLES, column + sample % SAMPLES)) {
+            let depth = lines[i][j];
+            let colour = if depth == NOTHING {
+                BACKGROUND
+            } else {
+                faces[self.faces[(row + i) * self.columns + j] as usize].colour
+            };
+            let right = lines[i].get(j + 1).copied().unwrap_or(depth);
+            let is_edge = is_step(depth, right) || is_step(depth, lines[i + 1][j]);
+            let share = if is_edge { EDGE_SHADE } else { 1.0 } / (SAMPLES * SAMPLES) as f32;
+            (0..3).for_each(|k| sum[k] += colour[k] * share);
+        }
+        sum
     }
+}
+
+/// Whether an edge shows between samples of these depths: one of them is empty, or they lie far apart.
+fn is_step(a: f32, b: f32) -> bool {
+    a != b && ((a == NOTHING) != (b == NOTHING) || (a - b).abs() > EDGE_MM)
+}
+
+/// A colour between 0 and 255, rounded.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn to_byte(value: f32) -> u8 {
+    (value + 0.5) as u8
+}
+
+/// The first whole number from `x` on, within 0 and `most`.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn first_from(x: f64, most: usize) -> usize {
+    // The cast cuts off, and turns what is negative into zero.
+    let floor = x as usize;
+    (floor + usize::from((floor as f64) < x)).min(most)
 }
 
 #[cfg(test)]

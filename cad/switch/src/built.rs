@@ -2,14 +2,22 @@
 //!
 //! Every format takes a [`Built`]; none builds or tessellates a part again.
 
+use std::sync::OnceLock;
+
 use crate::config::ConfigError;
 use crate::design::Design;
 use crate::parallel::map_each;
 use crate::parts::{Part, Role, printed, reference_bodies};
+use crate::scene::assembled;
+use crate::set::SetError;
 use pinswitch_solid::files::stl_bytes;
 use pinswitch_solid::mesh::Mesh;
+use pinswitch_solid::render::{View, render};
 use pinswitch_solid::solid::CapError;
 use pinswitch_solid::validity::{Expectation, Fault, MeshFacts, examine};
+
+/// Pixels of the picture of the exploded assembly, across and up.
+const EXPLODED_PIXELS: (u32, u32) = (900, 675);
 
 /// Why a design cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -111,6 +119,7 @@ pub struct Built {
     design: Design,
     printed: Vec<BuiltPart>,
     reference: Vec<MeshedBody>,
+    exploded_png: OnceLock<Vec<u8>>,
 }
 
 impl Built {
@@ -126,7 +135,7 @@ impl Built {
             .into_iter()
             .map(|part| MeshedBody::new(part, &design))
             .collect::<Result<_, _>>()?;
-        Ok(Self { design, printed, reference })
+        Ok(Self { design, printed, reference, exploded_png: OnceLock::new() })
     }
 
     /// The design.
@@ -142,6 +151,20 @@ impl Built {
     /// Layer and pins.
     pub fn reference(&self) -> &[MeshedBody] {
         &self.reference
+    }
+
+    /// The parts pulled apart, as PNG: drawn when a format first asks for it.
+    ///
+    /// # Errors
+    /// [`SetError::Encoding`] if the picture cannot be encoded.
+    pub fn exploded_png(&self) -> Result<&[u8], SetError> {
+        if let Some(known) = self.exploded_png.get() {
+            return Ok(known);
+        }
+        let view = View { turn_deg: 30.0, rise_deg: 40.0 };
+        let (width, height) = EXPLODED_PIXELS;
+        let png = render(&assembled(self, 1.0), view, width, height).png().map_err(SetError::encoding)?;
+        Ok(self.exploded_png.get_or_init(|| png))
     }
 
     /// Every body of the assembly with its place, printed ones first. The proxy stands in for the silicone only where

@@ -36,6 +36,11 @@ impl Dimensions {
         &self.configuration
     }
 
+    /// Angle between neighbouring grooves, in degrees.
+    pub fn pitch_deg(&self) -> f64 {
+        self.configuration.segment.span_deg / self.configuration.segment.grooves as f64
+    }
+
     /// Angle between neighbouring grooves.
     pub fn pitch_rad(&self) -> f64 {
         self.configuration.segment.span_deg.to_radians() / self.configuration.segment.grooves as f64
@@ -53,7 +58,7 @@ impl Dimensions {
 
     /// What stands between neighbouring grooves on the shell, where it is narrowest.
     pub fn land_mm(&self) -> f64 {
-        let half_chord = self.shell_radius_mm() * (self.pitch_rad() / 2.0).sin();
+        let half_chord = self.shell_radius_mm() * (self.pitch_deg().to_radians() / 2.0).sin();
         2.0 * (half_chord - self.configuration.segment.groove_radius_mm)
     }
 

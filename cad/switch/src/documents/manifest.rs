@@ -315,14 +315,12 @@ pub fn toml_to_json(value: &toml_edit::Value) -> Value {
 
 /// Every dimension of `design` that follows from its settings.
 pub fn derived(design: &Design) -> Vec<DerivedDimension> {
-    let c = design.configuration();
-    let pitch = c.segment.span_deg / c.segment.grooves as f64;
     let land = design.land_mm();
     let slot = design.slot();
     let entry = |name, value, unit, origin, from| DerivedDimension { name, value, unit, origin, from };
     use Origin::{Assumed, Chosen, Published};
     vec![
-        entry("groove_pitch", pitch, "deg", Published, "segment.span_deg / segment.grooves"),
+        entry("groove_pitch", design.pitch_deg(), "deg", Published, "segment.span_deg / segment.grooves"),
         entry(
             "contact_radius",
             design.contact_radius_mm(),

@@ -9,22 +9,21 @@ use crate::design::Design;
 use crate::design::rules::checklist;
 use crate::documents::Manifest;
 use crate::prediction::Prediction;
-use crate::scene::{assembled, plate};
+use crate::scene::plate;
 use crate::set::{OutputFile, SetError};
 use pinswitch_solid::render::View;
 
 pub(super) const FORMAT: Format =
     Format { name: "guide", about: "PRINTING.md with pictures", inclusion: Inclusion::Default, make };
 
-/// Pixels of the pictures, across and up.
-const PICTURE: (u32, u32) = (900, 675);
+/// Pixels of the picture of the plate, across and up.
+const PLATE_PIXELS: (u32, u32) = (900, 675);
 
 fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
-    let picture =
-        |bodies: &[_], turn_deg, rise_deg| png(bodies, View { turn_deg, rise_deg }, PICTURE.0, PICTURE.1);
+    let above = View { turn_deg: 0.0, rise_deg: 55.0 };
     Ok(vec![
-        OutputFile::new("assembly.png", picture(&assembled(built, 1.0), 30.0, 40.0)?),
-        OutputFile::new("plate.png", picture(&plate(built), 0.0, 55.0)?),
+        OutputFile::new("assembly.png", built.exploded_png()?),
+        OutputFile::new("plate.png", png(&plate(built), above, PLATE_PIXELS.0, PLATE_PIXELS.1)?),
         OutputFile::new("PRINTING.md", printing_guide(built.design(), manifest)),
     ])
 }

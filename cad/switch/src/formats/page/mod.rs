@@ -7,13 +7,11 @@ use std::borrow::Cow;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::{Format, Inclusion, png};
+use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::documents::Manifest;
 use crate::prediction::Prediction;
-use crate::scene::assembled;
 use crate::set::{OutputFile, SetError};
-use pinswitch_solid::render::View;
 
 pub use data::PageData;
 
@@ -26,7 +24,8 @@ pub(super) const FORMAT: Format = Format {
 
 fn make(built: &Built, prediction: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
     let data = PageData::new(built, prediction, manifest, None);
-    Ok(vec![OutputFile::new("report.html", page_html(&data, &still(built)?)?)])
+    let still = format!("data:image/png;base64,{}", STANDARD.encode(built.exploded_png()?));
+    Ok(vec![OutputFile::new("report.html", page_html(&data, &still)?)])
 }
 
 const HTML: &str = include_str!("page.html");
@@ -36,9 +35,6 @@ const JS: &str = include_str!("page.js");
 const THREE: &str = include_str!("three.min.js");
 const UPLOT: &str = include_str!("uplot.min.js");
 const UPLOT_CSS: &str = include_str!("uplot.min.css");
-
-/// Width of the still picture that stands where there is no WebGL.
-const STILL_WIDTH: u32 = 640;
 
 /// The page that shows `data`, with the data URL of a picture for browsers without WebGL. A live page needs none: it is
 /// rebuilt while somebody waits, in a browser that has shown it already.
@@ -80,13 +76,6 @@ fn filled<'a>(template: &'a str, content: impl Fn(&str) -> Option<Cow<'a, str>>)
         }
     }
     page + rest
-}
-
-/// The parts pulled apart, as a data URL.
-fn still(built: &Built) -> Result<String, SetError> {
-    let view = View { turn_deg: 30.0, rise_deg: 40.0 };
-    let bytes = png(&assembled(built, 1.0), view, STILL_WIDTH, STILL_WIDTH * 3 / 4)?;
-    Ok(format!("data:image/png;base64,{}", STANDARD.encode(bytes)))
 }
 
 #[cfg(test)]

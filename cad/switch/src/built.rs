@@ -130,10 +130,16 @@ impl Built {
     pub fn new(design: Design) -> Result<Self, BuildError> {
         let printed = map_each(printed(&design)?, |part| BuiltPart::new(part, &design))
             .into_iter()
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<Vec<_>, _>>()?;
         let reference = reference_bodies(&design)?
             .into_iter()
-            .map(|part| MeshedBody::new(part, &design))
+            .map(|part| {
+                // The layer is often the same solid as its proxy: equal solids are meshed once.
+                match printed.iter().find(|p| p.part().solid == part.solid) {
+                    Some(twin) => Ok(MeshedBody { part, mesh: twin.body.mesh.clone() }),
+                    None => MeshedBody::new(part, &design),
+                }
+            })
             .collect::<Result<_, _>>()?;
         Ok(Self { design, printed, reference, exploded_png: OnceLock::new() })
     }

@@ -29,19 +29,19 @@ pub enum Facing {
     Down,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Ring {
     contour: Contour,
     z_mm: f64,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Wall {
     lower: RingId,
     upper: RingId,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Cap {
     facing: Facing,
     /// The outline first, then its holes.
@@ -49,7 +49,7 @@ struct Cap {
 }
 
 /// A solid between contours at heights. Every ring must end up in two faces: a wall and a cap, or two walls.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     rings: Vec<Ring>,
     walls: Vec<Wall>,

@@ -34,32 +34,49 @@ impl Solid {
         for wall in &self.walls {
             strip(&rings[wall.lower.0], &rings[wall.upper.0], &positions, &mut triangles);
         }
+        // A prism's lower and upper cap are one triangulation: it is made once.
+        let mut known: Vec<(&Cap, Vec<[usize; 3]>)> = Vec::new();
         for cap in &self.caps {
-            self.close(cap, &rings, &mut triangles)?;
+            let twin = known.iter().position(|(other, _)| is_twin(cap, other, &rings));
+            let cut = match twin {
+                Some(twin) => &known[twin].1,
+                None => {
+                    let loops: Vec<&[Point2]> =
+                        cap.rings.iter().map(|r| rings[r.0].points.as_slice()).collect();
+                    let cut = triangulate(&loops, self.rings[cap.rings[0].0].z_mm)?;
+                    known.push((cap, cut));
+                    &known[known.len() - 1].1
+                }
+            };
+            close(cap, cut, &rings, &mut triangles);
         }
         Ok(Mesh::new(positions, triangles))
     }
+}
 
-    fn close(&self, cap: &Cap, rings: &[FlatRing], triangles: &mut Vec<[u32; 3]>) -> Result<(), CapError> {
-        let loops: Vec<&[Point2]> = cap.rings.iter().map(|r| rings[r.0].points.as_slice()).collect();
-        let vertices: Vec<u32> = cap
-            .rings
-            .iter()
-            .flat_map(|r| {
-                let ring = &rings[r.0];
-                (ring.first..ring.first + ring.points.len()).map(index)
-            })
-            .collect();
-        let z_mm = self.rings[cap.rings[0].0].z_mm;
-        for [a, b, c] in triangulate(&loops, z_mm)? {
-            let (a, b, c) = (vertices[a], vertices[b], vertices[c]);
-            triangles.push(match cap.facing {
-                Facing::Up => [a, b, c],
-                Facing::Down => [a, c, b],
-            });
+/// Whether two caps have the same rings, but for their heights.
+fn is_twin(a: &Cap, b: &Cap, rings: &[FlatRing]) -> bool {
+    let points = |cap: &Cap, i: usize| &rings[cap.rings[i].0].points;
+    a.rings.len() == b.rings.len() && (0..a.rings.len()).all(|i| points(a, i) == points(b, i))
+}
+
+/// Adds the triangles of a cap, `cut` into corners of its rings one after the other.
+fn close(cap: &Cap, cut: &[[usize; 3]], rings: &[FlatRing], triangles: &mut Vec<[u32; 3]>) {
+    let vertices: Vec<u32> = cap
+        .rings
+        .iter()
+        .flat_map(|r| {
+            let ring = &rings[r.0];
+            (ring.first..ring.first + ring.points.len()).map(index)
+        })
+        .collect();
+    triangles.extend(cut.iter().map(|corners| {
+        let [a, b, c] = corners.map(|i| vertices[i]);
+        match cap.facing {
+            Facing::Up => [a, b, c],
+            Facing::Down => [a, c, b],
         }
-        Ok(())
-    }
+    }));
 }
 
 /// The wall between two rings of equal vertex count, each quad cut along its shorter diagonal.

@@ -29,7 +29,9 @@ mod variant;
 pub use axis::{ParameterRef, SweepAxis};
 pub use constraint::Constraint;
 pub use content::{MeshMaker, mesh_file};
-pub use destination::{Destination, DestinationError, DestinationLock, Folder, Store};
+#[cfg(feature = "cloud")]
+pub use destination::Store;
+pub use destination::{Destination, DestinationError, DestinationLock, Folder};
 pub use estimate::{Estimate, Measured, RefusalGroup, estimate};
 pub use make::Outcome;
 pub use merge::{MergeError, merge};

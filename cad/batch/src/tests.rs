@@ -1,10 +1,6 @@
-//! Whole runs in memory: an object store, and workshops that fail.
+//! Whole runs: shards that meet in one folder or, with the feature `cloud`, in a store in memory, and meshes that fail.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-
-use object_store::memory::InMemory;
-use object_store::path::Path;
 
 use super::*;
 use pinswitch_solid::validity::MeshFacts;
@@ -40,8 +36,32 @@ fn options(shard: Shard, fail_fast: bool, mesh_maker: MeshMaker) -> Options {
     Options { shard, threads: 2, fail_fast, mesh_maker }
 }
 
-fn in_memory(store: &Arc<InMemory>) -> Destination {
-    Destination::in_store("memory:///", store.clone(), Path::from("sweep")).unwrap()
+/// A fresh destination: a folder that goes with the test, or a store in memory.
+struct Fresh {
+    folder: tempfile::TempDir,
+    #[cfg(feature = "cloud")]
+    store: std::sync::Arc<object_store::memory::InMemory>,
+}
+
+impl Fresh {
+    fn new() -> Self {
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+            #[cfg(feature = "cloud")]
+            store: std::sync::Arc::default(),
+        }
+    }
+
+    /// The folder, as each process opens it anew.
+    fn folder(&self) -> Destination {
+        Destination::open(self.folder.path().to_str().unwrap(), ".partial-test").unwrap()
+    }
+
+    #[cfg(feature = "cloud")]
+    fn store(&self) -> Destination {
+        let prefix = object_store::path::Path::from("sweep");
+        Destination::in_store("memory:///", self.store.clone(), prefix).unwrap()
+    }
 }
 
 /// Shells 13 mm wide cannot be made: one way or the other.
@@ -57,25 +77,35 @@ fn panics(part: &Part, design: &Design) -> Result<(Vec<u8>, MeshFacts), SetError
     mesh_file(part, design)
 }
 
-#[test]
-fn shards_in_memory_merge_to_one_run() {
+fn shards_merge_to_one_run(open: fn(&Fresh) -> Destination) {
     let (variants, source) = plan();
-    let (whole, shards) = (Arc::new(InMemory::new()), Arc::new(InMemory::new()));
+    let (whole, shards) = (Fresh::new(), Fresh::new());
     let watch = Counted(AtomicU64::new(0));
     let tally =
-        run(&variants, &source, &in_memory(&whole), options(Shard::WHOLE, false, mesh_file), &watch).unwrap();
+        run(&variants, &source, &open(&whole), options(Shard::WHOLE, false, mesh_file), &watch).unwrap();
     assert_eq!((tally.made, tally.parts, tally.distinct_parts), (6, 12, 7));
     for shard in ["1/2", "2/2"] {
         let options = options(shard.parse().unwrap(), false, mesh_file);
-        run(&variants, &source, &in_memory(&shards), options, &watch).unwrap();
+        run(&variants, &source, &open(&shards), options, &watch).unwrap();
     }
     assert_eq!(watch.0.load(Ordering::Relaxed), 12);
-    let merged = merge(&[in_memory(&shards)], &in_memory(&shards)).unwrap();
+    let merged = merge(&[open(&shards)], &open(&shards)).unwrap();
     assert_eq!(merged, tally);
     for product in ["variants.csv", "variants.parquet", "index.html", "curves.svg", "threshold.svg"] {
-        let bytes = |store| in_memory(store).get(product).unwrap().unwrap();
+        let bytes = |store| open(store).get(product).unwrap().unwrap();
         assert_eq!(bytes(&whole), bytes(&shards), "{product}");
     }
+}
+
+#[test]
+fn shards_in_a_folder_merge_to_one_run() {
+    shards_merge_to_one_run(Fresh::folder);
+}
+
+#[cfg(feature = "cloud")]
+#[test]
+fn shards_in_a_store_merge_to_one_run() {
+    shards_merge_to_one_run(Fresh::store);
 }
 
 #[test]
@@ -85,7 +115,8 @@ fn a_variant_that_fails_costs_no_other() {
         (fails as MeshMaker, "cannot put a file together: no paper left"),
         (panics as MeshMaker, "a fault of the program; please report the configuration"),
     ] {
-        let destination = in_memory(&Arc::new(InMemory::new()));
+        let fresh = Fresh::new();
+        let destination = fresh.folder();
         let watch = Counted(AtomicU64::new(0));
         let tally =
             run(&variants, &source, &destination, options(Shard::WHOLE, false, mesh_maker), &watch).unwrap();
@@ -97,7 +128,8 @@ fn a_variant_that_fails_costs_no_other() {
             run(&variants, &source, &destination, options(Shard::WHOLE, false, mesh_file), &watch).unwrap();
         assert_eq!((tally.made, tally.failed), (6, 0));
 
-        let destination = in_memory(&Arc::new(InMemory::new()));
+        let fresh = Fresh::new();
+        let destination = fresh.folder();
         let ended = run(&variants, &source, &destination, options(Shard::WHOLE, true, mesh_maker), &watch);
         assert!(matches!(ended, Err(RunError::Failed { reason: r, .. }) if r == reason));
         assert!(destination.get("variants.csv").unwrap().is_none());

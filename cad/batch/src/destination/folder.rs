@@ -20,6 +20,7 @@ pub struct Folder {
 pub struct DestinationLock(Option<(File, PathBuf)>);
 
 impl DestinationLock {
+    #[cfg(feature = "cloud")]
     /// For a destination that needs none.
     pub(super) fn not_needed() -> Self {
         Self(None)

@@ -1,14 +1,17 @@
 //! Where a batch is written: a folder, or an object store. Every file appears whole or not at all.
 
 mod folder;
+#[cfg(feature = "cloud")]
 mod store;
 
+#[cfg(feature = "cloud")]
 use std::sync::Arc;
 
-use object_store::ObjectStore;
-use object_store::path::Path as StorePath;
+#[cfg(feature = "cloud")]
+use object_store::{ObjectStore, path::Path as StorePath};
 
 pub use folder::{DestinationLock, Folder};
+#[cfg(feature = "cloud")]
 pub use store::Store;
 
 /// Prefix of folders for files that are not yet whole.
@@ -32,6 +35,7 @@ pub enum Destination {
     /// A folder of this machine, or of a network.
     Folder(Folder),
     /// An object store; equal files are kept once and named by the manifests.
+    #[cfg(feature = "cloud")]
     Store(Store),
 }
 
@@ -40,35 +44,42 @@ macro_rules! ask {
     ($destination:expr, $name:expr, $place:ident => $answer:expr) => {
         match $destination {
             Destination::Folder($place) => $answer.map_err(|e| $place.failed($name, &e)),
+            #[cfg(feature = "cloud")]
             Destination::Store($place) => $answer.map_err(|e| $place.failed($name, &e)),
         }
     };
 }
 
 impl Destination {
-    /// A folder's path, or a URL such as `file:///data/sweep`, `memory:///` or, with the feature `cloud`,
-    /// `s3://bucket/sweep`. `partial` names the folder for files that are not yet whole: one per running process.
+    /// A folder's path, also as a `file://` URL, or, with the feature `cloud`, a URL such as `s3://bucket/sweep`.
+    /// `partial` names the folder for files that are not yet whole: one per running process.
     ///
     /// # Errors
     /// [`DestinationError`] for a URL of no known store.
     pub fn open(text: &str, partial: &str) -> Result<Self, DestinationError> {
-        let Some(url) = text.contains("://").then(|| url::Url::parse(text)) else {
-            return Ok(Self::Folder(Folder::new(text, partial)));
-        };
-        let refused = |problem: String| DestinationError {
-            place: text.to_owned(),
-            problem: format!(
-                "{problem}; give a folder, file:// or, in a build with --features cloud, s3://, gs:// or az://"
-            ),
-            is_fatal: true,
-        };
-        let url = url.map_err(|e| refused(e.to_string()))?;
+        match text.strip_prefix("file://") {
+            Some(path) => Ok(Self::Folder(Folder::new(path, partial))),
+            None if !text.contains("://") => Ok(Self::Folder(Folder::new(text, partial))),
+            None => Self::open_store(text),
+        }
+    }
+
+    #[cfg(not(feature = "cloud"))]
+    fn open_store(text: &str) -> Result<Self, DestinationError> {
+        Err(no_store(text, "this build writes to folders only"))
+    }
+
+    #[cfg(feature = "cloud")]
+    fn open_store(text: &str) -> Result<Self, DestinationError> {
+        // Who does the encryption is settled once for the process, before a client is made: only the first call takes effect.
+        let _ = rustls::crypto::ring::default_provider().install_default();
+        let url = url::Url::parse(text).map_err(|e| no_store(text, &e.to_string()))?;
         let ours = |key: &String| ["AWS_", "AZURE_", "GOOGLE_"].iter().any(|prefix| key.starts_with(prefix));
         let environment = std::env::vars()
             .filter(|(key, _)| ours(key))
             .map(|(key, value)| (key.to_ascii_lowercase(), value));
         let (store, prefix) =
-            object_store::parse_url_opts(&url, environment).map_err(|e| refused(e.to_string()))?;
+            object_store::parse_url_opts(&url, environment).map_err(|e| no_store(text, &e.to_string()))?;
         Self::in_store(text, store.into(), prefix)
     }
 
@@ -76,6 +87,7 @@ impl Destination {
     ///
     /// # Errors
     /// [`DestinationError`] if the threads that a cloud store needs cannot be started.
+    #[cfg(feature = "cloud")]
     pub fn in_store(
         url: &str,
         store: Arc<dyn ObjectStore>,
@@ -126,6 +138,7 @@ impl Destination {
         match self {
             Self::Folder(folder) => folder.link(content, name).map_err(|e| folder.failed(name, &e)),
             // Manifests name the content: a second object would cost storage twice.
+            #[cfg(feature = "cloud")]
             Self::Store(_) => Ok(()),
         }
     }
@@ -137,6 +150,7 @@ impl Destination {
     pub fn local_file(&self) -> Result<tempfile::NamedTempFile, DestinationError> {
         let made = match self {
             Self::Folder(folder) => folder.local_file(),
+            #[cfg(feature = "cloud")]
             Self::Store(_) => tempfile::NamedTempFile::new(),
         };
         made.map_err(|e| self.local_error("a temporary file", &e))
@@ -149,6 +163,7 @@ impl Destination {
     pub fn put_file(&self, name: &str, file: tempfile::NamedTempFile) -> Result<(), DestinationError> {
         match self {
             Self::Folder(folder) => folder.put_file(name, file).map_err(|e| folder.failed(name, &e)),
+            #[cfg(feature = "cloud")]
             Self::Store(_) => {
                 let bytes = std::fs::read(file.path()).map_err(|e| self.local_error(name, &e))?;
                 self.put(name, &bytes)
@@ -180,7 +195,12 @@ impl Destination {
     /// # Errors
     /// [`DestinationError`] if another process holds it, or nothing can be written there.
     pub fn lock(&self) -> Result<DestinationLock, DestinationError> {
-        let Self::Folder(folder) = self else { return Ok(DestinationLock::not_needed()) };
+        let folder = match self {
+            Self::Folder(folder) => folder,
+            // Objects appear whole, and shards have names of their own.
+            #[cfg(feature = "cloud")]
+            Self::Store(_) => return Ok(DestinationLock::not_needed()),
+        };
         let claim = folder.lock().map_err(|e| folder.failed("", &e))?;
         claim.ok_or_else(|| DestinationError {
             place: self.name(),
@@ -193,6 +213,7 @@ impl Destination {
     pub fn name(&self) -> String {
         match self {
             Self::Folder(folder) => folder.root.display().to_string(),
+            #[cfg(feature = "cloud")]
             Self::Store(store) => store.url.clone(),
         }
     }
@@ -200,6 +221,7 @@ impl Destination {
     fn local_error(&self, name: &str, error: &std::io::Error) -> DestinationError {
         match self {
             Self::Folder(folder) => folder.failed(name, error),
+            #[cfg(feature = "cloud")]
             Self::Store(store) => DestinationError {
                 place: format!("{}/{name}", store.url),
                 problem: error.to_string(),
@@ -209,21 +231,36 @@ impl Destination {
     }
 }
 
+/// The error for a URL that no store answers to.
+fn no_store(text: &str, problem: &str) -> DestinationError {
+    DestinationError {
+        place: text.to_owned(),
+        problem: format!(
+            "{problem}; give a folder, file:// or, in a build with --features cloud, s3://, gs:// or az://"
+        ),
+        is_fatal: true,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use object_store::memory::InMemory;
     use std::io::Write;
     use std::path::Path;
 
     fn all(folder: &Path) -> Vec<Destination> {
         let local = folder.join("store");
         std::fs::create_dir(&local).unwrap();
-        let memory = Arc::new(InMemory::new());
         vec![
             Destination::open(folder.join("plain").to_str().unwrap(), ".partial-1-of-1").unwrap(),
-            Destination::open(&format!("file://{}", local.display()), "").unwrap(),
-            Destination::in_store("memory:///", memory, StorePath::from("sweep")).unwrap(),
+            Destination::open(&format!("file://{}", local.display()), ".partial-1-of-1").unwrap(),
+            #[cfg(feature = "cloud")]
+            Destination::in_store(
+                "memory:///",
+                Arc::new(object_store::memory::InMemory::new()),
+                StorePath::from("sweep"),
+            )
+            .unwrap(),
         ]
     }
 

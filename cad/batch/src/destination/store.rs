@@ -13,7 +13,6 @@ pub struct Store {
     pub(super) url: String,
     store: Arc<dyn ObjectStore>,
     prefix: Path,
-    #[cfg(feature = "cloud")]
     runtime: tokio::runtime::Runtime,
 }
 
@@ -21,13 +20,11 @@ impl Store {
     /// The prefix of a store that is already open.
     pub(super) fn new(url: &str, store: Arc<dyn ObjectStore>, prefix: Path) -> std::io::Result<Self> {
         // The provider of encryption is set once for the process: only the first call takes effect.
-        #[cfg(feature = "cloud")]
         let _ = rustls::crypto::ring::default_provider().install_default();
         Ok(Self {
             url: url.to_owned(),
             store,
             prefix,
-            #[cfg(feature = "cloud")]
             runtime: tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build()?,
         })
     }
@@ -67,7 +64,6 @@ impl Store {
 
     /// Blocks until the future is ready. Folders and memory need no runtime; clouds do.
     fn wait<T>(&self, answer: impl Future<Output = T>) -> T {
-        #[cfg(feature = "cloud")]
         let _inside = self.runtime.enter();
         futures_executor::block_on(answer)
     }

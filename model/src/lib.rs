@@ -1,45 +1,27 @@
-//! Friction of a pin switch: the published model, the layout law, and curves with their bands.
+//! The friction, calibration and simulation crates under the paths they had when they were one crate.
 //!
-//! The crate knows no geometry kernel. Angles are radians, forces newtons, unless a name says otherwise.
-//!
-//! ```
-//! use pinswitch_model::{Contact, PinPattern, Substrate, predict, published};
-//!
-//! // Three pins, 17.89 degrees apart, on silicone: the paper's "three double" layout.
-//! let pitch_rad = 3.0 * published::GROOVE_PITCH_DEG.to_radians();
-//! let pins = PinPattern::even(3, pitch_rad);
-//! let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
-//! let curve = predict(&contact, &[published::heaviest_load_n()]);
-//! assert_eq!(format!("{:.2}", curve.friction_n[0]), "10.01");
-//! # Ok::<(), pinswitch_model::ContactError>(())
-//! ```
+//! It knows nothing of its own, and goes when nobody imports it any more.
 
-pub mod calibration;
-mod capstan;
-mod contact;
-mod curve;
-pub mod effects;
-pub mod finger;
-pub mod inference;
-mod law;
-mod layout_law;
-pub mod layout_search;
-pub mod least_squares;
-mod median;
-mod pattern;
-pub mod physics;
-pub mod published;
-pub mod rig;
-pub mod segmentation;
-pub mod simulation;
-mod switch;
-mod transition;
+pub use pinswitch_friction::{
+    Contact, ContactError, Direction, FrictionCurve, Law, LawError, LayoutLaw, PaperSwitch, PinPattern,
+    PublishedPoint, Substrate, Switch, SwitchState, Transition, Trust, best_law, capstan_friction_n,
+    capstan_tension_n, finger, layout_search, least_squares, other_laws, physics, predict, predict_by,
+    published, published_points,
+};
 
-pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};
-pub use contact::{Contact, ContactError, Substrate};
-pub use curve::{FrictionCurve, Law, PublishedPoint, Trust, published_points};
-pub use law::{LawError, best_law, other_laws, predict, predict_by};
-pub use layout_law::LayoutLaw;
-pub use pattern::PinPattern;
-pub use switch::{PaperSwitch, Switch, SwitchState};
-pub use transition::Transition;
+pub use pinswitch_calibration::{effects, inference, segmentation};
+pub use pinswitch_simulation as simulation;
+
+/// The closed loop: a table in, a verdict with errors before and after out.
+pub mod calibration {
+    pub use pinswitch_calibration::{
+        BadSeries, Calibration, CalibrationError, Candidate, DataSummary, EffectReport, Estimate,
+        Explanation, Extrapolation, Fate, HeldOut, Invisible, ModelFile, ModelFileError, ModelReport, Report,
+        RivalReport, Verdict, calibrate, calibrate_below, explain_published, held_out, layouts_left_out,
+    };
+}
+
+/// Measured data of the friction rig.
+pub mod rig {
+    pub use pinswitch_calibration::table::*;
+}

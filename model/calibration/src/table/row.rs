@@ -1,0 +1,87 @@
+//! One repetition: the force the load cell settles to after the actuator stops (data.md 1).
+
+use serde::{Deserialize, Serialize};
+
+use pinswitch_friction::Direction;
+
+/// What the tendon lies on during a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Surface {
+    /// The cast silicone, with or without pins.
+    Silicone,
+    /// The rigid proxy: the pins alone carry the tendon.
+    Abs,
+    /// One contact of one unknown material and wrap: any other capstan-like rig.
+    Plain,
+}
+
+impl Surface {
+    /// The word of the `substrate` column.
+    pub fn word(self) -> &'static str {
+        match self {
+            Surface::Silicone => "silicone",
+            Surface::Abs => "abs",
+            Surface::Plain => "plain",
+        }
+    }
+}
+
+/// Order of the loads in the sweep that a series belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sweep {
+    /// Loads ascending.
+    Up,
+    /// Loads descending.
+    Down,
+}
+
+impl Sweep {
+    /// The word of the `sweep` column.
+    pub fn word(self) -> &'static str {
+        match self {
+            Sweep::Up => "up",
+            Sweep::Down => "down",
+        }
+    }
+}
+
+/// One row of a plateau table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlateauRow {
+    /// Name of the rows recorded in one go.
+    pub series: String,
+    /// What the tendon lies on.
+    pub surface: Surface,
+    /// Occupied grooves, numbered from 1, ascending; empty without pins.
+    pub pins: Vec<usize>,
+    /// Order of the loads.
+    pub sweep: Sweep,
+    /// The weight as declared, in grams.
+    pub load_mass_g: f64,
+    /// The loading force as declared, in newtons.
+    pub load_n: f64,
+    /// Actuator speed in percent of full speed.
+    pub speed_pct: f64,
+    /// Pause after the move and before the reading, in seconds.
+    pub dwell_s: f64,
+    /// Load released or pulled.
+    pub direction: Direction,
+    /// 1, 2, ... inside a series and direction.
+    pub repetition: u32,
+    /// Actuator position at the plateau in millimetres.
+    pub position_mm: f64,
+    /// Seconds since the session began.
+    pub time_s: f64,
+    /// The reading in newtons.
+    pub force_n: f64,
+}
+
+/// `eccentric` or `concentric`.
+pub(crate) fn direction_word(direction: Direction) -> &'static str {
+    match direction {
+        Direction::Eccentric => "eccentric",
+        Direction::Concentric => "concentric",
+    }
+}

@@ -1,0 +1,39 @@
+//! Friction of a pin switch: what the tendon lies on, the laws that predict its friction, and the numbers published
+//! about it. The crate knows contacts and forces; it must not know measured tables, effects, parts or files.
+//!
+//! Angles are radians, forces newtons, unless a name says otherwise.
+//!
+//! ```
+//! use pinswitch_friction::{Contact, PinPattern, Substrate, predict, published};
+//!
+//! // Three pins, 17.89 degrees apart, on silicone: the paper's "three double" layout.
+//! let pitch_rad = 3.0 * published::GROOVE_PITCH_DEG.to_radians();
+//! let pins = PinPattern::even(3, pitch_rad);
+//! let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
+//! let curve = predict(&contact, &[published::heaviest_load_n()]);
+//! assert_eq!(format!("{:.2}", curve.friction_n[0]), "10.01");
+//! # Ok::<(), pinswitch_friction::ContactError>(())
+//! ```
+
+mod capstan;
+mod contact;
+mod curve;
+pub mod finger;
+mod law;
+mod layout_law;
+pub mod layout_search;
+pub mod least_squares;
+mod pattern;
+pub mod physics;
+pub mod published;
+mod switch;
+mod transition;
+
+pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};
+pub use contact::{Contact, ContactError, Substrate};
+pub use curve::{FrictionCurve, Law, PublishedPoint, Trust, published_points};
+pub use law::{LawError, best_law, other_laws, predict, predict_by};
+pub use layout_law::LayoutLaw;
+pub use pattern::PinPattern;
+pub use switch::{PaperSwitch, Switch, SwitchState};
+pub use transition::Transition;

@@ -1,0 +1,20 @@
+//! A synthetic rig: plateau tables and raw logs with known effects, for planning, for tests and for the study of the
+//! calibrator. The crate knows physics of its own and must not take a formula of an effect from the fitter.
+
+#[cfg(test)]
+mod calibrator_tests;
+mod disturbance;
+mod plan;
+mod power;
+mod protocol;
+mod raw;
+mod simulate;
+mod study;
+mod twin;
+
+pub use disturbance::{Disturbance, Kind, Target};
+pub use plan::{Constants, EffectPlan, NoisePlan, Plan, PlanError, Protocol};
+pub use power::{Power, power};
+pub use raw::{Faults, RawLog, RawPlan, RawRun};
+pub use simulate::{Simulated, simulate};
+pub use study::{Case, Outcome, Strength, Study, Truth, plan_of, run_case, study_cases};

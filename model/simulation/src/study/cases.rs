@@ -1,0 +1,220 @@
+//! Kinds of rig in the study, and the plan of each for a seed.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::strengths::strengths;
+use crate::disturbance::{Disturbance, Kind, Target};
+use crate::plan::{EffectPlan, Plan, Protocol};
+use crate::twin::forms::forms_of;
+use pinswitch_calibration::effects::Covariate;
+
+/// What is true of a rig.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Truth {
+    /// The paper's model.
+    Nothing,
+    /// Effects of the vocabulary.
+    Effects(Vec<&'static str>),
+    /// One effect that this protocol cannot tell from another: the answer must name both.
+    Confounded(&'static str),
+    /// Something outside the vocabulary that lies in this covariate.
+    Outside(Covariate),
+}
+
+/// One kind of rig.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Its effects, or what is wrong with it, in words.
+    pub name: String,
+    /// Its protocol.
+    pub protocol: Protocol,
+    /// What is true of it.
+    pub truth: Truth,
+}
+
+/// Kinds of noise on rigs without any effect.
+const NULLS: [&str; 4] = [
+    "no effect",
+    "no effect, heavy tails and outliers",
+    "no effect, uneven and correlated noise",
+    "no effect, one weight mislabelled",
+];
+
+/// What lies outside the vocabulary in the study.
+const OUTSIDE: [(&str, Covariate); 8] = [
+    ("step of friction in mid-session", Covariate::Time),
+    ("step of the reading in mid-session", Covariate::Time),
+    ("another level for a while", Covariate::Time),
+    ("wave in time", Covariate::Time),
+    ("wave along the stroke", Covariate::Position),
+    ("worn spot", Covariate::Position),
+    ("one defective layout", Covariate::Condition),
+    ("resonance at one speed", Covariate::Speed),
+];
+
+/// Pairs of effects in the study.
+const PAIRS: [(&str, &str); 4] = [
+    ("substrate_saturation", "thermal_drift"),
+    ("coating_ploughing", "load_cell_offset"),
+    ("direction_asymmetry", "guide_drag"),
+    ("coating_stiffening", "run_in"),
+];
+
+/// All kinds of rig. Effects that a protocol cannot show are left out of it.
+pub fn study_cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for protocol in [Protocol::Paper, Protocol::Randomised] {
+        let mut push = |name: String, truth| cases.push(Case { name, protocol, truth });
+        for name in NULLS {
+            push(name.to_owned(), Truth::Nothing);
+        }
+        for s in strengths() {
+            let paper = protocol == Protocol::Paper;
+            if paper && ["dwell_relaxation", "switching_hysteresis"].contains(&s.id) {
+                continue;
+            }
+            // In the paper's protocol speed follows load.
+            let confounded = paper && ["rate_dependence", "fixture_compliance"].contains(&s.id);
+            let truth = if confounded { Truth::Confounded(s.id) } else { Truth::Effects(vec![s.id]) };
+            push(s.id.to_owned(), truth);
+        }
+        for (a, b) in PAIRS {
+            push(format!("{a} + {b}"), Truth::Effects(vec![a, b]));
+        }
+        for (name, covariate) in OUTSIDE {
+            push(name.to_owned(), Truth::Outside(covariate));
+        }
+    }
+    cases
+}
+
+/// The plan of a case and a seed: constants, sizes, forms and noise all drawn.
+pub fn plan_of(case: &Case, seed: u64) -> Plan {
+    let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_mul(0x9E37_79B9).wrapping_add(77));
+    let mut plan = match case.protocol {
+        Protocol::Paper => Plan::default(),
+        Protocol::Randomised => Plan::randomised(),
+    };
+    plan.seed = seed;
+    plan.constants.mu_p = random.random_range(0.042..0.066);
+    plan.constants.mu_s = random.random_range(0.2..0.28);
+    plan.constants.half_load_factor = (0..3).map(|_| random.random_range(0.85..1.15)).collect();
+    plan.constants.steepness = (0..3).map(|_| random.random_range(4.0..7.0)).collect();
+    plan.noise.repetition_n = random.random_range(0.04..0.12);
+    plan.noise.repetition_per_load = random.random_range(0.0012..0.003);
+    plan.noise.series_n = random.random_range(0.01..0.04);
+    plan.noise.series_per_load = random.random_range(0.001..0.006);
+    plan.noise.outlier_share = if seed.is_multiple_of(3) { 0.01 } else { 0.002 };
+    plan.noise.heavy_tails = seed.is_multiple_of(5);
+    plan.noise.uneven = if seed.is_multiple_of(2) { 0.15 } else { 0.0 };
+    plan.noise.lost_share = if seed.is_multiple_of(4) { 0.03 } else { 0.0 };
+    match &case.truth {
+        Truth::Nothing => null(&case.name, &mut plan),
+        Truth::Effects(ids) => {
+            for id in ids {
+                plan.effects.extend(drawn(id, &mut random));
+            }
+        }
+        Truth::Confounded(id) => plan.effects.extend(drawn(id, &mut random)),
+        Truth::Outside(_) => {
+            let layouts = plan.layouts.clone();
+            plan.disturbances.push(outside(&case.name, case.protocol, &layouts, &mut random));
+        }
+    }
+    plan
+}
+
+/// Noise of a rig without effect.
+fn null(name: &str, plan: &mut Plan) {
+    if name.contains("outliers") {
+        plan.noise.heavy_tails = true;
+        plan.noise.outlier_share = 0.01;
+        plan.noise.outlier_n = 3.0;
+    } else if name.contains("correlated") {
+        plan.noise.autocorrelation = 0.4;
+        plan.noise.uneven = 0.3;
+    } else if name.contains("mislabelled") {
+        plan.noise.mislabelled_series = 1;
+    }
+}
+
+/// An effect with its size, shape and form drawn.
+fn drawn(id: &str, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
+    let s = strengths().iter().find(|s| s.id == id)?;
+    let mut values = Vec::new();
+    if s.size.1 > 0.0 {
+        let size = (s.size.0.ln() + (s.size.1 / s.size.0).ln() * random.random::<f64>()).exp();
+        values.push(if s.signed && random.random::<bool>() { -size } else { size });
+    }
+    values.extend(s.shapes.iter().map(|(least, most)| least + (most - least) * random.random::<f64>()));
+    let form = u8::try_from(random.random_range(0..forms_of(id).len())).unwrap_or(0);
+    Some(EffectPlan { id: id.to_owned(), values, form })
+}
+
+/// Something outside the vocabulary.
+fn outside(name: &str, protocol: Protocol, layouts: &[Vec<usize>], random: &mut ChaCha8Rng) -> Disturbance {
+    let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
+    let friction = random.random_range(0.08..0.25);
+    let newtons = random.random_range(0.3..0.8);
+    let of = |kind, target, size| Disturbance { kind, target, size };
+    let phase = random.random_range(0.0..std::f64::consts::TAU);
+    let even = random.random::<bool>();
+    match name {
+        "step of friction in mid-session" => {
+            let over = if even { 0.0 } else { 0.02 };
+            of(Kind::Step { at: random.random_range(0.3..0.7), over }, Target::Friction, sign * friction)
+        }
+        "step of the reading in mid-session" => {
+            of(Kind::Step { at: random.random_range(0.3..0.7), over: 0.0 }, Target::Reading, sign * newtons)
+        }
+        "another level for a while" => {
+            let from = random.random_range(0.2..0.6);
+            let to = from + random.random_range(0.1..0.3);
+            of(Kind::Window { from, to }, Target::Reading, sign * newtons)
+        }
+        "wave in time" => {
+            let cycles = random.random_range(3.0..40.0);
+            of(Kind::TimeWave { cycles, phase }, Target::Reading, 0.5 * newtons)
+        }
+        "wave along the stroke" => {
+            let cycles = random.random_range(1.5..4.5);
+            of(Kind::StrokeWave { cycles, phase, square: even }, Target::Friction, 0.5 * friction)
+        }
+        "worn spot" => {
+            let (at, width) = (random.random_range(0.25..0.75), random.random_range(0.08..0.2));
+            of(Kind::Spot { at, width, flat: even }, Target::Friction, friction)
+        }
+        "one defective layout" => {
+            // With three layouts, the one with another number of pins is what bending is known by.
+            let pins = layouts[random.random_range(1..layouts.len())].clone();
+            let target = if even { Target::Friction } else { Target::Pins };
+            of(Kind::Layout { pins }, target, sign * friction * if even { 1.0 } else { 2.0 })
+        }
+        _ => {
+            let (least, most, width_pct) = match protocol {
+                Protocol::Paper => (49.0f64, 55.0, 0.6),
+                Protocol::Randomised => (40.0, 70.0, 3.0),
+            };
+            let mut speed_pct = random.random_range(least..most).round();
+            if protocol == Protocol::Randomised {
+                speed_pct = (speed_pct / 10.0).round().clamp(5.0, 6.0) * 10.0;
+            }
+            of(Kind::Resonance { speed_pct, width_pct }, Target::Friction, friction)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plans_of_the_study_can_be_written_and_read() {
+        for case in study_cases() {
+            let plan = plan_of(&case, 3);
+            let text = toml::to_string(&plan).unwrap();
+            assert_eq!(Plan::parse(&text, "plan.toml").unwrap(), plan, "{}", case.name);
+        }
+    }
+}

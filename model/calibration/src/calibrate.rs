@@ -1,10 +1,10 @@
 //! From a selection to its report: verdict, effects, rivals, blind spots, errors before and after.
 
-use crate::effects::LIBRARY;
+use crate::effects::CATALOGUE;
 use crate::held_out::{SOUND_WEIGHT, held_out};
 use crate::inference::{
-    Fit, Levels, Model, Noise, Observations, Selection, Term, cell_deviation, degrees_of_freedom,
-    family_p_value, interval_half_widths, select,
+    CandidateEffect, Fit, FoundEffect, Levels, Model, Noise, Observations, Rival, Selection, Term,
+    cell_deviation, degrees_of_freedom, family_p_value, interval_half_widths, select,
 };
 use crate::layouts_left_out::layouts_left_out;
 use crate::report::{
@@ -58,7 +58,7 @@ pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, Cal
         return Err(too_few);
     }
     let selection = select(&start, &mut data, levels);
-    let report = report(rows, &selection, &data);
+    let report = report(rows, &selection, &data, levels);
     Ok(Calibration { report, selection, data })
 }
 
@@ -104,7 +104,7 @@ fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport
     (report, held.both_n())
 }
 
-fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Report {
+fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations, levels: Levels) -> Report {
     let noise = selection.noise;
     let (baseline, before_n) = model_report(&selection.baseline, data, noise);
     let (augmented, after_n) = if selection.augmented.model.terms.is_empty() {
@@ -113,15 +113,6 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Re
         model_report(&selection.augmented, data, noise)
     };
     let effects = effects(selection, data, after_n, &augmented);
-    let verdict = if selection.structure.is_some() {
-        Verdict::Unattributed
-    } else if effects.is_empty() {
-        Verdict::None
-    } else if effects.iter().any(|e| !e.rivals.is_empty()) {
-        Verdict::Ambiguous
-    } else {
-        Verdict::Attributed
-    };
     Report {
         schema: "pinswitch.calibration/1".to_owned(),
         data: DataSummary {
@@ -130,53 +121,65 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Re
             conditions: selection.baseline.model.frame.conditions.len(),
             outliers: data.weights.iter().filter(|w| **w <= SOUND_WEIGHT).count(),
         },
-        verdict,
+        verdict: Verdict::of(selection),
         noise_floor_n: noise.floor_n(data),
         noise,
         baseline,
         augmented,
-        candidates: candidates(selection, &effects, data),
+        candidates: candidates(selection, data, levels),
         effects,
         family_probability: selection.family_probability,
-        invisible: selection
-            .invisible
-            .iter()
-            .filter(|(e, ..)| !selection.augmented.model.terms.iter().any(|t| t.id() == e.id()))
-            .map(|(effect, share, strength)| Invisible {
-                id: effect.id().to_owned(),
-                why: if *strength < 1e-6 {
-                    effect.invisible_because().to_owned()
-                } else if *share < 2e-3 {
-                    "the refitted baseline takes it over".to_owned()
-                } else {
-                    format!("at a typical size it makes {strength:.1} standard deviations, 4 are needed")
-                },
-                experiment: effect.experiment().to_owned(),
-            })
-            .collect(),
-        never_visible: [
-            "a loss in the guide pulleys in proportion to tension: needs a run without the switch",
-            "a wrap angle that is wrong by a constant: needs the angle measured",
-            "a threshold shifted by the same load everywhere: needs another way to see the switching",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
+        invisible: invisible(selection),
+        never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
         bad_series: bad_series(rows, selection, data),
         extrapolation: None,
     }
 }
 
+/// What no data of such a rig can show after the refit.
+const NEVER_VISIBLE: [&str; 3] = [
+    "a loss in the guide pulleys in proportion to tension: needs a run without the switch",
+    "a wrap angle that is wrong by a constant: needs the angle measured",
+    "a threshold shifted by the same load everywhere: needs another way to see the switching",
+];
+
+/// Effects that this data cannot show, with what keeps it from it.
+fn invisible(selection: &Selection) -> Vec<Invisible> {
+    selection
+        .invisible()
+        .filter(|c| !selection.effects.iter().any(|found| found.effect.id() == c.effect.id()))
+        .map(|candidate| {
+            let told = candidate.effect.description();
+            Invisible {
+                id: told.id.to_owned(),
+                why: if candidate.strength < 1e-6 {
+                    told.invisible_because.to_owned()
+                } else if candidate.is_taken_over() {
+                    "the refitted baseline takes it over".to_owned()
+                } else {
+                    format!(
+                        "at a typical size it makes {:.1} standard deviations, 4 are needed",
+                        candidate.strength
+                    )
+                },
+                experiment: told.experiment.to_owned(),
+            }
+        })
+        .collect()
+}
+
 /// Every effect with what became of it.
-fn candidates(selection: &Selection, effects: &[EffectReport], data: &Observations) -> Vec<Candidate> {
+fn candidates(selection: &Selection, data: &Observations, levels: Levels) -> Vec<Candidate> {
     let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
-    let fate = |id: &str, p: f64| {
-        if effects.iter().any(|e| e.id == id) {
+    let fate = |candidate: &CandidateEffect, p: f64| {
+        let id = candidate.effect.id();
+        if selection.effects.iter().any(|found| found.effect.id() == id) {
             Fate::Kept
-        } else if effects.iter().any(|e| e.rivals.iter().any(|r| r.id == id)) {
+        } else if selection.effects.iter().any(|found| found.ids().contains(&id)) {
             Fate::Rival
-        } else if p <= 0.015 {
+        } else if p <= levels.first_p {
             Fate::Superfluous
-        } else if selection.invisible.iter().any(|(e, ..)| e.id() == id) {
+        } else if candidate.is_invisible() {
             Fate::Invisible
         } else {
             Fate::Chance
@@ -185,14 +188,14 @@ fn candidates(selection: &Selection, effects: &[EffectReport], data: &Observatio
     selection
         .candidates
         .iter()
-        .map(|(id, gain)| {
-            let p_value = family_p_value(*gain, LIBRARY.len(), degrees);
+        .map(|candidate| {
+            let p_value = family_p_value(candidate.gain, CATALOGUE.len(), degrees);
             Candidate {
-                id: (*id).to_owned(),
-                gain: gain.max(0.0),
+                id: candidate.effect.id().to_owned(),
+                gain: candidate.gain.max(0.0),
                 p_value,
-                gain_left: selection.leftover.iter().find(|l| l.0 == *id).map(|l| l.1.max(0.0)),
-                fate: fate(id, p_value),
+                gain_left: candidate.gain_left.map(|gain| gain.max(0.0)),
+                fate: fate(candidate, p_value),
             }
         })
         .collect()
@@ -204,75 +207,94 @@ fn effects(
     after_n: f64,
     augmented: &ModelReport,
 ) -> Vec<EffectReport> {
-    let model = &selection.augmented.model;
     let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
-    let mut found = Vec::new();
-    let (mut named, mut unnamed) = (0, Vec::new());
-    for (i, term) in model.terms.iter().enumerate() {
-        let Term::Named(effect) = term else {
-            unnamed.push(i);
-            continue;
-        };
-        let without = model.without_term(i);
-        let gain = selection.gains.get(named).copied().unwrap_or(0.0);
-        let rivals = selection.rivals.get(named).map_or(&[][..], Vec::as_slice);
-        named += 1;
-        found.push(EffectReport {
-            id: effect.id().to_owned(),
-            covariate: effect.covariate().word().to_owned(),
-            side: Some(effect.side().word().to_owned()),
-            formula: effect.formula().to_owned(),
-            p_value: family_p_value(gain, LIBRARY.len(), degrees),
-            parameters: effect
-                .parameters()
-                .iter()
-                .filter_map(|p| {
-                    let known = augmented.parameters.get(&format!("{}.{}", effect.id(), p.name))?;
-                    Some((p.name.to_owned(), known.clone()))
-                })
-                .collect(),
-            error_before_n: held_out(&without, data, selection.noise).both_n(),
-            error_after_n: after_n,
-            rivals: rivals
-                .iter()
-                .map(|r| RivalReport {
-                    id: r.effect.id().to_owned(),
-                    why: format!(
-                        "after the refit its trace is the same to a cosine of {:.3}; in place of {} it fits worse by only {:.1} whitened squares",
-                        r.cosine, effect.id(), r.worse_by
-                    ),
-                    experiment: format!("{}; {}", effect.experiment(), r.effect.experiment()),
-                })
-                .collect(),
-        });
-    }
-    if let Some((covariate, gain)) = selection.structure {
-        let shapes: Vec<String> = unnamed
+    let mut reports: Vec<EffectReport> = selection
+        .effects
+        .iter()
+        .map(|found| named_report(found, selection, data, degrees, after_n, augmented))
+        .collect();
+    reports.extend(unnamed_report(selection, data, degrees, after_n, augmented));
+    reports
+}
+
+fn named_report(
+    found: &FoundEffect,
+    selection: &Selection,
+    data: &Observations,
+    degrees: f64,
+    after_n: f64,
+    augmented: &ModelReport,
+) -> EffectReport {
+    let told = found.effect.description();
+    let without = selection.augmented.model.without_term(found.term);
+    EffectReport {
+        id: told.id.to_owned(),
+        covariate: told.covariate.as_str().to_owned(),
+        side: Some(told.side.as_str().to_owned()),
+        formula: found.effect.cited_formula(),
+        p_value: family_p_value(found.gain, CATALOGUE.len(), degrees),
+        parameters: told
+            .parameters
             .iter()
-            .filter_map(|i| match &model.terms[*i] {
-                Term::Structure(s) => Some(s.describe(&model.frame)),
-                Term::Named(_) => None,
+            .filter_map(|p| {
+                let known = augmented.parameters.get(&format!("{}.{}", told.id, p.name))?;
+                Some((p.name.to_owned(), known.clone()))
             })
-            .collect();
-        let bare = unnamed.iter().rev().fold(model.clone(), |m, i| m.without_term(*i));
-        found.push(EffectReport {
-            id: "unattributed".to_owned(),
-            covariate: covariate.word().to_owned(),
-            side: None,
-            formula: shapes.join("; "),
-            p_value: family_p_value(gain, selection.structures_tried, degrees),
-            parameters: augmented
-                .parameters
-                .iter()
-                .filter(|(name, _)| name.starts_with("unattributed."))
-                .map(|(name, e)| (name.clone(), e.clone()))
-                .collect(),
-            error_before_n: held_out(&bare, data, selection.noise).both_n(),
-            error_after_n: after_n,
-            rivals: Vec::new(),
-        });
+            .collect(),
+        error_before_n: held_out(&without, data, selection.noise).both_n(),
+        error_after_n: after_n,
+        rivals: found.rivals.iter().map(|rival| rival_report(found, rival)).collect(),
     }
-    found
+}
+
+fn rival_report(found: &FoundEffect, rival: &Rival) -> RivalReport {
+    let (told, other) = (found.effect.description(), rival.effect.description());
+    RivalReport {
+        id: other.id.to_owned(),
+        why: format!(
+            "after the refit its trace is the same to a cosine of {:.3}; in place of {} it fits worse by only {:.1} whitened squares",
+            rival.cosine, told.id, rival.worse_by
+        ),
+        experiment: format!("{}; {}", told.experiment, other.experiment),
+    }
+}
+
+/// The report of the structure that no name explains, if there is any.
+fn unnamed_report(
+    selection: &Selection,
+    data: &Observations,
+    degrees: f64,
+    after_n: f64,
+    augmented: &ModelReport,
+) -> Option<EffectReport> {
+    let structure = selection.structure?;
+    let model = &selection.augmented.model;
+    let shapes: Vec<(usize, String)> = model
+        .terms
+        .iter()
+        .enumerate()
+        .filter_map(|(i, term)| match term {
+            Term::Structure(s) => Some((i, s.describe(&model.frame))),
+            Term::Named(_) => None,
+        })
+        .collect();
+    let bare = shapes.iter().rev().fold(model.clone(), |m, (i, _)| m.without_term(*i));
+    Some(EffectReport {
+        id: "unattributed".to_owned(),
+        covariate: structure.covariate.as_str().to_owned(),
+        side: None,
+        formula: shapes.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; "),
+        p_value: family_p_value(structure.gain, selection.structures_tried, degrees),
+        parameters: augmented
+            .parameters
+            .iter()
+            .filter(|(name, _)| name.starts_with("unattributed."))
+            .map(|(name, e)| (name.clone(), e.clone()))
+            .collect(),
+        error_before_n: held_out(&bare, data, selection.noise).both_n(),
+        error_after_n: after_n,
+        rivals: Vec::new(),
+    })
 }
 
 /// Cells whose mean residual is beyond 4.5 standard deviations, or that hold a reading beyond 20.
@@ -295,7 +317,7 @@ fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -
         if let Some(row) = cell.first().and_then(|r| rows.get(*r)) {
             bad.push(BadSeries {
                 series: row.series.clone(),
-                direction: crate::table::direction_word(row.direction).to_owned(),
+                direction: row.direction.as_str().to_owned(),
                 offset_n,
                 standard_deviations: offset_n / sd,
             });

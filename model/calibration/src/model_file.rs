@@ -101,8 +101,8 @@ impl ModelFile {
                 .map(|term| match term {
                     Term::Named(effect) => TermEntry {
                         id: effect.id().to_owned(),
-                        side: Some(effect.side().word().to_owned()),
-                        formula: Some(effect.formula().to_owned()),
+                        side: Some(effect.description().side.as_str().to_owned()),
+                        formula: Some(effect.cited_formula()),
                         structure: None,
                     },
                     Term::Structure(structure) => TermEntry {

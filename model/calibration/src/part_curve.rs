@@ -3,7 +3,7 @@
 use crate::inference::prediction_sd_n;
 use crate::model_file::{ModelFile, ModelFileError};
 use crate::table::{PlateauRow, Surface, Sweep};
-use pinswitch_friction::{Direction, FrictionCurve, Law, Trust};
+use pinswitch_friction::{Direction, FrictionCurve, Law, Trust, published};
 
 impl ModelFile {
     /// Curve of pins in these grooves, numbered from 1, on `surface` at ascending `loads_n`, for a slow first pull at
@@ -81,7 +81,7 @@ impl ModelFile {
             load_mass_g: 0.0,
             load_n,
             speed_pct: self.reference_speed_pct(),
-            dwell_s: 3.0,
+            dwell_s: published::DWELL_S,
             direction,
             repetition: 1000,
             position_mm: 0.0,

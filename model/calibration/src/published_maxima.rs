@@ -78,7 +78,12 @@ fn predict(kind: Pins, at: &[f64], maximum: &Maximum, scale_free: bool) -> f64 {
 fn pins_exponent(kind: Pins, factor: f64, layout: &PublishedLayout, load_n: f64, wrap: f64) -> f64 {
     match kind {
         Pins::Constant | Pins::Stiffening => published::MU_PINS * factor * wrap,
-        Pins::Ploughing => 0.0237 * factor * load_n.sqrt() * Condition::ploughing_sum(layout.grooves, wrap),
+        Pins::Ploughing => {
+            published::PLOUGHING_KAPPA
+                * factor
+                * load_n.sqrt()
+                * Condition::ploughing_sum(layout.grooves, wrap)
+        }
         Pins::Bending => published::MU_PINS * factor * wrap * (wrap / layout.pins as f64) / 0.349,
     }
 }
@@ -117,7 +122,7 @@ pub fn explain_published() -> Vec<Explanation> {
     }];
     let kinds = [
         ("refitted", Pins::Constant, "mu_p", published::MU_PINS),
-        ("coating_ploughing", Pins::Ploughing, "kappa", 0.0237),
+        ("coating_ploughing", Pins::Ploughing, "kappa", published::PLOUGHING_KAPPA),
         ("polygon_bending", Pins::Bending, "mu_p at 20 deg per pin", published::MU_PINS),
         ("coating_stiffening", Pins::Stiffening, "mu_p at the heaviest load", published::MU_PINS),
     ];

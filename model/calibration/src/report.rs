@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::inference::Noise;
+use crate::inference::{Noise, Selection};
 
 /// What the data say about the paper's model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,6 +18,21 @@ pub enum Verdict {
     Ambiguous,
     /// Structure is left that no named effect explains.
     Unattributed,
+}
+
+impl Verdict {
+    /// The verdict of a selection.
+    pub fn of(selection: &Selection) -> Self {
+        if selection.structure.is_some() {
+            Verdict::Unattributed
+        } else if selection.effects.is_empty() {
+            Verdict::None
+        } else if selection.effects.iter().any(|e| !e.rivals.is_empty()) {
+            Verdict::Ambiguous
+        } else {
+            Verdict::Attributed
+        }
+    }
 }
 
 /// A constant with its interval.

@@ -13,7 +13,15 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// `d` of model.md: -1 eccentric, +1 concentric.
+    /// The word in tables and reports: `eccentric` or `concentric`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Direction::Eccentric => "eccentric",
+            Direction::Concentric => "concentric",
+        }
+    }
+
+    /// `d` of the capstan equation: -1 eccentric, +1 concentric.
     pub fn sign(self) -> f64 {
         match self {
             Direction::Eccentric => -1.0,

@@ -2,11 +2,7 @@
 
 use crate::{PinPattern, Switch};
 
-/// Steepness `s` of the switch, dimensionless (model.md 2, computed from the paper).
-const STEEPNESS: f64 = 4.64;
-/// `C` of `F_half = C sqrt(n / (a p))`, in newtons (model.md 2).
-const SCALE_N: f64 = 13.1;
-/// `w = n/30` reproduces the three published weights (model.md 1).
+/// `w = n/30` reproduces the three published weights.
 const WEIGHT_PER_PIN: f64 = 1.0 / 30.0;
 
 /// `S = 1/(1 + exp(-s (F/F_half - 1)))` with `F_half = C sqrt(n/(a p))` (model.md 2).
@@ -17,13 +13,27 @@ pub struct LayoutLaw {
 }
 
 impl LayoutLaw {
+    /// Steepness `s` of the switch, dimensionless: describes all three published layouts.
+    pub const STEEPNESS: f64 = 4.64;
+
+    /// `C` of `F_half = C sqrt(n/(a p))`, in newtons: describes all three published layouts.
+    pub const SCALE_N: f64 = 13.1;
+
+    /// Relative uncertainty of the half load between the published layouts.
+    pub const UNCERTAINTY: f64 = 0.12;
+
+    /// `F_half = C sqrt(n/(a p))` in newtons for `n` pins a pitch `p` apart on a wrap `a`, both in radians.
+    pub fn half_load_at_n(pins: f64, pitch_rad: f64, wrap_rad: f64) -> f64 {
+        Self::SCALE_N * (pins / (wrap_rad * pitch_rad)).sqrt()
+    }
+
     /// The law for `pins` within a wrap of `wrap_rad` radians; uneven pins enter with their mean pitch,
     /// a single pin with the whole wrap as its pitch. `None` without pins: there is nothing to switch.
     pub fn new(pins: &PinPattern, wrap_rad: f64) -> Option<Self> {
         let n = pins.count() as f64;
         let pitch = pins.mean_pitch_rad().unwrap_or(wrap_rad);
         (pins.count() > 0).then(|| Self {
-            half_load_n: SCALE_N * (n / (wrap_rad * pitch)).sqrt(),
+            half_load_n: Self::half_load_at_n(n, pitch, wrap_rad),
             weight: (n * WEIGHT_PER_PIN).min(1.0),
         })
     }
@@ -42,7 +52,7 @@ impl LayoutLaw {
 
 impl Switch for LayoutLaw {
     fn switched(&self, load_n: f64) -> f64 {
-        1.0 / (1.0 + (-STEEPNESS * (load_n / self.half_load_n - 1.0)).exp())
+        1.0 / (1.0 + (-Self::STEEPNESS * (load_n / self.half_load_n - 1.0)).exp())
     }
 
     fn weight(&self) -> f64 {

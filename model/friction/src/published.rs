@@ -11,6 +11,13 @@ pub const WEIGHTS_G: [f64; 11] =
     [251.2, 503.6, 1003.2, 1503.9, 2005.0, 2505.4, 3007.2, 3508.6, 4007.8, 4504.5, 5002.5];
 /// Contact angle of the tendon in every experiment, in degrees.
 pub const WRAP_ANGLE_DEG: f64 = 63.89;
+/// Pause after each move and before each reading, in seconds.
+pub const DWELL_S: f64 = 3.0;
+/// Stroke of the actuator in millimetres.
+pub const STROKE_MM: f64 = 152.4;
+/// `kappa` in `x = kappa sqrt(T) sum theta_i^1.5`, the ploughing of the coating, in `N^-0.5`: fitted to the three maxima
+/// of pins alone (`model/doc/friction-laws.md`).
+pub const PLOUGHING_KAPPA: f64 = 0.0237;
 /// Angle of the grooved segment in degrees.
 pub const SEGMENT_DEG: f64 = 89.45;
 /// Grooves on the segment.

@@ -17,4 +17,4 @@ pub use plan::{Constants, EffectPlan, NoisePlan, Plan, PlanError, Protocol};
 pub use power::{Power, power};
 pub use raw::{Faults, RawLog, RawPlan, RawRun};
 pub use simulate::{Simulated, simulate};
-pub use study::{Case, Outcome, Strength, Study, Truth, plan_of, run_case, study_cases};
+pub use study::{Case, Outcome, Study, Truth, plan_of, run_case, study_cases};

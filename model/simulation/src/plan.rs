@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::disturbance::Disturbance;
 use super::raw::RawPlan;
 use super::twin::forms::forms_of;
-use pinswitch_calibration::effects::{LIBRARY, effect_named};
+use pinswitch_calibration::effects::{acting_order, effect_named};
 use pinswitch_friction::published;
 
 /// Why a plan cannot be run.
@@ -132,7 +132,7 @@ pub struct Constants {
     pub mu_s: f64,
     /// Factors on the layout law's half load, one per layout; missing ones are 1.
     pub half_load_factor: Vec<f64>,
-    /// Steepness of the switch, one per layout; missing ones are 4.64.
+    /// Steepness of the switch, one per layout; missing ones are [`LayoutLaw::STEEPNESS`](pinswitch_friction::LayoutLaw::STEEPNESS).
     pub steepness: Vec<f64>,
 }
 
@@ -193,7 +193,7 @@ impl Default for Plan {
             proxy: true,
             weights_g: published::WEIGHTS_G.to_vec(),
             speeds_pct: (47..=57).map(f64::from).collect(),
-            dwells_s: vec![3.0],
+            dwells_s: vec![published::DWELL_S],
             repetitions: [12, 29],
             repetitions_spread: 3,
             constants: Constants::default(),
@@ -333,7 +333,10 @@ impl Plan {
                     format!("it needs {} value(s): {}", names.len(), names.join(", "))
                 }
                 None => {
-                    format!("known are {}", LIBRARY.iter().map(|e| e.id()).collect::<Vec<_>>().join(", "))
+                    format!(
+                        "known are {}",
+                        acting_order().iter().map(|e| e.id()).collect::<Vec<_>>().join(", ")
+                    )
                 }
             };
             return Err(PlanError::Effect {

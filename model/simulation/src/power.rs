@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::plan::{EffectPlan, Plan};
 use super::simulate::simulate;
-use super::study::strengths;
-use pinswitch_calibration::inference::{Levels, Model, Observations, Term, select};
+use pinswitch_calibration::effects::CATALOGUE;
+use pinswitch_calibration::inference::{Levels, Model, Observations, select};
 use pinswitch_calibration::table::Frame;
 
 /// What the plan makes of one effect at one size.
@@ -32,13 +32,11 @@ pub struct Power {
 /// Puts each effect at a small and a large typical size into the plan, `runs` times each, and calibrates.
 pub fn power(plan: &Plan, runs: u64, levels: Levels) -> Vec<Power> {
     let mut all = Vec::new();
-    for strength in strengths() {
-        let sizes =
-            if strength.size.1 > 0.0 { vec![strength.size.0, strength.size.1] } else { vec![f64::NAN] };
+    for effect in CATALOGUE {
+        let range = effect.description().study;
+        let sizes = range.size.map_or(vec![None], |(least, most)| vec![Some(least), Some(most)]);
         for size in sizes {
-            let mut values: Vec<f64> = if size.is_nan() { Vec::new() } else { vec![size] };
-            values.extend(strength.shapes.iter().map(|(least, most)| 0.5 * (least + most)));
-            all.push(one(plan, strength.id, values, runs, levels));
+            all.push(one(plan, effect.id(), range.values_at(size), runs, levels));
         }
     }
     all
@@ -64,19 +62,12 @@ fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64, levels: Level
         let found = select(&Model::baseline(frame), &mut data, levels);
         power.runs += 1;
         let (mut alone, mut with_rivals) = (false, false);
-        let names = found
-            .augmented
-            .model
-            .terms
-            .iter()
-            .filter_map(|t| if let Term::Named(e) = t { Some(*e) } else { None });
-        for (effect, rivals) in names.zip(&found.rivals) {
-            let here = effect.id() == id || rivals.iter().any(|r| r.effect.id() == id);
-            alone |= here && rivals.is_empty();
-            with_rivals |= here && !rivals.is_empty();
-            for other in
-                std::iter::once(effect.id()).chain(rivals.iter().map(|r| r.effect.id())).filter(|o| *o != id)
-            {
+        for effect in &found.effects {
+            let ids = effect.ids();
+            let here = ids.contains(&id);
+            alone |= here && effect.rivals.is_empty();
+            with_rivals |= here && !effect.rivals.is_empty();
+            for other in ids.into_iter().filter(|other| *other != id) {
                 *power.others.entry(other).or_default() += 1;
             }
         }

@@ -5,7 +5,6 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 use super::plan::{Plan, Protocol};
-use super::twin::STROKE_MM;
 use pinswitch_calibration::table::{PlateauRow, Surface, Sweep};
 use pinswitch_friction::Direction;
 use pinswitch_friction::published;
@@ -97,7 +96,7 @@ fn series(
                 dwell_s: setting.dwell_s,
                 direction,
                 repetition,
-                position_mm: STROKE_MM * position,
+                position_mm: published::STROKE_MM * position,
                 time_s: *time_s,
                 force_n: 0.0,
             });

@@ -8,8 +8,7 @@ use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
 use super::plan::{Plan, PlanError};
-use super::twin::STROKE_MM;
-use pinswitch_calibration::table::{PlateauRow, Surface, Sweep};
+use pinswitch_calibration::table::{PlateauRow, Surface};
 use pinswitch_friction::Direction;
 use pinswitch_friction::published;
 
@@ -127,21 +126,22 @@ impl<'a> RawRun<'a> {
     /// The text of `run.toml`; logs are named with this suffix.
     pub fn description(&self, suffix: &str) -> String {
         let mut text = format!(
-            "[rig]\nwrap_angle_deg = {}\nsample_rate_hz = {:?}\nhook_mass_g = {}\nstroke_mm = {STROKE_MM}\non_s = {ON_S:?}\n\
+            "[rig]\nwrap_angle_deg = {}\nsample_rate_hz = {:?}\nhook_mass_g = {}\nstroke_mm = {}\non_s = {ON_S:?}\n\
              dwell_s = {:?}\n",
             published::WRAP_ANGLE_DEG,
             self.plan.raw.sample_rate_hz,
             published::HOOK_MASS_G,
+            published::STROKE_MM,
             self.plan.dwells_s[0]
         );
         for (i, row) in self.series.iter().enumerate().filter_map(|(i, s)| s.first().map(|r| (i, r))) {
-            let sweep = if row.sweep == Sweep::Up { "up" } else { "down" };
+            let sweep = row.sweep.as_str();
             let _ = write!(
                 text,
                 "\n[[series]]\nfile = \"{}{suffix}\"\nsubstrate = \"{}\"\npins = {:?}\nload_mass_g = {:?}\n\
                  speed_pct = {:?}\nsweep = \"{sweep}\"\n",
                 file_name(i, row),
-                row.surface.word(),
+                row.surface.as_str(),
                 row.pins,
                 row.load_mass_g,
                 row.speed_pct,
@@ -178,7 +178,7 @@ impl<'a> RawRun<'a> {
                 continue;
             }
             counts[slot] += 1;
-            let mut way_mm = -row.direction.sign() * STROKE_MM / in_direction as f64;
+            let mut way_mm = -row.direction.sign() * published::STROKE_MM / in_direction as f64;
             if Some(i) == odd {
                 way_mm *= 0.6;
                 faults.odd_speed = Some((row.direction, counts[slot]));
@@ -199,7 +199,7 @@ fn file_name(index: usize, row: &PlateauRow) -> String {
     let contact = match row.surface {
         Surface::Silicone if pins.is_empty() => "silicone".to_owned(),
         Surface::Silicone => format!("device-{}", pins.join("-")),
-        other => format!("{}-{}", other.word(), pins.join("-")),
+        other => format!("{}-{}", other.as_str(), pins.join("-")),
     };
     format!("{index:03}-{contact}_{:04.0}g.csv", row.load_mass_g)
 }

@@ -1,52 +1,38 @@
 //! `coating_ploughing`: the coating is ploughed by the force at each pin.
 
-use super::{ContactState, Covariate, Effect, Parameter, Side};
+use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
 use crate::table::{Condition, Frame, Point};
 
-/// x_p + kappa sqrt(F) sum theta_i^1.5 (model.md 3)
+/// See [`DESCRIPTION`].
 #[derive(Debug)]
-pub(super) struct CoatingPloughing;
+struct CoatingPloughing;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &CoatingPloughing;
+
+static DESCRIPTION: Description = Description {
+    id: "coating_ploughing",
+    side: Side::Switch,
+    covariate: Covariate::Load,
+    stage: Stage::AddedFriction,
+    formula: "x_p + kappa sqrt(F) sum theta_i^1.5",
+    parameters: &[Parameter::free("kappa", "N^-0.5")],
+    // Ploughing only adds friction.
+    one_sided: true,
+    scales: true,
+    confused_with: &["coating_stiffening", "polygon_bending"],
+    experiment: "pins-only runs over load and pin count",
+    invisible_because: "no condition with pins",
+    study: StudyRange { size: Some((0.012, 0.03)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
 
 impl Effect for CoatingPloughing {
-    fn id(&self) -> &'static str {
-        "coating_ploughing"
-    }
-
-    fn side(&self) -> Side {
-        Side::Switch
-    }
-
-    fn covariate(&self) -> Covariate {
-        Covariate::Load
-    }
-
-    fn formula(&self) -> &'static str {
-        "x_p + kappa sqrt(F) sum theta_i^1.5 (model.md 3)"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::free("kappa", "N^-0.5")] }
-    }
-
-    // One sign: ploughing only adds friction.
-    fn one_sided(&self) -> bool {
-        true
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.024]]
-    }
-
-    fn confused_with(&self) -> &'static [&'static str] {
-        &["coating_stiffening", "polygon_bending"]
-    }
-
-    fn experiment(&self) -> &'static str {
-        "pins-only runs over load and pin count"
-    }
-
-    fn invisible_because(&self) -> &'static str {
-        "no condition with pins"
     }
 
     fn on_contact(&self, k: &[f64], _: &Point, condition: &Condition, state: &mut ContactState) {

@@ -1,47 +1,37 @@
 //! `dwell_relaxation`: friction of the silicone depends on the pause before the reading.
 
-use super::{ContactState, Covariate, Effect, Parameter, Side};
+use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
 use crate::table::{Condition, Frame, Point};
 
-/// mu_s (1 + k ln(dwell / 3 s)) (effects.md)
+/// See [`DESCRIPTION`].
 #[derive(Debug)]
-pub(super) struct DwellRelaxation;
+struct DwellRelaxation;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &DwellRelaxation;
+
+static DESCRIPTION: Description = Description {
+    id: "dwell_relaxation",
+    side: Side::Switch,
+    covariate: Covariate::Dwell,
+    stage: Stage::ScaledFriction,
+    formula: "mu_s (1 + k ln(dwell / 3 s))",
+    parameters: &[Parameter::free("k", "1")],
+    one_sided: false,
+    scales: true,
+    confused_with: &[],
+    experiment: "one silicone run with dwells of 0.3, 3 and 30 s",
+    invisible_because: "the dwell time never varies, or there is no silicone",
+    study: StudyRange { size: Some((0.04, 0.12)), signed: true, shapes: &[], paper: PaperProtocol::Hidden },
+};
 
 impl Effect for DwellRelaxation {
-    fn id(&self) -> &'static str {
-        "dwell_relaxation"
-    }
-
-    fn side(&self) -> Side {
-        Side::Switch
-    }
-
-    fn covariate(&self) -> Covariate {
-        Covariate::Dwell
-    }
-
-    fn formula(&self) -> &'static str {
-        "mu_s (1 + k ln(dwell / 3 s)) (effects.md)"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::free("k", "1")] }
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.05]]
-    }
-
-    fn confused_with(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    fn experiment(&self) -> &'static str {
-        "one silicone run with dwells of 0.3, 3 and 30 s"
-    }
-
-    fn invisible_because(&self) -> &'static str {
-        "the dwell time never varies, or there is no silicone"
     }
 
     fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {

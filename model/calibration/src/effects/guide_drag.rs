@@ -1,52 +1,38 @@
 //! `guide_drag`: a constant drag of the guide pulleys, in every condition.
 
-use super::{ContactState, Covariate, Effect, Parameter, Side};
+use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
 use crate::table::{Condition, Frame, Point};
 
-/// T + d c in every condition (effects.md)
+/// See [`DESCRIPTION`].
 #[derive(Debug)]
-pub(super) struct GuideDrag;
+struct GuideDrag;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &GuideDrag;
+
+static DESCRIPTION: Description = Description {
+    id: "guide_drag",
+    side: Side::Rig,
+    covariate: Covariate::Direction,
+    stage: Stage::Drag,
+    formula: "T + d c in every condition",
+    parameters: &[Parameter::free("c", "N")],
+    // It opposes every move.
+    one_sided: true,
+    scales: true,
+    confused_with: &["adhesion"],
+    experiment: "a pins-only run or a blank run without the switch",
+    invisible_because: "only one direction",
+    study: StudyRange { size: Some((0.1, 0.5)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
 
 impl Effect for GuideDrag {
-    fn id(&self) -> &'static str {
-        "guide_drag"
-    }
-
-    fn side(&self) -> Side {
-        Side::Rig
-    }
-
-    fn covariate(&self) -> Covariate {
-        Covariate::Direction
-    }
-
-    fn formula(&self) -> &'static str {
-        "T + d c in every condition (effects.md)"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::free("c", "N")] }
-    }
-
-    // One sign: it opposes every move.
-    fn one_sided(&self) -> bool {
-        true
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.2]]
-    }
-
-    fn confused_with(&self) -> &'static [&'static str] {
-        &["adhesion"]
-    }
-
-    fn experiment(&self) -> &'static str {
-        "a pins-only run or a blank run without the switch"
-    }
-
-    fn invisible_because(&self) -> &'static str {
-        "only one direction"
     }
 
     fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {

@@ -1,48 +1,39 @@
 //! `hook_omitted`: the declared load leaves out the hook's weight.
 
-use super::{ContactState, Covariate, Effect, Parameter, Side};
-use crate::table::{Condition, Frame, Point};
 use pinswitch_friction::published;
 
-/// F + 0.613 N: the hook of 62.53 g; no free constant (effects.md)
+use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange};
+use crate::table::{Condition, Frame, Point};
+
+/// See [`DESCRIPTION`].
 #[derive(Debug)]
-pub(super) struct HookOmitted;
+struct HookOmitted;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &HookOmitted;
+
+static DESCRIPTION: Description = Description {
+    id: "hook_omitted",
+    side: Side::Rig,
+    covariate: Covariate::Load,
+    stage: Stage::Load,
+    formula: "F + 0.613 N: the hook of 62.53 g; no free constant",
+    parameters: &[],
+    one_sided: false,
+    scales: false,
+    confused_with: &["load_cell_offset"],
+    experiment: "weigh the hook",
+    invisible_because: "",
+    study: StudyRange { size: None, signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
 
 impl Effect for HookOmitted {
-    fn id(&self) -> &'static str {
-        "hook_omitted"
-    }
-
-    fn side(&self) -> Side {
-        Side::Rig
-    }
-
-    fn covariate(&self) -> Covariate {
-        Covariate::Load
-    }
-
-    fn formula(&self) -> &'static str {
-        "F + 0.613 N: the hook of 62.53 g; no free constant (effects.md)"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &[]
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![]]
-    }
-
-    fn confused_with(&self) -> &'static [&'static str] {
-        &["load_cell_offset"]
-    }
-
-    fn experiment(&self) -> &'static str {
-        "weigh the hook"
-    }
-
-    fn invisible_because(&self) -> &'static str {
-        ""
     }
 
     fn on_contact(&self, _: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {

@@ -1,47 +1,37 @@
 //! `load_cell_gain`: the reading has a wrong scale.
 
-use super::{Covariate, Effect, Parameter, Side};
+use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
 use crate::table::{Frame, Point};
 
-/// reading (1 + g) (effects.md)
+/// See [`DESCRIPTION`].
 #[derive(Debug)]
-pub(super) struct LoadCellGain;
+struct LoadCellGain;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &LoadCellGain;
+
+static DESCRIPTION: Description = Description {
+    id: "load_cell_gain",
+    side: Side::Rig,
+    covariate: Covariate::Load,
+    stage: Stage::CellScale,
+    formula: "reading (1 + g)",
+    parameters: &[Parameter::free("g", "1")],
+    one_sided: false,
+    scales: true,
+    confused_with: &["direction_asymmetry", "load_cell_nonlinearity"],
+    experiment: "dead weights up to 65 N on the cell",
+    invisible_because: "only one direction",
+    study: StudyRange { size: Some((0.01, 0.06)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
+};
 
 impl Effect for LoadCellGain {
-    fn id(&self) -> &'static str {
-        "load_cell_gain"
-    }
-
-    fn side(&self) -> Side {
-        Side::Rig
-    }
-
-    fn covariate(&self) -> Covariate {
-        Covariate::Load
-    }
-
-    fn formula(&self) -> &'static str {
-        "reading (1 + g) (effects.md)"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::free("g", "1")] }
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.02]]
-    }
-
-    fn confused_with(&self) -> &'static [&'static str] {
-        &["direction_asymmetry", "load_cell_nonlinearity"]
-    }
-
-    fn experiment(&self) -> &'static str {
-        "dead weights up to 65 N on the cell"
-    }
-
-    fn invisible_because(&self) -> &'static str {
-        "only one direction"
     }
 
     fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {

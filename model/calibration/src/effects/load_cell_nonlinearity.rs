@@ -1,48 +1,37 @@
 //! `load_cell_nonlinearity`: the reading bends with its square.
 
-use super::REFERENCE_LOAD_N;
-use super::{Covariate, Effect, Parameter, Side};
+use super::{Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage, StudyRange};
 use crate::table::{Frame, Point};
 
-/// reading + k (reading/F0)^2 (effects.md)
+/// See [`DESCRIPTION`].
 #[derive(Debug)]
-pub(super) struct LoadCellNonlinearity;
+struct LoadCellNonlinearity;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &LoadCellNonlinearity;
+
+static DESCRIPTION: Description = Description {
+    id: "load_cell_nonlinearity",
+    side: Side::Rig,
+    covariate: Covariate::Load,
+    stage: Stage::CellScale,
+    formula: "reading + k (reading/F0)^2",
+    parameters: &[Parameter::free("k", "N")],
+    one_sided: false,
+    scales: true,
+    confused_with: &["load_cell_gain", "load_cell_saturation"],
+    experiment: "dead weights up to 65 N on the cell",
+    invisible_because: "only one direction, or one load",
+    study: StudyRange { size: Some((0.3, 1.5)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
+};
 
 impl Effect for LoadCellNonlinearity {
-    fn id(&self) -> &'static str {
-        "load_cell_nonlinearity"
-    }
-
-    fn side(&self) -> Side {
-        Side::Rig
-    }
-
-    fn covariate(&self) -> Covariate {
-        Covariate::Load
-    }
-
-    fn formula(&self) -> &'static str {
-        "reading + k (reading/F0)^2 (effects.md)"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::free("k", "N")] }
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.4]]
-    }
-
-    fn confused_with(&self) -> &'static [&'static str] {
-        &["load_cell_gain", "load_cell_saturation"]
-    }
-
-    fn experiment(&self) -> &'static str {
-        "dead weights up to 65 N on the cell"
-    }
-
-    fn invisible_because(&self) -> &'static str {
-        "only one direction, or one load"
     }
 
     fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {

@@ -1,48 +1,38 @@
 //! `load_cell_saturation`: the reading stops rising above some force.
 
-use super::{Covariate, Effect, Parameter, Side};
+use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
 use crate::table::{Frame, Point};
 
-/// min(reading, limit) (effects.md)
+/// See [`DESCRIPTION`].
 #[derive(Debug)]
-pub(super) struct LoadCellSaturation;
+struct LoadCellSaturation;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &LoadCellSaturation;
+
+static DESCRIPTION: Description = Description {
+    id: "load_cell_saturation",
+    side: Side::Rig,
+    covariate: Covariate::Load,
+    stage: Stage::CellLimit,
+    formula: "min(reading, limit)",
+    parameters: &[Parameter::free("limit", "N")],
+    one_sided: false,
+    scales: false,
+    confused_with: &["load_cell_nonlinearity"],
+    experiment: "dead weights up to 65 N on the cell",
+    invisible_because: "no reading comes near the limit of the cell",
+    study: StudyRange { size: Some((46.0, 58.0)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
 
 impl Effect for LoadCellSaturation {
-    fn id(&self) -> &'static str {
-        "load_cell_saturation"
-    }
-
-    fn side(&self) -> Side {
-        Side::Rig
-    }
-
-    fn covariate(&self) -> Covariate {
-        Covariate::Load
-    }
-
-    fn formula(&self) -> &'static str {
-        "min(reading, limit) (effects.md)"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::free("limit", "N")] }
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
     fn starts(&self, frame: &Frame) -> Vec<Vec<f64>> {
         let highest = frame.load_range_n.1 * 1.35;
         (0..14).map(|i| vec![highest * (1.0 - 0.025 * f64::from(i))]).collect()
-    }
-
-    fn confused_with(&self) -> &'static [&'static str] {
-        &["load_cell_nonlinearity"]
-    }
-
-    fn experiment(&self) -> &'static str {
-        "dead weights up to 65 N on the cell"
-    }
-
-    fn invisible_because(&self) -> &'static str {
-        "no reading comes near the limit of the cell"
     }
 
     fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {

@@ -1,196 +1,112 @@
-//! What the paper's model may lack: one file per effect, named as in data.md section 4.
+//! What the paper's model may lack: one file per effect, which carries all that is known of it.
 //!
-//! To add an effect, write its file and add one line to [`LIBRARY`].
+//! To add an effect, write its file and add its name to the list below; everything else (fit, report, simulated rigs,
+//! study, power) reads it from there. `model/doc/effect-catalogue.md` explains each to a reader.
 
 use std::fmt::Debug;
-
-use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
 
 use crate::table::{Condition, Frame, Point};
 
-mod adhesion;
-mod coating_ploughing;
-mod coating_stiffening;
 mod contact_state;
-mod direction_asymmetry;
-mod dwell_relaxation;
-mod fixture_compliance;
-mod guide_drag;
-mod hook_omitted;
-mod load_cell_gain;
-mod load_cell_nonlinearity;
-mod load_cell_offset;
-mod load_cell_saturation;
-mod polygon_bending;
-mod rate_dependence;
-mod run_in;
-mod stroke_position;
+mod covariate;
+mod description;
 mod structure;
-mod substrate_saturation;
-mod switch_local_tension;
-mod switching_hysteresis;
-mod thermal_drift;
-mod wear_drift;
 
 pub use contact_state::{ContactState, REFERENCE_LOAD_N};
+pub use covariate::Covariate;
+pub use description::{Description, PaperProtocol, Parameter, Side, Stage, StudyRange};
 pub use structure::{Channel, Shape, Structure};
 
-/// Every named effect, in the order in which they act: the contact first, the load cell last.
-pub static LIBRARY: [&dyn Effect; 21] = [
-    &hook_omitted::HookOmitted,
-    &coating_ploughing::CoatingPloughing,
-    &coating_stiffening::CoatingStiffening,
-    &polygon_bending::PolygonBending,
-    &substrate_saturation::SubstrateSaturation,
-    &dwell_relaxation::DwellRelaxation,
-    &run_in::RunIn,
-    &wear_drift::WearDrift,
-    &rate_dependence::RateDependence,
-    &fixture_compliance::FixtureCompliance,
-    &stroke_position::StrokePosition,
-    &direction_asymmetry::DirectionAsymmetry,
-    &switching_hysteresis::SwitchingHysteresis,
-    &switch_local_tension::SwitchLocalTension,
-    &adhesion::Adhesion,
-    &guide_drag::GuideDrag,
-    &load_cell_gain::LoadCellGain,
-    &load_cell_nonlinearity::LoadCellNonlinearity,
-    &load_cell_offset::LoadCellOffset,
-    &thermal_drift::ThermalDrift,
-    &load_cell_saturation::LoadCellSaturation,
-];
+/// Declares the files of the effects and the registry of what they hold.
+macro_rules! effects {
+    ($($file:ident,)*) => {
+        $(mod $file;)*
+
+        /// Every named effect, in the order of the effect catalogue.
+        pub static CATALOGUE: &[&dyn Effect] = &[$($file::EFFECT),*];
+    };
+}
+
+effects! {
+    coating_stiffening,
+    coating_ploughing,
+    polygon_bending,
+    substrate_saturation,
+    adhesion,
+    dwell_relaxation,
+    run_in,
+    wear_drift,
+    rate_dependence,
+    fixture_compliance,
+    stroke_position,
+    direction_asymmetry,
+    switching_hysteresis,
+    guide_drag,
+    load_cell_offset,
+    load_cell_gain,
+    load_cell_nonlinearity,
+    load_cell_saturation,
+    thermal_drift,
+    hook_omitted,
+    switch_local_tension,
+}
+
+static ACTING: LazyLock<Vec<&'static dyn Effect>> = LazyLock::new(|| {
+    let mut all = CATALOGUE.to_vec();
+    all.sort_by_key(|effect| effect.description().stage);
+    all
+});
+
+/// Every named effect, in the order in which they act: the load first, the end of the load cell's range last.
+pub fn acting_order() -> &'static [&'static dyn Effect] {
+    &ACTING
+}
 
 /// The effect of an id.
+///
+/// ```
+/// use pinswitch_calibration::effects::{Side, effect_named};
+///
+/// let ploughing = effect_named("coating_ploughing").ok_or("not in the catalogue")?;
+/// assert_eq!(ploughing.description().side, Side::Switch);
+/// assert_eq!(ploughing.parameters()[0].unit, "N^-0.5");
+/// # Ok::<(), &str>(())
+/// ```
 pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
-    LIBRARY.iter().copied().find(|effect| effect.id() == id)
+    CATALOGUE.iter().copied().find(|effect| effect.id() == id)
 }
 
-/// Whether an effect belongs to the printed part or to the measurement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Side {
-    /// Changes the part's own friction: stays in predicted curves.
-    Switch,
-    /// Belongs to the measurement: stays out of predicted curves.
-    Rig,
-}
-
-impl Side {
-    /// The word of data.md.
-    pub fn word(self) -> &'static str {
-        match self {
-            Side::Switch => "switch",
-            Side::Rig => "rig",
-        }
-    }
-}
-
-/// Where the trace of an effect lies (data.md section 4).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Covariate {
-    /// The declared load.
-    Load,
-    /// Eccentric or concentric.
-    Direction,
-    /// Repetition inside a series and direction.
-    Repetition,
-    /// Position along the stroke.
-    Position,
-    /// Speed of the actuator.
-    Speed,
-    /// Pause before the reading.
-    Dwell,
-    /// Ascending or descending loads.
-    Sweep,
-    /// Time since the session began.
-    Time,
-    /// Substrate and pins.
-    Condition,
-}
-
-impl Covariate {
-    /// All of them, in the order of data.md.
-    pub const ALL: [Covariate; 9] = [
-        Covariate::Load,
-        Covariate::Direction,
-        Covariate::Repetition,
-        Covariate::Position,
-        Covariate::Speed,
-        Covariate::Dwell,
-        Covariate::Sweep,
-        Covariate::Time,
-        Covariate::Condition,
-    ];
-
-    /// The word of data.md.
-    pub fn word(self) -> &'static str {
-        match self {
-            Covariate::Load => "load",
-            Covariate::Direction => "direction",
-            Covariate::Repetition => "repetition",
-            Covariate::Position => "position",
-            Covariate::Speed => "speed",
-            Covariate::Dwell => "dwell",
-            Covariate::Sweep => "sweep",
-            Covariate::Time => "time",
-            Covariate::Condition => "condition",
-        }
-    }
-}
-
-/// One constant of an effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameter {
-    /// Its symbol.
-    pub name: &'static str,
-    /// Its unit; `1` if it has none.
-    pub unit: &'static str,
-    /// Bounds of a shape constant; `None` for a size, which is free.
-    pub bounds: Option<(f64, f64)>,
-}
-
-impl Parameter {
-    /// A size: unbounded, the effect vanishes at zero.
-    pub const fn free(name: &'static str, unit: &'static str) -> Self {
-        Self { name, unit, bounds: None }
-    }
-
-    /// A shape within bounds.
-    pub const fn bounded(name: &'static str, unit: &'static str, least: f64, most: f64) -> Self {
-        Self { name, unit, bounds: Some((least, most)) }
-    }
-}
-
-/// A named effect: where it enters the forward model, with which constants, and how to talk about it.
+/// A named effect: what is said of it, where a fit of it starts, and where it enters the forward model.
 pub trait Effect: Debug + Sync {
-    /// Its id in data.md.
-    fn id(&self) -> &'static str;
-    /// Part or measurement.
-    fn side(&self) -> Side;
-    /// Where its trace lies.
-    fn covariate(&self) -> Covariate;
-    /// The formula with its source.
-    fn formula(&self) -> &'static str;
-    /// Its constants; sensitivities to them are central differences.
-    fn parameters(&self) -> &'static [Parameter];
-    /// Whether its size can only be positive: what fits with a negative one is something else.
-    fn one_sided(&self) -> bool {
-        false
-    }
+    /// What is known and said of it.
+    fn description(&self) -> &'static Description;
+
     /// Values to start a fit from: the sizes typical of this rig, one entry per shape.
     fn starts(&self, frame: &Frame) -> Vec<Vec<f64>>;
-    /// Effects that may look the same.
-    fn confused_with(&self) -> &'static [&'static str];
-    /// The experiment that shows it apart from those.
-    fn experiment(&self) -> &'static str;
-    /// What keeps data from showing it.
-    fn invisible_because(&self) -> &'static str;
+
     /// Changes the contact; `k` are the constants.
     fn on_contact(&self, _k: &[f64], _point: &Point, _condition: &Condition, _state: &mut ContactState) {}
+
     /// Changes the reading in newtons; `k` are the constants.
     fn on_reading(&self, _k: &[f64], _point: &Point, reading_n: f64) -> f64 {
         reading_n
+    }
+
+    /// Its id.
+    fn id(&self) -> &'static str {
+        self.description().id
+    }
+
+    /// Its constants; sensitivities to them are differences.
+    fn parameters(&self) -> &'static [Parameter] {
+        self.description().parameters
+    }
+
+    /// Its formula with the document that explains it.
+    fn cited_formula(&self) -> String {
+        let Description { formula, id, .. } = self.description();
+        format!("{formula} (model/doc/effect-catalogue.md#{id})")
     }
 }
 
@@ -201,10 +117,13 @@ mod tests {
 
     #[test]
     fn ids_are_unique_and_rivals_exist() {
-        for (i, effect) in LIBRARY.iter().enumerate() {
-            assert!(LIBRARY[i + 1..].iter().all(|other| other.id() != effect.id()));
-            assert!(effect.confused_with().iter().all(|id| effect_named(id).is_some()), "{}", effect.id());
-            assert!(!effect.experiment().is_empty() && effect.formula().len() > 8);
+        for (i, effect) in CATALOGUE.iter().enumerate() {
+            assert!(CATALOGUE[i + 1..].iter().all(|other| other.id() != effect.id()));
+            let told = effect.description();
+            assert!(told.confused_with.iter().all(|id| effect_named(id).is_some()), "{}", told.id);
+            assert!(!told.experiment.is_empty() && told.formula.len() > 8);
+            let constants = usize::from(told.study.size.is_some()) + told.study.shapes.len();
+            assert_eq!(constants, told.parameters.len(), "{}", told.id);
         }
     }
 
@@ -241,7 +160,7 @@ mod tests {
             time: 0.7,
             travel: 0.6,
         };
-        for effect in LIBRARY {
+        for effect in CATALOGUE {
             let read = |k: Option<&[f64]>| {
                 let mut state = ContactState {
                     load_n: point.load_n,

@@ -1,47 +1,37 @@
 //! `rate_dependence`: friction depends on the speed of the actuator.
 
-use super::{ContactState, Covariate, Effect, Parameter, Side};
+use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
 use crate::table::{Condition, Frame, Point};
 
-/// mu (1 + k ln(v/v0)), v0 the geometric mean speed (effects.md)
+/// See [`DESCRIPTION`].
 #[derive(Debug)]
-pub(super) struct RateDependence;
+struct RateDependence;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &RateDependence;
+
+static DESCRIPTION: Description = Description {
+    id: "rate_dependence",
+    side: Side::Switch,
+    covariate: Covariate::Speed,
+    stage: Stage::ScaledFriction,
+    formula: "mu (1 + k ln(v/v0)), v0 the geometric mean speed",
+    parameters: &[Parameter::free("k", "1")],
+    one_sided: false,
+    scales: true,
+    confused_with: &["fixture_compliance", "substrate_saturation"],
+    experiment: "several speeds at one load",
+    invisible_because: "the speed never varies",
+    study: StudyRange { size: Some((0.15, 0.5)), signed: false, shapes: &[], paper: PaperProtocol::Confounded },
+};
 
 impl Effect for RateDependence {
-    fn id(&self) -> &'static str {
-        "rate_dependence"
-    }
-
-    fn side(&self) -> Side {
-        Side::Switch
-    }
-
-    fn covariate(&self) -> Covariate {
-        Covariate::Speed
-    }
-
-    fn formula(&self) -> &'static str {
-        "mu (1 + k ln(v/v0)), v0 the geometric mean speed (effects.md)"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::free("k", "1")] }
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.1]]
-    }
-
-    fn confused_with(&self) -> &'static [&'static str] {
-        &["fixture_compliance", "substrate_saturation"]
-    }
-
-    fn experiment(&self) -> &'static str {
-        "several speeds at one load"
-    }
-
-    fn invisible_because(&self) -> &'static str {
-        "the speed never varies"
     }
 
     fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {

@@ -1,47 +1,37 @@
 //! `stroke_position`: the wrap angle changes along the stroke.
 
-use super::{ContactState, Covariate, Effect, Parameter, Side};
+use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
 use crate::table::{Condition, Frame, Point};
 
-/// a (1 + k (s/stroke - 1/2)) (effects.md)
+/// See [`DESCRIPTION`].
 #[derive(Debug)]
-pub(super) struct StrokePosition;
+struct StrokePosition;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &StrokePosition;
+
+static DESCRIPTION: Description = Description {
+    id: "stroke_position",
+    side: Side::Rig,
+    covariate: Covariate::Position,
+    stage: Stage::ScaledFriction,
+    formula: "a (1 + k (s/stroke - 1/2))",
+    parameters: &[Parameter::free("k", "1")],
+    one_sided: false,
+    scales: true,
+    confused_with: &["run_in"],
+    experiment: "both directions over the whole stroke",
+    invisible_because: "the position never varies",
+    study: StudyRange { size: Some((0.05, 0.2)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
+};
 
 impl Effect for StrokePosition {
-    fn id(&self) -> &'static str {
-        "stroke_position"
-    }
-
-    fn side(&self) -> Side {
-        Side::Rig
-    }
-
-    fn covariate(&self) -> Covariate {
-        Covariate::Position
-    }
-
-    fn formula(&self) -> &'static str {
-        "a (1 + k (s/stroke - 1/2)) (effects.md)"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::free("k", "1")] }
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
         vec![vec![0.05]]
-    }
-
-    fn confused_with(&self) -> &'static [&'static str] {
-        &["run_in"]
-    }
-
-    fn experiment(&self) -> &'static str {
-        "both directions over the whole stroke"
-    }
-
-    fn invisible_because(&self) -> &'static str {
-        "the position never varies"
     }
 
     fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {

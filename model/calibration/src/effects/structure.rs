@@ -1,5 +1,6 @@
 //! `unattributed`: structure along one covariate that no named effect explains, as a data-driven term.
 
+use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
 use super::{ContactState, Covariate};
@@ -250,7 +251,7 @@ impl Structure {
             ),
             Shape::SpeedPower { power } => format!("a course with ln(speed) to the power {power}"),
             Shape::DwellLevel { log_dwell } => {
-                format!("another level at a dwell of {:.2} s", 3.0 * log_dwell.exp())
+                format!("another level at a dwell of {:.2} s", published::DWELL_S * log_dwell.exp())
             }
             Shape::LoadLevel { load_n, .. } => format!("another level at a load of {load_n:.1} N"),
             Shape::LoadPower { power, .. } => format!("a course with load to the power {power}"),

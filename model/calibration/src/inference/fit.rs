@@ -8,6 +8,7 @@ use super::observations::Observations;
 use super::projection::dot;
 use super::significance::degrees_of_freedom;
 use crate::table::Point;
+use pinswitch_friction::LayoutLaw;
 
 /// A model fitted to data.
 #[derive(Clone, Debug)]
@@ -160,8 +161,8 @@ pub fn prediction_sd_n(model: &Model, points: &[Point], covariance: &[Vec<f64>],
                 }
             }
             if !same {
-                // A layout nobody measured: the law's own uncertainty, 12 % of the friction force (model.md 2).
-                variance += (0.12 * (at[row] - points[row].load_n)).powi(2);
+                // A layout nobody measured: the layout law's own uncertainty, of the friction force.
+                variance += (LayoutLaw::UNCERTAINTY * (at[row] - points[row].load_n)).powi(2);
             }
             variance.max(0.0).sqrt()
         })

@@ -1,8 +1,8 @@
 //! The forward model: from constants and a row to the reading.
 
-use crate::effects::{ContactState, Effect, Structure};
+use crate::effects::{ContactState, Effect, Side, Stage, Structure};
 use crate::table::{Condition, Frame, Point, Surface};
-use pinswitch_friction::published;
+use pinswitch_friction::{LayoutLaw, published};
 
 /// One term on top of the paper's model.
 #[derive(Clone, Debug)]
@@ -80,9 +80,9 @@ impl Model {
             } else {
                 condition.wrap_rad
             };
-            let half = 13.1 * (n / (condition.wrap_rad * pitch)).sqrt();
+            let half = LayoutLaw::half_load_at_n(n, pitch, condition.wrap_rad);
             priors.push(Prior { mean: half.ln(), sd: PRIOR_LOG_HALF_LOAD });
-            priors.push(Prior { mean: 4.64f64.ln(), sd: PRIOR_LOG_STEEPNESS });
+            priors.push(Prior { mean: LayoutLaw::STEEPNESS.ln(), sd: PRIOR_LOG_STEEPNESS });
         }
         let mut plain = vec![usize::MAX; frame.conditions.len()];
         for (i, condition) in frame.conditions.iter().enumerate() {
@@ -108,6 +108,17 @@ impl Model {
         }
         model.terms.push(term);
         model
+    }
+
+    /// Its named effects, in the order of its terms.
+    pub fn named_effects(&self) -> Vec<&'static dyn Effect> {
+        self.terms
+            .iter()
+            .filter_map(|term| match term {
+                Term::Named(effect) => Some(*effect),
+                Term::Structure(_) => None,
+            })
+            .collect()
     }
 
     /// The same model without its term of that index.
@@ -318,7 +329,7 @@ impl Model {
             drag_n: 0.0,
         };
         let kept = |term: &Term| match term {
-            Term::Named(effect) => !part_only || effect.side() == crate::effects::Side::Switch,
+            Term::Named(effect) => !part_only || effect.description().side == Side::Switch,
             Term::Structure(_) => !part_only,
         };
         for (term, at) in self.terms.iter().zip(offsets).filter(|(term, _)| kept(term)) {
@@ -330,19 +341,24 @@ impl Model {
             }
         }
         let mut reading = state.tension_n(condition, point);
-        let mut saturation = None;
+        // What ends the range of the load cell acts on everything before it.
+        let mut limits = Vec::new();
         for (term, at) in self.terms.iter().zip(offsets).filter(|(term, _)| kept(term)) {
             match term {
-                Term::Named(effect) if effect.id() == "load_cell_saturation" => {
-                    saturation = Some((effect, *at))
-                }
                 Term::Named(effect) => {
-                    reading = effect.on_reading(&values[*at..at + term.constants()], point, reading);
+                    let constants = &values[*at..at + term.constants()];
+                    if effect.description().stage == Stage::CellLimit {
+                        limits.push((effect, constants));
+                    } else {
+                        reading = effect.on_reading(constants, point, reading);
+                    }
                 }
                 Term::Structure(structure) => reading = structure.on_reading(values[*at], point, reading),
             }
         }
-        saturation.map_or(reading, |(effect, at)| effect.on_reading(&values[at..=at], point, reading))
+        limits
+            .iter()
+            .fold(reading, |reading, (effect, constants)| effect.on_reading(constants, point, reading))
     }
 }
 

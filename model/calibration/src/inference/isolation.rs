@@ -15,14 +15,14 @@ const AHEAD: f64 = 1.3;
 /// With fewer series none can be said to stand alone.
 const LEAST_SERIES: usize = 8;
 
-/// Mean residual of a cell over its standard deviation. What was set aside counts with its rows as if sound.
+/// Mean residual of a cell over its standard deviation. What was excluded counts with its rows as if sound.
 pub(crate) fn cell_deviation(fitted: &Fit, data: &Observations, noise: Noise, cell: usize) -> (f64, f64) {
     let rows = &data.cells[cell];
     let weights: Vec<f64> = rows.iter().map(|r| data.weights[*r]).collect();
     let total: f64 = weights.iter().sum();
     let mean = rows.iter().zip(&weights).map(|(r, w)| w * fitted.residual_n[*r]).sum::<f64>() / total;
-    let aside = rows.first().is_some_and(|r| data.is_aside(*r));
-    let count = if aside { rows.len() as f64 } else { total };
+    let excluded = rows.first().is_some_and(|r| data.is_excluded(*r));
+    let count = if excluded { rows.len() as f64 } else { total };
     let load = data.cell_load_n[cell];
     (mean, (noise.repetition.at(load) / count.sqrt()).hypot(noise.series.at(load)))
 }

@@ -175,7 +175,7 @@ impl Noise {
         let (mut inside, mut between) = (Vec::new(), Vec::new());
         let mut axis = Vec::new();
         for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {
-            if cell.first().is_some_and(|r| data.is_aside(*r)) {
+            if cell.first().is_some_and(|r| data.is_excluded(*r)) {
                 continue;
             }
             self.offset_axis(data, cell, &mut axis);

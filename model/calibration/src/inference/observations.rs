@@ -23,13 +23,13 @@ pub struct Observations {
     /// Roots of the weights.
     pub(crate) roots: Vec<f64>,
     /// Series that are wrong as a whole and decide nothing.
-    aside: Vec<usize>,
+    excluded: Vec<usize>,
 }
 
 /// Weight below which no row falls, so that its root stays a number; a reading a million times off has no say at it.
 const LEAST_WEIGHT: f64 = 1e-16;
-/// Weight of the rows of a series set aside: they keep their place and have no say.
-const ASIDE: f64 = 1e-7;
+/// Weight of the rows of an excluded series: they keep their place and have no say.
+const EXCLUDED_WEIGHT: f64 = 1e-7;
 
 impl Observations {
     /// Groups a table; `None` if the frame lacks a condition.
@@ -59,7 +59,7 @@ impl Observations {
             cell_load_n,
             weights: ones.clone(),
             roots: ones,
-            aside: Vec::new(),
+            excluded: Vec::new(),
         })
     }
 
@@ -87,31 +87,31 @@ impl Observations {
             cells,
             weights: kept.iter().map(|i| self.weights[*i]).collect(),
             roots: kept.iter().map(|i| self.roots[*i]).collect(),
-            aside: self.aside.clone(),
+            excluded: self.excluded.clone(),
         }
     }
 
-    /// Sets a series aside.
-    pub(crate) fn set_aside(&mut self, series: usize) {
-        self.aside.push(series);
-        self.apply_aside();
+    /// Excludes a series: its rows keep their place and have no say.
+    pub(crate) fn exclude(&mut self, series: usize) {
+        self.excluded.push(series);
+        self.apply_exclusions();
     }
 
-    /// Whether the series of a row is set aside.
-    pub fn is_aside(&self, row: usize) -> bool {
-        self.aside.contains(&self.series_of[row])
+    /// Whether the series of a row is excluded.
+    pub fn is_excluded(&self, row: usize) -> bool {
+        self.excluded.contains(&self.series_of[row])
     }
 
-    /// Number of series set aside.
-    pub fn aside(&self) -> usize {
-        self.aside.len()
+    /// Number of series excluded.
+    pub fn excluded_series(&self) -> usize {
+        self.excluded.len()
     }
 
-    fn apply_aside(&mut self) {
+    fn apply_exclusions(&mut self) {
         for row in 0..self.points.len() {
-            if self.is_aside(row) {
-                self.weights[row] = ASIDE;
-                self.roots[row] = ASIDE.sqrt();
+            if self.is_excluded(row) {
+                self.weights[row] = EXCLUDED_WEIGHT;
+                self.roots[row] = EXCLUDED_WEIGHT.sqrt();
             }
         }
     }
@@ -150,7 +150,7 @@ impl Observations {
             *weight = if z <= 3.2 { 1.0 } else { (3.2 / z).powi(3).max(LEAST_WEIGHT) };
         }
         self.roots = self.weights.iter().map(|w| w.sqrt()).collect();
-        self.apply_aside();
+        self.apply_exclusions();
         sd
     }
 }

@@ -1,14 +1,14 @@
 //! Scores: how much each effect or structure that is not in a model would gain, by its sensitivity after the
 //! model's own constants have been refitted to first order.
 
-use super::catalogue::{Group, catalogue};
 use super::fit::{Fit, jacobian};
+use super::form_tolerance::{BEND, bent_copies};
 use super::forward::Term;
 use super::noise::Noise;
 use super::observations::Observations;
-use super::own_form::{BEND, bent_copies};
 use super::projection::{Projection, dot};
-use crate::effects::{Channel, Covariate, Effect, LIBRARY, Shape, Structure};
+use super::structures::{Group, structures_to_try};
+use crate::effects::{Channel, Covariate, Effect, Shape, Structure, acting_order};
 
 /// What a wave's gain is reduced by, in whitened squares.
 const WAVE_TOLL: f64 = 15.0;
@@ -121,7 +121,7 @@ impl<'a> Screen<'a> {
         let absent = |effect: &&'static dyn Effect| {
             !model.terms.iter().any(|t| matches!(t, Term::Named(e) if e.id() == effect.id()))
         };
-        LIBRARY.iter().copied().filter(absent).filter_map(|effect| self.effect(effect)).collect()
+        acting_order().iter().copied().filter(absent).filter_map(|effect| self.effect(effect)).collect()
     }
 
     fn effect(&self, effect: &'static dyn Effect) -> Option<EffectScore> {
@@ -132,13 +132,13 @@ impl<'a> Screen<'a> {
             let (column, visible_share) = self.visible(column);
             let length2 = dot(&column, &column);
             let along = dot(&column, &self.residual);
-            let fixed = effect.parameters().is_empty() || effect.id() == "load_cell_saturation";
+            let scales = effect.description().scales;
             let gain = if length2 < 1e-9 {
                 0.0
-            } else if fixed {
-                2.0 * along - length2
-            } else {
+            } else if scales {
                 along * along / length2
+            } else {
+                2.0 * along - length2
             };
             if best.as_ref().is_none_or(|b| gain > b.gain) {
                 let mut by_series = vec![0.0; self.data.series];
@@ -147,7 +147,7 @@ impl<'a> Screen<'a> {
                     by_series[*series] += scale * column[row] * self.residual[row];
                 }
                 let mut start = start;
-                if !fixed && length2 > 1e-9 {
+                if scales && length2 > 1e-9 {
                     start[0] *= along / length2;
                 }
                 best = Some(EffectScore {
@@ -187,7 +187,7 @@ impl<'a> Screen<'a> {
         };
         let channels = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone]
             .map(|channel| (channel, sensitivity(channel)));
-        let mut scores: Vec<StructureScore> = catalogue(&self.fitted.model.frame, &self.data.points)
+        let mut scores: Vec<StructureScore> = structures_to_try(&self.fitted.model.frame, &self.data.points)
             .into_iter()
             .filter_map(|group| {
                 let columns: Vec<Vec<f64>> = group
@@ -254,11 +254,11 @@ impl<'a> Screen<'a> {
         Some(StructureScore { group, sizes: vec![size], gain })
     }
 
-    /// Gain of free offsets of each series, one per direction, for the series that are not set aside.
+    /// Gain of free offsets of each series, one per direction, for the series that are not excluded.
     pub(crate) fn series_offsets(&self) -> Vec<(usize, f64)> {
         let mut columns = vec![Vec::new(); self.data.series];
         for cell in &self.data.cells {
-            let Some(row) = cell.first().filter(|r| !self.data.is_aside(**r)) else { continue };
+            let Some(row) = cell.first().filter(|r| !self.data.is_excluded(**r)) else { continue };
             let mut column = vec![0.0; self.predicted.len()];
             cell.iter().for_each(|r| column[*r] = 1.0);
             columns[self.data.series_of[*row]].push(self.visible(column).0);

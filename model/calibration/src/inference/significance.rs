@@ -6,7 +6,7 @@ use super::observations::Observations;
 
 /// Independent units behind an estimate: a load or a layout is known by series, not by repetitions.
 pub fn degrees_of_freedom(data: &Observations, constants: usize) -> f64 {
-    (data.series as f64 - data.aside() as f64 - constants as f64).max(4.0)
+    (data.series as f64 - data.excluded_series() as f64 - constants as f64).max(4.0)
 }
 
 /// Probability that the largest of `tried` gains reaches `gain` by chance (Sidak). A gain in whitened squares is the

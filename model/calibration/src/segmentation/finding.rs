@@ -4,7 +4,6 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::table::direction_word;
 use pinswitch_friction::Direction;
 
 /// Something that is wrong with a log.
@@ -68,11 +67,11 @@ impl fmt::Display for Finding {
                 write!(f, "clipped at {force_n:.2} N in {:.1} % of the samples", 100.0 * share)
             }
             Self::OddSpeed { direction, repetition, ratio } => {
-                let word = direction_word(*direction);
+                let word = direction.as_str();
                 write!(f, "{word} {repetition}: the move takes {ratio:.2} times the usual time")
             }
             Self::MissingRepetition { direction, after } => {
-                write!(f, "{} repetition missing after {after}", direction_word(*direction))
+                write!(f, "{} repetition missing after {after}", direction.as_str())
             }
             Self::UnreadableRest { time_s } => write!(f, "rest at {time_s:.1} s unreadable"),
         }

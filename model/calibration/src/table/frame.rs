@@ -59,9 +59,9 @@ impl Condition {
     pub fn name(&self) -> String {
         let pins: Vec<String> = self.pins.iter().map(usize::to_string).collect();
         if pins.is_empty() {
-            self.surface.word().to_owned()
+            self.surface.as_str().to_owned()
         } else {
-            format!("{} {}", self.surface.word(), pins.join(";"))
+            format!("{} {}", self.surface.as_str(), pins.join(";"))
         }
     }
 
@@ -116,11 +116,6 @@ pub struct Point {
     pub travel: f64,
 }
 
-/// Stroke of the paper's actuator in millimetres.
-const STROKE_MM: f64 = 152.4;
-/// Reference dwell in seconds (effects.md).
-const REFERENCE_DWELL_S: f64 = 3.0;
-
 impl Frame {
     /// The frame of a table.
     pub fn new(rows: &[PlateauRow]) -> Self {
@@ -139,7 +134,7 @@ impl Frame {
             }
         }
         let mut frame = Self {
-            stroke_mm: if furthest > STROKE_MM * 1.05 { furthest } else { STROKE_MM },
+            stroke_mm: if furthest > published::STROKE_MM * 1.05 { furthest } else { published::STROKE_MM },
             session_s: max(|r| r.time_s).max(1e-9),
             reference_speed_pct: if speeds.is_empty() {
                 1.0
@@ -188,7 +183,7 @@ impl Frame {
             sign: row.direction.sign(),
             descending: f64::from(u8::from(row.sweep == Sweep::Down)),
             log_speed: log_ratio(row.speed_pct, self.reference_speed_pct),
-            log_dwell: log_ratio(row.dwell_s, REFERENCE_DWELL_S),
+            log_dwell: log_ratio(row.dwell_s, published::DWELL_S),
             repetition: f64::from(row.repetition),
             position: row.position_mm / self.stroke_mm,
             time: row.time_s / self.session_s,

@@ -9,6 +9,5 @@ mod table_error;
 pub(crate) use frame::groups;
 pub use frame::{Condition, Frame, Point};
 pub use plateau_table::PlateauTable;
-pub(crate) use row::direction_word;
 pub use row::{PlateauRow, Surface, Sweep};
 pub use table_error::TableError;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::io::Read;
 
-use super::row::{PlateauRow, Surface, Sweep, direction_word};
+use super::row::{PlateauRow, Surface, Sweep};
 use super::table_error::TableError;
 use pinswitch_friction::Direction;
 use pinswitch_friction::published::GROOVES;
@@ -153,14 +153,14 @@ impl PlateauTable {
             let pins: Vec<String> = row.pins.iter().map(usize::to_string).collect();
             let cells = [
                 row.series.clone(),
-                row.surface.word().to_owned(),
+                row.surface.as_str().to_owned(),
                 pins.join(";"),
-                row.sweep.word().to_owned(),
+                row.sweep.as_str().to_owned(),
                 format!("{}", row.load_mass_g),
                 format!("{:.4}", row.load_n),
                 format!("{}", row.speed_pct),
                 format!("{}", row.dwell_s),
-                direction_word(row.direction).to_owned(),
+                row.direction.as_str().to_owned(),
                 row.repetition.to_string(),
                 format!("{:.2}", row.position_mm),
                 format!("{:.2}", row.time_s),

@@ -18,7 +18,7 @@ pub enum Surface {
 
 impl Surface {
     /// The word of the `substrate` column.
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Surface::Silicone => "silicone",
             Surface::Abs => "abs",
@@ -39,7 +39,7 @@ pub enum Sweep {
 
 impl Sweep {
     /// The word of the `sweep` column.
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Sweep::Up => "up",
             Sweep::Down => "down",
@@ -76,12 +76,4 @@ pub struct PlateauRow {
     pub time_s: f64,
     /// The reading in newtons.
     pub force_n: f64,
-}
-
-/// `eccentric` or `concentric`.
-pub(crate) fn direction_word(direction: Direction) -> &'static str {
-    match direction {
-        Direction::Eccentric => "eccentric",
-        Direction::Concentric => "concentric",
-    }
 }

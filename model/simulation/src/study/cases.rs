@@ -3,11 +3,10 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::strengths::strengths;
 use crate::disturbance::{Disturbance, Kind, Target};
 use crate::plan::{EffectPlan, Plan, Protocol};
 use crate::twin::forms::forms_of;
-use pinswitch_calibration::effects::Covariate;
+use pinswitch_calibration::effects::{CATALOGUE, Covariate, PaperProtocol, effect_named};
 
 /// What is true of a rig.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,15 +68,14 @@ pub fn study_cases() -> Vec<Case> {
         for name in NULLS {
             push(name.to_owned(), Truth::Nothing);
         }
-        for s in strengths() {
-            let paper = protocol == Protocol::Paper;
-            if paper && ["dwell_relaxation", "switching_hysteresis"].contains(&s.id) {
-                continue;
-            }
-            // In the paper's protocol speed follows load.
-            let confounded = paper && ["rate_dependence", "fixture_compliance"].contains(&s.id);
-            let truth = if confounded { Truth::Confounded(s.id) } else { Truth::Effects(vec![s.id]) };
-            push(s.id.to_owned(), truth);
+        for effect in CATALOGUE {
+            let id = effect.id();
+            let truth = match (protocol, effect.description().study.paper) {
+                (Protocol::Paper, PaperProtocol::Hidden) => continue,
+                (Protocol::Paper, PaperProtocol::Confounded) => Truth::Confounded(id),
+                _ => Truth::Effects(vec![id]),
+            };
+            push(id.to_owned(), truth);
         }
         for (a, b) in PAIRS {
             push(format!("{a} + {b}"), Truth::Effects(vec![a, b]));
@@ -141,13 +139,13 @@ fn null(name: &str, plan: &mut Plan) {
 
 /// An effect with its size, shape and form drawn.
 fn drawn(id: &str, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
-    let s = strengths().iter().find(|s| s.id == id)?;
+    let range = effect_named(id)?.description().study;
     let mut values = Vec::new();
-    if s.size.1 > 0.0 {
-        let size = (s.size.0.ln() + (s.size.1 / s.size.0).ln() * random.random::<f64>()).exp();
-        values.push(if s.signed && random.random::<bool>() { -size } else { size });
+    if let Some((least, most)) = range.size {
+        let size = (least.ln() + (most / least).ln() * random.random::<f64>()).exp();
+        values.push(if range.signed && random.random::<bool>() { -size } else { size });
     }
-    values.extend(s.shapes.iter().map(|(least, most)| least + (most - least) * random.random::<f64>()));
+    values.extend(range.shapes.iter().map(|(least, most)| least + (most - least) * random.random::<f64>()));
     let form = u8::try_from(random.random_range(0..forms_of(id).len())).unwrap_or(0);
     Some(EffectPlan { id: id.to_owned(), values, form })
 }

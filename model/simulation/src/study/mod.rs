@@ -2,14 +2,11 @@
 
 mod cases;
 mod outcome;
-mod strengths;
 
 use std::collections::BTreeMap;
 
 pub use cases::{Case, Truth, plan_of, study_cases};
 pub use outcome::{Outcome, run_case};
-pub use strengths::Strength;
-pub(super) use strengths::strengths;
 
 use pinswitch_calibration::median;
 

@@ -4,10 +4,10 @@ use super::cases::{Case, Truth, plan_of};
 use crate::plan::Plan;
 use crate::simulate::simulate;
 use pinswitch_calibration::Verdict;
-use pinswitch_calibration::effects::{LIBRARY, effect_named};
+use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 use pinswitch_calibration::inference::{
-    Levels, Model, Observations, Selection, Term, degrees_of_freedom, family_p_value, interval_half_widths,
-    select,
+    FoundEffect, Levels, Model, Observations, Selection, degrees_of_freedom, family_p_value,
+    interval_half_widths, select,
 };
 use pinswitch_calibration::table::{Frame, PlateauTable};
 
@@ -32,8 +32,8 @@ pub struct Outcome {
     pub p_value: f64,
     /// Gain of the best structure without a name, in whitened squares.
     pub structure_gain: f64,
-    /// Series set aside.
-    pub aside: usize,
+    /// Series excluded as wrong as a whole.
+    pub excluded: usize,
 }
 
 /// Simulates one rig and calibrates it from the table's text alone. `None` if its table cannot be read back.
@@ -50,18 +50,10 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<Outcome> {
         let sum: f64 = predicted.iter().zip(&simulated.fresh).map(|(p, r)| (p - r.force_n).powi(2)).sum();
         (sum / predicted.len().max(1) as f64).sqrt()
     };
-    let sets = sets(&found);
-    let verdict = if found.structure.is_some() {
-        Verdict::Unattributed
-    } else if sets.is_empty() {
-        Verdict::None
-    } else if sets.iter().any(|s| s.len() > 1) {
-        Verdict::Ambiguous
-    } else {
-        Verdict::Attributed
-    };
+    let sets: Vec<Vec<&str>> = found.effects.iter().map(FoundEffect::ids).collect();
+    let verdict = Verdict::of(&found);
     let mut named: Vec<String> = sets.iter().map(|s| s.join("|")).collect();
-    named.extend(found.structure.map(|(c, _)| format!("unattributed:{}", c.word())));
+    named.extend(found.structure.map(|s| format!("unattributed:{}", s.covariate.as_str())));
     named.sort();
     let holds = |truth: &[&str]| {
         found.structure.is_none()
@@ -73,11 +65,11 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<Outcome> {
         Truth::Effects(ids) => (holds(ids) && verdict == Verdict::Attributed, holds(ids)),
         Truth::Confounded(id) => (holds(&[id]) && verdict == Verdict::Ambiguous, holds(&[id])),
         Truth::Outside(covariate) => {
-            let right = found.structure.is_some_and(|(c, _)| c == *covariate);
+            let right = found.structure.is_some_and(|s| s.covariate == *covariate);
             (right && sets.is_empty(), right)
         }
     };
-    let largest_gain = found.candidates.first().map_or(0.0, |c| c.1);
+    let largest_gain = found.candidates.first().map_or(0.0, |c| c.gain);
     let degrees = degrees_of_freedom(&data, found.baseline.model.values().len());
     Some(Outcome {
         verdict,
@@ -87,28 +79,10 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<Outcome> {
         honest,
         covered: covered(&plan, &found, &data),
         largest_gain,
-        p_value: family_p_value(largest_gain, LIBRARY.len(), degrees),
+        p_value: family_p_value(largest_gain, CATALOGUE.len(), degrees),
         structure_gain: found.structure_gain,
-        aside: data.aside(),
+        excluded: data.excluded_series(),
     })
-}
-
-/// Each named effect with its rivals.
-fn sets(found: &Selection) -> Vec<Vec<&'static str>> {
-    found
-        .augmented
-        .model
-        .terms
-        .iter()
-        .filter_map(|t| if let Term::Named(e) = t { Some(*e) } else { None })
-        .zip(&found.rivals)
-        .map(|(effect, rivals)| {
-            let mut set = vec![effect.id()];
-            set.extend(rivals.iter().map(|r| r.effect.id()));
-            set.sort_unstable();
-            set
-        })
-        .collect()
 }
 
 /// Whether the interval of each true size holds it. Other forms than the fitter's have other sizes.

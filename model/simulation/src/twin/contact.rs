@@ -3,7 +3,7 @@
 use super::{F0_N, Moment, settling};
 use crate::plan::Plan;
 use pinswitch_calibration::table::Surface;
-use pinswitch_friction::published;
+use pinswitch_friction::{LayoutLaw, published};
 
 /// One kind of contact.
 #[derive(Clone, Debug)]
@@ -46,8 +46,8 @@ impl Contact {
             pins: pins.to_vec(),
             wrap_rad,
             turns_rad,
-            half_load_n: 13.1 * (n as f64 / (wrap_rad * pitch)).sqrt() * factor,
-            steepness: plan.constants.steepness.get(device).copied().unwrap_or(4.64),
+            half_load_n: LayoutLaw::SCALE_N * (n as f64 / (wrap_rad * pitch)).sqrt() * factor,
+            steepness: plan.constants.steepness.get(device).copied().unwrap_or(LayoutLaw::STEEPNESS),
         }
     }
 
@@ -119,8 +119,8 @@ impl Contact {
                 ("substrate_saturation", _) => {
                     silicone *= share.powf(-k * (1.0 - shape)) / (1.0 + k * shape * share);
                 }
-                ("dwell_relaxation", 1) => silicone *= (at.dwell_s / 3.0).powf(k),
-                ("dwell_relaxation", _) => silicone *= 1.0 + k * (at.dwell_s / 3.0).ln(),
+                ("dwell_relaxation", 1) => silicone *= (at.dwell_s / published::DWELL_S).powf(k),
+                ("dwell_relaxation", _) => silicone *= 1.0 + k * (at.dwell_s / published::DWELL_S).ln(),
                 ("run_in", 1) => silicone *= 1.0 + k / (1.0 + (at.repetition - 1.0) / shape),
                 ("run_in", 2) => silicone *= 1.0 + k * (-(at.through - 1.0) / shape).exp(),
                 ("run_in", _) => {

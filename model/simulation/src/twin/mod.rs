@@ -14,8 +14,6 @@ use contact::Contact;
 use pinswitch_calibration::table::PlateauRow;
 use pinswitch_friction::published;
 
-/// Stroke of the actuator in millimetres.
-pub(super) const STROKE_MM: f64 = 152.4;
 /// Reference load in newtons (effects.md).
 const F0_N: f64 = 50.0;
 
@@ -66,7 +64,7 @@ pub(super) fn readings(plan: &Plan, session: &[PlateauRow]) -> Vec<f64> {
             dwell_s: row.dwell_s,
             repetition: f64::from(row.repetition),
             through: *through,
-            place: row.position_mm / STROKE_MM,
+            place: row.position_mm / published::STROKE_MM,
             clock: row.time_s / end_s,
             travel: made as f64 / session.len() as f64,
         };
@@ -123,49 +121,41 @@ fn settling(u: f64, t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{EffectPlan, Protocol};
-    use crate::study::strengths;
-    use pinswitch_calibration::effects::{LIBRARY, effect_named};
+    use crate::plan::EffectPlan;
+    use pinswitch_calibration::effects::{CATALOGUE, effect_named};
     use pinswitch_calibration::inference::{Model, Term};
     use pinswitch_calibration::table::Frame;
 
     /// Two implementations of effects.md, the twin's and the fitter's, agree on form 0 of every effect.
     #[test]
     fn the_first_form_of_every_effect_is_the_fitters() {
-        for strength in strengths() {
-            let mut plan = Plan { protocol: Protocol::Randomised, ..Plan::randomised() };
-            let mut values: Vec<f64> = if strength.size.1 > 0.0 { vec![strength.size.1] } else { Vec::new() };
-            values.extend(strength.shapes.iter().map(|(least, most)| 0.5 * (least + most)));
-            plan.effects.push(EffectPlan { id: strength.id.to_owned(), values: values.clone(), form: 0 });
+        for effect in CATALOGUE {
+            let (id, range) = (effect.id(), effect.description().study);
+            let mut plan = Plan::randomised();
+            let values = range.values_at(range.largest());
+            plan.effects.push(EffectPlan { id: id.to_owned(), values: values.clone(), form: 0 });
             let mut random = rand::SeedableRng::seed_from_u64(3);
             let rows = crate::protocol::rows(&plan, &mut random);
             let frame = Frame::new(&rows);
-            let mut model = Model::baseline(frame.clone());
-            if let Some(effect) = effect_named(strength.id) {
-                model = model.with_term(Term::Named(effect), &values);
-            }
+            let model = Model::baseline(frame.clone()).with_term(Term::Named(*effect), &values);
             let fitters = model.predict(&frame.points(&rows).unwrap());
             let worst =
                 readings(&plan, &rows).iter().zip(&fitters).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             // The fitter reads the share of travel off 400 points.
             // The fitter substitutes the local tension three times, the twin until it settles.
-            let bound =
-                if ["wear_drift", "switch_local_tension"].contains(&strength.id) { 1e-2 } else { 1e-3 };
-            assert!(worst < bound, "{}: {worst} N", strength.id);
+            let bound = if ["wear_drift", "switch_local_tension"].contains(&id) { 1e-2 } else { 1e-3 };
+            assert!(worst < bound, "{id}: {worst} N");
         }
-        assert_eq!(strengths().len(), LIBRARY.len());
     }
 
     /// Every other form differs from form 0; up to what a refitted baseline takes over, by less than the effect.
     #[test]
     fn other_forms_bend_the_effect_without_replacing_it() {
         for (id, names) in forms::FORMS {
-            let strength = strengths().iter().find(|s| s.id == id).unwrap();
+            let range = effect_named(id).unwrap().description().study;
             let with = |form: Option<u8>| {
                 let mut plan = Plan::randomised();
-                let mut values: Vec<f64> =
-                    if strength.size.1 > 0.0 { vec![strength.size.1] } else { Vec::new() };
-                values.extend(strength.shapes.iter().map(|(least, most)| 0.5 * (least + most)));
+                let values = range.values_at(range.largest());
                 if let Some(form) = form {
                     plan.effects.push(EffectPlan { id: id.to_owned(), values, form });
                 }

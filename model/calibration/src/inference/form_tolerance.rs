@@ -28,7 +28,7 @@ pub(crate) fn bent_copies(model: &Model, data: &Observations, predicted: &[f64])
         push(&|p| load(p).powi(2));
         push(&|p| p.sign);
         push(&|p| p.sign * load(p));
-        match effect.covariate() {
+        match effect.description().covariate {
             Covariate::Position => {
                 for power in 1..=3 {
                     push(&|p| (2.0 * p.position - 1.0).powi(power));

@@ -30,7 +30,7 @@ fn follows(
 }
 
 /// All structures that a table of these points could show.
-pub(crate) fn catalogue(frame: &Frame, points: &[Point]) -> Vec<Group> {
+pub(crate) fn structures_to_try(frame: &Frame, points: &[Point]) -> Vec<Group> {
     let mut groups = Vec::new();
     time(&mut groups, points);
     position(&mut groups, points);

@@ -2,44 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::capstan::{Direction, capstan_friction_n, capstan_tension_n};
-use crate::published::{self, PublishedLayout};
-use crate::{Contact, LayoutLaw, PaperSwitch, Substrate, Switch, SwitchState};
-
-/// Relative uncertainties of the layout law inside the published layouts (model.md 2).
-const INTERPOLATED: Spread = Spread { half_load: 0.12, friction: 0.10 };
-/// Outside them the law is a guess (model.md 2).
-const EXTRAPOLATED: Spread = Spread { half_load: 0.40, friction: 0.40 };
-/// Number of pins between which the published layouts lie.
-const PINS_MEASURED: std::ops::RangeInclusive<usize> = 3..=6;
-/// Slack on the published pitches, in radians.
-const PITCH_SLACK_RAD: f64 = 1e-3;
-
-/// The law behind a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Law {
-    /// The paper's capstan and eq. 4, with its constants.
-    Paper,
-    /// The layout law of model.md 2.
-    Layout,
-    /// A string over sinking pins on a foundation, see [`crate::physics`].
-    Physics,
-    /// A model calibrated on measured data.
-    Calibrated,
-}
-
-/// How far a curve can be trusted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Trust {
-    /// A condition that the paper measured.
-    Published,
-    /// Between measured conditions.
-    Interpolated,
-    /// Outside them: a guess.
-    Extrapolated,
-}
+use crate::published;
+use crate::{Contact, Law, Substrate, SwitchState, Trust};
 
 /// Tension and friction over load, as columns of equal length; forces in newtons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -75,63 +39,36 @@ pub struct PublishedPoint {
     pub friction_n: Option<f64>,
 }
 
-struct Spread {
-    half_load: f64,
-    friction: f64,
-}
-
 /// One point of a curve: the state and its band.
-struct Banded {
-    state: SwitchState,
-    low_n: f64,
-    high_n: f64,
+pub(crate) struct Banded {
+    pub(crate) state: SwitchState,
+    pub(crate) low_n: f64,
+    pub(crate) high_n: f64,
 }
 
-/// The paper's model; `None` for pins on silicone that it gives no constants for.
-pub(crate) fn paper_curve(contact: &Contact, loads_n: &[f64]) -> Option<FrictionCurve> {
-    match (contact.substrate(), contact.published_layout()) {
-        (Substrate::Silicone, Some(layout)) => {
-            Some(curve_of(Law::Paper, trust(contact), &paper_device(contact, layout, loads_n)))
+impl Banded {
+    /// The state in a band of `D / (1 + spread) .. D (1 + spread)`.
+    pub(crate) fn within(state: SwitchState, spread: f64) -> Self {
+        Self { low_n: state.friction_n / (1.0 + spread), high_n: state.friction_n * (1.0 + spread), state }
+    }
+}
+
+impl FrictionCurve {
+    /// The curve of these points by a law.
+    pub(crate) fn of(law: Law, (trust, reasons): (Trust, Vec<String>), points: &[Banded]) -> Self {
+        let column = |f: fn(&Banded) -> f64| points.iter().map(f).collect::<Vec<_>>();
+        Self {
+            law,
+            trust,
+            reasons,
+            load_n: column(|p| p.state.load_n),
+            eccentric_n: column(|p| p.state.eccentric_n),
+            concentric_n: column(|p| p.state.concentric_n),
+            friction_n: column(|p| p.state.friction_n),
+            band_low_n: column(|p| p.low_n),
+            band_high_n: column(|p| p.high_n),
+            silicone_share: column(|p| p.state.silicone_share),
         }
-        (Substrate::Silicone, None) if contact.pins().count() > 0 => None,
-        _ => Some(capstan_curve(contact, loads_n)),
-    }
-}
-
-/// The paper's capstan on one material: silicone where there are no pins, else the pins alone.
-pub(crate) fn capstan_curve(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
-    let points = if contact.pins().count() == 0 {
-        silicone_alone(contact, loads_n)
-    } else {
-        pins_alone(contact, contact.published_layout(), loads_n)
-    };
-    curve_of(Law::Paper, trust(contact), &points)
-}
-
-/// The layout law; `None` without pins on silicone.
-pub(crate) fn layout_curve(contact: &Contact, loads_n: &[f64]) -> Option<FrictionCurve> {
-    if contact.substrate() == Substrate::Abs {
-        return None;
-    }
-    let law = LayoutLaw::new(contact.pins(), contact.wrap_rad())?;
-    let trusted = trust(contact);
-    let points = layout_device(contact, law, trusted.0, loads_n);
-    Some(curve_of(Law::Layout, trusted, &points))
-}
-
-fn curve_of(law: Law, (trust, reasons): (Trust, Vec<String>), points: &[Banded]) -> FrictionCurve {
-    let column = |f: fn(&Banded) -> f64| points.iter().map(f).collect::<Vec<_>>();
-    FrictionCurve {
-        law,
-        trust,
-        reasons,
-        load_n: column(|p| p.state.load_n),
-        eccentric_n: column(|p| p.state.eccentric_n),
-        concentric_n: column(|p| p.state.concentric_n),
-        friction_n: column(|p| p.state.friction_n),
-        band_low_n: column(|p| p.low_n),
-        band_high_n: column(|p| p.high_n),
-        silicone_share: column(|p| p.state.silicone_share),
     }
 }
 
@@ -154,132 +91,6 @@ pub fn published_points(contact: &Contact) -> Vec<PublishedPoint> {
         }
         _ => Vec::new(),
     }
-}
-
-/// How far the friction of `contact` is known from measurements, and why no further.
-pub(crate) fn trust(contact: &Contact) -> (Trust, Vec<String>) {
-    let mut reasons = contact.departures();
-    let pins = contact.pins();
-    let bare_silicone = contact.substrate() == Substrate::Silicone && pins.count() == 0;
-    if bare_silicone || contact.published_layout().is_some() {
-        let trust = if reasons.is_empty() { Trust::Published } else { Trust::Extrapolated };
-        return (trust, reasons);
-    }
-    if !PINS_MEASURED.contains(&pins.count()) {
-        reasons.push(format!("{} pin(s); measured were 3 and 6", pins.count()));
-    }
-    let pitches = published::LAYOUTS.map(|l| l.pitch_rad());
-    let (narrow, wide) =
-        (pitches.iter().copied().fold(f64::MAX, f64::min), pitches.iter().copied().fold(0.0, f64::max));
-    match pins.mean_pitch_rad() {
-        Some(pitch) if pitch < narrow - PITCH_SLACK_RAD || pitch > wide + PITCH_SLACK_RAD => {
-            reasons.push(format!(
-                "the pitch is {:.2} deg; measured were {:.2} to {:.2} deg",
-                pitch.to_degrees(),
-                narrow.to_degrees(),
-                wide.to_degrees()
-            ))
-        }
-        _ => {}
-    }
-    if !pins.is_even() {
-        reasons.push("the pins are unevenly spaced; measured were even ones".to_owned());
-    }
-    if !pins.is_centred() {
-        reasons.push("the pins lie off the middle of the wrap; measured were centred ones".to_owned());
-    }
-    if reasons.is_empty() {
-        reasons.push("this layout lies between those that were measured".to_owned());
-        (Trust::Interpolated, reasons)
-    } else {
-        (Trust::Extrapolated, reasons)
-    }
-}
-
-/// A plain capstan with a band of `D / (1 + spread) .. D (1 + spread)`.
-fn capstan(contact: &Contact, mu: f64, spread: f64, share: f64, loads_n: &[f64]) -> Vec<Banded> {
-    let x = mu * contact.wrap_rad();
-    loads_n
-        .iter()
-        .map(|&load_n| {
-            let friction_n = capstan_friction_n(load_n, x);
-            let state = SwitchState {
-                load_n,
-                eccentric_n: capstan_tension_n(load_n, x, Direction::Eccentric),
-                concentric_n: capstan_tension_n(load_n, x, Direction::Concentric),
-                friction_n,
-                silicone_share: share,
-            };
-            banded(state, spread)
-        })
-        .collect()
-}
-
-fn banded(state: SwitchState, spread: f64) -> Banded {
-    Banded { low_n: state.friction_n / (1.0 + spread), high_n: state.friction_n * (1.0 + spread), state }
-}
-
-/// How far `model` and `measured` lie apart, as a ratio above one less one: the smallest spread that covers both.
-fn miss(model: f64, measured: f64) -> f64 {
-    (model / measured).max(measured / model) - 1.0
-}
-
-fn silicone_alone(contact: &Contact, loads_n: &[f64]) -> Vec<Banded> {
-    let model = capstan_friction_n(
-        published::heaviest_load_n(),
-        published::MU_SILICONE * published::wrap_angle_rad(),
-    );
-    let spread = miss(model, published::SILICONE_ALONE_MAX_N).max(extrapolated_spread(contact));
-    capstan(contact, published::MU_SILICONE, spread, 1.0, loads_n)
-}
-
-/// Pins alone: the paper's constant coefficient, which misses its own three maxima by 42 to 113 %; the band says so.
-fn pins_alone(contact: &Contact, layout: Option<PublishedLayout>, loads_n: &[f64]) -> Vec<Banded> {
-    let model =
-        capstan_friction_n(published::heaviest_load_n(), published::MU_PINS * published::wrap_angle_rad());
-    let spread = match layout {
-        Some(layout) => miss(model, layout.pins_max_n),
-        None => published::LAYOUTS.iter().map(|l| miss(model, l.pins_max_n)).fold(0.0, f64::max),
-    };
-    capstan(contact, published::MU_PINS, spread.max(extrapolated_spread(contact)), 0.0, loads_n)
-}
-
-/// A published layout: its own miss at the maximum, and no less than the three layouts' root mean square.
-fn paper_device(contact: &Contact, layout: PublishedLayout, loads_n: &[f64]) -> Vec<Banded> {
-    let own = |l: &PublishedLayout| {
-        let state = PaperSwitch::new(*l).state(published::heaviest_load_n(), published::wrap_angle_rad());
-        miss(state.friction_n, l.device_max_n)
-    };
-    let mean_square =
-        published::LAYOUTS.iter().map(|l| own(l).powi(2)).sum::<f64>() / published::LAYOUTS.len() as f64;
-    let spread = own(&layout).max(mean_square.sqrt()).max(extrapolated_spread(contact));
-    let switch = PaperSwitch::new(layout);
-    loads_n.iter().map(|&load| banded(switch.state(load, contact.wrap_rad()), spread)).collect()
-}
-
-/// A published layout in a part that departs from the measured one is no longer published.
-fn extrapolated_spread(contact: &Contact) -> f64 {
-    if contact.departures().is_empty() { 0.0 } else { EXTRAPOLATED.friction }
-}
-
-/// The layout law; its band is the envelope over both uncertainties.
-fn layout_device(contact: &Contact, law: LayoutLaw, trust: Trust, loads_n: &[f64]) -> Vec<Banded> {
-    let spread = if trust == Trust::Extrapolated { EXTRAPOLATED } else { INTERPOLATED };
-    let (early, late) = (
-        law.with_half_load_scaled(1.0 / (1.0 + spread.half_load)),
-        law.with_half_load_scaled(1.0 + spread.half_load),
-    );
-    loads_n
-        .iter()
-        .map(|&load| {
-            let friction = |law: &LayoutLaw| law.state(load, contact.wrap_rad()).friction_n;
-            let state = law.state(load, contact.wrap_rad());
-            let (a, b) = (friction(&early), friction(&late));
-            let low_n = a.min(b).min(state.friction_n) / (1.0 + spread.friction);
-            let high_n = a.max(b).max(state.friction_n) * (1.0 + spread.friction);
-            Banded { state, low_n, high_n }
-        })
-        .collect()
 }
 
 #[cfg(test)]

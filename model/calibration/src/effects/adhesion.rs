@@ -1,6 +1,8 @@
 //! `adhesion`: a constant friction force on silicone, there at zero load.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].

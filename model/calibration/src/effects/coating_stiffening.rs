@@ -1,6 +1,9 @@
 //! `coating_stiffening`: friction of the coating on the pins grows with load.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
+    StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
@@ -23,7 +26,12 @@ static DESCRIPTION: Description = Description {
     confused_with: &["polygon_bending", "coating_ploughing"],
     experiment: "pins-only runs over load and pin count",
     invisible_because: "no condition with pins, or only one load",
-    study: StudyRange { size: Some((0.3, 1.2)), signed: false, shapes: &[(1.0, 2.0)], paper: PaperProtocol::Shown },
+    study: StudyRange {
+        size: Some((0.3, 1.2)),
+        signed: false,
+        shapes: &[(1.0, 2.0)],
+        paper: PaperProtocol::Shown,
+    },
 };
 
 impl Effect for CoatingStiffening {

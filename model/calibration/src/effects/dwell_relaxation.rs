@@ -1,6 +1,8 @@
 //! `dwell_relaxation`: friction of the silicone depends on the pause before the reading.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].

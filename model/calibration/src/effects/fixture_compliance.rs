@@ -1,6 +1,9 @@
 //! `fixture_compliance`: the wrap angle grows with load because the mount bends.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
+    StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
@@ -22,7 +25,12 @@ static DESCRIPTION: Description = Description {
     confused_with: &["rate_dependence", "substrate_saturation"],
     experiment: "a dial gauge on the mount, or several speeds at one load",
     invisible_because: "only one load",
-    study: StudyRange { size: Some((0.06, 0.25)), signed: false, shapes: &[], paper: PaperProtocol::Confounded },
+    study: StudyRange {
+        size: Some((0.06, 0.25)),
+        signed: false,
+        shapes: &[],
+        paper: PaperProtocol::Confounded,
+    },
 };
 
 impl Effect for FixtureCompliance {

@@ -1,6 +1,8 @@
 //! `guide_drag`: a constant drag of the guide pulleys, in every condition.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].

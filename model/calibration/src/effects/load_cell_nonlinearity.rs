@@ -1,6 +1,8 @@
 //! `load_cell_nonlinearity`: the reading bends with its square.
 
-use super::{Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage, StudyRange};
+use super::{
+    Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage, StudyRange,
+};
 use crate::table::{Frame, Point};
 
 /// See [`DESCRIPTION`].

@@ -1,6 +1,8 @@
 //! `polygon_bending`: the sharper the tendon turns at one pin, the more friction there.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// Turn per pin to which `k` refers: 20 degrees.

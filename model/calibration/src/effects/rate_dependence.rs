@@ -1,6 +1,8 @@
 //! `rate_dependence`: friction depends on the speed of the actuator.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
@@ -22,7 +24,12 @@ static DESCRIPTION: Description = Description {
     confused_with: &["fixture_compliance", "substrate_saturation"],
     experiment: "several speeds at one load",
     invisible_because: "the speed never varies",
-    study: StudyRange { size: Some((0.15, 0.5)), signed: false, shapes: &[], paper: PaperProtocol::Confounded },
+    study: StudyRange {
+        size: Some((0.15, 0.5)),
+        signed: false,
+        shapes: &[],
+        paper: PaperProtocol::Confounded,
+    },
 };
 
 impl Effect for RateDependence {

@@ -1,6 +1,8 @@
 //! `run_in`: friction of the silicone is higher in the first repetitions of a series.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
@@ -17,17 +19,22 @@ static DESCRIPTION: Description = Description {
     stage: Stage::ScaledFriction,
     formula: "mu_s (1 + k exp(-(r - 1)/r0)), times c in the concentric half, 1 if it settles anew there",
     parameters: &[
-                Parameter::free("k", "1"),
-                Parameter::bounded("r0", "1", 0.5, 12.0),
-                Parameter::bounded("c", "1", -0.05, 1.05),
-            ],
+        Parameter::free("k", "1"),
+        Parameter::bounded("r0", "1", 0.5, 12.0),
+        Parameter::bounded("c", "1", -0.05, 1.05),
+    ],
     // Friction is higher before it settles.
     one_sided: true,
     scales: true,
     confused_with: &["stroke_position"],
     experiment: "one series started in the middle of the stroke",
     invisible_because: "one repetition per series, or no silicone",
-    study: StudyRange { size: Some((0.05, 0.4)), signed: false, shapes: &[(1.5, 6.0), (1.0, 1.0)], paper: PaperProtocol::Shown },
+    study: StudyRange {
+        size: Some((0.05, 0.4)),
+        signed: false,
+        shapes: &[(1.5, 6.0), (1.0, 1.0)],
+        paper: PaperProtocol::Shown,
+    },
 };
 
 impl Effect for RunIn {

@@ -1,6 +1,8 @@
 //! `stroke_position`: the wrap angle changes along the stroke.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].

@@ -1,6 +1,9 @@
 //! `substrate_saturation`: the friction of the silicone is bounded, its coefficient falls with load.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
+    StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
@@ -23,7 +26,12 @@ static DESCRIPTION: Description = Description {
     confused_with: &["rate_dependence", "fixture_compliance"],
     experiment: "several loads at one speed",
     invisible_because: "no silicone, or only one load",
-    study: StudyRange { size: Some((0.12, 0.33)), signed: false, shapes: &[(0.0, 1.0)], paper: PaperProtocol::Shown },
+    study: StudyRange {
+        size: Some((0.12, 0.33)),
+        signed: false,
+        shapes: &[(0.0, 1.0)],
+        paper: PaperProtocol::Shown,
+    },
 };
 
 impl Effect for SubstrateSaturation {

@@ -1,6 +1,8 @@
 //! `wear_drift`: friction drifts with all the travel since the session began.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
@@ -22,7 +24,12 @@ static DESCRIPTION: Description = Description {
     confused_with: &["thermal_drift"],
     experiment: "repeat the first series at the end of the session",
     invisible_because: "the session is too short to drift",
-    study: StudyRange { size: Some((0.08, 0.25)), signed: true, shapes: &[(0.2, 3.0)], paper: PaperProtocol::Shown },
+    study: StudyRange {
+        size: Some((0.08, 0.25)),
+        signed: true,
+        shapes: &[(0.2, 3.0)],
+        paper: PaperProtocol::Shown,
+    },
 };
 
 impl Effect for WearDrift {

@@ -10,6 +10,7 @@ use super::hypotheses::STIFF_N_MM2;
 use super::march::{Sliding, pins_alone_exponent, polygon_turns_rad, slide};
 use super::{Bed, Constants, OutsidePins, PhysicsError};
 use crate::published;
+use crate::trust::EXTRAPOLATED_SPREAD;
 use crate::{Contact, Direction, FrictionCurve, Law, Substrate, SwitchState, Trust, capstan_tension_n};
 
 /// Elements over the wrap: sixteen times as many move the friction of the published layouts by less than 0.1 % (a test).
@@ -207,11 +208,11 @@ pub fn physics_curve(contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve
     let points = switch.points(loads_n)?;
     let slopes = switch.sensitivities(loads_n, &points)?;
     let states: Vec<SwitchState> = points.iter().map(|p| p.state).collect();
-    let (trust, mut reasons) = crate::curve::trust(contact);
+    let (trust, mut reasons) = crate::trust::trust(contact);
     let own = if trust == Trust::Published { fit.scatter } else { fit.left_out_rms };
     // Outside what was measured every law is a guess to 40 % (model.md 2): how stiffness and ploughing follow the
     // materials is assumed, and no measured layout comes near.
-    let guess = if trust == Trust::Extrapolated { 1.4f64.ln() } else { 0.0 };
+    let guess = if trust == Trust::Extrapolated { (1.0 + EXTRAPOLATED_SPREAD).ln() } else { 0.0 };
     let covariance = Matrix3::from_row_slice(&fit.covariance.concat());
     let quantile =
         StudentsT::new(0.0, 1.0, fit.freedom).map_or(2.78, |t| t.inverse_cdf(0.5 + CONFIDENCE / 2.0));

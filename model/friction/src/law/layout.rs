@@ -1,6 +1,71 @@
-//! The layout law: from number and pitch of the pins to a switch, for layouts that nobody measured.
+//! `layout`: from number and pitch of the pins to a switch, fitted to the three published layouts.
 
-use crate::{PinPattern, Switch};
+use super::{Definition, Law, LawError, Support};
+use crate::curve::Banded;
+use crate::trust::{EXTRAPOLATED_SPREAD, trust};
+use crate::{Contact, FrictionCurve, PinPattern, Substrate, Switch, Trust};
+
+pub(super) static DEFINITION: Definition = Definition {
+    word: "layout",
+    title: "layout law",
+    summary: "The law fitted to the three layouts' thresholds: number and pitch of the pins",
+    source: "layout law fitted to the three published layouts: F_half = 13.1 N sqrt(n/(a p)), s = 4.64",
+    needs_model: false,
+    support,
+    curve: layout_curve,
+};
+
+/// Relative uncertainties of half load and friction.
+struct Spread {
+    half_load: f64,
+    friction: f64,
+}
+
+/// Between the published layouts (`model/doc/friction-laws.md`).
+const INTERPOLATED: Spread = Spread { half_load: LayoutLaw::UNCERTAINTY, friction: 0.10 };
+/// Outside them the law is a guess.
+const EXTRAPOLATED: Spread = Spread { half_load: EXTRAPOLATED_SPREAD, friction: EXTRAPOLATED_SPREAD };
+
+/// At its best between the layouts that it was fitted to.
+fn support(contact: &Contact) -> Support {
+    if trust(contact).0 == Trust::Interpolated && contact.substrate() == Substrate::Silicone {
+        Support::Interpolated
+    } else {
+        Support::StandIn
+    }
+}
+
+fn layout_curve(contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve, LawError> {
+    let law = (contact.substrate() == Substrate::Silicone)
+        .then(|| LayoutLaw::new(contact.pins(), contact.wrap_rad()))
+        .flatten()
+        .ok_or(LawError::DoesNotApply {
+            why: "the layout law describes pins on silicone only; use the law paper or physics",
+        })?;
+    let trusted = trust(contact);
+    let points = layout_device(contact, law, trusted.0, loads_n);
+    Ok(FrictionCurve::of(Law::Layout, trusted, &points))
+}
+
+/// The layout law; its band is the envelope over both uncertainties.
+fn layout_device(contact: &Contact, law: LayoutLaw, trust: Trust, loads_n: &[f64]) -> Vec<Banded> {
+    let spread = if trust == Trust::Extrapolated { EXTRAPOLATED } else { INTERPOLATED };
+    let (early, late) = (
+        law.with_half_load_scaled(1.0 / (1.0 + spread.half_load)),
+        law.with_half_load_scaled(1.0 + spread.half_load),
+    );
+    loads_n
+        .iter()
+        .map(|&load| {
+            let friction = |law: &LayoutLaw| law.state(load, contact.wrap_rad()).friction_n;
+            let state = law.state(load, contact.wrap_rad());
+            let (a, b) = (friction(&early), friction(&late));
+            let low_n = a.min(b).min(state.friction_n) / (1.0 + spread.friction);
+            let high_n = a.max(b).max(state.friction_n) * (1.0 + spread.friction);
+            Banded { state, low_n, high_n }
+        })
+        .collect()
+}
 
 /// `w = n/30` reproduces the three published weights.
 const WEIGHT_PER_PIN: f64 = 1.0 / 30.0;

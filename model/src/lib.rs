@@ -24,4 +24,5 @@ pub mod calibration {
 /// Measured data of the friction rig.
 pub mod rig {
     pub use pinswitch_calibration::table::*;
+    pub use pinswitch_friction::Substrate as Surface;
 }

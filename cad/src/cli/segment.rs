@@ -123,7 +123,7 @@ fn plateau_rows(
         .iter()
         .map(|p| PlateauRow {
             series: index.to_string(),
-            surface: series.substrate,
+            substrate: series.substrate,
             pins: series.pins.clone(),
             sweep: series.sweep,
             load_mass_g: series.load_mass_g,
@@ -135,6 +135,7 @@ fn plateau_rows(
             position_mm: p.position_mm,
             time_s: start_s + p.time_s,
             force_n: p.force_n,
+            wrap_angle_deg: plan.rig.wrap_angle_deg,
         })
         .collect()
 }

@@ -1,6 +1,8 @@
 //! From a selection to its report: verdict, effects, rivals, blind spots, errors before and after.
 
 use crate::effects::CATALOGUE;
+use pinswitch_friction::Substrate;
+
 use crate::held_out::{SOUND_WEIGHT, held_out};
 use crate::inference::{
     CandidateEffect, Fit, FoundEffect, Levels, Model, Noise, Observations, Rival, Selection, Term,
@@ -11,7 +13,7 @@ use crate::report::{
     BadSeries, Candidate, DataSummary, EffectReport, Estimate, Fate, Invisible, ModelReport, Report,
     RivalReport, Verdict,
 };
-use crate::table::{Frame, PlateauRow, Surface};
+use crate::table::{Frame, PlateauRow};
 
 /// Why rows cannot be calibrated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -79,7 +81,7 @@ fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport
     let conditions = &fitted.model.frame.conditions;
     let touched = |name: &str| match name {
         "mu_p" => conditions.iter().any(crate::table::Condition::has_pins),
-        "mu_s" => conditions.iter().any(|c| c.surface == Surface::Silicone),
+        "mu_s" => conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone)),
         _ => true,
     };
     let parameters = fitted

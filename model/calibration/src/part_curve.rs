@@ -2,25 +2,26 @@
 
 use crate::inference::prediction_sd_n;
 use crate::model_file::{ModelFile, ModelFileError};
-use crate::table::{PlateauRow, Surface, Sweep};
-use pinswitch_friction::{Direction, FrictionCurve, Law, Trust, published};
+use crate::table::{PlateauRow, Sweep};
+use pinswitch_friction::{Direction, FrictionCurve, Law, Substrate, Trust, published};
 
 impl ModelFile {
-    /// Curve of pins in these grooves, numbered from 1, on `surface` at ascending `loads_n`, for a slow first pull at
-    /// the reference speed: no run-in, no drift, loads ascending. `file` is the name used in errors.
+    /// Curve of pins in these grooves, numbered from 1, on `substrate` at ascending `loads_n`, for a slow first pull at
+    /// the reference speed and the paper's wrap angle: no run-in, no drift, loads ascending. A model of a rig with another
+    /// wrap angle predicts it as a layout that nobody measured. `file` is the name used in errors.
     ///
     /// # Errors
     /// [`ModelFileError`] as in [`ModelFile::model`].
     pub fn part_curve(
         &self,
-        surface: Surface,
+        substrate: Substrate,
         pins: &[usize],
         loads_n: &[f64],
         file: &str,
     ) -> Result<FrictionCurve, ModelFileError> {
         let rows: Vec<PlateauRow> = [Direction::Eccentric, Direction::Concentric]
             .iter()
-            .flat_map(|d| loads_n.iter().map(|load| self.row(surface, pins, *load, *d)))
+            .flat_map(|d| loads_n.iter().map(|load| self.row(substrate, pins, *load, *d)))
             .collect();
         let known = self.model(file)?;
         let mut frame = known.frame.clone();
@@ -72,10 +73,10 @@ impl ModelFile {
         })
     }
 
-    fn row(&self, surface: Surface, pins: &[usize], load_n: f64, direction: Direction) -> PlateauRow {
+    fn row(&self, substrate: Substrate, pins: &[usize], load_n: f64, direction: Direction) -> PlateauRow {
         PlateauRow {
             series: "part".to_owned(),
-            surface,
+            substrate: Some(substrate),
             pins: pins.to_vec(),
             sweep: Sweep::Up,
             load_mass_g: 0.0,
@@ -87,6 +88,7 @@ impl ModelFile {
             position_mm: 0.0,
             time_s: 0.0,
             force_n: 0.0,
+            wrap_angle_deg: published::WRAP_ANGLE_DEG,
         }
     }
 }

@@ -4,7 +4,8 @@ use std::convert::Infallible;
 
 use serde::Serialize;
 
-use crate::table::{Condition, Surface};
+use crate::table::Condition;
+use pinswitch_friction::Substrate;
 use pinswitch_friction::least_squares::minimise;
 use pinswitch_friction::published::{self, PublishedLayout};
 
@@ -35,7 +36,7 @@ enum Pins {
 /// One published maximum.
 struct Maximum {
     layout: Option<usize>,
-    surface: Surface,
+    substrate: Substrate,
     friction_n: f64,
     name: String,
 }
@@ -43,15 +44,15 @@ struct Maximum {
 fn maxima() -> Vec<Maximum> {
     let mut all = vec![Maximum {
         layout: None,
-        surface: Surface::Silicone,
+        substrate: Substrate::Silicone,
         friction_n: published::SILICONE_ALONE_MAX_N,
         name: "silicone".to_owned(),
     }];
     for (i, l) in published::LAYOUTS.iter().enumerate() {
-        for (surface, friction_n, on) in
-            [(Surface::Abs, l.pins_max_n, "pins"), (Surface::Silicone, l.device_max_n, "device")]
+        for (substrate, friction_n, on) in
+            [(Substrate::Abs, l.pins_max_n, "pins"), (Substrate::Silicone, l.device_max_n, "device")]
         {
-            all.push(Maximum { layout: Some(i), surface, friction_n, name: format!("{} {on}", l.name) });
+            all.push(Maximum { layout: Some(i), substrate, friction_n, name: format!("{} {on}", l.name) });
         }
     }
     all
@@ -65,7 +66,7 @@ fn predict(kind: Pins, at: &[f64], maximum: &Maximum, scale_free: bool) -> f64 {
     let silicone = load * (published::MU_SILICONE * at[0].exp() * wrap).sinh();
     let Some(layout) = maximum.layout.map(|i| published::LAYOUTS[i]) else { return silicone };
     let pins = load * pins_exponent(kind, at[1].exp(), &layout, load, wrap).sinh();
-    if maximum.surface == Surface::Abs {
+    if maximum.substrate == Substrate::Abs {
         return pins;
     }
     let factor = if scale_free { at[2].exp() } else { 1.0 };

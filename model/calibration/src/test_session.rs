@@ -1,11 +1,11 @@
 //! A small session for unit tests: the baseline's own readings with seeded noise, at two layouts and bare silicone.
 
-use pinswitch_friction::{Direction, published};
+use pinswitch_friction::{Direction, Substrate, published};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::inference::{Model, Term};
-use crate::table::{Frame, PlateauRow, Surface, Sweep};
+use crate::table::{Frame, PlateauRow, Sweep};
 
 /// Repetitions of each series and direction.
 pub(crate) const REPETITIONS: u32 = 9;
@@ -18,16 +18,16 @@ pub(crate) fn session(seed: u64) -> Vec<PlateauRow> {
 /// The same with terms on top of the baseline.
 pub(crate) fn session_with(seed: u64, terms: &[(Term, &[f64])]) -> Vec<PlateauRow> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let conditions: [(Surface, &[usize]); 5] = [
-        (Surface::Silicone, &[]),
-        (Surface::Abs, &[5, 8, 11]),
-        (Surface::Silicone, &[5, 8, 11]),
-        (Surface::Abs, &[3, 5, 7, 9, 11, 13]),
-        (Surface::Silicone, &[3, 5, 7, 9, 11, 13]),
+    let conditions: [(Option<Substrate>, &[usize]); 5] = [
+        (Some(Substrate::Silicone), &[]),
+        (Some(Substrate::Abs), &[5, 8, 11]),
+        (Some(Substrate::Silicone), &[5, 8, 11]),
+        (Some(Substrate::Abs), &[3, 5, 7, 9, 11, 13]),
+        (Some(Substrate::Silicone), &[3, 5, 7, 9, 11, 13]),
     ];
     let weights_g = [251.2, 1003.2, 2005.0, 3007.2, 4007.8, 5002.5];
     let (mut rows, mut time_s, mut series) = (Vec::new(), 0.0, 0);
-    for (surface, pins) in conditions {
+    for (substrate, pins) in conditions {
         for sweep in [Sweep::Up, Sweep::Down] {
             for step in 0..weights_g.len() {
                 let load_mass_g =
@@ -39,7 +39,7 @@ pub(crate) fn session_with(seed: u64, terms: &[(Term, &[f64])]) -> Vec<PlateauRo
                         let share = (f64::from(repetition) - 0.5) / f64::from(REPETITIONS);
                         rows.push(PlateauRow {
                             series: series.to_string(),
-                            surface,
+                            substrate,
                             pins: pins.to_vec(),
                             sweep,
                             load_mass_g,
@@ -52,6 +52,7 @@ pub(crate) fn session_with(seed: u64, terms: &[(Term, &[f64])]) -> Vec<PlateauRo
                                 * if direction == Direction::Eccentric { share } else { 1.0 - share },
                             time_s,
                             force_n: 0.0,
+                            wrap_angle_deg: published::WRAP_ANGLE_DEG,
                         });
                     }
                 }

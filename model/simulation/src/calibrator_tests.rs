@@ -1,9 +1,11 @@
 //! What only a rig with known effects and noise can tell about the calibrator.
 
+use pinswitch_calibration::calibrate;
 use pinswitch_calibration::inference::{Levels, Model, Observations, interval_half_widths, select};
-use pinswitch_calibration::table::Frame;
+use pinswitch_calibration::segmentation::segment_run;
+use pinswitch_calibration::table::{Frame, PlateauTable};
 
-use crate::{Disturbance, EffectPlan, Kind, Plan, Target, simulate};
+use crate::{Disturbance, EffectPlan, Kind, Plan, RawRun, Target, simulate};
 
 fn estimated_correlation(plan: &Plan) -> f64 {
     let rows = simulate(plan).rows;
@@ -54,5 +56,46 @@ fn a_spike_of_any_size_leaves_sizes_and_intervals_alone() {
         let (with, wide) = found(spike_n);
         assert!((with - size).abs() < 0.05 * width, "{with} instead of {size} with {spike_n} N");
         assert!((wide / width - 1.0).abs() < 0.02, "{wide} instead of {width} with {spike_n} N");
+    }
+}
+
+/// A rig with another wrap angle: the coefficients come out as they are once the table says the angle, and wrong by the
+/// ratio of the angles if it does not.
+#[test]
+fn the_wrap_angle_of_the_table_reaches_the_fit() {
+    let plan = Plan { wrap_angle_deg: 95.0, seed: 4, ..Plan::default() };
+    let table = PlateauTable::write(&simulate(&plan).rows);
+    let coefficients = |table: &str| {
+        let rows = PlateauTable::read(table.as_bytes(), "t.csv").unwrap().rows;
+        let report = calibrate(&rows, Levels::default()).unwrap().report;
+        ["mu_p", "mu_s"].map(|name| report.baseline.parameters[name].value)
+    };
+    let [mu_p, mu_s] = coefficients(&table);
+    assert!((mu_p / plan.constants.mu_p - 1.0).abs() < 0.03, "{mu_p}");
+    assert!((mu_s / plan.constants.mu_s - 1.0).abs() < 0.03, "{mu_s}");
+    let silent = table.replace(",wrap_angle_deg", "").replace(",95\n", "\n");
+    let [_, mu_s] = coefficients(&silent);
+    assert!((mu_s / plan.constants.mu_s - 95.0 / 63.89).abs() < 0.1, "{mu_s}");
+}
+
+/// From `run.toml` to the table: the angle of the rig stands in every row, and the paper's in none.
+#[test]
+fn the_wrap_angle_of_a_run_reaches_the_table() {
+    for (wrap_angle_deg, column) in [(95.0, true), (63.89, false)] {
+        let plan =
+            Plan { wrap_angle_deg, weights_g: vec![251.2, 2505.4], layouts: Vec::new(), ..Plan::default() };
+        let rows = simulate(&plan).rows;
+        let run = RawRun::new(&plan, &rows, "plan").unwrap();
+        let logs: Vec<_> = (0..run.logs()).filter_map(|i| run.log(i)).collect();
+        let found = segment_run(&run.description(""), "run.toml", |file| {
+            logs.iter()
+                .find(|log| log.file == file)
+                .map(|log| log.text.clone().into_bytes())
+                .ok_or("no such log")
+        })
+        .unwrap();
+        assert_eq!(found.report.series.len(), 2);
+        assert!(found.rows.iter().all(|row| row.wrap_angle_deg == wrap_angle_deg));
+        assert_eq!(PlateauTable::write(&found.rows).contains("wrap_angle_deg"), column);
     }
 }

@@ -155,6 +155,9 @@ pub struct Plan {
     pub seed: u64,
     /// Order and settings of the series.
     pub protocol: Protocol,
+    /// Wrap angle of the tendon in degrees; the paper's is not written.
+    #[serde(skip_serializing_if = "is_published_wrap")]
+    pub wrap_angle_deg: f64,
     /// Layouts as lists of occupied grooves.
     pub layouts: Vec<Vec<usize>>,
     /// Whether silicone without pins is measured.
@@ -183,11 +186,17 @@ pub struct Plan {
     pub raw: RawPlan,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
+fn is_published_wrap(degrees: &f64) -> bool {
+    *degrees == published::WRAP_ANGLE_DEG
+}
+
 impl Default for Plan {
     fn default() -> Self {
         Self {
             seed: 1,
             protocol: Protocol::Paper,
+            wrap_angle_deg: published::WRAP_ANGLE_DEG,
             layouts: published::LAYOUTS.iter().map(|l| l.grooves.to_vec()).collect(),
             silicone: true,
             proxy: true,

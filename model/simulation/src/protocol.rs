@@ -5,16 +5,16 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 use super::plan::{Plan, Protocol};
-use pinswitch_calibration::table::{PlateauRow, Surface, Sweep};
-use pinswitch_friction::Direction;
+use pinswitch_calibration::table::{PlateauRow, Sweep};
 use pinswitch_friction::published;
+use pinswitch_friction::{Direction, Substrate};
 
 /// Time of one move in seconds.
 const MOVE_S: f64 = 0.5;
 
 /// One series before its rows.
 struct Setting<'a> {
-    surface: Surface,
+    substrate: Option<Substrate>,
     pins: &'a [usize],
     sweep: Sweep,
     mass_g: f64,
@@ -24,20 +24,20 @@ struct Setting<'a> {
 
 /// The rows of a session with zero forces.
 pub(super) fn rows(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<PlateauRow> {
-    let mut conditions: Vec<(Surface, &[usize])> = Vec::new();
+    let mut conditions: Vec<(Option<Substrate>, &[usize])> = Vec::new();
     if plan.silicone {
-        conditions.push((Surface::Silicone, &[]));
+        conditions.push((Some(Substrate::Silicone), &[]));
     }
     if plan.proxy {
-        conditions.extend(plan.layouts.iter().map(|l| (Surface::Abs, l.as_slice())));
+        conditions.extend(plan.layouts.iter().map(|l| (Some(Substrate::Abs), l.as_slice())));
     }
-    conditions.extend(plan.layouts.iter().map(|l| (Surface::Silicone, l.as_slice())));
+    conditions.extend(plan.layouts.iter().map(|l| (Some(Substrate::Silicone), l.as_slice())));
     let mut session = Vec::new();
     let mut time_s = 0.0;
     if plan.protocol == Protocol::Randomised {
         conditions.shuffle(random);
     }
-    for (surface, pins) in conditions {
+    for (substrate, pins) in conditions {
         let sweeps: &[Sweep] =
             if plan.protocol == Protocol::Paper { &[Sweep::Up] } else { &[Sweep::Up, Sweep::Down] };
         for sweep in sweeps {
@@ -55,7 +55,7 @@ pub(super) fn rows(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<PlateauRow> {
                     Protocol::Randomised => pick(&plan.dwells_s, random),
                 };
                 let setting =
-                    Setting { surface, pins, sweep: *sweep, mass_g: plan.weights_g[i], speed_pct, dwell_s };
+                    Setting { substrate, pins, sweep: *sweep, mass_g: plan.weights_g[i], speed_pct, dwell_s };
                 series(plan, &setting, &mut time_s, &mut session, random);
                 time_s += random.random_range(20.0..45.0);
             }
@@ -87,7 +87,7 @@ fn series(
             };
             session.push(PlateauRow {
                 series: name.to_string(),
-                surface: setting.surface,
+                substrate: setting.substrate,
                 pins: setting.pins.to_vec(),
                 sweep: setting.sweep,
                 load_mass_g: setting.mass_g,
@@ -99,6 +99,7 @@ fn series(
                 position_mm: published::STROKE_MM * position,
                 time_s: *time_s,
                 force_n: 0.0,
+                wrap_angle_deg: plan.wrap_angle_deg,
             });
         }
     }

@@ -8,9 +8,9 @@ use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
 use super::plan::{Plan, PlanError};
-use pinswitch_calibration::table::{PlateauRow, Surface};
-use pinswitch_friction::Direction;
+use pinswitch_calibration::table::{PlateauRow, substrate_word};
 use pinswitch_friction::published;
+use pinswitch_friction::{Direction, Substrate};
 
 /// Sampling of the logs, and how often what goes wrong. Shares are of samples, repetitions or logs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -128,7 +128,7 @@ impl<'a> RawRun<'a> {
         let mut text = format!(
             "[rig]\nwrap_angle_deg = {}\nsample_rate_hz = {:?}\nhook_mass_g = {}\nstroke_mm = {}\non_s = {ON_S:?}\n\
              dwell_s = {:?}\n",
-            published::WRAP_ANGLE_DEG,
+            self.plan.wrap_angle_deg,
             self.plan.raw.sample_rate_hz,
             published::HOOK_MASS_G,
             published::STROKE_MM,
@@ -141,7 +141,7 @@ impl<'a> RawRun<'a> {
                 "\n[[series]]\nfile = \"{}{suffix}\"\nsubstrate = \"{}\"\npins = {:?}\nload_mass_g = {:?}\n\
                  speed_pct = {:?}\nsweep = \"{sweep}\"\n",
                 file_name(i, row),
-                row.surface.as_str(),
+                substrate_word(row.substrate),
                 row.pins,
                 row.load_mass_g,
                 row.speed_pct,
@@ -196,10 +196,10 @@ impl<'a> RawRun<'a> {
 /// `012-device-5-8-11_2505g.csv`.
 fn file_name(index: usize, row: &PlateauRow) -> String {
     let pins: Vec<String> = row.pins.iter().map(usize::to_string).collect();
-    let contact = match row.surface {
-        Surface::Silicone if pins.is_empty() => "silicone".to_owned(),
-        Surface::Silicone => format!("device-{}", pins.join("-")),
-        other => format!("{}-{}", other.as_str(), pins.join("-")),
+    let contact = match row.substrate {
+        Some(Substrate::Silicone) if pins.is_empty() => "silicone".to_owned(),
+        Some(Substrate::Silicone) => format!("device-{}", pins.join("-")),
+        other => format!("{}-{}", substrate_word(other), pins.join("-")),
     };
     format!("{index:03}-{contact}_{:04.0}g.csv", row.load_mass_g)
 }

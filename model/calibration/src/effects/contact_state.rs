@@ -1,6 +1,8 @@
 //! The baseline of one row before and after the effects have changed it.
 
-use crate::table::{Condition, Point, Surface};
+use pinswitch_friction::Substrate;
+
+use crate::table::{Condition, Point};
 
 /// Reference load `F0` of effects.md, in newtons.
 pub const REFERENCE_LOAD_N: f64 = 50.0;
@@ -50,7 +52,7 @@ impl ContactState {
                 }
             }
             f + rise(switched) + d * self.adhesion_n * switched + drag
-        } else if condition.surface == Surface::Abs {
+        } else if condition.substrate == Some(Substrate::Abs) {
             f + f * (d * x_pins).exp_m1() + drag
         } else {
             f + f * (d * x_silicone).exp_m1() + d * self.adhesion_n + drag

@@ -113,7 +113,7 @@ pub trait Effect: Debug + Sync {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::Surface;
+    use pinswitch_friction::Substrate;
 
     #[test]
     fn ids_are_unique_and_rivals_exist() {
@@ -140,7 +140,7 @@ mod tests {
             conditions: Vec::new(),
         };
         let condition = Condition {
-            surface: Surface::Silicone,
+            substrate: Some(Substrate::Silicone),
             pins: vec![5, 8, 11],
             device: Some(0),
             wrap_rad: 1.115,

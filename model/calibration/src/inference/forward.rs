@@ -1,8 +1,8 @@
 //! The forward model: from constants and a row to the reading.
 
 use crate::effects::{ContactState, Effect, Side, Stage, Structure};
-use crate::table::{Condition, Frame, Point, Surface};
-use pinswitch_friction::{LayoutLaw, published};
+use crate::table::{Condition, Frame, Point};
+use pinswitch_friction::{LayoutLaw, Substrate, published};
 
 /// One term on top of the paper's model.
 #[derive(Clone, Debug)]
@@ -86,7 +86,7 @@ impl Model {
         }
         let mut plain = vec![usize::MAX; frame.conditions.len()];
         for (i, condition) in frame.conditions.iter().enumerate() {
-            if condition.surface == Surface::Plain {
+            if condition.substrate.is_none() {
                 plain[i] = priors.len();
                 priors.push(Prior { mean: 0.3f64.ln(), sd: 1.5 });
             }
@@ -163,9 +163,9 @@ impl Model {
     pub fn names(&self) -> Vec<(String, &'static str)> {
         let mut names = vec![("mu_p".to_owned(), "1"), ("mu_s".to_owned(), "1")];
         for condition in self.frame.conditions.iter().filter(|c| c.device.is_some()) {
-            let pins: Vec<String> = condition.pins.iter().map(usize::to_string).collect();
-            names.push((format!("F_half[{}]", pins.join(";")), "N"));
-            names.push((format!("s[{}]", pins.join(";")), "1"));
+            let layout = condition.layout();
+            names.push((format!("F_half[{layout}]"), "N"));
+            names.push((format!("s[{layout}]"), "1"));
         }
         for _ in self.plain.iter().filter(|at| **at != usize::MAX) {
             names.push(("x".to_owned(), "1"));
@@ -278,7 +278,7 @@ impl Model {
         let c = &self.frame.conditions[condition];
         match index {
             0 => c.has_pins(),
-            1 => c.surface == Surface::Silicone,
+            1 => c.substrate == Some(Substrate::Silicone),
             _ if index < 2 + 2 * self.frame.devices() => c.device == Some((index - 2) / 2),
             _ if index < self.baseline_len() => self.plain[condition] == index,
             _ => true,
@@ -300,7 +300,7 @@ impl Model {
             .map(|p| {
                 let condition = &self.frame.conditions[p.condition];
                 let Some(d) = condition.device else {
-                    return f64::from(u8::from(condition.surface == Surface::Silicone));
+                    return f64::from(u8::from(condition.substrate == Some(Substrate::Silicone)));
                 };
                 let s = 1.0 / (1.0 + (-values[3 + 2 * d] * (p.load_n / values[2 + 2 * d] - 1.0)).exp());
                 let silicone = (1.0 - condition.weight) * s * (values[1] * condition.wrap_rad).sinh();

@@ -1,7 +1,9 @@
 //! The catalogue of structures that a residual is searched for when no named effect explains it.
 
+use pinswitch_friction::Substrate;
+
 use crate::effects::{Channel, Covariate, Shape, Structure};
-use crate::table::{Frame, Point, Surface};
+use crate::table::{Frame, Point};
 
 /// Shapes that go together: one, or the sine and cosine of a wave.
 pub(crate) type Group = Vec<Structure>;
@@ -128,7 +130,7 @@ fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]
         }
     }
     let mut channels = vec![Channel::Reading, Channel::Drag, Channel::Friction];
-    if frame.conditions.iter().any(|c| c.surface == Surface::Silicone) {
+    if frame.conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone)) {
         channels.push(Channel::Silicone);
     }
     if frame.conditions.iter().any(crate::table::Condition::has_pins) {

@@ -2,8 +2,8 @@
 
 use serde::Deserialize;
 
-use crate::table::{Surface, Sweep};
-use pinswitch_friction::published;
+use crate::table::{LEAST_WRAP_DEG, MOST_WRAP_DEG, Sweep};
+use pinswitch_friction::{Substrate, published};
 
 /// Why a run description cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -53,8 +53,9 @@ pub struct Rig {
 pub struct SeriesPlan {
     /// The log's file name, beside the run description.
     pub file: String,
-    /// What the tendon lies on.
-    pub substrate: Surface,
+    /// What the tendon lies on; `None` for `plain`.
+    #[serde(with = "crate::table::substrate_word")]
+    pub substrate: Option<Substrate>,
     /// Occupied grooves.
     pub pins: Vec<usize>,
     /// The weight in grams, without the hook.
@@ -105,6 +106,9 @@ impl RunPlan {
                 return refuse(field.to_owned(), value.to_string(), "0 < value <= 100000");
             }
         }
+        if !(LEAST_WRAP_DEG..=MOST_WRAP_DEG).contains(&r.wrap_angle_deg) {
+            return refuse("rig.wrap_angle_deg".to_owned(), r.wrap_angle_deg.to_string(), "1..720 degrees");
+        }
         if !(r.hook_mass_g >= 0.0 && r.hook_mass_g.is_finite()) {
             return refuse("rig.hook_mass_g".to_owned(), r.hook_mass_g.to_string(), "value >= 0");
         }
@@ -122,7 +126,7 @@ impl RunPlan {
             if s.pins.iter().any(|p| !(1..=published::GROOVES).contains(p)) {
                 return refuse(field("pins"), format!("{:?}", s.pins), "grooves 1..15");
             }
-            if s.substrate == Surface::Abs && s.pins.is_empty() {
+            if s.substrate == Some(Substrate::Abs) && s.pins.is_empty() {
                 return refuse(field("pins"), "[]".to_owned(), "at least one groove on abs");
             }
         }
@@ -147,6 +151,7 @@ mod tests {
     fn unusable_values_are_named() {
         for (from, to, expected) in [
             ("on_s=0.5", "on_s=-1.0", "rig.on_s"),
+            ("deg=63.89", "deg=0.0", "rig.wrap_angle_deg = 0 is outside 1..720"),
             ("load_mass_g=251.2", "load_mass_g=-2.0", "series 1: load_mass_g"),
             ("\"silicone\"", "\"abs\"", "series 1: pins"),
             ("pins=[]", "pins=[99]", "grooves 1..15"),

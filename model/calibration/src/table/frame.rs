@@ -4,14 +4,16 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::row::{PlateauRow, Surface, Sweep};
-use pinswitch_friction::published;
+use super::row::{PlateauRow, Sweep};
+use super::substrate_word::substrate_word;
+use pinswitch_friction::{Substrate, published};
 
 /// One kind of contact in a table: substrate and pins.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
-    /// What the tendon lies on.
-    pub surface: Surface,
+    /// What the tendon lies on; `None` for `plain`.
+    #[serde(rename = "surface", with = "super::substrate_word")]
+    pub substrate: Option<Substrate>,
     /// Occupied grooves, ascending.
     pub pins: Vec<usize>,
     /// Position in the list of device layouts (pins on silicone), for those that switch.
@@ -27,12 +29,12 @@ pub struct Condition {
 }
 
 impl Condition {
-    fn new(surface: Surface, pins: &[usize], device: Option<usize>) -> Self {
-        let wrap = if surface == Surface::Plain { 1.0 } else { published::wrap_angle_rad() };
+    fn new(substrate: Option<Substrate>, pins: &[usize], wrap_angle_deg: f64, device: Option<usize>) -> Self {
+        let wrap = wrap_rad(substrate, wrap_angle_deg);
         let n = pins.len() as f64;
         let ploughing = Self::ploughing_sum(pins, wrap);
         Self {
-            surface,
+            substrate,
             pins: pins.to_vec(),
             device,
             wrap_rad: wrap,
@@ -55,20 +57,35 @@ impl Condition {
         (0..pins.len()).map(|i| (half(i.checked_sub(1)) + half(Some(i))).powf(1.5)).sum()
     }
 
-    /// A name for people: `silicone`, `abs 5;8;11`, `silicone 5;8;11`.
+    /// A name for people: `silicone`, `abs 5;8;11`, `silicone 5;8;11 at 90 deg`.
     pub fn name(&self) -> String {
+        format!("{} {}", substrate_word(self.substrate), self.layout()).trim_end().to_owned()
+    }
+
+    /// Its pins and, where it is not the published one, its wrap angle: `5;8;11`, `5;8;11 at 90 deg`.
+    pub fn layout(&self) -> String {
         let pins: Vec<String> = self.pins.iter().map(usize::to_string).collect();
-        if pins.is_empty() {
-            self.surface.as_str().to_owned()
+        let pins = pins.join(";");
+        let usual = wrap_rad(self.substrate, published::WRAP_ANGLE_DEG);
+        if (self.wrap_rad - usual).abs() < SAME_WRAP_RAD {
+            pins
         } else {
-            format!("{} {}", self.surface.as_str(), pins.join(";"))
+            format!("{pins} at {:.4} deg", self.wrap_rad.to_degrees()).trim_start().to_owned()
         }
     }
 
     /// Whether pins touch the tendon (on `abs` or in a device).
     pub fn has_pins(&self) -> bool {
-        !self.pins.is_empty() && self.surface != Surface::Plain
+        !self.pins.is_empty() && self.substrate.is_some()
     }
+}
+
+/// Wrap angles closer than this are one, in radians.
+const SAME_WRAP_RAD: f64 = 1e-9;
+
+/// Wrap angle in radians; 1 for `plain`, whose exponent is free.
+fn wrap_rad(substrate: Option<Substrate>, wrap_angle_deg: f64) -> f64 {
+    if substrate.is_none() { 1.0 } else { wrap_angle_deg.to_radians() }
 }
 
 /// Conditions and reference values of a session; a model carries it, so that rows of the same rig can be
@@ -155,8 +172,9 @@ impl Frame {
     /// Adds the condition of a row if it is new.
     pub fn extend(&mut self, row: &PlateauRow) {
         if self.condition_of(row).is_none() {
-            let device = (row.surface == Surface::Silicone && !row.pins.is_empty()).then(|| self.devices());
-            self.conditions.push(Condition::new(row.surface, &row.pins, device));
+            let device =
+                (row.substrate == Some(Substrate::Silicone) && !row.pins.is_empty()).then(|| self.devices());
+            self.conditions.push(Condition::new(row.substrate, &row.pins, row.wrap_angle_deg, device));
         }
     }
 
@@ -167,7 +185,10 @@ impl Frame {
 
     /// The condition of a row, if the frame has it.
     pub fn condition_of(&self, row: &PlateauRow) -> Option<usize> {
-        self.conditions.iter().position(|c| c.surface == row.surface && c.pins == row.pins)
+        let wrap = wrap_rad(row.substrate, row.wrap_angle_deg);
+        self.conditions.iter().position(|c| {
+            c.substrate == row.substrate && c.pins == row.pins && (c.wrap_rad - wrap).abs() < SAME_WRAP_RAD
+        })
     }
 
     /// The rows as points; `None` for the first row whose condition the frame does not have.
@@ -223,9 +244,10 @@ mod tests {
     /// The turns at all pins sum to the wrap (model.md 3), so that `sum theta^1.5` is bounded by `a sqrt(a)`.
     #[test]
     fn the_three_layouts_have_the_turns_of_the_vector_balance() {
-        let six = Condition::new(Surface::Abs, &[3, 5, 7, 9, 11, 13], None);
-        let double = Condition::new(Surface::Abs, &[5, 8, 11], None);
-        let single = Condition::new(Surface::Abs, &[6, 8, 10], None);
+        let six =
+            Condition::new(Some(Substrate::Abs), &[3, 5, 7, 9, 11, 13], published::WRAP_ANGLE_DEG, None);
+        let double = Condition::new(Some(Substrate::Abs), &[5, 8, 11], published::WRAP_ANGLE_DEG, None);
+        let single = Condition::new(Some(Substrate::Abs), &[6, 8, 10], published::WRAP_ANGLE_DEG, None);
         // kappa = 0.0237 gives the pins-only maxima at +2.7 / -2.5 / -0.3 % (model.md 3).
         let load = published::heaviest_load_n();
         let miss = |c: &Condition, published: f64| {

@@ -3,32 +3,21 @@
 use std::collections::HashMap;
 use std::io::Read;
 
-use super::row::{PlateauRow, Surface, Sweep};
+use super::columns::{COLUMNS, WRAP_ANGLE, column_name};
+use super::row::{PlateauRow, Sweep};
+use super::substrate_word::{WORDS, substrate_word};
 use super::table_error::TableError;
-use pinswitch_friction::Direction;
-use pinswitch_friction::published::GROOVES;
-
-/// The columns a table must have, in the order in which they are written.
-pub(super) const COLUMNS: [&str; 13] = [
-    "series",
-    "substrate",
-    "pins",
-    "sweep",
-    "load_mass_g",
-    "load_N",
-    "speed_pct",
-    "dwell_s",
-    "direction",
-    "repetition",
-    "position_mm",
-    "time_s",
-    "force_N",
-];
+use pinswitch_friction::published::{self, GROOVES};
+use pinswitch_friction::{Direction, Substrate};
 
 /// Largest load and reading in newtons: ten tonnes is beyond any tendon.
 const MOST_N: f64 = 1e5;
 /// Longest time in seconds: thirty years, or a clock that counts from 1970.
 const MOST_S: f64 = 1e10;
+
+/// Smallest and largest wrap angle in degrees: two turns.
+pub(crate) const LEAST_WRAP_DEG: f64 = 1.0;
+pub(crate) const MOST_WRAP_DEG: f64 = 720.0;
 
 /// A plateau table with the cells as they were written, unknown columns included.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,12 +87,14 @@ impl PlateauTable {
                 return Err(TableError::MissingColumn { file: file.to_owned(), column });
             }
         }
+        let wrap_at = header.iter().position(|name| name == WRAP_ANGLE);
         let (mut rows, mut cells) = (Vec::new(), Vec::new());
         let mut lines = HashMap::new();
         for record in reader.records() {
             let record = record.map_err(malformed)?;
             let byte = record.position().map_or(0, csv::Position::byte);
-            let cell = |index: usize| at[index].and_then(|i| record.get(i)).unwrap_or("");
+            let place = |index: usize| at.get(index).copied().unwrap_or(wrap_at);
+            let cell = |index: usize| place(index).and_then(|i| record.get(i)).unwrap_or("");
             let line = Cells { file, text: &text, byte, cell: &cell, force };
             let row = parse_row(&line)?;
             // A reading that stands in the table twice counts twice, and no spread between the two says so.
@@ -145,15 +136,17 @@ impl PlateauTable {
         out
     }
 
-    /// Rows as a plateau table in CSV.
+    /// Rows as a plateau table in CSV, with a column `wrap_angle_deg` if any row departs from the paper's wrap angle.
     pub fn write(rows: &[PlateauRow]) -> String {
         let mut out = String::new();
-        push_line(&mut out, COLUMNS.iter().copied());
+        let usual = rows.iter().all(|row| row.wrap_angle_deg == published::WRAP_ANGLE_DEG);
+        let extra = (!usual).then_some(WRAP_ANGLE);
+        push_line(&mut out, COLUMNS.iter().copied().chain(extra));
         for row in rows {
             let pins: Vec<String> = row.pins.iter().map(usize::to_string).collect();
             let cells = [
                 row.series.clone(),
-                row.surface.as_str().to_owned(),
+                substrate_word(row.substrate).to_owned(),
                 pins.join(";"),
                 row.sweep.as_str().to_owned(),
                 format!("{}", row.load_mass_g),
@@ -166,7 +159,8 @@ impl PlateauTable {
                 format!("{:.2}", row.time_s),
                 format!("{:.4}", row.force_n),
             ];
-            push_line(&mut out, cells.iter().map(String::as_str));
+            let wrap = extra.map(|_| row.wrap_angle_deg.to_string());
+            push_line(&mut out, cells.iter().chain(&wrap).map(String::as_str));
         }
         out
     }
@@ -211,7 +205,7 @@ impl Cells<'_> {
         TableError::Cell {
             file: self.file.to_owned(),
             line: line_at(self.text, self.byte),
-            column: COLUMNS[column],
+            column: column_name(column),
             value: (self.cell)(column).to_owned(),
             problem: problem.into(),
         }
@@ -235,6 +229,15 @@ impl Cells<'_> {
             ));
         }
         Ok(value)
+    }
+
+    /// The wrap angle, or the paper's where the column or the cell is absent.
+    fn wrap_angle_deg(&self) -> Result<f64, TableError> {
+        let column = COLUMNS.len();
+        if (self.cell)(column).is_empty() {
+            return Ok(published::WRAP_ANGLE_DEG);
+        }
+        self.number(column, LEAST_WRAP_DEG, MOST_WRAP_DEG)
     }
 
     fn word<T: Copy>(&self, column: usize, words: &[(&str, T)]) -> Result<T, TableError> {
@@ -267,10 +270,9 @@ impl Cells<'_> {
 }
 
 fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
-    let surface = cells
-        .word(1, &[("silicone", Surface::Silicone), ("abs", Surface::Abs), ("plain", Surface::Plain)])?;
+    let substrate = cells.word(1, &WORDS)?;
     let pins = cells.pins()?;
-    if surface == Surface::Abs && pins.is_empty() {
+    if substrate == Some(Substrate::Abs) && pins.is_empty() {
         return Err(cells.refuse(2, "is empty on abs, where only pins carry the tendon; name the grooves"));
     }
     let repetition = cells.number(9, 1.0, 1e6)?;
@@ -281,7 +283,7 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
     let repetition = repetition as u32;
     Ok(PlateauRow {
         series: (cells.cell)(0).to_owned(),
-        surface,
+        substrate,
         pins,
         sweep: cells.word(3, &[("up", Sweep::Up), ("down", Sweep::Down)])?,
         load_mass_g: cells.number(4, 0.0, 1e7)?,
@@ -297,6 +299,7 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
             Force::Needed => cells.number(12, -MOST_N, MOST_N)?,
             Force::Ignored => 0.0,
         },
+        wrap_angle_deg: cells.wrap_angle_deg()?,
     })
 }
 
@@ -345,6 +348,22 @@ mod tests {
             let error = read(&format!("{HEADER}\n{}\n", LINE.replacen(from, to, 1))).unwrap_err().to_string();
             assert!(error.contains(expected) && error.starts_with("t.csv"), "{error}");
         }
+    }
+
+    #[test]
+    fn another_wrap_angle_is_read_and_written_and_the_papers_is_left_out() {
+        let mut table = read(&format!("{HEADER},wrap_angle_deg\n{LINE},90\n")).unwrap();
+        assert_eq!(table.rows[0].wrap_angle_deg, 90.0);
+        let text = PlateauTable::write(&table.rows);
+        assert!(text.ends_with(",2.3157,90\n"), "{text}");
+        assert_eq!(read(&text).unwrap().rows, table.rows);
+        for usual in ["", "63.89"] {
+            table = read(&format!("{HEADER},wrap_angle_deg\n{LINE},{usual}\n")).unwrap();
+            assert_eq!(table.rows[0].wrap_angle_deg, published::WRAP_ANGLE_DEG);
+        }
+        assert!(!PlateauTable::write(&table.rows).contains("wrap_angle_deg"));
+        let error = read(&format!("{HEADER},wrap_angle_deg\n{LINE},-5\n")).unwrap_err().to_string();
+        assert!(error.starts_with("t.csv, line 2, column 'wrap_angle_deg': '-5' is below 1"), "{error}");
     }
 
     #[test]

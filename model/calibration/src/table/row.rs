@@ -2,30 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use pinswitch_friction::Direction;
-
-/// What the tendon lies on during a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Surface {
-    /// The cast silicone, with or without pins.
-    Silicone,
-    /// The rigid proxy: the pins alone carry the tendon.
-    Abs,
-    /// One contact of one unknown material and wrap: any other capstan-like rig.
-    Plain,
-}
-
-impl Surface {
-    /// The word of the `substrate` column.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Surface::Silicone => "silicone",
-            Surface::Abs => "abs",
-            Surface::Plain => "plain",
-        }
-    }
-}
+use pinswitch_friction::{Direction, Substrate};
 
 /// Order of the loads in the sweep that a series belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,8 +29,8 @@ impl Sweep {
 pub struct PlateauRow {
     /// Name of the rows recorded in one go.
     pub series: String,
-    /// What the tendon lies on.
-    pub surface: Surface,
+    /// What the tendon lies on; `None` for `plain`, one contact of one unknown material and wrap.
+    pub substrate: Option<Substrate>,
     /// Occupied grooves, numbered from 1, ascending; empty without pins.
     pub pins: Vec<usize>,
     /// Order of the loads.
@@ -76,4 +53,6 @@ pub struct PlateauRow {
     pub time_s: f64,
     /// The reading in newtons.
     pub force_n: f64,
+    /// Wrap angle of the tendon in degrees; without meaning for `plain`.
+    pub wrap_angle_deg: f64,
 }

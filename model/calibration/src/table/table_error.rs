@@ -1,6 +1,6 @@
 //! Why a plateau table cannot be used.
 
-use super::plateau_table::COLUMNS;
+use super::columns::COLUMNS;
 
 /// Why a plateau table cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

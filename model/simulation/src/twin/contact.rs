@@ -2,13 +2,12 @@
 
 use super::{F0_N, Moment, settling};
 use crate::plan::Plan;
-use pinswitch_calibration::table::Surface;
-use pinswitch_friction::{LayoutLaw, published};
+use pinswitch_friction::{LayoutLaw, Substrate, published};
 
 /// One kind of contact.
 #[derive(Clone, Debug)]
 pub(super) struct Contact {
-    surface: Surface,
+    substrate: Option<Substrate>,
     pins: Vec<usize>,
     wrap_rad: f64,
     /// Turn at each pin in radians; they sum to the wrap (model.md 3).
@@ -25,8 +24,8 @@ struct Exponents {
 
 impl Contact {
     /// The contact of a condition; `device` counts the switching layouts before it.
-    pub(super) fn new(plan: &Plan, surface: Surface, pins: &[usize], device: usize) -> Self {
-        let wrap_rad = if surface == Surface::Plain { 1.0 } else { published::wrap_angle_rad() };
+    pub(super) fn new(plan: &Plan, substrate: Option<Substrate>, pins: &[usize], device: usize) -> Self {
+        let wrap_rad = if substrate.is_none() { 1.0 } else { plan.wrap_angle_deg.to_radians() };
         let at: Vec<f64> =
             pins.iter().map(|g| *g as f64 * published::GROOVE_PITCH_DEG.to_radians()).collect();
         let span = at.last().zip(at.first()).map_or(0.0, |(l, f)| l - f);
@@ -42,7 +41,7 @@ impl Contact {
         let pitch = if n > 1 { span / (n as f64 - 1.0) } else { wrap_rad };
         let factor = plan.constants.half_load_factor.get(device).copied().unwrap_or(1.0);
         Self {
-            surface,
+            substrate,
             pins: pins.to_vec(),
             wrap_rad,
             turns_rad,
@@ -53,7 +52,7 @@ impl Contact {
 
     /// Whether pins stand in silicone here.
     pub(super) fn switches(&self) -> bool {
-        self.surface == Surface::Silicone && !self.pins.is_empty()
+        self.substrate == Some(Substrate::Silicone) && !self.pins.is_empty()
     }
 
     /// Tension in newtons at a load, when the tension of the round before is known.
@@ -63,7 +62,11 @@ impl Contact {
         let c = plan.effects.iter().find(|e| e.id == "adhesion");
         let stuck = |share: f64| c.map_or(0.0, |e| at.sign * e.values[0] * share);
         if !self.switches() {
-            return if self.surface == Surface::Abs { grow(x.pins) } else { grow(x.silicone) + stuck(1.0) };
+            return if self.substrate == Some(Substrate::Abs) {
+                grow(x.pins)
+            } else {
+                grow(x.silicone) + stuck(1.0)
+            };
         }
         let s = self.switched(plan, at, load_n, before_n);
         let w = self.pins.len() as f64 / 30.0;

@@ -49,8 +49,8 @@ pub(super) fn readings(plan: &Plan, session: &[PlateauRow]) -> Vec<f64> {
     let mut in_series = BTreeMap::new();
     let mut out = Vec::with_capacity(session.len());
     for (made, row) in session.iter().enumerate() {
-        let contact = contacts.entry((row.surface, row.pins.clone())).or_insert_with(|| {
-            let contact = Contact::new(plan, row.surface, &row.pins, devices);
+        let contact = contacts.entry((row.substrate, row.pins.clone())).or_insert_with(|| {
+            let contact = Contact::new(plan, row.substrate, &row.pins, devices);
             devices += usize::from(contact.switches());
             contact
         });

@@ -10,7 +10,7 @@ use crate::inference::{
 };
 use crate::layouts_left_out::layouts_left_out;
 use crate::report::{
-    BadSeries, Candidate, DataSummary, EffectReport, Estimate, Fate, Invisible, ModelReport, Report,
+    BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Fate, Invisible, ModelReport, Report,
     RivalReport, Verdict,
 };
 use crate::table::{Frame, PlateauRow};
@@ -171,7 +171,7 @@ fn invisible(selection: &Selection) -> Vec<Invisible> {
 }
 
 /// Every effect with what became of it.
-fn candidates(selection: &Selection, data: &Observations, levels: Levels) -> Vec<Candidate> {
+fn candidates(selection: &Selection, data: &Observations, levels: Levels) -> Vec<CandidateReport> {
     let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
     let fate = |candidate: &CandidateEffect, p: f64| {
         let id = candidate.effect.id();
@@ -192,7 +192,7 @@ fn candidates(selection: &Selection, data: &Observations, levels: Levels) -> Vec
         .iter()
         .map(|candidate| {
             let p_value = family_p_value(candidate.gain, CATALOGUE.len(), degrees);
-            Candidate {
+            CandidateReport {
                 id: candidate.effect.id().to_owned(),
                 gain: candidate.gain.max(0.0),
                 p_value,

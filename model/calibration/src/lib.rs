@@ -26,6 +26,6 @@ pub use median::median;
 pub use model_file::{ModelFile, ModelFileError};
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
-    BadSeries, Candidate, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible, ModelReport,
-    Report, RivalReport, Verdict,
+    BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible,
+    ModelReport, Report, RivalReport, Verdict,
 };

@@ -74,7 +74,7 @@ fn predict(kind: Pins, at: &[f64], maximum: &Maximum, scale_free: bool) -> f64 {
     (1.0 + layout.weight) * (1.0 - s) * pins + (1.0 - layout.weight) * s * silicone
 }
 
-/// Friction exponent of the pins: constant, `kappa sqrt(T) sum theta^1.5` (model.md 3), in proportion to the
+/// Friction exponent of the pins: constant, `kappa sqrt(T) sum theta^1.5` (`model/doc/friction-laws.md`), in proportion to the
 /// mean turn per pin, or growing with load (which at one load is the constant again).
 fn pins_exponent(kind: Pins, factor: f64, layout: &PublishedLayout, load_n: f64, wrap: f64) -> f64 {
     match kind {
@@ -157,7 +157,7 @@ pub fn explain_published() -> Vec<Explanation> {
 mod tests {
     use super::*;
 
-    /// model.md 1 and 3: 31 % as printed; ploughing explains most of it and holds for layouts left out.
+    /// `model/doc/friction-laws.md`: 31 % as printed; ploughing explains most of it and holds for layouts left out.
     #[test]
     fn ploughing_explains_most_of_what_the_paper_misses() {
         let all = explain_published();

@@ -1,4 +1,4 @@
-//! `report.json`: what a calibration says, field by field (data.md 6).
+//! `report.json`: what a calibration says, field by field (`model/doc/file-formats.md`).
 
 use std::collections::BTreeMap;
 
@@ -105,7 +105,7 @@ pub struct EffectReport {
     /// Formula with source, or the shape of a structure in words.
     pub formula: String,
     /// Probability of such a gain by chance, over all that was tried: Student's t with the number of series,
-    /// Sidak's correction. Held against simulated rigs without effect in `model/calibration.md`.
+    /// Sidak's correction. Held against simulated rigs without effect in `model/doc/calibration.md`.
     pub p_value: f64,
     /// Its constants.
     pub parameters: BTreeMap<String, Estimate>,
@@ -137,7 +137,7 @@ pub enum Fate {
 
 /// One effect of the vocabulary before the decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Candidate {
+pub struct CandidateReport {
     /// Its id.
     pub id: String,
     /// What it alone would gain over the baseline to first order, in squares of the noise.
@@ -197,7 +197,7 @@ pub struct Report {
     /// What was found.
     pub effects: Vec<EffectReport>,
     /// Every effect of the vocabulary as a candidate, the strongest first.
-    pub candidates: Vec<Candidate>,
+    pub candidates: Vec<CandidateReport>,
     /// Probability of the largest candidate without any effect, by flipped signs of whole series.
     pub family_probability: f64,
     /// What this data cannot see.

@@ -10,7 +10,7 @@ use crate::{Contact, PinPattern, Substrate, Transition};
 /// Loads at which the sweep computes a pattern: the threshold comes out within about 1 %.
 const LOADS: usize = 24;
 /// Most grooves under the tendon: `2^20` patterns take over half an hour.
-pub const MOST_GROOVES: usize = 20;
+pub const MAX_GROOVES: usize = 20;
 
 /// The grooves to fill and the loads to look at. Angles in radians, loads in newtons.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub struct Search {
 
 /// A pattern and what the physics says of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Candidate {
+pub struct LayoutCandidate {
     /// Occupied grooves, numbered from 1.
     pub pins: Vec<usize>,
     /// Load at which silicone makes half of the friction, N; `None` if it does not within the loads.
@@ -71,13 +71,13 @@ impl Search {
 
     fn masks(&self) -> impl Iterator<Item = u32> {
         let (fewest, most) = self.pins;
-        let grooves = self.grooves.len().min(MOST_GROOVES);
+        let grooves = self.grooves.len().min(MAX_GROOVES);
         (1..1u32 << grooves).filter(move |m| (fewest..=most).contains(&(m.count_ones() as usize)))
     }
 
     /// Every pattern, in the order of its occupancy as a binary number. A pattern whose equilibrium is not found is left
     /// out.
-    pub fn sweep(&self) -> Vec<Candidate> {
+    pub fn sweep(&self) -> Vec<LayoutCandidate> {
         let masks: Vec<u32> = self.masks().collect();
         #[cfg(feature = "parallel")]
         let masks = masks.into_par_iter();
@@ -86,7 +86,7 @@ impl Search {
         masks.filter_map(|mask| self.evaluate(mask)).collect()
     }
 
-    fn evaluate(&self, mask: u32) -> Option<Candidate> {
+    fn evaluate(&self, mask: u32) -> Option<LayoutCandidate> {
         let occupied: Vec<&(usize, f64)> =
             self.grooves.iter().enumerate().filter(|(i, _)| mask >> i & 1 == 1).map(|(_, g)| g).collect();
         let pattern = PinPattern::new(occupied.iter().map(|g| g.1).collect());
@@ -101,7 +101,7 @@ impl Search {
         let states = on(Substrate::Silicone)?.states(&loads).ok()?;
         let shares: Vec<f64> = states.iter().map(|s| s.silicone_share).collect();
         let friction_n = states.last()?.friction_n;
-        Some(Candidate {
+        Some(LayoutCandidate {
             pins: occupied.iter().map(|g| g.0).collect(),
             threshold_n: Transition::threshold_n(&loads, &shares),
             friction_n,
@@ -111,12 +111,12 @@ impl Search {
 }
 
 /// Candidates that no other beats in both threshold and ratio, by ascending threshold.
-pub fn pareto_front(candidates: &[Candidate]) -> Vec<&Candidate> {
-    let mut switching: Vec<(f64, &Candidate)> =
+pub fn pareto_front(candidates: &[LayoutCandidate]) -> Vec<&LayoutCandidate> {
+    let mut switching: Vec<(f64, &LayoutCandidate)> =
         candidates.iter().filter_map(|c| Some((c.threshold_n?, c))).collect();
     switching.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.ratio.total_cmp(&a.1.ratio)));
     let mut best = 0.0;
-    let mut front: Vec<&Candidate> = switching
+    let mut front: Vec<&LayoutCandidate> = switching
         .into_iter()
         .filter(|(_, c)| {
             let leads = c.ratio > best;

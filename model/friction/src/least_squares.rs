@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 /// Steps before the search ends.
-const MOST_STEPS: usize = 60;
+const MAX_STEPS: usize = 60;
 /// Relative gain of a step below which the search has converged.
-const LEAST_GAIN: f64 = 1e-12;
+const MIN_GAIN: f64 = 1e-12;
 
 /// Where the sum of squares is least.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub fn minimise<E>(
     let mut here = DVector::from_vec(residuals(&at)?);
     let mut damping = 1e-3;
     let mut jacobian = derivatives(&at, &here, step, &residuals)?;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let normal = jacobian.transpose() * &jacobian;
         let gradient = jacobian.transpose() * &here;
         let mut damped = normal.clone();
@@ -57,7 +57,7 @@ pub fn minimise<E>(
         let gain = here.norm_squared() - there.norm_squared();
         if gain > 0.0 {
             at = tried;
-            let done = gain <= LEAST_GAIN * here.norm_squared();
+            let done = gain <= MIN_GAIN * here.norm_squared();
             here = there;
             damping = (damping / 10.0).max(1e-12);
             jacobian = derivatives(&at, &here, step, &residuals)?;

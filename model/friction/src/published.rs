@@ -4,7 +4,7 @@ use crate::Substrate;
 
 /// Standard gravity in m/s², which turns the published masses into loads.
 pub const GRAVITY_M_S2: f64 = 9.80665;
-/// Mass of the hook that carries the weights, in grams; it counts as load (model.md 1).
+/// Mass of the hook that carries the weights, in grams; it counts as load (`model/doc/friction-laws.md`).
 pub const HOOK_MASS_G: f64 = 62.53;
 /// The eleven weights in grams, without the hook.
 pub const WEIGHTS_G: [f64; 11] =
@@ -56,7 +56,7 @@ pub struct PublishedLayout {
     pub pins_max_n: f64,
 }
 
-/// The three layouts of the paper. `six-single` uses `F_thr = 5.7` as printed (model.md 1).
+/// The three layouts of the paper. `six-single` uses `F_thr = 5.7` as printed (`model/doc/friction-laws.md`).
 pub const LAYOUTS: [PublishedLayout; 3] = [
     PublishedLayout {
         name: "six-single",

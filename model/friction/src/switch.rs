@@ -26,7 +26,7 @@ pub trait Switch {
     /// Weight `w` of eq. 4, dimensionless.
     fn weight(&self) -> f64;
 
-    /// Eq. 4, applied to `T - F` of each branch (model.md 1), over a wrap of `wrap_rad` radians.
+    /// Eq. 4, applied to `T - F` of each branch (`model/doc/friction-laws.md`), over a wrap of `wrap_rad` radians.
     fn state(&self, load_n: f64, wrap_rad: f64) -> SwitchState {
         let (s, w) = (self.switched(load_n), self.weight());
         let (low, high) = ((1.0 + w) * (1.0 - s), (1.0 - w) * s);
@@ -84,7 +84,7 @@ mod tests {
     use crate::PinPattern;
     use crate::{Contact, Substrate, predict};
 
-    /// model.md 1: "D at max load" and its error, to the digits given.
+    /// `model/doc/friction-laws.md`: "D at max load" and its error, to the digits given.
     #[test]
     fn reproduces_the_table_of_the_three_layouts() {
         let rows: Vec<_> = published::LAYOUTS
@@ -99,7 +99,7 @@ mod tests {
         assert_eq!(rows, ["six-single 4.07 -20.2", "three-double 10.01 +3.5", "three-single 8.90 +4.7"]);
     }
 
-    /// model.md 1: the model's root mean square relative error on the paper's own seven maxima is 31 %.
+    /// `model/doc/friction-laws.md`: the model's root mean square relative error on the paper's own seven maxima is 31 %.
     #[test]
     fn misses_the_seven_published_maxima_by_31_percent() {
         let max = |substrate, pins| {

@@ -5,7 +5,7 @@ use pinswitch_calibration::inference::{Levels, Model, Observations, interval_hal
 use pinswitch_calibration::segmentation::segment_run;
 use pinswitch_calibration::table::{Frame, PlateauTable};
 
-use crate::{Disturbance, EffectPlan, Kind, Plan, RawRun, Target, simulate};
+use crate::{Course, Disturbance, DisturbanceTarget, EffectPlan, Plan, RawRun, simulate};
 
 fn estimated_correlation(plan: &Plan) -> f64 {
     let rows = simulate(plan).rows;
@@ -28,11 +28,11 @@ fn a_chain_is_found_as_strong_as_it_is() {
 fn independent_repetitions_are_left_alone_even_where_the_stroke_has_a_course() {
     let mut plan = Plan { seed: 8, ..Plan::default() };
     assert_eq!(estimated_correlation(&plan), 0.0);
-    let kind = Kind::Spot { at: 0.4, width: 0.15, flat: false };
-    plan.disturbances.push(Disturbance { kind, target: Target::Friction, size: 0.2 });
+    let kind = Course::Spot { at: 0.4, width: 0.15, flat: false };
+    plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.2 });
     assert_eq!(estimated_correlation(&plan), 0.0);
-    plan.disturbances[0].kind = Kind::TimeWave { cycles: 20.0, phase: 0.3 };
-    (plan.disturbances[0].target, plan.disturbances[0].size) = (Target::Reading, 0.2);
+    plan.disturbances[0].kind = Course::TimeWave { cycles: 20.0, phase: 0.3 };
+    (plan.disturbances[0].target, plan.disturbances[0].size) = (DisturbanceTarget::Reading, 0.2);
     assert!(estimated_correlation(&plan) < 0.25, "a slow wave is mostly a drift inside a series");
 }
 

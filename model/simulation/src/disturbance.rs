@@ -10,7 +10,7 @@ use pinswitch_calibration::table::PlateauRow;
 /// What a disturbance acts on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Target {
+pub enum DisturbanceTarget {
     /// A share of the friction coefficients of pins and silicone.
     #[default]
     Friction,
@@ -27,10 +27,10 @@ pub enum Target {
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
     /// Its course.
-    pub kind: Kind,
+    pub kind: Course,
     /// What it acts on.
     #[serde(default)]
-    pub target: Target,
+    pub target: DisturbanceTarget,
     /// Its size: a share of friction, or newtons.
     pub size: f64,
 }
@@ -38,7 +38,7 @@ pub struct Disturbance {
 /// Course of a disturbance; shares of time and stroke are 0..1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Kind {
+pub enum Course {
     /// From a share of the session on; `over` is the share it takes to rise.
     Step {
         /// Where it begins.
@@ -99,24 +99,24 @@ impl Disturbance {
     /// Where a calibration should find it.
     pub fn covariate(&self) -> Covariate {
         match self.kind {
-            Kind::Step { .. } | Kind::Window { .. } | Kind::TimeWave { .. } => Covariate::Time,
-            Kind::StrokeWave { .. } | Kind::Spot { .. } => Covariate::Position,
-            Kind::Resonance { .. } => Covariate::Speed,
-            Kind::Layout { .. } => Covariate::Condition,
+            Course::Step { .. } | Course::Window { .. } | Course::TimeWave { .. } => Covariate::Time,
+            Course::StrokeWave { .. } | Course::Spot { .. } => Covariate::Position,
+            Course::Resonance { .. } => Covariate::Speed,
+            Course::Layout { .. } => Covariate::Condition,
         }
     }
 
     fn course(&self, clock: f64, place: f64, speed_pct: f64, pins: &[usize]) -> f64 {
         let flag = |b: bool| f64::from(u8::from(b));
         match &self.kind {
-            Kind::Step { at, over } => ((clock - at) / over.max(1e-9)).clamp(0.0, 1.0),
-            Kind::Window { from, to } => flag(clock >= *from && clock < *to),
-            Kind::TimeWave { cycles, phase } => (TAU * cycles * clock + phase).sin(),
-            Kind::StrokeWave { cycles, phase, square } => {
+            Course::Step { at, over } => ((clock - at) / over.max(1e-9)).clamp(0.0, 1.0),
+            Course::Window { from, to } => flag(clock >= *from && clock < *to),
+            Course::TimeWave { cycles, phase } => (TAU * cycles * clock + phase).sin(),
+            Course::StrokeWave { cycles, phase, square } => {
                 let wave = (TAU * cycles * place + phase).sin();
                 if *square { wave.signum() * PI / 4.0 } else { wave }
             }
-            Kind::Spot { at, width, flat } => {
+            Course::Spot { at, width, flat } => {
                 let x = (place - at) / width;
                 if x.abs() > 0.5 {
                     0.0
@@ -126,10 +126,10 @@ impl Disturbance {
                     (PI * x).cos()
                 }
             }
-            Kind::Resonance { speed_pct: v, width_pct } => {
+            Course::Resonance { speed_pct: v, width_pct } => {
                 1.0 / (1.0 + ((speed_pct - v) / width_pct).powi(2))
             }
-            Kind::Layout { pins: defective } => flag(pins == defective.as_slice()),
+            Course::Layout { pins: defective } => flag(pins == defective.as_slice()),
         }
     }
 
@@ -137,9 +137,9 @@ impl Disturbance {
     pub(super) fn on_reading_n(&self, clock: f64, place: f64, row: &PlateauRow) -> f64 {
         let course = || self.size * self.course(clock, place, row.speed_pct, &row.pins);
         match self.target {
-            Target::Reading => course(),
-            Target::Drag => row.direction.sign() * course(),
-            Target::Friction | Target::Pins => 0.0,
+            DisturbanceTarget::Reading => course(),
+            DisturbanceTarget::Drag => row.direction.sign() * course(),
+            DisturbanceTarget::Friction | DisturbanceTarget::Pins => 0.0,
         }
     }
 
@@ -147,9 +147,9 @@ impl Disturbance {
     pub(super) fn on_friction(&self, clock: f64, place: f64, speed_pct: f64, pins: &[usize]) -> (f64, f64) {
         let factor = 1.0 + self.size * self.course(clock, place, speed_pct, pins);
         match self.target {
-            Target::Friction => (factor, factor),
-            Target::Pins => (factor, 1.0),
-            Target::Reading | Target::Drag => (1.0, 1.0),
+            DisturbanceTarget::Friction => (factor, factor),
+            DisturbanceTarget::Pins => (factor, 1.0),
+            DisturbanceTarget::Reading | DisturbanceTarget::Drag => (1.0, 1.0),
         }
     }
 }
@@ -160,15 +160,17 @@ mod tests {
 
     #[test]
     fn a_spot_and_a_resonance_end_where_they_should() {
-        let on = |kind: Kind, clock, place, speed| {
-            Disturbance { kind, target: Target::Friction, size: 0.5 }.on_friction(clock, place, speed, &[]).0
+        let on = |kind: Course, clock, place, speed| {
+            Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.5 }
+                .on_friction(clock, place, speed, &[])
+                .0
         };
-        let spot = || Kind::Spot { at: 0.5, width: 0.1, flat: false };
+        let spot = || Course::Spot { at: 0.5, width: 0.1, flat: false };
         assert_eq!(on(spot(), 0.0, 0.5, 50.0), 1.5);
         assert_eq!(on(spot(), 0.0, 0.56, 50.0), 1.0);
-        let step = || Kind::Step { at: 0.4, over: 0.0 };
+        let step = || Course::Step { at: 0.4, over: 0.0 };
         assert_eq!((on(step(), 0.39, 0.0, 50.0), on(step(), 0.41, 0.0, 50.0)), (1.0, 1.5));
-        let resonance = Kind::Resonance { speed_pct: 50.0, width_pct: 1.0 };
+        let resonance = Course::Resonance { speed_pct: 50.0, width_pct: 1.0 };
         assert_eq!(on(resonance, 0.0, 0.0, 51.0), 1.25);
     }
 }

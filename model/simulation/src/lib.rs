@@ -4,6 +4,7 @@
 #[cfg(test)]
 mod calibrator_tests;
 mod disturbance;
+mod effect_forms;
 mod plan;
 mod power;
 mod protocol;
@@ -12,9 +13,9 @@ mod simulate;
 mod study;
 mod twin;
 
-pub use disturbance::{Disturbance, Kind, Target};
-pub use plan::{Constants, EffectPlan, NoisePlan, Plan, PlanError, Protocol};
+pub use disturbance::{Course, Disturbance, DisturbanceTarget};
+pub use plan::{EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan, RigConstants};
 pub use power::{Power, power};
-pub use raw::{Faults, RawLog, RawPlan, RawRun};
+pub use raw::{Faults, RawLog, RawRun};
 pub use simulate::{Simulated, simulate};
 pub use study::{Case, Outcome, Study, Truth, plan_of, run_case, study_cases};

@@ -4,7 +4,7 @@ use pinswitch_friction::Substrate;
 
 use crate::table::{Condition, Point};
 
-/// Reference load `F0` of effects.md, in newtons.
+/// Reference load `F0` of `model/doc/effect-catalogue.md`, in newtons.
 pub const REFERENCE_LOAD_N: f64 = 50.0;
 
 /// Everything that fixes the tension of one row; effects change it before [`ContactState::tension_n`] is read.
@@ -35,7 +35,7 @@ pub struct ContactState {
 }
 
 impl ContactState {
-    /// Tension in newtons: capstan for one material, eq. 4 on `T - F` per direction for a device (model.md 1).
+    /// Tension in newtons: capstan for one material, eq. 4 on `T - F` per direction for a device (`model/doc/friction-laws.md`).
     pub fn tension_n(&self, condition: &Condition, point: &Point) -> f64 {
         let (f, d) = (self.load_n, point.sign);
         let x_pins = (self.mu_pins * self.wrap_rad + self.extra_exponent_pins) * self.exponent_factor;
@@ -59,7 +59,7 @@ impl ContactState {
         }
     }
 
-    /// `S = 1/(1 + exp(-s (F/F_half - 1)))` (model.md 2).
+    /// `S = 1/(1 + exp(-s (F/F_half - 1)))` (`model/doc/friction-laws.md`).
     pub fn switched(&self, load_n: f64) -> f64 {
         1.0 / (1.0 + (-self.steepness * (load_n / self.half_load_n - 1.0)).exp())
     }

@@ -23,14 +23,14 @@ pub(super) fn fit_baseline(model: &Model, data: &Observations, noise: Noise) -> 
 }
 
 /// With fewer series and directions than these, only the model's own columns are taken out before noise is estimated.
-const LEAST_CELLS: usize = 50;
+const MIN_CELLS: usize = 50;
 
 /// Columns that could explain residuals, in newtons: the model's own, the library's, and coarse structure.
 pub(super) fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
     let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let mut columns = jacobian(&fitted.model, data, &predicted);
     // So many columns would explain a few series altogether and leave no noise to estimate.
-    if data.cells.len() < LEAST_CELLS {
+    if data.cells.len() < MIN_CELLS {
         return columns;
     }
     for effect in acting_order() {

@@ -5,11 +5,11 @@ use nalgebra::DMatrix;
 use super::Observations;
 
 /// Below this a correlation changes no decision, and estimates of nothing reach it by chance.
-const LEAST: f64 = 0.05;
+const MIN: f64 = 0.05;
 /// Nothing is learnt from chains shorter than this: mean and trend are taken out of each.
-const LEAST_LENGTH: usize = 5;
+const MIN_LENGTH: usize = 5;
 /// Largest correlation considered.
-const MOST: f64 = 0.95;
+const MAX: f64 = 0.95;
 
 /// Whitens the values of one cell in place, given at unit variance: each keeps what its predecessor does not foretell.
 /// A lost repetition leaves a gap, over which the correlation is `rho^gap`.
@@ -40,7 +40,7 @@ pub(super) fn estimate(data: &Observations, white: &[f64]) -> f64 {
     for cell in &data.cells {
         let whole = (1..cell.len()).all(|i| gap(data, cell, i) == 1.0);
         let sound = cell.iter().all(|r| data.weights[*r] == 1.0);
-        if cell.len() < LEAST_LENGTH || !whole || !sound {
+        if cell.len() < MIN_LENGTH || !whole || !sound {
             continue;
         }
         let along: Vec<f64> = cell.iter().map(|r| values[*r]).collect();
@@ -54,7 +54,7 @@ pub(super) fn estimate(data: &Observations, white: &[f64]) -> f64 {
         return 0.0;
     }
     // The expected ratio grows with rho: halve the bracket.
-    let (mut low, mut high) = (0.0, MOST);
+    let (mut low, mut high) = (0.0, MAX);
     if expected_ratio(&lengths, low) >= product / square {
         return 0.0;
     }
@@ -62,7 +62,7 @@ pub(super) fn estimate(data: &Observations, white: &[f64]) -> f64 {
         let middle = 0.5 * (low + high);
         if expected_ratio(&lengths, middle) < product / square { low = middle } else { high = middle }
     }
-    if low > LEAST.max(3.0 / rows.sqrt()) { low } else { 0.0 }
+    if low > MIN.max(3.0 / rows.sqrt()) { low } else { 0.0 }
 }
 
 /// Lag-one product over square that chains of these lengths show once mean and trend are out: `tr(L M R M)/tr(M R)`.

@@ -14,7 +14,7 @@ pub enum Term {
 }
 
 impl Term {
-    /// `id` of data.md section 4.
+    /// Its id in reports and model files.
     pub fn id(&self) -> &'static str {
         match self {
             Term::Named(effect) => effect.id(),
@@ -66,7 +66,7 @@ const PRIOR_LOG_HALF_LOAD: f64 = 0.35;
 const PRIOR_LOG_STEEPNESS: f64 = 0.5;
 
 impl Model {
-    /// The paper's model at the published constants and the layout law (model.md 1 and 2).
+    /// The paper's model at the published constants and the layout law (`model/doc/friction-laws.md`).
     pub fn baseline(frame: Frame) -> Self {
         let mut priors = vec![
             Prior { mean: published::MU_PINS.ln(), sd: PRIOR_LOG_MU },

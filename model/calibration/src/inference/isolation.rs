@@ -9,11 +9,11 @@ use super::observations::Observations;
 use super::screening::Screen;
 
 /// Least gain, in whitened squares, of an offset of one series in both directions.
-const LEAST_GAIN: f64 = 60.0;
+const MIN_GAIN: f64 = 60.0;
 /// How much more it must gain than any effect or structure.
 const AHEAD: f64 = 1.3;
 /// With fewer series none can be said to stand alone.
-const LEAST_SERIES: usize = 8;
+const MIN_SERIES: usize = 8;
 
 /// Mean residual of a cell over its standard deviation. What was excluded counts with its rows as if sound.
 pub(crate) fn cell_deviation(fitted: &Fit, data: &Observations, noise: Noise, cell: usize) -> (f64, f64) {
@@ -30,9 +30,9 @@ pub(crate) fn cell_deviation(fitted: &Fit, data: &Observations, noise: Noise, ce
 /// The series whose own offsets explain what is left better than any effect or structure does, if there is one: a bad
 /// series is a hypothesis that competes with the others. `best_gain` is that of the best of those.
 pub(super) fn isolated_series(screen: &Screen<'_>, data: &Observations, best_gain: f64) -> Option<usize> {
-    if data.series < LEAST_SERIES {
+    if data.series < MIN_SERIES {
         return None;
     }
     let (series, gain) = screen.series_offsets().into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (gain > LEAST_GAIN && gain > AHEAD * best_gain).then_some(series)
+    (gain > MIN_GAIN && gain > AHEAD * best_gain).then_some(series)
 }

@@ -134,7 +134,7 @@ impl Noise {
 
     /// Estimates both from residuals out of which everything explainable has been projected: the spread
     /// inside the cells, and what the cells' means have beyond it. `explainable` are columns in newtons;
-    /// without their removal a missing effect would inflate its own noise (attribution.md 2).
+    /// without their removal a missing effect would inflate its own noise (`model/doc/naming-an-effect.md`).
     pub(crate) fn estimate(
         data: &Observations,
         residual_n: &[f64],

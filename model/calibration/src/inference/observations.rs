@@ -27,7 +27,7 @@ pub struct Observations {
 }
 
 /// Weight below which no row falls, so that its root stays a number; a reading a million times off has no say at it.
-const LEAST_WEIGHT: f64 = 1e-16;
+const MIN_WEIGHT: f64 = 1e-16;
 /// Weight of the rows of an excluded series: they keep their place and have no say.
 const EXCLUDED_WEIGHT: f64 = 1e-7;
 
@@ -147,7 +147,7 @@ impl Observations {
             (0..4).map(|i| spread(&|load| part(load) == i).unwrap_or(sd).max(0.3 * sd)).collect();
         for ((weight, value), point) in self.weights.iter_mut().zip(&local).zip(&self.points) {
             let z = (value / parts[part(point.load_n)]).abs();
-            *weight = if z <= 3.2 { 1.0 } else { (3.2 / z).powi(3).max(LEAST_WEIGHT) };
+            *weight = if z <= 3.2 { 1.0 } else { (3.2 / z).powi(3).max(MIN_WEIGHT) };
         }
         self.roots = self.weights.iter().map(|w| w.sqrt()).collect();
         self.apply_exclusions();

@@ -11,10 +11,10 @@ use super::structures::{Group, structures_to_try};
 use crate::effects::{Channel, Covariate, Effect, Shape, Structure, acting_order};
 
 /// What a wave's gain is reduced by, in whitened squares.
-const WAVE_TOLL: f64 = 15.0;
+const WAVE_PENALTY: f64 = 15.0;
 
 /// What a stretch of time's gain is reduced by: both its ends are free.
-const WINDOW_TOLL: f64 = 8.0;
+const WINDOW_PENALTY: f64 = 8.0;
 
 /// A fitted model with its whitened residual and the directions its constants can take.
 pub(crate) struct Screen<'a> {
@@ -53,7 +53,7 @@ pub(crate) struct StructureScore {
     pub(crate) group: Group,
     /// Sizes to first order.
     pub(crate) sizes: Vec<f64>,
-    /// Gain in whitened squares to first order, less the toll of a wave.
+    /// Gain in whitened squares to first order, less the penalty of a wave.
     pub(crate) gain: f64,
 }
 
@@ -242,7 +242,7 @@ impl<'a> Screen<'a> {
                 if to - from < 2 || visible < 4e-4 * total[1] || visible < 1e-9 {
                     continue;
                 }
-                let gain = total[0] * total[0] / visible - WINDOW_TOLL;
+                let gain = total[0] * total[0] / visible - WINDOW_PENALTY;
                 if best.is_none_or(|b| gain > b.0) {
                     best = Some((gain, total[0] / visible, from, to));
                 }
@@ -279,7 +279,7 @@ impl<'a> Screen<'a> {
         }
         let (gain, sizes) = least_squares(columns, &self.residual)?;
         // A wave has two sizes, and there are hundreds of them at free frequencies: its gain must pay for both.
-        let gain = if group.len() > 1 { gain - WAVE_TOLL } else { gain };
+        let gain = if group.len() > 1 { gain - WAVE_PENALTY } else { gain };
         Some(StructureScore { group, sizes, gain })
     }
 }

@@ -14,7 +14,7 @@ use super::unnamed::{Context, FoundStructure};
 use crate::effects::{Effect, acting_order};
 
 /// Strength, in standard deviations at a typical size, below which an effect counts as invisible.
-const LEAST_STRENGTH: f64 = 4.0;
+const MIN_STRENGTH: f64 = 4.0;
 
 /// An effect that explains what a named one explains as well.
 #[derive(Clone, Debug)]
@@ -68,7 +68,7 @@ pub struct CandidateEffect {
 impl CandidateEffect {
     /// Whether the data cannot show it, at a typical size.
     pub fn is_invisible(&self) -> bool {
-        self.is_taken_over() || self.strength < LEAST_STRENGTH
+        self.is_taken_over() || self.strength < MIN_STRENGTH
     }
 
     /// Whether the refitted baseline takes its trace over.
@@ -111,7 +111,7 @@ impl Selection {
 }
 
 /// Series that may be excluded; more than these are no accidents.
-const MOST_EXCLUDED: usize = 3;
+const MAX_EXCLUDED: usize = 3;
 
 /// Runs the whole search on a table. A series that is wrong as a whole is excluded, and the search begins
 /// again.
@@ -126,7 +126,7 @@ pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selecti
         if !names.found.model.named_effects().is_empty() && !beyond {
             left = guarded.structures();
         }
-        if data.excluded_series() < MOST_EXCLUDED {
+        if data.excluded_series() < MAX_EXCLUDED {
             let structure = left.first().map_or(0.0, |s| s.gain);
             let effect = open.effects().iter().map(|s| s.gain).fold(structure, f64::max);
             if let Some(series) = isolated_series(&open, data, effect) {

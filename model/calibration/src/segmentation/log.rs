@@ -40,7 +40,7 @@ pub struct Log {
 }
 
 const COLUMNS: [&str; 4] = ["time_s", "force_N", "position_mm", "power_W"];
-const LEAST: usize = 100;
+const MIN: usize = 100;
 
 impl Log {
     /// Reads the text of a log. `file` is the name used in errors. Broken lines are counted and left out:
@@ -86,8 +86,8 @@ impl Log {
                 log.unusable += 1;
             }
         }
-        if log.time_s.len() < LEAST {
-            return Err(LogError::TooShort { file: file.to_owned(), found: log.time_s.len(), needed: LEAST });
+        if log.time_s.len() < MIN {
+            return Err(LogError::TooShort { file: file.to_owned(), found: log.time_s.len(), needed: MIN });
         }
         Ok(log)
     }

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::table::{LEAST_WRAP_DEG, MOST_WRAP_DEG, Sweep};
+use crate::table::{MAX_WRAP_DEG, MIN_WRAP_DEG, Sweep};
 use pinswitch_friction::{Substrate, published};
 
 /// Why a run description cannot be used.
@@ -106,7 +106,7 @@ impl RunPlan {
                 return refuse(field.to_owned(), value.to_string(), "0 < value <= 100000");
             }
         }
-        if !(LEAST_WRAP_DEG..=MOST_WRAP_DEG).contains(&r.wrap_angle_deg) {
+        if !(MIN_WRAP_DEG..=MAX_WRAP_DEG).contains(&r.wrap_angle_deg) {
             return refuse("rig.wrap_angle_deg".to_owned(), r.wrap_angle_deg.to_string(), "1..720 degrees");
         }
         if !(r.hook_mass_g >= 0.0 && r.hook_mass_g.is_finite()) {

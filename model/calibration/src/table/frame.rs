@@ -20,11 +20,11 @@ pub struct Condition {
     pub device: Option<usize>,
     /// Wrap angle in radians; 1 for `plain`, whose exponent is free.
     pub wrap_rad: f64,
-    /// Weight `w = n/30` of eq. 4 (model.md 1).
+    /// Weight `w = n/30` of eq. 4 (`model/doc/friction-laws.md`).
     pub weight: f64,
     /// Mean turn of the tendon at one pin in radians, `a/n`; zero without pins.
     pub turn_rad: f64,
-    /// `sum theta_i^1.5` over the pins in rad^1.5 (model.md 3); zero without pins.
+    /// `sum theta_i^1.5` over the pins in rad^1.5 (`model/doc/friction-laws.md`); zero without pins.
     pub ploughing: f64,
 }
 
@@ -44,14 +44,14 @@ impl Condition {
         }
     }
 
-    /// `sum theta_i^1.5` over occupied grooves within a wrap in radians (model.md 3).
+    /// `sum theta_i^1.5` over occupied grooves within a wrap in radians (`model/doc/friction-laws.md`).
     pub(crate) fn ploughing_sum(pins: &[usize], wrap: f64) -> f64 {
         let pitch: Vec<f64> = pins
             .windows(2)
             .map(|w| (w[1] - w[0]) as f64 * published::GROOVE_PITCH_DEG.to_radians())
             .collect();
         // Inner pins turn the tendon by half of both neighbouring pitches; the ends take half a pitch and
-        // half of what the pitches leave of the wrap (model.md 3).
+        // half of what the pitches leave of the wrap (`model/doc/friction-laws.md`).
         let outside = (wrap - pitch.iter().sum::<f64>()).max(0.0) / 2.0;
         let half = |i: Option<usize>| i.and_then(|i| pitch.get(i)).map_or(outside, |p| p / 2.0);
         (0..pins.len()).map(|i| (half(i.checked_sub(1)) + half(Some(i))).powf(1.5)).sum()
@@ -241,14 +241,14 @@ pub(crate) fn groups<K: Ord>(rows: &[PlateauRow], key: impl Fn(&PlateauRow) -> K
 mod tests {
     use super::*;
 
-    /// The turns at all pins sum to the wrap (model.md 3), so that `sum theta^1.5` is bounded by `a sqrt(a)`.
+    /// The turns at all pins sum to the wrap (`model/doc/friction-laws.md`), so that `sum theta^1.5` is bounded by `a sqrt(a)`.
     #[test]
     fn the_three_layouts_have_the_turns_of_the_vector_balance() {
         let six =
             Condition::new(Some(Substrate::Abs), &[3, 5, 7, 9, 11, 13], published::WRAP_ANGLE_DEG, None);
         let double = Condition::new(Some(Substrate::Abs), &[5, 8, 11], published::WRAP_ANGLE_DEG, None);
         let single = Condition::new(Some(Substrate::Abs), &[6, 8, 10], published::WRAP_ANGLE_DEG, None);
-        // kappa = 0.0237 gives the pins-only maxima at +2.7 / -2.5 / -0.3 % (model.md 3).
+        // kappa = 0.0237 gives the pins-only maxima at +2.7 / -2.5 / -0.3 % (`model/doc/friction-laws.md`).
         let load = published::heaviest_load_n();
         let miss = |c: &Condition, published: f64| {
             100.0 * (load * (0.0237 * load.sqrt() * c.ploughing).sinh() / published - 1.0)

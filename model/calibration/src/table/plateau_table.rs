@@ -1,4 +1,4 @@
-//! Reading and writing plateau tables (`plateaus.csv`, data.md 1).
+//! Reading and writing plateau tables (`plateaus.csv`, `model/doc/file-formats.md`).
 
 use std::collections::HashMap;
 use std::io::Read;
@@ -11,13 +11,13 @@ use pinswitch_friction::published::{self, GROOVES};
 use pinswitch_friction::{Direction, Substrate};
 
 /// Largest load and reading in newtons: ten tonnes is beyond any tendon.
-const MOST_N: f64 = 1e5;
+const MAX_N: f64 = 1e5;
 /// Longest time in seconds: thirty years, or a clock that counts from 1970.
-const MOST_S: f64 = 1e10;
+const MAX_S: f64 = 1e10;
 
 /// Smallest and largest wrap angle in degrees: two turns.
-pub(crate) const LEAST_WRAP_DEG: f64 = 1.0;
-pub(crate) const MOST_WRAP_DEG: f64 = 720.0;
+pub(crate) const MIN_WRAP_DEG: f64 = 1.0;
+pub(crate) const MAX_WRAP_DEG: f64 = 720.0;
 
 /// A plateau table with the cells as they were written, unknown columns included.
 #[derive(Clone, Debug, PartialEq)]
@@ -237,7 +237,7 @@ impl Cells<'_> {
         if (self.cell)(column).is_empty() {
             return Ok(published::WRAP_ANGLE_DEG);
         }
-        self.number(column, LEAST_WRAP_DEG, MOST_WRAP_DEG)
+        self.number(column, MIN_WRAP_DEG, MAX_WRAP_DEG)
     }
 
     fn word<T: Copy>(&self, column: usize, words: &[(&str, T)]) -> Result<T, TableError> {
@@ -287,16 +287,16 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
         pins,
         sweep: cells.word(3, &[("up", Sweep::Up), ("down", Sweep::Down)])?,
         load_mass_g: cells.number(4, 0.0, 1e7)?,
-        load_n: cells.number(5, 0.0, MOST_N)?,
+        load_n: cells.number(5, 0.0, MAX_N)?,
         speed_pct: cells.number(6, 0.0, 1e6)?,
         dwell_s: cells.number(7, 0.0, 1e6)?,
         direction: cells
             .word(8, &[("eccentric", Direction::Eccentric), ("concentric", Direction::Concentric)])?,
         repetition,
         position_mm: cells.number(10, -1e6, 1e6)?,
-        time_s: cells.number(11, -MOST_S, MOST_S)?,
+        time_s: cells.number(11, -MAX_S, MAX_S)?,
         force_n: match cells.force {
-            Force::Needed => cells.number(12, -MOST_N, MOST_N)?,
+            Force::Needed => cells.number(12, -MAX_N, MAX_N)?,
             Force::Ignored => 0.0,
         },
         wrap_angle_deg: cells.wrap_angle_deg()?,

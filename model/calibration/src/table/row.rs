@@ -1,4 +1,4 @@
-//! One repetition: the force the load cell settles to after the actuator stops (data.md 1).
+//! One repetition: the force the load cell settles to after the actuator stops (`model/doc/file-formats.md`).
 
 use serde::{Deserialize, Serialize};
 

@@ -70,7 +70,7 @@ fn layout_device(contact: &Contact, law: LayoutLaw, trust: Trust, loads_n: &[f64
 /// `w = n/30` reproduces the three published weights.
 const WEIGHT_PER_PIN: f64 = 1.0 / 30.0;
 
-/// `S = 1/(1 + exp(-s (F/F_half - 1)))` with `F_half = C sqrt(n/(a p))` (model.md 2).
+/// `S = 1/(1 + exp(-s (F/F_half - 1)))` with `F_half = C sqrt(n/(a p))` (`model/doc/friction-laws.md`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayoutLaw {
     half_load_n: f64,
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
     use crate::published;
 
-    /// model.md 2: the maxima come out at 0.0 / +6.5 / -3.4 %; its constants are printed to three digits,
+    /// `model/doc/friction-laws.md`: the maxima come out at 0.0 / +6.5 / -3.4 %; its constants are printed to three digits,
     /// which leaves 0.7 % open.
     #[test]
     fn describes_the_three_published_maxima() {

@@ -210,7 +210,7 @@ pub fn physics_curve(contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve
     let states: Vec<SwitchState> = points.iter().map(|p| p.state).collect();
     let (trust, mut reasons) = crate::trust::trust(contact);
     let own = if trust == Trust::Published { fit.scatter } else { fit.left_out_rms };
-    // Outside what was measured every law is a guess to 40 % (model.md 2): how stiffness and ploughing follow the
+    // Outside what was measured every law is a guess to 40 % (`model/doc/friction-laws.md`): how stiffness and ploughing follow the
     // materials is assumed, and no measured layout comes near.
     let guess = if trust == Trust::Extrapolated { (1.0 + EXTRAPOLATED_SPREAD).ln() } else { 0.0 };
     let covariance = Matrix3::from_row_slice(&fit.covariance.concat());

@@ -1,6 +1,6 @@
 //! The tendon's shape under a given tension: a string, stiff if wanted, over sinking pins on a foundation.
 //!
-//! Minimises the energy of model.md 3 over the gap `u` between the tendon's underside and the undeformed silicone:
+//! Minimises the energy of `model/doc/friction-laws.md` over the gap `u` between the tendon's underside and the undeformed silicone:
 //!
 //! `E = int [T/2 u'^2 - T u^2/(2 Rc^2) + T u/Rc + EI/2 (u'' + u/Rc^2 - 1/Rc)^2 + k_s/2 <-u>^2] ds + sum W(<h0 - u_i>)`
 //!
@@ -12,13 +12,13 @@ use super::grid::Grid;
 use super::{Bed, PhysicsError};
 
 /// Newton steps before the search is given up; 3 to 10 are usual.
-const MOST_STEPS: usize = 60;
+const MAX_STEPS: usize = 60;
 /// Largest force left unbalanced at a node, as a share of the tension and of `EI/Rc^2`.
 const BALANCE: f64 = 1e-8;
 /// Rounding of the energy, relative.
 const ROUNDING: f64 = 1e-9;
 /// Least share of a Newton step that the line search tries.
-const LEAST_STEP: f64 = 1e-6;
+const MIN_STEP: f64 = 1e-6;
 
 /// The shape and what carries it.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,7 +145,7 @@ impl Supports<'_> {
         let bound = BALANCE * (tension_n.iter().copied().fold(0.0, f64::max) + bent_n);
         let mut u = start.map_or_else(|| vec![0.0; self.grid.len()], <[f64]>::to_vec);
         let mut here = self.evaluate(&a, &load, &u);
-        for steps in 0..MOST_STEPS {
+        for steps in 0..MAX_STEPS {
             if here.unbalanced_n() <= bound {
                 return Ok(self.carried(u, steps));
             }
@@ -159,14 +159,14 @@ impl Supports<'_> {
                 // Near the end, rounding hides the gain; the forces still tell a good step.
                 let balanced = there.unbalanced_n() <= 0.5 * here.unbalanced_n()
                     && there.energy <= here.energy + ROUNDING * here.energy.abs();
-                if lower || balanced || share < LEAST_STEP {
+                if lower || balanced || share < MIN_STEP {
                     (u, here) = (moved, there);
                     break;
                 }
                 share /= 2.0;
             }
         }
-        Err(PhysicsError::NotConverged { unbalanced_n: here.unbalanced_n(), steps: MOST_STEPS })
+        Err(PhysicsError::NotConverged { unbalanced_n: here.unbalanced_n(), steps: MAX_STEPS })
     }
 
     fn carried(&self, gap_mm: Vec<f64>, steps: usize) -> Equilibrium {

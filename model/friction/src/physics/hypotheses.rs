@@ -47,7 +47,7 @@ pub struct Hypothesis {
 
 /// What a hypothesis says of each fact.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Finding {
+pub struct HypothesisFinding {
     /// The hypothesis.
     pub hypothesis: Hypothesis,
     /// The constants that fit the seven maxima best.
@@ -109,7 +109,7 @@ impl Hypothesis {
     ///
     /// # Errors
     /// [`FitError`] if the hypothesis cannot be computed.
-    pub fn test(&self) -> Result<Finding, FitError> {
+    pub fn test(&self) -> Result<HypothesisFinding, FitError> {
         let maxima = published_maxima(|pins| self.wrap_rad(pins));
         let fitted = fit(&self.bed, &maxima.iter().collect::<Vec<_>>())?;
         let constants = fitted.constants;
@@ -129,7 +129,7 @@ impl Hypothesis {
             Ok(of(Substrate::Silicone)? / of(Substrate::Abs)? - 1.0)
         };
         let before = weights.iter().copied().rev().find(|w| *w < published::THREE_DOUBLE_ONSET_N);
-        let mut finding = Finding {
+        let mut finding = HypothesisFinding {
             hypothesis: *self,
             constants,
             rms: fitted.rms,
@@ -144,7 +144,7 @@ impl Hypothesis {
     }
 }
 
-impl Finding {
+impl HypothesisFinding {
     /// The facts against it.
     fn judge(&self, weights_n: &[f64]) -> Vec<String> {
         let onset = published::THREE_DOUBLE_ONSET_N;

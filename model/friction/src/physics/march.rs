@@ -1,7 +1,7 @@
 //! Tension marched along the wrap, from the load to the motor, in one direction of motion.
 //!
 //! A contact that turns the tendon by `theta` raises the friction exponent by `kappa sqrt(T theta) theta` at a pin
-//! (ploughing of the coating, model.md 3: `mu = kappa sqrt(N)`) and by `mu_s theta` on the silicone; `T` is the local
+//! (ploughing of the coating, `model/doc/friction-laws.md`: `mu = kappa sqrt(N)`) and by `mu_s theta` on the silicone; `T` is the local
 //! tension. Shape and tension depend on each other, and are found in turn until neither changes.
 
 use super::equilibrium::{Equilibrium, Supports};
@@ -9,7 +9,7 @@ use super::{Constants, PhysicsError};
 use crate::Direction;
 
 /// Rounds of shape and tension before the search is given up; 3 to 6 are usual.
-const MOST_ROUNDS: usize = 40;
+const MAX_ROUNDS: usize = 40;
 /// Largest relative change of the tension between rounds at which they agree.
 const AGREEMENT: f64 = 1e-7;
 
@@ -55,7 +55,7 @@ pub(super) fn slide(
         None => vec![load_n; nodes],
     };
     let mut gap: Option<Vec<f64>> = start.map(|s| s.shape.gap_mm.clone()).filter(|gap| gap.len() == nodes);
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let shape = supports.equilibrium(&tension_n, gap.as_deref())?;
         let (sliding, change) = march(supports, constants, wrap_rad, load_n, direction, &tension_n, shape)?;
         if change <= AGREEMENT {
@@ -64,7 +64,7 @@ pub(super) fn slide(
         tension_n = sliding.tension_n;
         gap = Some(sliding.shape.gap_mm);
     }
-    Err(PhysicsError::TensionUnsettled { load_n, rounds: MOST_ROUNDS })
+    Err(PhysicsError::TensionUnsettled { load_n, rounds: MAX_ROUNDS })
 }
 
 /// One pass along the wrap: turns from the forces, tension from the turns. Also the largest relative change of tension.

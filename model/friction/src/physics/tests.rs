@@ -1,4 +1,4 @@
-//! The physics against model.md's regression values, its own invariants, and the published maxima.
+//! The physics against the regression values of `model/doc/friction-laws.md`, its own invariants, and the published maxima.
 
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
@@ -23,12 +23,12 @@ fn device(pins: PinPattern) -> Contact {
     Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap()
 }
 
-/// The bed of model.md 3's regression values: tendon radius 0.6, linear pins of 200 N/mm, silicone over the whole wrap.
+/// The bed of the regression values of `model/doc/friction-laws.md`: tendon radius 0.6, linear pins of 200 N/mm, silicone over the whole wrap.
 fn regression_bed() -> Bed {
     Bed { tendon_radius_mm: 0.6, softening: 0.0, outside: OutsidePins::OnSilicone, ..Bed::published() }
 }
 
-/// model.md 3: half-layout pin forces six [7.05 10.05 10.20] N, silicone 0; three-double [16.54 15.49], 0.118;
+/// `model/doc/friction-laws.md`: half-layout pin forces six [7.05 10.05 10.20] N, silicone 0; three-double [16.54 15.49], 0.118;
 /// three-single [13.93 10.53], 0.302.
 #[test]
 fn reproduces_the_regression_values() {
@@ -36,7 +36,7 @@ fn reproduces_the_regression_values() {
         [(&[7.05, 10.05, 10.20], 0.0), (&[16.54, 15.49], 0.118), (&[13.93, 10.53], 0.302)];
     let bed = regression_bed();
     for (i, (forces, share)) in expected.iter().enumerate() {
-        // As many nodes as model.md's "few hundred".
+        // A few hundred nodes, as in `model/doc/friction-laws.md`.
         let grid = Grid::new(published::wrap_angle_rad(), layout(i).angles_rad(), &bed, 400);
         let supports = Supports { grid: &grid, bed: &bed, flush_force_n: 200.0 * bed.protrusion_mm() };
         let found = supports.equilibrium(&vec![HEAVIEST_N; grid.len()], None).unwrap();

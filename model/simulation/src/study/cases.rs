@@ -3,9 +3,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::disturbance::{Disturbance, Kind, Target};
+use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
+use crate::effect_forms::forms_of;
 use crate::plan::{EffectPlan, Plan, Protocol};
-use crate::twin::forms::forms_of;
 use pinswitch_calibration::effects::{CATALOGUE, Covariate, PaperProtocol, effect_named};
 
 /// What is true of a rig.
@@ -161,33 +161,43 @@ fn outside(name: &str, protocol: Protocol, layouts: &[Vec<usize>], random: &mut 
     match name {
         "step of friction in mid-session" => {
             let over = if even { 0.0 } else { 0.02 };
-            of(Kind::Step { at: random.random_range(0.3..0.7), over }, Target::Friction, sign * friction)
+            of(
+                Course::Step { at: random.random_range(0.3..0.7), over },
+                DisturbanceTarget::Friction,
+                sign * friction,
+            )
         }
-        "step of the reading in mid-session" => {
-            of(Kind::Step { at: random.random_range(0.3..0.7), over: 0.0 }, Target::Reading, sign * newtons)
-        }
+        "step of the reading in mid-session" => of(
+            Course::Step { at: random.random_range(0.3..0.7), over: 0.0 },
+            DisturbanceTarget::Reading,
+            sign * newtons,
+        ),
         "another level for a while" => {
             let from = random.random_range(0.2..0.6);
             let to = from + random.random_range(0.1..0.3);
-            of(Kind::Window { from, to }, Target::Reading, sign * newtons)
+            of(Course::Window { from, to }, DisturbanceTarget::Reading, sign * newtons)
         }
         "wave in time" => {
             let cycles = random.random_range(3.0..40.0);
-            of(Kind::TimeWave { cycles, phase }, Target::Reading, 0.5 * newtons)
+            of(Course::TimeWave { cycles, phase }, DisturbanceTarget::Reading, 0.5 * newtons)
         }
         "wave along the stroke" => {
             let cycles = random.random_range(1.5..4.5);
-            of(Kind::StrokeWave { cycles, phase, square: even }, Target::Friction, 0.5 * friction)
+            of(
+                Course::StrokeWave { cycles, phase, square: even },
+                DisturbanceTarget::Friction,
+                0.5 * friction,
+            )
         }
         "worn spot" => {
             let (at, width) = (random.random_range(0.25..0.75), random.random_range(0.08..0.2));
-            of(Kind::Spot { at, width, flat: even }, Target::Friction, friction)
+            of(Course::Spot { at, width, flat: even }, DisturbanceTarget::Friction, friction)
         }
         "one defective layout" => {
             // With three layouts, the one with another number of pins is what bending is known by.
             let pins = layouts[random.random_range(1..layouts.len())].clone();
-            let target = if even { Target::Friction } else { Target::Pins };
-            of(Kind::Layout { pins }, target, sign * friction * if even { 1.0 } else { 2.0 })
+            let target = if even { DisturbanceTarget::Friction } else { DisturbanceTarget::Pins };
+            of(Course::Layout { pins }, target, sign * friction * if even { 1.0 } else { 2.0 })
         }
         _ => {
             let (least, most, width_pct) = match protocol {
@@ -198,7 +208,7 @@ fn outside(name: &str, protocol: Protocol, layouts: &[Vec<usize>], random: &mut 
             if protocol == Protocol::Randomised {
                 speed_pct = (speed_pct / 10.0).round().clamp(5.0, 6.0) * 10.0;
             }
-            of(Kind::Resonance { speed_pct, width_pct }, Target::Friction, friction)
+            of(Course::Resonance { speed_pct, width_pct }, DisturbanceTarget::Friction, friction)
         }
     }
 }

@@ -24,7 +24,7 @@ pub struct Outcome {
     pub exact: bool,
     /// Whether every true effect is named or among the rivals, and nothing else stands alone.
     pub honest: bool,
-    /// For each size of a true effect in the form of effects.md: whether its 95 % interval holds it.
+    /// For each size of a true effect in the form of `model/doc/effect-catalogue.md`: whether its 95 % interval holds it.
     pub covered: Vec<bool>,
     /// Largest gain over the vocabulary on top of the baseline, in whitened squares.
     pub largest_gain: f64,

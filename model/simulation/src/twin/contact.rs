@@ -6,11 +6,11 @@ use pinswitch_friction::{LayoutLaw, Substrate, published};
 
 /// One kind of contact.
 #[derive(Clone, Debug)]
-pub(super) struct Contact {
+pub(super) struct TwinContact {
     substrate: Option<Substrate>,
     pins: Vec<usize>,
     wrap_rad: f64,
-    /// Turn at each pin in radians; they sum to the wrap (model.md 3).
+    /// Turn at each pin in radians; they sum to the wrap (`model/doc/friction-laws.md`).
     turns_rad: Vec<f64>,
     half_load_n: f64,
     steepness: f64,
@@ -22,7 +22,7 @@ struct Exponents {
     silicone: f64,
 }
 
-impl Contact {
+impl TwinContact {
     /// The contact of a condition; `device` counts the switching layouts before it.
     pub(super) fn new(plan: &Plan, substrate: Option<Substrate>, pins: &[usize], device: usize) -> Self {
         let wrap_rad = if substrate.is_none() { 1.0 } else { plan.wrap_angle_deg.to_radians() };
@@ -46,7 +46,7 @@ impl Contact {
             wrap_rad,
             turns_rad,
             half_load_n: LayoutLaw::SCALE_N * (n as f64 / (wrap_rad * pitch)).sqrt() * factor,
-            steepness: plan.constants.steepness.get(device).copied().unwrap_or(LayoutLaw::STEEPNESS),
+            steepness: plan.constants.steepness_of(device),
         }
     }
 
@@ -71,7 +71,7 @@ impl Contact {
         let s = self.switched(plan, at, load_n, before_n);
         let w = self.pins.len() as f64 / 30.0;
         let carried = if c.is_some_and(|e| e.form == 1) { (1.0 - w) * s } else { s };
-        // Eq. 4 on T - F of each branch (model.md 1).
+        // Eq. 4 on T - F of each branch (`model/doc/friction-laws.md`).
         load_n
             + (1.0 + w) * (1.0 - s) * (grow(x.pins) - load_n)
             + (1.0 - w) * s * (grow(x.silicone) - load_n)

@@ -1,20 +1,23 @@
 //! The physical twin: readings of a synthetic rig by formulas of its own.
 //!
 //! It shares no formula with the fitter, so that the study of the calibrator also tests what happens when the truth
-//! bends otherwise than the model fitted. Form 0 of every effect is that of effects.md, and a test holds it against
-//! the fitter's; the other forms are in [`forms`].
+//! bends otherwise than the model fitted. Form 0 of every effect is that of the effect catalogue, and a test holds it
+//! against the fitter's; the other forms are in `effect_forms`. Only an effect without any formula here is lent the
+//! fitter's trace.
 
 mod contact;
-pub(super) mod forms;
 
 use std::collections::BTreeMap;
 
-use super::plan::Plan;
-use contact::Contact;
-use pinswitch_calibration::table::PlateauRow;
+use crate::effect_forms::has_own_formula;
+use crate::plan::Plan;
+use contact::TwinContact;
+use pinswitch_calibration::effects::effect_named;
+use pinswitch_calibration::inference::{Model, Term};
+use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_friction::published;
 
-/// Reference load in newtons (effects.md).
+/// Reference load in newtons (`model/doc/effect-catalogue.md`).
 const F0_N: f64 = 50.0;
 
 /// What an effect may depend on in one row, beside the load and the contact.
@@ -50,7 +53,7 @@ pub(super) fn readings(plan: &Plan, session: &[PlateauRow]) -> Vec<f64> {
     let mut out = Vec::with_capacity(session.len());
     for (made, row) in session.iter().enumerate() {
         let contact = contacts.entry((row.substrate, row.pins.clone())).or_insert_with(|| {
-            let contact = Contact::new(plan, row.substrate, &row.pins, devices);
+            let contact = TwinContact::new(plan, row.substrate, &row.pins, devices);
             devices += usize::from(contact.switches());
             contact
         });
@@ -70,11 +73,38 @@ pub(super) fn readings(plan: &Plan, session: &[PlateauRow]) -> Vec<f64> {
         };
         out.push(reading(plan, contact, &moment, row));
     }
+    add_lent_traces(plan, session, &mut out);
     out
 }
 
+/// Adds what effects without a formula in the twin do to the fitter's own model at the plan's constants.
+fn add_lent_traces(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) {
+    let lent: Vec<_> = plan
+        .effects
+        .iter()
+        .filter(|e| !has_own_formula(&e.id))
+        .filter_map(|e| Some((effect_named(&e.id)?, e.values.as_slice())))
+        .collect();
+    let frame = Frame::new(session);
+    let Some(points) = frame.points(session).filter(|_| !lent.is_empty()) else { return };
+    let mut model = Model::baseline(frame);
+    let mut values = model.values();
+    (values[0], values[1]) = (plan.constants.mu_p, plan.constants.mu_s);
+    for device in 0..model.frame.devices() {
+        values[2 + 2 * device] *= plan.constants.half_load_factor.get(device).copied().unwrap_or(1.0);
+        values[3 + 2 * device] = plan.constants.steepness_of(device);
+    }
+    model.set_values(&values);
+    let without = model.predict(&points);
+    let with =
+        lent.iter().fold(model, |m, (effect, k)| m.with_term(Term::Named(*effect), k)).predict(&points);
+    for ((reading, with), without) in readings_n.iter_mut().zip(with).zip(without) {
+        *reading += with - without;
+    }
+}
+
 /// One reading: hook, contact, guide pulleys, cell.
-fn reading(plan: &Plan, contact: &Contact, at: &Moment, row: &PlateauRow) -> f64 {
+fn reading(plan: &Plan, contact: &TwinContact, at: &Moment, row: &PlateauRow) -> f64 {
     let has = |id: &str| plan.effects.iter().find(|e| e.id == id).map(|e| (e.values.as_slice(), e.form));
     let hook_n = published::HOOK_MASS_G * 1e-3 * published::GRAVITY_M_S2;
     let load_n = row.load_n + if has("hook_omitted").is_some() { hook_n } else { 0.0 };
@@ -96,8 +126,8 @@ fn reading(plan: &Plan, contact: &Contact, at: &Moment, row: &PlateauRow) -> f64
     if let Some((k, _)) = has("load_cell_offset") {
         force_n += k[0];
     }
-    if let Some((k, form)) = has("thermal_drift") {
-        force_n += k[0] * if form == 1 { settling(at.clock, 0.5) } else { at.clock };
+    if let Some((k, _)) = has("thermal_drift") {
+        force_n += k[0] * at.clock;
     }
     for d in &plan.disturbances {
         force_n += d.on_reading_n(at.clock, at.place, row);
@@ -121,12 +151,11 @@ fn settling(u: f64, t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect_forms::FORMS;
     use crate::plan::EffectPlan;
-    use pinswitch_calibration::effects::{CATALOGUE, effect_named};
-    use pinswitch_calibration::inference::{Model, Term};
-    use pinswitch_calibration::table::Frame;
+    use pinswitch_calibration::effects::CATALOGUE;
 
-    /// Two implementations of effects.md, the twin's and the fitter's, agree on form 0 of every effect.
+    /// Two implementations of `model/doc/effect-catalogue.md`, the twin's and the fitter's, agree on form 0 of every effect.
     #[test]
     fn the_first_form_of_every_effect_is_the_fitters() {
         for effect in CATALOGUE {
@@ -151,7 +180,7 @@ mod tests {
     /// Every other form differs from form 0; up to what a refitted baseline takes over, by less than the effect.
     #[test]
     fn other_forms_bend_the_effect_without_replacing_it() {
-        for (id, names) in forms::FORMS {
+        for (id, names) in FORMS {
             let range = effect_named(id).unwrap().description().study;
             let with = |form: Option<u8>| {
                 let mut plan = Plan::randomised();

@@ -1,7 +1,13 @@
-//! The forms in which the twin has each effect: the first is that of effects.md, the others are as plausible.
+//! The forms in which the twin has each effect: the first is that of the effect catalogue, the others are as plausible.
+//!
+//! Their formulas stand in the twin. An effect of the catalogue that is not listed here has no formula in the twin, which
+//! then adds the fitter's own trace of it: a new effect can be simulated before it has a second formula.
 
-/// Forms by effect; effects that are not listed have one only.
-pub(crate) const FORMS: [(&str, &[&str]); 16] = [
+/// The form of an effect that the twin has in one form only.
+const AS_CATALOGUED: &[&str] = &["as in model/doc/effect-catalogue.md"];
+
+/// Forms by effect, of every effect that the twin has a formula for.
+pub(crate) const FORMS: [(&str, &[&str]); 21] = [
     (
         "coating_stiffening",
         &[
@@ -38,9 +44,19 @@ pub(crate) const FORMS: [(&str, &[&str]); 16] = [
     ("stroke_position", &["s - 1/2", "sin(pi (s - 1/2))/2"]),
     ("load_cell_nonlinearity", &["square", "power 2.25"]),
     ("load_cell_saturation", &["a corner", "a knee 0.5 N wide"]),
+    ("guide_drag", AS_CATALOGUED),
+    ("load_cell_offset", AS_CATALOGUED),
+    ("load_cell_gain", AS_CATALOGUED),
+    ("thermal_drift", AS_CATALOGUED),
+    ("hook_omitted", AS_CATALOGUED),
 ];
 
 /// Descriptions of the forms of an effect.
 pub(crate) fn forms_of(id: &str) -> &'static [&'static str] {
-    FORMS.iter().find(|f| f.0 == id).map_or(&["as in effects.md"], |f| f.1)
+    FORMS.iter().find(|f| f.0 == id).map_or(AS_CATALOGUED, |f| f.1)
+}
+
+/// Whether the twin has a formula of its own for an effect.
+pub(crate) fn has_own_formula(id: &str) -> bool {
+    FORMS.iter().any(|f| f.0 == id)
 }

@@ -300,3 +300,88 @@ fn least_squares(columns: &[Vec<f64>], residual: &[f64]) -> Option<(f64, Vec<f64
     let (k, l) = ((c * u - b * v) / det, (a * v - b * u) / det);
     Some((k * u + l * v, vec![k, l]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::effect_named;
+    use crate::inference::{Model, fit};
+    use crate::table::{Frame, PlateauRow};
+    use crate::test_session::{session, session_with};
+
+    const NOISE_N: f64 = 0.05;
+
+    fn fitted(rows: &[PlateauRow]) -> (Fit, Observations, Noise) {
+        let frame = Frame::new(rows);
+        let data = Observations::new(&frame, rows).unwrap();
+        let noise = Noise::constant(NOISE_N, 0.01);
+        (fit(&Model::baseline(frame), &data, noise), data, noise)
+    }
+
+    fn score(scores: Vec<EffectScore>, id: &str) -> EffectScore {
+        scores.into_iter().find(|s| s.effect.id() == id).unwrap()
+    }
+
+    #[test]
+    fn the_effect_that_is_there_scores_highest_and_starts_near_its_size() {
+        let offset = effect_named("load_cell_offset").unwrap();
+        let (fitted, data, noise) = fitted(&session_with(1, &[(Term::Named(offset), &[0.5])]));
+        let scores = Screen::new(&fitted, &data, noise).effects();
+        let best = scores.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)).unwrap();
+        assert_eq!(best.effect.id(), "load_cell_offset");
+        assert!((best.start[0] - 0.5).abs() < 0.05, "{:?}", best.start);
+        let squares: f64 = best.by_series.iter().sum();
+        assert!((squares.powi(2) / best.gain - 1.0).abs() < 0.05, "the series carry the score together");
+    }
+
+    #[test]
+    fn a_trace_without_variation_is_invisible_and_a_fixed_one_is_not_scaled() {
+        let (fitted, data, noise) = fitted(&session(2));
+        let scores = Screen::new(&fitted, &data, noise).effects();
+        let dwell = score(scores.clone(), "dwell_relaxation");
+        assert!(dwell.strength < 1e-6 && dwell.gain == 0.0, "{dwell:?}");
+        // A hook that nobody left out fits worse than none: its size is not free, so the gain is negative.
+        let hook = score(scores, "hook_omitted");
+        assert!(hook.gain < -100.0 && hook.start.is_empty(), "{}", hook.gain);
+    }
+
+    #[test]
+    fn what_is_in_the_model_is_scored_no_more_and_may_bend_under_guard() {
+        let offset = effect_named("load_cell_offset").unwrap();
+        let rows = session_with(3, &[(Term::Named(offset), &[0.5])]);
+        let (base, data, noise) = fitted(&rows);
+        let with = fit(&base.model.with_term(Term::Named(offset), &[0.5]), &data, noise);
+        let open = Screen::new(&with, &data, noise);
+        assert!(open.effects().iter().all(|s| s.effect.id() != "load_cell_offset"));
+        let guarded = Screen::guarded(&with, &data, noise);
+        assert!(guarded.bent_gain() >= open.bent_gain());
+        let gain = |screen: &Screen<'_>| score(screen.effects(), "load_cell_gain").gain;
+        assert!(gain(&guarded) <= gain(&open) + 1e-6, "a guard never adds to what is left to explain");
+    }
+
+    #[test]
+    fn a_stretch_of_series_at_another_level_is_the_best_structure() {
+        let mut rows = session(4);
+        let (from, to) = (rows.len() / 3, rows.len() / 2);
+        let (first, last) = (rows[from].time_s, rows[to].time_s);
+        rows.iter_mut().filter(|r| (first..last).contains(&r.time_s)).for_each(|r| r.force_n += 0.4);
+        let (fitted, data, noise) = fitted(&rows);
+        let scores = Screen::new(&fitted, &data, noise).structures();
+        assert!(scores.windows(2).all(|w| w[0].gain >= w[1].gain));
+        let best = &scores[0].group[0];
+        assert_eq!((best.covariate, best.channel), (Covariate::Time, Channel::Reading));
+        assert!(matches!(best.form, Shape::TimeWindow { .. }), "{best:?}");
+        assert!((scores[0].sizes[0] - 0.4).abs() < 0.1, "{:?}", scores[0].sizes);
+    }
+
+    #[test]
+    fn two_columns_are_fitted_together() {
+        let (a, b) = (vec![1.0, 0.0, 1.0], vec![0.0, 2.0, 1.0]);
+        let residual: Vec<f64> = (0..3).map(|i| 3.0 * a[i] - 0.5 * b[i]).collect();
+        let (gain, sizes) = least_squares(&[a, b], &residual).unwrap();
+        assert!((sizes[0] - 3.0).abs() < 1e-12 && (sizes[1] + 0.5).abs() < 1e-12, "{sizes:?}");
+        assert!((gain - dot(&residual, &residual)).abs() < 1e-12);
+        assert_eq!(least_squares(&[], &residual), None);
+        assert_eq!(least_squares(&[vec![0.0; 3]], &residual), None);
+    }
+}

@@ -244,3 +244,79 @@ fn candidates(
     candidates.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     candidates
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{CATALOGUE, effect_named};
+    use crate::table::{Frame, PlateauRow};
+    use crate::test_session::{session, session_with};
+    use pinswitch_friction::{Substrate, published};
+
+    fn selected(rows: &[PlateauRow]) -> (Selection, Observations) {
+        let frame = Frame::new(rows);
+        let mut data = Observations::new(&frame, rows).unwrap();
+        (select(&Model::baseline(frame), &mut data, Levels::default()), data)
+    }
+
+    #[test]
+    fn a_session_without_effect_has_every_candidate_and_names_none() {
+        let (found, data) = selected(&session(3));
+        assert!(found.effects.is_empty() && found.structure.is_none(), "{:?}", found.effects);
+        assert_eq!(data.excluded_series(), 0);
+        assert_eq!(found.candidates.len(), CATALOGUE.len());
+        assert!(found.candidates.windows(2).all(|w| w[0].gain >= w[1].gain));
+        // One dwell: the trace of an effect of the dwell has no length at all.
+        let invisible: Vec<_> = found.invisible().map(|c| c.effect.id()).collect();
+        assert!(invisible.contains(&"dwell_relaxation") && !invisible.contains(&"load_cell_offset"));
+    }
+
+    #[test]
+    fn an_effect_is_named_with_its_size_and_its_gain() {
+        let ploughing = effect_named("coating_ploughing").unwrap();
+        let (found, _) = selected(&session_with(4, &[(Term::Named(ploughing), &[0.024])]));
+        let [effect] = found.effects.as_slice() else { panic!("{:?}", found.effects) };
+        assert_eq!(
+            (effect.effect.id(), effect.term, effect.ids()[0]),
+            ("coating_ploughing", 0, "coating_ploughing")
+        );
+        assert!(effect.gain > 100.0 && effect.rivals.is_empty(), "{effect:?}");
+        let kappa = *found.augmented.model.values().last().unwrap();
+        assert!((kappa / 0.024 - 1.0).abs() < 0.05, "{kappa}");
+        assert_eq!(found.candidates[0].effect.id(), "coating_ploughing");
+        assert_eq!(found.candidates[0].gain_left, None, "what is in the model has nothing left to gain");
+    }
+
+    /// Pins alone in one direction: the friction exponent is one constant, so that an offset of the cell and a hook left
+    /// out shift all readings alike. Whichever is named has the other as its rival.
+    #[test]
+    fn effects_that_look_alike_are_rivals() {
+        let offset = effect_named("load_cell_offset").unwrap();
+        let hook_n = published::HOOK_MASS_G * 1e-3 * published::GRAVITY_M_S2;
+        let as_read_n = hook_n * (-published::MU_PINS * published::wrap_angle_rad()).exp();
+        let day = |seed: u64| {
+            let mut rows = session_with(seed, &[(Term::Named(offset), &[as_read_n])]);
+            rows.retain(|r| r.substrate == Some(Substrate::Abs) && r.direction.sign() < 0.0);
+            rows.iter_mut().for_each(|r| r.series = format!("{seed}-{}", r.series));
+            rows
+        };
+        let (found, _) = selected(&[day(5), day(6), day(7)].concat());
+        let [effect] = found.effects.as_slice() else { panic!("{:?}", found.effects) };
+        assert!(
+            effect.ids().contains(&"load_cell_offset") && effect.ids().contains(&"hook_omitted"),
+            "{effect:?}"
+        );
+        assert!(effect.rivals.iter().all(|r| r.cosine > 0.9), "{effect:?}");
+    }
+
+    #[test]
+    fn a_series_that_is_wrong_as_a_whole_is_excluded() {
+        let mut rows = session(6);
+        let bad = rows[200].series.clone();
+        rows.iter_mut().filter(|r| r.series == bad).for_each(|r| r.force_n += 2.0);
+        let (found, data) = selected(&rows);
+        assert_eq!(data.excluded_series(), 1);
+        assert!(data.is_excluded(200) && !data.is_excluded(0));
+        assert!(found.effects.is_empty() && found.structure.is_none());
+    }
+}

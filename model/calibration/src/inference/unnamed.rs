@@ -129,3 +129,45 @@ impl Context<'_> {
         current
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{Channel, Shape, Structure};
+    use crate::inference::{Model, Observations, select};
+    use crate::table::Frame;
+    use crate::test_session::{session, session_with};
+
+    fn wave() -> Term {
+        let form = Shape::PositionWave { cycles: 3.0, quarter: 0 };
+        Term::Structure(Structure { covariate: Covariate::Position, channel: Channel::Friction, form })
+    }
+
+    #[test]
+    fn a_wave_along_the_stroke_has_no_name_and_is_corrected() {
+        let rows = session_with(2, &[(wave(), &[0.15])]);
+        let frame = Frame::new(&rows);
+        let mut data = Observations::new(&frame, &rows).unwrap();
+        let found = select(&Model::baseline(frame), &mut data, Levels::default());
+        assert_eq!(found.structure.map(|s| s.covariate), Some(Covariate::Position));
+        assert!(found.effects.is_empty(), "{:?}", found.effects);
+        assert!(found.augmented.cost < 0.5 * found.baseline.cost, "the shapes correct most of it");
+    }
+
+    #[test]
+    fn a_structure_must_gain_what_chance_cannot() {
+        let rows = session(1);
+        let frame = Frame::new(&rows);
+        let data = Observations::new(&frame, &rows).unwrap();
+        let context = Context { data: &data, noise: Noise::constant(0.05, 0.01), levels: Levels::default() };
+        let baseline = fit(&Model::baseline(frame), &data, context.noise);
+        let scores = Screen::new(&baseline, &data, context.noise).structures();
+        let best = &scores[0];
+        assert!(context.on_top_of(&baseline, best, best.gain + 1.0).is_none());
+        let (with, structure) = context.on_top_of(&baseline, best, 0.5 * best.gain).unwrap();
+        assert_eq!(structure.covariate, best.group[0].covariate);
+        assert!((baseline.cost - with.cost - structure.gain).abs() < 1e-9);
+        let (kept, none) = context.with_unnamed(&baseline, baseline.clone(), &scores, 0.0);
+        assert!(none.is_none() && kept.model.terms.is_empty(), "noise alone is no structure");
+    }
+}

@@ -48,6 +48,32 @@ const ROWS_FOR_NOISE: usize = 8;
 
 /// Calibrates a table.
 ///
+/// ```
+/// use pinswitch_calibration::inference::Levels;
+/// use pinswitch_calibration::table::PlateauTable;
+/// use pinswitch_calibration::{Verdict, calibrate};
+///
+/// // `csv` is the text of a plateau table: here silicone without pins at twelve loads, and a little noise.
+/// # let mut csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N\n".to_owned();
+/// # let mut time_s = 0.0;
+/// # for (series, load_n) in (0..12).map(|i| (i, 3.0 + 4.0 * f64::from(i))) {
+/// #     for (direction, sign) in [("eccentric", -1.0), ("concentric", 1.0)] {
+/// #         for repetition in 1..=6 {
+/// #             time_s += 3.5;
+/// #             let noise = 0.05 * (43758.5453 * (12.9898f64 * time_s).sin()).fract();
+/// #             let force_n = load_n * (sign * 0.24 * 1.115_f64).exp() + noise;
+/// #             csv += &format!("{series},silicone,,up,0,{load_n},50,3,{direction},{repetition},{},{time_s},{force_n}\n", 10 * repetition);
+/// #         }
+/// #     }
+/// # }
+/// let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
+/// let report = calibrate(&table.rows, Levels::default())?.report;
+/// assert_eq!(report.verdict, Verdict::None, "the paper's model explains these readings");
+/// let mu_s = &report.baseline.parameters["mu_s"];
+/// assert!((mu_s.value - 0.24).abs() < 0.001 && mu_s.ci95[0] < 0.24 && 0.24 < mu_s.ci95[1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`CalibrationError::TooFewRows`] if the rows cannot fix the baseline.
 pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, CalibrationError> {

@@ -1,6 +1,28 @@
 //! Measured friction data: from raw logs to plateau tables, from a table to the effects that the paper's model lacks on
 //! it, and to a model that predicts. The crate knows data and what explains it; it must not know how a rig is simulated,
 //! nor parts, files or plots.
+//!
+//! The way of the data, each step usable alone:
+//!
+//! 1. [`segmentation`]: `run.toml` and its 200 Hz logs become the rows of a plateau table.
+//! 2. [`table`]: a plateau table is read and checked; errors name file, line and column.
+//! 3. [`calibrate`] refits the paper's model, names the effects that it lacks ([`effects`], [`inference`]) and returns a
+//!    [`Report`] with the errors before and after, on data held out from the fit.
+//! 4. [`ModelFile`] keeps the fitted model: it predicts readings, and the curve of a printed part without the effects
+//!    that belong to the rig.
+//!
+//! ```
+//! use pinswitch_calibration::explain_published;
+//!
+//! // The loop on the paper's own seven maxima: what explains most of what its model misses?
+//! let explanations = explain_published();
+//! assert_eq!(explanations[1].id, "coating_ploughing");
+//! assert!(explanations[1].left_out_rms_pct < 0.2 * explanations[0].rms_pct);
+//! ```
+//!
+//! Readers take text, bytes or [`std::io::Read`], writers return text: nothing here opens a file, starts a thread, or reads
+//! a clock or the environment. `model/doc/file-formats.md` describes the files, `model/doc/effect-catalogue.md` the effects
+//! and `model/doc/naming-an-effect.md` how one is named.
 
 mod calibrate;
 pub mod effects;

@@ -70,6 +70,34 @@ struct Constant {
 }
 
 /// A model on file.
+///
+/// ```
+/// use pinswitch_calibration::inference::Levels;
+/// use pinswitch_calibration::table::PlateauTable;
+/// use pinswitch_calibration::{ModelFile, calibrate};
+///
+/// // `csv` is the text of a plateau table, as for `calibrate`.
+/// # let mut csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N\n".to_owned();
+/// # let mut time_s = 0.0;
+/// # for (series, load_n) in (0..12).map(|i| (i, 3.0 + 4.0 * f64::from(i))) {
+/// #     for (direction, sign) in [("eccentric", -1.0), ("concentric", 1.0)] {
+/// #         for repetition in 1..=6 {
+/// #             time_s += 3.5;
+/// #             let noise = 0.05 * (43758.5453 * (12.9898f64 * time_s).sin()).fract();
+/// #             let force_n = load_n * (sign * 0.24 * 1.115_f64).exp() + noise;
+/// #             csv += &format!("{series},silicone,,up,0,{load_n},50,3,{direction},{repetition},{},{time_s},{force_n}\n", 10 * repetition);
+/// #         }
+/// #     }
+/// # }
+/// let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
+/// let found = calibrate(&table.rows, Levels::default())?;
+/// let text = ModelFile::new(&found.selection.augmented, &found.data, found.selection.noise).to_text()?;
+///
+/// let model = ModelFile::parse(&text, "model.toml")?;
+/// let (predicted_n, sd_n) = model.predict(&table.rows[..1], "model.toml")?;
+/// assert!((predicted_n[0] - table.rows[0].force_n).abs() < 5.0 * sd_n[0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelFile {
     schema: String,

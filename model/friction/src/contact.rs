@@ -49,6 +49,20 @@ pub enum ContactError {
 }
 
 /// Substrate, the pins that the tendon touches, and the wrap angle.
+///
+/// ```
+/// use pinswitch_friction::{Contact, ContactError, PinPattern, Substrate};
+///
+/// // Three pins over a wrap of 64 degrees; the one beside it does not touch the tendon.
+/// let pins = PinPattern::new([-15.0f64, 0.0, 15.0, 40.0].map(f64::to_radians).to_vec());
+/// let contact = Contact::new(Substrate::Silicone, pins, 64f64.to_radians())?;
+/// assert_eq!(contact.pins().count(), 3);
+/// assert!(contact.departures().iter().any(|reason| reason.contains("outside the wrap")));
+///
+/// let nothing = Contact::new(Substrate::Abs, PinPattern::default(), 1.0);
+/// assert!(matches!(nothing, Err(ContactError::NothingTouches { .. })));
+/// # Ok::<(), ContactError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
     substrate: Substrate,

@@ -30,6 +30,16 @@ pub struct FingerPoint {
 }
 
 /// The gains of a curve, load by load. Loads of zero are left out.
+///
+/// ```
+/// use pinswitch_friction::finger::finger;
+/// use pinswitch_friction::{Contact, PinPattern, Substrate, predict, published};
+///
+/// let contact = Contact::new(Substrate::Silicone, PinPattern::default(), published::wrap_angle_rad())?;
+/// let points = finger(&predict(&contact, &[25.0]));
+/// assert!(points[0].holding_n < 25.0 && points[0].extra_holding > 0.2, "bare silicone holds a third more");
+/// # Ok::<(), pinswitch_friction::ContactError>(())
+/// ```
 pub fn finger(curve: &FrictionCurve) -> Vec<FingerPoint> {
     curve
         .load_n

@@ -13,6 +13,25 @@ const LOADS: usize = 24;
 pub const MAX_GROOVES: usize = 20;
 
 /// The grooves to fill and the loads to look at. Angles in radians, loads in newtons.
+///
+/// ```
+/// use pinswitch_friction::layout_search::{Search, pareto_front};
+/// use pinswitch_friction::physics::Bed;
+/// use pinswitch_friction::published;
+///
+/// // Three pins at most in the five grooves around the middle of the published segment.
+/// let pitch_rad = published::GROOVE_PITCH_DEG.to_radians();
+/// let search = Search {
+///     grooves: (6..=10).map(|groove| (groove, (groove as f64 - 8.0) * pitch_rad)).collect(),
+///     wrap_rad: published::wrap_angle_rad(),
+///     bed: Bed::published(),
+///     loads_n: (3.0, 50.0),
+///     pins: (2, 3),
+/// };
+/// let candidates = search.sweep();
+/// assert_eq!(candidates.len(), 20);
+/// assert!(pareto_front(&candidates).len() < candidates.len());
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
     /// Angles of the grooves that the tendon touches, ascending, with their numbers from 1.

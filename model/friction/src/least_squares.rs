@@ -33,6 +33,18 @@ pub enum LeastSquaresError {
 /// Minimises the sum of squares of `residuals` from `start`; derivatives by forward differences of `step`. The inner
 /// result carries errors of the residuals themselves.
 ///
+/// ```
+/// use pinswitch_friction::least_squares::minimise;
+/// use std::convert::Infallible;
+///
+/// // A line through three points.
+/// let residuals = |p: &[f64]| Ok::<_, Infallible>(vec![p[0] - 1.0, p[0] + p[1] - 3.0, p[0] + 2.0 * p[1] - 5.0]);
+/// let Ok(found) = minimise(&[0.0, 0.0], 1e-6, residuals);
+/// let line = found?.at;
+/// assert!((line[0] - 1.0).abs() < 1e-6 && (line[1] - 2.0).abs() < 1e-6);
+/// # Ok::<(), pinswitch_friction::least_squares::LeastSquaresError>(())
+/// ```
+///
 /// # Errors
 /// [`LeastSquaresError::Undetermined`]; whatever `residuals` returns.
 pub fn minimise<E>(

@@ -4,6 +4,15 @@
 const EVEN_TOLERANCE_RAD: f64 = 1e-4;
 
 /// Angles of the pins around the axis, ascending, in radians; zero is the middle of the wrap.
+///
+/// ```
+/// use pinswitch_friction::PinPattern;
+///
+/// let pattern = PinPattern::even(3, 0.3);
+/// assert_eq!(pattern.angles_rad(), [-0.3, 0.0, 0.3]);
+/// assert!(pattern.is_even() && pattern.is_centred());
+/// assert_eq!(pattern.within(0.4).count(), 1, "0.2 rad to each side");
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PinPattern {
     angles_rad: Vec<f64>,

@@ -49,6 +49,15 @@ pub trait Switch {
 }
 
 /// Eq. 4 exactly as published for one of the three layouts.
+///
+/// ```
+/// use pinswitch_friction::{PaperSwitch, Switch, published};
+///
+/// let three_double = PaperSwitch::new(published::LAYOUTS[1]);
+/// let state = three_double.state(published::heaviest_load_n(), published::wrap_angle_rad());
+/// assert_eq!(format!("{:.2}", state.friction_n), "10.01");
+/// assert!(state.eccentric_n < state.load_n && state.load_n < state.concentric_n);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaperSwitch {
     layout: PublishedLayout,

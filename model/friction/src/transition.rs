@@ -5,6 +5,18 @@ use serde::Serialize;
 use crate::FrictionCurve;
 
 /// The switching of a curve within its loads.
+///
+/// ```
+/// use pinswitch_friction::{Contact, Law, PinPattern, Substrate, Transition, predict_by, published};
+///
+/// let pins = PinPattern::even(3, published::LAYOUTS[1].pitch_rad());
+/// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
+/// let loads_n: Vec<f64> = (1..=50).map(f64::from).collect();
+/// let curve = predict_by(Law::Layout, &contact, &loads_n)?;
+/// let transition = Transition::of(&curve).ok_or("it switches at none of these loads")?;
+/// assert!(transition.low_n < transition.threshold_n && transition.threshold_n < transition.high_n);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Transition {
     /// Load at which silicone and pins make the same friction, N.

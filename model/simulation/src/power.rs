@@ -30,6 +30,20 @@ pub struct Power {
 }
 
 /// Puts each effect at a small and a large typical size into the plan, `runs` times each, and calibrates.
+///
+/// ```
+/// use pinswitch_calibration::effects::CATALOGUE;
+/// use pinswitch_calibration::inference::Levels;
+/// use pinswitch_simulation::{Plan, power};
+///
+/// // Silicone alone, a few repetitions: what could such a session see?
+/// let plan = Plan { layouts: Vec::new(), repetitions: [4, 4], repetitions_spread: 0, ..Plan::default() };
+/// let table = power(&plan, 1, Levels::default());
+/// assert!(table.len() > CATALOGUE.len(), "each effect at a small and a large size");
+/// let dwell = table.iter().find(|p| p.id == "dwell_relaxation").ok_or("not in the catalogue")?;
+/// assert_eq!(dwell.missed, dwell.runs, "one dwell cannot show it");
+/// # Ok::<(), &str>(())
+/// ```
 pub fn power(plan: &Plan, runs: u64, levels: Levels) -> Vec<Power> {
     let mut all = Vec::new();
     for effect in CATALOGUE {

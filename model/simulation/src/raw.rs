@@ -41,6 +41,19 @@ pub struct RawLog {
 }
 
 /// A raw run whose logs are made one at a time: they are long.
+///
+/// ```
+/// use pinswitch_calibration::segmentation::segment_run;
+/// use pinswitch_simulation::{Plan, RawRun, simulate};
+///
+/// let plan = Plan { weights_g: vec![1003.2], layouts: Vec::new(), ..Plan::default() };
+/// let rows = simulate(&plan).rows;
+/// let run = RawRun::new(&plan, &rows, "plan.toml")?;
+/// let log = run.log(0).ok_or("a run of one log")?;
+/// let found = segment_run(&run.description(""), "run.toml", |_| Ok::<_, String>(log.text.clone().into_bytes()))?;
+/// assert_eq!(found.rows.len(), log.truth.len(), "every repetition is found again");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct RawRun<'a> {
     plan: &'a Plan,

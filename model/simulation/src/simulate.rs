@@ -21,6 +21,16 @@ pub struct Simulated {
 }
 
 /// Runs a plan. The same plan gives the same rows, bit for bit.
+///
+/// ```
+/// use pinswitch_simulation::{EffectPlan, Plan, simulate};
+///
+/// let mut plan = Plan { seed: 7, ..Plan::randomised() };
+/// plan.effects.push(EffectPlan { id: "coating_ploughing".to_owned(), values: vec![0.024], form: 0 });
+/// let simulated = simulate(&plan);
+/// assert_eq!(simulated, simulate(&plan), "the same plan makes the same rows");
+/// assert!(simulated.fresh.len() < simulated.rows.len());
+/// ```
 pub fn simulate(plan: &Plan) -> Simulated {
     let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
     let mut rows = protocol::rows(plan, &mut random);

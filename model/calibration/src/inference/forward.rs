@@ -48,6 +48,23 @@ pub(crate) struct Prior {
 
 /// The paper's model with terms added. Constants are kept in unbounded coordinates: logarithms of positive
 /// constants, logits of bounded shapes, sizes as they are; a clipped constant would stall a fit.
+///
+/// ```
+/// use pinswitch_calibration::effects::effect_named;
+/// use pinswitch_calibration::inference::{Model, Term};
+/// use pinswitch_calibration::table::{Frame, PlateauTable};
+///
+/// let csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N
+/// a,silicone,,up,0,10,50,3,concentric,1,12.7,4.5,0
+/// ";
+/// let rows = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?.rows;
+/// let model = Model::baseline(Frame::new(&rows));
+/// let points = model.frame.points(&rows).ok_or("a condition is new")?;
+/// let offset = effect_named("load_cell_offset").ok_or("not in the catalogue")?;
+/// let with = model.with_term(Term::Named(offset), &[0.5]);
+/// assert!((with.predict(&points)[0] - model.predict(&points)[0] - 0.5).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Conditions and reference values.

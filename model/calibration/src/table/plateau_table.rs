@@ -20,6 +20,19 @@ pub(crate) const MIN_WRAP_DEG: f64 = 1.0;
 pub(crate) const MAX_WRAP_DEG: f64 = 720.0;
 
 /// A plateau table with the cells as they were written, unknown columns included.
+///
+/// ```
+/// use pinswitch_calibration::table::{PlateauTable, TableError};
+///
+/// let csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N
+/// a,silicone,5;8;11,up,1003.2,10.451,50,3,eccentric,1,12.7,4.5,9.62
+/// ";
+/// let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
+/// assert_eq!(table.rows[0].pins, [5, 8, 11]);
+/// let error = PlateauTable::read(csv.replace("10.451", "-1").as_bytes(), "plateaus.csv").unwrap_err();
+/// assert!(error.to_string().starts_with("plateaus.csv, line 2, column 'load_N': '-1' is below 0"));
+/// # Ok::<(), TableError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlateauTable {
     /// One entry per line, in file order.

@@ -71,6 +71,15 @@ fn layout_device(contact: &Contact, law: LayoutLaw, trust: Trust, loads_n: &[f64
 const WEIGHT_PER_PIN: f64 = 1.0 / 30.0;
 
 /// `S = 1/(1 + exp(-s (F/F_half - 1)))` with `F_half = C sqrt(n/(a p))` (`model/doc/friction-laws.md`).
+///
+/// ```
+/// use pinswitch_friction::{LayoutLaw, PinPattern, Switch, published};
+///
+/// let pins = PinPattern::even(4, 14f64.to_radians());
+/// let law = LayoutLaw::new(&pins, published::wrap_angle_rad()).ok_or("no pins, nothing to switch")?;
+/// assert!((law.switched(law.half_load_n()) - 0.5).abs() < 1e-12);
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayoutLaw {
     half_load_n: f64,

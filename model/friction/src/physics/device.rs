@@ -7,7 +7,7 @@ use super::equilibrium::Supports;
 use super::fit::PUBLISHED_FIT;
 use super::grid::Grid;
 use super::hypotheses::STIFF_N_MM2;
-use super::march::{Sliding, pins_alone_exponent, polygon_turns_rad, slide};
+use super::march::{Slide, Sliding, pins_alone_exponent, polygon_turns_rad, slide};
 use super::{Bed, Constants, OutsidePins, PhysicsError};
 use crate::published;
 use crate::trust::EXTRAPOLATED_SPREAD;
@@ -23,6 +23,18 @@ const STEP: f64 = 1e-3;
 const WIDEST_FREE_SPAN_RAD: f64 = 0.3495;
 
 /// Contact, bed and constants: all that the friction of a switch depends on.
+///
+/// ```
+/// use pinswitch_friction::physics::{Constants, PhysicsSwitch};
+/// use pinswitch_friction::{Contact, PinPattern, Substrate, published};
+///
+/// let uneven = PinPattern::new(vec![-0.35, 0.0, 0.2]);
+/// let contact = Contact::new(Substrate::Silicone, uneven, published::wrap_angle_rad())?;
+/// let switch = PhysicsSwitch::new(&contact, Constants::published());
+/// let states = switch.states(&[10.0, 50.0])?;
+/// assert!(states[0].silicone_share < states[1].silicone_share, "the pins sink as load grows");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct PhysicsSwitch {
     contact: Contact,
@@ -81,7 +93,8 @@ impl PhysicsSwitch {
     ) -> Result<Sliding, PhysicsError> {
         let flush_force_n = self.constants.flush_force_n * self.bed.flush_force_ratio();
         let supports = Supports { grid: &self.grid, bed: &self.bed, flush_force_n };
-        slide(supports, &self.constants, self.contact.wrap_rad(), load_n, direction, start)
+        let (constants, wrap_rad) = (&self.constants, self.contact.wrap_rad());
+        slide(Slide { supports, constants, wrap_rad, load_n, direction }, start)
     }
 
     /// Angles between which the silicone can touch.

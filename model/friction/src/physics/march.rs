@@ -32,19 +32,27 @@ pub(super) struct Sliding {
     pub(super) closure: f64,
 }
 
-/// Slides a tendon under `load_n` (held at the first node) over `supports`; `wrap_rad` is the sum of all turns.
-/// `start` is a state nearby, such as the one at the load before.
+/// A tendon about to slide over its supports.
+#[derive(Clone, Copy)]
+pub(super) struct Slide<'a> {
+    /// What carries it.
+    pub(super) supports: Supports<'a>,
+    /// Friction of its materials.
+    pub(super) constants: &'a Constants,
+    /// Sum of all turns, rad.
+    pub(super) wrap_rad: f64,
+    /// Load that holds its first node, N.
+    pub(super) load_n: f64,
+    /// Which way it moves.
+    pub(super) direction: Direction,
+}
+
+/// Slides a tendon; `start` is a state nearby, such as the one at the load before.
 ///
 /// # Errors
 /// [`PhysicsError`] if the shape or the tension does not settle, or if nothing carries the tendon.
-pub(super) fn slide(
-    supports: Supports<'_>,
-    constants: &Constants,
-    wrap_rad: f64,
-    load_n: f64,
-    direction: Direction,
-    start: Option<&Sliding>,
-) -> Result<Sliding, PhysicsError> {
+pub(super) fn slide(tendon: Slide<'_>, start: Option<&Sliding>) -> Result<Sliding, PhysicsError> {
+    let Slide { supports, load_n, .. } = tendon;
     let nodes = supports.grid.len();
     // A nearby state's tension, scaled to the new load.
     let mut tension_n = match start.filter(|s| s.tension_n.len() == nodes) {
@@ -57,7 +65,7 @@ pub(super) fn slide(
     let mut gap: Option<Vec<f64>> = start.map(|s| s.shape.gap_mm.clone()).filter(|gap| gap.len() == nodes);
     for _ in 0..MAX_ROUNDS {
         let shape = supports.equilibrium(&tension_n, gap.as_deref())?;
-        let (sliding, change) = march(supports, constants, wrap_rad, load_n, direction, &tension_n, shape)?;
+        let (sliding, change) = march(tendon, &tension_n, shape)?;
         if change <= AGREEMENT {
             return Ok(sliding);
         }
@@ -68,15 +76,8 @@ pub(super) fn slide(
 }
 
 /// One pass along the wrap: turns from the forces, tension from the turns. Also the largest relative change of tension.
-fn march(
-    supports: Supports<'_>,
-    constants: &Constants,
-    wrap_rad: f64,
-    load_n: f64,
-    direction: Direction,
-    tension_n: &[f64],
-    shape: Equilibrium,
-) -> Result<(Sliding, f64), PhysicsError> {
+fn march(tendon: Slide<'_>, tension_n: &[f64], shape: Equilibrium) -> Result<(Sliding, f64), PhysicsError> {
+    let Slide { supports, constants, wrap_rad, load_n, direction } = tendon;
     let grid = supports.grid;
     let at_pin = |(force, node): (&f64, &usize)| force / tension_n[*node];
     let turned: f64 = shape.silicone_n.iter().zip(tension_n).map(|(q, t)| q / t).sum::<f64>()

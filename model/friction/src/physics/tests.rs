@@ -28,6 +28,17 @@ fn regression_bed() -> Bed {
     Bed { tendon_radius_mm: 0.6, softening: 0.0, outside: OutsidePins::OnSilicone, ..Bed::published() }
 }
 
+/// A tendon slid from nowhere near its state.
+fn slid(
+    supports: Supports<'_>,
+    constants: &Constants,
+    wrap_rad: f64,
+    load_n: f64,
+    direction: Direction,
+) -> march::Sliding {
+    march::slide(march::Slide { supports, constants, wrap_rad, load_n, direction }, None).unwrap()
+}
+
 /// `model/doc/friction-laws.md`: half-layout pin forces six [7.05 10.05 10.20] N, silicone 0; three-double [16.54 15.49], 0.118;
 /// three-single [13.93 10.53], 0.302.
 #[test]
@@ -59,7 +70,7 @@ fn one_uniform_material_gives_the_capstan() {
     let supports = Supports { grid: &grid, bed: &bed, flush_force_n: 8.5 };
     for direction in [Direction::Eccentric, Direction::Concentric] {
         let constants = Constants::published();
-        let sliding = march::slide(supports, &constants, wrap, 30.0, direction, None).unwrap();
+        let sliding = slid(supports, &constants, wrap, 30.0, direction);
         assert!((sliding.silicone_exponent - constants.mu_silicone * wrap).abs() < 1e-9);
         let bare = PhysicsSwitch::new(&device(PinPattern::default()), constants).states(&[30.0]).unwrap();
         assert!((bare[0].concentric_n - 30.0 * (constants.mu_silicone * wrap).exp()).abs() < 1e-9);
@@ -155,7 +166,6 @@ fn bands_cover_simulated_rigs() {
             cases += 1;
         }
     }
-    println!("bands at 95 % hold {held} of {cases}");
     // Binomial: below 70 of 80 at a true 95 % happens once in a thousand.
     assert!(held * 80 >= 70 * cases, "{held} of {cases}");
 }
@@ -209,7 +219,7 @@ proptest! {
         let grid = Grid::new(wrap, contact.pins().angles_rad(), contact.bed(), 120);
         let supports = Supports { grid: &grid, bed: contact.bed(), flush_force_n: 8.5 };
         for direction in [Direction::Eccentric, Direction::Concentric] {
-            let found = march::slide(supports, &Constants::published(), wrap, load, direction, None).unwrap();
+            let found = slid(supports, &Constants::published(), wrap, load, direction);
             let turned: f64 = found.silicone_turn_rad + found.pin_turn_rad.iter().sum::<f64>();
             prop_assert!((turned - wrap).abs() < 1e-9);
             // What carries the tendon balances what presses it, T/Rc over the wrap less the string's own term.

@@ -72,6 +72,16 @@ impl Default for RigConstants {
 }
 
 /// A synthetic rig.
+///
+/// ```
+/// use pinswitch_simulation::Plan;
+///
+/// let plan = Plan::parse("weights_g = [251.2, 2005.0, 5002.5]\nlayouts = [[5, 8, 11]]", "plan.toml")?;
+/// assert_eq!(plan.repetitions, Plan::default().repetitions);
+/// let error = Plan::parse("weights_g = [-1.0]", "plan.toml").unwrap_err();
+/// assert!(error.to_string().starts_with("plan.toml: weights_g = [-1.0] is outside"));
+/// # Ok::<(), pinswitch_simulation::PlanError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Plan {

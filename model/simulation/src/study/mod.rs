@@ -11,6 +11,19 @@ pub use outcome::{Outcome, run_case};
 use pinswitch_calibration::median;
 
 /// Results by case.
+///
+/// ```
+/// use pinswitch_calibration::inference::Levels;
+/// use pinswitch_simulation::{Study, run_case, study_cases};
+///
+/// let case = study_cases().into_iter().find(|c| c.name == "load_cell_gain").ok_or("not a case")?;
+/// let outcome = run_case(&case, 1, Levels::default()).ok_or("the table reads back")?;
+/// assert!(outcome.honest, "{:?}", outcome.named);
+/// let mut study = Study::default();
+/// study.add(case, vec![outcome]);
+/// assert!(study.table().contains("load_cell_gain"));
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Study {
     outcomes: Vec<(Case, Vec<Outcome>)>,

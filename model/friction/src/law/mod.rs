@@ -43,13 +43,13 @@ pub(crate) enum Support {
 
 /// Declares the files of the laws, their ids and the registry.
 macro_rules! laws {
-    ($($(#[$doc:meta])* $law:ident: $file:ident,)*) => {
+    ($($law:ident: $file:ident, $doc:literal;)*) => {
         $(pub(crate) mod $file;)*
 
         /// The law behind a curve.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Law {
-            $($(#[$doc])* $law,)*
+            $(#[doc = $doc] $law,)*
         }
 
         impl Law {
@@ -66,14 +66,10 @@ macro_rules! laws {
 }
 
 laws! {
-    /// The paper's capstan and eq. 4, with its constants.
-    Paper: paper,
-    /// The law fitted to the thresholds of the three published layouts.
-    Layout: layout,
-    /// A string over sinking pins on a foundation, see [`crate::physics`].
-    Physics: physics,
-    /// A model calibrated on measured data.
-    Calibrated: calibrated,
+    Paper: paper, "The paper's capstan and eq. 4, with its constants.";
+    Layout: layout, "The law fitted to the thresholds of the three published layouts.";
+    Physics: physics, "A string over sinking pins on a foundation, see [`crate::physics`].";
+    Calibrated: calibrated, "A model calibrated on measured data.";
 }
 
 impl Law {
@@ -88,7 +84,7 @@ impl Law {
     /// use pinswitch_friction::Law;
     ///
     /// let words: Vec<_> = Law::predictive().map(Law::as_str).collect();
-    /// assert_eq!(words, ["paper", "layout", "physics"]);
+    /// assert!(words.starts_with(&["paper", "layout", "physics"]) && !words.contains(&"calibrated"));
     /// ```
     pub fn predictive() -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(|law| !law.definition().needs_model)
@@ -254,7 +250,9 @@ mod tests {
     fn laws_stand_side_by_side() {
         let double = contact(Substrate::Silicone, PinPattern::even(3, published::LAYOUTS[1].pitch_rad()));
         let laws: Vec<_> = other_laws(Law::Paper, &double, &[20.0]).iter().map(|c| c.law).collect();
-        assert_eq!(laws, [Law::Layout, Law::Physics]);
+        let others: Vec<_> = Law::predictive().filter(|law| *law != Law::Paper).collect();
+        assert_eq!(laws, others, "all of them apply to a published layout, and none is mixed into another");
+        assert!(laws.starts_with(&[Law::Layout, Law::Physics]));
     }
 
     #[test]

@@ -365,6 +365,8 @@ impl Model {
                 Term::Named(effect) => {
                     let constants = &values[*at..at + term.constants()];
                     if effect.description().stage == Stage::CellLimit {
+                        // A second limit of one kind is tried in place of the first.
+                        limits.retain(|(other, _): &(&&dyn Effect, _)| other.id() != effect.id());
                         limits.push((effect, constants));
                     } else {
                         reading = effect.on_reading(constants, point, reading);

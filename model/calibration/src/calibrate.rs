@@ -1,8 +1,8 @@
 //! From a selection to its report: verdict, effects, rivals, blind spots, errors before and after.
 
-use crate::effects::CATALOGUE;
 use pinswitch_friction::Substrate;
 
+use crate::effects::CATALOGUE;
 use crate::held_out::{SOUND_WEIGHT, held_out};
 use crate::inference::{
     CandidateEffect, Fit, FoundEffect, Levels, Model, Noise, Observations, Rival, Selection, Term,

@@ -6,9 +6,9 @@ use crate::held_out::SOUND_WEIGHT;
 use crate::inference::{Model, Noise, Observations, fit};
 
 /// Root mean square error in newtons on layouts that the fit did not see. Each layout is left out in turn, with its
-/// pins on both substrates; all friction coefficients and effects come from the other layouts, and only the layout's own
-/// threshold and range, which no other layout can know, are then fitted to it (`model/doc/naming-an-effect.md`). `None` with fewer
-/// than two layouts.
+/// pins on both substrates; all friction coefficients and effects come from the other layouts, and only the layout's
+/// own threshold and range, which no other layout can know, are then fitted to it (`model/doc/naming-an-effect.md`).
+/// `None` with fewer than two layouts.
 pub fn layouts_left_out(model: &Model, data: &Observations, noise: Noise) -> Option<f64> {
     let conditions = &model.frame.conditions;
     let layouts: BTreeSet<&[usize]> =

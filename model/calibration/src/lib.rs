@@ -1,6 +1,6 @@
 //! Measured friction data: from raw logs to plateau tables, from a table to the effects that the paper's model lacks on
-//! it, and to a model that predicts. The crate knows data and what explains it; it must not know how a rig is simulated,
-//! nor parts, files or plots.
+//! it, and to a model that predicts. The crate knows data and what explains it; it must not know how a rig is
+//! simulated, nor parts, files or plots.
 //!
 //! The way of the data, each step usable alone:
 //!
@@ -20,9 +20,9 @@
 //! assert!(explanations[1].left_out_rms_pct < 0.2 * explanations[0].rms_pct);
 //! ```
 //!
-//! Readers take text, bytes or [`std::io::Read`], writers return text: nothing here opens a file, starts a thread, or reads
-//! a clock or the environment. `model/doc/file-formats.md` describes the files, `model/doc/effect-catalogue.md` the effects
-//! and `model/doc/naming-an-effect.md` how one is named.
+//! Readers take text, bytes or [`std::io::Read`], writers return text: nothing here opens a file, starts a thread, or
+//! reads a clock or the environment. `model/doc/file-formats.md` describes the files, `model/doc/effect-catalogue.md`
+//! the effects and `model/doc/naming-an-effect.md` how one is named.
 
 mod calibrate;
 pub mod effects;

@@ -1,14 +1,15 @@
 //! The curve of a printed part by a calibrated model: effects of the switch in, effects of the rig out.
 
+use pinswitch_friction::{Direction, FrictionCurve, Law, Substrate, Trust, published};
+
 use crate::inference::prediction_sd_n;
 use crate::model_file::{ModelFile, ModelFileError};
 use crate::table::{PlateauRow, Sweep};
-use pinswitch_friction::{Direction, FrictionCurve, Law, Substrate, Trust, published};
 
 impl ModelFile {
     /// Curve of pins in these grooves, numbered from 1, on `substrate` at ascending `loads_n`, for a slow first pull at
-    /// the reference speed and the paper's wrap angle: no run-in, no drift, loads ascending. A model of a rig with another
-    /// wrap angle predicts it as a layout that nobody measured. `file` is the name used in errors.
+    /// the reference speed and the paper's wrap angle: no run-in, no drift, loads ascending. A model of a rig with
+    /// another wrap angle predicts it as a layout that nobody measured. `file` is the name used in errors.
     ///
     /// # Errors
     /// [`ModelFileError`] as in [`ModelFile::model`].

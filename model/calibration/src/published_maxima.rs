@@ -2,12 +2,12 @@
 
 use std::convert::Infallible;
 
-use serde::Serialize;
-
-use crate::table::Condition;
 use pinswitch_friction::Substrate;
 use pinswitch_friction::least_squares::minimise;
 use pinswitch_friction::published::{self, PublishedLayout};
+use serde::Serialize;
+
+use crate::table::Condition;
 
 /// What one explanation makes of the seven maxima.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -74,8 +74,8 @@ fn predict(kind: Pins, at: &[f64], maximum: &Maximum, scale_free: bool) -> f64 {
     (1.0 + layout.weight) * (1.0 - s) * pins + (1.0 - layout.weight) * s * silicone
 }
 
-/// Friction exponent of the pins: constant, `kappa sqrt(T) sum theta^1.5` (`model/doc/friction-laws.md`), in proportion to the
-/// mean turn per pin, or growing with load (which at one load is the constant again).
+/// Friction exponent of the pins: constant, `kappa sqrt(T) sum theta^1.5` (`model/doc/friction-laws.md`), in proportion
+/// to the mean turn per pin, or growing with load (which at one load is the constant again).
 fn pins_exponent(kind: Pins, factor: f64, layout: &PublishedLayout, load_n: f64, wrap: f64) -> f64 {
     match kind {
         Pins::Constant | Pins::Stiffening => published::MU_PINS * factor * wrap,

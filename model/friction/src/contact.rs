@@ -100,7 +100,8 @@ impl Contact {
         })
     }
 
-    /// Reads `F_thr` of six-single as `threshold` instead of the printed 5.7: the paper leaves it open (`model/doc/friction-laws.md`).
+    /// Reads `F_thr` of six-single as `threshold` instead of the printed 5.7: the paper leaves it open
+    /// (`model/doc/friction-laws.md`).
     #[must_use]
     pub fn with_six_single_threshold(mut self, threshold: f64) -> Self {
         self.six_single_threshold = threshold;

@@ -1,4 +1,4 @@
-//! Backwards: which pins give a wanted curve. Every pattern of occupied grooves is tried with the physics.
+//! Backwards: which pins make a wanted curve. Every pattern of occupied grooves is tried with the physics.
 
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
@@ -69,8 +69,8 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// Distance from what is wanted: root of the summed squares of the logarithms of both ratios. Infinite if a threshold
-    /// is wanted and there is none.
+    /// Distance from what is wanted: root of the summed squares of the logarithms of both ratios. Infinite if a
+    /// threshold is wanted and there is none.
     pub fn miss(&self, threshold_n: Option<f64>, friction_n: f64) -> f64 {
         let apart = |wanted: f64, found: f64| (found / wanted).ln().powi(2);
         let threshold = match (self.threshold_n, threshold_n) {
@@ -94,8 +94,8 @@ impl Search {
         (1..1u32 << grooves).filter(move |m| (fewest..=most).contains(&(m.count_ones() as usize)))
     }
 
-    /// Every pattern, in the order of its occupancy as a binary number. A pattern whose equilibrium is not found is left
-    /// out.
+    /// Every pattern, in the order of its occupancy as a binary number. A pattern whose equilibrium is not found is
+    /// left out.
     pub fn sweep(&self) -> Vec<LayoutCandidate> {
         let masks: Vec<u32> = self.masks().collect();
         #[cfg(feature = "parallel")]

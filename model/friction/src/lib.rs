@@ -3,8 +3,8 @@
 //!
 //! A tendon runs over steel pins that lie in silicone on a rigid shell. At low load it touches the pins only; as load
 //! grows they sink, it meets the silicone, and friction rises. A [`Contact`] says what the tendon lies on: a
-//! [`Substrate`], a [`PinPattern`] and the wrap angle. A [`Law`] turns it into a [`FrictionCurve`], which always carries
-//! its band, its law and a word on how far to trust it ([`Trust`]).
+//! [`Substrate`], a [`PinPattern`] and the wrap angle. A [`Law`] turns it into a [`FrictionCurve`], which always
+//! carries its band, its law and a word on how far to trust it ([`Trust`]).
 //!
 //! ```
 //! use pinswitch_friction::{Contact, PinPattern, Substrate, predict, published};
@@ -23,9 +23,9 @@
 //! - [`layout_search`] goes backwards, from a wanted curve to pins.
 //! - [`physics`] is the model behind the law of that name; [`published`] holds the paper's numbers.
 //!
-//! Angles are radians, forces newtons, unless a name says otherwise. Nothing here reads files, clocks or the environment;
-//! with the feature `parallel` the sweeps of [`layout_search`] run on all processors, with the same results.
-//! `model/doc/friction-laws.md` and `model/doc/physics.md` explain the laws with their sources.
+//! Angles are radians, forces newtons, unless a name says otherwise. Nothing here reads files, clocks or the
+//! environment; with the feature `parallel` the sweeps of [`layout_search`] run on all processors, with the same
+//! results. `model/doc/friction-laws.md` and `model/doc/physics.md` explain the laws with their sources.
 
 mod capstan;
 mod contact;

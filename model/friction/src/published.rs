@@ -15,8 +15,8 @@ pub const WRAP_ANGLE_DEG: f64 = 63.89;
 pub const DWELL_S: f64 = 3.0;
 /// Stroke of the actuator in millimetres.
 pub const STROKE_MM: f64 = 152.4;
-/// `kappa` in `x = kappa sqrt(T) sum theta_i^1.5`, the ploughing of the coating, in `N^-0.5`: fitted to the three maxima
-/// of pins alone (`model/doc/friction-laws.md`).
+/// `kappa` in `x = kappa sqrt(T) sum theta_i^1.5`, the ploughing of the coating, in `N^-0.5`: fitted to the three
+/// maxima of pins alone (`model/doc/friction-laws.md`).
 pub const PLOUGHING_KAPPA: f64 = 0.0237;
 /// Angle of the grooved segment in degrees.
 pub const SEGMENT_DEG: f64 = 89.45;
@@ -48,7 +48,7 @@ pub struct PublishedLayout {
     pub weight: f64,
     /// Threshold `F_thr` on the scale of `F_r`.
     pub threshold: f64,
-    /// Interval onto which the tested loads are mapped to give `F_r`.
+    /// Interval onto which the tested loads are mapped, the scale of `F_r`.
     pub reduced_load: (f64, f64),
     /// Largest friction of the device (pins in silicone), in newtons.
     pub device_max_n: f64,

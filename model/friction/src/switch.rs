@@ -108,7 +108,8 @@ mod tests {
         assert_eq!(rows, ["six-single 4.07 -20.2", "three-double 10.01 +3.5", "three-single 8.90 +4.7"]);
     }
 
-    /// `model/doc/friction-laws.md`: the model's root mean square relative error on the paper's own seven maxima is 31 %.
+    /// `model/doc/friction-laws.md`: the model's root mean square relative error on the paper's own seven maxima is 31
+    /// %.
     #[test]
     fn misses_the_seven_published_maxima_by_31_percent() {
         let max = |substrate, pins| {

@@ -2,10 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use serde::{Deserialize, Serialize};
-
 use pinswitch_calibration::effects::Covariate;
 use pinswitch_calibration::table::PlateauRow;
+use serde::{Deserialize, Serialize};
 
 /// What a disturbance acts on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! The forms in which the twin has each effect: the first is that of the effect catalogue, the others are as plausible.
 //!
-//! Their formulas stand in the twin. An effect of the catalogue that is not listed here has no formula in the twin, which
-//! then adds the fitter's own trace of it: a new effect can be simulated before it has a second formula.
+//! Their formulas stand in the twin. An effect of the catalogue that is not listed here has no formula in the twin,
+//! which then adds the fitter's own trace of it: a new effect can be simulated before it has a second formula.
 
 /// The form of an effect that the twin has in one form only.
 const AS_CATALOGUED: &[&str] = &["as in model/doc/effect-catalogue.md"];

@@ -1,9 +1,9 @@
 //! A synthetic rig: plateau tables and raw logs with known effects, for planning, for tests and for the study of the
 //! calibrator. The crate knows physics of its own and must not take a formula of an effect from the fitter.
 //!
-//! A [`Plan`] says what the rig does, what the paper's model lacks on it and how noisy it is. [`simulate`] makes the table
-//! that it would record, [`RawRun`] the logs. [`power()`] tells before any measurement which effects a plan could show, and
-//! [`run_case`] asks the calibrator about rigs whose truth is known.
+//! A [`Plan`] says what the rig does, what the paper's model lacks on it and how noisy it is. [`simulate`] makes the
+//! table that it would record, [`RawRun`] the logs. [`power()`] tells before any measurement which effects a plan could
+//! show, and [`run_case`] asks the calibrator about rigs whose truth is known.
 //!
 //! ```
 //! use pinswitch_calibration::inference::Levels;

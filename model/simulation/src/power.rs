@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use pinswitch_calibration::effects::CATALOGUE;
+use pinswitch_calibration::inference::{Levels, Model, Observations, select};
+use pinswitch_calibration::table::Frame;
 use serde::Serialize;
 
 use super::plan::{EffectPlan, Plan};
 use super::simulate::simulate;
-use pinswitch_calibration::effects::CATALOGUE;
-use pinswitch_calibration::inference::{Levels, Model, Observations, select};
-use pinswitch_calibration::table::Frame;
 
 /// What the plan makes of one effect at one size.
 #[derive(Clone, Debug, PartialEq, Serialize)]

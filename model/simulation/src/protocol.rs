@@ -1,13 +1,13 @@
 //! From a plan to the rows of a session, before any force is known.
 
+use pinswitch_calibration::table::{PlateauRow, Sweep};
+use pinswitch_friction::published;
+use pinswitch_friction::{Direction, Substrate};
 use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 use super::plan::{Plan, Protocol};
-use pinswitch_calibration::table::{PlateauRow, Sweep};
-use pinswitch_friction::published;
-use pinswitch_friction::{Direction, Substrate};
 
 /// Time of one move in seconds.
 const MOVE_S: f64 = 0.5;

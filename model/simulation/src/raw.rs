@@ -2,15 +2,15 @@
 
 use std::fmt::Write;
 
+use pinswitch_calibration::table::{PlateauRow, substrate_word};
+use pinswitch_friction::published;
+use pinswitch_friction::{Direction, Substrate};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 
 use super::plan::{Plan, PlanError, RawPlan};
-use pinswitch_calibration::table::{PlateauRow, substrate_word};
-use pinswitch_friction::published;
-use pinswitch_friction::{Direction, Substrate};
 
 /// What was put wrong into a log on purpose.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -68,7 +68,7 @@ const LEAD_S: f64 = 2.0;
 const READ_S: f64 = 1.0;
 
 impl<'a> RawRun<'a> {
-    /// The run that gives the rows of a session.
+    /// The run that recorded the rows of a session. `file` is the name used in errors.
     ///
     /// # Errors
     /// [`PlanError::Bound`] if the plan has several dwells: a run has one.
@@ -124,7 +124,7 @@ impl<'a> RawRun<'a> {
         text
     }
 
-    /// A log by its index. The same plan gives the same bytes.
+    /// A log by its index. The same plan makes the same bytes.
     pub fn log(&self, index: usize) -> Option<RawLog> {
         let rows = self.series.get(index)?;
         let first = rows.first()?;

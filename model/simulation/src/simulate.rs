@@ -2,16 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use pinswitch_calibration::table::PlateauRow;
+use pinswitch_friction::published;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
 use super::plan::Plan;
 use super::{protocol, twin};
-use pinswitch_calibration::table::PlateauRow;
-use pinswitch_friction::published;
 
-/// What a plan gives.
+/// The tables that a plan makes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulated {
     /// The table as it would be recorded.
@@ -20,7 +20,7 @@ pub struct Simulated {
     pub fresh: Vec<PlateauRow>,
 }
 
-/// Runs a plan. The same plan gives the same rows, bit for bit.
+/// Runs a plan. The same plan makes the same rows, bit for bit.
 ///
 /// ```
 /// use pinswitch_simulation::{EffectPlan, Plan, simulate};
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_same_plan_gives_the_same_rows_and_another_seed_others() {
+    fn the_same_plan_makes_the_same_rows_and_another_seed_others() {
         let plan = Plan::default();
         assert_eq!(simulate(&plan), simulate(&plan));
         let other = Plan { seed: 2, ..plan.clone() };

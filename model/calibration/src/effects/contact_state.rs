@@ -35,7 +35,8 @@ pub struct ContactState {
 }
 
 impl ContactState {
-    /// Tension in newtons: capstan for one material, eq. 4 on `T - F` per direction for a device (`model/doc/friction-laws.md`).
+    /// Tension in newtons: capstan for one material, eq. 4 on `T - F` per direction for a device
+    /// (`model/doc/friction-laws.md`).
     pub fn tension_n(&self, condition: &Condition, point: &Point) -> f64 {
         let (f, d) = (self.load_n, point.sign);
         let x_pins = (self.mu_pins * self.wrap_rad + self.extra_exponent_pins) * self.exponent_factor;

@@ -216,7 +216,7 @@ impl Structure {
         }
     }
 
-    /// In words.
+    /// The structure in words, in the units of the frame's session.
     pub fn describe(&self, frame: &Frame) -> String {
         let on = match self.channel {
             Channel::Reading => "the reading",

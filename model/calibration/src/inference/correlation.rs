@@ -30,9 +30,9 @@ fn gap(data: &Observations, cell: &[usize], i: usize) -> f64 {
 
 /// Correlation from one repetition to the next, from residuals at unit variance in the order of the rows.
 ///
-/// What a place of the stroke does to every series is no noise: per condition, direction and repetition a line over the load is
-/// taken out across the series, which leaves the correlation along each as it is. Then mean and trend of each series
-/// and direction are taken out, for offsets and slow drifts, and the bias of that is undone exactly.
+/// What a place of the stroke does to every series is no noise: per condition, direction and repetition a line over the
+/// load is taken out across the series, which leaves the correlation along each as it is. Then mean and trend of each
+/// series and direction are taken out, for offsets and slow drifts, and the bias of that is undone exactly.
 pub(super) fn estimate(data: &Observations, white: &[f64]) -> f64 {
     let values = without_common_course(data, white);
     let (mut product, mut square) = (0.0, 0.0);

@@ -1,6 +1,7 @@
 //! Generalised least squares by Levenberg and Marquardt, with weak priors as pseudo-rows and a certificate.
 
 use nalgebra::{DMatrix, DVector};
+use pinswitch_friction::LayoutLaw;
 
 use super::forward::Model;
 use super::noise::Noise;
@@ -8,7 +9,6 @@ use super::observations::Observations;
 use super::projection::dot;
 use super::significance::degrees_of_freedom;
 use crate::table::Point;
-use pinswitch_friction::LayoutLaw;
 
 /// A model fitted to data.
 #[derive(Clone, Debug)]

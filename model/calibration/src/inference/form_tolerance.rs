@@ -2,7 +2,8 @@
 //!
 //! Every named effect is allowed to bend by some tens of per cent along its own covariate, with the load, with the
 //! direction and from layout to layout. These bent copies are nuisances for everything that is tried next
-//! (`model/doc/naming-an-effect.md`), held near zero by a prior: a second effect that is larger than they can be is still seen.
+//! (`model/doc/naming-an-effect.md`), held near zero by a prior: a second effect that is larger than they can be is
+//! still seen.
 
 use super::forward::{Model, Term};
 use super::observations::Observations;

@@ -1,8 +1,9 @@
 //! The forward model: from constants and a row to the reading.
 
+use pinswitch_friction::{LayoutLaw, Substrate, published};
+
 use crate::effects::{ContactState, Effect, Side, Stage, Structure};
 use crate::table::{Condition, Frame, Point};
-use pinswitch_friction::{LayoutLaw, Substrate, published};
 
 /// One term on top of the paper's model.
 #[derive(Clone, Debug)]

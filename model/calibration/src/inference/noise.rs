@@ -97,9 +97,9 @@ impl Noise {
         (sum / data.points.len().max(1) as f64).sqrt()
     }
 
-    /// Whitens one value per row in place, `V^-1/2 v`: rows of one cell have covariance
-    /// `sigma^2 W^-1/2 R W^-1/2 + tau^2 1 1'` with `R` that of a chain. Once the chain is undone, what is left of `1` is
-    /// one direction, and the inverse root takes a part of it out.
+    /// Whitens one value per row in place, `V^-1/2 v`: rows of one cell have covariance `sigma^2 W^-1/2 R W^-1/2 +
+    /// tau^2 1 1'` with `R` that of a chain. Once the chain is undone, what is left of `1` is one direction, and the
+    /// inverse root takes a part of it out.
     pub(crate) fn whiten(self, data: &Observations, values: &mut [f64]) {
         let (mut white, mut axis) = (Vec::new(), Vec::new());
         for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {

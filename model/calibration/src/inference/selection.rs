@@ -287,8 +287,8 @@ mod tests {
         assert_eq!(found.candidates[0].gain_left, None, "what is in the model has nothing left to gain");
     }
 
-    /// Pins alone in one direction: the friction exponent is one constant, so that an offset of the cell and a hook left
-    /// out shift all readings alike. Whichever is named has the other as its rival.
+    /// Pins alone in one direction: the friction exponent is one constant, so that an offset of the cell and a hook
+    /// left out shift all readings alike. Whichever is named has the other as its rival.
     #[test]
     fn effects_that_look_alike_are_rivals() {
         let offset = effect_named("load_cell_offset").unwrap();

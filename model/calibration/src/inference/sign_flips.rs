@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// Draws; the smallest probability is one over their number.
 const DRAWS: usize = 999;
-/// Seed of the draws: the same table gives the same probability.
+/// Seed of the draws: the same table has the same probability.
 const SEED: u64 = 0x5EED;
 
 /// Probability that the largest score arises without any effect. `contributions` has, for each candidate, what each

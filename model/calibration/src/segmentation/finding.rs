@@ -2,9 +2,8 @@
 
 use std::fmt;
 
-use serde::Serialize;
-
 use pinswitch_friction::Direction;
+use serde::Serialize;
 
 /// Something that is wrong with a log.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,12 +1,12 @@
 //! Plateaus of one log: the actuator's moves by its power, then the settled force of each rest.
 
+use pinswitch_friction::Direction;
 use serde::Serialize;
 
 use super::finding::Finding;
 use super::log::Log;
 use super::run_plan::Rig;
 use crate::median::median;
-use pinswitch_friction::Direction;
 
 /// One plateau.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

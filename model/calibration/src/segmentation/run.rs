@@ -89,8 +89,8 @@ impl<'a> RunSegmentation<'a> {
         Self { plan, rows: Vec::new(), series: Vec::new(), start_s: 0.0 }
     }
 
-    /// Adds the log of the run's next series, in the order of the plan. Returns the log and what was found in it, to draw
-    /// or to discard. `file` is the name used in errors.
+    /// Adds the log of the run's next series, in the order of the plan. Returns the log and what was found in it, to
+    /// draw or to discard. `file` is the name used in errors.
     ///
     /// # Errors
     /// [`LogError`] if the text is no log.

@@ -1,9 +1,9 @@
 //! `run.toml`: the rig and the series of a raw run.
 
+use pinswitch_friction::{Substrate, published};
 use serde::Deserialize;
 
 use crate::table::{MAX_WRAP_DEG, MIN_WRAP_DEG, Sweep};
-use pinswitch_friction::{Substrate, published};
 
 /// Why a run description cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use pinswitch_friction::{Substrate, published};
 use serde::{Deserialize, Serialize};
 
 use super::row::{PlateauRow, Sweep};
 use super::substrate_word::substrate_word;
-use pinswitch_friction::{Substrate, published};
 
 /// One kind of contact in a table: substrate and pins.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -241,7 +241,8 @@ pub(crate) fn groups<K: Ord>(rows: &[PlateauRow], key: impl Fn(&PlateauRow) -> K
 mod tests {
     use super::*;
 
-    /// The turns at all pins sum to the wrap (`model/doc/friction-laws.md`), so that `sum theta^1.5` is bounded by `a sqrt(a)`.
+    /// The turns at all pins sum to the wrap (`model/doc/friction-laws.md`), so that `sum theta^1.5` is bounded by `a
+    /// sqrt(a)`.
     #[test]
     fn the_three_layouts_have_the_turns_of_the_vector_balance() {
         let six =

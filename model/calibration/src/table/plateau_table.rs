@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 use std::io::Read;
 
+use pinswitch_friction::published::{self, GROOVES};
+use pinswitch_friction::{Direction, Substrate};
+
 use super::columns::{COLUMNS, WRAP_ANGLE, column_name};
 use super::row::{PlateauRow, Sweep};
 use super::substrate_word::{WORDS, substrate_word};
 use super::table_error::TableError;
-use pinswitch_friction::published::{self, GROOVES};
-use pinswitch_friction::{Direction, Substrate};
 
 /// Largest load and reading in newtons: ten tonnes is beyond any tendon.
 const MAX_N: f64 = 1e5;

@@ -2,12 +2,13 @@
 
 use std::ops::RangeInclusive;
 
+use pinswitch_friction::Direction;
+use pinswitch_friction::published::GRAVITY_M_S2;
+
 use super::plateau_table::PlateauTable;
 use super::row::PlateauRow;
 use super::table_error::TableError;
 use crate::median::median;
-use pinswitch_friction::Direction;
-use pinswitch_friction::published::GRAVITY_M_S2;
 
 /// Newtons of reading per newton of load that friction over any wrap, drags and offsets may leave.
 const FOLLOWS: RangeInclusive<f64> = 0.2..=5.0;
@@ -18,8 +19,8 @@ impl PlateauTable {
     /// Refuses a table that cannot fix a baseline.
     ///
     /// # Errors
-    /// [`TableError::TooFewLoads`] with fewer than two loads above zero, [`TableError::Unrelated`] if the readings do not
-    /// follow the loads, [`TableError::LoadUnit`] if loads and masses contradict each other.
+    /// [`TableError::TooFewLoads`] with fewer than two loads above zero, [`TableError::Unrelated`] if the readings do
+    /// not follow the loads, [`TableError::LoadUnit`] if loads and masses contradict each other.
     pub fn require_baseline(&self, file: &str) -> Result<(), TableError> {
         let mut loads: Vec<f64> = self.rows.iter().map(|r| r.load_n).filter(|n| *n > 0.0).collect();
         loads.sort_by(f64::total_cmp);
@@ -61,8 +62,8 @@ impl PlateauTable {
         (!factors.is_empty()).then(|| median(&mut factors))
     }
 
-    /// Newtons of reading per newton of load in one direction, from the medians of the lightest and the heaviest quarter
-    /// of its rows; `None` if their loads are too alike to tell.
+    /// Newtons of reading per newton of load in one direction, from the medians of the lightest and the heaviest
+    /// quarter of its rows; `None` if their loads are too alike to tell.
     fn slope(&self, direction: Direction) -> Option<f64> {
         let of = self.rows.iter().filter(|r| r.direction == direction);
         let mut rows: Vec<(f64, f64)> = of.map(|r| (r.load_n, r.force_n)).collect();

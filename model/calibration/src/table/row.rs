@@ -1,8 +1,7 @@
 //! One repetition: the force the load cell settles to after the actuator stops (`model/doc/file-formats.md`).
 
-use serde::{Deserialize, Serialize};
-
 use pinswitch_friction::{Direction, Substrate};
+use serde::{Deserialize, Serialize};
 
 /// Order of the loads in the sweep that a series belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -139,8 +139,8 @@ mod tests {
     use super::*;
     use crate::published;
 
-    /// `model/doc/friction-laws.md`: the maxima come out at 0.0 / +6.5 / -3.4 %; its constants are printed to three digits,
-    /// which leaves 0.7 % open.
+    /// `model/doc/friction-laws.md`: the maxima come out at 0.0 / +6.5 / -3.4 %; its constants are printed to three
+    /// digits, which leaves 0.7 % open.
     #[test]
     fn describes_the_three_published_maxima() {
         let errors: Vec<_> = published::LAYOUTS

@@ -147,8 +147,8 @@ fn by_support(contact: &Contact) -> Vec<Law> {
 }
 
 /// The law that is best supported for a contact: the paper's own where it measured; between its layouts the layout law,
-/// whose error on devices left out is smaller (6 % against 8 %); physics for pins on the proxy, and wherever the layout law
-/// would be a guess, because it alone knows of uneven, off-centre and single pins.
+/// whose error on devices left out is smaller (6 % against 8 %); physics for pins on the proxy, and wherever the layout
+/// law would be a guess, because it alone knows of uneven, off-centre and single pins.
 pub fn best_law(contact: &Contact) -> Law {
     by_support(contact).first().copied().unwrap_or(Law::Paper)
 }

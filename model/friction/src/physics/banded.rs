@@ -1,4 +1,4 @@
-//! Symmetric positive definite systems with two off-diagonals: what a bent string on a foundation gives.
+//! Symmetric positive definite systems with two off-diagonals: those of a bent string on a foundation.
 
 /// A symmetric matrix of half-bandwidth 2, row by row: diagonal, and the entries one and two columns to the right.
 #[derive(Clone, Debug, Default, PartialEq)]

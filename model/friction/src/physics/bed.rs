@@ -50,8 +50,8 @@ pub fn modulus_of_shore_a_mpa(shore_a: f64) -> f64 {
 }
 
 impl Bed {
-    /// The bed of the paper (`model/doc/friction-laws.md`): 2 mm of silicone on a shell of 20 mm, pins of 0.94 mm, tendon of
-    /// 1.7 mm over its coating.
+    /// The bed of the paper (`model/doc/friction-laws.md`): 2 mm of silicone on a shell of 20 mm, pins of 0.94 mm,
+    /// tendon of 1.7 mm over its coating.
     pub fn published() -> Self {
         Self {
             contact_radius_mm: 22.0,

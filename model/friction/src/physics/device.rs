@@ -13,7 +13,8 @@ use crate::published;
 use crate::trust::EXTRAPOLATED_SPREAD;
 use crate::{Contact, Direction, FrictionCurve, Law, Substrate, SwitchState, Trust, capstan_tension_n};
 
-/// Elements over the wrap: sixteen times as many move the friction of the published layouts by less than 0.1 % (a test).
+/// Elements over the wrap: sixteen times as many move the friction of the published layouts by less than 0.1 % (a
+/// test).
 const ELEMENTS: usize = 60;
 /// Share of cases that a band should hold.
 const CONFIDENCE: f64 = 0.95;
@@ -158,8 +159,8 @@ impl PhysicsSwitch {
     }
 
     /// Sensitivities of `ln D` to the logarithms of the constants, load by load; zero where there is no friction. The
-    /// exponents are proportional to `kappa` and `mu_s` but for the feedback of tension on shape, which is left out; the
-    /// flush force moves the shape, and takes a second curve.
+    /// exponents are proportional to `kappa` and `mu_s` but for the feedback of tension on shape, which is left out;
+    /// the flush force moves the shape, and takes a second curve.
     fn sensitivities(&self, loads_n: &[f64], points: &[Point]) -> Result<Vec<Vector3<f64>>, PhysicsError> {
         let mut at = self.constants.logarithms();
         at[2] += STEP;
@@ -223,8 +224,8 @@ pub fn physics_curve(contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve
     let states: Vec<SwitchState> = points.iter().map(|p| p.state).collect();
     let (trust, mut reasons) = crate::trust::trust(contact);
     let own = if trust == Trust::Published { fit.scatter } else { fit.left_out_rms };
-    // Outside what was measured every law is a guess to 40 % (`model/doc/friction-laws.md`): how stiffness and ploughing follow the
-    // materials is assumed, and no measured layout comes near.
+    // Outside what was measured every law is a guess to 40 % (`model/doc/friction-laws.md`): how stiffness and
+    // ploughing follow the materials is assumed, and no measured layout comes near.
     let guess = if trust == Trust::Extrapolated { (1.0 + EXTRAPOLATED_SPREAD).ln() } else { 0.0 };
     let covariance = Matrix3::from_row_slice(&fit.covariance.concat());
     let quantile =

@@ -1,6 +1,7 @@
 //! The tendon's shape under a given tension: a string, stiff if wanted, over sinking pins on a foundation.
 //!
-//! Minimises the energy of `model/doc/friction-laws.md` over the gap `u` between the tendon's underside and the undeformed silicone:
+//! Minimises the energy of `model/doc/friction-laws.md` over the gap `u` between the tendon's underside and the
+//! undeformed silicone:
 //!
 //! `E = int [T/2 u'^2 - T u^2/(2 Rc^2) + T u/Rc + EI/2 (u'' + u/Rc^2 - 1/Rc)^2 + k_s/2 <-u>^2] ds + sum W(<h0 - u_i>)`
 //!

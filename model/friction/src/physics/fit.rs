@@ -66,7 +66,7 @@ pub(super) struct Maximum {
     pub(super) friction_n: f64,
 }
 
-/// The seven maxima, all at the heaviest load; `wrap` gives the angle in radians over which the tendon turns.
+/// The seven maxima, all at the heaviest load; `wrap` returns the angle in radians over which the tendon turns.
 pub(super) fn published_maxima(wrap: impl Fn(&PinPattern) -> f64) -> Vec<Maximum> {
     let of = |name: String, layout, substrate, pins: PinPattern, friction_n| {
         let wrap = wrap(&pins);

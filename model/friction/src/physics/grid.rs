@@ -1,4 +1,5 @@
-//! Nodes along the wrap: one at every pin, so that the tendon's kinks lie on nodes and refinement converges in second order.
+//! Nodes along the wrap: one at every pin, so that the tendon's kinks lie on nodes and refinement converges in second
+//! order.
 
 use super::{Bed, OutsidePins};
 use crate::published;
@@ -22,7 +23,8 @@ pub(super) struct Grid {
 const SAME_RAD: f64 = 1e-9;
 
 impl Grid {
-    /// Nodes over `wrap_rad`, about `wrap_rad / elements` apart, with one at each of `pins_rad` (ascending, within the wrap).
+    /// Nodes over `wrap_rad`, about `wrap_rad / elements` apart, with one at each of `pins_rad` (ascending, within the
+    /// wrap).
     pub(super) fn new(wrap_rad: f64, pins_rad: &[f64], bed: &Bed, elements: usize) -> Self {
         let half = wrap_rad / 2.0;
         let inside: Vec<f64> = pins_rad.iter().map(|p| p.clamp(-half, half)).collect();

@@ -1,8 +1,8 @@
 //! What the tendon does outside the pins: hypotheses against every fact that the paper prints.
 //!
 //! The wrap is 63.89 degrees, the pins span 24 to 60, and the paper does not say what the tendon does on the rest. Each
-//! hypothesis gets the three constants that fit the seven maxima best, and is then asked about the facts that no constant
-//! was fitted to.
+//! hypothesis gets the three constants that fit the seven maxima best, and is then asked about the facts that no
+//! constant was fitted to.
 
 use serde::Serialize;
 
@@ -11,8 +11,8 @@ use super::{Bed, Constants, OutsidePins, PhysicsSwitch};
 use crate::published::{self, LAYOUTS};
 use crate::{Contact, PinPattern, Substrate};
 
-/// Bending stiffness of the stiff tendon. The coating's tube alone, 1.2 to 1.7 mm of PA12 at 1.4 GPa, would have 430 N mm²
-/// when perfectly bonded; strands that slip and a coating that creeps leave less. 120 puts the onset nearest to the
+/// Bending stiffness of the stiff tendon. The coating's tube alone, 1.2 to 1.7 mm of PA12 at 1.4 GPa, would have 430 N
+/// mm² when perfectly bonded; strands that slip and a coating that creeps leave less. 120 puts the onset nearest to the
 /// printed one.
 pub(super) const STIFF_N_MM2: f64 = 120.0;
 /// Root mean square error on the maxima beyond which a hypothesis falls.

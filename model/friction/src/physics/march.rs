@@ -1,8 +1,8 @@
 //! Tension marched along the wrap, from the load to the motor, in one direction of motion.
 //!
 //! A contact that turns the tendon by `theta` raises the friction exponent by `kappa sqrt(T theta) theta` at a pin
-//! (ploughing of the coating, `model/doc/friction-laws.md`: `mu = kappa sqrt(N)`) and by `mu_s theta` on the silicone; `T` is the local
-//! tension. Shape and tension depend on each other, and are found in turn until neither changes.
+//! (ploughing of the coating, `model/doc/friction-laws.md`: `mu = kappa sqrt(N)`) and by `mu_s theta` on the silicone;
+//! `T` is the local tension. Shape and tension depend on each other, and are found in turn until neither changes.
 
 use super::equilibrium::{Equilibrium, Supports};
 use super::{Constants, PhysicsError};

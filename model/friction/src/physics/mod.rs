@@ -1,9 +1,9 @@
 //! Friction from physics: a string over sinking pins on a silicone foundation, for any layout.
 //!
 //! The paper's equation cannot predict a layout that it was not fitted to. This model can: the tendon's shape follows
-//! from a balance of forces (`equilibrium.rs`, `model/doc/friction-laws.md`), each contact's friction from its force (`march.rs`), and three
-//! constants fitted to the published maxima (`fit.rs`) carry the materials. What it does not explain stands in
-//! [`hypotheses`] and in every curve's reasons.
+//! from a balance of forces (`equilibrium.rs`, `model/doc/friction-laws.md`), each contact's friction from its force
+//! (`march.rs`), and three constants fitted to the published maxima (`fit.rs`) carry the materials. What it does not
+//! explain stands in [`hypotheses`] and in every curve's reasons.
 
 mod banded;
 mod bed;

@@ -1,4 +1,5 @@
-//! The physics against the regression values of `model/doc/friction-laws.md`, its own invariants, and the published maxima.
+//! The physics against the regression values of `model/doc/friction-laws.md`, its own invariants, and the published
+//! maxima.
 
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
@@ -23,7 +24,8 @@ fn device(pins: PinPattern) -> Contact {
     Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap()
 }
 
-/// The bed of the regression values of `model/doc/friction-laws.md`: tendon radius 0.6, linear pins of 200 N/mm, silicone over the whole wrap.
+/// The bed of the regression values of `model/doc/friction-laws.md`: tendon radius 0.6, linear pins of 200 N/mm,
+/// silicone over the whole wrap.
 fn regression_bed() -> Bed {
     Bed { tendon_radius_mm: 0.6, softening: 0.0, outside: OutsidePins::OnSilicone, ..Bed::published() }
 }
@@ -39,8 +41,8 @@ fn slid(
     march::slide(march::Slide { supports, constants, wrap_rad, load_n, direction }, None).unwrap()
 }
 
-/// `model/doc/friction-laws.md`: half-layout pin forces six [7.05 10.05 10.20] N, silicone 0; three-double [16.54 15.49], 0.118;
-/// three-single [13.93 10.53], 0.302.
+/// `model/doc/friction-laws.md`: half-layout pin forces six [7.05 10.05 10.20] N, silicone 0; three-double [16.54
+/// 15.49], 0.118; three-single [13.93 10.53], 0.302.
 #[test]
 fn reproduces_the_regression_values() {
     let expected: [(&[f64], f64); 3] =
@@ -92,7 +94,7 @@ fn refinement_converges() {
     }
 }
 
-/// The constants in the code are what the fit gives, and so are the errors in the code.
+/// The constants in the code are what the fit returns, and so are the errors in the code.
 #[test]
 fn the_published_constants_are_the_fit() {
     let found = fit_maxima(&Bed::published()).unwrap();

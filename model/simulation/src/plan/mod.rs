@@ -34,7 +34,8 @@ pub struct EffectPlan {
     /// Its constants, in the order of its formula.
     #[serde(default)]
     pub values: Vec<f64>,
-    /// In which of its forms: 0 is that of `model/doc/effect-catalogue.md`, others bend otherwise than the model that is fitted.
+    /// In which of its forms: 0 is that of `model/doc/effect-catalogue.md`, others bend otherwise than the model that
+    /// is fitted.
     #[serde(default)]
     pub form: u8,
 }
@@ -100,7 +101,7 @@ pub struct Plan {
     pub proxy: bool,
     /// Weights in grams, ascending.
     pub weights_g: Vec<f64>,
-    /// Speeds in percent; the paper's protocol gives one to each weight.
+    /// Speeds in percent; the paper's protocol runs each weight at one of them.
     pub speeds_pct: Vec<f64>,
     /// Dwells in seconds; the paper's protocol uses the first.
     pub dwells_s: Vec<f64>,

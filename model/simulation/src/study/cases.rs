@@ -1,12 +1,12 @@
 //! Kinds of rig in the study, and the plan of each for a seed.
 
+use pinswitch_calibration::effects::{CATALOGUE, Covariate, PaperProtocol, effect_named};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
 use crate::effect_forms::forms_of;
 use crate::plan::{EffectPlan, Plan, Protocol};
-use pinswitch_calibration::effects::{CATALOGUE, Covariate, PaperProtocol, effect_named};
 
 /// What is true of a rig.
 #[derive(Clone, Debug, PartialEq)]

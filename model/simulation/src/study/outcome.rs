@@ -1,8 +1,5 @@
 //! What the calibrator says of one simulated rig, against the truth.
 
-use super::cases::{Case, Truth, plan_of};
-use crate::plan::Plan;
-use crate::simulate::simulate;
 use pinswitch_calibration::Verdict;
 use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 use pinswitch_calibration::inference::{
@@ -10,6 +7,10 @@ use pinswitch_calibration::inference::{
     interval_half_widths, select,
 };
 use pinswitch_calibration::table::{Frame, PlateauTable};
+
+use super::cases::{Case, Truth, plan_of};
+use crate::plan::Plan;
+use crate::simulate::simulate;
 
 /// What the calibrator said of one rig.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +25,8 @@ pub struct Outcome {
     pub exact: bool,
     /// Whether every true effect is named or among the rivals, and nothing else stands alone.
     pub honest: bool,
-    /// For each size of a true effect in the form of `model/doc/effect-catalogue.md`: whether its 95 % interval holds it.
+    /// For each size of a true effect in the form of `model/doc/effect-catalogue.md`: whether its 95 % interval holds
+    /// it.
     pub covered: Vec<bool>,
     /// Largest gain over the vocabulary on top of the baseline, in whitened squares.
     pub largest_gain: f64,

@@ -1,8 +1,9 @@
 //! Friction at the contact: pins, silicone and the switch between them, with what the paper's model lacks.
 
+use pinswitch_friction::{LayoutLaw, Substrate, published};
+
 use super::{F0_N, Moment, settling};
 use crate::plan::Plan;
-use pinswitch_friction::{LayoutLaw, Substrate, published};
 
 /// One kind of contact.
 #[derive(Clone, Debug)]

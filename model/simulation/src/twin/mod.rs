@@ -9,13 +9,14 @@ mod contact;
 
 use std::collections::BTreeMap;
 
-use crate::effect_forms::has_own_formula;
-use crate::plan::Plan;
 use contact::TwinContact;
 use pinswitch_calibration::effects::effect_named;
 use pinswitch_calibration::inference::{Model, Term};
 use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_friction::published;
+
+use crate::effect_forms::has_own_formula;
+use crate::plan::Plan;
 
 /// Reference load in newtons (`model/doc/effect-catalogue.md`).
 const F0_N: f64 = 50.0;
@@ -155,7 +156,8 @@ mod tests {
     use crate::plan::EffectPlan;
     use pinswitch_calibration::effects::CATALOGUE;
 
-    /// Two implementations of `model/doc/effect-catalogue.md`, the twin's and the fitter's, agree on form 0 of every effect.
+    /// Two implementations of `model/doc/effect-catalogue.md`, the twin's and the fitter's, agree on form 0 of every
+    /// effect.
     #[test]
     fn the_first_form_of_every_effect_is_the_fitters() {
         for effect in CATALOGUE {

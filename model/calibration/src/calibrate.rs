@@ -6,7 +6,7 @@ use crate::effects::CATALOGUE;
 use crate::held_out::{SOUND_WEIGHT, held_out};
 use crate::inference::{
     CandidateEffect, Fit, FoundEffect, Levels, Model, Noise, Observations, Rival, Selection, Term,
-    cell_deviation, degrees_of_freedom, family_p_value, interval_half_widths, select,
+    UNATTRIBUTED, cell_deviation, degrees_of_freedom, family_p_value, interval_half_widths, select,
 };
 use crate::layouts_left_out::layouts_left_out;
 use crate::report::{
@@ -186,8 +186,9 @@ fn invisible(selection: &Selection) -> Vec<Invisible> {
                     "the refitted baseline takes it over".to_owned()
                 } else {
                     format!(
-                        "at a typical size it makes {:.1} standard deviations, 4 are needed",
-                        candidate.strength
+                        "at a typical size it makes {:.1} standard deviations, {} are needed",
+                        candidate.strength,
+                        CandidateEffect::MIN_STRENGTH
                     )
                 },
                 experiment: told.experiment.to_owned(),
@@ -308,7 +309,7 @@ fn unnamed_report(
         .collect();
     let bare = shapes.iter().rev().fold(model.clone(), |m, (i, _)| m.without_term(*i));
     Some(EffectReport {
-        id: "unattributed".to_owned(),
+        id: UNATTRIBUTED.to_owned(),
         covariate: structure.covariate.as_str().to_owned(),
         side: None,
         formula: shapes.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; "),
@@ -316,7 +317,7 @@ fn unnamed_report(
         parameters: augmented
             .parameters
             .iter()
-            .filter(|(name, _)| name.starts_with("unattributed."))
+            .filter(|(name, _)| name.starts_with(UNATTRIBUTED))
             .map(|(name, e)| (name.clone(), e.clone()))
             .collect(),
         error_before_n: held_out(&bare, data, selection.noise).both_n(),
@@ -325,7 +326,12 @@ fn unnamed_report(
     })
 }
 
-/// Cells whose mean residual is beyond 4.5 standard deviations, or that hold a reading beyond 20.
+/// Mean residual of a series and direction, in standard deviations, beyond which it is listed as bad.
+const BAD_SERIES_SD: f64 = 4.5;
+/// Readings further off than this many standard deviations of noise are bad ones.
+pub(crate) const BAD_READING_SD: f64 = 20.0;
+
+/// Series whose mean residual, or one reading, is further off than noise can make it.
 fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Vec<BadSeries> {
     let mut bad = Vec::new();
     for (index, (cell, load)) in data.cells.iter().zip(&data.cell_load_n).enumerate() {
@@ -335,9 +341,9 @@ fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -
             .map(|r| selection.augmented.residual_n[*r])
             .fold(0.0f64, |a, b| if b.abs() > a.abs() { b } else { a });
         let reading_sd = selection.noise.at(*load);
-        let (offset_n, sd) = if mean.abs() > 4.5 * sd {
+        let (offset_n, sd) = if mean.abs() > BAD_SERIES_SD * sd {
             (mean, sd)
-        } else if worst.abs() > 20.0 * reading_sd {
+        } else if worst.abs() > BAD_READING_SD * reading_sd {
             (worst, reading_sd)
         } else {
             continue;

@@ -1,13 +1,10 @@
 //! Fitted at low loads, judged at higher ones.
 
-use crate::calibrate::{Calibration, CalibrationError, calibrate};
+use crate::calibrate::{BAD_READING_SD, Calibration, CalibrationError, calibrate};
 use crate::inference::{Levels, Model};
 use crate::median::median;
 use crate::report::Extrapolation;
 use crate::table::PlateauRow;
-
-/// Readings further off than this many standard deviations of noise are bad ones.
-const BAD_SD: f64 = 20.0;
 
 /// Calibrates on loads up to a share of the highest one and judges both models on the rest.
 ///
@@ -31,7 +28,7 @@ pub fn calibrate_below(
     let sound: Vec<f64> = after
         .iter()
         .zip(&rest)
-        .filter(|(miss, r)| miss.abs() <= BAD_SD * selection.noise.at(r.load_n))
+        .filter(|(miss, r)| miss.abs() <= BAD_READING_SD * selection.noise.at(r.load_n))
         .map(|(miss, _)| *miss)
         .collect();
     calibration.report.extrapolation = Some(Extrapolation {

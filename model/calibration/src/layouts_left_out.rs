@@ -24,7 +24,7 @@ pub fn layouts_left_out(model: &Model, data: &Observations, noise: Noise) -> Opt
             .iter()
             .filter(|c| c.pins == pins)
             .filter_map(|c| c.device)
-            .flat_map(|d| [2 + 2 * d, 3 + 2 * d])
+            .flat_map(Model::device_constants)
             .collect();
         let hidden = data.subset(inside);
         // The layout's own constants start from the layout law: the fit of the others has not seen them.

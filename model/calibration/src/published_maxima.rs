@@ -33,6 +33,9 @@ enum Pins {
     Stiffening,
 }
 
+/// Turn per pin to which the coefficient of bending refers: 20 degrees.
+const TYPICAL_TURN_RAD: f64 = 0.349;
+
 /// One published maximum.
 struct Maximum {
     layout: Option<usize>,
@@ -85,7 +88,7 @@ fn pins_exponent(kind: Pins, factor: f64, layout: &PublishedLayout, load_n: f64,
                 * load_n.sqrt()
                 * Condition::ploughing_sum(layout.grooves, wrap)
         }
-        Pins::Bending => published::MU_PINS * factor * wrap * (wrap / layout.pins as f64) / 0.349,
+        Pins::Bending => published::MU_PINS * factor * wrap * (wrap / layout.pins as f64) / TYPICAL_TURN_RAD,
     }
 }
 

@@ -12,7 +12,8 @@ pub(super) fn fit_baseline(model: &Model, data: &Observations, noise: Noise) -> 
     for factor in [0.75f64, 1.3] {
         let mut other = best.model.clone();
         for device in 0..other.frame.devices() {
-            other.coordinates[2 + 2 * device] += factor.ln();
+            let [half_load, _] = Model::device_constants(device);
+            other.coordinates[half_load] += factor.ln();
         }
         let other = fit(&other, data, noise);
         if other.cost < best.cost {

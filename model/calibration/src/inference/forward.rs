@@ -5,6 +5,9 @@ use pinswitch_friction::{LayoutLaw, Substrate, published};
 use crate::effects::{ContactState, Effect, Side, Stage, Structure};
 use crate::table::{Condition, Frame, Point};
 
+/// Id of a structure that no named effect explains.
+pub const UNATTRIBUTED: &str = "unattributed";
+
 /// One term on top of the paper's model.
 #[derive(Clone, Debug)]
 pub enum Term {
@@ -19,7 +22,7 @@ impl Term {
     pub fn id(&self) -> &'static str {
         match self {
             Term::Named(effect) => effect.id(),
-            Term::Structure(_) => "unattributed",
+            Term::Structure(_) => UNATTRIBUTED,
         }
     }
 
@@ -173,6 +176,11 @@ impl Model {
         self.coordinates.len() - self.terms.iter().map(Term::constants).sum::<usize>()
     }
 
+    /// Places of a device's half load and steepness among the constants.
+    pub fn device_constants(device: usize) -> [usize; 2] {
+        [2 + 2 * device, 3 + 2 * device]
+    }
+
     pub(crate) fn priors(&self) -> &[Prior] {
         &self.priors
     }
@@ -196,7 +204,7 @@ impl Model {
                 ),
                 Term::Structure(structure) => {
                     structures += 1;
-                    names.push((format!("unattributed.{structures}"), structure.unit()));
+                    names.push((format!("{UNATTRIBUTED}.{structures}"), structure.unit()));
                 }
             }
         }
@@ -320,7 +328,8 @@ impl Model {
                 let Some(d) = condition.device else {
                     return f64::from(u8::from(condition.substrate == Some(Substrate::Silicone)));
                 };
-                let s = 1.0 / (1.0 + (-values[3 + 2 * d] * (p.load_n / values[2 + 2 * d] - 1.0)).exp());
+                let [half_load, steepness] = Self::device_constants(d).map(|i| values[i]);
+                let s = 1.0 / (1.0 + (-steepness * (p.load_n / half_load - 1.0)).exp());
                 let silicone = (1.0 - condition.weight) * s * (values[1] * condition.wrap_rad).sinh();
                 let pins = (1.0 + condition.weight) * (1.0 - s) * (values[0] * condition.wrap_rad).sinh();
                 silicone / (silicone + pins).max(1e-300)
@@ -331,8 +340,8 @@ impl Model {
     fn read(&self, values: &[f64], offsets: &[usize], point: &Point, part_only: bool) -> f64 {
         let condition: &Condition = &self.frame.conditions[point.condition];
         let plain = self.plain[point.condition];
-        let (half_load_n, steepness) =
-            condition.device.map_or((1.0, 1.0), |d| (values[2 + 2 * d], values[3 + 2 * d]));
+        let [half_load_n, steepness] =
+            condition.device.map_or([1.0, 1.0], |d| Self::device_constants(d).map(|i| values[i]));
         let mut state = ContactState {
             load_n: point.load_n,
             wrap_rad: condition.wrap_rad,

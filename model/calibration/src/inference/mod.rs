@@ -21,7 +21,7 @@ mod structures;
 mod unnamed;
 
 pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_sd_n};
-pub use forward::{Model, Term};
+pub use forward::{Model, Term, UNATTRIBUTED};
 pub(crate) use isolation::cell_deviation;
 pub use levels::Levels;
 pub use noise::{Noise, Spread};

@@ -13,9 +13,6 @@ use super::search::{VISIBLE_SHARE, flips, possible, search};
 use super::unnamed::{Context, FoundStructure};
 use crate::effects::{Effect, acting_order};
 
-/// Strength, in standard deviations at a typical size, below which an effect counts as invisible.
-const MIN_STRENGTH: f64 = 4.0;
-
 /// An effect that explains what a named one explains as well.
 #[derive(Clone, Debug)]
 pub struct Rival {
@@ -66,9 +63,12 @@ pub struct CandidateEffect {
 }
 
 impl CandidateEffect {
+    /// Strength, in standard deviations at a typical size, below which an effect counts as invisible.
+    pub const MIN_STRENGTH: f64 = 4.0;
+
     /// Whether the data cannot show it, at a typical size.
     pub fn is_invisible(&self) -> bool {
-        self.is_taken_over() || self.strength < MIN_STRENGTH
+        self.is_taken_over() || self.strength < Self::MIN_STRENGTH
     }
 
     /// Whether the refitted baseline takes its trace over.

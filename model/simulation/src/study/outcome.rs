@@ -3,7 +3,7 @@
 use pinswitch_calibration::Verdict;
 use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 use pinswitch_calibration::inference::{
-    FoundEffect, Levels, Model, Observations, Selection, degrees_of_freedom, family_p_value,
+    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, degrees_of_freedom, family_p_value,
     interval_half_widths, select,
 };
 use pinswitch_calibration::table::{Frame, PlateauTable};
@@ -55,7 +55,7 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<Outcome> {
     let sets: Vec<Vec<&str>> = found.effects.iter().map(FoundEffect::ids).collect();
     let verdict = Verdict::of(&found);
     let mut named: Vec<String> = sets.iter().map(|s| s.join("|")).collect();
-    named.extend(found.structure.map(|s| format!("unattributed:{}", s.covariate.as_str())));
+    named.extend(found.structure.map(|s| format!("{UNATTRIBUTED}:{}", s.covariate.as_str())));
     named.sort();
     let holds = |truth: &[&str]| {
         found.structure.is_none()

@@ -92,8 +92,9 @@ fn add_lent_traces(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) 
     let mut values = model.values();
     (values[0], values[1]) = (plan.constants.mu_p, plan.constants.mu_s);
     for device in 0..model.frame.devices() {
-        values[2 + 2 * device] *= plan.constants.half_load_factor.get(device).copied().unwrap_or(1.0);
-        values[3 + 2 * device] = plan.constants.steepness_of(device);
+        let [half_load, steepness] = Model::device_constants(device);
+        values[half_load] *= plan.constants.half_load_factor.get(device).copied().unwrap_or(1.0);
+        values[steepness] = plan.constants.steepness_of(device);
     }
     model.set_values(&values);
     let without = model.predict(&points);

@@ -359,3 +359,33 @@ fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -
     }
     bad
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_session::session;
+
+    fn fates(levels: Levels) -> Vec<Fate> {
+        let report = calibrate(&session(3), levels).unwrap().report;
+        assert_eq!(report.candidates.len(), CATALOGUE.len());
+        report.candidates.iter().map(|c| c.fate).collect()
+    }
+
+    /// The level at which a gain counts as more than chance is the caller's, in the search and in the report alike.
+    #[test]
+    fn the_fate_of_a_candidate_follows_the_levels_given() {
+        let usual = fates(Levels::default());
+        assert!(usual.contains(&Fate::Chance) && usual.contains(&Fate::Invisible), "{usual:?}");
+        assert!(!usual.contains(&Fate::Superfluous), "{usual:?}");
+        // Flips at zero keep the search from naming anything; what chance could explain is then the level's to say.
+        let credulous = fates(Levels { first_p: 1.0, flips: 0.0, ..Levels::default() });
+        assert!(!credulous.contains(&Fate::Chance), "{credulous:?}");
+    }
+
+    #[test]
+    fn rows_that_cannot_fix_the_baseline_are_refused_with_the_number_that_could() {
+        let rows = session(1);
+        let error = calibrate(&rows[..5], Levels::default()).unwrap_err();
+        assert_eq!(error, CalibrationError::TooFewRows { found: 5, needed: 2 + ROWS_FOR_NOISE });
+    }
+}

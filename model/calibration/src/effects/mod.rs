@@ -78,6 +78,57 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 }
 
 /// A named effect: what is said of it, where a fit of it starts, and where it enters the forward model.
+///
+/// ```
+/// use pinswitch_calibration::effects::{
+///     Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+/// };
+/// use pinswitch_calibration::inference::{Model, Term};
+/// use pinswitch_calibration::table::{Frame, PlateauTable, Point};
+///
+/// /// The cell reads too much after a long pause.
+/// #[derive(Debug)]
+/// struct Creep;
+///
+/// static CREEP: Description = Description {
+///     id: "cell_creep",
+///     side: Side::Rig,
+///     covariate: Covariate::Dwell,
+///     stage: Stage::CellScale,
+///     formula: "reading (1 + k ln(dwell / 3 s))",
+///     parameters: &[Parameter::free("k", "1")],
+///     one_sided: true,
+///     scales: true,
+///     confused_with: &["dwell_relaxation"],
+///     experiment: "dead weights with two pauses",
+///     invisible_because: "the dwell time never varies",
+///     study: StudyRange { size: Some((0.01, 0.05)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
+/// };
+///
+/// impl Effect for Creep {
+///     fn description(&self) -> &'static Description {
+///         &CREEP
+///     }
+///
+///     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+///         vec![vec![0.02]]
+///     }
+///
+///     fn on_reading(&self, k: &[f64], point: &Point, reading_n: f64) -> f64 {
+///         reading_n * (1.0 + k[0] * point.log_dwell)
+///     }
+/// }
+///
+/// let csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N
+/// a,silicone,,up,0,20,50,30,concentric,1,12.7,4.5,0
+/// ";
+/// let rows = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?.rows;
+/// let model = Model::baseline(Frame::new(&rows));
+/// let points = model.frame.points(&rows).ok_or("a condition is new")?;
+/// let with = model.with_term(Term::Named(&Creep), &[0.02]).predict(&points)[0];
+/// assert!((with / model.predict(&points)[0] - (1.0 + 0.02 * 10f64.ln())).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Effect: Debug + Sync {
     /// What is known and said of it.
     fn description(&self) -> &'static Description;

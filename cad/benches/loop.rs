@@ -6,10 +6,10 @@ use std::io::Read;
 use std::path::Path;
 
 use divan::{Bencher, black_box};
-use pinswitch_model::calibration::calibrate;
-use pinswitch_model::inference::Levels;
-use pinswitch_model::rig::PlateauTable;
-use pinswitch_model::segmentation::{Log, Rig, segment};
+use pinswitch_calibration::calibrate;
+use pinswitch_calibration::inference::Levels;
+use pinswitch_calibration::segmentation::{Log, Rig, segment};
+use pinswitch_calibration::table::PlateauTable;
 
 fn main() {
     divan::main();

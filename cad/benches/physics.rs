@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use divan::Bencher;
-use pinswitch_model::layout_search::Search;
-use pinswitch_model::physics::{Bed, Constants, PhysicsSwitch, physics_curve};
-use pinswitch_model::published::{self, LAYOUTS};
-use pinswitch_model::{Contact, PinPattern, Substrate};
+use pinswitch_friction::layout_search::Search;
+use pinswitch_friction::physics::{Bed, Constants, PhysicsSwitch, physics_curve};
+use pinswitch_friction::published::{self, LAYOUTS};
+use pinswitch_friction::{Contact, PinPattern, Substrate};
 
 fn main() {
     divan::main();

@@ -4,9 +4,10 @@
 use std::io::Cursor;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use pinswitch_friction::Substrate;
 use pinswitch_solid::files::{read_stl, stl_bytes};
 use pinswitch_solid::validity::examine;
-use pinswitch_switch::config::{Configuration, MouldKind, SlotKind, Slots, SubstrateKind, read, to_toml};
+use pinswitch_switch::config::{Configuration, MouldKind, SlotKind, Slots, read, to_toml};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::parts::{Part, printed, reference_bodies};
 use proptest::prelude::*;
@@ -80,7 +81,7 @@ fn configurations() -> impl Strategy<Value = Configuration> {
         c.mould.kind = [MouldKind::Split, MouldKind::OnePiece, MouldKind::None][mould];
         c.mould.draft_deg = draft;
         c.mould.shrinkage_pct = shrinkage;
-        c.layout.substrate = [SubstrateKind::Silicone, SubstrateKind::Abs][substrate];
+        c.layout.substrate = [Substrate::Silicone, Substrate::Abs][substrate];
         c.fasteners.count = fasteners;
         c.print.elephant_foot_mm = if foot < 0.2 { 0.0 } else { foot - 0.2 };
         c.print.least_wall_mm = least_wall;

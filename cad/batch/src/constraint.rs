@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use exmex::{BinOp, Express, FlatEx, MakeOperators, Operator, Val, ValMatcher, ValOpsFactory};
-use pinswitch_model::{FrictionCurve, Transition};
+use pinswitch_friction::{FrictionCurve, Transition};
 
 use super::axis::config_error;
 use pinswitch_switch::config::{ConfigError, Configuration};

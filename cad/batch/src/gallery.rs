@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::table::{Cell, Row, Schema};
 use super::variant::Variants;
-use pinswitch_model::predict;
+use pinswitch_friction::predict;
 use pinswitch_switch::design::Design;
 
 /// Most variants that are shown; beyond it every second, third, ... one is.

@@ -8,7 +8,7 @@ use super::destination::{Destination, DestinationError};
 use super::hexadecimal;
 use super::sweep::Sweep;
 use super::variant::{Variant, Variants};
-use pinswitch_model::FrictionCurve;
+use pinswitch_friction::FrictionCurve;
 use pinswitch_switch::built::BuildError;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pinswitch_model::calibration::{
+use pinswitch_calibration::inference::Levels;
+use pinswitch_calibration::table::PlateauTable;
+use pinswitch_calibration::{
     Calibration, ModelFile, Report, Verdict, calibrate, calibrate_below, explain_published,
 };
-use pinswitch_model::inference::Levels;
-use pinswitch_model::rig::PlateauTable;
 
 use super::{Failure, print};
 use crate::write::write_set;

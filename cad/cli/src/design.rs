@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_model::layout_search::{Candidate, MOST_GROOVES, Wanted};
+use pinswitch_friction::layout_search::{LayoutCandidate, MAX_GROOVES, Wanted};
 use serde::Serialize;
 
 use super::range::Range;
@@ -76,10 +76,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     let search = search_for(&design, pins);
-    if search.grooves.len() > MOST_GROOVES {
+    if search.grooves.len() > MAX_GROOVES {
         return Err(Failure::bad_input(format!(
             "segment.grooves: the tendon touches {} grooves, and 2^{0} patterns are too many; lower segment.grooves until \
-             it touches {MOST_GROOVES} or fewer",
+             it touches {MAX_GROOVES} or fewer",
             search.grooves.len()
         )));
     }
@@ -144,10 +144,10 @@ fn files(found: &SearchResult, report: &Report<'_>) -> Result<Vec<OutputFile>, F
             OutputFile { name: format!("design-{}.toml", i + 1), bytes: to_toml(&configuration).into_bytes() }
         })
         .collect();
-    let chosen: Vec<Candidate> = found
+    let chosen: Vec<LayoutCandidate> = found
         .proposals
         .iter()
-        .map(|p| Candidate {
+        .map(|p| LayoutCandidate {
             pins: p.pins.clone(),
             threshold_n: p.transition.map(|t| t.threshold_n),
             friction_n: p.friction_n,
@@ -174,7 +174,7 @@ fn table(proposals: &[Proposal]) -> String {
         let within = if p.within_band { "yes" } else { "no" };
         let trust = format!("{:?}", p.trust).to_lowercase();
         text += &format!("{:>3}  {threshold:<26} {friction:<26} {within:<7} {trust:<13} {:?}", i + 1, p.pins);
-        text += &if (p.span_deg - pinswitch_model::published::SEGMENT_DEG).abs() > 1e-9 {
+        text += &if (p.span_deg - pinswitch_friction::published::SEGMENT_DEG).abs() > 1e-9 {
             format!(" over {:.2} deg\n", p.span_deg)
         } else {
             "\n".to_owned()

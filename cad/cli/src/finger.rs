@@ -1,8 +1,8 @@
 //! `pinswitch finger`: what a switch buys a tendon-driven finger.
 
 use clap::Args;
-use pinswitch_model::finger::{FingerPoint, HUMAN_FINGER, finger};
-use pinswitch_model::{FrictionCurve, Law, Trust};
+use pinswitch_friction::finger::{FingerPoint, HUMAN_FINGER, finger};
+use pinswitch_friction::{FrictionCurve, Law, Trust};
 use serde::Serialize;
 
 use super::law::LawChoice;
@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.configs.iter().map(String::as_str).collect()
     };
     let layouts: Vec<Layout> =
-        names.iter().map(|name| layout(name, arguments.law)).collect::<Result<_, _>>()?;
+        names.iter().map(|name| layout(name, &arguments.law)).collect::<Result<_, _>>()?;
     if arguments.json {
         let report = Report { human_finger_extra_holding: [HUMAN_FINGER.0, HUMAN_FINGER.1], layouts };
         return print_json(&report);
@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(table(&layouts).as_bytes())
 }
 
-fn layout(name: &str, law: LawChoice) -> Result<Layout, Failure> {
+fn layout(name: &str, law: &LawChoice) -> Result<Layout, Failure> {
     let design: Design = Source::named(name).design()?;
     let curve: FrictionCurve = law.prediction(&design)?.curve;
     Ok(Layout {

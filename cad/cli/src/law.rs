@@ -1,28 +1,25 @@
 //! `--law`: which law makes the curve.
 
-use clap::{Args, ValueEnum};
-use pinswitch_model::{FrictionCurve, Law};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use pinswitch_friction::{FrictionCurve, Law};
 
 use super::Failure;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::prediction::Prediction;
 
 /// The law behind the curve.
-#[derive(Args, Clone, Copy, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(super) struct LawChoice {
     /// Law of the curve [default: the best supported for the layout].
-    #[arg(long, value_enum)]
-    law: Option<Name>,
+    #[arg(long, value_parser = laws())]
+    law: Option<String>,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Name {
-    /// Capstan and eq. 4 with the paper's constants: its three layouts only.
-    Paper,
-    /// The law fitted to the three layouts' thresholds: number and pitch of the pins.
-    Layout,
-    /// A string over sinking pins on silicone: any layout.
-    Physics,
+/// The laws that predict from a layout alone, by name.
+fn laws() -> PossibleValuesParser {
+    let values = Law::predictive().map(|law| PossibleValue::new(law.as_str()).help(law.summary()));
+    PossibleValuesParser::new(values)
 }
 
 impl LawChoice {
@@ -30,14 +27,12 @@ impl LawChoice {
     ///
     /// # Errors
     /// [`Failure::BadInput`] if the law does not apply to the layout.
-    pub(super) fn prediction(self, design: &Design) -> Result<Prediction, Failure> {
-        let law = match self.law {
-            None => return Ok(Prediction::of(design)),
-            Some(Name::Paper) => Law::Paper,
-            Some(Name::Layout) => Law::Layout,
-            Some(Name::Physics) => Law::Physics,
-        };
-        Prediction::by(law, design).map_err(|e| Failure::bad_input(format!("--law {}: {e}", law_name(law))))
+    pub(super) fn prediction(&self, design: &Design) -> Result<Prediction, Failure> {
+        match self.law.as_deref().and_then(Law::named) {
+            None => Ok(Prediction::of(design)),
+            Some(law) => Prediction::by(law, design)
+                .map_err(|e| Failure::bad_input(format!("--law {}: {e}", law.as_str()))),
+        }
     }
 }
 
@@ -45,16 +40,7 @@ impl LawChoice {
 pub(super) fn side_by_side(curve: &FrictionCurve, others: &[FrictionCurve]) -> String {
     let last = |c: &FrictionCurve| c.friction_n.last().copied().unwrap_or_default();
     let load = curve.load_n.last().copied().unwrap_or_default();
-    let beside: Vec<_> = others.iter().map(|c| format!("{} {:.2} N", law_name(c.law), last(c))).collect();
+    let beside: Vec<_> = others.iter().map(|c| format!("{} {:.2} N", c.law.as_str(), last(c))).collect();
     let tail = if beside.is_empty() { String::new() } else { format!(" ({})", beside.join(", ")) };
-    format!("law {}: {:.2} N of friction at {load:.2} N of load{tail}", law_name(curve.law), last(curve))
-}
-
-fn law_name(law: Law) -> &'static str {
-    match law {
-        Law::Paper => "paper",
-        Law::Layout => "layout",
-        Law::Physics => "physics",
-        Law::Calibrated => "calibrated",
-    }
+    format!("law {}: {:.2} N of friction at {load:.2} N of load{tail}", curve.law.as_str(), last(curve))
 }

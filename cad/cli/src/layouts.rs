@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::{Failure, print, print_json};
 use pinswitch_switch::templates::{TEMPLATES, TemplateKind};
 
-use pinswitch_model::published::{self, PublishedLayout};
+use pinswitch_friction::published::{self, PublishedLayout};
 
 /// List the published layouts and the templates that ship with the program.
 #[derive(Args, Debug)]

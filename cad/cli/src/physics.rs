@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_model::physics::hypotheses::{Finding, hypotheses};
-use pinswitch_model::physics::{
+use pinswitch_friction::physics::hypotheses::{HypothesisFinding, hypotheses};
+use pinswitch_friction::physics::{
     Bed, FitError, LayoutLeftOut, MaximaFit, contact_profile, fit_maxima, leave_one_layout_out,
 };
-use pinswitch_model::{Direction, Substrate};
+use pinswitch_friction::{Direction, Substrate};
 use serde::Serialize;
 
 use super::source::Source;
@@ -42,7 +42,7 @@ struct Report {
     bed: Bed,
     fit: MaximaFit,
     left_out: Vec<LayoutLeftOut>,
-    hypotheses: Vec<Finding>,
+    hypotheses: Vec<HypothesisFinding>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {

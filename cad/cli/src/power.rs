@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_model::inference::Levels;
-use pinswitch_model::simulation::{Plan, power};
+use pinswitch_calibration::inference::Levels;
+use pinswitch_simulation::{Plan, power};
 
 use super::{Failure, print, print_json};
 

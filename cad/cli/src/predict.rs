@@ -1,7 +1,7 @@
 //! `pinswitch predict CONFIG`.
 
 use clap::Args;
-use pinswitch_model::FrictionCurve;
+use pinswitch_friction::FrictionCurve;
 use serde::Serialize;
 
 use super::law::{LawChoice, side_by_side};

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
-use pinswitch_model::calibration::ModelFile;
-use pinswitch_model::rig::{PlateauTable, Surface};
-use pinswitch_model::{FrictionCurve, Substrate, published};
+use pinswitch_calibration::ModelFile;
+use pinswitch_calibration::table::PlateauTable;
+use pinswitch_friction::{FrictionCurve, published};
 
 use super::source::Source;
 use super::{Failure, print};
@@ -82,10 +82,7 @@ pub(super) fn calibrated_curve(design: &Design, model: &Path) -> Result<Friction
     let name = model.display().to_string();
     let text = std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
     let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
-    let surface = match design.contact().substrate() {
-        Substrate::Silicone => Surface::Silicone,
-        Substrate::Abs => Surface::Abs,
-    };
+    let substrate = design.contact().substrate();
     let wrap_deg = design.contact().wrap_rad().to_degrees();
     if (wrap_deg - published::WRAP_ANGLE_DEG).abs() > 0.005 {
         return Err(Failure::bad_input(format!(
@@ -95,5 +92,5 @@ pub(super) fn calibrated_curve(design: &Design, model: &Path) -> Result<Friction
     }
     let mut pins = design.configuration().layout.pins.clone();
     pins.sort_unstable();
-    file.part_curve(surface, &pins, &loads_n(design), &name).map_err(Failure::bad_input)
+    file.part_curve(substrate, &pins, &loads_n(design), &name).map_err(Failure::bad_input)
 }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use flate2::read::MultiGzDecoder;
-use pinswitch_model::rig::{PlateauRow, PlateauTable};
-use pinswitch_model::segmentation::{Log, RunPlan, Segmented, SeriesPlan, segment};
+use pinswitch_calibration::segmentation::{Log, RunPlan, Segmented, SeriesPlan, segment};
+use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use serde::Serialize;
 
 use super::{Failure, print};
@@ -36,7 +36,7 @@ struct Entry<'a> {
     file: &'a str,
     eccentric: usize,
     concentric: usize,
-    findings: &'a [pinswitch_model::segmentation::Finding],
+    findings: &'a [pinswitch_calibration::segmentation::Finding],
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -124,7 +124,7 @@ fn plateau_rows(
         .iter()
         .map(|p| PlateauRow {
             series: index.to_string(),
-            surface: series.substrate,
+            substrate: series.substrate,
             pins: series.pins.clone(),
             sweep: series.sweep,
             load_mass_g: series.load_mass_g,
@@ -136,6 +136,7 @@ fn plateau_rows(
             position_mm: p.position_mm,
             time_s: start_s + p.time_s,
             force_n: p.force_n,
+            wrap_angle_deg: plan.rig.wrap_angle_deg,
         })
         .collect()
 }

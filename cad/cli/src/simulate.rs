@@ -6,11 +6,9 @@ use std::path::PathBuf;
 use clap::Args;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use pinswitch_model::inference::Levels;
-use pinswitch_model::rig::{PlateauRow, PlateauTable};
-use pinswitch_model::simulation::{
-    Case, EffectPlan, Plan, RawRun, Study, Truth, run_case, simulate, study_cases,
-};
+use pinswitch_calibration::inference::Levels;
+use pinswitch_calibration::table::{PlateauRow, PlateauTable};
+use pinswitch_simulation::{Case, EffectPlan, Plan, RawRun, Study, Truth, run_case, simulate, study_cases};
 use rayon::prelude::*;
 
 use super::{Failure, print};

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::error::Error;
 
-use pinswitch_model::calibration::Calibration;
-use pinswitch_model::effects::Covariate;
-use pinswitch_model::rig::{Frame, Point};
+use pinswitch_calibration::Calibration;
+use pinswitch_calibration::effects::Covariate;
+use pinswitch_calibration::table::{Frame, Point};
 use plotters::prelude::*;
 
 use super::scale::drawable;
@@ -112,8 +112,8 @@ pub fn plots(calibration: &Calibration) -> Result<Vec<Plot>, PlotFailure> {
         let mut svg = String::new();
         residual(&mut svg, calibration, &axis, range).map_err(failure)?;
         all.push(Plot {
-            file: format!("residual-{}.svg", covariate.word()),
-            caption: format!("over {}: before (left) and after (right)", covariate.word()),
+            file: format!("residual-{}.svg", covariate.as_str()),
+            caption: format!("over {}: before (left) and after (right)", covariate.as_str()),
             svg,
         });
     }

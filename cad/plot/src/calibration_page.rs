@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use pinswitch_model::calibration::{Calibration, Estimate, Fate, ModelReport, Report, Verdict};
-use pinswitch_model::effects::Covariate;
+use pinswitch_calibration::effects::Covariate;
+use pinswitch_calibration::{Calibration, Estimate, Fate, ModelReport, Report, Verdict};
 
 use super::Plot;
 
@@ -149,7 +149,7 @@ fn residuals(plots: &[Plot]) -> String {
     }
     let fixed: Vec<&str> = Covariate::ALL
         .iter()
-        .map(|c| c.word())
+        .map(|c| c.as_str())
         .filter(|word| !plots.iter().any(|p| p.file == format!("residual-{word}.svg")))
         .collect();
     if !fixed.is_empty() {

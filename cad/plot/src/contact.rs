@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use pinswitch_model::physics::ContactProfile;
+use pinswitch_friction::physics::ContactProfile;
 
 use super::PlotError;
 use super::scale::{drawn_size, fine, shown_at_size};

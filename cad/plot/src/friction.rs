@@ -3,7 +3,9 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use pinswitch_model::{Contact, FrictionCurve, Law, Trust, capstan_friction_n, published, published_points};
+use pinswitch_friction::{
+    Contact, FrictionCurve, Law, Trust, capstan_friction_n, published, published_points,
+};
 
 use super::scale::{drawn_size, fine, shown_at_size};
 
@@ -12,12 +14,8 @@ const SIZE: (u32, u32) = (760, 480);
 const CURVE: RGBColor = RGBColor(0, 90, 156);
 const PINS: RGBColor = RGBColor(90, 90, 90);
 const SILICONE: RGBColor = RGBColor(178, 74, 0);
-/// Lines of other laws, in the order of [`Law`].
-const OTHERS: [(Law, RGBColor); 3] = [
-    (Law::Paper, RGBColor(0, 120, 90)),
-    (Law::Layout, RGBColor(140, 60, 150)),
-    (Law::Physics, RGBColor(190, 20, 60)),
-];
+/// Lines of other laws, in the order of [`Law::predictive`], again from the first.
+const OTHERS: [RGBColor; 3] = [RGBColor(0, 120, 90), RGBColor(140, 60, 150), RGBColor(190, 20, 60)];
 /// Points of a limit line.
 const LIMIT_POINTS: u32 = 60;
 
@@ -117,11 +115,12 @@ fn draw(
     }
 
     for other in others {
-        let colour = OTHERS.iter().find(|(law, _)| *law == other.law).map_or(BLACK, |(_, colour)| *colour);
+        let place = Law::predictive().position(|law| law == other.law).unwrap_or_default();
+        let colour = OTHERS[place % OTHERS.len()];
         let line = other.load_n.iter().copied().zip(other.friction_n.iter().copied());
         chart
             .draw_series(LineSeries::new(line, colour.stroke_width(fine(1))))?
-            .label(format!("{}, for comparison", law_label(other.law)))
+            .label(format!("{}, for comparison", other.law.title()))
             .legend(move |(x, y)| {
                 PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(1)))
             });
@@ -130,7 +129,7 @@ fn draw(
     let line: Vec<_> = curve.load_n.iter().copied().zip(curve.friction_n.iter().copied()).collect();
     chart
         .draw_series(LineSeries::new(line, CURVE.stroke_width(fine(3))))?
-        .label(law_label(curve.law))
+        .label(curve.law.title())
         .legend(|(x, y)| PathElement::new([(x, y), (x + fine::<i32>(22), y)], CURVE.stroke_width(fine(3))));
 
     let maxima: Vec<_> = points.iter().filter_map(|p| Some((p.load_n, p.friction_n?))).collect();
@@ -175,14 +174,5 @@ fn trust_label(trust: Trust) -> &'static str {
         Trust::Published => "published layout",
         Trust::Interpolated => "interpolated",
         Trust::Extrapolated => "extrapolated: a guess",
-    }
-}
-
-fn law_label(law: Law) -> &'static str {
-    match law {
-        Law::Paper => "the paper's model",
-        Law::Layout => "layout law",
-        Law::Physics => "physics",
-        Law::Calibrated => "calibrated model",
     }
 }

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use pinswitch_model::segmentation::{Log, Segmented};
+use pinswitch_calibration::segmentation::{Log, Segmented};
 use plotters::prelude::*;
 
 use super::PlotFailure;

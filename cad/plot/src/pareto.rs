@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use pinswitch_model::layout_search::{Candidate, pareto_front};
+use pinswitch_friction::layout_search::{LayoutCandidate, pareto_front};
 
 use super::PlotError;
 use super::scale::{drawn_size, fine, shown_at_size};
@@ -17,16 +17,20 @@ const SIZE: (u32, u32) = (760, 480);
 ///
 /// # Errors
 /// [`PlotError`] if the drawing library refuses a coordinate.
-pub fn pareto_svg(all: &[Candidate], chosen: &[Candidate]) -> Result<String, PlotError> {
+pub fn pareto_svg(all: &[LayoutCandidate], chosen: &[LayoutCandidate]) -> Result<String, PlotError> {
     let mut svg = String::new();
     draw(&mut svg, all, chosen).map_err(|e| PlotError::new(&*e))?;
     Ok(shown_at_size(svg, SIZE))
 }
 
-fn draw(svg: &mut String, all: &[Candidate], chosen: &[Candidate]) -> Result<(), Box<dyn std::error::Error>> {
+fn draw(
+    svg: &mut String,
+    all: &[LayoutCandidate],
+    chosen: &[LayoutCandidate],
+) -> Result<(), Box<dyn std::error::Error>> {
     let root = SVGBackend::with_string(svg, drawn_size(SIZE)).into_drawing_area();
     root.fill(&WHITE)?;
-    let at = |c: &Candidate| Some((c.threshold_n?, c.ratio));
+    let at = |c: &LayoutCandidate| Some((c.threshold_n?, c.ratio));
     let points: Vec<(f64, f64)> = all.iter().filter_map(at).collect();
     let right = points.iter().map(|p| p.0).fold(1.0, f64::max) * 1.05;
     let top = points.iter().map(|p| p.1).fold(1.0, f64::max) * 1.05;

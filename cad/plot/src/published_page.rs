@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt::Write;
 
-use pinswitch_model::calibration::Explanation;
+use pinswitch_calibration::Explanation;
 use plotters::prelude::*;
 
 use super::calibration::{AFTER, BEFORE};

@@ -3,11 +3,11 @@
 
 use argmin::core::{CostFunction, Executor};
 use argmin::solver::brent::BrentOpt;
-use pinswitch_model::layout_search::{Candidate, Search, Wanted};
-use pinswitch_model::{FrictionCurve, Law, PinPattern, Transition, Trust};
+use pinswitch_friction::layout_search::{LayoutCandidate, Search, Wanted};
+use pinswitch_friction::{FrictionCurve, Law, PinPattern, Substrate, Transition, Trust};
 use serde::Serialize;
 
-use crate::config::{Configuration, SubstrateKind};
+use crate::config::Configuration;
 use crate::design::Design;
 use crate::parallel::map_each;
 use crate::prediction::predicted_curve;
@@ -52,7 +52,7 @@ pub struct Proposal {
 #[derive(Clone, Debug)]
 pub struct SearchResult {
     /// Every pattern that differs in where it touches the tendon.
-    pub candidates: Vec<Candidate>,
+    pub candidates: Vec<LayoutCandidate>,
     /// Patterns of all grooves that these stand for.
     pub patterns: u64,
     /// Printable designs, best first.
@@ -77,11 +77,11 @@ pub fn search_for(design: &Design, pins: (usize, usize)) -> Search {
 /// Searches all patterns for the `best` designs closest to `wanted`; `tune` also varies the pitch of each of them.
 pub fn find(design: &Design, search: &Search, wanted: Wanted, best: usize, tune: bool) -> SearchResult {
     let candidates = search.sweep();
-    let mut ranked: Vec<&Candidate> = candidates.iter().collect();
-    let miss = |c: &Candidate| wanted.miss(c.threshold_n, c.friction_n);
+    let mut ranked: Vec<&LayoutCandidate> = candidates.iter().collect();
+    let miss = |c: &LayoutCandidate| wanted.miss(c.threshold_n, c.friction_n);
     ranked.sort_by(|a, b| miss(a).total_cmp(&miss(b)));
     let configuration = design.configuration();
-    let judged: Vec<&Candidate> = ranked
+    let judged: Vec<&LayoutCandidate> = ranked
         .into_iter()
         .enumerate()
         .filter(|(rank, c)| *rank < JUDGED || is_even_and_centred(search, c))
@@ -113,7 +113,7 @@ fn rank(proposals: &mut [Proposal]) {
     });
 }
 
-fn is_even_and_centred(search: &Search, candidate: &Candidate) -> bool {
+fn is_even_and_centred(search: &Search, candidate: &LayoutCandidate) -> bool {
     let angles = search.grooves.iter().filter(|(number, _)| candidate.pins.contains(number)).map(|g| g.1);
     let pattern = PinPattern::new(angles.collect());
     pattern.is_even() && pattern.is_centred()
@@ -121,7 +121,7 @@ fn is_even_and_centred(search: &Search, candidate: &Candidate) -> bool {
 
 /// The proposal of a configuration; `None` if it cannot be built.
 fn propose(mut configuration: Configuration, wanted: Wanted, ratio: f64) -> Option<Proposal> {
-    configuration.layout.substrate = SubstrateKind::Silicone;
+    configuration.layout.substrate = Substrate::Silicone;
     let design = Design::new(configuration).ok()?;
     let curve: FrictionCurve = predicted_curve(&design);
     let transition = Transition::of(&curve);

@@ -1,7 +1,7 @@
 //! The friction curve of a design, with what the other laws say beside it.
 
 use crate::design::Design;
-use pinswitch_model::{FrictionCurve, Law, LawError, other_laws, predict, predict_by};
+use pinswitch_friction::{FrictionCurve, Law, LawError, other_laws, predict, predict_by};
 
 /// Loads at which the other laws are compared with a curve: enough for a line in a plot.
 const COMPARISON_POINTS: usize = 26;

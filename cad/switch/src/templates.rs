@@ -74,7 +74,7 @@ mod tests {
     use super::*;
     use crate::config::read;
     use crate::design::Design;
-    use pinswitch_model::{Trust, predict, published};
+    use pinswitch_friction::{Trust, predict, published};
 
     #[test]
     fn every_template_can_be_built() {

@@ -8,6 +8,6 @@ mod reference;
 
 pub use error::{ConfigError, Place};
 pub use parameter::{Choice, Origin};
-pub use parameters::{Configuration, MouldKind, SlotKind, Slots, SubstrateKind};
+pub use parameters::{Configuration, MouldKind, SlotKind, Slots};
 pub use read::{Places, assign, read};
 pub use reference::{reference_toml, to_toml};

@@ -200,13 +200,9 @@ pub trait Choice: Sized + Copy + PartialEq + 'static {
     }
 }
 
-/// Declares an enum of words that can be a [`Field`].
-macro_rules! words {
-    ($(#[$doc:meta])* $name:ident { $($(#[$vdoc:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum $name { $($(#[$vdoc])* $variant),+ }
-
+/// Gives an enum names by which a parameter can be set.
+macro_rules! choice_values {
+    ($name:ident { $($variant:ident = $word:literal),+ $(,)? }) => {
         impl $crate::config::parameter::Choice for $name {
             const NAMES: &'static [(Self, &'static str)] = &[$((Self::$variant, $word)),+];
         }
@@ -223,6 +219,17 @@ macro_rules! words {
                 <Self as $crate::config::parameter::Choice>::all()
             }
         }
+    };
+}
+
+/// Declares an enum whose variants a parameter can be set to.
+macro_rules! choice {
+    ($(#[$doc:meta])* $name:ident { $($(#[$vdoc:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $name { $($(#[$vdoc])* $variant),+ }
+
+        $crate::config::parameter::choice_values! { $name { $($variant = $word),+ } }
     };
 }
 
@@ -269,4 +276,4 @@ macro_rules! configuration {
     };
 }
 
-pub(crate) use {configuration, words};
+pub(crate) use {choice, choice_values, configuration};

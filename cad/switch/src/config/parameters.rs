@@ -1,19 +1,11 @@
 //! Every parameter of a switch: unit (in its name), default, range, origin and reason.
 
-use super::parameter::{configuration, words};
-use pinswitch_model::published;
+use super::parameter::{choice, choice_values, configuration};
+use pinswitch_friction::{Substrate, published};
 
-words! {
-    /// What lies under the pins.
-    SubstrateKind {
-        /// The cast silicone layer.
-        Silicone = "silicone",
-        /// The printed rigid proxy.
-        Abs = "abs",
-    }
-}
+choice_values! { Substrate { Silicone = "silicone", Abs = "abs" } }
 
-words! {
+choice! {
     /// Which grooves get a slot in the side supports.
     Slots {
         /// Every groove, so that pins can be moved.
@@ -23,7 +15,7 @@ words! {
     }
 }
 
-words! {
+choice! {
     /// How deep the slots of the side supports are.
     SlotKind {
         /// With a floor that holds the pins axially.
@@ -33,7 +25,7 @@ words! {
     }
 }
 
-words! {
+choice! {
     /// How the casting mould is built.
     MouldKind {
         /// Core, ring and lid with keys: comes apart.
@@ -55,7 +47,7 @@ configuration! {
         /// Pins, tendon contact and what lies under them.
         layout: LayoutTable {
             pins: Vec<usize> = Vec::new(), (), Published, "occupied grooves, numbered from 1 along increasing angle; [] leaves the substrate bare";
-            substrate: SubstrateKind = SubstrateKind::Silicone, (), Published, "silicone for the switch; abs for the rigid proxy, on which the pins alone carry the tendon";
+            substrate: Substrate = Substrate::Silicone, (), Published, "silicone for the switch; abs for the rigid proxy, on which the pins alone carry the tendon";
             wrap_angle_deg: f64 = published::WRAP_ANGLE_DEG, 1.0..=340.0, Published, "angle over which the tendon touches; 63.89 in every experiment";
         }
         /// The grooved sector.

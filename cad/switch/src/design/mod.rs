@@ -3,10 +3,10 @@
 mod dimensions;
 pub mod rules;
 
-use pinswitch_model::physics::{Bed, modulus_of_shore_a_mpa};
-use pinswitch_model::{Contact, PinPattern, Substrate};
+use pinswitch_friction::physics::{Bed, modulus_of_shore_a_mpa};
+use pinswitch_friction::{Contact, PinPattern};
 
-use crate::config::{ConfigError, Configuration, SubstrateKind};
+use crate::config::{ConfigError, Configuration};
 use pinswitch_solid::profile::ChordTolerance;
 
 pub use dimensions::{Dimensions, Slot};
@@ -75,12 +75,8 @@ impl Design {
 
 fn contact(dimensions: &Dimensions) -> Result<Contact, ConfigError> {
     let c = dimensions.configuration();
-    let substrate = match c.layout.substrate {
-        SubstrateKind::Silicone => Substrate::Silicone,
-        SubstrateKind::Abs => Substrate::Abs,
-    };
     let pins = PinPattern::new(dimensions.pin_angles_rad());
-    Contact::new(substrate, pins, c.layout.wrap_angle_deg.to_radians())
+    Contact::new(c.layout.substrate, pins, c.layout.wrap_angle_deg.to_radians())
         .map(|contact| {
             contact
                 .with_departures(departures(c))

@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use crate::config::{MouldKind, SubstrateKind};
+use crate::config::MouldKind;
 use crate::design::Design;
 use crate::parts::cavity_mm3;
+use pinswitch_friction::Substrate;
 
 /// Lengths in which screws are sold, mm.
 const SCREW_LENGTHS_MM: [f64; 17] =
@@ -85,7 +86,7 @@ pub fn bill_of_materials(design: &Design) -> Bill {
     let c = design.configuration();
     let (layer_mm3, overfill_mm3) = cavity_mm3(design);
     let silicone =
-        (c.layout.substrate == SubstrateKind::Silicone && c.mould.kind != MouldKind::None).then(|| {
+        (c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None).then(|| {
             let pour_ml = (layer_mm3 + overfill_mm3) / 1000.0;
             let pour_g = pour_ml * c.silicone.density_g_cm3;
             let mix_g = (pour_g * c.silicone.waste_factor).max(c.silicone.least_mix_g);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use pinswitch_model::FrictionCurve;
+use pinswitch_friction::FrictionCurve;
 
 /// One row per load; forces in newtons, four decimals.
 pub fn friction_csv(curve: &FrictionCurve) -> String {

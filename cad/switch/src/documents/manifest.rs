@@ -1,6 +1,6 @@
 //! `manifest.json`: everything that a person or a program needs to know of a set, and to check it.
 
-use pinswitch_model::{FrictionCurve, Law, Transition, Trust};
+use pinswitch_friction::{FrictionCurve, Law, Transition, Trust};
 use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -200,7 +200,7 @@ impl Manifest {
                 law: curve.law,
                 trust: curve.trust,
                 reasons: curve.reasons.clone(),
-                source: source(curve.law),
+                source: curve.law.source(),
                 load_n: last(&curve.load_n),
                 friction_n: last(&curve.friction_n),
                 band_n: [last(&curve.band_low_n), last(&curve.band_high_n)],
@@ -238,24 +238,9 @@ fn law_entry(curve: &FrictionCurve) -> LawEntry {
         law: curve.law,
         trust: curve.trust,
         reasons: curve.reasons.clone(),
-        source: source(curve.law),
+        source: curve.law.source(),
         friction_n: last(&curve.friction_n),
         band_n: [last(&curve.band_low_n), last(&curve.band_high_n)],
-    }
-}
-
-/// Where a law comes from.
-fn source(law: Law) -> &'static str {
-    match law {
-        Law::Paper => "capstan and eq. 4 of Dermitzakis & Carbajal, arXiv:1401.5232, with its constants",
-        Law::Layout => {
-            "layout law fitted to the three published layouts: F_half = 13.1 N sqrt(n/(a p)), s = 4.64"
-        }
-        Law::Physics => {
-            "string over sinking pins on a silicone foundation, ploughing of the coating; three constants fitted to the \
-             seven published maxima"
-        }
-        Law::Calibrated => "a model calibrated on measured data, see the reasons for what it holds",
     }
 }
 

@@ -4,13 +4,14 @@ use std::fmt::Write as _;
 
 use super::{Format, Inclusion, png};
 use crate::built::Built;
-use crate::config::{MouldKind, SubstrateKind};
+use crate::config::MouldKind;
 use crate::design::Design;
 use crate::design::rules::checklist;
 use crate::documents::Manifest;
 use crate::prediction::Prediction;
 use crate::scene::plate;
 use crate::set::{OutputFile, SetError};
+use pinswitch_friction::Substrate;
 use pinswitch_solid::render::View;
 
 pub(super) const FORMAT: Format =
@@ -38,7 +39,7 @@ fn printing_guide(design: &Design, manifest: &Manifest) -> String {
     picture(&mut text, "The parts, pulled apart", "assembly.png");
     print_section(&mut text, design, manifest);
     picture(&mut text, "The printed parts on a plate", "plate.png");
-    if c.layout.substrate == SubstrateKind::Silicone && c.mould.kind != MouldKind::None {
+    if c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None {
         cast_section(&mut text, design, manifest);
     }
     assemble_section(&mut text, design, manifest);
@@ -162,7 +163,7 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest) {
             bill.pins.spares
         ));
     }
-    let bed = if c.layout.substrate == SubstrateKind::Silicone { "silicone layer" } else { "proxy" };
+    let bed = if c.layout.substrate == Substrate::Silicone { "silicone layer" } else { "proxy" };
     steps.push(format!("Lay the {bed} on the shell, grooves outwards."));
     steps.push("Put the left support on, its lip over the layer's edge.".to_owned());
     if bill.pins.number > 0 {

@@ -13,8 +13,9 @@ mod shell;
 mod stroke_font;
 mod support;
 
-use crate::config::{ConfigError, Configuration, MouldKind, SubstrateKind};
+use crate::config::{ConfigError, Configuration, MouldKind};
 use crate::design::Design;
+use pinswitch_friction::Substrate;
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Contour, OffsetError, polar};
 use pinswitch_solid::solid::Solid;
@@ -52,7 +53,7 @@ pub const PRINTED_PARTS: [PrintedPart; 10] = [
 ];
 
 fn is_rigid(c: &Configuration) -> bool {
-    c.layout.substrate == SubstrateKind::Abs
+    c.layout.substrate == Substrate::Abs
 }
 
 fn has_split_mould(c: &Configuration) -> bool {

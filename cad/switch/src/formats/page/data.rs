@@ -2,8 +2,8 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use pinswitch_model::physics::contact_profile;
-use pinswitch_model::{Direction, FrictionCurve, PublishedPoint, Substrate, published_points};
+use pinswitch_friction::physics::contact_profile;
+use pinswitch_friction::{Direction, FrictionCurve, PublishedPoint, Substrate, published_points};
 use serde::Serialize;
 
 use crate::built::{Built, MeshedBody};

@@ -1,0 +1,391 @@
+//! From a selection to its report: verdict, effects, rivals, blind spots, errors before and after.
+
+use pinswitch_friction::Substrate;
+
+use crate::effects::CATALOGUE;
+use crate::held_out::{SOUND_WEIGHT, held_out};
+use crate::inference::{
+    CandidateEffect, Fit, FoundEffect, Levels, Model, Noise, Observations, Rival, Selection, Term,
+    UNATTRIBUTED, cell_deviation, degrees_of_freedom, family_p_value, interval_half_widths, select,
+};
+use crate::layouts_left_out::layouts_left_out;
+use crate::report::{
+    BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Fate, Invisible, ModelReport, Report,
+    RivalReport, Verdict,
+};
+use crate::table::{Frame, PlateauRow};
+
+/// Why rows cannot be calibrated.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CalibrationError {
+    /// Too few rows for the baseline's constants and the noise beside them.
+    #[error(
+        "{found} rows cannot fix the baseline's constants and tell the noise beside them, {needed} can; \
+         record more loads or repetitions"
+    )]
+    TooFewRows {
+        /// Rows given.
+        found: usize,
+        /// Rows that could.
+        needed: usize,
+    },
+}
+
+/// A report with the fits behind it.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// The report.
+    pub report: Report,
+    /// The selection behind it.
+    pub selection: Selection,
+    /// The rows as they were fitted.
+    pub data: Observations,
+}
+
+/// Rows beyond the baseline's constants without which any misfit would be many times a noise that nobody knows.
+const ROWS_FOR_NOISE: usize = 8;
+
+/// Calibrates a table.
+///
+/// ```
+/// use pinswitch_calibration::inference::Levels;
+/// use pinswitch_calibration::table::PlateauTable;
+/// use pinswitch_calibration::{Verdict, calibrate};
+///
+/// // `csv` is the text of a plateau table: here silicone without pins at twelve loads, and a little noise.
+/// # let mut csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N\n".to_owned();
+/// # let mut time_s = 0.0;
+/// # for (series, load_n) in (0..12).map(|i| (i, 3.0 + 4.0 * f64::from(i))) {
+/// #     for (direction, sign) in [("eccentric", -1.0), ("concentric", 1.0)] {
+/// #         for repetition in 1..=6 {
+/// #             time_s += 3.5;
+/// #             let noise = 0.05 * (43758.5453 * (12.9898f64 * time_s).sin()).fract();
+/// #             let force_n = load_n * (sign * 0.24 * 1.115_f64).exp() + noise;
+/// #             csv += &format!("{series},silicone,,up,0,{load_n},50,3,{direction},{repetition},{},{time_s},{force_n}\n", 10 * repetition);
+/// #         }
+/// #     }
+/// # }
+/// let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
+/// let report = calibrate(&table.rows, Levels::default())?.report;
+/// assert_eq!(report.verdict, Verdict::None, "the paper's model explains these readings");
+/// let mu_s = &report.baseline.parameters["mu_s"];
+/// assert!((mu_s.value - 0.24).abs() < 0.001 && mu_s.ci95[0] < 0.24 && 0.24 < mu_s.ci95[1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`CalibrationError::TooFewRows`] if the rows cannot fix the baseline.
+pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, CalibrationError> {
+    let frame = Frame::new(rows);
+    let start = Model::baseline(frame.clone());
+    let needed = start.values().len() + ROWS_FOR_NOISE;
+    let too_few = CalibrationError::TooFewRows { found: rows.len(), needed };
+    let mut data = Observations::new(&frame, rows).ok_or_else(|| too_few.clone())?;
+    if rows.len() < needed {
+        return Err(too_few);
+    }
+    let selection = select(&start, &mut data, levels);
+    let report = report(rows, &selection, &data, levels);
+    Ok(Calibration { report, selection, data })
+}
+
+/// A constant with its interval, which ends at the bounds of a shape.
+fn estimate(value: f64, half_width: f64, unit: &str, (least, most): (f64, f64)) -> Estimate {
+    let ci95 = [(value - half_width).max(least), (value + half_width).min(most)];
+    Estimate { value, ci95, unit: unit.to_owned() }
+}
+
+fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport, f64) {
+    let held = held_out(&fitted.model, data, noise);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (r, _) in fitted.residual_n.iter().zip(&data.weights).filter(|(_, w)| **w > SOUND_WEIGHT) {
+        sum += r * r;
+        count += 1.0;
+    }
+    let widths = interval_half_widths(fitted, data, noise);
+    let conditions = &fitted.model.frame.conditions;
+    let touched = |name: &str| match name {
+        "mu_p" => conditions.iter().any(crate::table::Condition::has_pins),
+        "mu_s" => conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone)),
+        _ => true,
+    };
+    let parameters = fitted
+        .model
+        .names()
+        .into_iter()
+        .zip(fitted.model.values().into_iter().zip(widths))
+        .enumerate()
+        .filter(|(_, ((name, _), _))| touched(name))
+        .map(|(i, ((name, unit), (value, width)))| {
+            (name, estimate(value, width, unit, fitted.model.bounds_of(i)))
+        })
+        .collect();
+    let report = ModelReport {
+        rmse_n: (sum / f64::max(count, 1.0)).sqrt(),
+        heldout_rmse_n: held.both_n(),
+        heldout_series_rmse_n: held.series_n,
+        heldout_loads_rmse_n: held.loads_n,
+        heldout_layouts_rmse_n: layouts_left_out(&fitted.model, data, noise),
+        parameters,
+    };
+    (report, held.both_n())
+}
+
+fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations, levels: Levels) -> Report {
+    let noise = selection.noise;
+    let (baseline, before_n) = model_report(&selection.baseline, data, noise);
+    let (augmented, after_n) = if selection.augmented.model.terms.is_empty() {
+        (baseline.clone(), before_n)
+    } else {
+        model_report(&selection.augmented, data, noise)
+    };
+    let effects = effects(selection, data, after_n, &augmented);
+    Report {
+        schema: "pinswitch.calibration/1".to_owned(),
+        data: DataSummary {
+            rows: rows.len(),
+            series: data.series,
+            conditions: selection.baseline.model.frame.conditions.len(),
+            outliers: data.weights.iter().filter(|w| **w <= SOUND_WEIGHT).count(),
+        },
+        verdict: Verdict::of(selection),
+        noise_floor_n: noise.floor_n(data),
+        noise,
+        baseline,
+        augmented,
+        candidates: candidates(selection, data, levels),
+        effects,
+        family_probability: selection.family_probability,
+        invisible: invisible(selection),
+        never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
+        bad_series: bad_series(rows, selection, data),
+        extrapolation: None,
+    }
+}
+
+/// What no data of such a rig can show after the refit.
+const NEVER_VISIBLE: [&str; 3] = [
+    "a loss in the guide pulleys in proportion to tension: needs a run without the switch",
+    "a wrap angle that is wrong by a constant: needs the angle measured",
+    "a threshold shifted by the same load everywhere: needs another way to see the switching",
+];
+
+/// Effects that this data cannot show, with what keeps it from it.
+fn invisible(selection: &Selection) -> Vec<Invisible> {
+    selection
+        .invisible()
+        .filter(|c| !selection.effects.iter().any(|found| found.effect.id() == c.effect.id()))
+        .map(|candidate| {
+            let told = candidate.effect.description();
+            Invisible {
+                id: told.id.to_owned(),
+                why: if candidate.strength < 1e-6 {
+                    told.invisible_because.to_owned()
+                } else if candidate.is_taken_over() {
+                    "the refitted baseline takes it over".to_owned()
+                } else {
+                    format!(
+                        "at a typical size it makes {:.1} standard deviations, {} are needed",
+                        candidate.strength,
+                        CandidateEffect::MIN_STRENGTH
+                    )
+                },
+                experiment: told.experiment.to_owned(),
+            }
+        })
+        .collect()
+}
+
+/// Every effect with what became of it.
+fn candidates(selection: &Selection, data: &Observations, levels: Levels) -> Vec<CandidateReport> {
+    let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
+    let fate = |candidate: &CandidateEffect, p: f64| {
+        let id = candidate.effect.id();
+        if selection.effects.iter().any(|found| found.effect.id() == id) {
+            Fate::Kept
+        } else if selection.effects.iter().any(|found| found.ids().contains(&id)) {
+            Fate::Rival
+        } else if p <= levels.first_p {
+            Fate::Superfluous
+        } else if candidate.is_invisible() {
+            Fate::Invisible
+        } else {
+            Fate::Chance
+        }
+    };
+    selection
+        .candidates
+        .iter()
+        .map(|candidate| {
+            let p_value = family_p_value(candidate.gain, CATALOGUE.len(), degrees);
+            CandidateReport {
+                id: candidate.effect.id().to_owned(),
+                gain: candidate.gain.max(0.0),
+                p_value,
+                gain_left: candidate.gain_left.map(|gain| gain.max(0.0)),
+                fate: fate(candidate, p_value),
+            }
+        })
+        .collect()
+}
+
+fn effects(
+    selection: &Selection,
+    data: &Observations,
+    after_n: f64,
+    augmented: &ModelReport,
+) -> Vec<EffectReport> {
+    let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
+    let mut reports: Vec<EffectReport> = selection
+        .effects
+        .iter()
+        .map(|found| named_report(found, selection, data, degrees, after_n, augmented))
+        .collect();
+    reports.extend(unnamed_report(selection, data, degrees, after_n, augmented));
+    reports
+}
+
+fn named_report(
+    found: &FoundEffect,
+    selection: &Selection,
+    data: &Observations,
+    degrees: f64,
+    after_n: f64,
+    augmented: &ModelReport,
+) -> EffectReport {
+    let told = found.effect.description();
+    let without = selection.augmented.model.without_term(found.term);
+    EffectReport {
+        id: told.id.to_owned(),
+        covariate: told.covariate.as_str().to_owned(),
+        side: Some(told.side.as_str().to_owned()),
+        formula: found.effect.cited_formula(),
+        p_value: family_p_value(found.gain, CATALOGUE.len(), degrees),
+        parameters: told
+            .parameters
+            .iter()
+            .filter_map(|p| {
+                let known = augmented.parameters.get(&format!("{}.{}", told.id, p.name))?;
+                Some((p.name.to_owned(), known.clone()))
+            })
+            .collect(),
+        error_before_n: held_out(&without, data, selection.noise).both_n(),
+        error_after_n: after_n,
+        rivals: found.rivals.iter().map(|rival| rival_report(found, rival)).collect(),
+    }
+}
+
+fn rival_report(found: &FoundEffect, rival: &Rival) -> RivalReport {
+    let (told, other) = (found.effect.description(), rival.effect.description());
+    RivalReport {
+        id: other.id.to_owned(),
+        why: format!(
+            "after the refit its trace is the same to a cosine of {:.3}; in place of {} it fits worse by only {:.1} whitened squares",
+            rival.cosine, told.id, rival.worse_by
+        ),
+        experiment: format!("{}; {}", told.experiment, other.experiment),
+    }
+}
+
+/// The report of the structure that no name explains, if there is any.
+fn unnamed_report(
+    selection: &Selection,
+    data: &Observations,
+    degrees: f64,
+    after_n: f64,
+    augmented: &ModelReport,
+) -> Option<EffectReport> {
+    let structure = selection.structure?;
+    let model = &selection.augmented.model;
+    let shapes: Vec<(usize, String)> = model
+        .terms
+        .iter()
+        .enumerate()
+        .filter_map(|(i, term)| match term {
+            Term::Structure(s) => Some((i, s.describe(&model.frame))),
+            Term::Named(_) => None,
+        })
+        .collect();
+    let bare = shapes.iter().rev().fold(model.clone(), |m, (i, _)| m.without_term(*i));
+    Some(EffectReport {
+        id: UNATTRIBUTED.to_owned(),
+        covariate: structure.covariate.as_str().to_owned(),
+        side: None,
+        formula: shapes.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; "),
+        p_value: family_p_value(structure.gain, selection.structures_tried, degrees),
+        parameters: augmented
+            .parameters
+            .iter()
+            .filter(|(name, _)| name.starts_with(UNATTRIBUTED))
+            .map(|(name, e)| (name.clone(), e.clone()))
+            .collect(),
+        error_before_n: held_out(&bare, data, selection.noise).both_n(),
+        error_after_n: after_n,
+        rivals: Vec::new(),
+    })
+}
+
+/// Mean residual of a series and direction, in standard deviations, beyond which it is listed as bad.
+const BAD_SERIES_SD: f64 = 4.5;
+/// Readings further off than this many standard deviations of noise are bad ones.
+pub(crate) const BAD_READING_SD: f64 = 20.0;
+
+/// Series whose mean residual, or one reading, is further off than noise can make it.
+fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Vec<BadSeries> {
+    let mut bad = Vec::new();
+    for (index, (cell, load)) in data.cells.iter().zip(&data.cell_load_n).enumerate() {
+        let (mean, sd) = cell_deviation(&selection.augmented, data, selection.noise, index);
+        let worst = cell
+            .iter()
+            .map(|r| selection.augmented.residual_n[*r])
+            .fold(0.0f64, |a, b| if b.abs() > a.abs() { b } else { a });
+        let reading_sd = selection.noise.at(*load);
+        let (offset_n, sd) = if mean.abs() > BAD_SERIES_SD * sd {
+            (mean, sd)
+        } else if worst.abs() > BAD_READING_SD * reading_sd {
+            (worst, reading_sd)
+        } else {
+            continue;
+        };
+        if let Some(row) = cell.first().and_then(|r| rows.get(*r)) {
+            bad.push(BadSeries {
+                series: row.series.clone(),
+                direction: row.direction.as_str().to_owned(),
+                offset_n,
+                standard_deviations: offset_n / sd,
+            });
+        }
+    }
+    bad
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_session::session;
+
+    fn fates(levels: Levels) -> Vec<Fate> {
+        let report = calibrate(&session(3), levels).unwrap().report;
+        assert_eq!(report.candidates.len(), CATALOGUE.len());
+        report.candidates.iter().map(|c| c.fate).collect()
+    }
+
+    /// The level at which a gain counts as more than chance is the caller's, in the search and in the report alike.
+    #[test]
+    fn the_fate_of_a_candidate_follows_the_levels_given() {
+        let usual = fates(Levels::default());
+        assert!(usual.contains(&Fate::Chance) && usual.contains(&Fate::Invisible), "{usual:?}");
+        assert!(!usual.contains(&Fate::Superfluous), "{usual:?}");
+        // Flips at zero keep the search from naming anything; what chance could explain is then the level's to say.
+        let credulous = fates(Levels { first_p: 1.0, flips: 0.0, ..Levels::default() });
+        assert!(!credulous.contains(&Fate::Chance), "{credulous:?}");
+    }
+
+    #[test]
+    fn rows_that_cannot_fix_the_baseline_are_refused_with_the_number_that_could() {
+        let rows = session(1);
+        let error = calibrate(&rows[..5], Levels::default()).unwrap_err();
+        assert_eq!(error, CalibrationError::TooFewRows { found: 5, needed: 2 + ROWS_FOR_NOISE });
+    }
+}

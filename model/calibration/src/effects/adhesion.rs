@@ -1,0 +1,43 @@
+//! `adhesion`: a constant friction force on silicone, there at zero load.
+
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
+use crate::table::{Condition, Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct Adhesion;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &Adhesion;
+
+static DESCRIPTION: Description = Description {
+    id: "adhesion",
+    side: Side::Switch,
+    covariate: Covariate::Direction,
+    stage: Stage::Drag,
+    formula: "T + d c on silicone, T + d c S on a device",
+    parameters: &[Parameter::free("c", "N")],
+    // It opposes every move.
+    one_sided: true,
+    scales: true,
+    confused_with: &["guide_drag"],
+    experiment: "a pins-only run or a blank run without the switch",
+    invisible_because: "no silicone, or only one direction",
+    study: StudyRange { size: Some((0.2, 0.6)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for Adhesion {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.2]]
+    }
+
+    fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
+        state.adhesion_n += k[0];
+    }
+}

@@ -1,0 +1,43 @@
+//! `coating_ploughing`: the coating is ploughed by the force at each pin.
+
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
+use crate::table::{Condition, Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct CoatingPloughing;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &CoatingPloughing;
+
+static DESCRIPTION: Description = Description {
+    id: "coating_ploughing",
+    side: Side::Switch,
+    covariate: Covariate::Load,
+    stage: Stage::AddedFriction,
+    formula: "x_p + kappa sqrt(F) sum theta_i^1.5",
+    parameters: &[Parameter::free("kappa", "N^-0.5")],
+    // Ploughing only adds friction.
+    one_sided: true,
+    scales: true,
+    confused_with: &["coating_stiffening", "polygon_bending"],
+    experiment: "pins-only runs over load and pin count",
+    invisible_because: "no condition with pins",
+    study: StudyRange { size: Some((0.012, 0.03)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for CoatingPloughing {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.024]]
+    }
+
+    fn on_contact(&self, k: &[f64], _: &Point, condition: &Condition, state: &mut ContactState) {
+        state.extra_exponent_pins += k[0] * state.load_n.sqrt() * condition.ploughing;
+    }
+}

@@ -1,0 +1,87 @@
+//! The baseline of one row before and after the effects have changed it.
+
+use pinswitch_friction::Substrate;
+
+use crate::table::{Condition, Point};
+
+/// Reference load `F0` of `model/doc/effect-catalogue.md`, in newtons.
+pub const REFERENCE_LOAD_N: f64 = 50.0;
+
+/// Everything that fixes the tension of one row; effects change it before [`ContactState::tension_n`] is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactState {
+    /// True load in newtons.
+    pub load_n: f64,
+    /// Wrap angle in radians (1 for `plain`).
+    pub wrap_rad: f64,
+    /// Friction coefficient on the pins.
+    pub mu_pins: f64,
+    /// Friction coefficient on the silicone; for `plain` the free exponent.
+    pub mu_silicone: f64,
+    /// Friction exponent that the pins add to `mu_pins` times the wrap.
+    pub extra_exponent_pins: f64,
+    /// Factor on every friction exponent.
+    pub exponent_factor: f64,
+    /// Load in newtons at which a device has switched by half.
+    pub half_load_n: f64,
+    /// Steepness `s` of the switch, dimensionless.
+    pub steepness: f64,
+    /// Whether the switch reads the mean tension over the wrap instead of the load.
+    pub local_tension: bool,
+    /// Constant friction force where silicone carries, in newtons.
+    pub adhesion_n: f64,
+    /// Constant friction force everywhere, in newtons.
+    pub drag_n: f64,
+}
+
+impl ContactState {
+    /// Tension in newtons: capstan for one material, eq. 4 on `T - F` per direction for a device
+    /// (`model/doc/friction-laws.md`).
+    pub fn tension_n(&self, condition: &Condition, point: &Point) -> f64 {
+        let (f, d) = (self.load_n, point.sign);
+        let x_pins = (self.mu_pins * self.wrap_rad + self.extra_exponent_pins) * self.exponent_factor;
+        let x_silicone = self.mu_silicone * self.wrap_rad * self.exponent_factor;
+        let drag = d * self.drag_n;
+        if condition.device.is_some() {
+            let (rise_p, rise_s) = (f * (d * x_pins).exp_m1(), f * (d * x_silicone).exp_m1());
+            let w = condition.weight;
+            let mut switched = self.switched(f);
+            let rise = |s: f64| (1.0 + w) * (1.0 - s) * rise_p + (1.0 - w) * s * rise_s;
+            if self.local_tension && f > 0.0 {
+                for _ in 0..3 {
+                    switched = self.switched(mean_tension_n(f, 1.0 + rise(switched) / f));
+                }
+            }
+            f + rise(switched) + d * self.adhesion_n * switched + drag
+        } else if condition.substrate == Some(Substrate::Abs) {
+            f + f * (d * x_pins).exp_m1() + drag
+        } else {
+            f + f * (d * x_silicone).exp_m1() + d * self.adhesion_n + drag
+        }
+    }
+
+    /// `S = 1/(1 + exp(-s (F/F_half - 1)))` (`model/doc/friction-laws.md`).
+    pub fn switched(&self, load_n: f64) -> f64 {
+        1.0 / (1.0 + (-self.steepness * (load_n / self.half_load_n - 1.0)).exp())
+    }
+}
+
+/// Mean of `F exp(x phi/a)` over the wrap in newtons: `F (r - 1)/ln r` with `r = T/F`.
+fn mean_tension_n(load_n: f64, ratio: f64) -> f64 {
+    let ratio = ratio.max(1e-3);
+    let x = ratio.ln();
+    if x.abs() < 1e-6 { load_n * (1.0 + x / 2.0) } else { load_n * (ratio - 1.0) / x }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_tension_lies_between_the_ends() {
+        for ratio in [0.7, 1.0, 1.3] {
+            let mean = mean_tension_n(10.0, ratio);
+            assert!(mean >= 10.0 * ratio.min(1.0) - 1e-9 && mean <= 10.0 * ratio.max(1.0) + 1e-9);
+        }
+    }
+}

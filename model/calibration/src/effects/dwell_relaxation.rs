@@ -1,0 +1,42 @@
+//! `dwell_relaxation`: friction of the silicone depends on the pause before the reading.
+
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
+use crate::table::{Condition, Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct DwellRelaxation;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &DwellRelaxation;
+
+static DESCRIPTION: Description = Description {
+    id: "dwell_relaxation",
+    side: Side::Switch,
+    covariate: Covariate::Dwell,
+    stage: Stage::ScaledFriction,
+    formula: "mu_s (1 + k ln(dwell / 3 s))",
+    parameters: &[Parameter::free("k", "1")],
+    one_sided: false,
+    scales: true,
+    confused_with: &[],
+    experiment: "one silicone run with dwells of 0.3, 3 and 30 s",
+    invisible_because: "the dwell time never varies, or there is no silicone",
+    study: StudyRange { size: Some((0.04, 0.12)), signed: true, shapes: &[], paper: PaperProtocol::Hidden },
+};
+
+impl Effect for DwellRelaxation {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.05]]
+    }
+
+    fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
+        state.mu_silicone *= (1.0 + k[0] * point.log_dwell).max(0.0);
+    }
+}

@@ -1,0 +1,48 @@
+//! `fixture_compliance`: the wrap angle grows with load because the mount bends.
+
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
+    StudyRange,
+};
+use crate::table::{Condition, Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct FixtureCompliance;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &FixtureCompliance;
+
+static DESCRIPTION: Description = Description {
+    id: "fixture_compliance",
+    side: Side::Rig,
+    covariate: Covariate::Load,
+    stage: Stage::ScaledFriction,
+    formula: "a (1 + k F/F0), every condition alike",
+    parameters: &[Parameter::free("k", "1")],
+    one_sided: false,
+    scales: true,
+    confused_with: &["rate_dependence", "substrate_saturation"],
+    experiment: "a dial gauge on the mount, or several speeds at one load",
+    invisible_because: "only one load",
+    study: StudyRange {
+        size: Some((0.06, 0.25)),
+        signed: false,
+        shapes: &[],
+        paper: PaperProtocol::Confounded,
+    },
+};
+
+impl Effect for FixtureCompliance {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.05]]
+    }
+
+    fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
+        state.exponent_factor *= (1.0 + k[0] * state.load_n / REFERENCE_LOAD_N).max(0.0);
+    }
+}

@@ -1,0 +1,43 @@
+//! `guide_drag`: a constant drag of the guide pulleys, in every condition.
+
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
+use crate::table::{Condition, Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct GuideDrag;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &GuideDrag;
+
+static DESCRIPTION: Description = Description {
+    id: "guide_drag",
+    side: Side::Rig,
+    covariate: Covariate::Direction,
+    stage: Stage::Drag,
+    formula: "T + d c in every condition",
+    parameters: &[Parameter::free("c", "N")],
+    // It opposes every move.
+    one_sided: true,
+    scales: true,
+    confused_with: &["adhesion"],
+    experiment: "a pins-only run or a blank run without the switch",
+    invisible_because: "only one direction",
+    study: StudyRange { size: Some((0.1, 0.5)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for GuideDrag {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.2]]
+    }
+
+    fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
+        state.drag_n += k[0];
+    }
+}

@@ -1,0 +1,42 @@
+//! `hook_omitted`: the declared load leaves out the hook's weight.
+
+use pinswitch_friction::published;
+
+use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange};
+use crate::table::{Condition, Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct HookOmitted;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &HookOmitted;
+
+static DESCRIPTION: Description = Description {
+    id: "hook_omitted",
+    side: Side::Rig,
+    covariate: Covariate::Load,
+    stage: Stage::Load,
+    formula: "F + 0.613 N: the hook of 62.53 g; no free constant",
+    parameters: &[],
+    one_sided: false,
+    scales: false,
+    confused_with: &["load_cell_offset"],
+    experiment: "weigh the hook",
+    invisible_because: "",
+    study: StudyRange { size: None, signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for HookOmitted {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![]]
+    }
+
+    fn on_contact(&self, _: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
+        state.load_n += published::HOOK_MASS_G * 1e-3 * published::GRAVITY_M_S2;
+    }
+}

@@ -1,0 +1,40 @@
+//! `load_cell_gain`: the reading has a wrong scale.
+
+use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use crate::table::{Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct LoadCellGain;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &LoadCellGain;
+
+static DESCRIPTION: Description = Description {
+    id: "load_cell_gain",
+    side: Side::Rig,
+    covariate: Covariate::Load,
+    stage: Stage::CellScale,
+    formula: "reading (1 + g)",
+    parameters: &[Parameter::free("g", "1")],
+    one_sided: false,
+    scales: true,
+    confused_with: &["direction_asymmetry", "load_cell_nonlinearity"],
+    experiment: "dead weights up to 65 N on the cell",
+    invisible_because: "only one direction",
+    study: StudyRange { size: Some((0.01, 0.06)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for LoadCellGain {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.02]]
+    }
+
+    fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {
+        reading_n * (1.0 + k[0])
+    }
+}

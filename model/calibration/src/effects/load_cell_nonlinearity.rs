@@ -1,0 +1,42 @@
+//! `load_cell_nonlinearity`: the reading bends with its square.
+
+use super::{
+    Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage, StudyRange,
+};
+use crate::table::{Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct LoadCellNonlinearity;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &LoadCellNonlinearity;
+
+static DESCRIPTION: Description = Description {
+    id: "load_cell_nonlinearity",
+    side: Side::Rig,
+    covariate: Covariate::Load,
+    stage: Stage::CellScale,
+    formula: "reading + k (reading/F0)^2",
+    parameters: &[Parameter::free("k", "N")],
+    one_sided: false,
+    scales: true,
+    confused_with: &["load_cell_gain", "load_cell_saturation"],
+    experiment: "dead weights up to 65 N on the cell",
+    invisible_because: "only one direction, or one load",
+    study: StudyRange { size: Some((0.3, 1.5)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for LoadCellNonlinearity {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.4]]
+    }
+
+    fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {
+        reading_n + k[0] * (reading_n / REFERENCE_LOAD_N).powi(2)
+    }
+}

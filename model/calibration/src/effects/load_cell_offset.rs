@@ -1,0 +1,40 @@
+//! `load_cell_offset`: the reading has a constant offset.
+
+use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use crate::table::{Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct LoadCellOffset;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &LoadCellOffset;
+
+static DESCRIPTION: Description = Description {
+    id: "load_cell_offset",
+    side: Side::Rig,
+    covariate: Covariate::Direction,
+    stage: Stage::CellZero,
+    formula: "reading + b",
+    parameters: &[Parameter::free("b", "N")],
+    one_sided: false,
+    scales: true,
+    confused_with: &["hook_omitted"],
+    experiment: "a zero reading of the unloaded cell",
+    invisible_because: "too few loads",
+    study: StudyRange { size: Some((0.2, 1.5)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for LoadCellOffset {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.3]]
+    }
+
+    fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {
+        reading_n + k[0]
+    }
+}

@@ -1,0 +1,41 @@
+//! `load_cell_saturation`: the reading stops rising above some force.
+
+use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use crate::table::{Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct LoadCellSaturation;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &LoadCellSaturation;
+
+static DESCRIPTION: Description = Description {
+    id: "load_cell_saturation",
+    side: Side::Rig,
+    covariate: Covariate::Load,
+    stage: Stage::CellLimit,
+    formula: "min(reading, limit)",
+    parameters: &[Parameter::free("limit", "N")],
+    one_sided: false,
+    scales: false,
+    confused_with: &["load_cell_nonlinearity"],
+    experiment: "dead weights up to 65 N on the cell",
+    invisible_because: "no reading comes near the limit of the cell",
+    study: StudyRange { size: Some((46.0, 58.0)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for LoadCellSaturation {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, frame: &Frame) -> Vec<Vec<f64>> {
+        let highest = frame.load_range_n.1 * 1.35;
+        (0..14).map(|i| vec![highest * (1.0 - 0.025 * f64::from(i))]).collect()
+    }
+
+    fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {
+        reading_n.min(k[0])
+    }
+}

@@ -1,0 +1,242 @@
+//! What the paper's model may lack: one file per effect, which carries all that is known of it.
+//!
+//! To add an effect, write its file and add its name to the list below; everything else (fit, report, simulated rigs,
+//! study, power) reads it from there. `model/doc/effect-catalogue.md` explains each to a reader.
+
+use std::fmt::Debug;
+use std::sync::LazyLock;
+
+use crate::table::{Condition, Frame, Point};
+
+mod contact_state;
+mod covariate;
+mod description;
+mod structure;
+
+pub use contact_state::{ContactState, REFERENCE_LOAD_N};
+pub use covariate::Covariate;
+pub use description::{Description, PaperProtocol, Parameter, Side, Stage, StudyRange};
+pub use structure::{Channel, Shape, Structure};
+
+/// Declares the files of the effects and the registry of what they hold.
+macro_rules! effects {
+    ($($file:ident,)*) => {
+        $(mod $file;)*
+
+        /// Every named effect, in the order of the effect catalogue.
+        pub static CATALOGUE: &[&dyn Effect] = &[$($file::EFFECT),*];
+    };
+}
+
+effects! {
+    coating_stiffening,
+    coating_ploughing,
+    polygon_bending,
+    substrate_saturation,
+    adhesion,
+    dwell_relaxation,
+    run_in,
+    wear_drift,
+    rate_dependence,
+    fixture_compliance,
+    stroke_position,
+    direction_asymmetry,
+    switching_hysteresis,
+    guide_drag,
+    load_cell_offset,
+    load_cell_gain,
+    load_cell_nonlinearity,
+    load_cell_saturation,
+    thermal_drift,
+    hook_omitted,
+    switch_local_tension,
+}
+
+static ACTING: LazyLock<Vec<&'static dyn Effect>> = LazyLock::new(|| {
+    let mut all = CATALOGUE.to_vec();
+    all.sort_by_key(|effect| effect.description().stage);
+    all
+});
+
+/// Every named effect, in the order in which they act: the load first, the end of the load cell's range last.
+pub fn acting_order() -> &'static [&'static dyn Effect] {
+    &ACTING
+}
+
+/// The effect of an id.
+///
+/// ```
+/// use pinswitch_calibration::effects::{Side, effect_named};
+///
+/// let ploughing = effect_named("coating_ploughing").ok_or("not in the catalogue")?;
+/// assert_eq!(ploughing.description().side, Side::Switch);
+/// assert_eq!(ploughing.parameters()[0].unit, "N^-0.5");
+/// # Ok::<(), &str>(())
+/// ```
+pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
+    CATALOGUE.iter().copied().find(|effect| effect.id() == id)
+}
+
+/// A named effect: what is said of it, where a fit of it starts, and where it enters the forward model.
+///
+/// ```
+/// use pinswitch_calibration::effects::{
+///     Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+/// };
+/// use pinswitch_calibration::inference::{Model, Term};
+/// use pinswitch_calibration::table::{Frame, PlateauTable, Point};
+///
+/// /// The cell reads too much after a long pause.
+/// #[derive(Debug)]
+/// struct Creep;
+///
+/// static CREEP: Description = Description {
+///     id: "cell_creep",
+///     side: Side::Rig,
+///     covariate: Covariate::Dwell,
+///     stage: Stage::CellScale,
+///     formula: "reading (1 + k ln(dwell / 3 s))",
+///     parameters: &[Parameter::free("k", "1")],
+///     one_sided: true,
+///     scales: true,
+///     confused_with: &["dwell_relaxation"],
+///     experiment: "dead weights with two pauses",
+///     invisible_because: "the dwell time never varies",
+///     study: StudyRange { size: Some((0.01, 0.05)), signed: false, shapes: &[], paper: PaperProtocol::Hidden },
+/// };
+///
+/// impl Effect for Creep {
+///     fn description(&self) -> &'static Description {
+///         &CREEP
+///     }
+///
+///     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+///         vec![vec![0.02]]
+///     }
+///
+///     fn on_reading(&self, k: &[f64], point: &Point, reading_n: f64) -> f64 {
+///         reading_n * (1.0 + k[0] * point.log_dwell)
+///     }
+/// }
+///
+/// let csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N
+/// a,silicone,,up,0,20,50,30,concentric,1,12.7,4.5,0
+/// ";
+/// let rows = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?.rows;
+/// let model = Model::baseline(Frame::new(&rows));
+/// let points = model.frame.points(&rows).ok_or("a condition is new")?;
+/// let with = model.with_term(Term::Named(&Creep), &[0.02]).predict(&points)[0];
+/// assert!((with / model.predict(&points)[0] - (1.0 + 0.02 * 10f64.ln())).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub trait Effect: Debug + Sync {
+    /// What is known and said of it.
+    fn description(&self) -> &'static Description;
+
+    /// Values to start a fit from: the sizes typical of this rig, one entry per shape.
+    fn starts(&self, frame: &Frame) -> Vec<Vec<f64>>;
+
+    /// Changes the contact; `k` are the constants.
+    fn on_contact(&self, _k: &[f64], _point: &Point, _condition: &Condition, _state: &mut ContactState) {}
+
+    /// Changes the reading in newtons; `k` are the constants.
+    fn on_reading(&self, _k: &[f64], _point: &Point, reading_n: f64) -> f64 {
+        reading_n
+    }
+
+    /// Its id.
+    fn id(&self) -> &'static str {
+        self.description().id
+    }
+
+    /// Its constants; sensitivities to them are differences.
+    fn parameters(&self) -> &'static [Parameter] {
+        self.description().parameters
+    }
+
+    /// Its formula with the document that explains it.
+    fn cited_formula(&self) -> String {
+        let Description { formula, id, .. } = self.description();
+        format!("{formula} (model/doc/effect-catalogue.md#{id})")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pinswitch_friction::Substrate;
+
+    #[test]
+    fn ids_are_unique_and_rivals_exist() {
+        for (i, effect) in CATALOGUE.iter().enumerate() {
+            assert!(CATALOGUE[i + 1..].iter().all(|other| other.id() != effect.id()));
+            let told = effect.description();
+            assert!(told.confused_with.iter().all(|id| effect_named(id).is_some()), "{}", told.id);
+            assert!(!told.experiment.is_empty() && told.formula.len() > 8);
+            let constants = usize::from(told.study.size.is_some()) + told.study.shapes.len();
+            assert_eq!(constants, told.parameters.len(), "{}", told.id);
+        }
+    }
+
+    /// Each effect changes some reading of a rig that varies everything, and each start has all constants.
+    #[test]
+    fn every_effect_can_be_seen_in_some_row() {
+        let frame = Frame {
+            stroke_mm: 150.0,
+            session_s: 1e4,
+            reference_speed_pct: 50.0,
+            travel_time_s: vec![0.0, 1e4],
+            travel_share: vec![0.0, 1.0],
+            load_range_n: (3.0, 50.0),
+            conditions: Vec::new(),
+        };
+        let condition = Condition {
+            substrate: Some(Substrate::Silicone),
+            pins: vec![5, 8, 11],
+            device: Some(0),
+            wrap_rad: 1.115,
+            weight: 0.1,
+            turn_rad: 0.37,
+            ploughing: 0.7,
+        };
+        let point = Point {
+            condition: 0,
+            load_n: 49.0,
+            sign: 1.0,
+            descending: 1.0,
+            log_speed: 0.2,
+            log_dwell: 0.5,
+            repetition: 2.0,
+            position: 0.8,
+            time: 0.7,
+            travel: 0.6,
+        };
+        for effect in CATALOGUE {
+            let read = |k: Option<&[f64]>| {
+                let mut state = ContactState {
+                    load_n: point.load_n,
+                    wrap_rad: condition.wrap_rad,
+                    mu_pins: 0.05,
+                    mu_silicone: 0.24,
+                    extra_exponent_pins: 0.0,
+                    exponent_factor: 1.0,
+                    half_load_n: 40.0,
+                    steepness: 4.6,
+                    local_tension: false,
+                    adhesion_n: 0.0,
+                    drag_n: 0.0,
+                };
+                if let Some(k) = k {
+                    effect.on_contact(k, &point, &condition, &mut state);
+                }
+                let tension = state.tension_n(&condition, &point);
+                k.map_or(tension, |k| effect.on_reading(k, &point, tension))
+            };
+            let changed = effect.starts(&frame).iter().any(|k| {
+                assert_eq!(k.len(), effect.parameters().len(), "{}", effect.id());
+                (read(Some(k)) - read(None)).abs() > 1e-3
+            });
+            assert!(changed, "{}", effect.id());
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! `polygon_bending`: the sharper the tendon turns at one pin, the more friction there.
+
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
+use crate::table::{Condition, Frame, Point};
+
+/// Turn per pin to which `k` refers: 20 degrees.
+const REFERENCE_TURN_RAD: f64 = 0.349_065_850_398_865_9;
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct PolygonBending;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &PolygonBending;
+
+static DESCRIPTION: Description = Description {
+    id: "polygon_bending",
+    side: Side::Switch,
+    covariate: Covariate::Condition,
+    stage: Stage::ScaledFriction,
+    formula: "mu_p (1 + k (a/n) / (20 deg)) with the mean turn a/n per pin",
+    parameters: &[Parameter::free("k", "1")],
+    // Sharper turns bend the fibres more.
+    one_sided: true,
+    scales: true,
+    confused_with: &["coating_ploughing"],
+    experiment: "the same number of loads on a layout with another number of pins",
+    invisible_because: "all pins-only and device layouts have one number of pins",
+    study: StudyRange { size: Some((0.3, 1.5)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for PolygonBending {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.5]]
+    }
+
+    fn on_contact(&self, k: &[f64], _: &Point, condition: &Condition, state: &mut ContactState) {
+        if condition.has_pins() {
+            state.mu_pins *= (1.0 + k[0] * condition.turn_rad / REFERENCE_TURN_RAD).max(0.0);
+        }
+    }
+}

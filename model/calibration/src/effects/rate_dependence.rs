@@ -1,0 +1,50 @@
+//! `rate_dependence`: friction depends on the speed of the actuator.
+
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
+use crate::table::{Condition, Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct RateDependence;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &RateDependence;
+
+static DESCRIPTION: Description = Description {
+    id: "rate_dependence",
+    side: Side::Switch,
+    covariate: Covariate::Speed,
+    stage: Stage::ScaledFriction,
+    formula: "mu (1 + k ln(v/v0)), v0 the geometric mean speed",
+    parameters: &[Parameter::free("k", "1")],
+    one_sided: false,
+    scales: true,
+    confused_with: &["fixture_compliance", "substrate_saturation"],
+    experiment: "several speeds at one load",
+    invisible_because: "the speed never varies",
+    study: StudyRange {
+        size: Some((0.15, 0.5)),
+        signed: false,
+        shapes: &[],
+        paper: PaperProtocol::Confounded,
+    },
+};
+
+impl Effect for RateDependence {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.1]]
+    }
+
+    fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
+        let factor = (1.0 + k[0] * point.log_speed).max(0.0);
+        state.mu_pins *= factor;
+        state.mu_silicone *= factor;
+        state.extra_exponent_pins *= factor;
+    }
+}

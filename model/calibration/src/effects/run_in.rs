@@ -1,0 +1,53 @@
+//! `run_in`: friction of the silicone is higher in the first repetitions of a series.
+
+use super::{
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+};
+use crate::table::{Condition, Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct RunIn;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &RunIn;
+
+static DESCRIPTION: Description = Description {
+    id: "run_in",
+    side: Side::Switch,
+    covariate: Covariate::Repetition,
+    stage: Stage::ScaledFriction,
+    formula: "mu_s (1 + k exp(-(r - 1)/r0)), times c in the concentric half, 1 if it settles anew there",
+    parameters: &[
+        Parameter::free("k", "1"),
+        Parameter::bounded("r0", "1", 0.5, 12.0),
+        Parameter::bounded("c", "1", -0.05, 1.05),
+    ],
+    // Friction is higher before it settles.
+    one_sided: true,
+    scales: true,
+    confused_with: &["stroke_position"],
+    experiment: "one series started in the middle of the stroke",
+    invisible_because: "one repetition per series, or no silicone",
+    study: StudyRange {
+        size: Some((0.05, 0.4)),
+        signed: false,
+        shapes: &[(1.5, 6.0), (1.0, 1.0)],
+        paper: PaperProtocol::Shown,
+    },
+};
+
+impl Effect for RunIn {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        [1.0, 2.5, 5.0, 9.0].iter().flat_map(|r0| [1.0, 0.0].map(|c| vec![0.1, *r0, c])).collect()
+    }
+
+    fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
+        let share = if point.sign > 0.0 { k[2] } else { 1.0 };
+        state.mu_silicone *= (1.0 + share * k[0] * (-(point.repetition - 1.0) / k[1]).exp()).max(0.0);
+    }
+}

@@ -1,0 +1,272 @@
+//! `unattributed`: structure along one covariate that no named effect explains, as a data-driven term.
+
+use pinswitch_friction::published;
+use serde::{Deserialize, Serialize};
+
+use super::{ContactState, Covariate};
+use crate::table::{Condition, Frame, Point};
+
+/// What a structure acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Channel {
+    /// Adds newtons to the reading, alike in both directions.
+    Reading,
+    /// Adds newtons of friction, opposite in the two directions.
+    Drag,
+    /// Scales the friction exponent.
+    Friction,
+    /// Scales the friction exponent of the pins.
+    Pins,
+    /// Scales the friction exponent of the silicone.
+    Silicone,
+}
+
+/// A function of one covariate, dimensionless and of order one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "shape")]
+pub enum Shape {
+    /// 0 before a share of the session, 1 after it.
+    TimeStep {
+        /// Share of the session, 0..1.
+        at: f64,
+    },
+    /// 1 between two shares of the session.
+    TimeWindow {
+        /// Start, share of the session.
+        from: f64,
+        /// End, share of the session.
+        to: f64,
+    },
+    /// A power of the share of the session.
+    TimePower {
+        /// The power.
+        power: i32,
+    },
+    /// Sine over the session.
+    TimeWave {
+        /// Cycles over the session.
+        cycles: f64,
+        /// Phase in quarter turns: 0 sine, 1 cosine.
+        quarter: u8,
+    },
+    /// Sine along the stroke.
+    PositionWave {
+        /// Cycles over the stroke.
+        cycles: f64,
+        /// Phase in quarter turns: 0 sine, 1 cosine.
+        quarter: u8,
+    },
+    /// A bell along the stroke, `exp(-((s - at)/width)^2 / 2)`.
+    PositionBump {
+        /// Centre, share of the stroke.
+        at: f64,
+        /// Width, share of the stroke.
+        width: f64,
+    },
+    /// A power of the position about the middle of the stroke.
+    PositionPower {
+        /// The power.
+        power: i32,
+    },
+    /// 1 at one speed.
+    SpeedLevel {
+        /// `ln(v/v0)`.
+        log_speed: f64,
+        /// Half width in `ln v`.
+        half_width: f64,
+    },
+    /// A bell in the logarithm of speed.
+    SpeedBump {
+        /// Centre, `ln(v/v0)`.
+        log_speed: f64,
+        /// Width in `ln v`.
+        width: f64,
+    },
+    /// `ln(v/v0)` to a power.
+    SpeedPower {
+        /// The power.
+        power: i32,
+    },
+    /// 1 at one dwell.
+    DwellLevel {
+        /// `ln(dwell / 3 s)`.
+        log_dwell: f64,
+    },
+    /// 1 at one load.
+    LoadLevel {
+        /// Load in newtons.
+        load_n: f64,
+        /// Half width in newtons.
+        half_width: f64,
+    },
+    /// `(F/F_max)` to a power.
+    LoadPower {
+        /// The power.
+        power: i32,
+        /// The highest load in newtons.
+        unit_n: f64,
+    },
+    /// A power of the load in one condition only.
+    ConditionLoad {
+        /// Index of the condition.
+        condition: usize,
+        /// The power.
+        power: i32,
+        /// The highest load in newtons.
+        unit_n: f64,
+    },
+    /// 1 for the conditions listed.
+    ConditionIs {
+        /// Indices of the conditions.
+        conditions: Vec<usize>,
+    },
+    /// `exp(-(r - 1)/r0)` over the repetitions.
+    Repetition {
+        /// `r0`.
+        r0: f64,
+    },
+    /// 1 when the loads descend.
+    Descending,
+    /// `d` times the load.
+    DirectionLoad {
+        /// The power of the load.
+        power: i32,
+        /// The highest load in newtons.
+        unit_n: f64,
+    },
+}
+
+/// A shape on a channel; its size is the one constant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Structure {
+    /// Where it lies.
+    pub covariate: Covariate,
+    /// What it acts on.
+    pub channel: Channel,
+    /// Its course along the covariate.
+    #[serde(flatten)]
+    pub form: Shape,
+}
+
+impl Structure {
+    /// Value of the shape at a point.
+    pub fn value(&self, p: &Point) -> f64 {
+        let flag = |b: bool| f64::from(u8::from(b));
+        let wave = |share: f64, cycles: f64, quarter: u8| {
+            (std::f64::consts::TAU * cycles * share + f64::from(quarter) * std::f64::consts::FRAC_PI_2).sin()
+        };
+        match &self.form {
+            Shape::TimeStep { at } => flag(p.time >= *at),
+            Shape::TimeWindow { from, to } => flag(p.time >= *from && p.time < *to),
+            Shape::TimePower { power } => p.time.powi(*power),
+            Shape::TimeWave { cycles, quarter } => wave(p.time, *cycles, *quarter),
+            Shape::PositionWave { cycles, quarter } => wave(p.position, *cycles, *quarter),
+            Shape::PositionBump { at, width } => (-0.5 * ((p.position - at) / width).powi(2)).exp(),
+            Shape::PositionPower { power } => (2.0 * p.position - 1.0).powi(*power),
+            Shape::SpeedLevel { log_speed, half_width } => {
+                flag((p.log_speed - log_speed).abs() <= *half_width)
+            }
+            Shape::SpeedBump { log_speed, width } => {
+                (-0.5 * ((p.log_speed - log_speed) / width).powi(2)).exp()
+            }
+            Shape::SpeedPower { power } => p.log_speed.powi(*power),
+            Shape::DwellLevel { log_dwell } => flag((p.log_dwell - log_dwell).abs() < 0.02),
+            Shape::LoadLevel { load_n, half_width } => flag((p.load_n - load_n).abs() <= *half_width),
+            Shape::LoadPower { power, unit_n } => (p.load_n / unit_n).powi(*power),
+            Shape::ConditionLoad { condition, power, unit_n } => {
+                flag(p.condition == *condition) * (p.load_n / unit_n).powi(*power)
+            }
+            Shape::ConditionIs { conditions } => flag(conditions.contains(&p.condition)),
+            Shape::Repetition { r0 } => (-(p.repetition - 1.0) / r0).exp(),
+            Shape::Descending => p.descending,
+            Shape::DirectionLoad { power, unit_n } => p.sign * (p.load_n / unit_n).powi(*power),
+        }
+    }
+
+    /// Acts on the contact with size `k`.
+    pub fn on_contact(&self, k: f64, point: &Point, state: &mut ContactState) {
+        if self.channel == Channel::Reading {
+            return;
+        }
+        let value = k * self.value(point);
+        let factor = (1.0 + value).max(0.0);
+        match self.channel {
+            Channel::Reading => {}
+            Channel::Drag => state.drag_n += value,
+            Channel::Friction => state.exponent_factor *= factor,
+            Channel::Pins => {
+                state.mu_pins *= factor;
+                state.extra_exponent_pins *= factor;
+            }
+            Channel::Silicone => state.mu_silicone *= factor,
+        }
+    }
+
+    /// Acts on the reading with size `k`.
+    pub fn on_reading(&self, k: f64, point: &Point, reading_n: f64) -> f64 {
+        if self.channel == Channel::Reading { reading_n + k * self.value(point) } else { reading_n }
+    }
+
+    /// Unit of its size.
+    pub fn unit(&self) -> &'static str {
+        match self.channel {
+            Channel::Reading | Channel::Drag => "N",
+            Channel::Friction | Channel::Pins | Channel::Silicone => "1",
+        }
+    }
+
+    /// The structure in words, in the units of the frame's session.
+    pub fn describe(&self, frame: &Frame) -> String {
+        let on = match self.channel {
+            Channel::Reading => "the reading",
+            Channel::Drag => "the friction force",
+            Channel::Friction => "the friction exponent",
+            Channel::Pins => "the friction of the pins",
+            Channel::Silicone => "the friction of the silicone",
+        };
+        let name = |i: &usize| frame.conditions.get(*i).map_or_else(String::new, Condition::name);
+        let stroke = frame.stroke_mm;
+        let what = match &self.form {
+            Shape::TimeStep { at } => format!("a step {:.0} s into the session", at * frame.session_s),
+            Shape::TimeWindow { from, to } => {
+                format!("another level from {:.0} to {:.0} s", from * frame.session_s, to * frame.session_s)
+            }
+            Shape::TimePower { power } => format!("a drift with time to the power {power}"),
+            Shape::TimeWave { cycles, .. } => format!("a wave of period {:.0} s", frame.session_s / cycles),
+            Shape::PositionWave { cycles, .. } => {
+                format!("a wave of {:.1} mm along the stroke", stroke / cycles)
+            }
+            Shape::PositionBump { at, width } => {
+                format!("a bump at {:.0} mm of the stroke, {:.0} mm wide", at * stroke, 2.0 * width * stroke)
+            }
+            Shape::PositionPower { power } => format!("a course along the stroke to the power {power}"),
+            Shape::SpeedLevel { log_speed, .. } => {
+                format!("another level at a speed of {:.0} %", frame.reference_speed_pct * log_speed.exp())
+            }
+            Shape::SpeedBump { log_speed, width } => format!(
+                "a resonance at a speed of {:.0} %, {:.0} % wide",
+                frame.reference_speed_pct * log_speed.exp(),
+                200.0 * width
+            ),
+            Shape::SpeedPower { power } => format!("a course with ln(speed) to the power {power}"),
+            Shape::DwellLevel { log_dwell } => {
+                format!("another level at a dwell of {:.2} s", published::DWELL_S * log_dwell.exp())
+            }
+            Shape::LoadLevel { load_n, .. } => format!("another level at a load of {load_n:.1} N"),
+            Shape::LoadPower { power, .. } => format!("a course with load to the power {power}"),
+            Shape::ConditionLoad { condition, power, .. } => {
+                format!("a course with load to the power {power} on {}", name(condition))
+            }
+            Shape::ConditionIs { conditions } => {
+                format!("another level on {}", conditions.iter().map(name).collect::<Vec<_>>().join(" and "))
+            }
+            Shape::Repetition { r0 } => format!("a settling over {r0} repetitions"),
+            Shape::Descending => "another level when loads descend".to_owned(),
+            Shape::DirectionLoad { power, .. } => {
+                format!("a difference of the directions with load to the power {power}")
+            }
+        };
+        format!("{what}, in {on}")
+    }
+}

@@ -1,0 +1,40 @@
+//! `switch_local_tension`: the switch follows the local tension over the wrap, not the load.
+
+use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange};
+use crate::table::{Condition, Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct SwitchLocalTension;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &SwitchLocalTension;
+
+static DESCRIPTION: Description = Description {
+    id: "switch_local_tension",
+    side: Side::Switch,
+    covariate: Covariate::Direction,
+    stage: Stage::Switch,
+    formula: "S(mean tension over the wrap) instead of S(F); no free constant",
+    parameters: &[],
+    one_sided: false,
+    scales: false,
+    confused_with: &["switching_hysteresis", "direction_asymmetry"],
+    experiment: "both directions on a device at loads near its threshold",
+    invisible_because: "no device, or no load near its threshold",
+    study: StudyRange { size: None, signed: false, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for SwitchLocalTension {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![]]
+    }
+
+    fn on_contact(&self, _: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
+        state.local_tension = true;
+    }
+}

@@ -1,0 +1,40 @@
+//! `thermal_drift`: the reading drifts with time.
+
+use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
+use crate::table::{Frame, Point};
+
+/// See [`DESCRIPTION`].
+#[derive(Debug)]
+struct ThermalDrift;
+
+/// The entry in the registry.
+pub(super) const EFFECT: &dyn Effect = &ThermalDrift;
+
+static DESCRIPTION: Description = Description {
+    id: "thermal_drift",
+    side: Side::Rig,
+    covariate: Covariate::Time,
+    stage: Stage::CellZero,
+    formula: "reading + k u, u share of session time",
+    parameters: &[Parameter::free("k", "N")],
+    one_sided: false,
+    scales: true,
+    confused_with: &["wear_drift"],
+    experiment: "a zero reading before and after the session",
+    invisible_because: "the session is too short to drift",
+    study: StudyRange { size: Some((0.3, 1.5)), signed: true, shapes: &[], paper: PaperProtocol::Shown },
+};
+
+impl Effect for ThermalDrift {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
+        vec![vec![0.3]]
+    }
+
+    fn on_reading(&self, k: &[f64], point: &Point, reading_n: f64) -> f64 {
+        reading_n + k[0] * point.time
+    }
+}

@@ -1,0 +1,53 @@
+//! Fitted at low loads, judged at higher ones.
+
+use crate::calibrate::{BAD_READING_SD, Calibration, CalibrationError, calibrate};
+use crate::inference::{Levels, Model};
+use crate::median::median;
+use crate::report::Extrapolation;
+use crate::table::PlateauRow;
+
+/// Calibrates on loads up to a share of the highest one and judges both models on the rest.
+///
+/// # Errors
+/// [`CalibrationError::TooFewRows`] if the rows below cannot fix the baseline.
+pub fn calibrate_below(
+    rows: &[PlateauRow],
+    share: f64,
+    levels: Levels,
+) -> Result<Calibration, CalibrationError> {
+    let highest = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
+    let (seen, rest): (Vec<_>, Vec<_>) = rows.iter().cloned().partition(|r| r.load_n <= share * highest);
+    let mut calibration = calibrate(&seen, levels)?;
+    let selection = &calibration.selection;
+    let misses = |model: &Model| -> Vec<f64> {
+        let points = model.frame.points(&rest).unwrap_or_default();
+        model.predict(&points).iter().zip(&rest).map(|(p, r)| p - r.force_n).collect()
+    };
+    let before = misses(&selection.baseline.model);
+    let after = misses(&selection.augmented.model);
+    let sound: Vec<f64> = after
+        .iter()
+        .zip(&rest)
+        .filter(|(miss, r)| miss.abs() <= BAD_READING_SD * selection.noise.at(r.load_n))
+        .map(|(miss, _)| *miss)
+        .collect();
+    calibration.report.extrapolation = Some(Extrapolation {
+        fitted_below_n: share * highest,
+        rows: rest.len(),
+        rmse_before_n: root_mean_square(&before),
+        rmse_after_n: root_mean_square(&after),
+        rmse_after_without_bad_n: root_mean_square(&sound),
+        bad_rows: rest.len() - sound.len(),
+        median_before_n: median(&mut sizes(&before)),
+        median_after_n: median(&mut sizes(&after)),
+    });
+    Ok(calibration)
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+fn sizes(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|v| v.abs()).collect()
+}

@@ -1,0 +1,54 @@
+//! The refitted baseline, and what could still explain its residuals.
+
+use super::fit::{Fit, fit, jacobian};
+use super::forward::{Model, Term};
+use super::noise::Noise;
+use super::observations::Observations;
+use crate::effects::acting_order;
+
+/// The refitted paper's model from several starts: a stuck fit is indistinguishable from missing physics.
+pub(super) fn fit_baseline(model: &Model, data: &Observations, noise: Noise) -> Fit {
+    let mut best = fit(model, data, noise);
+    for factor in [0.75f64, 1.3] {
+        let mut other = best.model.clone();
+        for device in 0..other.frame.devices() {
+            let [half_load, _] = Model::device_constants(device);
+            other.coordinates[half_load] += factor.ln();
+        }
+        let other = fit(&other, data, noise);
+        if other.cost < best.cost {
+            best = other;
+        }
+    }
+    best
+}
+
+/// With fewer series and directions than these, only the model's own columns are taken out before noise is estimated.
+const MIN_CELLS: usize = 50;
+
+/// Columns that could explain residuals, in newtons: the model's own, the library's, and coarse structure.
+pub(super) fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
+    let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
+    let mut columns = jacobian(&fitted.model, data, &predicted);
+    // So many columns would explain a few series altogether and leave no noise to estimate.
+    if data.cells.len() < MIN_CELLS {
+        return columns;
+    }
+    for effect in acting_order() {
+        for start in effect.starts(&fitted.model.frame) {
+            let changed = fitted.model.with_term(Term::Named(*effect), &start).predict(&data.points);
+            columns.push(changed.iter().zip(&predicted).map(|(c, p)| c - p).collect());
+        }
+    }
+    for condition in 0..fitted.model.frame.conditions.len() {
+        for sign in [-1.0, 1.0] {
+            columns.push(
+                data.points
+                    .iter()
+                    .map(|p| f64::from(u8::from(p.condition == condition && p.sign * sign > 0.0)))
+                    .collect(),
+            );
+        }
+    }
+    columns
+}

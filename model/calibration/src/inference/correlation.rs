@@ -1,0 +1,113 @@
+//! How repetitions that follow each other hang together: a chain of first order inside a series and direction, AR(1).
+
+use nalgebra::DMatrix;
+
+use super::Observations;
+
+/// Below this a correlation changes no decision, and estimates of nothing reach it by chance.
+const MIN: f64 = 0.05;
+/// Nothing is learnt from chains shorter than this: mean and trend are taken out of each.
+const MIN_LENGTH: usize = 5;
+/// Largest correlation considered.
+const MAX: f64 = 0.95;
+
+/// Whitens the values of one cell in place, given at unit variance: each keeps what its predecessor does not foretell.
+/// A lost repetition leaves a gap, over which the correlation is `rho^gap`.
+pub(super) fn unchain(rho: f64, data: &Observations, cell: &[usize], values: &mut [f64]) {
+    let rest = |phi: f64| (1.0 - phi * phi).sqrt().recip();
+    let next = (rho, rest(rho));
+    for i in (1..cell.len()).rev() {
+        let gap = gap(data, cell, i);
+        // Hardly any repetition is lost, and this is called for every column of every fit.
+        let (phi, scale) = if gap == 1.0 { next } else { (rho.powf(gap), rest(rho.powf(gap))) };
+        values[i] = (values[i] - phi * values[i - 1]) * scale;
+    }
+}
+
+fn gap(data: &Observations, cell: &[usize], i: usize) -> f64 {
+    (data.points[cell[i]].repetition - data.points[cell[i - 1]].repetition).max(1.0)
+}
+
+/// Correlation from one repetition to the next, from residuals at unit variance in the order of the rows.
+///
+/// What a place of the stroke does to every series is no noise: per condition, direction and repetition a line over the
+/// load is taken out across the series, which leaves the correlation along each as it is. Then mean and trend of each
+/// series and direction are taken out, for offsets and slow drifts, and the bias of that is undone exactly.
+pub(super) fn estimate(data: &Observations, white: &[f64]) -> f64 {
+    let values = without_common_course(data, white);
+    let (mut product, mut square) = (0.0, 0.0);
+    let mut lengths = std::collections::BTreeMap::new();
+    for cell in &data.cells {
+        let whole = (1..cell.len()).all(|i| gap(data, cell, i) == 1.0);
+        let sound = cell.iter().all(|r| data.weights[*r] == 1.0);
+        if cell.len() < MIN_LENGTH || !whole || !sound {
+            continue;
+        }
+        let along: Vec<f64> = cell.iter().map(|r| values[*r]).collect();
+        let rest = without_line(&along, &(0..cell.len()).map(|i| i as f64).collect::<Vec<_>>());
+        product += rest.windows(2).map(|w| w[0] * w[1]).sum::<f64>();
+        square += rest.iter().map(|v| v * v).sum::<f64>();
+        *lengths.entry(cell.len()).or_insert(0.0) += 1.0;
+    }
+    let rows: f64 = lengths.iter().map(|(n, count)| *n as f64 * count).sum();
+    if square <= 0.0 || rows < 100.0 {
+        return 0.0;
+    }
+    // The expected ratio grows with rho: halve the bracket.
+    let (mut low, mut high) = (0.0, MAX);
+    if expected_ratio(&lengths, low) >= product / square {
+        return 0.0;
+    }
+    for _ in 0..20 {
+        let middle = 0.5 * (low + high);
+        if expected_ratio(&lengths, middle) < product / square { low = middle } else { high = middle }
+    }
+    if low > MIN.max(3.0 / rows.sqrt()) { low } else { 0.0 }
+}
+
+/// Lag-one product over square that chains of these lengths show once mean and trend are out: `tr(L M R M)/tr(M R)`.
+fn expected_ratio(lengths: &std::collections::BTreeMap<usize, f64>, rho: f64) -> f64 {
+    let (mut product, mut square) = (0.0, 0.0);
+    for (n, count) in lengths {
+        let lines: Vec<Vec<f64>> = (0..*n)
+            .map(|i| {
+                let mut unit = vec![0.0; *n];
+                unit[i] = 1.0;
+                without_line(&unit, &(0..*n).map(|i| i as f64).collect::<Vec<_>>())
+            })
+            .collect();
+        let m = DMatrix::from_fn(*n, *n, |i, j| lines[j][i]);
+        let r = DMatrix::from_fn(*n, *n, |i, j| rho.powi(i.abs_diff(j) as i32));
+        let left = &m * r * &m;
+        product += count * (1..*n).map(|i| left[(i, i - 1)]).sum::<f64>();
+        square += count * left.trace();
+    }
+    product / square
+}
+
+/// Takes a line over the load out of each condition, direction and repetition.
+fn without_common_course(data: &Observations, white: &[f64]) -> Vec<f64> {
+    let mut groups = std::collections::BTreeMap::<_, Vec<usize>>::new();
+    for (row, p) in data.points.iter().enumerate().filter(|(row, _)| data.weights[*row] == 1.0) {
+        groups.entry((p.condition, p.sign > 0.0, p.repetition as u32)).or_default().push(row);
+    }
+    let mut out = white.to_vec();
+    for rows in groups.values().filter(|rows| rows.len() >= 4) {
+        let values: Vec<f64> = rows.iter().map(|r| white[*r]).collect();
+        let loads: Vec<f64> = rows.iter().map(|r| data.points[*r].load_n).collect();
+        for (row, rest) in rows.iter().zip(without_line(&values, &loads)) {
+            out[*row] = rest;
+        }
+    }
+    out
+}
+
+/// What a straight line over `at` leaves of the values.
+fn without_line(values: &[f64], at: &[f64]) -> Vec<f64> {
+    let n = values.len() as f64;
+    let (mean, middle) = (values.iter().sum::<f64>() / n, at.iter().sum::<f64>() / n);
+    let spread: f64 = at.iter().map(|x| (x - middle).powi(2)).sum();
+    let along: f64 = values.iter().zip(at).map(|(v, x)| v * (x - middle)).sum();
+    let slope = if spread > 0.0 { along / spread } else { 0.0 };
+    values.iter().zip(at).map(|(v, x)| v - mean - slope * (x - middle)).collect()
+}

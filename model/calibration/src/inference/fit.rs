@@ -1,0 +1,170 @@
+//! Generalised least squares by Levenberg and Marquardt, with weak priors as pseudo-rows and a certificate.
+
+use nalgebra::{DMatrix, DVector};
+use pinswitch_friction::LayoutLaw;
+
+use super::forward::Model;
+use super::noise::Noise;
+use super::observations::Observations;
+use super::projection::dot;
+use super::significance::degrees_of_freedom;
+use crate::table::Point;
+
+/// A model fitted to data.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The model at its optimum.
+    pub model: Model,
+    /// Whitened squared residuals plus the priors' share.
+    pub cost: f64,
+    /// Residuals in newtons, reading minus model.
+    pub residual_n: Vec<f64>,
+    /// Whether the linear model at the end promises no further gain: a stuck fit looks like missing physics.
+    pub converged: bool,
+}
+
+/// Sensitivities of the readings to all coordinates, in newtons per unit, by forward differences.
+pub(crate) fn jacobian(model: &Model, data: &Observations, at: &[f64]) -> Vec<Vec<f64>> {
+    let mut shifted = model.clone();
+    (0..model.coordinates.len())
+        .map(|j| {
+            let step = 1e-5 * model.coordinates[j].abs().max(0.1);
+            shifted.coordinates[j] = model.coordinates[j] + step;
+            let mut column = shifted.predict_changed(&data.points, at, j);
+            shifted.coordinates[j] = model.coordinates[j];
+            column.iter_mut().zip(at).for_each(|(c, a)| *c = (*c - a) / step);
+            column
+        })
+        .collect()
+}
+
+/// `sum ((theta - mean)/sd)^2` over the priors.
+fn prior_cost(model: &Model) -> f64 {
+    model.coordinates.iter().zip(model.priors()).map(|(c, p)| ((c - p.mean) / p.sd).powi(2)).sum()
+}
+
+fn evaluate(model: &Model, data: &Observations, noise: Noise) -> (f64, Vec<f64>, Vec<f64>) {
+    let predicted = model.predict(&data.points);
+    let residual: Vec<f64> = data.force_n.iter().zip(&predicted).map(|(y, f)| y - f).collect();
+    let mut white = residual.clone();
+    noise.whiten(data, &mut white);
+    (dot(&white, &white) + prior_cost(model), predicted, white)
+}
+
+/// The normal equations at a model: `J' V^-1 J + priors` and the gradient.
+pub(crate) fn normal_equations(
+    model: &Model,
+    data: &Observations,
+    noise: Noise,
+    predicted: &[f64],
+    white: &[f64],
+) -> (DMatrix<f64>, DVector<f64>) {
+    let mut columns = jacobian(model, data, predicted);
+    columns.iter_mut().for_each(|c| noise.whiten(data, c));
+    let p = columns.len();
+    let (mut a, mut g) = (DMatrix::zeros(p, p), DVector::zeros(p));
+    for i in 0..p {
+        for j in 0..=i {
+            let value = dot(&columns[i], &columns[j]);
+            a[(i, j)] = value;
+            a[(j, i)] = value;
+        }
+        let prior = model.priors()[i];
+        a[(i, i)] += prior.sd.powi(-2);
+        g[i] = dot(&columns[i], white) - (model.coordinates[i] - prior.mean) / prior.sd.powi(2);
+    }
+    (a, g)
+}
+
+/// Fits all constants of a model, from where they stand.
+pub fn fit(start: &Model, data: &Observations, noise: Noise) -> Fit {
+    let mut model = start.clone();
+    let (mut cost, mut predicted, mut white) = evaluate(&model, data, noise);
+    let mut damping = 1e-4;
+    let mut converged = false;
+    'outer: for _ in 0..40 {
+        let (a, g) = normal_equations(&model, data, noise, &predicted, &white);
+        for _ in 0..12 {
+            let mut damped = a.clone();
+            for i in 0..damped.nrows() {
+                damped[(i, i)] += damping * a[(i, i)] + 1e-12;
+            }
+            let Some(step) = damped.cholesky().map(|c| c.solve(&g)) else {
+                damping *= 10.0;
+                continue;
+            };
+            let promised = 2.0 * step.dot(&g) - (&a * &step).dot(&step);
+            let mut trial = model.clone();
+            trial.coordinates.iter_mut().zip(step.iter()).for_each(|(c, s)| *c += s.clamp(-3.0, 3.0));
+            let (trial_cost, trial_predicted, trial_white) = evaluate(&trial, data, noise);
+            if promised < 1e-3 && trial_cost >= cost {
+                converged = true;
+                break 'outer;
+            }
+            if trial_cost < cost {
+                let gained = cost - trial_cost;
+                (model, cost, predicted, white) = (trial, trial_cost, trial_predicted, trial_white);
+                damping = (damping * if gained > 0.5 * promised { 0.1 } else { 1.0 }).max(1e-9);
+                if promised < 1e-2 && gained < 1e-2 {
+                    converged = true;
+                    break 'outer;
+                }
+                continue 'outer;
+            }
+            damping = (damping * 8.0).max(1e-6);
+        }
+        break;
+    }
+    let residual_n = data.force_n.iter().zip(&predicted).map(|(y, f)| y - f).collect();
+    Fit { model, cost, residual_n, converged }
+}
+
+/// Covariance of the constants' coordinates, from the normal equations and a scale of at least one.
+pub fn coordinate_covariance(fitted: &Fit, data: &Observations, noise: Noise) -> DMatrix<f64> {
+    let (_, predicted, white) = evaluate(&fitted.model, data, noise);
+    let (a, _) = normal_equations(&fitted.model, data, noise, &predicted, &white);
+    let degrees = (data.points.len() as f64 - a.nrows() as f64).max(1.0);
+    let scale = (dot(&white, &white) / degrees).max(1.0);
+    a.clone().cholesky().map_or_else(|| DMatrix::zeros(a.nrows(), a.ncols()), |c| c.inverse() * scale)
+}
+
+/// Half widths of 95 % intervals of all constants, in the constants' own units: Student's t with the number of series.
+pub fn interval_half_widths(fitted: &Fit, data: &Observations, noise: Noise) -> Vec<f64> {
+    let covariance = coordinate_covariance(fitted, data, noise);
+    let quantile = super::significance::gain_at(0.05, 1, degrees_of_freedom(data, covariance.nrows())).sqrt();
+    (0..covariance.nrows())
+        .map(|i| quantile * covariance[(i, i)].max(0.0).sqrt() * fitted.model.value(i).1.abs())
+        .collect()
+}
+
+/// Standard deviations of predicted readings in newtons: noise of a reading and uncertainty of the constants.
+/// Rows of `covariance` beyond the model's own constants are ignored, missing ones count as certain.
+pub fn prediction_sd_n(model: &Model, points: &[Point], covariance: &[Vec<f64>], noise: Noise) -> Vec<f64> {
+    let at = model.predict(points);
+    let mut shifted = model.clone();
+    let columns: Vec<Vec<f64>> = (0..model.coordinates.len())
+        .map(|j| {
+            let step = 1e-5 * model.coordinates[j].abs().max(0.1);
+            shifted.coordinates[j] = model.coordinates[j] + step;
+            let moved = shifted.predict(points);
+            shifted.coordinates[j] = model.coordinates[j];
+            moved.iter().zip(&at).map(|(m, a)| (m - a) / step).collect()
+        })
+        .collect();
+    let same = covariance.len() == columns.len();
+    (0..points.len())
+        .map(|row| {
+            let mut variance = noise.at(points[row].load_n).powi(2);
+            for (i, line) in covariance.iter().enumerate().filter(|_| same) {
+                for (j, c) in line.iter().enumerate() {
+                    variance += columns[i][row] * c * columns[j][row];
+                }
+            }
+            if !same {
+                // A layout nobody measured: the layout law's own uncertainty, of the friction force.
+                variance += (LayoutLaw::UNCERTAINTY * (at[row] - points[row].load_n)).powi(2);
+            }
+            variance.max(0.0).sqrt()
+        })
+        .collect()
+}

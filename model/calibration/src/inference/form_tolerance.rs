@@ -1,0 +1,64 @@
+//! A guard: what a named effect leaves because its form is not quite the truth's must not be given another name.
+//!
+//! Every named effect is allowed to bend by some tens of per cent along its own covariate, with the load, with the
+//! direction and from layout to layout. These bent copies are nuisances for everything that is tried next
+//! (`model/doc/naming-an-effect.md`), held near zero by a prior: a second effect that is larger than they can be is
+//! still seen.
+
+use super::forward::{Model, Term};
+use super::observations::Observations;
+use crate::effects::Covariate;
+use crate::table::Point;
+
+/// Standard deviation of the share by which a form may bend.
+pub(crate) const BEND: f64 = 0.15;
+
+/// Bent copies of all named effects of a model, in newtons per unit share. `predicted` are the model's readings.
+pub(crate) fn bent_copies(model: &Model, data: &Observations, predicted: &[f64]) -> Vec<Vec<f64>> {
+    let mut all = Vec::new();
+    for (index, term) in model.terms.iter().enumerate() {
+        let Term::Named(effect) = term else { continue };
+        let without = model.without_term(index).predict(&data.points);
+        let trace: Vec<f64> = predicted.iter().zip(&without).map(|(a, b)| a - b).collect();
+        let mut push = |bend: &dyn Fn(&Point) -> f64| {
+            all.push(trace.iter().zip(&data.points).map(|(t, p)| t * bend(p)).collect());
+        };
+        let (low, high) = model.frame.load_range_n;
+        let load = move |p: &Point| 2.0 * (p.load_n - low) / (high - low).max(1e-9) - 1.0;
+        push(&load);
+        push(&|p| load(p).powi(2));
+        push(&|p| p.sign);
+        push(&|p| p.sign * load(p));
+        match effect.description().covariate {
+            Covariate::Position => {
+                for power in 1..=3 {
+                    push(&|p| (2.0 * p.position - 1.0).powi(power));
+                }
+            }
+            Covariate::Time => {
+                for power in 1..=2 {
+                    push(&|p| (2.0 * p.time - 1.0).powi(power));
+                    push(&|p| (2.0 * p.travel - 1.0).powi(power));
+                }
+            }
+            Covariate::Repetition => {
+                for settled in [1.0, 5.0] {
+                    push(&|p| (-(p.repetition - 1.0) / settled).exp());
+                }
+            }
+            Covariate::Speed => push(&|p| 5.0 * p.log_speed),
+            Covariate::Dwell => push(&|p| p.log_dwell),
+            Covariate::Load | Covariate::Condition => {
+                for condition in &model.frame.conditions {
+                    if condition.device.is_some() {
+                        push(&|p| {
+                            f64::from(u8::from(model.frame.conditions[p.condition].pins == condition.pins))
+                        });
+                    }
+                }
+            }
+            Covariate::Direction | Covariate::Sweep => {}
+        }
+    }
+    all
+}

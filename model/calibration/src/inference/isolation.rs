@@ -1,0 +1,38 @@
+//! One series that is wrong as a whole: a mislabelled weight or condition, a bad run.
+//!
+//! Its rows agree with each other, so that weighing single rows down does not help, and it must not decide which effect
+//! is named. It is told from an effect by standing alone: an effect moves several series.
+
+use super::fit::Fit;
+use super::noise::Noise;
+use super::observations::Observations;
+use super::screening::Screen;
+
+/// Least gain, in whitened squares, of an offset of one series in both directions.
+const MIN_GAIN: f64 = 60.0;
+/// How much more it must gain than any effect or structure.
+const AHEAD: f64 = 1.3;
+/// With fewer series none can be said to stand alone.
+const MIN_SERIES: usize = 8;
+
+/// Mean residual of a cell over its standard deviation. What was excluded counts with its rows as if sound.
+pub(crate) fn cell_deviation(fitted: &Fit, data: &Observations, noise: Noise, cell: usize) -> (f64, f64) {
+    let rows = &data.cells[cell];
+    let weights: Vec<f64> = rows.iter().map(|r| data.weights[*r]).collect();
+    let total: f64 = weights.iter().sum();
+    let mean = rows.iter().zip(&weights).map(|(r, w)| w * fitted.residual_n[*r]).sum::<f64>() / total;
+    let excluded = rows.first().is_some_and(|r| data.is_excluded(*r));
+    let count = if excluded { rows.len() as f64 } else { total };
+    let load = data.cell_load_n[cell];
+    (mean, (noise.repetition.at(load) / count.sqrt()).hypot(noise.series.at(load)))
+}
+
+/// The series whose own offsets explain what is left better than any effect or structure does, if there is one: a bad
+/// series is a hypothesis that competes with the others. `best_gain` is that of the best of those.
+pub(super) fn isolated_series(screen: &Screen<'_>, data: &Observations, best_gain: f64) -> Option<usize> {
+    if data.series < MIN_SERIES {
+        return None;
+    }
+    let (series, gain) = screen.series_offsets().into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (gain > MIN_GAIN && gain > AHEAD * best_gain).then_some(series)
+}

@@ -1,0 +1,31 @@
+//! From a table to the effects it shows: forward model, noise, fits, scores and selection.
+//!
+//! How the steps hang together, and how well they work, stands in `model/doc/naming-an-effect.md`.
+
+mod baseline;
+mod correlation;
+mod fit;
+mod form_tolerance;
+mod forward;
+mod isolation;
+mod levels;
+mod noise;
+mod observations;
+mod projection;
+mod screening;
+mod search;
+mod selection;
+mod sign_flips;
+mod significance;
+mod structures;
+mod unnamed;
+
+pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_sd_n};
+pub use forward::{Model, Term, UNATTRIBUTED};
+pub(crate) use isolation::cell_deviation;
+pub use levels::Levels;
+pub use noise::{Noise, Spread};
+pub use observations::Observations;
+pub use selection::{CandidateEffect, FoundEffect, Rival, Selection, select};
+pub use significance::{degrees_of_freedom, family_p_value};
+pub use unnamed::FoundStructure;

@@ -1,0 +1,142 @@
+//! The search among named effects: forward, backward and exchange steps.
+
+use super::fit::{Fit, fit};
+use super::forward::Term;
+use super::levels::Levels;
+use super::noise::Noise;
+use super::observations::Observations;
+use super::screening::{EffectScore, Screen};
+use super::sign_flips::family_probability;
+use super::significance::{degrees_of_freedom, gain_at};
+use crate::effects::{CATALOGUE, Effect};
+
+/// How many candidates of a scan are fitted in full.
+const FITTED: usize = 6;
+/// Share of its length that a trace must keep after the refit to be called visible.
+pub(super) const VISIBLE_SHARE: f64 = 2e-3;
+
+/// Whether the effect just added, the last term, has a size that its physics allows.
+pub(super) fn possible(effect: &dyn Effect, fitted: &Fit) -> bool {
+    let last = fitted.model.terms.len().saturating_sub(1);
+    let size = fitted.model.values().get(fitted.model.term_offset(last)).copied();
+    !effect.description().one_sided || size.is_some_and(|s| s > 0.0)
+}
+
+/// Full fits of the most promising absent effects, best cost first.
+fn extensions(
+    from: &Fit,
+    data: &Observations,
+    noise: Noise,
+    least: f64,
+    beyond_form: f64,
+    most: usize,
+) -> Vec<(&'static dyn Effect, Fit)> {
+    let mut scores = Screen::new(from, data, noise).effects();
+    if !from.model.named_effects().is_empty() {
+        // What the names so far would explain by bending their own forms is not worth another name.
+        let guarded = Screen::guarded(from, data, noise).effects();
+        scores.retain(|s| {
+            s.gain > beyond_form || guarded.iter().any(|g| g.effect.id() == s.effect.id() && g.gain > least)
+        });
+    }
+    scores.retain(|s| s.gain > least);
+    scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    scores.truncate(most);
+    let mut fits: Vec<_> = scores
+        .into_iter()
+        .map(|s| (s.effect, fit(&from.model.with_term(Term::Named(s.effect), &s.start), data, noise)))
+        .filter(|(effect, fitted)| possible(*effect, fitted))
+        .collect();
+    fits.sort_by(|a: &(_, Fit), b| a.1.cost.total_cmp(&b.1.cost));
+    fits
+}
+
+/// Adds named effects while each gains enough, then drops and exchanges.
+pub(super) fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit {
+    let mut current = start.clone();
+    let degrees = degrees_of_freedom(data, start.model.coordinates.len());
+    let first = gain_at(levels.first_p, CATALOGUE.len(), degrees);
+    let scores = Screen::new(start, data, noise).effects();
+    let strongest = scores.iter().map(|s| s.gain).fold(0.0, f64::max);
+    // A weak candidate that a few series carry alone is no effect, whatever the noise model says. With few series
+    // flips cannot tell, and the noise model decides.
+    if strongest < 3.0 * first && data.series >= 12 && flips(&scores) > levels.flips {
+        return current;
+    }
+    for _ in 0..4 {
+        let gained = start.cost - current.cost;
+        let least = if current.model.named_effects().is_empty() {
+            first
+        } else {
+            first.max(levels.further).max(levels.further_share * gained)
+        };
+        // To first order alone: an effect that is not linear may gain more once fitted.
+        let screened = if current.model.named_effects().is_empty() { 0.3 } else { 0.8 } * least;
+        let Some((_, best)) =
+            extensions(&current, data, noise, screened, levels.beyond_form * gained, FITTED)
+                .into_iter()
+                .next()
+        else {
+            break;
+        };
+        if current.cost - best.cost < least {
+            break;
+        }
+        current = best;
+        current = exchange(current, data, noise, levels.beyond_form * gained);
+        current = prune(current, data, noise, levels.further.max(levels.further_share * gained), 1);
+    }
+    current
+}
+
+/// Probability of the scores by flipped signs.
+pub(super) fn flips(scores: &[EffectScore]) -> f64 {
+    let contributions: Vec<&[f64]> =
+        scores.iter().filter(|s| s.visible_share > VISIBLE_SHARE).map(|s| s.by_series.as_slice()).collect();
+    family_probability(&contributions)
+}
+
+/// Drops named effects that the others have made superfluous, down to `keep` of them.
+pub(super) fn prune(mut current: Fit, data: &Observations, noise: Noise, least: f64, keep: usize) -> Fit {
+    while current.model.named_effects().len() > keep {
+        let cheapest = (0..current.model.terms.len())
+            .filter(|i| matches!(current.model.terms[*i], Term::Named(_)))
+            .map(|i| fit(&current.model.without_term(i), data, noise))
+            .min_by(|a, b| a.cost.total_cmp(&b.cost));
+        match cheapest {
+            Some(without) if without.cost - current.cost < least => current = without,
+            _ => break,
+        }
+    }
+    current
+}
+
+/// Replaces a named effect by another one that fits better in its place.
+fn exchange(mut current: Fit, data: &Observations, noise: Noise, beyond_form: f64) -> Fit {
+    if current.model.named_effects().len() < 2 {
+        return current;
+    }
+    for _ in 0..2 {
+        let mut better = None;
+        for i in 0..current.model.terms.len() {
+            if matches!(current.model.terms[i], Term::Named(_)) {
+                let without = fit(&current.model.without_term(i), data, noise);
+                let id = current.model.terms[i].id();
+                for (effect, other) in extensions(&without, data, noise, 8.0, beyond_form, 4) {
+                    if effect.id() != id && other.cost < current.cost - 1.0 {
+                        better = Some(other);
+                        break;
+                    }
+                }
+                if better.is_some() {
+                    break;
+                }
+            }
+        }
+        match better {
+            Some(fit) => current = fit,
+            None => break,
+        }
+    }
+    current
+}

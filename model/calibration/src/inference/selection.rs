@@ -1,0 +1,322 @@
+//! Which effects a table shows, their rivals, and what no name explains.
+
+use super::baseline::{explainable, fit_baseline};
+use super::fit::{Fit, fit};
+use super::forward::{Model, Term};
+use super::isolation::isolated_series;
+use super::levels::Levels;
+use super::noise::Noise;
+use super::observations::Observations;
+use super::projection::dot;
+use super::screening::{EffectScore, Screen};
+use super::search::{VISIBLE_SHARE, flips, possible, search};
+use super::unnamed::{Context, FoundStructure};
+use crate::effects::{Effect, acting_order};
+
+/// An effect that explains what a named one explains as well.
+#[derive(Clone, Debug)]
+pub struct Rival {
+    /// The rival.
+    pub effect: &'static dyn Effect,
+    /// How much worse it fits in its place, in whitened squares.
+    pub worse_by: f64,
+    /// Cosine between the two sensitivities after the refit.
+    pub cosine: f64,
+}
+
+/// A named effect of the augmented model.
+#[derive(Clone, Debug)]
+pub struct FoundEffect {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// Index of its term in the augmented model.
+    pub term: usize,
+    /// What it gains given all others, in whitened squares.
+    pub gain: f64,
+    /// Effects that explain as much in its place, the strongest first.
+    pub rivals: Vec<Rival>,
+}
+
+impl FoundEffect {
+    /// Ids of the effect and its rivals, sorted.
+    pub fn ids(&self) -> Vec<&'static str> {
+        let mut ids: Vec<_> =
+            std::iter::once(self.effect.id()).chain(self.rivals.iter().map(|r| r.effect.id())).collect();
+        ids.sort_unstable();
+        ids
+    }
+}
+
+/// An effect of the catalogue before the decision.
+#[derive(Clone, Debug)]
+pub struct CandidateEffect {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// What it alone would gain over the baseline to first order, in whitened squares.
+    pub gain: f64,
+    /// What it would still gain on top of what was found; `None` for what is in the model.
+    pub gain_left: Option<f64>,
+    /// Share of its trace that the refitted baseline cannot take over, 0..1.
+    pub visible_share: f64,
+    /// Length of its visible trace at a typical size, in standard deviations.
+    pub strength: f64,
+}
+
+impl CandidateEffect {
+    /// Strength, in standard deviations at a typical size, below which an effect counts as invisible.
+    pub const MIN_STRENGTH: f64 = 4.0;
+
+    /// Whether the data cannot show it, at a typical size.
+    pub fn is_invisible(&self) -> bool {
+        self.is_taken_over() || self.strength < Self::MIN_STRENGTH
+    }
+
+    /// Whether the refitted baseline takes its trace over.
+    pub fn is_taken_over(&self) -> bool {
+        self.visible_share < VISIBLE_SHARE
+    }
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Selection {
+    /// The paper's model, refitted.
+    pub baseline: Fit,
+    /// With all that was found.
+    pub augmented: Fit,
+    /// The named effects found, in the order of the model's terms.
+    pub effects: Vec<FoundEffect>,
+    /// Where structure without a name lies, if any was found.
+    pub structure: Option<FoundStructure>,
+    /// Every effect of the catalogue, the one with the largest gain first.
+    pub candidates: Vec<CandidateEffect>,
+    /// Probability, by flipped signs of whole series, of the largest candidate without any effect.
+    pub family_probability: f64,
+    /// Gain of the best structure without a name on top of what was found, in whitened squares.
+    pub structure_gain: f64,
+    /// Structures that were tried.
+    pub structures_tried: usize,
+    /// The noise.
+    pub noise: Noise,
+}
+
+impl Selection {
+    /// Effects that this data cannot show, in the order in which they act.
+    pub fn invisible(&self) -> impl Iterator<Item = &CandidateEffect> {
+        acting_order()
+            .iter()
+            .filter_map(|e| self.candidates.iter().find(|c| c.effect.id() == e.id()))
+            .filter(|c| c.is_invisible())
+    }
+}
+
+/// Series that may be excluded; more than these are no accidents.
+const MAX_EXCLUDED: usize = 3;
+
+/// Runs the whole search on a table. A series that is wrong as a whole is excluded, and the search begins
+/// again.
+pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
+    loop {
+        let names = search_names(start, data, levels);
+        let explained = names.baseline.cost - names.found.cost;
+        let open = Screen::new(&names.found, data, names.noise);
+        let guarded = Screen::guarded(&names.found, data, names.noise);
+        let mut left = open.structures();
+        let beyond = left.first().is_some_and(|s| s.gain > levels.beyond_form * explained);
+        if !names.found.model.named_effects().is_empty() && !beyond {
+            left = guarded.structures();
+        }
+        if data.excluded_series() < MAX_EXCLUDED {
+            let structure = left.first().map_or(0.0, |s| s.gain);
+            let effect = open.effects().iter().map(|s| s.gain).fold(structure, f64::max);
+            if let Some(series) = isolated_series(&open, data, effect) {
+                data.exclude(series);
+                continue;
+            }
+        }
+        let bent = guarded.bent_gain();
+        let tried = (left.len(), left.first().map_or(0.0, |s| s.gain));
+        let context = Context { data, noise: names.noise, levels };
+        let (augmented, structure) = context.with_unnamed(&names.baseline, names.found, &left, bent);
+        let scores = Screen::new(&names.baseline, data, names.noise).effects();
+        return Selection {
+            effects: found_effects(&augmented, data, names.noise, levels),
+            structure,
+            family_probability: flips(&scores),
+            structure_gain: tried.1,
+            structures_tried: tried.0,
+            candidates: candidates(scores, &augmented, data, names.noise),
+            baseline: names.baseline,
+            augmented,
+            noise: names.noise,
+        };
+    }
+}
+
+/// The refitted baseline, what the names make of it, and the noise.
+struct Names {
+    baseline: Fit,
+    found: Fit,
+    noise: Noise,
+}
+
+fn search_names(start: &Model, data: &mut Observations, levels: Levels) -> Names {
+    let guess = Noise::constant(0.1, 0.03);
+    let rough = fit(start, data, guess);
+    let sd = data.weigh_outliers(&rough.residual_n);
+    let start = Noise::constant(sd, sd);
+    let rough = fit_baseline(&rough.model, data, start);
+    let mut noise = Noise::estimate(data, &rough.residual_n, &explainable(&rough, data), start);
+    let mut baseline = fit_baseline(&rough.model, data, noise);
+    let mut found = search(&baseline, data, noise, levels);
+    // Once something is explained, the noise shows better: estimate it again and repeat.
+    if !found.model.terms.is_empty() {
+        noise = Noise::estimate(data, &found.residual_n, &explainable(&found, data), noise);
+        baseline = fit(&baseline.model, data, noise);
+        found = search(&baseline, data, noise, levels);
+    }
+    Names { baseline, found, noise }
+}
+
+/// Gain and rivals of each named effect of a model.
+fn found_effects(augmented: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Vec<FoundEffect> {
+    let mut found = Vec::new();
+    for (index, term) in augmented.model.terms.iter().enumerate() {
+        let Term::Named(effect) = term else { continue };
+        let without = fit(&augmented.model.without_term(index), data, noise);
+        let gain = without.cost - augmented.cost;
+        let margin = levels.rival.max(levels.rival_share * gain);
+        let mut rivals = rivals(*effect, gain, &without, augmented.cost, data, noise);
+        rivals.retain(|r| r.worse_by < margin);
+        found.push(FoundEffect { effect: *effect, term: index, gain, rivals });
+    }
+    found
+}
+
+/// Effects fitted in place of one that gained `gain`: to the model `without` it, compared with the `cost` with it.
+fn rivals(
+    effect: &'static dyn Effect,
+    gain: f64,
+    without: &Fit,
+    cost: f64,
+    data: &Observations,
+    noise: Noise,
+) -> Vec<Rival> {
+    let scores = Screen::new(without, data, noise).effects();
+    let own = scores.iter().find(|s| s.effect.id() == effect.id()).map(|s| s.column.clone());
+    let mut others: Vec<_> = scores.into_iter().filter(|s| s.effect.id() != effect.id()).collect();
+    others.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    others.retain(|s| s.gain > 0.3 * gain);
+    others.truncate(4);
+    others
+        .into_iter()
+        .filter_map(|score| {
+            let other = fit(&without.model.with_term(Term::Named(score.effect), &score.start), data, noise);
+            possible(score.effect, &other).then(|| {
+                let cosine = own.as_ref().map_or(0.0, |own| {
+                    (dot(own, &score.column) / (dot(own, own) * dot(&score.column, &score.column)).sqrt())
+                        .abs()
+                });
+                Rival { effect: score.effect, worse_by: other.cost - cost, cosine }
+            })
+        })
+        .collect()
+}
+
+/// Every effect of the catalogue, by its score over the baseline.
+fn candidates(
+    scores: Vec<EffectScore>,
+    augmented: &Fit,
+    data: &Observations,
+    noise: Noise,
+) -> Vec<CandidateEffect> {
+    let left = Screen::new(augmented, data, noise).effects();
+    let mut candidates: Vec<_> = scores
+        .into_iter()
+        .map(|score| CandidateEffect {
+            effect: score.effect,
+            gain: score.gain,
+            gain_left: left.iter().find(|l| l.effect.id() == score.effect.id()).map(|l| l.gain),
+            visible_share: score.visible_share,
+            strength: score.strength,
+        })
+        .collect();
+    candidates.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    candidates
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{CATALOGUE, effect_named};
+    use crate::table::{Frame, PlateauRow};
+    use crate::test_session::{session, session_with};
+    use pinswitch_friction::{Substrate, published};
+
+    fn selected(rows: &[PlateauRow]) -> (Selection, Observations) {
+        let frame = Frame::new(rows);
+        let mut data = Observations::new(&frame, rows).unwrap();
+        (select(&Model::baseline(frame), &mut data, Levels::default()), data)
+    }
+
+    #[test]
+    fn a_session_without_effect_has_every_candidate_and_names_none() {
+        let (found, data) = selected(&session(3));
+        assert!(found.effects.is_empty() && found.structure.is_none(), "{:?}", found.effects);
+        assert_eq!(data.excluded_series(), 0);
+        assert_eq!(found.candidates.len(), CATALOGUE.len());
+        assert!(found.candidates.windows(2).all(|w| w[0].gain >= w[1].gain));
+        // One dwell: the trace of an effect of the dwell has no length at all.
+        let invisible: Vec<_> = found.invisible().map(|c| c.effect.id()).collect();
+        assert!(invisible.contains(&"dwell_relaxation") && !invisible.contains(&"load_cell_offset"));
+    }
+
+    #[test]
+    fn an_effect_is_named_with_its_size_and_its_gain() {
+        let ploughing = effect_named("coating_ploughing").unwrap();
+        let (found, _) = selected(&session_with(4, &[(Term::Named(ploughing), &[0.024])]));
+        let [effect] = found.effects.as_slice() else { panic!("{:?}", found.effects) };
+        assert_eq!(
+            (effect.effect.id(), effect.term, effect.ids()[0]),
+            ("coating_ploughing", 0, "coating_ploughing")
+        );
+        assert!(effect.gain > 100.0 && effect.rivals.is_empty(), "{effect:?}");
+        let kappa = *found.augmented.model.values().last().unwrap();
+        assert!((kappa / 0.024 - 1.0).abs() < 0.05, "{kappa}");
+        assert_eq!(found.candidates[0].effect.id(), "coating_ploughing");
+        assert_eq!(found.candidates[0].gain_left, None, "what is in the model has nothing left to gain");
+    }
+
+    /// Pins alone in one direction: the friction exponent is one constant, so that an offset of the cell and a hook
+    /// left out shift all readings alike. Whichever is named has the other as its rival.
+    #[test]
+    fn effects_that_look_alike_are_rivals() {
+        let offset = effect_named("load_cell_offset").unwrap();
+        let hook_n = published::HOOK_MASS_G * 1e-3 * published::GRAVITY_M_S2;
+        let as_read_n = hook_n * (-published::MU_PINS * published::wrap_angle_rad()).exp();
+        let day = |seed: u64| {
+            let mut rows = session_with(seed, &[(Term::Named(offset), &[as_read_n])]);
+            rows.retain(|r| r.substrate == Some(Substrate::Abs) && r.direction.sign() < 0.0);
+            rows.iter_mut().for_each(|r| r.series = format!("{seed}-{}", r.series));
+            rows
+        };
+        let (found, _) = selected(&[day(5), day(6), day(7)].concat());
+        let [effect] = found.effects.as_slice() else { panic!("{:?}", found.effects) };
+        assert!(
+            effect.ids().contains(&"load_cell_offset") && effect.ids().contains(&"hook_omitted"),
+            "{effect:?}"
+        );
+        assert!(effect.rivals.iter().all(|r| r.cosine > 0.9), "{effect:?}");
+    }
+
+    #[test]
+    fn a_series_that_is_wrong_as_a_whole_is_excluded() {
+        let mut rows = session(6);
+        let bad = rows[200].series.clone();
+        rows.iter_mut().filter(|r| r.series == bad).for_each(|r| r.force_n += 2.0);
+        let (found, data) = selected(&rows);
+        assert_eq!(data.excluded_series(), 1);
+        assert!(data.is_excluded(200) && !data.is_excluded(0));
+        assert!(found.effects.is_empty() && found.structure.is_none());
+    }
+}

@@ -1,0 +1,43 @@
+//! How likely a gain is by chance, over everything that was tried.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::observations::Observations;
+
+/// Independent units behind an estimate: a load or a layout is known by series, not by repetitions.
+pub fn degrees_of_freedom(data: &Observations, constants: usize) -> f64 {
+    (data.series as f64 - data.excluded_series() as f64 - constants as f64).max(4.0)
+}
+
+/// Probability that the largest of `tried` gains reaches `gain` by chance (Sidak). A gain in whitened squares is the
+/// square of a Student's t: the noise it is measured in is estimated from the series.
+pub fn family_p_value(gain: f64, tried: usize, degrees: f64) -> f64 {
+    let single = StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |t| 2.0 * t.sf(gain.max(0.0).sqrt()));
+    (-(tried as f64 * (-single.min(1.0)).ln_1p()).exp_m1()).clamp(0.0, 1.0)
+}
+
+/// The gain that chance reaches with this probability.
+pub(crate) fn gain_at(p: f64, tried: usize, degrees: f64) -> f64 {
+    let (mut low, mut high) = (0.0f64, 1e4f64);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if family_p_value(middle, tried, degrees) > p { low = middle } else { high = middle }
+    }
+    high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gains_and_probabilities_are_inverse() {
+        for (p, degrees) in [(0.05, 64.0), (0.01, 140.0), (0.02, 10.0)] {
+            let gain = gain_at(p, 21, degrees);
+            assert!((family_p_value(gain, 21, degrees) / p - 1.0).abs() < 1e-6);
+        }
+        // One candidate and many series: the square of the normal law's 1.96.
+        assert!((gain_at(0.05, 1, 1e6) - 3.841).abs() < 0.01);
+        assert_eq!(family_p_value(0.0, 21, 64.0), 1.0);
+    }
+}

@@ -1,0 +1,198 @@
+//! The catalogue of structures that a residual is searched for when no named effect explains it.
+
+use pinswitch_friction::Substrate;
+
+use crate::effects::{Channel, Covariate, Shape, Structure};
+use crate::table::{Frame, Point};
+
+/// Shapes that go together: one, or the sine and cosine of a wave.
+pub(crate) type Group = Vec<Structure>;
+
+/// Distinct values of a covariate over the points, ascending, merged when closer than `tolerance`.
+fn levels(points: &[Point], of: impl Fn(&Point) -> f64, tolerance: f64) -> Vec<f64> {
+    let mut values: Vec<f64> = points.iter().map(of).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup_by(|a, b| (*a - *b).abs() < tolerance);
+    values
+}
+
+/// Share of the variance of one covariate that another one fixes level by level.
+fn follows(
+    points: &[Point],
+    what: impl Fn(&Point) -> f64,
+    of: impl Fn(&Point) -> f64,
+    tolerance: f64,
+) -> bool {
+    levels(points, &of, 1e-6).iter().all(|level| {
+        let at: Vec<f64> = points.iter().filter(|p| (of(p) - level).abs() < 1e-5).map(&what).collect();
+        at.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+            - at.iter().copied().fold(f64::INFINITY, f64::min)
+            < tolerance
+    })
+}
+
+/// All structures that a table of these points could show.
+pub(crate) fn structures_to_try(frame: &Frame, points: &[Point]) -> Vec<Group> {
+    let mut groups = Vec::new();
+    time(&mut groups, points);
+    position(&mut groups, points);
+    levels_of_conditions(&mut groups, frame, points);
+    rates(&mut groups, frame, points);
+    groups
+}
+
+/// Pushes one group per channel.
+fn push(groups: &mut Vec<Group>, covariate: Covariate, channels: &[Channel], form: &Shape) {
+    groups.extend(channels.iter().map(|c| vec![Structure { covariate, channel: *c, form: form.clone() }]));
+}
+
+/// Pushes a wave: sine and cosine together.
+fn push_wave(
+    groups: &mut Vec<Group>,
+    covariate: Covariate,
+    channels: &[Channel],
+    form: impl Fn(u8) -> Shape,
+) {
+    groups.extend(
+        channels.iter().map(|c| {
+            [0, 1].map(|quarter| Structure { covariate, channel: *c, form: form(quarter) }).to_vec()
+        }),
+    );
+}
+
+const READING_AND_FRICTION: [Channel; 2] = [Channel::Reading, Channel::Friction];
+const ALL: [Channel; 3] = [Channel::Reading, Channel::Drag, Channel::Friction];
+
+fn time(groups: &mut Vec<Group>, points: &[Point]) {
+    let mut times: Vec<f64> = points.iter().map(|p| p.time).collect();
+    times.sort_by(f64::total_cmp);
+    // Sixty places for a step, at equal numbers of rows.
+    for i in 3..58 {
+        if let Some(at) = times.get(i * times.len() / 60) {
+            push(groups, Covariate::Time, &ALL, &Shape::TimeStep { at: *at });
+        }
+    }
+    for i in 1..160 {
+        let cycles = 0.5 * f64::from(i);
+        push_wave(groups, Covariate::Time, &READING_AND_FRICTION, |quarter| Shape::TimeWave {
+            cycles,
+            quarter,
+        });
+    }
+    for power in 1..=3 {
+        push(groups, Covariate::Time, &ALL, &Shape::TimePower { power });
+    }
+}
+
+fn position(groups: &mut Vec<Group>, points: &[Point]) {
+    if levels(points, |p| p.position, 1e-3).len() < 6 {
+        return;
+    }
+    for i in 2..48 {
+        let cycles = 0.25 * f64::from(i);
+        push_wave(groups, Covariate::Position, &ALL, |quarter| Shape::PositionWave { cycles, quarter });
+    }
+    for i in 0..=20 {
+        for width in [0.025, 0.05, 0.1] {
+            let at = 0.05 * f64::from(i);
+            push(groups, Covariate::Position, &ALL, &Shape::PositionBump { at, width });
+        }
+    }
+    for power in 1..=3 {
+        push(groups, Covariate::Position, &ALL, &Shape::PositionPower { power });
+    }
+    for r0 in [0.6, 1.5, 4.0, 10.0] {
+        push(groups, Covariate::Repetition, &ALL, &Shape::Repetition { r0 });
+    }
+}
+
+fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]) {
+    let unit_n = frame.load_range_n.1.max(1e-9);
+    let mut sets: Vec<Vec<usize>> = (0..frame.conditions.len()).map(|i| vec![i]).collect();
+    for (i, a) in frame.conditions.iter().enumerate() {
+        // The same pins on both substrates: a defect of the layout itself.
+        let same: Vec<usize> = (0..frame.conditions.len())
+            .filter(|j| frame.conditions[*j].pins == a.pins && !a.pins.is_empty())
+            .collect();
+        if same.len() > 1 && same.first() == Some(&i) {
+            sets.push(same);
+        }
+    }
+    if frame.conditions.len() > 1 {
+        for conditions in sets {
+            push(groups, Covariate::Condition, &ALL, &Shape::ConditionIs { conditions });
+        }
+        for condition in 0..frame.conditions.len() {
+            for power in [1, 2] {
+                let form = Shape::ConditionLoad { condition, power, unit_n };
+                push(groups, Covariate::Condition, &ALL, &form);
+            }
+        }
+    }
+    let mut channels = vec![Channel::Reading, Channel::Drag, Channel::Friction];
+    if frame.conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone)) {
+        channels.push(Channel::Silicone);
+    }
+    if frame.conditions.iter().any(crate::table::Condition::has_pins) {
+        channels.push(Channel::Pins);
+    }
+    for power in 1..=3 {
+        push(groups, Covariate::Load, &channels, &Shape::LoadPower { power, unit_n });
+    }
+    for power in 0..=3 {
+        push(groups, Covariate::Direction, &[Channel::Reading], &Shape::DirectionLoad { power, unit_n });
+    }
+    push(groups, Covariate::Sweep, &ALL, &Shape::Descending);
+    let loads = levels(points, |p| p.load_n, 1e-3);
+    if loads.len() <= 40 && !follows(points, |p| p.log_speed, |p| p.load_n, 0.01) {
+        for load_n in loads {
+            push(groups, Covariate::Load, &ALL, &Shape::LoadLevel { load_n, half_width: 1e-3 });
+        }
+    }
+}
+
+fn rates(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]) {
+    let mut speeds = levels(points, |p| p.log_speed, 1e-3);
+    speeds.retain(|_| frame.reference_speed_pct > 0.0);
+    if speeds.len() > 1 && speeds.len() <= 30 {
+        for log_speed in speeds {
+            push(groups, Covariate::Speed, &ALL, &Shape::SpeedLevel { log_speed, half_width: 1e-3 });
+            for width in [0.02, 0.04] {
+                push(groups, Covariate::Speed, &ALL, &Shape::SpeedBump { log_speed, width });
+            }
+        }
+        for power in 1..=2 {
+            push(groups, Covariate::Speed, &READING_AND_FRICTION, &Shape::SpeedPower { power });
+        }
+    }
+    let dwells = levels(points, |p| p.log_dwell, 0.02);
+    if dwells.len() > 1 && dwells.len() <= 30 {
+        for log_dwell in dwells {
+            push(groups, Covariate::Dwell, &ALL, &Shape::DwellLevel { log_dwell });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_merge_what_is_equal() {
+        let point = |load_n: f64| Point {
+            condition: 0,
+            load_n,
+            sign: 1.0,
+            descending: 0.0,
+            log_speed: 0.0,
+            log_dwell: 0.0,
+            repetition: 1.0,
+            position: 0.0,
+            time: 0.0,
+            travel: 0.0,
+        };
+        let points = [point(2.0), point(1.0), point(2.0 + 1e-9)];
+        assert_eq!(levels(&points, |p| p.load_n, 1e-3), [1.0, 2.0]);
+        assert!(follows(&points, |p| p.log_speed, |p| p.load_n, 0.01));
+    }
+}

@@ -1,0 +1,173 @@
+//! Structure that no name explains: found, compared with the names, corrected by smooth shapes.
+
+use super::fit::{Fit, fit};
+use super::forward::Term;
+use super::levels::Levels;
+use super::noise::Noise;
+use super::observations::Observations;
+use super::screening::{Screen, StructureScore};
+use super::search::{prune, search};
+use super::significance::{degrees_of_freedom, gain_at};
+use crate::effects::Covariate;
+
+/// Structure that no name explains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoundStructure {
+    /// Where it lies.
+    pub covariate: Covariate,
+    /// What its first shape gains, in whitened squares.
+    pub gain: f64,
+}
+
+/// What every step of the comparison reads.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Context<'a> {
+    pub(super) data: &'a Observations,
+    pub(super) noise: Noise,
+    pub(super) levels: Levels,
+}
+
+impl Context<'_> {
+    /// Looks for structure that no name explains, and lets it compete with the names from the start. `left` are the
+    /// scores of all structures on top of the names, and `bent_gain` what the names gain by bending their forms.
+    pub(super) fn with_unnamed(
+        &self,
+        baseline: &Fit,
+        found: Fit,
+        left: &[StructureScore],
+        bent_gain: f64,
+    ) -> (Fit, Option<FoundStructure>) {
+        let &Context { data, noise, levels } = self;
+        let explained = baseline.cost - found.cost;
+        // With few series chance reaches further: the level of the study holds for dozens of them.
+        let degrees = degrees_of_freedom(data, baseline.model.coordinates.len());
+        let chance = gain_at(levels.structure_p, left.len().max(1), degrees);
+        let least = levels.structure.max(chance).max(levels.structure_share * explained);
+        let on_top = left.first().and_then(|score| self.on_top_of(&found, score, least));
+        let alone = if found.model.terms.is_empty() {
+            Vec::new()
+        } else {
+            Screen::new(baseline, data, noise).structures()
+        };
+        let best = match alone.first().filter(|s| s.gain > least) {
+            Some(score) => self.instead_of(baseline, &found, score, bent_gain, on_top),
+            None => on_top,
+        };
+        match best {
+            Some((with, structure)) => {
+                let corrected = self.smooth(with);
+                let least = levels.further.max(0.01 * (baseline.cost - corrected.cost));
+                (prune(corrected, data, noise, least, 0), Some(structure))
+            }
+            None => (found, None),
+        }
+    }
+
+    /// The structure on top of the names, if it gains more than `least`.
+    fn on_top_of(&self, found: &Fit, score: &StructureScore, least: f64) -> Option<(Fit, FoundStructure)> {
+        if score.gain <= least {
+            return None;
+        }
+        let with = self.with_structure(found, score);
+        let gain = found.cost - with.cost;
+        (gain > least).then(|| {
+            let pruned = prune(with, self.data, self.noise, self.levels.further, 0);
+            (pruned, FoundStructure { covariate: score.group[0].covariate, gain })
+        })
+    }
+
+    /// The better of the structure alone, with names only on top of it, and of what is there `so_far`.
+    fn instead_of(
+        &self,
+        baseline: &Fit,
+        found: &Fit,
+        score: &StructureScore,
+        bent_gain: f64,
+        so_far: Option<(Fit, FoundStructure)>,
+    ) -> Option<(Fit, FoundStructure)> {
+        let &Context { data, noise, levels } = self;
+        let penalty = |f: &Fit| f.cost + levels.further * f.model.named_effects().len() as f64;
+        let with = self.with_structure(baseline, score);
+        // One shape against several names: each name beyond the first must have paid for itself.
+        let names = found.model.named_effects().len() as f64;
+        // The names may bend their forms before the shape is said to fit better than they do.
+        let margin = levels.outright + 0.06 * bent_gain - 12.0 * (names - 1.0);
+        if with.cost >= found.cost - bent_gain - margin && so_far.is_none() {
+            return so_far;
+        }
+        let gain = baseline.cost - with.cost;
+        let extended = search(&with, data, noise, levels);
+        let pruned = prune(extended, data, noise, levels.further, 0);
+        if so_far.as_ref().is_none_or(|(b, _)| penalty(&pruned) < penalty(b)) {
+            Some((pruned, FoundStructure { covariate: score.group[0].covariate, gain }))
+        } else {
+            so_far
+        }
+    }
+
+    /// Adds a structure's shapes to a model and fits.
+    fn with_structure(&self, from: &Fit, score: &StructureScore) -> Fit {
+        let model = score
+            .group
+            .iter()
+            .zip(&score.sizes)
+            .fold(from.model.clone(), |m, (s, k)| m.with_term(Term::Structure(s.clone()), &[*k]));
+        fit(&model, self.data, self.noise)
+    }
+
+    /// Refines the data-driven correction: more shapes while each gains clearly.
+    fn smooth(&self, mut current: Fit) -> Fit {
+        for _ in 0..4 {
+            let scores = Screen::new(&current, self.data, self.noise).structures();
+            let Some(score) = scores.first().filter(|s| s.gain > 30.0) else { break };
+            let with = self.with_structure(&current, score);
+            if current.cost - with.cost < 25.0 {
+                break;
+            }
+            current = with;
+        }
+        current
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{Channel, Shape, Structure};
+    use crate::inference::{Model, Observations, select};
+    use crate::table::Frame;
+    use crate::test_session::{session, session_with};
+
+    fn wave() -> Term {
+        let form = Shape::PositionWave { cycles: 3.0, quarter: 0 };
+        Term::Structure(Structure { covariate: Covariate::Position, channel: Channel::Friction, form })
+    }
+
+    #[test]
+    fn a_wave_along_the_stroke_has_no_name_and_is_corrected() {
+        let rows = session_with(2, &[(wave(), &[0.15])]);
+        let frame = Frame::new(&rows);
+        let mut data = Observations::new(&frame, &rows).unwrap();
+        let found = select(&Model::baseline(frame), &mut data, Levels::default());
+        assert_eq!(found.structure.map(|s| s.covariate), Some(Covariate::Position));
+        assert!(found.effects.is_empty(), "{:?}", found.effects);
+        assert!(found.augmented.cost < 0.5 * found.baseline.cost, "the shapes correct most of it");
+    }
+
+    #[test]
+    fn a_structure_must_gain_what_chance_cannot() {
+        let rows = session(1);
+        let frame = Frame::new(&rows);
+        let data = Observations::new(&frame, &rows).unwrap();
+        let context = Context { data: &data, noise: Noise::constant(0.05, 0.01), levels: Levels::default() };
+        let baseline = fit(&Model::baseline(frame), &data, context.noise);
+        let scores = Screen::new(&baseline, &data, context.noise).structures();
+        let best = &scores[0];
+        assert!(context.on_top_of(&baseline, best, best.gain + 1.0).is_none());
+        let (with, structure) = context.on_top_of(&baseline, best, 0.5 * best.gain).unwrap();
+        assert_eq!(structure.covariate, best.group[0].covariate);
+        assert!((baseline.cost - with.cost - structure.gain).abs() < 1e-9);
+        let (kept, none) = context.with_unnamed(&baseline, baseline.clone(), &scores, 0.0);
+        assert!(none.is_none() && kept.model.terms.is_empty(), "noise alone is no structure");
+    }
+}

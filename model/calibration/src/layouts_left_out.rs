@@ -1,0 +1,40 @@
+//! Whether what was found on some layouts holds on another: each layout left out in turn.
+
+use std::collections::BTreeSet;
+
+use crate::held_out::SOUND_WEIGHT;
+use crate::inference::{Model, Noise, Observations, fit};
+
+/// Root mean square error in newtons on layouts that the fit did not see. Each layout is left out in turn, with its
+/// pins on both substrates; all friction coefficients and effects come from the other layouts, and only the layout's
+/// own threshold and range, which no other layout can know, are then fitted to it (`model/doc/naming-an-effect.md`).
+/// `None` with fewer than two layouts.
+pub fn layouts_left_out(model: &Model, data: &Observations, noise: Noise) -> Option<f64> {
+    let conditions = &model.frame.conditions;
+    let layouts: BTreeSet<&[usize]> =
+        conditions.iter().filter(|c| c.has_pins()).map(|c| c.pins.as_slice()).collect();
+    if layouts.len() < 2 {
+        return None;
+    }
+    let (mut sum, mut count) = (0.0, 0.0);
+    for pins in layouts {
+        let inside = |i: usize| conditions[data.points[i].condition].pins == pins;
+        let others = fit(model, &data.subset(|i| !inside(i)), noise);
+        let own: Vec<usize> = conditions
+            .iter()
+            .filter(|c| c.pins == pins)
+            .filter_map(|c| c.device)
+            .flat_map(Model::device_constants)
+            .collect();
+        let hidden = data.subset(inside);
+        // The layout's own constants start from the layout law: the fit of the others has not seen them.
+        let refitted = fit(&others.model.frozen_except(&own), &hidden, noise);
+        for (residual, _) in
+            refitted.residual_n.iter().zip(&hidden.weights).filter(|(_, w)| **w > SOUND_WEIGHT)
+        {
+            sum += residual * residual;
+            count += 1.0;
+        }
+    }
+    (count > 0.0).then(|| f64::sqrt(sum / count))
+}

@@ -1,0 +1,53 @@
+//! Measured friction data: from raw logs to plateau tables, from a table to the effects that the paper's model lacks on
+//! it, and to a model that predicts. The crate knows data and what explains it; it must not know how a rig is
+//! simulated, nor parts, files or plots.
+//!
+//! The way of the data, each step usable alone:
+//!
+//! 1. [`segmentation`]: `run.toml` and its 200 Hz logs become the rows of a plateau table.
+//! 2. [`table`]: a plateau table is read and checked; errors name file, line and column.
+//! 3. [`calibrate`] refits the paper's model, names the effects that it lacks ([`effects`], [`inference`]) and returns a
+//!    [`Report`] with the errors before and after, on data held out from the fit.
+//! 4. [`ModelFile`] keeps the fitted model: it predicts readings, and the curve of a printed part without the effects
+//!    that belong to the rig.
+//!
+//! ```
+//! use pinswitch_calibration::explain_published;
+//!
+//! // The loop on the paper's own seven maxima: what explains most of what its model misses?
+//! let explanations = explain_published();
+//! assert_eq!(explanations[1].id, "coating_ploughing");
+//! assert!(explanations[1].left_out_rms_pct < 0.2 * explanations[0].rms_pct);
+//! ```
+//!
+//! Readers take text, bytes or [`std::io::Read`], writers return text: nothing here opens a file, starts a thread, or
+//! reads a clock or the environment. `model/doc/file-formats.md` describes the files, `model/doc/effect-catalogue.md`
+//! the effects and `model/doc/naming-an-effect.md` how one is named.
+
+mod calibrate;
+pub mod effects;
+mod extrapolation;
+mod held_out;
+pub mod inference;
+mod layouts_left_out;
+mod median;
+mod model_file;
+mod part_curve;
+mod published_maxima;
+mod report;
+pub mod segmentation;
+pub mod table;
+#[cfg(test)]
+mod test_session;
+
+pub use calibrate::{Calibration, CalibrationError, calibrate};
+pub use extrapolation::calibrate_below;
+pub use held_out::{HeldOut, held_out};
+pub use layouts_left_out::layouts_left_out;
+pub use median::median;
+pub use model_file::{ModelFile, ModelFileError};
+pub use published_maxima::{Explanation, explain_published};
+pub use report::{
+    BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible,
+    ModelReport, Report, RivalReport, Verdict,
+};

@@ -1,0 +1,242 @@
+//! `baseline.toml` and `model.toml`: a fitted model that predicts rows later.
+
+use serde::{Deserialize, Serialize};
+
+use crate::effects::{Structure, effect_named};
+use crate::inference::{Fit, Model, Noise, Observations, Term, coordinate_covariance, prediction_sd_n};
+use crate::table::{Frame, PlateauRow};
+
+/// Name and version of the format.
+const SCHEMA: &str = "pinswitch.model/1";
+
+/// Why a model file cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelFileError {
+    /// The text is no such TOML.
+    #[error("{file}: {problem}")]
+    Malformed {
+        /// File name as given.
+        file: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// Another format or version.
+    #[error("{file}: schema '{found}' is unknown; this version reads '{SCHEMA}'")]
+    Schema {
+        /// File name as given.
+        file: String,
+        /// The schema found.
+        found: String,
+    },
+    /// An effect that the library does not have.
+    #[error("{file}: effect '{id}' is unknown; use the ids of the effect vocabulary")]
+    Effect {
+        /// File name as given.
+        file: String,
+        /// The id found.
+        id: String,
+    },
+    /// The constants do not belong to the terms.
+    #[error("{file}: {found} constants, the terms listed need {needed} finite ones; calibrate again")]
+    Constants {
+        /// File name as given.
+        file: String,
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+}
+
+/// One term as it is written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct TermEntry {
+    id: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    side: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    formula: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    structure: Option<Structure>,
+}
+
+/// One constant as it is written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Constant {
+    name: String,
+    value: f64,
+    unit: String,
+}
+
+/// A model on file.
+///
+/// ```
+/// use pinswitch_calibration::inference::Levels;
+/// use pinswitch_calibration::table::PlateauTable;
+/// use pinswitch_calibration::{ModelFile, calibrate};
+///
+/// // `csv` is the text of a plateau table, as for `calibrate`.
+/// # let mut csv = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N\n".to_owned();
+/// # let mut time_s = 0.0;
+/// # for (series, load_n) in (0..12).map(|i| (i, 3.0 + 4.0 * f64::from(i))) {
+/// #     for (direction, sign) in [("eccentric", -1.0), ("concentric", 1.0)] {
+/// #         for repetition in 1..=6 {
+/// #             time_s += 3.5;
+/// #             let noise = 0.05 * (43758.5453 * (12.9898f64 * time_s).sin()).fract();
+/// #             let force_n = load_n * (sign * 0.24 * 1.115_f64).exp() + noise;
+/// #             csv += &format!("{series},silicone,,up,0,{load_n},50,3,{direction},{repetition},{},{time_s},{force_n}\n", 10 * repetition);
+/// #         }
+/// #     }
+/// # }
+/// let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
+/// let found = calibrate(&table.rows, Levels::default())?;
+/// let text = ModelFile::new(&found.selection.augmented, &found.data, found.selection.noise).to_text()?;
+///
+/// let model = ModelFile::parse(&text, "model.toml")?;
+/// let (predicted_n, sd_n) = model.predict(&table.rows[..1], "model.toml")?;
+/// assert!((predicted_n[0] - table.rows[0].force_n).abs() < 5.0 * sd_n[0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelFile {
+    schema: String,
+    constants: Vec<Constant>,
+    #[serde(default)]
+    terms: Vec<TermEntry>,
+    noise: Noise,
+    frame: Frame,
+    /// Covariance of the constants' coordinates, row by row.
+    covariance: Vec<Vec<f64>>,
+}
+
+impl ModelFile {
+    /// The file of a fit.
+    pub fn new(fitted: &Fit, data: &Observations, noise: Noise) -> Self {
+        let model = &fitted.model;
+        let covariance = coordinate_covariance(fitted, data, noise);
+        Self {
+            schema: SCHEMA.to_owned(),
+            constants: model
+                .names()
+                .into_iter()
+                .zip(model.values())
+                .map(|((name, unit), value)| Constant { name, value, unit: unit.to_owned() })
+                .collect(),
+            terms: model
+                .terms
+                .iter()
+                .map(|term| match term {
+                    Term::Named(effect) => TermEntry {
+                        id: effect.id().to_owned(),
+                        side: Some(effect.description().side.as_str().to_owned()),
+                        formula: Some(effect.cited_formula()),
+                        structure: None,
+                    },
+                    Term::Structure(structure) => TermEntry {
+                        id: term.id().to_owned(),
+                        side: None,
+                        formula: Some(structure.describe(&model.frame)),
+                        structure: Some(structure.clone()),
+                    },
+                })
+                .collect(),
+            noise,
+            frame: model.frame.clone(),
+            covariance: (0..covariance.nrows())
+                .map(|i| covariance.row(i).iter().copied().collect())
+                .collect(),
+        }
+    }
+
+    /// Reads a file's text. `file` is the name used in errors.
+    ///
+    /// # Errors
+    /// [`ModelFileError`] if the text is no model of this version.
+    pub fn parse(text: &str, file: &str) -> Result<Self, ModelFileError> {
+        let malformed = |e: toml::de::Error| ModelFileError::Malformed {
+            file: file.to_owned(),
+            problem: e.to_string().trim_end().to_owned(),
+        };
+        let parsed: Self = toml::from_str(text).map_err(malformed)?;
+        if parsed.schema != SCHEMA {
+            return Err(ModelFileError::Schema { file: file.to_owned(), found: parsed.schema });
+        }
+        parsed.model(file)?;
+        Ok(parsed)
+    }
+
+    /// The file's text.
+    ///
+    /// # Errors
+    /// [`ModelFileError::Malformed`] if a value cannot be written as TOML.
+    pub fn to_text(&self) -> Result<String, ModelFileError> {
+        toml::to_string(self)
+            .map_err(|e| ModelFileError::Malformed { file: "model.toml".to_owned(), problem: e.to_string() })
+    }
+
+    /// The model. `file` is the name used in errors.
+    ///
+    /// # Errors
+    /// [`ModelFileError`] if an effect is unknown or constants are missing.
+    pub fn model(&self, file: &str) -> Result<Model, ModelFileError> {
+        let mut model = Model::baseline(self.frame.clone());
+        for entry in &self.terms {
+            let term =
+                match &entry.structure {
+                    Some(structure) => Term::Structure(structure.clone()),
+                    None => Term::Named(effect_named(&entry.id).ok_or_else(|| ModelFileError::Effect {
+                        file: file.to_owned(),
+                        id: entry.id.clone(),
+                    })?),
+                };
+            let zeros = vec![0.0; term.constants()];
+            model = model.with_term(term, &zeros);
+        }
+        let values: Vec<f64> = self.constants.iter().map(|c| c.value).collect();
+        let needed = model.values().len();
+        let square = self.covariance.len() == needed && self.covariance.iter().all(|r| r.len() == needed);
+        if !square || values.iter().any(|v| !v.is_finite()) || !model.set_values(&values) {
+            return Err(ModelFileError::Constants { file: file.to_owned(), found: values.len(), needed });
+        }
+        Ok(model)
+    }
+
+    /// Predicted readings and their standard deviations in newtons; a condition that the calibration has not
+    /// seen is predicted with the layout law and said to be wide.
+    ///
+    /// # Errors
+    /// [`ModelFileError`] as in [`ModelFile::model`].
+    pub fn predict(&self, rows: &[PlateauRow], file: &str) -> Result<(Vec<f64>, Vec<f64>), ModelFileError> {
+        let (mut frame, known) = (self.frame.clone(), self.model(file)?);
+        rows.iter().for_each(|row| frame.extend(row));
+        let model = known.in_frame(frame);
+        let points = model.frame.points(rows).unwrap_or_default();
+        let predicted = model.predict(&points);
+        let sd = prediction_sd_n(&model, &points, &self.covariance, self.noise);
+        Ok((predicted, sd))
+    }
+
+    pub(super) fn covariance(&self) -> &[Vec<f64>] {
+        &self.covariance
+    }
+
+    pub(super) fn reference_speed_pct(&self) -> f64 {
+        self.frame.reference_speed_pct
+    }
+
+    /// Ids of the terms that stay out of the curve of a printed part, and of those that stay in.
+    pub fn sides(&self) -> (Vec<&str>, Vec<&str>) {
+        self.terms.iter().map(|t| (t.id.as_str(), t.side.as_deref() == Some("switch"))).fold(
+            (Vec::new(), Vec::new()),
+            |(mut out, mut inside), (id, stays)| {
+                if stays {
+                    inside.push(id)
+                } else {
+                    out.push(id)
+                }
+                (out, inside)
+            },
+        )
+    }
+}

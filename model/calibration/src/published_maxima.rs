@@ -1,0 +1,173 @@
+//! The loop on the paper's own numbers: which effect explains most of what its model misses of its seven maxima.
+
+use std::convert::Infallible;
+
+use pinswitch_friction::Substrate;
+use pinswitch_friction::least_squares::minimise;
+use pinswitch_friction::published::{self, PublishedLayout};
+use serde::Serialize;
+
+use crate::table::Condition;
+
+/// What one explanation makes of the seven maxima.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Explanation {
+    /// Id of the effect; `as printed` or `refitted` for the paper's model.
+    pub id: &'static str,
+    /// Fitted constants: name and value.
+    pub constants: Vec<(&'static str, f64)>,
+    /// Root mean square relative error on the seven maxima, in percent.
+    pub rms_pct: f64,
+    /// The same, each layout's maxima predicted from the others alone, in percent.
+    pub left_out_rms_pct: f64,
+    /// Relative error of each maximum in percent: name and error.
+    pub errors_pct: Vec<(String, f64)>,
+}
+
+/// How friction on the pins depends on the layout.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pins {
+    Constant,
+    Ploughing,
+    Bending,
+    Stiffening,
+}
+
+/// Turn per pin to which the coefficient of bending refers: 20 degrees.
+const TYPICAL_TURN_RAD: f64 = 0.349;
+
+/// One published maximum.
+struct Maximum {
+    layout: Option<usize>,
+    substrate: Substrate,
+    friction_n: f64,
+    name: String,
+}
+
+fn maxima() -> Vec<Maximum> {
+    let mut all = vec![Maximum {
+        layout: None,
+        substrate: Substrate::Silicone,
+        friction_n: published::SILICONE_ALONE_MAX_N,
+        name: "silicone".to_owned(),
+    }];
+    for (i, l) in published::LAYOUTS.iter().enumerate() {
+        for (substrate, friction_n, on) in
+            [(Substrate::Abs, l.pins_max_n, "pins"), (Substrate::Silicone, l.device_max_n, "device")]
+        {
+            all.push(Maximum { layout: Some(i), substrate, friction_n, name: format!("{} {on}", l.name) });
+        }
+    }
+    all
+}
+
+/// Friction at the heaviest load in newtons. Coordinates: `ln(mu_s/0.24)`, `ln(pins constant/typical)`,
+/// `ln` of the factor on the published thresholds.
+fn predict(kind: Pins, at: &[f64], maximum: &Maximum, scale_free: bool) -> f64 {
+    let load = published::heaviest_load_n();
+    let wrap = published::wrap_angle_rad();
+    let silicone = load * (published::MU_SILICONE * at[0].exp() * wrap).sinh();
+    let Some(layout) = maximum.layout.map(|i| published::LAYOUTS[i]) else { return silicone };
+    let pins = load * pins_exponent(kind, at[1].exp(), &layout, load, wrap).sinh();
+    if maximum.substrate == Substrate::Abs {
+        return pins;
+    }
+    let factor = if scale_free { at[2].exp() } else { 1.0 };
+    let s = 1.0 / (1.0 + (layout.threshold * factor - layout.reduced_load.1).exp());
+    (1.0 + layout.weight) * (1.0 - s) * pins + (1.0 - layout.weight) * s * silicone
+}
+
+/// Friction exponent of the pins: constant, `kappa sqrt(T) sum theta^1.5` (`model/doc/friction-laws.md`), in proportion
+/// to the mean turn per pin, or growing with load (which at one load is the constant again).
+fn pins_exponent(kind: Pins, factor: f64, layout: &PublishedLayout, load_n: f64, wrap: f64) -> f64 {
+    match kind {
+        Pins::Constant | Pins::Stiffening => published::MU_PINS * factor * wrap,
+        Pins::Ploughing => {
+            published::PLOUGHING_KAPPA
+                * factor
+                * load_n.sqrt()
+                * Condition::ploughing_sum(layout.grooves, wrap)
+        }
+        Pins::Bending => published::MU_PINS * factor * wrap * (wrap / layout.pins as f64) / TYPICAL_TURN_RAD,
+    }
+}
+
+/// Least squares of the relative errors over the maxima for which `keep` holds, with weak priors, which leave
+/// nothing undetermined.
+fn fit(kind: Pins, data: &[Maximum], keep: impl Fn(&Maximum) -> bool) -> Vec<f64> {
+    let used: Vec<&Maximum> = data.iter().filter(|m| keep(m)).collect();
+    let residuals = |at: &[f64]| -> Result<Vec<f64>, Infallible> {
+        let misses = used.iter().map(|m| (predict(kind, at, m, true) / m.friction_n - 1.0) / 0.05);
+        // What is known beforehand: half of a factor e on friction, a fifth on the thresholds.
+        Ok(misses.chain([at[0] / 0.5, at[1] / 0.5, at[2] / 0.2]).collect())
+    };
+    let start = [0.0; 3];
+    let Ok(found) = minimise(&start, 1e-6, residuals);
+    found.map_or(start.to_vec(), |solution| solution.at)
+}
+
+/// Root mean square of relative errors, in percent.
+fn rms(errors: &[f64]) -> f64 {
+    100.0 * (errors.iter().map(|e| e * e).sum::<f64>() / errors.len().max(1) as f64).sqrt()
+}
+
+/// Explanations of the seven maxima, the paper's model first, then by their error on layouts left out.
+pub fn explain_published() -> Vec<Explanation> {
+    let data = maxima();
+    let miss = |kind, at: &[f64], m: &Maximum, free| predict(kind, at, m, free) / m.friction_n - 1.0;
+    let printed: Vec<f64> = data.iter().map(|m| miss(Pins::Constant, &[0.0; 3], m, false)).collect();
+    let named = |errors: &[f64]| data.iter().zip(errors).map(|(m, e)| (m.name.clone(), 100.0 * e)).collect();
+    let mut all = vec![Explanation {
+        id: "as printed",
+        constants: vec![("mu_p", published::MU_PINS), ("mu_s", published::MU_SILICONE)],
+        rms_pct: rms(&printed),
+        left_out_rms_pct: rms(&printed),
+        errors_pct: named(&printed),
+    }];
+    let kinds = [
+        ("refitted", Pins::Constant, "mu_p", published::MU_PINS),
+        ("coating_ploughing", Pins::Ploughing, "kappa", published::PLOUGHING_KAPPA),
+        ("polygon_bending", Pins::Bending, "mu_p at 20 deg per pin", published::MU_PINS),
+        ("coating_stiffening", Pins::Stiffening, "mu_p at the heaviest load", published::MU_PINS),
+    ];
+    for (id, kind, name, typical) in kinds {
+        let at = fit(kind, &data, |_| true);
+        let errors: Vec<f64> = data.iter().map(|m| miss(kind, &at, m, true)).collect();
+        let mut left_out = Vec::new();
+        for layout in 0..published::LAYOUTS.len() {
+            let others = fit(kind, &data, |m| m.layout != Some(layout));
+            left_out.extend(
+                data.iter().filter(|m| m.layout == Some(layout)).map(|m| miss(kind, &others, m, true)),
+            );
+        }
+        all.push(Explanation {
+            id,
+            constants: vec![
+                (name, typical * at[1].exp()),
+                ("mu_s", published::MU_SILICONE * at[0].exp()),
+                ("factor on F_thr", at[2].exp()),
+            ],
+            rms_pct: rms(&errors),
+            left_out_rms_pct: rms(&left_out),
+            errors_pct: named(&errors),
+        });
+    }
+    all[1..].sort_by(|a, b| a.left_out_rms_pct.total_cmp(&b.left_out_rms_pct));
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `model/doc/friction-laws.md`: 31 % as printed; ploughing explains most of it and holds for layouts left out.
+    #[test]
+    fn ploughing_explains_most_of_what_the_paper_misses() {
+        let all = explain_published();
+        assert_eq!(format!("{:.0}", all[0].rms_pct), "31");
+        assert_eq!(all[1].id, "coating_ploughing");
+        assert!(all[1].rms_pct < 7.0 && all[1].left_out_rms_pct < 12.0, "{:?}", all[1]);
+        let refitted = all.iter().find(|e| e.id == "refitted").unwrap();
+        assert!(refitted.rms_pct > 1.5 * all[1].rms_pct);
+    }
+}

@@ -1,0 +1,239 @@
+//! `report.json`: what a calibration says, field by field (`model/doc/file-formats.md`).
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::inference::{Noise, Selection};
+
+/// What the data say about the paper's model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// The paper's model explains the data down to its noise.
+    None,
+    /// Every effect found is named and has no rival.
+    Attributed,
+    /// At least one effect has rivals that this data cannot tell apart.
+    Ambiguous,
+    /// Structure is left that no named effect explains.
+    Unattributed,
+}
+
+impl Verdict {
+    /// The verdict of a selection.
+    pub fn of(selection: &Selection) -> Self {
+        if selection.structure.is_some() {
+            Verdict::Unattributed
+        } else if selection.effects.is_empty() {
+            Verdict::None
+        } else if selection.effects.iter().any(|e| !e.rivals.is_empty()) {
+            Verdict::Ambiguous
+        } else {
+            Verdict::Attributed
+        }
+    }
+}
+
+/// A constant with its interval.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Its value.
+    pub value: f64,
+    /// 95 % confidence interval.
+    pub ci95: [f64; 2],
+    /// Its unit.
+    pub unit: String,
+}
+
+/// Counts of a table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DataSummary {
+    /// Rows.
+    pub rows: usize,
+    /// Series.
+    pub series: usize,
+    /// Conditions.
+    pub conditions: usize,
+    /// Rows weighed down as outliers.
+    pub outliers: usize,
+}
+
+/// One fitted model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelReport {
+    /// Root mean square residual on the rows fitted, in newtons, outliers left out.
+    #[serde(rename = "rmse_N")]
+    pub rmse_n: f64,
+    /// The same on whole series and whole loads held out.
+    #[serde(rename = "heldout_rmse_N")]
+    pub heldout_rmse_n: f64,
+    /// On whole series held out.
+    #[serde(rename = "heldout_series_rmse_N")]
+    pub heldout_series_rmse_n: f64,
+    /// On whole loads held out.
+    #[serde(rename = "heldout_loads_rmse_N")]
+    pub heldout_loads_rmse_n: f64,
+    /// On whole layouts held out, with friction and effects from the others; absent with fewer than two layouts.
+    #[serde(rename = "heldout_layouts_rmse_N", default, skip_serializing_if = "Option::is_none")]
+    pub heldout_layouts_rmse_n: Option<f64>,
+    /// Constants by name.
+    pub parameters: BTreeMap<String, Estimate>,
+}
+
+/// An effect that explains the data as well.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RivalReport {
+    /// Its id.
+    pub id: String,
+    /// Why the data cannot tell.
+    pub why: String,
+    /// The experiment that would.
+    pub experiment: String,
+}
+
+/// One effect found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EffectReport {
+    /// Its id, or `unattributed`.
+    pub id: String,
+    /// Where it lies.
+    pub covariate: String,
+    /// `switch` or `rig`; absent for what has no name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub side: Option<String>,
+    /// Formula with source, or the shape of a structure in words.
+    pub formula: String,
+    /// Probability of such a gain by chance, over all that was tried: Student's t with the number of series,
+    /// Sidak's correction. Held against simulated rigs without effect in `model/doc/calibration.md`.
+    pub p_value: f64,
+    /// Its constants.
+    pub parameters: BTreeMap<String, Estimate>,
+    /// Held-out error of the same model without it, in newtons.
+    #[serde(rename = "error_before_N")]
+    pub error_before_n: f64,
+    /// Held-out error of the model with it, in newtons.
+    #[serde(rename = "error_after_N")]
+    pub error_after_n: f64,
+    /// What else it could be.
+    pub rivals: Vec<RivalReport>,
+}
+
+/// What became of a candidate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fate {
+    /// It is in the model.
+    Kept,
+    /// It explains the data as well as one that was kept.
+    Rival,
+    /// This data could not show it.
+    Invisible,
+    /// Its gain may be chance.
+    Chance,
+    /// What it would explain is explained by what was kept.
+    Superfluous,
+}
+
+/// One effect of the vocabulary before the decision.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CandidateReport {
+    /// Its id.
+    pub id: String,
+    /// What it alone would gain over the baseline to first order, in squares of the noise.
+    pub gain: f64,
+    /// Probability of such a gain by chance over the vocabulary.
+    pub p_value: f64,
+    /// What it would still gain on top of the model found; absent for what is in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain_left: Option<f64>,
+    /// What became of it.
+    pub fate: Fate,
+}
+
+/// An effect that this data cannot show.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Invisible {
+    /// Its id.
+    pub id: String,
+    /// Why.
+    pub why: String,
+    /// The experiment that would show it.
+    pub experiment: String,
+}
+
+/// A series that stands out from the model by more than its noise allows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BadSeries {
+    /// Its name in the table.
+    pub series: String,
+    /// `eccentric` or `concentric`.
+    pub direction: String,
+    /// Mean residual in newtons, or the worst reading's where one reading alone is wrong.
+    #[serde(rename = "offset_N")]
+    pub offset_n: f64,
+    /// In standard deviations.
+    pub standard_deviations: f64,
+}
+
+/// `report.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// Name and version of the format.
+    pub schema: String,
+    /// Counts.
+    pub data: DataSummary,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Standard deviation of a reading about the best model, in newtons.
+    #[serde(rename = "noise_floor_N")]
+    pub noise_floor_n: f64,
+    /// The noise by its parts.
+    pub noise: Noise,
+    /// The paper's model, refitted.
+    pub baseline: ModelReport,
+    /// With what was found.
+    pub augmented: ModelReport,
+    /// What was found.
+    pub effects: Vec<EffectReport>,
+    /// Every effect of the vocabulary as a candidate, the strongest first.
+    pub candidates: Vec<CandidateReport>,
+    /// Probability of the largest candidate without any effect, by flipped signs of whole series.
+    pub family_probability: f64,
+    /// What this data cannot see.
+    pub invisible: Vec<Invisible>,
+    /// What no data of such a rig can see after the refit.
+    pub never_visible: Vec<String>,
+    /// Series to look at: a mislabelled weight, a bad run.
+    pub bad_series: Vec<BadSeries>,
+    /// Errors on loads above those fitted, if some were kept back.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extrapolation: Option<Extrapolation>,
+}
+
+/// Errors on the rows with higher loads than those fitted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Extrapolation {
+    /// Highest load fitted, in newtons.
+    #[serde(rename = "fitted_below_N")]
+    pub fitted_below_n: f64,
+    /// Rows judged.
+    pub rows: usize,
+    /// Root mean square error of the refitted baseline, in newtons.
+    #[serde(rename = "rmse_before_N")]
+    pub rmse_before_n: f64,
+    /// Of the augmented model.
+    #[serde(rename = "rmse_after_N")]
+    pub rmse_after_n: f64,
+    /// The same without readings beyond twenty standard deviations of noise: a bad run decides nothing.
+    #[serde(rename = "rmse_after_without_bad_N")]
+    pub rmse_after_without_bad_n: f64,
+    /// Readings left out of that.
+    pub bad_rows: usize,
+    /// Median absolute error of the refitted baseline, in newtons.
+    #[serde(rename = "median_before_N")]
+    pub median_before_n: f64,
+    /// Of the augmented model.
+    #[serde(rename = "median_after_N")]
+    pub median_after_n: f64,
+}

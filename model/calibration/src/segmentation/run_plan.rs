@@ -1,0 +1,164 @@
+//! `run.toml`: the rig and the series of a raw run.
+
+use pinswitch_friction::{Substrate, published};
+use serde::Deserialize;
+
+use crate::table::{MAX_WRAP_DEG, MIN_WRAP_DEG, Sweep};
+
+/// Why a run description cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunPlanError {
+    /// The text is no such TOML.
+    #[error("{file}: {problem}")]
+    Malformed {
+        /// File name as given.
+        file: String,
+        /// What is wrong, with the line.
+        problem: String,
+    },
+    /// A value is out of bounds.
+    #[error("{file}: {field} = {value} is outside {bound}")]
+    Bound {
+        /// File name as given.
+        file: String,
+        /// Field.
+        field: String,
+        /// Value found.
+        value: String,
+        /// What is allowed.
+        bound: &'static str,
+    },
+}
+
+/// The rig of a run.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Rig {
+    /// Wrap angle in degrees.
+    pub wrap_angle_deg: f64,
+    /// Samples per second.
+    pub sample_rate_hz: f64,
+    /// Mass of the hook in grams; it counts as load.
+    pub hook_mass_g: f64,
+    /// Stroke in millimetres.
+    pub stroke_mm: f64,
+    /// Seconds that the actuator runs for one repetition.
+    pub on_s: f64,
+    /// Seconds that it rests afterwards.
+    pub dwell_s: f64,
+}
+
+/// One log of a run.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct SeriesPlan {
+    /// The log's file name, beside the run description.
+    pub file: String,
+    /// What the tendon lies on; `None` for `plain`.
+    #[serde(with = "crate::table::substrate_word")]
+    pub substrate: Option<Substrate>,
+    /// Occupied grooves.
+    pub pins: Vec<usize>,
+    /// The weight in grams, without the hook.
+    pub load_mass_g: f64,
+    /// Actuator speed in percent.
+    pub speed_pct: f64,
+    /// Order of the loads.
+    pub sweep: Sweep,
+}
+
+impl SeriesPlan {
+    /// The load in newtons, hook included.
+    pub fn load_n(&self, rig: &Rig) -> f64 {
+        (self.load_mass_g + rig.hook_mass_g) * 1e-3 * published::GRAVITY_M_S2
+    }
+}
+
+/// A raw run.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct RunPlan {
+    /// The rig.
+    pub rig: Rig,
+    /// Its logs, in the order in which they were recorded.
+    pub series: Vec<SeriesPlan>,
+}
+
+impl RunPlan {
+    /// Reads a run description. `file` is the name used in errors.
+    ///
+    /// # Errors
+    /// [`RunPlanError`] at the first value that cannot be used.
+    pub fn parse(text: &str, file: &str) -> Result<Self, RunPlanError> {
+        let plan: Self = toml::from_str(text).map_err(|e| RunPlanError::Malformed {
+            file: file.to_owned(),
+            problem: e.to_string().trim_end().to_owned(),
+        })?;
+        let refuse = |field: String, value: String, bound| {
+            Err(RunPlanError::Bound { file: file.to_owned(), field, value, bound })
+        };
+        let r = &plan.rig;
+        for (field, value) in [
+            ("rig.sample_rate_hz", r.sample_rate_hz),
+            ("rig.stroke_mm", r.stroke_mm),
+            ("rig.on_s", r.on_s),
+            ("rig.dwell_s", r.dwell_s),
+        ] {
+            if !(value > 0.0 && value <= 1e5) {
+                return refuse(field.to_owned(), value.to_string(), "0 < value <= 100000");
+            }
+        }
+        if !(MIN_WRAP_DEG..=MAX_WRAP_DEG).contains(&r.wrap_angle_deg) {
+            return refuse("rig.wrap_angle_deg".to_owned(), r.wrap_angle_deg.to_string(), "1..720 degrees");
+        }
+        if !(r.hook_mass_g >= 0.0 && r.hook_mass_g.is_finite()) {
+            return refuse("rig.hook_mass_g".to_owned(), r.hook_mass_g.to_string(), "value >= 0");
+        }
+        if plan.series.is_empty() {
+            return refuse("series".to_owned(), "[]".to_owned(), "at least one [[series]]");
+        }
+        for (i, s) in plan.series.iter().enumerate() {
+            let field = |name: &str| format!("series {}: {name}", i + 1);
+            if !(s.load_mass_g >= 0.0 && s.load_mass_g.is_finite()) {
+                return refuse(field("load_mass_g"), s.load_mass_g.to_string(), "value >= 0");
+            }
+            if !(s.speed_pct >= 0.0 && s.speed_pct.is_finite()) {
+                return refuse(field("speed_pct"), s.speed_pct.to_string(), "value >= 0");
+            }
+            if s.pins.iter().any(|p| !(1..=published::GROOVES).contains(p)) {
+                return refuse(field("pins"), format!("{:?}", s.pins), "grooves 1..15");
+            }
+            if s.substrate == Some(Substrate::Abs) && s.pins.is_empty() {
+                return refuse(field("pins"), "[]".to_owned(), "at least one groove on abs");
+            }
+        }
+        Ok(plan)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RIG: &str = "[rig]\nwrap_angle_deg=63.89\nsample_rate_hz=200.0\nhook_mass_g=62.53\nstroke_mm=152.4\non_s=0.5\ndwell_s=3.0\n";
+    const SERIES: &str = "[[series]]\nfile=\"a.csv\"\nsubstrate=\"silicone\"\npins=[]\nload_mass_g=251.2\nspeed_pct=47\nsweep=\"up\"\n";
+
+    #[test]
+    fn the_hook_counts_as_load() {
+        let plan = RunPlan::parse(&format!("{RIG}{SERIES}"), "run.toml").unwrap();
+        assert!((plan.series[0].load_n(&plan.rig) - 3.0766).abs() < 1e-4);
+    }
+
+    #[test]
+    fn unusable_values_are_named() {
+        for (from, to, expected) in [
+            ("on_s=0.5", "on_s=-1.0", "rig.on_s"),
+            ("deg=63.89", "deg=0.0", "rig.wrap_angle_deg = 0 is outside 1..720"),
+            ("load_mass_g=251.2", "load_mass_g=-2.0", "series 1: load_mass_g"),
+            ("\"silicone\"", "\"abs\"", "series 1: pins"),
+            ("pins=[]", "pins=[99]", "grooves 1..15"),
+        ] {
+            let text = format!("{RIG}{SERIES}").replacen(from, to, 1);
+            assert!(RunPlan::parse(&text, "run.toml").unwrap_err().to_string().contains(expected));
+        }
+        assert!(RunPlan::parse(RIG, "run.toml").is_err());
+    }
+}

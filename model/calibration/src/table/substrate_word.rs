@@ -1,0 +1,31 @@
+//! The words of the `substrate` column: a switch lies on silicone or on the rigid proxy, any other rig is `plain`.
+
+use pinswitch_friction::Substrate;
+use serde::{Deserialize, Deserializer, Serializer};
+
+/// The word of an unknown material.
+const PLAIN: &str = "plain";
+
+/// The words with what they stand for.
+pub(crate) const WORDS: [(&str, Option<Substrate>); 3] =
+    [("silicone", Some(Substrate::Silicone)), ("abs", Some(Substrate::Abs)), (PLAIN, None)];
+
+/// The word of a substrate: `silicone`, `abs`, or `plain` for an unknown material.
+pub fn substrate_word(substrate: Option<Substrate>) -> &'static str {
+    substrate.map_or(PLAIN, Substrate::as_str)
+}
+
+pub(crate) fn serialize<S: Serializer>(
+    substrate: &Option<Substrate>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(substrate_word(*substrate))
+}
+
+pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Substrate>, D::Error> {
+    let word = String::deserialize(deserializer)?;
+    WORDS.iter().find(|(known, _)| *known == word).map(|(_, substrate)| *substrate).ok_or_else(|| {
+        let known = WORDS.map(|(word, _)| format!("`{word}`")).join(", ");
+        serde::de::Error::custom(format!("unknown variant `{word}`, expected one of {known}"))
+    })
+}

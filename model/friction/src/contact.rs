@@ -1,0 +1,209 @@
+//! What the tendon lies on: the validated input of every prediction.
+
+use serde::{Deserialize, Serialize};
+
+use crate::PinPattern;
+use crate::physics::Bed;
+use crate::published::{self, PublishedLayout};
+
+/// What lies under the pins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Substrate {
+    /// The cast silicone layer: pins sink as load grows.
+    Silicone,
+    /// The rigid printed proxy of that layer: the pins alone carry the tendon.
+    Abs,
+}
+
+impl Substrate {
+    /// The word in tables and configurations: `silicone` or `abs`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Substrate::Silicone => "silicone",
+            Substrate::Abs => "abs",
+        }
+    }
+}
+
+/// Why a contact cannot be predicted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ContactError {
+    /// The wrap angle is not a positive finite angle of at most two turns.
+    #[error(
+        "wrap angle {degrees} deg is outside 0 < angle <= 720; give the angle over which the tendon touches the pulley"
+    )]
+    WrapAngle {
+        /// The angle given, in degrees.
+        degrees: f64,
+    },
+    /// A rigid proxy without pins within the wrap carries nothing.
+    #[error(
+        "the rigid proxy has no pin within the wrap of {degrees:.2} deg; put a pin there or use silicone"
+    )]
+    NothingTouches {
+        /// The wrap angle in degrees.
+        degrees: f64,
+    },
+}
+
+/// Substrate, the pins that the tendon touches, and the wrap angle.
+///
+/// ```
+/// use pinswitch_friction::{Contact, ContactError, PinPattern, Substrate};
+///
+/// // Three pins over a wrap of 64 degrees; the one beside it does not touch the tendon.
+/// let pins = PinPattern::new([-15.0f64, 0.0, 15.0, 40.0].map(f64::to_radians).to_vec());
+/// let contact = Contact::new(Substrate::Silicone, pins, 64f64.to_radians())?;
+/// assert_eq!(contact.pins().count(), 3);
+/// assert!(contact.departures().iter().any(|reason| reason.contains("outside the wrap")));
+///
+/// let nothing = Contact::new(Substrate::Abs, PinPattern::default(), 1.0);
+/// assert!(matches!(nothing, Err(ContactError::NothingTouches { .. })));
+/// # Ok::<(), ContactError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    substrate: Substrate,
+    pins: PinPattern,
+    outside: usize,
+    wrap_rad: f64,
+    departures: Vec<String>,
+    six_single_threshold: f64,
+    bed: Bed,
+}
+
+impl Contact {
+    /// A contact over `wrap_rad` radians. Pins outside the wrap are counted but do not touch the tendon.
+    ///
+    /// # Errors
+    /// [`ContactError`] if the angle is unusable or if nothing would touch the tendon.
+    pub fn new(substrate: Substrate, pins: PinPattern, wrap_rad: f64) -> Result<Self, ContactError> {
+        let degrees = wrap_rad.to_degrees();
+        if !(degrees > 0.0 && degrees <= 720.0) {
+            return Err(ContactError::WrapAngle { degrees });
+        }
+        let touched = pins.within(wrap_rad);
+        if substrate == Substrate::Abs && touched.count() == 0 {
+            return Err(ContactError::NothingTouches { degrees });
+        }
+        let outside = pins.count() - touched.count();
+        Ok(Self {
+            substrate,
+            pins: touched,
+            outside,
+            wrap_rad,
+            departures: Vec::new(),
+            six_single_threshold: published::LAYOUTS[0].threshold,
+            bed: Bed::published(),
+        })
+    }
+
+    /// Reads `F_thr` of six-single as `threshold` instead of the printed 5.7: the paper leaves it open
+    /// (`model/doc/friction-laws.md`).
+    #[must_use]
+    pub fn with_six_single_threshold(mut self, threshold: f64) -> Self {
+        self.six_single_threshold = threshold;
+        self
+    }
+
+    /// Adds ways in which the part departs from the one that was measured (another silicone, another pin):
+    /// the friction numbers are then an extrapolation, and each reason is shown.
+    #[must_use]
+    pub fn with_departures(mut self, departures: Vec<String>) -> Self {
+        self.departures = departures;
+        self
+    }
+
+    /// Lays the pins on `bed` instead of the published one; the physics reads it.
+    #[must_use]
+    pub fn with_bed(mut self, bed: Bed) -> Self {
+        self.bed = bed;
+        self
+    }
+
+    /// Dimensions and stiffness of what carries the tendon.
+    pub fn bed(&self) -> &Bed {
+        &self.bed
+    }
+
+    /// What lies under the pins.
+    pub fn substrate(&self) -> Substrate {
+        self.substrate
+    }
+
+    /// The pins within the wrap.
+    pub fn pins(&self) -> &PinPattern {
+        &self.pins
+    }
+
+    /// The wrap angle in radians.
+    pub fn wrap_rad(&self) -> f64 {
+        self.wrap_rad
+    }
+
+    /// Every way in which this contact departs from the published experiment, besides the layout of its pins.
+    pub fn departures(&self) -> Vec<String> {
+        let mut all = self.departures.clone();
+        if (self.wrap_rad - published::wrap_angle_rad()).abs() > 1e-6 {
+            all.push(format!(
+                "the wrap angle is {:.2} deg, measured was {} deg",
+                self.wrap_rad.to_degrees(),
+                published::WRAP_ANGLE_DEG
+            ));
+        }
+        if self.outside > 0 {
+            all.push(format!("{} pin(s) lie outside the wrap and are left out", self.outside));
+        }
+        all
+    }
+
+    /// The published layout whose pins these are: same number, same even pitch, centred on the wrap.
+    pub fn published_layout(&self) -> Option<PublishedLayout> {
+        let pitch = self.pins.mean_pitch_rad()?;
+        let mut layout = *published::LAYOUTS.iter().find(|l| {
+            l.pins == self.pins.count()
+                && (l.pitch_rad() - pitch).abs() < 1e-4
+                && self.pins.is_even()
+                && self.pins.is_centred()
+        })?;
+        if layout.name == published::LAYOUTS[0].name {
+            layout.threshold = self.six_single_threshold;
+        }
+        Some(layout)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn published_layouts_are_recognised_and_others_are_not() {
+        for layout in &published::LAYOUTS {
+            let pins = PinPattern::even(layout.pins, layout.pitch_rad());
+            let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap();
+            assert_eq!(contact.published_layout(), Some(*layout));
+            assert!(contact.departures().is_empty());
+        }
+        let pins = PinPattern::even(4, 0.2);
+        let contact = Contact::new(Substrate::Silicone, pins, 1.0).unwrap();
+        assert_eq!(contact.published_layout(), None);
+        assert_eq!(contact.departures().len(), 1);
+    }
+
+    #[test]
+    fn unusable_contacts_are_refused() {
+        for wrap in [0.0, -1.0, f64::NAN, f64::INFINITY, 13.0] {
+            assert!(matches!(
+                Contact::new(Substrate::Silicone, PinPattern::default(), wrap),
+                Err(ContactError::WrapAngle { .. })
+            ));
+        }
+        assert!(matches!(
+            Contact::new(Substrate::Abs, PinPattern::new(vec![0.9]), 1.0),
+            Err(ContactError::NothingTouches { .. })
+        ));
+    }
+}

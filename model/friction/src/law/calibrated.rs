@@ -1,0 +1,15 @@
+//! `calibrated`: a model fitted to measured data; its curves come from a model file, not from a contact alone.
+
+use super::{Definition, LawError, Support};
+
+pub(super) static DEFINITION: Definition = Definition {
+    word: "calibrated",
+    title: "calibrated model",
+    summary: "A model calibrated on measured data: the layouts of its rig",
+    source: "a model calibrated on measured data, see the reasons for what it holds",
+    needs_model: true,
+    support: |_| Support::LastResort,
+    curve: |_, _| {
+        Err(LawError::DoesNotApply { why: "a calibrated law comes from a model file; give it with --model" })
+    },
+};

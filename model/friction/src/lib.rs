@@ -1,0 +1,52 @@
+//! Friction of a pin switch: what the tendon lies on, the laws that predict its friction, and the numbers published
+//! about it. The crate knows contacts and forces; it must not know measured tables, effects, parts or files.
+//!
+//! A tendon runs over steel pins that lie in silicone on a rigid shell. At low load it touches the pins only; as load
+//! grows they sink, it meets the silicone, and friction rises. A [`Contact`] says what the tendon lies on: a
+//! [`Substrate`], a [`PinPattern`] and the wrap angle. A [`Law`] turns it into a [`FrictionCurve`], which always
+//! carries its band, its law and a word on how far to trust it ([`Trust`]).
+//!
+//! ```
+//! use pinswitch_friction::{Contact, PinPattern, Substrate, predict, published};
+//!
+//! // Three pins, 17.89 degrees apart, on silicone: the paper's "three double" layout.
+//! let pitch_rad = 3.0 * published::GROOVE_PITCH_DEG.to_radians();
+//! let pins = PinPattern::even(3, pitch_rad);
+//! let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
+//! let curve = predict(&contact, &[published::heaviest_load_n()]);
+//! assert_eq!(format!("{:.2}", curve.friction_n[0]), "10.01");
+//! # Ok::<(), pinswitch_friction::ContactError>(())
+//! ```
+//!
+//! - [`predict`] chooses the best supported law, [`predict_by`] takes yours, [`other_laws`] shows the rest beside it.
+//! - [`Transition`] finds the load at which a curve switches; [`finger`] says what a switch buys in a tendon-driven finger.
+//! - [`layout_search`] goes backwards, from a wanted curve to pins.
+//! - [`physics`] is the model behind the law of that name; [`published`] holds the paper's numbers.
+//!
+//! Angles are radians, forces newtons, unless a name says otherwise. Nothing here reads files, clocks or the
+//! environment; with the feature `parallel` the sweeps of [`layout_search`] run on all processors, with the same
+//! results. `model/doc/friction-laws.md` and `model/doc/physics.md` explain the laws with their sources.
+
+mod capstan;
+mod contact;
+mod curve;
+pub mod finger;
+mod law;
+pub mod layout_search;
+pub mod least_squares;
+mod pattern;
+pub mod physics;
+pub mod published;
+mod switch;
+mod transition;
+mod trust;
+
+pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};
+pub use contact::{Contact, ContactError, Substrate};
+pub use curve::{FrictionCurve, PublishedPoint, published_points};
+pub use law::layout::LayoutLaw;
+pub use law::{Law, LawError, best_law, other_laws, predict, predict_by};
+pub use pattern::PinPattern;
+pub use switch::{PaperSwitch, Switch, SwitchState};
+pub use transition::Transition;
+pub use trust::Trust;

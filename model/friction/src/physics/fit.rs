@@ -1,0 +1,182 @@
+//! The constants, fitted to the seven published maxima, and how well they predict a layout that was left out.
+
+use nalgebra::{Matrix3, Vector3};
+use serde::Serialize;
+
+use super::{Bed, Constants, PhysicsError, PhysicsSwitch};
+use crate::least_squares::{self, LeastSquaresError};
+use crate::published::{self, LAYOUTS};
+use crate::{Contact, PinPattern, Substrate};
+
+/// A fit, as data: constants, covariance of their logarithms, and errors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PublishedFit {
+    /// kappa in N^-0.5, mu_s, N0 in N.
+    pub(crate) constants: [f64; 3],
+    /// Covariance of their logarithms.
+    pub(crate) covariance: [[f64; 3]; 3],
+    /// Scatter of the maxima about the fit, relative.
+    pub(crate) scatter: f64,
+    /// Root mean square error of layouts left out, relative.
+    pub(crate) left_out_rms: f64,
+    /// Maxima less constants.
+    pub(crate) freedom: f64,
+}
+
+/// The fit to the seven maxima on the published bed; a test makes it again.
+pub(crate) const PUBLISHED_FIT: PublishedFit = PublishedFit {
+    constants: [0.023632, 0.23391, 8.5479],
+    covariance: [
+        [8.286e-4, 1.296e-5, 5.164e-4],
+        [1.296e-5, 1.4019e-3, 1.1273e-3],
+        [5.164e-4, 1.1273e-3, 3.3038e-3],
+    ],
+    scatter: 0.0504,
+    left_out_rms: 0.0592,
+    freedom: 4.0,
+};
+
+impl PublishedFit {
+    pub(crate) fn constants(&self) -> Constants {
+        let [kappa_per_sqrt_n, mu_silicone, flush_force_n] = self.constants;
+        Constants { kappa_per_sqrt_n, mu_silicone, flush_force_n }
+    }
+}
+
+/// Why no constants could be fitted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// The model has no solution somewhere on the way.
+    #[error(transparent)]
+    Physics(#[from] PhysicsError),
+    /// The maxima do not determine the constants.
+    #[error(transparent)]
+    LeastSquares(#[from] LeastSquaresError),
+}
+
+/// One published maximum.
+#[derive(Clone, Debug)]
+pub(super) struct Maximum {
+    /// `three-double, device`.
+    pub(super) name: String,
+    /// Which of the three layouts; `None` for silicone alone.
+    pub(super) layout: Option<usize>,
+    pub(super) contact: Contact,
+    pub(super) friction_n: f64,
+}
+
+/// The seven maxima, all at the heaviest load; `wrap` returns the angle in radians over which the tendon turns.
+pub(super) fn published_maxima(wrap: impl Fn(&PinPattern) -> f64) -> Vec<Maximum> {
+    let of = |name: String, layout, substrate, pins: PinPattern, friction_n| {
+        let wrap = wrap(&pins);
+        let contact = Contact::new(substrate, pins, wrap).ok()?;
+        Some(Maximum { name, layout, contact, friction_n })
+    };
+    let bare = of(
+        "silicone alone".to_owned(),
+        None,
+        Substrate::Silicone,
+        PinPattern::default(),
+        published::SILICONE_ALONE_MAX_N,
+    );
+    let layouts = LAYOUTS.iter().enumerate().flat_map(|(i, l)| {
+        [(Substrate::Abs, "pins alone"), (Substrate::Silicone, "device")].map(|(substrate, kind)| {
+            let pins = PinPattern::even(l.pins, l.pitch_rad());
+            of(format!("{}, {kind}", l.name), Some(i), substrate, pins, l.max_n(substrate))
+        })
+    });
+    std::iter::once(bare).chain(layouts).flatten().collect()
+}
+
+/// Constants fitted to published maxima.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MaximaFit {
+    /// The constants.
+    pub constants: Constants,
+    /// Covariance of their logarithms, from the scatter of the maxima about the fit.
+    pub covariance: [[f64; 3]; 3],
+    /// Relative error of each maximum, model over measured less one: name and error.
+    pub errors: Vec<(String, f64)>,
+    /// Root mean square of the errors.
+    pub rms: f64,
+    /// Scatter of the maxima about the fit: the same sum over maxima less constants.
+    pub scatter: f64,
+}
+
+/// The maxima of a layout, predicted by constants fitted to the others.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LayoutLeftOut {
+    /// The layout.
+    pub layout: &'static str,
+    /// Constants fitted without it.
+    pub constants: Constants,
+    /// Relative error of its pins alone.
+    pub pins_error: f64,
+    /// Relative error of its device.
+    pub device_error: f64,
+}
+
+fn error(maximum: &Maximum, bed: &Bed, constants: Constants) -> Result<f64, PhysicsError> {
+    let contact = maximum.contact.clone().with_bed(*bed);
+    let friction = PhysicsSwitch::new(&contact, constants).friction_n(published::heaviest_load_n())?;
+    Ok(friction / maximum.friction_n - 1.0)
+}
+
+/// Least squares of the relative errors over these maxima.
+pub(super) fn fit(bed: &Bed, maxima: &[&Maximum]) -> Result<MaximaFit, FitError> {
+    let start = PUBLISHED_FIT.constants().logarithms();
+    let errors = |at: &[f64]| -> Result<Vec<f64>, PhysicsError> {
+        let constants = Constants::from_logarithms(&Vector3::from_column_slice(at));
+        maxima.iter().map(|m| error(m, bed, constants)).collect()
+    };
+    let solution = least_squares::minimise(start.as_slice(), 1e-4, errors)??;
+    let constants = Constants::from_logarithms(&Vector3::from_column_slice(&solution.at));
+    let sum: f64 = solution.residuals.iter().map(|e| e * e).sum();
+    let freedom = maxima.len().saturating_sub(3).max(1) as f64;
+    let covariance = Matrix3::from_column_slice(solution.inverse_normal.as_slice()) * (sum / freedom);
+    Ok(MaximaFit {
+        constants,
+        covariance: [0, 1, 2].map(|i| [0, 1, 2].map(|j| covariance[(i, j)])),
+        errors: maxima.iter().map(|m| m.name.clone()).zip(solution.residuals).collect(),
+        rms: (sum / maxima.len() as f64).sqrt(),
+        scatter: (sum / freedom).sqrt(),
+    })
+}
+
+/// Fits the three constants to the seven published maxima on `bed`.
+///
+/// # Errors
+/// [`FitError`] if the model cannot be solved or the maxima do not determine the constants.
+pub fn fit_maxima(bed: &Bed) -> Result<MaximaFit, FitError> {
+    let maxima = published_maxima(|_| published::wrap_angle_rad());
+    fit(bed, &maxima.iter().collect::<Vec<_>>())
+}
+
+/// Predicts the maxima of each layout from the others'.
+///
+/// # Errors
+/// As [`fit_maxima`].
+pub fn leave_one_layout_out(bed: &Bed) -> Result<Vec<LayoutLeftOut>, FitError> {
+    let maxima = published_maxima(|_| published::wrap_angle_rad());
+    LAYOUTS
+        .iter()
+        .enumerate()
+        .map(|(i, layout)| {
+            let others: Vec<_> = maxima.iter().filter(|m| m.layout != Some(i)).collect();
+            let constants = fit(bed, &others)?.constants;
+            let of = |substrate| {
+                maxima
+                    .iter()
+                    .find(|m| m.layout == Some(i) && m.contact.substrate() == substrate)
+                    .map_or(Ok(f64::NAN), |m| error(m, bed, constants))
+            };
+            Ok(LayoutLeftOut {
+                layout: layout.name,
+                constants,
+                pins_error: of(Substrate::Abs)?,
+                device_error: of(Substrate::Silicone)?,
+            })
+        })
+        .collect()
+}

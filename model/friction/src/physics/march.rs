@@ -1,0 +1,147 @@
+//! Tension marched along the wrap, from the load to the motor, in one direction of motion.
+//!
+//! A contact that turns the tendon by `theta` raises the friction exponent by `kappa sqrt(T theta) theta` at a pin
+//! (ploughing of the coating, `model/doc/friction-laws.md`: `mu = kappa sqrt(N)`) and by `mu_s theta` on the silicone;
+//! `T` is the local tension. Shape and tension depend on each other, and are found in turn until neither changes.
+
+use super::equilibrium::{Equilibrium, Supports};
+use super::{Constants, PhysicsError};
+use crate::Direction;
+
+/// Rounds of shape and tension before the search is given up; 3 to 6 are usual.
+const MAX_ROUNDS: usize = 40;
+/// Largest relative change of the tension between rounds at which they agree.
+const AGREEMENT: f64 = 1e-7;
+
+/// A loaded tendon that slides in one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Sliding {
+    /// Friction exponent from the pins: their part of `ln(T/F)`, without its sign.
+    pub(super) pins_exponent: f64,
+    /// Friction exponent from the silicone.
+    pub(super) silicone_exponent: f64,
+    /// Turn at each pin, rad.
+    pub(super) pin_turn_rad: Vec<f64>,
+    /// Turn on the silicone, rad.
+    pub(super) silicone_turn_rad: f64,
+    /// Tension at each node, N.
+    pub(super) tension_n: Vec<f64>,
+    /// Shape and forces.
+    pub(super) shape: Equilibrium,
+    /// Factor that makes the turns sum to the wrap: 1 within a few percent, what the string's linearisation leaves.
+    pub(super) closure: f64,
+}
+
+/// A tendon about to slide over its supports.
+#[derive(Clone, Copy)]
+pub(super) struct Slide<'a> {
+    /// What carries it.
+    pub(super) supports: Supports<'a>,
+    /// Friction of its materials.
+    pub(super) constants: &'a Constants,
+    /// Sum of all turns, rad.
+    pub(super) wrap_rad: f64,
+    /// Load that holds its first node, N.
+    pub(super) load_n: f64,
+    /// Which way it moves.
+    pub(super) direction: Direction,
+}
+
+/// Slides a tendon; `start` is a state nearby, such as the one at the load before.
+///
+/// # Errors
+/// [`PhysicsError`] if the shape or the tension does not settle, or if nothing carries the tendon.
+pub(super) fn slide(tendon: Slide<'_>, start: Option<&Sliding>) -> Result<Sliding, PhysicsError> {
+    let Slide { supports, load_n, .. } = tendon;
+    let nodes = supports.grid.len();
+    // A nearby state's tension, scaled to the new load.
+    let mut tension_n = match start.filter(|s| s.tension_n.len() == nodes) {
+        Some(near) => {
+            let scale = load_n / near.tension_n.first().copied().unwrap_or(load_n);
+            near.tension_n.iter().map(|t| t * scale).collect()
+        }
+        None => vec![load_n; nodes],
+    };
+    let mut gap: Option<Vec<f64>> = start.map(|s| s.shape.gap_mm.clone()).filter(|gap| gap.len() == nodes);
+    for _ in 0..MAX_ROUNDS {
+        let shape = supports.equilibrium(&tension_n, gap.as_deref())?;
+        let (sliding, change) = march(tendon, &tension_n, shape)?;
+        if change <= AGREEMENT {
+            return Ok(sliding);
+        }
+        tension_n = sliding.tension_n;
+        gap = Some(sliding.shape.gap_mm);
+    }
+    Err(PhysicsError::TensionUnsettled { load_n, rounds: MAX_ROUNDS })
+}
+
+/// One pass along the wrap: turns from the forces, tension from the turns. Also the largest relative change of tension.
+fn march(tendon: Slide<'_>, tension_n: &[f64], shape: Equilibrium) -> Result<(Sliding, f64), PhysicsError> {
+    let Slide { supports, constants, wrap_rad, load_n, direction } = tendon;
+    let grid = supports.grid;
+    let at_pin = |(force, node): (&f64, &usize)| force / tension_n[*node];
+    let turned: f64 = shape.silicone_n.iter().zip(tension_n).map(|(q, t)| q / t).sum::<f64>()
+        + shape.pin_n.iter().zip(&grid.pins).map(at_pin).sum::<f64>();
+    if turned.is_nan() || turned <= 0.0 {
+        return Err(PhysicsError::NothingCarries);
+    }
+    let closure = wrap_rad / turned;
+    let pin_turn_rad: Vec<f64> = shape.pin_n.iter().zip(&grid.pins).map(|p| closure * at_pin(p)).collect();
+    let kappa = constants.kappa_per_sqrt_n * supports.bed.ploughing_ratio();
+    let (mut log_ratio, mut pins_exponent, mut silicone_exponent, mut silicone_turn_rad) =
+        (0.0, 0.0, 0.0, 0.0);
+    let (mut next, mut change) = (0, 0.0f64);
+    let mut marched = Vec::with_capacity(tension_n.len());
+    for (node, t) in tension_n.iter().enumerate() {
+        let turn = closure * shape.silicone_n[node] / t;
+        silicone_turn_rad += turn;
+        let mut rise = constants.mu_silicone * turn;
+        silicone_exponent += rise;
+        while grid.pins.get(next) == Some(&node) {
+            let theta = pin_turn_rad[next];
+            let ploughing = kappa * (t * theta).sqrt() * theta;
+            pins_exponent += ploughing;
+            rise += ploughing;
+            next += 1;
+        }
+        // The tension at a node is that in the middle of what it carries.
+        let here = load_n * (direction.sign() * (log_ratio + rise / 2.0)).exp();
+        log_ratio += rise;
+        change = change.max((here / t - 1.0).abs());
+        marched.push(here);
+    }
+    let sliding = Sliding {
+        pins_exponent,
+        silicone_exponent,
+        pin_turn_rad,
+        silicone_turn_rad,
+        tension_n: marched,
+        shape,
+        closure,
+    };
+    Ok((sliding, change))
+}
+
+/// Turn at each pin of a rigid proxy, rad: half of both neighbouring pitches, the outermost take what the wrap leaves.
+pub(super) fn polygon_turns_rad(pins_rad: &[f64], wrap_rad: f64) -> Vec<f64> {
+    let half = |i: usize| (pins_rad[i + 1] - pins_rad[i]) / 2.0;
+    let last = pins_rad.len().saturating_sub(1);
+    (0..pins_rad.len())
+        .map(|i| {
+            let before = if i == 0 { pins_rad[0] + wrap_rad / 2.0 } else { half(i - 1) };
+            let after = if i == last { wrap_rad / 2.0 - pins_rad[last] } else { half(i) };
+            before + after
+        })
+        .collect()
+}
+
+/// Friction exponent of pins on a rigid proxy, marched from the load in `direction`; `kappa` in N^-0.5.
+pub(super) fn pins_alone_exponent(turns_rad: &[f64], kappa: f64, load_n: f64, direction: Direction) -> f64 {
+    turns_rad.iter().fold(0.0, |x, theta| {
+        // T in the middle of the pin, by two steps of the fixed point; the rise is a few percent.
+        let middle = |rise: f64| load_n * (direction.sign() * (x + rise / 2.0)).exp();
+        let plough = |t: f64| kappa * (t * theta).sqrt() * theta;
+        let first = plough(middle(0.0));
+        x + plough(middle(plough(middle(first))))
+    })
+}

@@ -1,0 +1,40 @@
+//! A synthetic rig: plateau tables and raw logs with known effects, for planning, for tests and for the study of the
+//! calibrator. The crate knows physics of its own and must not take a formula of an effect from the fitter.
+//!
+//! A [`Plan`] says what the rig does, what the paper's model lacks on it and how noisy it is. [`simulate`] makes the
+//! table that it would record, [`RawRun`] the logs. [`power()`] tells before any measurement which effects a plan could
+//! show, and [`run_case`] asks the calibrator about rigs whose truth is known.
+//!
+//! ```
+//! use pinswitch_calibration::inference::Levels;
+//! use pinswitch_calibration::{Verdict, calibrate};
+//! use pinswitch_simulation::{EffectPlan, Plan, simulate};
+//!
+//! let mut plan = Plan::randomised();
+//! plan.effects.push(EffectPlan { id: "load_cell_offset".to_owned(), values: vec![0.8], form: 0 });
+//! let report = calibrate(&simulate(&plan).rows, Levels::default())?.report;
+//! assert_eq!(report.verdict, Verdict::Attributed);
+//! assert_eq!(report.effects[0].id, "load_cell_offset");
+//! # Ok::<(), pinswitch_calibration::CalibrationError>(())
+//! ```
+//!
+//! The same plan makes the same bytes on every machine. `model/doc/calibration.md` reports what the study found.
+
+#[cfg(test)]
+mod calibrator_tests;
+mod disturbance;
+mod effect_forms;
+mod plan;
+mod power;
+mod protocol;
+mod raw;
+mod simulate;
+mod study;
+mod twin;
+
+pub use disturbance::{Course, Disturbance, DisturbanceTarget};
+pub use plan::{EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan, RigConstants};
+pub use power::{Power, power};
+pub use raw::{Faults, RawLog, RawRun};
+pub use simulate::{Simulated, simulate};
+pub use study::{Case, Outcome, Study, Truth, plan_of, run_case, study_cases};

@@ -1,0 +1,167 @@
+//! Whether a plan can be run: every field within its bounds.
+
+use pinswitch_calibration::effects::{acting_order, effect_named};
+use pinswitch_friction::published;
+
+use super::{EffectPlan, NoisePlan, Plan, PlanError, RawPlan};
+use crate::effect_forms::forms_of;
+
+/// A field out of its bounds, before it is known which file it stands in.
+struct Fault {
+    field: &'static str,
+    value: String,
+    bound: &'static str,
+    remedy: &'static str,
+}
+
+/// `Err` with the fault unless `holds`.
+fn require(
+    holds: bool,
+    field: &'static str,
+    value: impl FnOnce() -> String,
+    bound: &'static str,
+    remedy: &'static str,
+) -> Result<(), Fault> {
+    if holds { Ok(()) } else { Err(Fault { field, value: value(), bound, remedy }) }
+}
+
+impl Plan {
+    /// Checks every field. `file` is the name used in errors.
+    ///
+    /// # Errors
+    /// [`PlanError`] at the first field that cannot be used.
+    pub fn check(&self, file: &str) -> Result<(), PlanError> {
+        self.check_series()
+            .and_then(|()| check_noise(&self.noise))
+            .and_then(|()| check_raw(&self.raw))
+            .map_err(|Fault { field, value, bound, remedy }| PlanError::Bound {
+                file: file.to_owned(),
+                field,
+                value,
+                bound,
+                remedy,
+            })?;
+        self.effects.iter().try_for_each(|effect| check_effect(effect, file))
+    }
+
+    fn check_series(&self) -> Result<(), Fault> {
+        for (field, values) in
+            [("weights_g", &self.weights_g), ("speeds_pct", &self.speeds_pct), ("dwells_s", &self.dwells_s)]
+        {
+            let positive = !values.is_empty() && values.iter().all(|v| *v > 0.0 && v.is_finite());
+            require(
+                positive && values.len() <= 1000,
+                field,
+                || format!("{values:?}"),
+                "1 to 1000 positive numbers",
+                "list the values to run",
+            )?;
+        }
+        require(
+            self.wrap_angle_deg >= 1.0 && self.wrap_angle_deg <= 720.0,
+            "wrap_angle_deg",
+            || self.wrap_angle_deg.to_string(),
+            "1..720",
+            "the paper's is 63.89 degrees",
+        )?;
+        require(
+            self.repetitions.iter().all(|r| (1..=1000).contains(r)),
+            "repetitions",
+            || format!("{:?}", self.repetitions),
+            "1..1000",
+            "give two counts",
+        )?;
+        let grooves = 1..=published::GROOVES;
+        require(
+            self.layouts.iter().all(|l| !l.is_empty() && l.iter().all(|g| grooves.contains(g))),
+            "layouts",
+            || format!("{:?}", self.layouts),
+            "lists of grooves 1..15",
+            "name occupied grooves",
+        )?;
+        require(
+            self.silicone || !self.layouts.is_empty(),
+            "layouts",
+            || "[]".to_owned(),
+            "at least one",
+            "measure silicone or a layout",
+        )
+    }
+}
+
+fn check_noise(n: &NoisePlan) -> Result<(), Fault> {
+    let sizes = [n.repetition_n, n.repetition_per_load, n.series_n, n.series_per_load, n.outlier_n];
+    require(
+        sizes.iter().all(|v| v.is_finite() && *v >= 0.0),
+        "noise",
+        || format!("{sizes:?}"),
+        ">= 0",
+        "give standard deviations",
+    )?;
+    require(
+        (0.0..=0.99).contains(&n.autocorrelation) && (0.0..=2.0).contains(&n.uneven),
+        "noise",
+        || format!("autocorrelation {}, uneven {}", n.autocorrelation, n.uneven),
+        "0..0.99 and 0..2",
+        "0 is neither",
+    )?;
+    require(
+        [n.outlier_share, n.lost_share].iter().all(|v| (0.0..=0.9).contains(v)),
+        "noise shares",
+        || format!("{} and {}", n.outlier_share, n.lost_share),
+        "0..0.9",
+        "give shares of the rows",
+    )
+}
+
+fn check_raw(r: &RawPlan) -> Result<(), Fault> {
+    require(
+        (20.0..=10_000.0).contains(&r.sample_rate_hz),
+        "raw.sample_rate_hz",
+        || r.sample_rate_hz.to_string(),
+        "20..10000",
+        "the rig has 200",
+    )?;
+    let shares = [r.spike_share, r.lost_share, r.odd_speed_share, r.missing_share];
+    require(
+        shares.iter().all(|v| (0.0..=0.9).contains(v)),
+        "raw shares",
+        || format!("{shares:?}"),
+        "0..0.9",
+        "give shares of samples and logs",
+    )?;
+    require(
+        [r.sample_n, r.jitter_s].iter().all(|v| v.is_finite() && *v >= 0.0),
+        "raw",
+        || format!("sample_N {}, jitter_s {}", r.sample_n, r.jitter_s),
+        ">= 0",
+        "give standard deviations",
+    )
+}
+
+/// Whether an effect is in the catalogue, with as many constants as it needs, in a form that the twin has.
+fn check_effect(planned: &EffectPlan, file: &str) -> Result<(), PlanError> {
+    let remedy = match effect_named(&planned.id) {
+        Some(effect) if effect.parameters().len() == planned.values.len() => {
+            let forms = forms_of(&planned.id);
+            if usize::from(planned.form) < forms.len() {
+                return Ok(());
+            }
+            let last = forms.len() - 1;
+            format!("form {} is unknown, it has 0 to {last}: {}", planned.form, forms.join("; "))
+        }
+        Some(effect) => {
+            let names: Vec<&str> = effect.parameters().iter().map(|p| p.name).collect();
+            format!("it needs {} value(s): {}", names.len(), names.join(", "))
+        }
+        None => {
+            format!("known are {}", acting_order().iter().map(|e| e.id()).collect::<Vec<_>>().join(", "))
+        }
+    };
+    Err(PlanError::Effect {
+        file: file.to_owned(),
+        id: planned.id.clone(),
+        found: planned.values.len(),
+        remedy,
+    })
+}

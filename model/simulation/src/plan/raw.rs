@@ -1,0 +1,42 @@
+//! Sampling of raw logs and what goes wrong in them.
+
+use serde::{Deserialize, Serialize};
+
+/// Sampling of the logs, and how often what goes wrong. Shares are of samples, repetitions or logs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RawPlan {
+    /// Samples per second.
+    pub sample_rate_hz: f64,
+    /// Standard deviation of one sample of the force, in newtons.
+    #[serde(rename = "sample_N")]
+    pub sample_n: f64,
+    /// Standard deviation of a time stamp, in seconds.
+    pub jitter_s: f64,
+    /// Share of the samples with an electrical spike.
+    pub spike_share: f64,
+    /// Share of the samples that are lost.
+    pub lost_share: f64,
+    /// Force at which the channel clips, in newtons; absent, it does not.
+    #[serde(rename = "clip_N", skip_serializing_if = "Option::is_none")]
+    pub clip_n: Option<f64>,
+    /// Share of the logs with one move of another length.
+    pub odd_speed_share: f64,
+    /// Share of the logs in which one repetition is missing.
+    pub missing_share: f64,
+}
+
+impl Default for RawPlan {
+    fn default() -> Self {
+        Self {
+            sample_rate_hz: 200.0,
+            sample_n: 0.07,
+            jitter_s: 0.0003,
+            spike_share: 0.0004,
+            lost_share: 0.002,
+            clip_n: None,
+            odd_speed_share: 0.05,
+            missing_share: 0.05,
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! Raw logs of a synthetic run: force, position and power as the rig samples them, with what goes wrong on a rig.
+
+use std::fmt::Write;
+
+use pinswitch_calibration::table::{PlateauRow, substrate_word};
+use pinswitch_friction::published;
+use pinswitch_friction::{Direction, Substrate};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use serde::Serialize;
+
+use super::plan::{Plan, PlanError, RawPlan};
+
+/// What was put wrong into a log on purpose.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Faults {
+    /// Samples with a spike.
+    pub spikes: usize,
+    /// Samples left out.
+    pub lost: usize,
+    /// The move that was too short: direction and repetition.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub odd_speed: Option<(Direction, u32)>,
+    /// The repetition after which one is missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub missing_after: Option<(Direction, u32)>,
+}
+
+/// One log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RawLog {
+    /// Its file name, without `.gz`.
+    pub file: String,
+    /// Its text: `time_s,force_N,position_mm,power_W`.
+    pub text: String,
+    /// Its true plateaus: direction, repetition as counted in the log, force in newtons.
+    pub truth: Vec<(Direction, u32, f64)>,
+    /// What is wrong with it.
+    pub faults: Faults,
+}
+
+/// A raw run whose logs are made one at a time: they are long.
+///
+/// ```
+/// use pinswitch_calibration::segmentation::segment_run;
+/// use pinswitch_simulation::{Plan, RawRun, simulate};
+///
+/// let plan = Plan { weights_g: vec![1003.2], layouts: Vec::new(), ..Plan::default() };
+/// let rows = simulate(&plan).rows;
+/// let run = RawRun::new(&plan, &rows, "plan.toml")?;
+/// let log = run.log(0).ok_or("a run of one log")?;
+/// let found = segment_run(&run.description(""), "run.toml", |_| Ok::<_, String>(log.text.clone().into_bytes()))?;
+/// assert_eq!(found.rows.len(), log.truth.len(), "every repetition is found again");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RawRun<'a> {
+    plan: &'a Plan,
+    series: Vec<Vec<PlateauRow>>,
+}
+
+/// Seconds that the actuator runs.
+const ON_S: f64 = 0.5;
+/// Seconds before the first move and after the last rest.
+const LEAD_S: f64 = 2.0;
+/// Seconds over which the plateau is read.
+const READ_S: f64 = 1.0;
+
+impl<'a> RawRun<'a> {
+    /// The run that recorded the rows of a session. `file` is the name used in errors.
+    ///
+    /// # Errors
+    /// [`PlanError::Bound`] if the plan has several dwells: a run has one.
+    pub fn new(plan: &'a Plan, rows: &[PlateauRow], file: &str) -> Result<Self, PlanError> {
+        if plan.dwells_s.len() != 1 || plan.dwells_s[0] < 1.5 {
+            return Err(PlanError::Bound {
+                file: file.to_owned(),
+                field: "dwells_s",
+                value: format!("{:?}", plan.dwells_s),
+                bound: "one dwell of at least 1.5 s for raw logs",
+                remedy: "a run.toml has one dwell_s; make one plan per dwell",
+            });
+        }
+        let mut series: Vec<Vec<PlateauRow>> = Vec::new();
+        for row in rows {
+            match series.last_mut().filter(|s| s.first().is_some_and(|f| f.series == row.series)) {
+                Some(last) => last.push(row.clone()),
+                None => series.push(vec![row.clone()]),
+            }
+        }
+        Ok(Self { plan, series })
+    }
+
+    /// Number of logs.
+    pub fn logs(&self) -> usize {
+        self.series.len()
+    }
+
+    /// The text of `run.toml`; logs are named with this suffix.
+    pub fn description(&self, suffix: &str) -> String {
+        let mut text = format!(
+            "[rig]\nwrap_angle_deg = {}\nsample_rate_hz = {:?}\nhook_mass_g = {}\nstroke_mm = {}\non_s = {ON_S:?}\n\
+             dwell_s = {:?}\n",
+            self.plan.wrap_angle_deg,
+            self.plan.raw.sample_rate_hz,
+            published::HOOK_MASS_G,
+            published::STROKE_MM,
+            self.plan.dwells_s[0]
+        );
+        for (i, row) in self.series.iter().enumerate().filter_map(|(i, s)| s.first().map(|r| (i, r))) {
+            let sweep = row.sweep.as_str();
+            let _ = write!(
+                text,
+                "\n[[series]]\nfile = \"{}{suffix}\"\nsubstrate = \"{}\"\npins = {:?}\nload_mass_g = {:?}\n\
+                 speed_pct = {:?}\nsweep = \"{sweep}\"\n",
+                file_name(i, row),
+                substrate_word(row.substrate),
+                row.pins,
+                row.load_mass_g,
+                row.speed_pct,
+            );
+        }
+        text
+    }
+
+    /// A log by its index. The same plan makes the same bytes.
+    pub fn log(&self, index: usize) -> Option<RawLog> {
+        let rows = self.series.get(index)?;
+        let first = rows.first()?;
+        let mut random = ChaCha8Rng::seed_from_u64(self.plan.seed ^ (0x5A17_0000 + index as u64));
+        let raw = &self.plan.raw;
+        let mut faults = Faults::default();
+        let pick = |share: f64, random: &mut ChaCha8Rng| {
+            (random.random::<f64>() < share).then(|| random.random_range(1..rows.len().max(2)))
+        };
+        let odd = pick(raw.odd_speed_share, &mut random);
+        let missing = pick(raw.missing_share, &mut random).filter(|i| Some(*i) != odd);
+        let mut recorder = Recorder::new(self.plan, first.load_n, &mut random);
+        recorder.rest(LEAD_S, first.load_n, 0.0, 0.0);
+        let (mut truth, mut counts) = (Vec::new(), [0u32; 2]);
+        for (i, row) in rows.iter().enumerate() {
+            let slot = usize::from(row.direction == Direction::Concentric);
+            let in_direction = rows.iter().filter(|r| r.direction == row.direction).count();
+            // Not at the turn, where a longer pause is no fault.
+            let turns = [i.wrapping_sub(1), i + 1]
+                .iter()
+                .any(|j| rows.get(*j).is_none_or(|r| r.direction != row.direction));
+            if Some(i) == missing && !turns {
+                recorder.rest(ON_S + self.plan.dwells_s[0], rows[i - 1].force_n, 0.0, 0.0);
+                faults.missing_after = Some((row.direction, counts[slot]));
+                continue;
+            }
+            counts[slot] += 1;
+            let mut way_mm = -row.direction.sign() * published::STROKE_MM / in_direction as f64;
+            if Some(i) == odd {
+                way_mm *= 0.6;
+                faults.odd_speed = Some((row.direction, counts[slot]));
+            }
+            recorder.step(way_mm, row.force_n, row.direction.sign(), self.plan.dwells_s[0]);
+            truth.push((row.direction, counts[slot], recorder.clipped(row.force_n)));
+        }
+        let last = rows.last().map_or(0.0, |r| r.force_n);
+        recorder.rest(LEAD_S, last, 0.0, 0.0);
+        (faults.spikes, faults.lost) = (recorder.spikes, recorder.lost);
+        Some(RawLog { file: file_name(index, first), text: recorder.text, truth, faults })
+    }
+}
+
+/// `012-device-5-8-11_2505g.csv`.
+fn file_name(index: usize, row: &PlateauRow) -> String {
+    let pins: Vec<String> = row.pins.iter().map(usize::to_string).collect();
+    let contact = match row.substrate {
+        Some(Substrate::Silicone) if pins.is_empty() => "silicone".to_owned(),
+        Some(Substrate::Silicone) => format!("device-{}", pins.join("-")),
+        other => format!("{}-{}", substrate_word(other), pins.join("-")),
+    };
+    format!("{index:03}-{contact}_{:04.0}g.csv", row.load_mass_g)
+}
+
+/// Writes samples as time goes on.
+struct Recorder<'a> {
+    raw: &'a RawPlan,
+    random: &'a mut ChaCha8Rng,
+    text: String,
+    sample: u64,
+    position_mm: f64,
+    force_n: f64,
+    spikes: usize,
+    lost: usize,
+}
+
+impl<'a> Recorder<'a> {
+    fn new(plan: &'a Plan, load_n: f64, random: &'a mut ChaCha8Rng) -> Self {
+        let text = "time_s,force_N,position_mm,power_W\n".to_owned();
+        Self {
+            raw: &plan.raw,
+            random,
+            text,
+            sample: 0,
+            position_mm: 0.0,
+            force_n: load_n,
+            spikes: 0,
+            lost: 0,
+        }
+    }
+
+    fn clipped(&self, force_n: f64) -> f64 {
+        self.raw.clip_n.map_or(force_n, |clip| force_n.min(clip))
+    }
+
+    fn normal(&mut self) -> f64 {
+        StandardNormal.sample(self.random)
+    }
+
+    /// Adds one sample.
+    fn write(&mut self, force_n: f64, power_w: f64) {
+        let time_s = self.sample as f64 / self.raw.sample_rate_hz + self.raw.jitter_s * self.normal();
+        self.sample += 1;
+        let mut force_n = force_n + self.raw.sample_n * self.normal();
+        if self.random.random::<f64>() < self.raw.lost_share {
+            self.lost += 1;
+            return;
+        }
+        if self.random.random::<f64>() < self.raw.spike_share {
+            self.spikes += 1;
+            force_n += if self.random.random::<bool>() { 15.0 } else { -15.0 };
+        }
+        let (force_n, place) = (self.clipped(force_n), self.position_mm + 0.02 * self.normal());
+        let power_w = (power_w + 0.04 * self.normal()).max(0.0);
+        let _ = writeln!(self.text, "{:.4},{force_n:.3},{place:.2},{power_w:.2}", time_s.max(0.0));
+    }
+
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a log, checked")]
+    fn samples(&self, seconds: f64) -> u32 {
+        (seconds * self.raw.sample_rate_hz).round() as u32
+    }
+
+    /// A rest at a plateau that the force approaches from `excess_n` above it, with a swinging weight.
+    fn rest(&mut self, seconds: f64, plateau_n: f64, excess_n: f64, swing_n: f64) {
+        let course = |t: f64| {
+            excess_n * (-t / 0.4).exp() + swing_n * (-t / 0.9).exp() * (std::f64::consts::TAU * 1.7 * t).sin()
+        };
+        let count = self.samples(seconds);
+        let time = |i: u32| f64::from(i) / self.raw.sample_rate_hz;
+        // The plateau is the mean over the last second: what the course leaves there is taken out.
+        let read = self.samples(READ_S.min(seconds));
+        let left = (count - read..count).map(|i| course(time(i))).sum::<f64>() / f64::from(read.max(1));
+        let values: Vec<f64> = (0..count).map(|i| plateau_n - left + course(time(i))).collect();
+        values.into_iter().for_each(|force_n| self.write(force_n, 0.0));
+        self.force_n = plateau_n;
+    }
+
+    /// A move over `way_mm` and the rest after it.
+    fn step(&mut self, way_mm: f64, plateau_n: f64, sign: f64, dwell_s: f64) {
+        let count = self.samples(ON_S);
+        let (from_mm, from_n) = (self.position_mm, self.force_n);
+        let excess_n = sign * (0.2 + 0.01 * plateau_n.abs());
+        for i in 1..=count {
+            let share = f64::from(i) / f64::from(count);
+            self.position_mm = from_mm + way_mm * share;
+            let risen = 1.0 - (-8.0 * share).exp();
+            self.write(from_n + (plateau_n + 1.5 * excess_n - from_n) * risen, 8.0);
+        }
+        let swing_n = 0.02 * plateau_n.abs();
+        self.rest(dwell_s, plateau_n, excess_n, swing_n);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate;
+    use pinswitch_calibration::segmentation::{Finding, Log, RunPlan, segment};
+
+    /// What `segment` reads out of the logs is what was put in, and what was put wrong is found.
+    #[test]
+    fn logs_are_read_back_with_their_faults() {
+        let mut plan = Plan { weights_g: vec![251.2, 2505.4, 5002.5], ..Plan::default() };
+        plan.raw.odd_speed_share = 0.5;
+        plan.raw.missing_share = 0.5;
+        plan.raw.clip_n = Some(55.0);
+        let rows = simulate(&plan).rows;
+        let run = RawRun::new(&plan, &rows, "plan").unwrap();
+        let description = RunPlan::parse(&run.description(""), "run.toml").unwrap();
+        assert_eq!(description.series.len(), run.logs());
+        let (mut sum, mut count) = (0.0, 0.0);
+        for index in 0..run.logs() {
+            let raw = run.log(index).unwrap();
+            let log = Log::parse(raw.text.as_bytes(), &raw.file).unwrap();
+            let found = segment(&log, &description.rig);
+            let got: Vec<_> = found.plateaus.iter().map(|p| (p.direction, p.repetition)).collect();
+            let put: Vec<_> = raw.truth.iter().map(|t| (t.0, t.1)).collect();
+            assert_eq!(got, put, "{}", raw.file);
+            for (p, t) in found.plateaus.iter().zip(&raw.truth) {
+                sum += (p.force_n - t.2).powi(2);
+                count += 1.0;
+            }
+            let missing = found.findings.iter().any(|f| matches!(f, Finding::MissingRepetition { .. }));
+            assert_eq!(missing, raw.faults.missing_after.is_some(), "{}: {:?}", raw.file, found.findings);
+            let odd = found.findings.iter().any(|f| matches!(f, Finding::OddSpeed { .. }));
+            assert_eq!(odd, raw.faults.odd_speed.is_some(), "{}: {:?}", raw.file, found.findings);
+        }
+        let rms = f64::sqrt(sum / count);
+        assert!(rms < 0.02, "{rms}");
+    }
+
+    #[test]
+    fn several_dwells_make_no_run() {
+        let plan = Plan::randomised();
+        let error = RawRun::new(&plan, &[], "plan.toml").unwrap_err().to_string();
+        assert!(error.contains("dwells_s") && error.contains("plan.toml"), "{error}");
+    }
+}

@@ -1,0 +1,206 @@
+//! The physical twin: readings of a synthetic rig by formulas of its own.
+//!
+//! It shares no formula with the fitter, so that the study of the calibrator also tests what happens when the truth
+//! bends otherwise than the model fitted. Form 0 of every effect is that of the effect catalogue, and a test holds it
+//! against the fitter's; the other forms are in `effect_forms`. Only an effect without any formula here is lent the
+//! fitter's trace.
+
+mod contact;
+
+use std::collections::BTreeMap;
+
+use contact::TwinContact;
+use pinswitch_calibration::effects::effect_named;
+use pinswitch_calibration::inference::{Model, Term};
+use pinswitch_calibration::table::{Frame, PlateauRow};
+use pinswitch_friction::published;
+
+use crate::effect_forms::has_own_formula;
+use crate::plan::Plan;
+
+/// Reference load in newtons (`model/doc/effect-catalogue.md`).
+const F0_N: f64 = 50.0;
+
+/// What an effect may depend on in one row, beside the load and the contact.
+#[derive(Clone, Copy, Debug)]
+struct Moment {
+    /// -1 eccentric, +1 concentric.
+    sign: f64,
+    down: bool,
+    speed_pct: f64,
+    /// Geometric mean of the session's speeds in percent.
+    mean_speed_pct: f64,
+    dwell_s: f64,
+    /// Repetition inside series and direction, from 1.
+    repetition: f64,
+    /// Repetition inside the series, both directions counted, from 1.
+    through: f64,
+    /// Share of the stroke, 0..1.
+    place: f64,
+    /// Share of the session's time, 0..1.
+    clock: f64,
+    /// Share of the session's repetitions made before, 0..1.
+    travel: f64,
+}
+
+/// Readings in newtons without noise, one per row of a whole session in the order of time.
+pub(super) fn readings(plan: &Plan, session: &[PlateauRow]) -> Vec<f64> {
+    let end_s = session.iter().map(|r| r.time_s).fold(1e-9, f64::max);
+    let mean_speed_pct =
+        (session.iter().map(|r| r.speed_pct.ln()).sum::<f64>() / session.len().max(1) as f64).exp();
+    let mut contacts = BTreeMap::new();
+    let mut devices = 0;
+    let mut in_series = BTreeMap::new();
+    let mut out = Vec::with_capacity(session.len());
+    for (made, row) in session.iter().enumerate() {
+        let contact = contacts.entry((row.substrate, row.pins.clone())).or_insert_with(|| {
+            let contact = TwinContact::new(plan, row.substrate, &row.pins, devices);
+            devices += usize::from(contact.switches());
+            contact
+        });
+        let through: &mut f64 = in_series.entry(row.series.clone()).or_insert(0.0);
+        *through += 1.0;
+        let moment = Moment {
+            sign: row.direction.sign(),
+            down: row.sweep == pinswitch_calibration::table::Sweep::Down,
+            speed_pct: row.speed_pct,
+            mean_speed_pct,
+            dwell_s: row.dwell_s,
+            repetition: f64::from(row.repetition),
+            through: *through,
+            place: row.position_mm / published::STROKE_MM,
+            clock: row.time_s / end_s,
+            travel: made as f64 / session.len() as f64,
+        };
+        out.push(reading(plan, contact, &moment, row));
+    }
+    add_lent_traces(plan, session, &mut out);
+    out
+}
+
+/// Adds what effects without a formula in the twin do to the fitter's own model at the plan's constants.
+fn add_lent_traces(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) {
+    let lent: Vec<_> = plan
+        .effects
+        .iter()
+        .filter(|e| !has_own_formula(&e.id))
+        .filter_map(|e| Some((effect_named(&e.id)?, e.values.as_slice())))
+        .collect();
+    let frame = Frame::new(session);
+    let Some(points) = frame.points(session).filter(|_| !lent.is_empty()) else { return };
+    let mut model = Model::baseline(frame);
+    let mut values = model.values();
+    (values[0], values[1]) = (plan.constants.mu_p, plan.constants.mu_s);
+    for device in 0..model.frame.devices() {
+        let [half_load, steepness] = Model::device_constants(device);
+        values[half_load] *= plan.constants.half_load_factor.get(device).copied().unwrap_or(1.0);
+        values[steepness] = plan.constants.steepness_of(device);
+    }
+    model.set_values(&values);
+    let without = model.predict(&points);
+    let with =
+        lent.iter().fold(model, |m, (effect, k)| m.with_term(Term::Named(*effect), k)).predict(&points);
+    for ((reading, with), without) in readings_n.iter_mut().zip(with).zip(without) {
+        *reading += with - without;
+    }
+}
+
+/// One reading: hook, contact, guide pulleys, cell.
+fn reading(plan: &Plan, contact: &TwinContact, at: &Moment, row: &PlateauRow) -> f64 {
+    let has = |id: &str| plan.effects.iter().find(|e| e.id == id).map(|e| (e.values.as_slice(), e.form));
+    let hook_n = published::HOOK_MASS_G * 1e-3 * published::GRAVITY_M_S2;
+    let load_n = row.load_n + if has("hook_omitted").is_some() { hook_n } else { 0.0 };
+    // What the tendon's own tension decides is found by substitution; it settles in a few rounds.
+    let mut tension_n = load_n;
+    for _ in 0..8 {
+        tension_n = contact.tension_n(plan, at, load_n, tension_n);
+    }
+    if let Some((k, _)) = has("guide_drag") {
+        tension_n += at.sign * k[0];
+    }
+    let mut force_n = tension_n;
+    if let Some((k, _)) = has("load_cell_gain") {
+        force_n += k[0] * tension_n;
+    }
+    if let Some((k, form)) = has("load_cell_nonlinearity") {
+        force_n += k[0] * (tension_n / F0_N).max(0.0).powf(if form == 1 { 2.25 } else { 2.0 });
+    }
+    if let Some((k, _)) = has("load_cell_offset") {
+        force_n += k[0];
+    }
+    if let Some((k, _)) = has("thermal_drift") {
+        force_n += k[0] * at.clock;
+    }
+    for d in &plan.disturbances {
+        force_n += d.on_reading_n(at.clock, at.place, row);
+    }
+    if let Some((k, form)) = has("load_cell_saturation") {
+        force_n = if form == 1 {
+            // A knee half a newton wide instead of a corner.
+            k[0] - 0.25 * ((k[0] - force_n) / 0.25).exp().ln_1p()
+        } else {
+            force_n.min(k[0])
+        };
+    }
+    force_n
+}
+
+/// 0 at 0, 1 at 1, settling with time constant `t`.
+fn settling(u: f64, t: f64) -> f64 {
+    (1.0 - (-u / t).exp()) / (1.0 - (-1.0 / t).exp())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect_forms::FORMS;
+    use crate::plan::EffectPlan;
+    use pinswitch_calibration::effects::CATALOGUE;
+
+    /// Two implementations of `model/doc/effect-catalogue.md`, the twin's and the fitter's, agree on form 0 of every
+    /// effect.
+    #[test]
+    fn the_first_form_of_every_effect_is_the_fitters() {
+        for effect in CATALOGUE {
+            let (id, range) = (effect.id(), effect.description().study);
+            let mut plan = Plan::randomised();
+            let values = range.values_at(range.largest());
+            plan.effects.push(EffectPlan { id: id.to_owned(), values: values.clone(), form: 0 });
+            let mut random = rand::SeedableRng::seed_from_u64(3);
+            let rows = crate::protocol::rows(&plan, &mut random);
+            let frame = Frame::new(&rows);
+            let model = Model::baseline(frame.clone()).with_term(Term::Named(*effect), &values);
+            let fitters = model.predict(&frame.points(&rows).unwrap());
+            let worst =
+                readings(&plan, &rows).iter().zip(&fitters).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            // The fitter reads the share of travel off 400 points.
+            // The fitter substitutes the local tension three times, the twin until it settles.
+            let bound = if ["wear_drift", "switch_local_tension"].contains(&id) { 1e-2 } else { 1e-3 };
+            assert!(worst < bound, "{id}: {worst} N");
+        }
+    }
+
+    /// Every other form differs from form 0; up to what a refitted baseline takes over, by less than the effect.
+    #[test]
+    fn other_forms_bend_the_effect_without_replacing_it() {
+        for (id, names) in FORMS {
+            let range = effect_named(id).unwrap().description().study;
+            let with = |form: Option<u8>| {
+                let mut plan = Plan::randomised();
+                let values = range.values_at(range.largest());
+                if let Some(form) = form {
+                    plan.effects.push(EffectPlan { id: id.to_owned(), values, form });
+                }
+                let mut random = rand::SeedableRng::seed_from_u64(3);
+                readings(&plan, &crate::protocol::rows(&plan, &mut random))
+            };
+            let distance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).abs()).sum::<f64>();
+            let (none, first) = (with(None), with(Some(0)));
+            for form in 1..names.len() {
+                let other = with(Some(u8::try_from(form).unwrap()));
+                let change = distance(&other, &first) / distance(&first, &none);
+                assert!(change > 1e-3 && change < 1.5, "{id} form {form}: {change}");
+            }
+        }
+    }
+}

@@ -113,3 +113,49 @@ pub(super) fn announced(header: &[u8]) -> Option<u32> {
     let count = header.get(HEADER - 4..HEADER)?.try_into().ok()?;
     Some(u32::from_le_bytes(count))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::read_stl;
+    use std::io::Cursor;
+
+    /// A binary STL whose facets name some corners again at once, some much later and some never.
+    fn file(facets: usize) -> Vec<u8> {
+        let mut bytes = vec![b' '; HEADER - 4];
+        bytes.extend(u32::try_from(facets).unwrap().to_le_bytes());
+        for f in 0..facets {
+            let corner = |i: usize| {
+                [(f + i) as f32, ((f * 7919 + i) % 1000) as f32, if f % 3 == 0 { -0.0 } else { 0.0 }]
+            };
+            let numbers = [[0.0, 0.0, (f % 2) as f32 - 0.5], corner(0), corner(1), corner(f % 5)];
+            bytes.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()).chain([0, 0]));
+        }
+        bytes
+    }
+
+    #[test]
+    fn facets_read_at_once_are_those_read_one_by_one() {
+        // Less than a part, some parts, and more than is read at once.
+        for facets in [3, 4097, 20_000, RECORDS_AT_ONCE + 5000] {
+            let bytes = file(facets);
+            let mut one_by_one = Facets::default();
+            for facet in stl_io::create_stl_reader(&mut Cursor::new(&bytes)).unwrap() {
+                let facet = facet.unwrap();
+                one_by_one.add(facet.normal.0, facet.vertices.map(|v| v.0));
+            }
+            assert!(
+                read_stl(&mut Cursor::new(bytes)).unwrap() == one_by_one.finish().unwrap(),
+                "{facets} facets"
+            );
+        }
+    }
+
+    #[test]
+    fn a_header_that_announces_too_much_takes_no_memory() {
+        let mut bytes = file(10);
+        bytes[..6].copy_from_slice(b"solidX");
+        bytes[HEADER - 4..HEADER].copy_from_slice(&[0x20; 4]);
+        assert!(read_stl(&mut Cursor::new(bytes)).is_err());
+    }
+}

@@ -49,7 +49,7 @@ fn rounded_up(x: f64) -> f32 {
     if f64::from(near) < x { near.next_up() } else { near }
 }
 
-/// Eight boxes, each bound in a column of its own.
+/// Eight boxes, each bound in a column of its own. Where there are fewer, the others are NaN, which meet nothing.
 #[derive(Clone, Copy)]
 struct Node {
     low: [[f32; WIDTH]; 3],
@@ -58,7 +58,7 @@ struct Node {
 
 impl Node {
     fn of(boxes: impl Iterator<Item = Bounds>) -> Self {
-        let mut node = Self { low: [[f32::INFINITY; WIDTH]; 3], high: [[f32::NEG_INFINITY; WIDTH]; 3] };
+        let mut node = Self { low: [[f32::NAN; WIDTH]; 3], high: [[f32::NAN; WIDTH]; 3] };
         for (lane, bounds) in boxes.take(WIDTH).enumerate() {
             for axis in 0..3 {
                 node.low[axis][lane] = bounds.low[axis];
@@ -72,21 +72,22 @@ impl Node {
         Bounds { low: self.low.map(|column| column[lane]), high: self.high.map(|column| column[lane]) }
     }
 
+    /// The box around all; `min` and `max` leave out what is NaN.
     fn hull(&self) -> Bounds {
         (0..WIDTH).map(|lane| self.lane(lane)).fold(Bounds::NOTHING, Bounds::joined)
     }
 
     /// Which of the eight boxes touch or overlap `bounds`.
     fn lanes_meeting(&self, bounds: &Bounds) -> Lanes {
-        let mut apart = [0_u32; WIDTH];
+        let mut meets = [1_u32; WIDTH];
         for axis in 0..3 {
             let (low, high) = (bounds.low[axis], bounds.high[axis]);
-            for (lane, apart) in apart.iter_mut().enumerate() {
-                // Not `||`, and as wide as a coordinate: without a branch, four lanes are compared by one instruction.
-                *apart |= u32::from(self.low[axis][lane] > high) | u32::from(self.high[axis][lane] < low);
+            for (lane, meets) in meets.iter_mut().enumerate() {
+                // Not `&&`, and as wide as a coordinate: without a branch, one instruction compares four lanes.
+                *meets &= u32::from(self.low[axis][lane] <= high) & u32::from(self.high[axis][lane] >= low);
             }
         }
-        Lanes((0..WIDTH).fold(0, |lanes, lane| lanes | u8::from(apart[lane] == 0) << lane))
+        Lanes((0..WIDTH).fold(0, |lanes, lane| lanes | u8::from(meets[lane] != 0) << lane))
     }
 }
 

@@ -203,4 +203,6 @@ fn place(point: Point3) -> Option<[f64; 3]> {
 }
 
 #[cfg(test)]
+mod brute_force;
+#[cfg(test)]
 mod tests;

@@ -30,17 +30,17 @@ impl Plane {
 
     /// Whether the points, at least one, certainly lie on the same side. `origin` is the facet's first corner.
     pub(super) fn has_beside(&self, origin: Point3, points: impl Iterator<Item = Point3>) -> bool {
-        let (mut above, mut below, mut unknown) = (false, false, false);
+        let (mut above, mut below, mut certain) = (false, false, true);
         for point in points {
             let from_origin = point - origin;
             let height = self.normal.dot(&from_origin);
             let error = self.error * span(from_origin);
             above |= height > error;
             below |= -height > error;
-            // Not `<=`: what overflows is unknown too.
-            unknown |= !(height.abs() > error);
+            // False as well for what overflows.
+            certain &= height.abs() > error;
         }
-        (above ^ below) & !unknown
+        (above ^ below) & certain
     }
 }
 

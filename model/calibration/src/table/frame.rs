@@ -70,7 +70,8 @@ impl Condition {
         if (self.wrap_rad - usual).abs() < SAME_WRAP_RAD {
             pins
         } else {
-            format!("{pins} at {:.4} deg", self.wrap_rad.to_degrees()).trim_start().to_owned()
+            let degrees = (self.wrap_rad.to_degrees() * 1e4).round() / 1e4;
+            format!("{pins} at {degrees} deg").trim_start().to_owned()
         }
     }
 
@@ -257,6 +258,18 @@ mod tests {
         assert!((miss(&six, 3.935) - 2.7).abs() < 0.5, "{}", miss(&six, 3.935));
         assert!((miss(&double, 5.829) + 2.5).abs() < 0.5, "{}", miss(&double, 5.829));
         assert!((miss(&single, 5.893) + 0.3).abs() < 0.5, "{}", miss(&single, 5.893));
+    }
+
+    #[test]
+    fn another_wrap_angle_is_another_condition_and_says_so() {
+        let silicone = |wrap_angle_deg| Condition::new(Some(Substrate::Silicone), &[], wrap_angle_deg, None);
+        assert_eq!(silicone(published::WRAP_ANGLE_DEG).name(), "silicone");
+        assert_eq!(silicone(95.0).name(), "silicone at 95 deg");
+        let plain = Condition::new(None, &[], 95.0, None);
+        assert_eq!((plain.name().as_str(), plain.wrap_rad), ("plain", 1.0));
+        let mut rows = crate::test_session::session(1);
+        rows[0].wrap_angle_deg = 95.0;
+        assert_eq!(Frame::new(&rows).conditions.len(), 6);
     }
 
     #[test]

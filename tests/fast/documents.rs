@@ -71,8 +71,8 @@ fn every_link_between_documents_resolves() {
 #[test]
 fn every_effect_has_its_section() {
     let catalogue = std::fs::read_to_string(repository("model/doc/effect-catalogue.md")).unwrap();
-    for effect in pinswitch_calibration::effects::LIBRARY {
-        assert!(catalogue.contains(&format!("### {}\n", effect.id)), "{} has no section", effect.id);
+    for effect in pinswitch_calibration::effects::CATALOGUE {
+        assert!(catalogue.contains(&format!("### {}\n", effect.id())), "{} has no section", effect.id());
     }
 }
 

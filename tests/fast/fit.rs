@@ -192,7 +192,7 @@ fn the_cavity_of_the_mould_is_the_layer() {
         let design = design(&["layout.pins=[5, 8, 11]", &format!("mould.kind={kind}")]);
         let c = design.configuration();
         let layer = silicone_layer(&design).unwrap();
-        assert_eq!(layer.material, Material::Silicone);
+        assert_eq!(layer.material(), Material::Silicone);
         let parts = printed(&design).unwrap();
         // Heights above the mould's floor: just over it, and just under the layer's width.
         for height in [0.05, design.layer_width_mm() - 0.05] {

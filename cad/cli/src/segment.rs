@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use flate2::read::MultiGzDecoder;
-use pinswitch_calibration::segmentation::{Log, RunPlan, Segmented, SeriesPlan, segment};
-use pinswitch_calibration::table::{PlateauRow, PlateauTable};
-use serde::Serialize;
+use pinswitch_calibration::segmentation::{RunPlan, RunSegmentation, SegmentedRun};
+use pinswitch_calibration::table::PlateauTable;
 
 use super::{Failure, print};
 use crate::write::write_set;
@@ -30,15 +29,6 @@ pub(super) struct Arguments {
     no_plots: bool,
 }
 
-/// Findings of one log, as they are written.
-#[derive(Serialize)]
-struct Entry<'a> {
-    file: &'a str,
-    eccentric: usize,
-    concentric: usize,
-    findings: &'a [pinswitch_calibration::segmentation::Finding],
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.run.display().to_string();
     let text =
@@ -47,33 +37,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.run.parent().unwrap_or_else(|| Path::new("."));
     let stem =
         arguments.out.file_stem().map_or_else(|| "plateaus".into(), |s| s.to_string_lossy().into_owned());
-    let (mut rows, mut files, mut report, mut summary) = (Vec::new(), Vec::new(), Vec::new(), String::new());
-    let mut start_s = 0.0;
-    for (index, series) in plan.series.iter().enumerate() {
+    let (mut run, mut files) = (RunSegmentation::new(&plan), Vec::new());
+    for series in &plan.series {
         let path = folder.join(&series.file);
-        let bytes = read_log(&path)?;
-        let log = Log::parse(&bytes, &path.display().to_string()).map_err(Failure::bad_input)?;
-        let found = segment(&log, &plan.rig);
-        rows.extend(plateau_rows(&plan, series, index, &found, start_s));
-        start_s += log.time_s.last().copied().unwrap_or(0.0);
-        let count = |concentric: bool| {
-            found.plateaus.iter().filter(|p| (p.direction.sign() > 0.0) == concentric).count()
-        };
-        let entry = Entry {
-            file: &series.file,
-            eccentric: count(false),
-            concentric: count(true),
-            findings: &found.findings,
-        };
-        summary.push_str(&format!(
-            "{}: {} eccentric, {} concentric",
-            series.file, entry.eccentric, entry.concentric
-        ));
-        for finding in &found.findings {
-            summary.push_str(&format!("; {finding}"));
-        }
-        summary.push('\n');
-        report.push(serde_json::to_value(&entry).map_err(Failure::failed)?);
+        let (log, found) =
+            run.add(series, &read_log(&path)?, &path.display().to_string()).map_err(Failure::bad_input)?;
         if !arguments.no_plots {
             let svg = log_svg(&series.file, &log, &found).map_err(Failure::failed)?;
             let log_stem =
@@ -81,15 +49,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             files.push(OutputFile { name: format!("{stem}-{log_stem}.svg"), bytes: svg.into_bytes() });
         }
     }
-    if rows.is_empty() {
-        return Err(Failure::bad_input(format!(
-            "{name}: no plateau in any log; power_W must exceed 2 W while the actuator runs"
-        )));
-    }
-    let mut json = serde_json::to_vec_pretty(&serde_json::json!({
-        "schema": "pinswitch.segmentation/1", "series": report,
-    }))
-    .map_err(Failure::failed)?;
+    let SegmentedRun { rows, report } =
+        run.finish::<std::convert::Infallible>(&name).map_err(Failure::bad_input)?;
+    // Through a value, whose keys are sorted: the bytes of the report before it had a type.
+    let value = serde_json::to_value(&report).map_err(Failure::failed)?;
+    let mut json = serde_json::to_vec_pretty(&value).map_err(Failure::failed)?;
     json.push(b'\n');
     files.push(OutputFile { name: format!("{stem}.json"), bytes: json });
     let table =
@@ -97,6 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     files.push(OutputFile { name: table, bytes: PlateauTable::write(&rows).into_bytes() });
     let out = arguments.out.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     write_set(out, &files).map_err(Failure::failed)?;
+    let summary: String = report.series.iter().map(|series| format!("{series}\n")).collect();
     print(summary.as_bytes())
 }
 
@@ -110,33 +75,4 @@ fn read_log(path: &Path) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::new();
     MultiGzDecoder::new(raw.as_slice()).read_to_end(&mut text).map_err(bad)?;
     Ok(text)
-}
-
-fn plateau_rows(
-    plan: &RunPlan,
-    series: &SeriesPlan,
-    index: usize,
-    found: &Segmented,
-    start_s: f64,
-) -> Vec<PlateauRow> {
-    found
-        .plateaus
-        .iter()
-        .map(|p| PlateauRow {
-            series: index.to_string(),
-            substrate: series.substrate,
-            pins: series.pins.clone(),
-            sweep: series.sweep,
-            load_mass_g: series.load_mass_g,
-            load_n: series.load_n(&plan.rig),
-            speed_pct: series.speed_pct,
-            dwell_s: plan.rig.dwell_s,
-            direction: p.direction,
-            repetition: p.repetition,
-            position_mm: p.position_mm,
-            time_s: start_s + p.time_s,
-            force_n: p.force_n,
-            wrap_angle_deg: plan.rig.wrap_angle_deg,
-        })
-        .collect()
 }

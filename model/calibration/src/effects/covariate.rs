@@ -54,10 +54,4 @@ impl Covariate {
             Covariate::Condition => "condition",
         }
     }
-
-    // The name that cad uses until its imports are flipped; goes with the crate `pinswitch-model`.
-    #[doc(hidden)]
-    pub fn word(self) -> &'static str {
-        self.as_str()
-    }
 }

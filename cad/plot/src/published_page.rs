@@ -81,7 +81,7 @@ fn draw(svg: &mut String, all: &[Explanation]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What seven maxima at one load cannot tell, whatever explains them (model.md 3).
+/// What seven maxima at one load cannot tell, whatever explains them (model/doc/physics.md).
 pub const UNEXPLAINED: [&str; 5] = [
     "All seven lie at the heaviest load: how friction grows with load is not in them, so a coating that stiffens is the \
      refitted constant again, and the ploughing exponent 1/2 in load rests on its form alone",

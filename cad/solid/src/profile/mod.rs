@@ -21,7 +21,8 @@ pub type Point2 = nalgebra::Point2<f64>;
 /// A displacement in the plane, in millimetres.
 pub type Vector2 = nalgebra::Vector2<f64>;
 
-/// The point at `radius_mm` and `angle_rad` about the axis: angles run from +y toward +x (geometry.md, frame).
+/// The point at `radius_mm` and `angle_rad` about the axis: angles run from +y toward +x
+/// (cad/doc/dimensions.md, "Frame and names").
 pub fn polar(radius_mm: f64, angle_rad: f64) -> Point2 {
     Point2::new(radius_mm * angle_rad.sin(), radius_mm * angle_rad.cos())
 }

@@ -1,7 +1,7 @@
 //! The exact boundary representation in truck-modeling, and its own tessellation as an independent check.
 //!
 //! Arcs are cut to at most 45 degrees: truck takes a plane's extent from control points, and longer arcs ruin caps
-//! silently (kernel.md, pitfall 1).
+//! silently (cad/doc/meshes.md, "What truck is used for").
 
 use truck_meshalgo::prelude::{
     Faces, MeshableShape, MeshedShape, OptimizingFilter, PolygonMesh, ShellCondition, StandardAttributes,
@@ -84,7 +84,7 @@ impl Solid {
         if missing > 0 {
             return Err(BrepError::Faces(missing));
         }
-        // Positions only: truck's cleaning also merges uv and normals, which is quadratic here (kernel.md).
+        // Positions only: truck's cleaning also merges uv and normals, which is quadratic here (cad/doc/meshes.md).
         let polygon = meshed.to_polygon();
         let triangles: Vec<[usize; 3]> = polygon.faces().triangle_iter().map(|t| t.map(|v| v.pos)).collect();
         let attributes =
@@ -119,7 +119,7 @@ fn cuts(contour: &Contour) -> Vec<usize> {
         .collect()
 }
 
-/// The contour at a height, every vertex made once: truck shares vertices by identity (kernel.md, pitfall 16).
+/// The contour at a height, every vertex made once: truck shares vertices by identity (cad/doc/meshes.md).
 fn wire(contour: &Contour, cuts: &[usize], z_mm: f64) -> Wire {
     let at = |p: crate::profile::Point2| TruckPoint::new(p.x, p.y, z_mm);
     let mut vertices: Vec<Vertex> = Vec::new();

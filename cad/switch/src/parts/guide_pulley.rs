@@ -1,4 +1,4 @@
-//! The rig's guide pulley: radius 22 mm, with a seat for a 608 bearing (geometry.md, part 7).
+//! The rig's guide pulley: radius 22 mm, with a seat for a 608 bearing (cad/doc/dimensions.md).
 
 use super::{Part, Role, offset_error};
 use crate::config::ConfigError;

@@ -1,4 +1,4 @@
-//! The silicone layer and its rigid proxy: one shape (geometry.md, parts 2 and 5).
+//! The silicone layer and its rigid proxy: one shape (cad/doc/dimensions.md, "Silicone layer").
 
 use super::{Part, Pose, Role, Sector, offset_error};
 use crate::config::ConfigError;

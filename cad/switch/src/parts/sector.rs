@@ -59,7 +59,7 @@ impl Sector {
         self.grooved(&[], 0.0)
     }
 
-    /// The outline with half-round grooves in its outer face, centred on the outer radius (geometry.md 1 and 2).
+    /// The outline with half-round grooves in its outer face, centred on the outer radius (cad/doc/dimensions.md).
     pub fn grooved(&self, angles_rad: &[f64], groove_radius_mm: f64) -> Contour {
         let pen = Pen::at(self.corner(self.inner_mm, End::Positive))
             .line_to(self.corner(self.outer_mm, End::Positive));
@@ -140,7 +140,8 @@ pub(super) fn grooved_face(
     pen.arc_to(Point2::origin(), last, counter_clockwise)
 }
 
-/// Half of the angle that a groove takes out of the circle it is centred on: `2 asin(g / 2R)` (kernel.md).
+/// Half of the angle that a groove takes out of the circle it is centred on: `2 asin(g / 2R)`
+/// (cad/doc/dimensions.md, "Sections").
 pub(super) fn groove_half_angle_rad(groove_radius_mm: f64, radius_mm: f64) -> f64 {
     2.0 * (groove_radius_mm / (2.0 * radius_mm)).asin()
 }
@@ -149,7 +150,7 @@ pub(super) fn groove_half_angle_rad(groove_radius_mm: f64, radius_mm: f64) -> f6
 mod tests {
     use super::*;
 
-    /// kernel.md: the reference shell's exact section.
+    /// Green's theorem over the lines and arcs of the reference shell, worked out with 15 digits.
     #[test]
     fn the_reference_section_has_its_exact_area() {
         let half_span_rad = 89.45f64.to_radians() / 2.0;

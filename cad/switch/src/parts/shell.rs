@@ -1,4 +1,4 @@
-//! The rigid shell: a grooved sector of an annulus with fastener holes (geometry.md, part 1).
+//! The rigid shell: a grooved sector of an annulus with fastener holes (cad/doc/dimensions.md, "Shell").
 
 use super::label::{Zone, engrave};
 use super::{Part, Pose, Role, Sector, holes_at, offset_error};

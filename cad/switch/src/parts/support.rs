@@ -1,5 +1,5 @@
 //! The side supports: plates with radial slots, a lip over the silicone's edge and the shell's holes
-//! (geometry.md, part 4).
+//! (cad/doc/dimensions.md, "Side supports").
 
 use super::label::{Zone, engrave};
 use super::shell::wall_sector;

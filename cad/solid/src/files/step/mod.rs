@@ -1,7 +1,7 @@
 //! STEP (AP214): one exact solid per part, true planes, cylinders, lines and circles, and the assembly.
 //!
-//! Written here because truck writes arcs as B-splines and no time stamp of ours (kernel.md, "STEP from truck"); a solid of
-//! contours at heights needs a dozen kinds of entity only.
+//! Written here because truck writes arcs as B-splines and no time stamp of ours (cad/doc/meshes.md, "Files"); a
+//! solid of contours at heights needs a dozen kinds of entity only.
 
 mod shell;
 mod surface;

@@ -1,4 +1,4 @@
-//! The casting mould, axis upright, open on top (geometry.md, part 3).
+//! The casting mould, axis upright, open on top (cad/doc/dimensions.md, "Mould").
 
 mod keys;
 mod lid;

@@ -1,4 +1,5 @@
-//! The shell that all programs were compared on (cad/doc/batch.md): its exact volume at every tolerance, and the deviation of every curve.
+//! The shell that all programs were compared on (cad/doc/batch.md): its exact volume at every tolerance, and the deviation
+//! of every curve.
 
 use pinswitch_solid::validity::examine;
 use pinswitch_switch::config::{Configuration, assign};

@@ -1,0 +1,40 @@
+//! A plateau table, calibrated: what does the paper's model lack on this rig?
+//!
+//! The table is simulated in memory with an effect that the calibrator is not told of. Read your own with
+//! `PlateauTable::read` instead.
+//!
+//! `cargo run --release --example calibrate`
+
+use pinswitch_calibration::calibrate;
+use pinswitch_calibration::inference::Levels;
+use pinswitch_calibration::table::PlateauTable;
+use pinswitch_simulation::{EffectPlan, Plan, simulate};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // A session whose load cell reads 0.8 N too much, with noise.
+    let mut plan = Plan { seed: 3, ..Plan::randomised() };
+    plan.effects.push(EffectPlan { id: "load_cell_offset".to_owned(), values: vec![0.8], form: 0 });
+    let csv = PlateauTable::write(&simulate(&plan).rows);
+
+    let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
+    let calibration = calibrate(&table.rows, Levels::default())?;
+    let report = &calibration.report;
+    println!("{} rows in {} series", report.data.rows, report.data.series);
+    println!("verdict: {:?}", report.verdict);
+    println!(
+        "held-out error: {:.3} N before, {:.3} N after (noise {:.3} N)",
+        report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n, report.noise_floor_n
+    );
+    for effect in &report.effects {
+        println!("{} ({}), p = {:.1e}: {}", effect.id, effect.covariate, effect.p_value, effect.formula);
+        for (name, estimate) in &effect.parameters {
+            let [low, high] = estimate.ci95;
+            println!("  {name} = {:.4} [{low:.4}, {high:.4}] {}", estimate.value, estimate.unit);
+        }
+        effect.rivals.iter().for_each(|rival| println!("  or {}: {}", rival.id, rival.experiment));
+    }
+    for blind in &report.invisible {
+        println!("cannot be seen here: {} ({})", blind.id, blind.why);
+    }
+    Ok(())
+}

@@ -1,0 +1,61 @@
+//! A sweep in code: every variant of a configuration made in parallel, with one table of all.
+//!
+//! `cargo run --release --example sweep`
+
+use pinswitch_batch::{
+    Destination, Observer, Options, Outcome, Shard, Sweep, SweepSource, Variants, mesh_file, partial_folder,
+    run,
+};
+
+const SWEEP: &str = r#"
+[sweep]
+name = "radius-and-pins"
+base = "three-double"
+parts = ["shell", "support-left", "support-right"]
+[axes]
+"shell.outer_radius_mm" = { from = 18, to = 22, step = 2 }
+"layout.pins" = [[5, 8, 11], [4, 6, 8, 10, 12]]
+[[constraints]]
+require = "land_on_shell_mm >= 1.0"
+because = "a land of two printed lines, and a little"
+"#;
+
+/// Prints what was refused; a program with a window would draw its progress here.
+struct Printer;
+
+impl Observer for Printer {
+    fn variant_done(&self, outcome: &Outcome) {
+        if let Outcome::Refused(reason) = outcome {
+            println!("refused: {reason}");
+        }
+    }
+
+    fn stop_requested(&self) -> bool {
+        false
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = tempfile::tempdir()?;
+    let (file, out) = (folder.path().join("sweep.toml"), folder.path().join("out"));
+    std::fs::write(&file, SWEEP)?;
+
+    let source = SweepSource::read(&file)?;
+    let variants = Variants::new(Sweep::new(&source)?, &source);
+    let destination = Destination::open(&out.to_string_lossy(), &partial_folder(Shard::WHOLE))?;
+    let options = Options { shard: Shard::WHOLE, threads: 0, fail_fast: false, mesh_maker: mesh_file };
+    let tally = run(&variants, &source, &destination, options, &Printer)?;
+    println!("{} made, {} refused, {} failed", tally.made, tally.refused, tally.failed);
+    println!("{} part files, {} of them different", tally.parts, tally.distinct_parts);
+
+    let table = std::fs::read_to_string(out.join("variants.csv"))?;
+    let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().ok_or("an empty table")?;
+    let column =
+        |name: &str| header.iter().position(|h| *h == name).ok_or_else(|| format!("no column {name}"));
+    let shown = [column("id")?, column("status")?, column("friction_n")?, column("threshold_n")?];
+    for row in lines {
+        println!("{}", shown.map(|i| format!("{:26.26}", row.get(i).unwrap_or(&""))).concat());
+    }
+    Ok(())
+}

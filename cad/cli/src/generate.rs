@@ -106,8 +106,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         prediction.curve.reasons.iter().for_each(|reason| log::info!("{reason}"));
     }
     if arguments.json {
-        let manifest = set.files.last().map(|f| f.bytes.clone()).unwrap_or_default();
-        print(&manifest)?;
+        print(&set.manifest.bytes().map_err(Failure::failed)?)?;
     }
     Ok(())
 }

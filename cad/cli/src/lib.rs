@@ -6,28 +6,11 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use clap_verbosity_flag::{InfoLevel, Verbosity};
 
-mod batch;
-mod calibrate;
-mod check;
-mod completions;
-mod design;
 mod failure;
-mod finger;
-mod generate;
-mod init;
 mod law;
-mod layouts;
-mod merge;
-mod physics;
-mod power;
-mod predict;
 mod predict_rows;
 mod range;
-mod render;
-mod segment;
-mod simulate;
 mod source;
-mod view;
 pub mod write;
 
 pub use failure::Failure;
@@ -42,25 +25,44 @@ struct Cli {
     verbosity: Verbosity<InfoLevel>,
 }
 
-#[derive(Debug, Subcommand)]
-enum Command {
-    Generate(generate::Arguments),
-    Batch(batch::Arguments),
-    Merge(merge::Arguments),
-    Predict(predict::Arguments),
-    Design(design::Arguments),
-    Finger(finger::Arguments),
-    Physics(physics::Arguments),
-    View(view::Arguments),
-    Check(check::Arguments),
-    Render(render::Arguments),
-    Layouts(layouts::Arguments),
-    Init(init::Arguments),
-    Segment(segment::Arguments),
-    Calibrate(calibrate::Arguments),
-    Simulate(simulate::Arguments),
-    Power(power::Arguments),
-    Completions(completions::Arguments),
+/// Declares the subcommands: the file of each, its place in the help, and how it is run.
+macro_rules! commands {
+    ($($Command:ident: $file:ident,)*) => {
+        $(mod $file;)*
+
+        #[derive(Debug, Subcommand)]
+        enum Command {
+            $($Command($file::Arguments),)*
+        }
+
+        impl Command {
+            fn run(&self) -> Result<(), Failure> {
+                match self {
+                    $(Self::$Command(arguments) => $file::run(arguments),)*
+                }
+            }
+        }
+    };
+}
+
+commands! {
+    Generate: generate,
+    Batch: batch,
+    Merge: merge,
+    Predict: predict,
+    Design: design,
+    Finger: finger,
+    Physics: physics,
+    View: view,
+    Check: check,
+    Render: render,
+    Layouts: layouts,
+    Init: init,
+    Segment: segment,
+    Calibrate: calibrate,
+    Simulate: simulate,
+    Power: power,
+    Completions: completions,
 }
 
 /// Runs the command that the arguments name. Exit codes: 0 done, 1 failed, 2 bad input.
@@ -71,26 +73,7 @@ pub fn run() -> ExitCode {
         .format_timestamp(None)
         .format_target(false)
         .init();
-    let outcome = match cli.command {
-        Command::Generate(arguments) => generate::run(&arguments),
-        Command::Batch(arguments) => batch::run(&arguments),
-        Command::Merge(arguments) => merge::run(&arguments),
-        Command::Predict(arguments) => predict::run(&arguments),
-        Command::Design(arguments) => design::run(&arguments),
-        Command::Finger(arguments) => finger::run(&arguments),
-        Command::Physics(arguments) => physics::run(&arguments),
-        Command::View(arguments) => view::run(&arguments),
-        Command::Check(arguments) => check::run(&arguments),
-        Command::Render(arguments) => render::run(&arguments),
-        Command::Layouts(arguments) => layouts::run(&arguments),
-        Command::Init(arguments) => init::run(&arguments),
-        Command::Segment(arguments) => segment::run(&arguments),
-        Command::Calibrate(arguments) => calibrate::run(&arguments),
-        Command::Power(arguments) => power::run(&arguments),
-        Command::Simulate(arguments) => simulate::run(&arguments),
-        Command::Completions(arguments) => completions::run(&arguments),
-    };
-    match outcome {
+    match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::Failure;
-use pinswitch_switch::config::{Configuration, Places, assign, read, to_toml};
+use pinswitch_switch::config::{Configuration, Places, assign, read, read_over};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::templates;
 
@@ -42,10 +42,11 @@ impl Source {
     /// [`Failure::BadInput`] names file, line, field, value, bound and remedy.
     pub(super) fn design(&self) -> Result<Design, Failure> {
         let (text, file) = read_text(&self.config)?;
-        let (mut configuration, places) = read(&text, &file).map_err(Failure::bad_input)?;
-        if let Some(preset) = &self.preset {
-            configuration = over_preset(preset, &configuration)?;
-        }
+        let base = self.preset.as_ref().map_or(Ok(Configuration::default()), |preset| {
+            let (text, file) = read_text(preset)?;
+            read(&text, &file).map(|(base, _)| base).map_err(Failure::bad_input)
+        })?;
+        let (mut configuration, places) = read_over(base, &text, &file).map_err(Failure::bad_input)?;
         if !places.sets("switch.name") {
             configuration.switch.name = stem(&file);
         }
@@ -66,21 +67,6 @@ fn placed(error: pinswitch_switch::config::ConfigError, places: &Places, file: &
         Some(place) => error.at(place.clone()).to_string(),
         None => format!("{file}: {error}"),
     }
-}
-
-/// `configuration` over `preset`: what differs from the defaults wins.
-fn over_preset(preset: &str, configuration: &Configuration) -> Result<Configuration, Failure> {
-    let (text, file) = read_text(preset)?;
-    let (mut base, _) = read(&text, &file).map_err(Failure::bad_input)?;
-    let (over, own) = (to_toml(configuration), Configuration::default());
-    let (_, given) = read(&over, &file).map_err(Failure::bad_input)?;
-    for parameter in Configuration::PARAMETERS {
-        let value = (parameter.get)(configuration);
-        if given.sets(&parameter.path()) || value.to_string() != (parameter.get)(&own).to_string() {
-            (parameter.set)(&mut base, &value).map_err(Failure::bad_input)?;
-        }
-    }
-    Ok(base)
 }
 
 /// The text of a file or template, and the name to use for it in errors.

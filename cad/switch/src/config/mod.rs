@@ -9,5 +9,5 @@ mod reference;
 pub use error::{ConfigError, Place};
 pub use parameter::{Choice, Origin};
 pub use parameters::{Configuration, MouldKind, SlotKind, Slots};
-pub use read::{Places, assign, read};
+pub use read::{Places, assign, read, read_over};
 pub use reference::{reference_toml, to_toml};

@@ -13,10 +13,22 @@ use super::{ConfigError, Place};
 /// # Errors
 /// [`ConfigError`] for text that is no TOML, an unknown key, or a value out of its range.
 pub fn read(text: &str, file: &str) -> Result<(Configuration, Places), ConfigError> {
+    read_over(Configuration::default(), text, file)
+}
+
+/// Reads `text` over `base`, such as a preset: every value that the text sets wins, also one that is the default.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_over(
+    base: Configuration,
+    text: &str,
+    file: &str,
+) -> Result<(Configuration, Places), ConfigError> {
     let at = |span: Option<Range<usize>>| Place::new(file, text, span.map_or(0, |s| s.start));
     let document: Document<String> =
         text.parse().map_err(|e: toml_edit::TomlError| ConfigError::syntax(at(e.span()), e.message()))?;
-    let mut configuration = Configuration::default();
+    let mut configuration = base;
     let mut places = Places::default();
     for (table, item) in document.as_table().iter() {
         let place = at(key_span(document.as_table(), table));

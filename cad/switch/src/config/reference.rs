@@ -50,12 +50,20 @@ pub fn to_toml(configuration: &Configuration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{assign, read};
+    use crate::config::{assign, read, read_over};
 
     #[test]
     fn the_reference_reads_back_to_the_defaults() {
         let (back, _) = read(&reference_toml(), "reference.toml").unwrap();
         assert_eq!(back, Configuration::default());
+    }
+
+    #[test]
+    fn what_a_file_sets_wins_over_its_preset_even_at_the_default() {
+        let (preset, _) = read("[shell]\nwidth_mm = 20.0\nwall_mm = 7.0\n", "preset").unwrap();
+        let default = Configuration::default().shell.width_mm;
+        let (both, _) = read_over(preset, &format!("[shell]\nwidth_mm = {default}\n"), "mine").unwrap();
+        assert_eq!((both.shell.width_mm, both.shell.wall_mm), (default, 7.0));
     }
 
     #[test]

@@ -1,13 +1,4 @@
-//! The files of a set: one file per format, and one entry of [`FORMATS`].
-
-mod curve;
-mod drawing;
-mod dxf;
-mod guide;
-pub mod page;
-mod step;
-mod stl;
-mod three_mf;
+//! The files of a set: one file per format, and one line of the list below.
 
 use crate::built::Built;
 use crate::documents::Manifest;
@@ -44,17 +35,26 @@ pub struct Format {
     pub make: Make,
 }
 
-/// Every format, in the order in which a set is made and listed. The page comes last: it shows the list.
-pub const FORMATS: [Format; 8] = [
-    stl::FORMAT,
-    curve::FORMAT,
-    three_mf::FORMAT,
-    step::FORMAT,
-    drawing::FORMAT,
-    dxf::FORMAT,
-    guide::FORMAT,
-    page::FORMAT,
-];
+/// Declares the files of the formats and the registry of what they hold.
+macro_rules! formats {
+    ($($file:ident,)*) => {
+        $(pub mod $file;)*
+
+        /// Every format, in the order in which a set is made and listed. The page comes last: it shows the list.
+        pub const FORMATS: &[Format] = &[$($file::FORMAT),*];
+    };
+}
+
+formats! {
+    stl,
+    curve,
+    three_mf,
+    step,
+    drawing,
+    dxf,
+    guide,
+    page,
+}
 
 /// The name that stands for every format.
 pub const ALL: &str = "all";

@@ -1,9 +1,9 @@
 //! The faces of a solid: a wall's edge and a cap's loop share their edges, as walls and caps share rings.
 
 use super::surface::{circle, face_surface, line, wall_surface};
-use super::writer::{Id, Writer, list, text};
-use crate::mesh::{Point3, Vector3};
-use crate::profile::{Contour, Edge, Point2};
+use super::writer::{Id, Writer, list, raised, text};
+use crate::mesh::Vector3;
+use crate::profile::{Contour, Edge};
 use crate::solid::{Facing, Solid};
 
 /// Vertices and edges of a ring.
@@ -40,11 +40,6 @@ pub(super) fn manifold_solid(out: &mut Writer, name: &str, solid: &Solid) -> Id 
     }
     let shell = out.add(&format!("CLOSED_SHELL('',{})", list(&faces)));
     out.add(&format!("MANIFOLD_SOLID_BREP('{}',{shell})", text(name)))
-}
-
-/// A point of a contour at a height.
-pub(super) fn raised(p: Point2, z_mm: f64) -> Point3 {
-    Point3::new(p.x, p.y, z_mm)
 }
 
 fn ring_edges(out: &mut Writer, contour: &Contour, z_mm: f64) -> RingEdges {

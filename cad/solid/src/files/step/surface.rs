@@ -2,8 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::shell::raised;
-use super::writer::{Id, Writer, list, real};
+use super::writer::{Id, Writer, list, raised, real};
 use crate::mesh::{Point3, Vector3};
 use crate::profile::{Arc, Contour, Edge};
 

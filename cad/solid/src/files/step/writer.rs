@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::mesh::{Point3, Vector3};
+use crate::profile::Point2;
 
 /// The number of an entity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +61,11 @@ impl Writer {
             self.data
         )
     }
+}
+
+/// A point of a contour at a height.
+pub(super) fn raised(p: Point2, z_mm: f64) -> Point3 {
+    Point3::new(p.x, p.y, z_mm)
 }
 
 /// A list of entity numbers, as `(#1,#2)`.

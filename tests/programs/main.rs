@@ -1,4 +1,4 @@
-//! What programs say that nobody here wrote: slicers, mesh checkers, a browser, Slurm. Each test says `SKIPPED:` and why
+//! What programs say that nobody here wrote: slicers, mesh checkers, a browser, Slurm. Each test says `SKIPPED` and why
 //! where its program is absent.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]

@@ -118,7 +118,7 @@ fn a_slurm_job_array_makes_what_one_run_makes() {
     let slurm = match Slurm::start(path) {
         Ok(slurm) => slurm,
         Err(reason) => {
-            println!("SKIPPED: {reason}");
+            crate::harness::say_skipped(&reason);
             return;
         }
     };

@@ -48,14 +48,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{} made, {} refused, {} failed", tally.made, tally.refused, tally.failed);
     println!("{} part files, {} of them different", tally.parts, tally.distinct_parts);
 
-    let table = std::fs::read_to_string(out.join("variants.csv"))?;
-    let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let header = lines.next().ok_or("an empty table")?;
-    let column =
-        |name: &str| header.iter().position(|h| *h == name).ok_or_else(|| format!("no column {name}"));
-    let shown = [column("id")?, column("status")?, column("friction_n")?, column("threshold_n")?];
-    for row in lines {
-        println!("{}", shown.map(|i| format!("{:26.26}", row.get(i).unwrap_or(&""))).concat());
+    let mut table = csv::Reader::from_path(out.join("variants.csv"))?;
+    let header = table.headers()?.clone();
+    for row in table.records() {
+        let row = row?;
+        let cell =
+            |name: &str| header.iter().zip(&row).find(|(h, _)| *h == name).map_or("", |(_, cell)| cell);
+        let shown = ["id", "status", "friction_n", "threshold_n"].map(cell);
+        println!("{:40}{:10}{:20}{}", shown[0], shown[1], shown[2], shown[3]);
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! A batch that is killed (SIGKILL) at random moments and started again ends with the files of one that was not.
 
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use crate::harness::{differences, done, hashes, with_sweep};

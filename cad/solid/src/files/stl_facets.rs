@@ -117,7 +117,7 @@ pub(super) fn announced(header: &[u8]) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::read_stl;
+    use crate::files::read_stl;
     use std::io::Cursor;
 
     /// A binary STL whose facets name some corners again at once, some much later and some never.

@@ -134,7 +134,7 @@ proptest! {
             .into_iter()
             .filter(|(i, j)| !same(*i, *j) && meet(&corners(&mesh, *i), &corners(&mesh, *j)))
             .collect();
-        let fault = intersections::crossing_facets(&mesh, &FacetTree::new(&mesh));
+        let fault = intersections::self_intersections(&mesh, &FacetTree::new(&mesh));
         prop_assert_eq!(fault.as_ref().map_or(0, |f| f.count), crossing.len());
         let first = crossing.first().map(|(i, _)| corners(&mesh, *i)[0].1.coords.into());
         prop_assert_eq!(fault.and_then(|f| f.at_mm), first);
@@ -201,5 +201,5 @@ fn walls_of_facets_without_area_or_bounds_are_left_out() {
     let (far, point) = (f64::from(f32::MAX) * 4.0, Point3::new(1.0, 2.0, 3.0));
     let positions = vec![point, point, point, Point3::new(-far, -far, -far), Point3::new(far, far, far)];
     let mesh = Mesh::new(positions, vec![[0, 1, 2], [0, 3, 4], [3, 4, 2]]);
-    assert_eq!(walls::thin(&mesh, &FacetTree::new(&mesh), 0.4), None);
+    assert_eq!(walls::thin_walls(&mesh, &FacetTree::new(&mesh), 0.4), None);
 }

@@ -55,7 +55,6 @@ fn all_parts_of_the_variants_are_valid() {
 }
 
 /// Truck builds the same solid from the same profile: closed, as large, and in the same place.
-#[cfg(feature = "brep")]
 #[test]
 fn truck_agrees_with_every_part() {
     let tolerance = pinswitch_solid::profile::ChordTolerance::new(0.01).unwrap();

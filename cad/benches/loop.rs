@@ -17,7 +17,7 @@ fn main() {
 
 /// Unpacks a file of `tests/data`.
 fn unpack(name: &str) -> Vec<u8> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data").join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data").join(name);
     let mut bytes = Vec::new();
     flate2::read::MultiGzDecoder::new(std::fs::File::open(path).expect("test data"))
         .read_to_end(&mut bytes)

@@ -72,7 +72,7 @@ fn every_link_between_documents_resolves() {
 fn every_effect_has_its_section() {
     let catalogue = std::fs::read_to_string(repository("model/doc/effect-catalogue.md")).unwrap();
     for effect in pinswitch_calibration::effects::CATALOGUE {
-        assert!(catalogue.contains(&format!("### {}\n", effect.id())), "{} has no section", effect.id());
+        assert!(catalogue.contains(&format!("### `{}`\n", effect.id())), "{} has no section", effect.id());
     }
 }
 
@@ -81,6 +81,8 @@ fn readme_lists_every_command() {
     let help = String::from_utf8(binary().arg("--help").output().unwrap().stdout).unwrap();
     let commands = help.lines().skip_while(|l| *l != "Commands:").skip(1).take_while(|l| !l.is_empty());
     let readme = std::fs::read_to_string(repository("README.md")).unwrap();
+    // Lines indented further go on with the one before.
+    let commands = commands.filter(|l| !l.starts_with("   "));
     for command in commands.filter_map(|l| l.split_whitespace().next()).filter(|c| *c != "help") {
         assert!(
             readme.contains(&format!("pinswitch {command}")) || readme.contains(&format!("`{command}`")),

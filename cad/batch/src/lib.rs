@@ -3,6 +3,35 @@
 //! It knows sweeps, destinations and tables; how a switch is built and predicted it leaves to `pinswitch-switch`.
 //!
 //! Data flows: sweep file → axes → variants → sets (equal parts once) → rows → table, plots, page.
+//!
+//! ```
+//! use pinswitch_batch::{Shard, Sweep, SweepSource, Variants};
+//!
+//! let text = r#"
+//! [axes]
+//! "shell.width_mm" = { from = 13, to = 15, step = 1 }
+//! "layout.pins" = [[5, 8, 11], [4, 8, 12]]
+//! "#;
+//! // SweepSource::read takes a file, with all that it names.
+//! let source = SweepSource {
+//!     name: "widths".to_owned(),
+//!     file: "sweep.toml".to_owned(),
+//!     sweep: text.to_owned(),
+//!     base: String::new(),
+//!     rows: None,
+//! };
+//! let variants = Variants::new(Sweep::new(&source)?, &source);
+//! assert_eq!(variants.count(), 6);
+//! // A variant is put together when it is asked for; its id says what it is.
+//! let third = variants.get(2);
+//! assert!(third.id.starts_with("width14_pins5.8.11-") && third.configuration.shell.width_mm == 14.0);
+//! // One of four machines makes a block of neighbours.
+//! assert_eq!("2/4".parse::<Shard>()?.range(variants.count()), 1..3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`run`] makes them at a [`Destination`]; `cad/examples/sweep.rs` is a whole program. `cad/doc/batch.md` says what a run
+//! leaves, how it is resumed and spread over machines, and what it costs.
 
 mod axis;
 mod constraint;

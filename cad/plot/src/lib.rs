@@ -2,6 +2,20 @@
 //!
 //! It knows the friction model and what a calibration found; it knows no geometry, and does no input or output: figures
 //! and pages are returned as text.
+//!
+//! ```
+//! use pinswitch_friction::{Contact, PinPattern, Substrate, other_laws, predict, published};
+//! use pinswitch_plot::friction_svg;
+//!
+//! let pins = PinPattern::even(4, 14f64.to_radians());
+//! let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
+//! let loads_n: Vec<f64> = (1..=10).map(|i| 5.0 * f64::from(i)).collect();
+//! let curve = predict(&contact, &loads_n);
+//! let others = other_laws(curve.law, &contact, &loads_n);
+//! let svg = friction_svg("four pins", &contact, &curve, &others)?;
+//! assert!(svg.starts_with("<svg") && svg.contains("four pins"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod calibration;
 mod calibration_page;

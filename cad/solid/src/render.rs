@@ -63,6 +63,19 @@ impl Picture {
 }
 
 /// Draws `bodies`, scaled to fill a picture of `width` by `height` pixels.
+///
+/// ```
+/// use pinswitch_solid::profile::{ChordTolerance, Contour, Point2};
+/// use pinswitch_solid::render::{Body, View, render};
+/// use pinswitch_solid::solid::Solid;
+///
+/// let disc = Solid::prism(&Contour::circle(Point2::origin(), 10.0), &[], 0.0, 3.0, 0.0)?;
+/// let body = Body { mesh: disc.mesh(ChordTolerance::new(0.05)?)?, colour: [200, 120, 60] };
+/// let picture = render(&[body], View { turn_deg: 30.0, rise_deg: 35.0 }, 80, 60);
+/// assert_eq!(picture.pixels.len(), 80 * 60 * 3);
+/// assert!(picture.png()?.starts_with(b"\x89PNG"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn render(bodies: &[Body], view: View, width: u32, height: u32) -> Picture {
     let (columns, rows) = (width as usize * SAMPLES, height as usize * SAMPLES);
     let faces = visible_faces(bodies, view, columns, rows);

@@ -59,6 +59,27 @@ pub fn stl_bytes(mesh: &Mesh) -> std::io::Result<Vec<u8>> {
 
 /// Reads a binary or ASCII STL. Corners with identical coordinates become one vertex; nothing is repaired.
 ///
+/// ```
+/// use std::io::Cursor;
+///
+/// use pinswitch_solid::files::read_stl;
+///
+/// let text = "solid one
+/// facet normal 0 0 1
+/// outer loop
+/// vertex 0 0 0
+/// vertex 5 0 0
+/// vertex 0 5 0
+/// endloop
+/// endfacet
+/// endsolid one
+/// ";
+/// let stl = read_stl(&mut Cursor::new(text))?;
+/// assert_eq!((stl.mesh.triangles.len(), stl.mesh.positions.len(), stl.contrary_normals), (1, 3, 0));
+/// assert!(read_stl(&mut Cursor::new("no STL at all")).is_err());
+/// # Ok::<(), pinswitch_solid::files::StlError>(())
+/// ```
+///
 /// # Errors
 /// [`StlError`] if the file is no STL, cut short, or empty.
 pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {

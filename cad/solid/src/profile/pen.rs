@@ -3,6 +3,15 @@
 use super::{Arc, Contour, Edge, Point2};
 
 /// Draws a [`Contour`]; neighbouring edges share their corner by construction.
+///
+/// ```
+/// use pinswitch_solid::profile::{Pen, Point2};
+///
+/// // A half disc of radius 3: an arc about the origin, closed with a straight line.
+/// let half = Pen::at(Point2::new(3.0, 0.0)).arc_to(Point2::origin(), Point2::new(-3.0, 0.0), true).close();
+/// assert!((half.area_mm2() - 4.5 * std::f64::consts::PI).abs() < 1e-12);
+/// assert_eq!(half.edges().len(), 2);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Pen {
     corners: Vec<Point2>,

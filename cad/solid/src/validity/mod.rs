@@ -115,7 +115,21 @@ impl Examination {
 /// Relative difference up to which the three axis integrals of the volume count as equal.
 const AXIS_AGREEMENT: f64 = 1e-6;
 
-/// Examines `mesh` against `expected`.
+/// Examines `mesh` against `expected`. Nothing is repaired.
+///
+/// ```
+/// use pinswitch_solid::mesh::{Mesh, Point3};
+/// use pinswitch_solid::validity::{Expectation, examine};
+///
+/// let corners = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]];
+/// let positions = corners.map(|[x, y, z]| Point3::new(x, y, z)).to_vec();
+/// let tetrahedron = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+/// let whole = examine(&Mesh::new(positions.clone(), tetrahedron.clone()), &Expectation::default());
+/// assert!(whole.is_valid() && whole.facts.volume_mm3 == 121.5);
+///
+/// let open = examine(&Mesh::new(positions, tetrahedron[..3].to_vec()), &Expectation::default());
+/// assert_eq!((open.faults[0].check, open.faults[0].count), ("open edge", 3));
+/// ```
 pub fn examine(mesh: &Mesh, expected: &Expectation) -> Examination {
     let mut found = Examination::default();
     found.facts.triangles = mesh.triangles.len();

@@ -6,10 +6,13 @@ use divan::{Bencher, black_box};
 use pinswitch::write::write_set;
 use pinswitch_solid::files::stl_bytes;
 use pinswitch_solid::validity::{Expectation, examine};
+use pinswitch_switch::built::Built;
 use pinswitch_switch::config::{Configuration, assign};
 use pinswitch_switch::design::Design;
+use pinswitch_switch::formats::{ALL, named};
 use pinswitch_switch::parts::{Part, printed};
-use pinswitch_switch::set::{make_set, predicted_curve};
+use pinswitch_switch::prediction::{Prediction, predicted_curve};
+use pinswitch_switch::set::Set;
 
 fn main() {
     divan::main();
@@ -63,19 +66,25 @@ fn shell_oracle_with_intersections(bencher: Bencher) {
 #[divan::bench]
 fn friction_curve(bencher: Bencher) {
     let design = design();
-    bencher.bench_local(|| predicted_curve(black_box(&design), design.contact()));
+    bencher.bench_local(|| predicted_curve(black_box(&design)));
 }
 
-#[divan::bench]
-fn whole_set_in_memory(bencher: Bencher) {
+/// The set of a design in these formats, from its configuration on.
+fn set(design: &Design, formats: &[&str]) -> Set {
+    let built = Built::new(design.clone()).expect("a valid design");
+    let prediction = Prediction::of(design);
+    Set::new(&built, &prediction, &named(formats).expect("known formats")).expect("a valid set")
+}
+
+#[divan::bench(args = ["stl", ALL])]
+fn whole_set_in_memory(bencher: Bencher, format: &str) {
     let design = design();
-    bencher.bench_local(|| make_set(black_box(&design)));
+    bencher.bench_local(|| set(black_box(&design), &[format]));
 }
 
 #[divan::bench]
 fn whole_set_written(bencher: Bencher) {
     let design = design();
     let folder = tempfile::tempdir().expect("a temporary folder");
-    bencher
-        .bench_local(|| write_set(folder.path(), &make_set(black_box(&design)).expect("a valid set").files));
+    bencher.bench_local(|| write_set(folder.path(), &set(black_box(&design), &["stl"]).files));
 }

@@ -90,7 +90,11 @@ impl Stamp {
     pub fn put(&self, destination: &Destination) -> Result<bool, StampError> {
         // Another shard may stamp it at the same time: what counts is what is there in the end.
         if destination.get(STAMP)?.is_none() && destination.is_empty()? {
-            let mut bytes = serde_json::to_vec_pretty(self).unwrap_or_default();
+            let unwritable = |e: serde_json::Error| StampError::Unreadable {
+                place: destination.name(),
+                problem: e.to_string(),
+            };
+            let mut bytes = serde_json::to_vec_pretty(self).map_err(unwritable)?;
             bytes.push(b'\n');
             destination.put(STAMP, &bytes)?;
             return Ok(false);

@@ -22,7 +22,7 @@ fn unpack(name: &str, folder: &Path) -> PathBuf {
 
 /// Runs the command line, which must end with this exit code.
 fn pinswitch(code: i32, arguments: &[&dyn AsRef<OsStr>]) -> Output {
-    let arguments: Vec<&OsStr> = arguments.iter().map(|a| a.as_ref().as_ref()).collect();
+    let arguments: Vec<&OsStr> = arguments.iter().map(|a| a.as_ref()).collect();
     expect_code(code, Path::new("."), &arguments)
 }
 

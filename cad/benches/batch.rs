@@ -4,10 +4,10 @@
 
 use divan::{Bencher, black_box};
 use pinswitch_batch::{
-    Destination, Observer, Options, Outcome, Shard, Sweep, SweepSource, Variants, partial_folder, run,
+    Destination, Observer, Options, Outcome, Shard, Sweep, SweepSource, Variants, mesh_file, partial_folder,
+    run,
 };
 use pinswitch_switch::design::Design;
-use pinswitch_switch::set::mesh_file;
 
 fn main() {
     divan::main();

@@ -9,6 +9,7 @@ mod constraint;
 mod content;
 mod destination;
 mod estimate;
+mod forecast;
 mod gallery;
 mod make;
 mod merge;

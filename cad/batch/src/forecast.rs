@@ -130,7 +130,7 @@ mod tests {
             "layout.pins=[3, 8]",
             "shell.outer_radius_mm=21",
             "silicone.hardness_shore_a=20",
-            "pins.diameter_mm=1.6",
+            "pins.diameter_mm=0.9",
             "friction.load_max_n=80",
             "friction.points=51",
             "friction.six_single_threshold=4",

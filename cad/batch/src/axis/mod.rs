@@ -1,11 +1,8 @@
 //! Axes of a sweep: the values that one field takes, or that several take together.
 //!
-//! A new way to write the values of a field is a file of [`values`] and its line there; a new table that lays axes is a
-//! file here and its line in [`AXIS_TABLES`].
+//! A new way to write the values of a field is a file in `values` and its line there; a new table that lays axes is a file
+//! here and its line in `axis_tables!`.
 
-mod grid;
-mod rows;
-mod sample;
 mod values;
 
 use toml_edit::{Item, TableLike, Value};
@@ -35,7 +32,7 @@ impl std::fmt::Debug for SweepAxis {
     }
 }
 
-/// A table of a sweep that lays axes: its file, and its line in [`AXIS_TABLES`].
+/// A table of a sweep that lays axes.
 pub(super) struct AxisTable {
     /// Its name.
     pub(super) name: &'static str,
@@ -47,8 +44,21 @@ pub(super) struct AxisTable {
     read: fn(&SweepSource, &Item) -> Result<Vec<SweepAxis>, ConfigError>,
 }
 
-/// Every table that lays axes, in the order in which they are named.
-pub(super) const AXIS_TABLES: [AxisTable; 3] = [grid::TABLE, sample::TABLE, rows::TABLE];
+/// Declares the files of the tables and their list.
+macro_rules! axis_tables {
+    ($($file:ident;)*) => {
+        $(mod $file;)*
+
+        /// Every table that lays axes, in the order in which messages name them.
+        pub(super) const AXIS_TABLES: &[AxisTable] = &[$($file::TABLE),*];
+    };
+}
+
+axis_tables! {
+    grid;
+    sample;
+    rows;
+}
 
 /// The axes of a sweep, the slowest first.
 ///

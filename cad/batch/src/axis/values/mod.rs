@@ -1,11 +1,7 @@
-//! Ways to write the values of one field: one file per kind, and its line in [`KINDS`]. Grids take every value, samples
-//! the value at a coordinate.
+//! Ways to write the values of one field: one file per kind, and its line in the list below. Grids take every value,
+//! samples the value at a coordinate.
 
-mod count;
-mod list;
 mod range;
-mod span;
-mod step;
 
 use toml_edit::{Item, Value};
 
@@ -25,8 +21,22 @@ pub(super) struct ValueKind {
 /// The value at a coordinate of 0 to 1.
 pub(super) type Sampler = Box<dyn Fn(f64) -> Value>;
 
-/// Every kind; the first that is written counts.
-const KINDS: [ValueKind; 4] = [list::KIND, step::KIND, count::KIND, span::KIND];
+/// Declares the files of the kinds and their list.
+macro_rules! value_kinds {
+    ($($file:ident;)*) => {
+        $(mod $file;)*
+
+        /// Every kind; the first that is written counts.
+        const KINDS: &[ValueKind] = &[$($file::KIND),*];
+    };
+}
+
+value_kinds! {
+    list;
+    step;
+    count;
+    span;
+}
 
 /// Whether `item` is written as values of any kind, rather than as a table of fields.
 pub(super) fn is_written(item: &Item) -> bool {

@@ -7,25 +7,29 @@ use sha2::{Digest, Sha256};
 
 use super::destination::{Destination, DestinationError};
 use super::hexadecimal;
+use pinswitch_solid::files::stl_bytes;
+use pinswitch_solid::solid::CapCache;
 use pinswitch_solid::validity::MeshFacts;
-use pinswitch_switch::built::BuiltPart;
+use pinswitch_switch::built::examined_print_mesh;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::parts::Part;
 use pinswitch_switch::set::SetError;
 
 /// Recipes kept in the cache, about 500 bytes each; an evicted part is made again, with the same bytes.
 const CACHED_RECIPES: usize = 50_000;
+/// Corners of caps in the cache, 6 MB: neighbours in a sweep share most of theirs, but for the labels.
+const CACHED_CORNERS: usize = 131_072;
 
 /// Makes the mesh file of a part: [`mesh_file`], or a stand-in that fails, in tests.
-pub type MeshMaker = fn(&Part, &Design) -> Result<(Vec<u8>, MeshFacts), SetError>;
+pub type MeshMaker = fn(&Part, &Design, &CapCache) -> Result<(Vec<u8>, MeshFacts), SetError>;
 
 /// The part as binary STL, meshed and examined, with what the mesh measures.
 ///
 /// # Errors
 /// [`SetError`]; a mesh that the oracle refuses is never returned.
-pub fn mesh_file(part: &Part, design: &Design) -> Result<(Vec<u8>, MeshFacts), SetError> {
-    let built = BuiltPart::new(part.clone(), design)?;
-    Ok((built.stl().map_err(SetError::encoding)?, built.facts))
+pub fn mesh_file(part: &Part, design: &Design, caps: &CapCache) -> Result<(Vec<u8>, MeshFacts), SetError> {
+    let (mesh, facts) = examined_print_mesh(part, design, caps)?;
+    Ok((stl_bytes(&mesh).map_err(SetError::encoding)?, facts))
 }
 
 /// A part stored at the destination.
@@ -55,6 +59,7 @@ pub(super) struct PartStore<'a> {
     destination: &'a Destination,
     mesh_maker: MeshMaker,
     known: Cache<[u8; 32], Arc<StoredPart>>,
+    caps: CapCache,
 }
 
 /// Path of the STL with this hash.
@@ -65,7 +70,12 @@ pub(super) fn content_path(sha256: &str) -> String {
 impl<'a> PartStore<'a> {
     /// An empty cache for `destination`.
     pub(super) fn new(destination: &'a Destination, mesh_maker: MeshMaker) -> Self {
-        Self { destination, mesh_maker, known: Cache::new(CACHED_RECIPES) }
+        Self {
+            destination,
+            mesh_maker,
+            known: Cache::new(CACHED_RECIPES),
+            caps: CapCache::new(CACHED_CORNERS),
+        }
     }
 
     /// Stores the part unless it is stored already. Threads that need the same part wait for the first.
@@ -74,7 +84,7 @@ impl<'a> PartStore<'a> {
     /// [`ContentError`] if it cannot be made or written.
     pub(super) fn keep(&self, part: &Part, design: &Design) -> Result<Arc<StoredPart>, ContentError> {
         self.known.get_or_insert_with(&recipe(part, design), || {
-            let (bytes, facts) = (self.mesh_maker)(part, design)?;
+            let (bytes, facts) = (self.mesh_maker)(part, design, &self.caps)?;
             let sha256 = hexadecimal(&Sha256::digest(&bytes));
             self.write(&content_path(&sha256), &bytes)?;
             Ok(Arc::new(StoredPart { sha256, bytes: bytes.len(), facts }))
@@ -112,6 +122,7 @@ mod tests {
     #[test]
     fn equal_recipes_are_equal_bytes_and_only_they() {
         let mut bytes_of: HashMap<[u8; 32], Vec<u8>> = HashMap::new();
+        let caps = CapCache::new(CACHED_CORNERS);
         let mut shared = 0;
         for assignments in [
             &["layout.pins=[5, 8, 11]"][..],
@@ -123,7 +134,7 @@ mod tests {
         ] {
             let design = design(assignments);
             for part in printed(&design).unwrap() {
-                let (bytes, _) = mesh_file(&part, &design).unwrap();
+                let (bytes, _) = mesh_file(&part, &design, &caps).unwrap();
                 if let Some(before) = bytes_of.insert(recipe(&part, &design), bytes.clone()) {
                     assert_eq!(before, bytes, "{}", part.name);
                     shared += 1;

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
+use super::forecast::Forecasts;
 use super::make::{Outcome, VariantMaker, accepted};
 use super::shard::Shard;
 use super::variant::Variants;
@@ -79,11 +80,12 @@ pub fn estimate(
     let range = shard.range(variants.count());
     let count = range.end - range.start;
     let every = count.div_ceil(MAX_CHECKED).max(1);
+    let forecasts = Forecasts::default();
     let checked: Vec<(u64, Option<String>)> = (0..count.div_ceil(every))
         .into_par_iter()
         .map(|i| {
             let index = range.start + i * every;
-            (index, accepted(variants, &variants.get(index)).err())
+            (index, accepted(variants, &variants.get(index), &forecasts).err())
         })
         .collect();
     let good: Vec<u64> = checked.iter().filter(|(_, reason)| reason.is_none()).map(|(i, _)| *i).collect();

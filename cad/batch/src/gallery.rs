@@ -1,7 +1,10 @@
 //! What plots and page show of a sweep: as many variants as a person can look at, evenly taken from all.
 
+use std::collections::HashMap;
+
 use serde::Serialize;
 
+use super::forecast::ForecastKey;
 use super::table::{Cell, Row, Schema};
 use super::variant::Variants;
 use pinswitch_friction::predict;
@@ -56,6 +59,15 @@ pub(super) struct GalleryEntry {
     pub curve_n: Vec<f64>,
 }
 
+/// A curve as it is shown.
+#[derive(Clone, Debug)]
+struct ShownCurve {
+    /// First and last load.
+    loads_n: [f64; 2],
+    /// Friction at evenly spaced loads between them.
+    friction_n: Vec<f64>,
+}
+
 /// The variants that are shown.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gallery {
@@ -67,6 +79,8 @@ pub(super) struct Gallery {
     pub every: u64,
     /// Those shown.
     pub shown: Vec<GalleryEntry>,
+    /// Curves by what they depend on.
+    curves: HashMap<ForecastKey, ShownCurve>,
 }
 
 impl Gallery {
@@ -77,6 +91,7 @@ impl Gallery {
             of: variants.count(),
             every: variants.count().div_ceil(MAX_SHOWN).max(1),
             shown: Vec::new(),
+            curves: HashMap::new(),
         }
     }
 
@@ -89,7 +104,7 @@ impl Gallery {
         let text = |name: &str| cell(name).text().map(str::to_owned);
         let number = |name: &str| cell(name).number().map(rounded);
         let made = cell("status").text() == Some("made");
-        let curve = made.then(|| curve(variants, index)).flatten();
+        let curve = made.then(|| self.curve(variants, index)).flatten();
         let settings = self.fields.iter().map(|name| match cell(name) {
             Cell::Text(words) => SettingValue::Words(words.clone()),
             other => {
@@ -109,9 +124,16 @@ impl Gallery {
             threshold_n: number("threshold_n"),
             trust: text("friction_trust"),
             printed_g: number("printed_mass_g"),
-            loads_n: curve.as_ref().map(|(loads, _)| *loads),
-            curve_n: curve.map(|(_, friction)| friction).unwrap_or_default(),
+            loads_n: curve.as_ref().map(|curve| curve.loads_n),
+            curve_n: curve.map(|curve| curve.friction_n).unwrap_or_default(),
         });
+    }
+
+    /// The curve of a variant, from its configuration: cheaper than to keep or read it.
+    fn curve(&mut self, variants: &Variants, index: u64) -> Option<ShownCurve> {
+        let design = Design::new(variants.get(index).configuration).ok()?;
+        let known = self.curves.entry(ForecastKey::of(&design));
+        Some(known.or_insert_with(|| shown_curve(&design)).clone())
     }
 
     /// The variants with a curve.
@@ -120,16 +142,14 @@ impl Gallery {
     }
 }
 
-/// The curve of a variant, from its configuration: cheaper than to keep or read it.
-fn curve(variants: &Variants, index: u64) -> Option<([f64; 2], Vec<f64>)> {
-    let design = Design::new(variants.get(index).configuration).ok()?;
+fn shown_curve(design: &Design) -> ShownCurve {
     let f = &design.configuration().friction;
     let ends = [f.load_min_n, f.load_max_n];
     #[allow(clippy::cast_precision_loss)]
     let loads: Vec<_> =
         (0..POINTS).map(|i| ends[0] + (ends[1] - ends[0]) * i as f64 / (POINTS - 1) as f64).collect();
     let curve = predict(design.contact(), &loads);
-    Some((ends.map(rounded), curve.friction_n.into_iter().map(rounded).collect()))
+    ShownCurve { loads_n: ends.map(rounded), friction_n: curve.friction_n.into_iter().map(rounded).collect() }
 }
 
 /// A tenth of a millinewton is enough to look at.

@@ -38,24 +38,24 @@ mod constraint;
 mod content;
 mod destination;
 mod estimate;
+mod forecast;
 mod gallery;
 mod make;
 mod merge;
 mod page;
 mod plots;
 mod products;
-mod rows;
 mod run;
-mod sampling;
 mod shard;
 mod source;
 mod stamp;
 mod sweep;
 mod table;
 mod table_files;
+mod tally;
 mod variant;
 
-pub use axis::{ParameterRef, SweepAxis};
+pub use axis::{Method, ParameterRef, SweepAxis, unit_points};
 pub use constraint::Constraint;
 pub use content::{MeshMaker, mesh_file};
 #[cfg(feature = "cloud")]
@@ -64,15 +64,15 @@ pub use destination::{Destination, DestinationError, DestinationLock, Folder};
 pub use estimate::{Estimate, Measured, RefusalGroup, estimate};
 pub use make::Outcome;
 pub use merge::{MergeError, merge};
-pub use products::{ProductError, Tally};
+pub use products::ProductError;
 pub use run::{Observer, Options, RunError, ShardStamp, partial_folder, run};
-pub use sampling::{Method, unit_points};
 pub use shard::{Shard, ShardError};
 pub use source::SweepSource;
 pub use stamp::{Stamp, StampError};
 pub use sweep::Sweep;
 pub use table::{Cell, Column, ColumnType, Row, Schema};
 pub use table_files::{TableError, TableWriter, read_rows};
+pub use tally::Tally;
 pub use variant::{Variant, Variants};
 
 /// Bytes as lower-case hexadecimal digits.

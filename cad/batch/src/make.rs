@@ -1,21 +1,23 @@
 //! One variant: refused, kept from an earlier run, or made.
 
+use std::sync::Arc;
+
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use super::content::{ContentError, MeshMaker, PartStore, StoredPart, content_path};
 use super::destination::{Destination, DestinationError};
+use super::forecast::{Forecast, Forecasts};
 use super::hexadecimal;
 use super::sweep::Sweep;
 use super::variant::{Variant, Variants};
-use pinswitch_friction::FrictionCurve;
 use pinswitch_switch::built::BuildError;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::formats::curve_files;
 use pinswitch_switch::parts::printed;
-use pinswitch_switch::prediction::{Prediction, predicted_curve};
-use pinswitch_switch::set::SetError;
+use pinswitch_switch::prediction::Prediction;
+use pinswitch_switch::set::{OutputFile, SetError};
 
 /// What became of a variant.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,8 +26,8 @@ pub enum Outcome {
     Made {
         /// The manifest's bytes.
         manifest: Vec<u8>,
-        /// Whether it was made by an earlier run.
-        before: bool,
+        /// Whether it is left from an earlier run.
+        reused: bool,
     },
     /// It cannot be built, or a constraint forbids it.
     Refused(String),
@@ -39,6 +41,7 @@ pub(super) struct VariantMaker<'a> {
     sweep_sha256: &'a str,
     destination: &'a Destination,
     contents: PartStore<'a>,
+    forecasts: Forecasts,
     /// Whether an earlier run may have left variants.
     resumed: bool,
 }
@@ -48,19 +51,30 @@ pub(super) fn variant_folder(id: &str) -> String {
     format!("variants/{id}")
 }
 
-/// A design that fulfils the constraints of a sweep, with its predicted curve.
+/// A variant that can be made.
+pub(super) struct AcceptedVariant {
+    design: Design,
+    forecast: Arc<Forecast>,
+}
+
+/// A design that fulfils the constraints of a sweep.
 ///
 /// # Errors
 /// The reason for which the variant is refused.
-pub(super) fn accepted(variants: &Variants, variant: &Variant) -> Result<(Design, FrictionCurve), String> {
+pub(super) fn accepted(
+    variants: &Variants,
+    variant: &Variant,
+    forecasts: &Forecasts,
+) -> Result<AcceptedVariant, String> {
     if let Some(original) = variant.repeats {
         return Err(format!("repeats {}", variants.get(original).id));
     }
     let design = Design::new(variant.configuration.clone()).map_err(|e| e.to_string())?;
-    let curve = predicted_curve(&design);
-    match variants.sweep().constraints.iter().find_map(|c| c.refusal(&design, &curve)) {
+    let forecast = forecasts.of(&design);
+    let mut constraints = variants.sweep().constraints.iter();
+    match constraints.find_map(|c| c.refusal(&design, forecast.curve(&design))) {
         Some(reason) => Err(reason),
-        None => Ok((design, curve)),
+        None => Ok(AcceptedVariant { design, forecast }),
     }
 }
 
@@ -78,6 +92,7 @@ impl<'a> VariantMaker<'a> {
             sweep_sha256,
             destination,
             contents: PartStore::new(destination, mesh_maker),
+            forecasts: Forecasts::default(),
             resumed,
         }
     }
@@ -87,15 +102,15 @@ impl<'a> VariantMaker<'a> {
     /// # Errors
     /// [`DestinationError`] for what would stop every other variant too, such as a full disk.
     pub(super) fn make(&self, variant: &Variant) -> Result<Outcome, DestinationError> {
-        let (design, curve) = match accepted(self.variants, variant) {
+        let accepted = match accepted(self.variants, variant, &self.forecasts) {
             Ok(accepted) => accepted,
             Err(reason) => return Ok(Outcome::Refused(reason)),
         };
         if let Some(manifest) = self.resumed.then(|| self.whole(variant)).transpose()?.flatten() {
-            return Ok(Outcome::Made { manifest, before: true });
+            return Ok(Outcome::Made { manifest, reused: true });
         }
-        match self.build(variant, &design, curve) {
-            Ok(manifest) => Ok(Outcome::Made { manifest, before: false }),
+        match self.build(variant, &accepted) {
+            Ok(manifest) => Ok(Outcome::Made { manifest, reused: false }),
             Err(ContentError::Destination(e)) if e.is_fatal => Err(e),
             Err(ContentError::Set(SetError::Build(BuildError::Configuration(e)))) => {
                 Ok(Outcome::Refused(e.to_string()))
@@ -104,12 +119,8 @@ impl<'a> VariantMaker<'a> {
         }
     }
 
-    fn build(
-        &self,
-        variant: &Variant,
-        design: &Design,
-        curve: FrictionCurve,
-    ) -> Result<Vec<u8>, ContentError> {
+    fn build(&self, variant: &Variant, accepted: &AcceptedVariant) -> Result<Vec<u8>, ContentError> {
+        let AcceptedVariant { design, forecast } = accepted;
         let sweep: &Sweep = self.variants.sweep();
         let mut parts = printed(design).map_err(|e| SetError::from(BuildError::from(e)))?;
         parts.retain(|part| sweep.parts.contains(&part.name.as_str()));
@@ -117,11 +128,12 @@ impl<'a> VariantMaker<'a> {
             parts.iter().map(|part| self.contents.keep(part, design)).collect::<Result<_, _>>()?;
         let linked: Vec<_> =
             parts.iter().zip(&kept).map(|(part, kept)| part_entry(&part.name, kept)).collect();
-        let prediction = Prediction::with_curve(design, curve);
-        let own = curve_files(design, &prediction, sweep.plots)?;
+        let curve = forecast.shared(design)?;
+        let plots = self.plots(design, &curve.prediction)?;
         let facts = parts.iter().zip(kept.iter().map(|k| &k.facts));
-        let mut manifest = Manifest::new(design, facts, &prediction);
-        manifest.files.extend(linked.iter().cloned().chain(own.iter().map(FileEntry::of)));
+        let mut manifest = Manifest::new(design, facts, &curve.prediction);
+        let tables = curve.files.iter().map(|(_, entry)| entry.clone());
+        manifest.files.extend(linked.iter().cloned().chain(tables).chain(plots.iter().map(FileEntry::of)));
         manifest.batch = Some(BatchEntry {
             sweep_sha256: self.sweep_sha256.to_owned(),
             index: variant.index,
@@ -129,7 +141,7 @@ impl<'a> VariantMaker<'a> {
         });
         let bytes = manifest.bytes()?;
         let folder = variant_folder(&variant.id);
-        for file in own {
+        for file in curve.files.iter().map(|(file, _)| file).chain(&plots) {
             self.destination.put(&format!("{folder}/{}", file.name), &file.bytes)?;
         }
         for entry in linked {
@@ -140,6 +152,16 @@ impl<'a> VariantMaker<'a> {
         // A variant with a manifest is whole: it comes last.
         self.destination.put(&format!("{folder}/manifest.json"), &bytes)?;
         Ok(bytes)
+    }
+
+    /// The figures of one variant, which bear its name.
+    fn plots(&self, design: &Design, prediction: &Prediction) -> Result<Vec<OutputFile>, SetError> {
+        if !self.variants.sweep().plots {
+            return Ok(Vec::new());
+        }
+        let mut files = curve_files(design, prediction, true)?;
+        files.retain(|file| file.name.ends_with(".svg"));
+        Ok(files)
     }
 
     /// The manifest of a variant that an earlier run made, if all its files are still what it says.

@@ -1,11 +1,12 @@
 //! Joins the tables of shards into the products of the whole sweep.
 
 use super::destination::{Destination, DestinationError};
-use super::products::{ProductError, Products, Tally};
+use super::products::{ProductError, Products};
 use super::run::ShardStamp;
 use super::stamp::{Stamp, StampError};
 use super::sweep::Sweep;
 use super::table_files::{TableError, read_rows};
+use super::tally::Tally;
 use super::variant::Variants;
 use pinswitch_switch::config::ConfigError;
 

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::gallery::Gallery;
-use super::products::Tally;
+use super::tally::Tally;
 
 /// The page without its data.
 const TEMPLATE: &str = include_str!("page.html");

@@ -2,14 +2,13 @@
 
 use std::collections::HashSet;
 
-use serde::Serialize;
-
 use super::destination::{Destination, DestinationError};
 use super::gallery::Gallery;
 use super::page::page;
 use super::plots::{curves_svg, threshold_svg};
 use super::table::{Row, Schema};
 use super::table_files::{TableError, TableWriter};
+use super::tally::Tally;
 use super::variant::Variants;
 use pinswitch_plot::PlotError;
 
@@ -25,25 +24,6 @@ pub enum ProductError {
     /// The destination.
     #[error(transparent)]
     Destination(#[from] DestinationError),
-}
-
-/// Totals over a number of variants.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Tally {
-    /// Variants that are there.
-    pub made: u64,
-    /// Variants that cannot be built or are forbidden.
-    pub refused: u64,
-    /// Variants that failed.
-    pub failed: u64,
-    /// Part files of all variants.
-    pub parts: u64,
-    /// Different ones among them.
-    pub distinct_parts: u64,
-    /// Bytes of all part files.
-    pub part_bytes: u64,
-    /// Bytes of the different ones.
-    pub distinct_bytes: u64,
 }
 
 /// Collects rows in the order of the sweep and writes the products.
@@ -91,29 +71,28 @@ impl<'a> Products<'a> {
     /// # Errors
     /// [`ProductError`] on a full disk, for example.
     pub(super) fn push(&mut self, index: u64, row: Row) -> Result<(), ProductError> {
-        match self.schema.cell(&row, "status").text() {
+        self.count(&row);
+        self.gallery.add(self.variants, index, &self.schema, &row);
+        self.table.push(row)?;
+        Ok(())
+    }
+
+    fn count(&mut self, row: &Row) {
+        let cell = |name: &str| self.schema.cell(row, name);
+        match cell("status").text() {
             Some("made") => self.tally.made += 1,
             Some("refused") => self.tally.refused += 1,
             _ => self.tally.failed += 1,
         }
         for part in self.schema.parts() {
-            let hash = self.schema.cell(&row, &format!("{part}.sha256")).text();
+            let hash = cell(&format!("{part}.sha256")).text();
             let hash = hash.and_then(|h| u64::from_str_radix(h.get(..16)?, 16).ok());
-            let bytes = self.schema.cell(&row, &format!("{part}.bytes")).number();
+            let bytes = cell(&format!("{part}.bytes")).number();
             if let (Some(hash), Some(bytes)) = (hash, bytes) {
                 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-                let bytes = bytes as u64;
-                self.tally.parts += 1;
-                self.tally.part_bytes += bytes;
-                if self.seen.insert(hash) {
-                    self.tally.distinct_parts += 1;
-                    self.tally.distinct_bytes += bytes;
-                }
+                self.tally.count_part(bytes as u64, self.seen.insert(hash));
             }
         }
-        self.gallery.add(self.variants, index, &self.schema, &row);
-        self.table.push(row)?;
-        Ok(())
     }
 
     /// Completes the table under `folder`, without plots and page.

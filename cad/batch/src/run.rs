@@ -10,11 +10,12 @@ use serde::{Deserialize, Serialize};
 use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
 use super::make::{Outcome, VariantMaker};
-use super::products::{ProductError, Products, Tally};
+use super::products::{ProductError, Products};
 use super::shard::Shard;
 use super::source::SweepSource;
 use super::stamp::{Stamp, StampError};
 use super::table::{Row, Schema};
+use super::tally::Tally;
 use super::variant::Variants;
 
 /// Variants whose rows are in memory at the same time.

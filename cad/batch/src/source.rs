@@ -1,6 +1,7 @@
 //! What a sweep is made of, as text: its own file, the configuration under it, its rows. Kept in `batch.json`, so that
 //! a batch can be resumed or merged without the files it was started from.
 
+use std::ops::Range;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -64,6 +65,11 @@ impl SweepSource {
             sweep,
             rows,
         })
+    }
+
+    /// Where a span of the sweep's file begins.
+    pub(super) fn place(&self, span: Option<Range<usize>>) -> Place {
+        Place::new(&self.file, &self.sweep, span.map_or(0, |s| s.start))
     }
 
     /// SHA-256 of everything that decides what the variants are, and of the program's version.

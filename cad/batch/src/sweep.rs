@@ -1,15 +1,11 @@
 //! A sweep: a base configuration, the axes over it, and the constraints that every variant must fulfil.
 
-use std::ops::Range;
-
 use toml_edit::{Document, Item, TableLike};
 
-use super::axis::{self, SweepAxis, config_error};
+use super::axis::{self, AXIS_TABLES, SweepAxis, config_error, fields};
 use super::constraint::Constraint;
-use super::rows::rows;
-use super::sampling::{Method, sample};
 use super::source::SweepSource;
-use pinswitch_switch::config::{ConfigError, Configuration, Place, read};
+use pinswitch_switch::config::{ConfigError, Configuration, read};
 use pinswitch_switch::parts::PRINTED_PARTS;
 
 /// What a sweep asks for, checked.
@@ -30,14 +26,11 @@ pub struct Sweep {
 }
 
 /// Tables of a sweep and their keys; an empty list takes fields.
-const TABLES: [(&str, &[&str]); 6] = [
-    ("sweep", &["name", "base", "preset", "parts", "plots"]),
-    ("set", &[]),
-    ("axes", &[]),
-    ("sample", &["method", "count", "seed", "axes"]),
-    ("rows", &["file"]),
-    ("constraints", &["require", "because"]),
-];
+fn tables() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
+    let own: [(&str, &[&str]); 2] = [("sweep", &["name", "base", "preset", "parts", "plots"]), ("set", &[])];
+    let constraints: (&str, &[&str]) = ("constraints", &["require", "because"]);
+    own.into_iter().chain(AXIS_TABLES.iter().map(|table| (table.name, table.keys))).chain([constraints])
+}
 
 impl Sweep {
     /// Reads and checks a sweep.
@@ -48,11 +41,11 @@ impl Sweep {
         let document: Document<String> = source
             .sweep
             .parse()
-            .map_err(|e: toml_edit::TomlError| ConfigError::syntax(place(source, e.span()), e.message()))?;
+            .map_err(|e: toml_edit::TomlError| ConfigError::syntax(source.place(e.span()), e.message()))?;
         check_keys(source, document.as_table())?;
         let table = |name: &str| document.get(name).and_then(Item::as_table_like);
         let located = |item: &Item| {
-            let place = place(source, item.span());
+            let place = source.place(item.span());
             move |e: ConfigError| e.at(place.clone())
         };
         let (mut base, _) = read(&source.base, "base")?;
@@ -64,23 +57,7 @@ impl Sweep {
             let value = axis::accepted(field, value).map_err(located(item))?;
             (field.set)(&mut base, &value).map_err(|r| located(item)(ConfigError::new(&path, "", r)))?;
         }
-        let mut axes = Vec::new();
-        if let Some((name, text)) = &source.rows {
-            axes.push(rows(text, name)?);
-        }
-        for (path, item) in fields(table("axes")) {
-            axes.push(axis::axis(&path, item).map_err(located(item))?);
-        }
-        if let Some(table) = table("sample") {
-            let item = document.get("sample").unwrap_or(&Item::None);
-            axes.push(sampled(table).map_err(located(item))?);
-        }
-        no_field_twice(&axes)?;
-        if axes.is_empty() {
-            let problem = "is empty: no [axes], [sample] or [rows]";
-            return Err(config_error("sweep", None, problem, "name at least one field with its values")
-                .at(place(source, None)));
-        }
+        let axes = axis::axes(source, document.as_table())?;
         let sweep = table("sweep");
         let item = document.get("sweep").unwrap_or(&Item::None);
         Ok(Self {
@@ -104,30 +81,11 @@ fn part_names() -> Vec<&'static str> {
     PRINTED_PARTS.iter().map(|p| p.name).collect()
 }
 
-fn place(source: &SweepSource, span: Option<Range<usize>>) -> Place {
-    Place::new(&source.file, &source.sweep, span.map_or(0, |s| s.start))
-}
-
-/// Fields of a table, whether written `"shell.width_mm" = ..` or as `[axes.shell] width_mm = ..`.
-fn fields(table: Option<&dyn TableLike>) -> Vec<(String, &Item)> {
-    let mut all = Vec::new();
-    for (key, item) in table.into_iter().flat_map(|t| t.iter()) {
-        match item.as_table_like() {
-            // A range is a table too: its keys are no fields of a section.
-            Some(inner) if !key.contains('.') && !inner.contains_key("from") => {
-                all.extend(inner.iter().map(|(k, item)| (format!("{key}.{k}"), item)));
-            }
-            _ => all.push((key.to_owned(), item)),
-        }
-    }
-    all
-}
-
 fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), ConfigError> {
     for (name, item) in document.iter() {
-        let place = place(source, item.span());
-        let Some((_, keys)) = TABLES.iter().find(|(table, _)| *table == name) else {
-            let known = TABLES.map(|(table, _)| table).join(", ");
+        let place = source.place(item.span());
+        let Some((_, keys)) = tables().find(|(table, _)| *table == name) else {
+            let known = tables().map(|(table, _)| table).collect::<Vec<_>>().join(", ");
             return Err(
                 config_error(name, None, "is no table of a sweep", &format!("known are {known}")).at(place)
             );
@@ -141,51 +99,13 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Conf
         }
         for (key, item) in tables.iter().flat_map(|t| t.iter()).filter(|_| !keys.is_empty()) {
             if !keys.contains(&key) {
-                let place = self::place(source, item.span());
+                let place = source.place(item.span());
                 let known = format!("known are {}", keys.join(", "));
                 return Err(config_error(&format!("{name}.{key}"), None, "is no known key", &known).at(place));
             }
         }
     }
     Ok(())
-}
-
-fn sampled(table: &dyn TableLike) -> Result<SweepAxis, ConfigError> {
-    let whole = |key: &str| table.get(key).and_then(Item::as_integer);
-    let method = match table.get("method").and_then(Item::as_str) {
-        Some("latin-hypercube") | None => Method::LatinHypercube,
-        Some("random") => Method::Random,
-        Some(other) => {
-            let value = format!("{other:?}");
-            let remedy = "give \"latin-hypercube\" or \"random\"";
-            return Err(config_error("sample.method", Some(&value), "is no method", remedy));
-        }
-    };
-    let count = whole("count").and_then(|n| usize::try_from(n).ok()).unwrap_or(0);
-    if count > 10_000_000 {
-        return Err(config_error(
-            "sample.count",
-            Some(&count.to_string()),
-            "is over ten million",
-            "lower it",
-        ));
-    }
-    let seed = whole("seed").unwrap_or(0).unsigned_abs();
-    let axes = fields(table.get("axes").and_then(Item::as_table_like));
-    sample(method, count, seed, axes.iter().map(|(path, item)| (path.as_str(), *item)))
-}
-
-fn no_field_twice(axes: &[SweepAxis]) -> Result<(), ConfigError> {
-    let all: Vec<_> = axes.iter().flat_map(|l| l.fields.iter().map(|f| f.path())).collect();
-    match all.iter().enumerate().find(|(i, path)| all[..*i].contains(path)) {
-        Some((_, path)) => Err(config_error(
-            path,
-            None,
-            "varies twice",
-            "keep it in one of [axes], [sample] and [rows], and name it once",
-        )),
-        None => Ok(()),
-    }
 }
 
 /// The name goes into folders and figures.
@@ -220,14 +140,14 @@ fn constraints(source: &SweepSource, document: &Document<String>) -> Result<Vec<
     let Some(tables) = document.get("constraints") else { return Ok(Vec::new()) };
     let tables = tables.as_array_of_tables().ok_or_else(|| {
         config_error("constraints", None, "is no list of tables", "write [[constraints]] before each")
-            .at(place(source, tables.span()))
+            .at(source.place(tables.span()))
     })?;
     tables
         .iter()
         .map(|table| {
             let text = table.get("require").and_then(Item::as_str).unwrap_or_default();
             let because = table.get("because").and_then(Item::as_str).map(str::to_owned);
-            Constraint::new(text, because).map_err(|e| e.at(place(source, table.span())))
+            Constraint::new(text, because).map_err(|e| e.at(source.place(table.span())))
         })
         .collect()
 }

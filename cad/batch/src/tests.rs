@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::*;
+use pinswitch_solid::solid::CapCache;
 use pinswitch_solid::validity::MeshFacts;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::parts::Part;
@@ -65,16 +66,16 @@ impl Fresh {
 }
 
 /// Shells 13 mm wide cannot be made: one way or the other.
-fn fails(part: &Part, design: &Design) -> Result<(Vec<u8>, MeshFacts), SetError> {
+fn fails(part: &Part, design: &Design, caps: &CapCache) -> Result<(Vec<u8>, MeshFacts), SetError> {
     if part.name == "shell" && design.configuration().shell.width_mm == 13.0 {
         return Err(SetError::Encoding("no paper left".to_owned()));
     }
-    mesh_file(part, design)
+    mesh_file(part, design, caps)
 }
 
-fn panics(part: &Part, design: &Design) -> Result<(Vec<u8>, MeshFacts), SetError> {
+fn panics(part: &Part, design: &Design, caps: &CapCache) -> Result<(Vec<u8>, MeshFacts), SetError> {
     assert!(part.name != "shell" || design.configuration().shell.width_mm != 13.0, "a fault on purpose");
-    mesh_file(part, design)
+    mesh_file(part, design, caps)
 }
 
 fn shards_merge_to_one_run(open: fn(&Fresh) -> Destination) {

@@ -162,7 +162,7 @@ impl Progress {
 
 impl Observer for Progress {
     fn variant_done(&self, outcome: &Outcome) {
-        if matches!(outcome, Outcome::Made { before: true, .. }) {
+        if matches!(outcome, Outcome::Made { reused: true, .. }) {
             self.before.fetch_add(1, Ordering::Relaxed);
         }
         self.bar.inc(1);

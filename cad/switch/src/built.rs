@@ -13,7 +13,7 @@ use crate::set::SetError;
 use pinswitch_solid::files::stl_bytes;
 use pinswitch_solid::mesh::Mesh;
 use pinswitch_solid::render::{View, render};
-use pinswitch_solid::solid::CapError;
+use pinswitch_solid::solid::{CapCache, CapError};
 use pinswitch_solid::validity::{Expectation, Fault, MeshFacts, examine};
 
 /// Pixels of the picture of the exploded assembly, across and up.
@@ -80,12 +80,8 @@ impl BuiltPart {
     pub fn new(part: Part, design: &Design) -> Result<Self, BuildError> {
         let body = MeshedBody::new(part, design)?;
         let print_mesh = body.mesh.clone().translated(body.part.print_shift_mm());
-        let expected = Expectation { intersections: false, ..body.part.expectation(design) };
-        let found = examine(&print_mesh, &expected);
-        match found.faults.into_iter().next() {
-            Some(fault) => Err(BuildError::Invalid { part: body.part.name, fault }),
-            None => Ok(Self { body, print_mesh, facts: found.facts }),
-        }
+        let facts = examined(&body.part, &print_mesh, design)?;
+        Ok(Self { body, print_mesh, facts })
     }
 
     /// The part.
@@ -99,6 +95,33 @@ impl BuiltPart {
     /// The writer's error; memory does not fail.
     pub fn stl(&self) -> std::io::Result<Vec<u8>> {
         stl_bytes(&self.print_mesh)
+    }
+}
+
+/// The mesh of `part` as it is written, on the print bed, and what it measures: for one part of many, with the caps that
+/// others have left in `caps`.
+///
+/// # Errors
+/// [`BuildError`]; a mesh that the oracle refuses is never returned.
+pub fn examined_print_mesh(
+    part: &Part,
+    design: &Design,
+    caps: &CapCache,
+) -> Result<(Mesh, MeshFacts), BuildError> {
+    let mesh = part.solid.mesh_with(design.tolerance(), caps);
+    let mesh = mesh.map_err(|source| BuildError::Cap { part: part.name.clone(), source })?;
+    let mesh = mesh.translated(part.print_shift_mm());
+    let facts = examined(part, &mesh, design)?;
+    Ok((mesh, facts))
+}
+
+/// What the mesh measures, if it is valid.
+fn examined(part: &Part, print_mesh: &Mesh, design: &Design) -> Result<MeshFacts, BuildError> {
+    let expected = Expectation { intersections: false, ..part.expectation(design) };
+    let found = examine(print_mesh, &expected);
+    match found.faults.into_iter().next() {
+        Some(fault) => Err(BuildError::Invalid { part: part.name.clone(), fault }),
+        None => Ok(found.facts),
     }
 }
 

@@ -2,8 +2,6 @@
 
 use std::io::{Read, Seek};
 
-use stl_io::{Normal, Triangle, Vertex};
-
 use super::stl_facets::{Facets, HEADER, RECORD, announced, read_binary};
 use crate::mesh::Mesh;
 
@@ -39,21 +37,24 @@ pub struct StlFile {
 }
 
 /// The mesh as binary STL: single precision, unit normals, an empty header.
+///
+/// # Errors
+/// A mesh of more triangles than the format can count.
 #[allow(clippy::cast_possible_truncation)]
 pub fn stl_bytes(mesh: &Mesh) -> std::io::Result<Vec<u8>> {
-    let facets: Vec<Triangle> = mesh
-        .facets()
-        .map(|corners| {
-            let [a, b, c] = corners;
-            let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
-            Triangle {
-                normal: Normal::new([normal.x as f32, normal.y as f32, normal.z as f32]),
-                vertices: corners.map(|p| Vertex::new([p.x as f32, p.y as f32, p.z as f32])),
-            }
-        })
-        .collect();
-    let mut bytes = Vec::with_capacity(84 + 50 * facets.len());
-    stl_io::write_stl(&mut bytes, facets.iter())?;
+    let count = u32::try_from(mesh.triangles.len()).map_err(std::io::Error::other)?;
+    let mut bytes = Vec::with_capacity(HEADER + RECORD * mesh.triangles.len());
+    bytes.resize(HEADER - size_of::<u32>(), 0);
+    bytes.extend(count.to_le_bytes());
+    for [a, b, c] in mesh.facets() {
+        let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+        let mut record = [0; RECORD];
+        let numbers = [normal, a.coords, b.coords, c.coords];
+        for (place, x) in record.chunks_exact_mut(size_of::<f32>()).zip(numbers.iter().flatten()) {
+            place.copy_from_slice(&(*x as f32).to_le_bytes());
+        }
+        bytes.extend(record);
+    }
     Ok(bytes)
 }
 

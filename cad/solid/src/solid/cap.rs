@@ -27,9 +27,12 @@ pub enum CapError {
     },
 }
 
+/// Triangles of indices into the corners of a cap's rings, one ring after the other; counter-clockwise.
+pub(super) type Triangles = Vec<[u32; 3]>;
+
 /// Triangulates the region between `loops` (the outline and its holes, in any orientation); returns triangles
 /// of indices into the concatenated points, counter-clockwise.
-pub(super) fn triangulate(loops: &[&[Point2]], z_mm: f64) -> Result<Vec<[usize; 3]>, CapError> {
+pub(super) fn triangulate(loops: &[&[Point2]], z_mm: f64) -> Result<Triangles, CapError> {
     let points: Vec<_> = loops.concat().iter().map(|p| SpadePoint::new(p.x, p.y)).collect();
     let mut edges = Vec::with_capacity(points.len());
     let mut first = 0;
@@ -55,7 +58,8 @@ pub(super) fn triangulate(loops: &[&[Point2]], z_mm: f64) -> Result<Vec<[usize; 
 }
 
 /// The faces that lie inside: reached from outside by crossing an odd number of constraint edges.
-fn inside(cdt: &ConstrainedDelaunayTriangulation<SpadePoint<f64>>) -> Vec<[usize; 3]> {
+#[allow(clippy::cast_possible_truncation)]
+fn inside(cdt: &ConstrainedDelaunayTriangulation<SpadePoint<f64>>) -> Triangles {
     let mut parity: Vec<Option<bool>> = vec![None; cdt.num_all_faces()];
     let outer = cdt.outer_face();
     parity[outer.fix().index()] = Some(false);
@@ -73,7 +77,7 @@ fn inside(cdt: &ConstrainedDelaunayTriangulation<SpadePoint<f64>>) -> Vec<[usize
         let Some(face) = face.as_inner() else { continue };
         let here = parity[face.fix().index()] == Some(true);
         if here {
-            triangles.push(face.vertices().map(|v| v.fix().index()));
+            triangles.push(face.vertices().map(|v| v.fix().index() as u32));
         }
         for edge in face.adjacent_edges() {
             let beyond = edge.rev().face().fix();
@@ -94,11 +98,11 @@ mod tests {
         [(low, low), (high, low), (high, high), (low, high)].map(|(x, y)| Point2::new(x, y)).to_vec()
     }
 
-    fn area(points: &[Point2], triangles: &[[usize; 3]]) -> f64 {
+    fn area(points: &[Point2], triangles: &[[u32; 3]]) -> f64 {
         triangles
             .iter()
             .map(|t| {
-                let [a, b, c] = t.map(|i| points[i]);
+                let [a, b, c] = t.map(|i| points[i as usize]);
                 (b - a).perp(&(c - a)) / 2.0
             })
             .sum()

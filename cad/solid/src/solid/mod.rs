@@ -6,6 +6,7 @@
 #[cfg(feature = "brep")]
 mod brep;
 mod cap;
+mod cap_cache;
 mod content;
 mod tessellate;
 mod volume;
@@ -15,6 +16,7 @@ use crate::profile::{Contour, OffsetError};
 #[cfg(feature = "brep")]
 pub use brep::{BrepError, BrepMesh};
 pub use cap::CapError;
+pub use cap_cache::CapCache;
 
 /// A ring: one contour at one height. Walls and caps that name it share its vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

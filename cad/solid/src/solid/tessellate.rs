@@ -1,7 +1,7 @@
 //! From a solid to its triangle mesh, within a chord tolerance.
 
-use super::cap::{CapError, triangulate};
-use super::{Cap, Facing, Solid};
+use super::cap::CapError;
+use super::{Cap, CapCache, Facing, Solid};
 use crate::mesh::{Mesh, Point3};
 use crate::profile::{ChordTolerance, Point2};
 
@@ -17,6 +17,15 @@ impl Solid {
     /// # Errors
     /// [`CapError`] if contours of one cap cross or touch.
     pub fn mesh(&self, tolerance: ChordTolerance) -> Result<Mesh, CapError> {
+        // A prism's lower and upper cap are one triangulation: even a single solid asks for most caps twice.
+        self.mesh_with(tolerance, &CapCache::new(usize::MAX))
+    }
+
+    /// The same mesh, with the triangulations that other solids have left in `caps`.
+    ///
+    /// # Errors
+    /// [`CapError`] if contours of one cap cross or touch.
+    pub fn mesh_with(&self, tolerance: ChordTolerance, caps: &CapCache) -> Result<Mesh, CapError> {
         let chords = self.matched_counts(|contour| contour.chords(tolerance));
         let mut positions = Vec::new();
         let rings: Vec<_> = self
@@ -34,34 +43,17 @@ impl Solid {
         for wall in &self.walls {
             strip(&rings[wall.lower.0], &rings[wall.upper.0], &positions, &mut triangles);
         }
-        // A prism's lower and upper cap are one triangulation: it is made once.
-        let mut known: Vec<(&Cap, Vec<[usize; 3]>)> = Vec::new();
         for cap in &self.caps {
-            let twin = known.iter().position(|(other, _)| is_twin(cap, other, &rings));
-            let cut = match twin {
-                Some(twin) => &known[twin].1,
-                None => {
-                    let loops: Vec<&[Point2]> =
-                        cap.rings.iter().map(|r| rings[r.0].points.as_slice()).collect();
-                    let cut = triangulate(&loops, self.rings[cap.rings[0].0].z_mm)?;
-                    known.push((cap, cut));
-                    &known[known.len() - 1].1
-                }
-            };
-            close(cap, cut, &rings, &mut triangles);
+            let loops: Vec<&[Point2]> = cap.rings.iter().map(|r| rings[r.0].points.as_slice()).collect();
+            let cut = caps.triangles(&loops, self.rings[cap.rings[0].0].z_mm)?;
+            close(cap, &cut, &rings, &mut triangles);
         }
         Ok(Mesh::new(positions, triangles))
     }
 }
 
-/// Whether two caps have the same rings, but for their heights.
-fn is_twin(a: &Cap, b: &Cap, rings: &[FlatRing]) -> bool {
-    let points = |cap: &Cap, i: usize| &rings[cap.rings[i].0].points;
-    a.rings.len() == b.rings.len() && (0..a.rings.len()).all(|i| points(a, i) == points(b, i))
-}
-
 /// Adds the triangles of a cap, `cut` into corners of its rings one after the other.
-fn close(cap: &Cap, cut: &[[usize; 3]], rings: &[FlatRing], triangles: &mut Vec<[u32; 3]>) {
+fn close(cap: &Cap, cut: &[[u32; 3]], rings: &[FlatRing], triangles: &mut Vec<[u32; 3]>) {
     let vertices: Vec<u32> = cap
         .rings
         .iter()
@@ -71,7 +63,7 @@ fn close(cap: &Cap, cut: &[[usize; 3]], rings: &[FlatRing], triangles: &mut Vec<
         })
         .collect();
     triangles.extend(cut.iter().map(|corners| {
-        let [a, b, c] = corners.map(|i| vertices[i]);
+        let [a, b, c] = corners.map(|i| vertices[i as usize]);
         match cap.facing {
             Facing::Up => [a, b, c],
             Facing::Down => [a, c, b],

@@ -1,16 +1,24 @@
-//! A CSV of rows: one variant a row, its columns named after fields.
+//! `[rows]`: a CSV of rows, one variant a row, its columns named after fields.
 
-use toml_edit::Value;
+use toml_edit::{Item, Value};
 
-use super::axis::{self, ParameterRef, SweepAxis, config_error};
+use super::{AxisTable, ParameterRef, SweepAxis, config_error};
+use crate::source::SweepSource;
 use pinswitch_switch::config::{ConfigError, Place};
+
+/// The table that names the file of rows, whose text the sweep's source holds.
+pub(super) const TABLE: AxisTable = AxisTable { name: "rows", keys: &["file"], level: 0, read };
+
+fn read(source: &SweepSource, _: &Item) -> Result<Vec<SweepAxis>, ConfigError> {
+    source.rows.iter().map(|(file, text)| rows(text, file)).collect()
+}
 
 /// Reads the rows in `text`; `file` names them in errors.
 ///
 /// # Errors
 /// [`ConfigError`] with file and line for a column that is no field, a value that it does not accept, a row that is
 /// too short, or no rows.
-pub(super) fn rows(text: &str, file: &str) -> Result<SweepAxis, ConfigError> {
+fn rows(text: &str, file: &str) -> Result<SweepAxis, ConfigError> {
     let mut reader =
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
     let at = |line: u64| Place { file: file.to_owned(), line: usize::try_from(line).ok() };
@@ -20,7 +28,7 @@ pub(super) fn rows(text: &str, file: &str) -> Result<SweepAxis, ConfigError> {
     };
     let header = reader.headers().map_err(broken)?.clone();
     let fields: Vec<ParameterRef> =
-        header.iter().map(|name| axis::field(name).map_err(|e| e.at(at(1)))).collect::<Result<_, _>>()?;
+        header.iter().map(|name| super::field(name).map_err(|e| e.at(at(1)))).collect::<Result<_, _>>()?;
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(broken)?;
@@ -30,7 +38,7 @@ pub(super) fn rows(text: &str, file: &str) -> Result<SweepAxis, ConfigError> {
             .map(|(field, cell)| {
                 // A bare word is taken as text, as with --set.
                 let value = cell.parse::<Value>().unwrap_or_else(|_| Value::from(cell));
-                axis::accepted(field, &value).map_err(|e| e.at(at(line)))
+                super::accepted(field, &value).map_err(|e| e.at(at(line)))
             })
             .collect::<Result<_, _>>()?;
         rows.push(row);

@@ -1,12 +1,21 @@
-//! Seeded samples: Latin hypercube (McKay, Beckman and Conover 1979) and plain random.
+//! `[sample]`: seeded samples, Latin hypercube (McKay, Beckman and Conover 1979) and plain random.
 
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use toml_edit::{Item, Value};
+use toml_edit::{Item, TableLike};
 
-use super::axis::{self, ParameterRef, Range, SweepAxis, config_error};
+use super::values::{self, Sampler};
+use super::{AxisTable, SweepAxis, accepted, config_error, fields};
+use crate::source::SweepSource;
 use pinswitch_switch::config::ConfigError;
+
+/// The table of a sample: one axis of as many rows as it has points.
+pub(super) const TABLE: AxisTable =
+    AxisTable { name: "sample", keys: &["method", "count", "seed", "axes"], level: 2, read };
+
+/// Number of points beyond which a count is taken for a typing error.
+const MAX_COUNT: usize = 10_000_000;
 
 /// How points are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,27 +47,48 @@ pub fn unit_points(method: Method, count: usize, axes: usize, seed: u64) -> Vec<
     points
 }
 
-/// What a coordinate of the unit cube stands for.
-enum Space {
-    Choices(Vec<Value>),
-    Range(Range),
+fn read(source: &SweepSource, item: &Item) -> Result<Vec<SweepAxis>, ConfigError> {
+    let Some(table) = item.as_table_like() else { return Ok(Vec::new()) };
+    let axis = sampled(table).map_err(|e| e.at(source.place(item.span())))?;
+    Ok(vec![axis])
+}
+
+fn sampled(table: &dyn TableLike) -> Result<SweepAxis, ConfigError> {
+    let whole = |key: &str| table.get(key).and_then(Item::as_integer);
+    let method = match table.get("method").and_then(Item::as_str) {
+        Some("latin-hypercube") | None => Method::LatinHypercube,
+        Some("random") => Method::Random,
+        Some(other) => {
+            let value = format!("{other:?}");
+            let remedy = "give \"latin-hypercube\" or \"random\"";
+            return Err(config_error("sample.method", Some(&value), "is no method", remedy));
+        }
+    };
+    let count = whole("count").and_then(|n| usize::try_from(n).ok()).unwrap_or(0);
+    if count > MAX_COUNT {
+        let value = count.to_string();
+        return Err(config_error("sample.count", Some(&value), "is over ten million", "lower it"));
+    }
+    let seed = whole("seed").unwrap_or(0).unsigned_abs();
+    let axes = fields(table.get("axes").and_then(Item::as_table_like));
+    sample(method, count, seed, axes.iter().map(|(path, item)| (path.as_str(), *item)))
 }
 
 /// The rows of a sample over `axes`: lists are choices, ranges are continuous, on a grid if they give `step`.
 ///
 /// # Errors
 /// [`ConfigError`] for an axis that cannot be sampled.
-pub(super) fn sample<'a>(
+fn sample<'a>(
     method: Method,
     count: usize,
     seed: u64,
     axes: impl Iterator<Item = (&'a str, &'a Item)>,
 ) -> Result<SweepAxis, ConfigError> {
     let mut fields = Vec::new();
-    let mut spaces = Vec::new();
+    let mut samplers: Vec<Sampler> = Vec::new();
     for (path, item) in axes {
-        let field = axis::field(path)?;
-        spaces.push(space(field, item)?);
+        let field = super::field(path)?;
+        samplers.push((values::kind(field, item)?.sampler)(field, item)?);
         fields.push(field);
     }
     if fields.is_empty() || count == 0 {
@@ -72,37 +102,11 @@ pub(super) fn sample<'a>(
     let rows = unit_points(method, count, fields.len(), seed)
         .into_iter()
         .map(|point| {
-            let coordinates = point.iter().zip(&spaces).zip(&fields);
-            coordinates.map(|((share, space), field)| axis::accepted(field, &space.at(*share))).collect()
+            let coordinates = point.iter().zip(&samplers).zip(&fields);
+            coordinates.map(|((share, sampler), field)| accepted(field, &sampler(*share))).collect()
         })
         .collect::<Result<_, _>>()?;
     Ok(SweepAxis { fields, rows })
-}
-
-fn space(field: ParameterRef, item: &Item) -> Result<Space, ConfigError> {
-    if let Some(list) = item.as_array() {
-        return Ok(Space::Choices(axis::listed(field, list)?));
-    }
-    let range = axis::range(field, item)?;
-    if range.count.is_some() {
-        return Err(config_error(
-            &format!("{}.count", field.path()),
-            None,
-            "has no place in a sample",
-            "give the number of points as sample.count",
-        ));
-    }
-    Ok(Space::Range(range))
-}
-
-impl Space {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
-    fn at(&self, share: f64) -> Value {
-        match self {
-            Self::Choices(all) => all[((share * all.len() as f64) as usize).min(all.len() - 1)].clone(),
-            Self::Range(range) => range.value(range.sampled_value(share)),
-        }
-    }
 }
 
 #[cfg(test)]

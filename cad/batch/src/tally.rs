@@ -1,0 +1,34 @@
+//! What a batch or a shard came to, in numbers.
+
+use serde::Serialize;
+
+/// Totals over a number of variants.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Tally {
+    /// Variants that are there.
+    pub made: u64,
+    /// Variants that cannot be built or are forbidden.
+    pub refused: u64,
+    /// Variants that failed.
+    pub failed: u64,
+    /// Part files of all variants.
+    pub parts: u64,
+    /// Different ones among them.
+    pub distinct_parts: u64,
+    /// Bytes of all part files.
+    pub part_bytes: u64,
+    /// Bytes of the different ones.
+    pub distinct_bytes: u64,
+}
+
+impl Tally {
+    /// Counts a part file; `is_new` says whether it is the first of its content.
+    pub(super) fn count_part(&mut self, bytes: u64, is_new: bool) {
+        self.parts += 1;
+        self.part_bytes += bytes;
+        if is_new {
+            self.distinct_parts += 1;
+            self.distinct_bytes += bytes;
+        }
+    }
+}

@@ -17,8 +17,8 @@ use pinswitch_switch::set::SetError;
 
 /// Recipes kept in the cache, about 500 bytes each; an evicted part is made again, with the same bytes.
 const CACHED_RECIPES: usize = 50_000;
-/// Corners of caps in the cache, 6 MB: neighbours in a sweep share most of theirs, but for the labels.
-const CACHED_CORNERS: usize = 131_072;
+/// Corners of caps in the cache, 3 MB: neighbours in a sweep share most of theirs, but for the labels.
+const CACHED_CORNERS: usize = 65_536;
 
 /// Makes the mesh file of a part: [`mesh_file`], or a stand-in that fails, in tests.
 pub type MeshMaker = fn(&Part, &Design, &CapCache) -> Result<(Vec<u8>, MeshFacts), SetError>;

@@ -13,7 +13,7 @@ use pinswitch_switch::prediction::{Prediction, predicted_curve};
 use pinswitch_switch::set::{OutputFile, SetError};
 
 /// Forecasts kept in the cache, about 15 kB each with their table.
-const CACHED_FORECASTS: usize = 256;
+const CACHED_FORECASTS: usize = 64;
 
 /// All that a prediction depends on: the contact and the loads.
 #[derive(Clone, Debug, PartialEq)]

@@ -18,7 +18,7 @@ const HASHED_NUMBERS: usize = 8;
 /// use pinswitch_solid::solid::{CapCache, Solid};
 ///
 /// let caps = CapCache::new(10_000);
-/// let tolerance = ChordTolerance::new(0.01).unwrap_or_default();
+/// let tolerance = ChordTolerance::new(0.01)?;
 /// let disc = Contour::circle(Point2::origin(), 5.0);
 /// for height_mm in [1.0, 2.0, 3.0] {
 ///     let solid = Solid::prism(&disc, &[], 0.0, height_mm, 0.0)?;

@@ -4,8 +4,8 @@
 
 use divan::{Bencher, black_box};
 use pinswitch_batch::{
-    Destination, Observer, Options, Outcome, Shard, Sweep, SweepSource, Variants, mesh_file, partial_folder,
-    run,
+    Destination, Observer, Options, Shard, Sweep, SweepSource, VariantOutcome, Variants, mesh_file,
+    partial_folder, run,
 };
 use pinswitch_switch::design::Design;
 
@@ -50,7 +50,7 @@ fn plan(sweep: &str) -> (Variants, SweepSource) {
 struct Unwatched;
 
 impl Observer for Unwatched {
-    fn variant_done(&self, _: &Outcome) {}
+    fn variant_done(&self, _: &VariantOutcome) {}
     fn stop_requested(&self) -> bool {
         false
     }

@@ -3,8 +3,8 @@
 //! `cargo run --release --example sweep`
 
 use pinswitch_batch::{
-    Destination, Observer, Options, Outcome, Shard, Sweep, SweepSource, Variants, mesh_file, partial_folder,
-    run,
+    Destination, Observer, Options, Shard, Sweep, SweepSource, VariantOutcome, Variants, mesh_file,
+    partial_folder, run,
 };
 
 const SWEEP: &str = r#"
@@ -24,8 +24,8 @@ because = "a land of two printed lines, and a little"
 struct Printer;
 
 impl Observer for Printer {
-    fn variant_done(&self, outcome: &Outcome) {
-        if let Outcome::Refused(reason) = outcome {
+    fn variant_done(&self, outcome: &VariantOutcome) {
+        if let VariantOutcome::Refused(reason) = outcome {
             println!("refused: {reason}");
         }
     }

@@ -137,7 +137,7 @@ fn a_full_disk_stops_the_run_and_room_lets_it_go_on() {
         run.is_ok_and(|o| o.status.success())
     };
     if !mount("size=1m") {
-        println!("SKIPPED: only an administrator can mount a small disk");
+        crate::harness::say_skipped("only an administrator can mount a small disk");
         return;
     }
     let outcome = std::panic::catch_unwind(|| {

@@ -12,8 +12,8 @@ use pinswitch_solid::solid::CapCache;
 use pinswitch_solid::validity::MeshFacts;
 use pinswitch_switch::built::examined_print_mesh;
 use pinswitch_switch::design::Design;
+use pinswitch_switch::output::SetError;
 use pinswitch_switch::parts::Part;
-use pinswitch_switch::set::SetError;
 
 /// Recipes kept in the cache, about 500 bytes each; an evicted part is made again, with the same bytes.
 const CACHED_RECIPES: usize = 50_000;

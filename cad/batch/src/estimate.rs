@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
 use super::forecast::Forecasts;
-use super::make::{Outcome, VariantMaker, accepted};
+use super::make::{VariantMaker, VariantOutcome, accepted};
 use super::shard::Shard;
 use super::variant::Variants;
 
@@ -162,7 +162,7 @@ fn measure(
         let sizes: Result<Vec<f64>, _> = indices
             .par_iter()
             .map(|index| match maker.make(&variants.get(*index))? {
-                Outcome::Made { manifest, .. } => {
+                VariantOutcome::Made { manifest, .. } => {
                     let facts: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
                     let files = facts["files"].as_array().map(Vec::as_slice).unwrap_or_default();
                     let bytes: u64 = files.iter().filter_map(|f| f["bytes"].as_u64()).sum();

@@ -9,8 +9,8 @@ use pinswitch_friction::{Contact, FrictionCurve};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::FileEntry;
 use pinswitch_switch::formats::curve_files;
+use pinswitch_switch::output::{OutputFile, SetError};
 use pinswitch_switch::prediction::{Prediction, predicted_curve};
-use pinswitch_switch::set::{OutputFile, SetError};
 
 /// Forecasts kept in the cache, about 15 kB each with their table.
 const CACHED_FORECASTS: usize = 64;

@@ -62,7 +62,7 @@ pub use content::{MeshMaker, mesh_file};
 pub use destination::Store;
 pub use destination::{Destination, DestinationError, DestinationLock, Folder};
 pub use estimate::{Estimate, Measured, RefusalGroup, estimate};
-pub use make::Outcome;
+pub use make::VariantOutcome;
 pub use merge::{MergeError, merge};
 pub use products::ProductError;
 pub use run::{Observer, Options, RunError, ShardStamp, partial_folder, run};
@@ -71,7 +71,7 @@ pub use source::SweepSource;
 pub use stamp::{Stamp, StampError};
 pub use sweep::Sweep;
 pub use table::{Cell, Column, ColumnType, Row, Schema};
-pub use table_files::{TableError, TableWriter, read_rows};
+pub use table_files::{BatchTableError, TableWriter, read_rows};
 pub use tally::Tally;
 pub use variant::{Variant, Variants};
 

@@ -11,17 +11,17 @@ use super::forecast::{Forecast, Forecasts};
 use super::hexadecimal;
 use super::sweep::Sweep;
 use super::variant::{Variant, Variants};
-use pinswitch_switch::built::BuildError;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::formats::curve_files;
+use pinswitch_switch::output::BuildError;
+use pinswitch_switch::output::{OutputFile, SetError};
 use pinswitch_switch::parts::printed;
 use pinswitch_switch::prediction::Prediction;
-use pinswitch_switch::set::{OutputFile, SetError};
 
 /// What became of a variant.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
+pub enum VariantOutcome {
     /// Its files are at the destination; this is its manifest.
     Made {
         /// The manifest's bytes.
@@ -101,21 +101,21 @@ impl<'a> VariantMaker<'a> {
     ///
     /// # Errors
     /// [`DestinationError`] for what would stop every other variant too, such as a full disk.
-    pub(super) fn make(&self, variant: &Variant) -> Result<Outcome, DestinationError> {
+    pub(super) fn make(&self, variant: &Variant) -> Result<VariantOutcome, DestinationError> {
         let accepted = match accepted(self.variants, variant, &self.forecasts) {
             Ok(accepted) => accepted,
-            Err(reason) => return Ok(Outcome::Refused(reason)),
+            Err(reason) => return Ok(VariantOutcome::Refused(reason)),
         };
         if let Some(manifest) = self.resumed.then(|| self.whole(variant)).transpose()?.flatten() {
-            return Ok(Outcome::Made { manifest, reused: true });
+            return Ok(VariantOutcome::Made { manifest, reused: true });
         }
         match self.build(variant, &accepted) {
-            Ok(manifest) => Ok(Outcome::Made { manifest, reused: false }),
+            Ok(manifest) => Ok(VariantOutcome::Made { manifest, reused: false }),
             Err(ContentError::Destination(e)) if e.is_fatal => Err(e),
             Err(ContentError::Set(SetError::Build(BuildError::Configuration(e)))) => {
-                Ok(Outcome::Refused(e.to_string()))
+                Ok(VariantOutcome::Refused(e.to_string()))
             }
-            Err(e) => Ok(Outcome::Failed(e.to_string())),
+            Err(e) => Ok(VariantOutcome::Failed(e.to_string())),
         }
     }
 

@@ -5,7 +5,7 @@ use super::products::{ProductError, Products};
 use super::run::ShardStamp;
 use super::stamp::{Stamp, StampError};
 use super::sweep::Sweep;
-use super::table_files::{TableError, read_rows};
+use super::table_files::{BatchTableError, read_rows};
 use super::tally::Tally;
 use super::variant::Variants;
 use pinswitch_switch::config::ConfigError;
@@ -107,7 +107,7 @@ pub fn merge(places: &[Destination], target: &Destination) -> Result<Tally, Merg
         let rows = read_rows(bytes, &schema).map_err(|e| broken(e.to_string()))?;
         let mut expected = shard.stamp.variants.clone();
         for row in rows {
-            let row = row.map_err(|e: TableError| broken(e.to_string()))?;
+            let row = row.map_err(|e: BatchTableError| broken(e.to_string()))?;
             let index = expected.next().ok_or_else(|| broken("its table has too many rows".to_owned()))?;
             #[allow(clippy::cast_precision_loss)]
             if schema.cell(&row, "index").number() != Some(index as f64) {

@@ -7,7 +7,7 @@ use super::gallery::Gallery;
 use super::page::page;
 use super::plots::{curves_svg, threshold_svg};
 use super::table::{Row, Schema};
-use super::table_files::{TableError, TableWriter};
+use super::table_files::{BatchTableError, TableWriter};
 use super::tally::Tally;
 use super::variant::Variants;
 use pinswitch_plot::PlotError;
@@ -17,13 +17,16 @@ use pinswitch_plot::PlotError;
 pub enum ProductError {
     /// The table.
     #[error(transparent)]
-    Table(#[from] TableError),
+    Table(#[from] BatchTableError),
     /// A plot.
     #[error(transparent)]
     Plot(#[from] PlotError),
     /// The destination.
     #[error(transparent)]
     Destination(#[from] DestinationError),
+    /// What a shard says of itself.
+    #[error("the shard's stamp cannot be written: {0}")]
+    Stamp(#[from] serde_json::Error),
 }
 
 /// Collects rows in the order of the sweep and writes the products.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
-use super::make::{Outcome, VariantMaker};
+use super::make::{VariantMaker, VariantOutcome};
 use super::products::{ProductError, Products};
 use super::shard::Shard;
 use super::source::SweepSource;
@@ -37,7 +37,7 @@ pub struct Options {
 /// Observes a run, and may stop it.
 pub trait Observer: Sync {
     /// One more variant is done.
-    fn variant_done(&self, outcome: &Outcome);
+    fn variant_done(&self, outcome: &VariantOutcome);
     /// Whether no further variant should be started.
     fn stop_requested(&self) -> bool;
 }
@@ -149,7 +149,7 @@ pub fn run(
     let folder = format!("shards/{}/", options.shard.folder());
     let tally = products.finish_table(&folder)?;
     let stamp = ShardStamp { sweep_sha256: stamp.sweep_sha256, shard: options.shard, variants: range };
-    let bytes = serde_json::to_vec_pretty(&stamp).unwrap_or_default();
+    let bytes = serde_json::to_vec_pretty(&stamp).map_err(ProductError::from)?;
     destination.put(&format!("{folder}shard.json"), &bytes).map_err(ProductError::from)?;
     Ok(tally)
 }
@@ -200,14 +200,16 @@ fn make_chunk(
             let variant = variants.get(index);
             // A panic in one variant must not lose the others.
             let outcome = catch_unwind(AssertUnwindSafe(|| maker.make(&variant))).unwrap_or_else(|_| {
-                Ok(Outcome::Failed("a fault of the program; please report the configuration".to_owned()))
+                Ok(VariantOutcome::Failed(
+                    "a fault of the program; please report the configuration".to_owned(),
+                ))
             });
             match outcome {
                 Err(error) => {
                     halt.store(true, Ordering::Relaxed);
                     VariantResult::Fatal(error)
                 }
-                Ok(Outcome::Failed(reason)) if options.fail_fast => {
+                Ok(VariantOutcome::Failed(reason)) if options.fail_fast => {
                     halt.store(true, Ordering::Relaxed);
                     VariantResult::Failed { id: variant.id, reason }
                 }

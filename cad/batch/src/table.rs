@@ -4,7 +4,7 @@ use serde_json::Value as Json;
 use sha2::{Digest, Sha256};
 
 use super::hexadecimal;
-use super::make::Outcome;
+use super::make::VariantOutcome;
 use super::sweep::Sweep;
 use super::variant::Variant;
 use pinswitch_switch::config::Configuration;
@@ -130,11 +130,11 @@ impl Schema {
     }
 
     /// The row of a variant.
-    pub fn row(&self, variant: &Variant, outcome: &Outcome) -> Row {
+    pub fn row(&self, variant: &Variant, outcome: &VariantOutcome) -> Row {
         let (status, reason, manifest) = match outcome {
-            Outcome::Made { manifest, .. } => ("made", Cell::Empty, Some(manifest)),
-            Outcome::Refused(reason) => ("refused", Cell::Text(reason.clone()), None),
-            Outcome::Failed(reason) => ("failed", Cell::Text(reason.clone()), None),
+            VariantOutcome::Made { manifest, .. } => ("made", Cell::Empty, Some(manifest)),
+            VariantOutcome::Refused(reason) => ("refused", Cell::Text(reason.clone()), None),
+            VariantOutcome::Failed(reason) => ("failed", Cell::Text(reason.clone()), None),
         };
         let text = |t: &str| Cell::Text(t.to_owned());
         let mut row = vec![

@@ -24,7 +24,7 @@ const GROUP_ROWS: usize = 4096;
 
 /// The table cannot be written or read.
 #[derive(Debug, thiserror::Error)]
-pub enum TableError {
+pub enum BatchTableError {
     /// CSV.
     #[error("the table cannot be written as CSV: {0}")]
     Csv(#[from] csv::Error),
@@ -48,8 +48,8 @@ impl TableWriter {
     /// Starts both files.
     ///
     /// # Errors
-    /// [`TableError`] if a file cannot be made.
-    pub fn create(schema: &Schema, csv: &Path, parquet: &Path) -> Result<Self, TableError> {
+    /// [`BatchTableError`] if a file cannot be made.
+    pub fn create(schema: &Schema, csv: &Path, parquet: &Path) -> Result<Self, BatchTableError> {
         let mut csv = csv::Writer::from_writer(BufWriter::new(File::create(csv)?));
         csv.write_record(schema.columns().iter().map(|c| c.name.as_str()))?;
         let properties = WriterProperties::builder()
@@ -67,8 +67,8 @@ impl TableWriter {
     /// Adds a row.
     ///
     /// # Errors
-    /// [`TableError`], on a full disk for example.
-    pub fn push(&mut self, row: Row) -> Result<(), TableError> {
+    /// [`BatchTableError`], on a full disk for example.
+    pub fn push(&mut self, row: Row) -> Result<(), BatchTableError> {
         self.csv.write_record(row.iter().map(ToString::to_string))?;
         self.group.push(row);
         if self.group.len() == GROUP_ROWS { self.write_group() } else { Ok(()) }
@@ -77,15 +77,15 @@ impl TableWriter {
     /// Completes both files.
     ///
     /// # Errors
-    /// [`TableError`], on a full disk for example.
-    pub fn finish(mut self) -> Result<(), TableError> {
+    /// [`BatchTableError`], on a full disk for example.
+    pub fn finish(mut self) -> Result<(), BatchTableError> {
         self.write_group()?;
         self.csv.flush()?;
         self.parquet.close()?;
         Ok(())
     }
 
-    fn write_group(&mut self) -> Result<(), TableError> {
+    fn write_group(&mut self) -> Result<(), BatchTableError> {
         let rows = std::mem::take(&mut self.group);
         if rows.is_empty() {
             return Ok(());
@@ -152,11 +152,11 @@ fn parquet_schema(schema: &Schema) -> Result<TypePtr, ParquetError> {
 /// Rows of a Parquet table with the columns of `schema`, one after the other.
 ///
 /// # Errors
-/// [`TableError`] for bytes that are no such table.
+/// [`BatchTableError`] for bytes that are no such table.
 pub fn read_rows(
     bytes: Vec<u8>,
     schema: &Schema,
-) -> Result<impl Iterator<Item = Result<Row, TableError>> + use<>, TableError> {
+) -> Result<impl Iterator<Item = Result<Row, BatchTableError>> + use<>, BatchTableError> {
     let reader = SerializedFileReader::new(Bytes::from(bytes))?;
     let names: Vec<_> =
         reader.metadata().file_metadata().schema().get_fields().iter().map(|f| f.name().to_owned()).collect();

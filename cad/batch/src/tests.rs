@@ -6,8 +6,8 @@ use super::*;
 use pinswitch_solid::solid::CapCache;
 use pinswitch_solid::validity::MeshFacts;
 use pinswitch_switch::design::Design;
+use pinswitch_switch::output::SetError;
 use pinswitch_switch::parts::Part;
-use pinswitch_switch::set::SetError;
 
 fn plan() -> (Variants, SweepSource) {
     let source = SweepSource {
@@ -25,7 +25,7 @@ fn plan() -> (Variants, SweepSource) {
 struct Counted(AtomicU64);
 
 impl Observer for Counted {
-    fn variant_done(&self, _: &Outcome) {
+    fn variant_done(&self, _: &VariantOutcome) {
         self.0.fetch_add(1, Ordering::Relaxed);
     }
     fn stop_requested(&self) -> bool {

@@ -12,7 +12,7 @@ use pinswitch_calibration::{
 use super::{Failure, print};
 use crate::write::write_set;
 use pinswitch_plot::{UNEXPLAINED, page, plots, published_page, published_plot};
-use pinswitch_switch::set::OutputFile;
+use pinswitch_switch::output::OutputFile;
 
 /// Refit the paper's model to a plateau table, trace what it misses to an effect, and report the error before and after.
 ///

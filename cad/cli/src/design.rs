@@ -14,7 +14,7 @@ use pinswitch_plot::pareto_svg;
 use pinswitch_switch::config::to_toml;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::inverse::{Proposal, SearchResult, find, search_for};
-use pinswitch_switch::set::OutputFile;
+use pinswitch_switch::output::OutputFile;
 
 /// Find pin layouts that switch where you want them to.
 ///

@@ -10,8 +10,9 @@ use super::predict_rows::calibrated_curve;
 use super::source::Source;
 use super::{Failure, print};
 use crate::write::write_set;
-use pinswitch_switch::built::{BuildError, Built};
+use pinswitch_switch::built::Built;
 use pinswitch_switch::formats::{ALL, FORMATS, Inclusion, named};
+use pinswitch_switch::output::BuildError;
 use pinswitch_switch::prediction::Prediction;
 use pinswitch_switch::set::Set;
 

@@ -14,7 +14,7 @@ use super::source::Source;
 use super::{Failure, print, print_json};
 use crate::write::write_set;
 use pinswitch_plot::contact_svg;
-use pinswitch_switch::set::OutputFile;
+use pinswitch_switch::output::OutputFile;
 
 /// Loads of the profile, as shares of the heaviest.
 const PROFILE_LOADS: [f64; 4] = [0.1, 0.3, 0.6, 1.0];

@@ -8,7 +8,8 @@ use super::Failure;
 use super::source::Source;
 use crate::write::write_file;
 use pinswitch_solid::render::{View, render};
-use pinswitch_switch::built::{BuildError, Built};
+use pinswitch_switch::built::Built;
+use pinswitch_switch::output::BuildError;
 use pinswitch_switch::scene::{assembled, plate};
 
 /// Draw a picture of the parts as PNG: assembled, pulled apart, or laid out as printed.

@@ -10,8 +10,8 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Failure, print, print_json};
 use pinswitch_batch::{
-    Destination, Estimate, Observer, Options, Outcome, RunError, Shard, Sweep, SweepSource, Tally, Variants,
-    estimate, mesh_file, partial_folder, run as run_batch,
+    Destination, Estimate, Observer, Options, RunError, Shard, Sweep, SweepSource, Tally, VariantOutcome,
+    Variants, estimate, mesh_file, partial_folder, run as run_batch,
 };
 
 /// More variants than this want --yes.
@@ -161,8 +161,8 @@ impl Progress {
 }
 
 impl Observer for Progress {
-    fn variant_done(&self, outcome: &Outcome) {
-        if matches!(outcome, Outcome::Made { reused: true, .. }) {
+    fn variant_done(&self, outcome: &VariantOutcome) {
+        if matches!(outcome, VariantOutcome::Made { reused: true, .. }) {
             self.before.fetch_add(1, Ordering::Relaxed);
         }
         self.bar.inc(1);

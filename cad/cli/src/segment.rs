@@ -11,7 +11,7 @@ use pinswitch_calibration::table::PlateauTable;
 use super::{Failure, print};
 use crate::write::write_set;
 use pinswitch_plot::log_svg;
-use pinswitch_switch::set::OutputFile;
+use pinswitch_switch::output::OutputFile;
 
 /// Turn raw 200 Hz logs into a plateau table, and list what is wrong with each log.
 ///

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::{Failure, print};
 use crate::write::write_set;
-use pinswitch_switch::set::OutputFile;
+use pinswitch_switch::output::OutputFile;
 
 /// Simulate a friction rig with known effects and noise, or study the calibrator on many of them.
 ///

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use pinswitch_switch::set::OutputFile;
+use pinswitch_switch::output::OutputFile;
 
 /// A file or folder cannot be written.
 #[derive(Debug, thiserror::Error)]

@@ -64,7 +64,9 @@ impl Axis {
             Covariate::Repetition => plain("repetition", Box::new(|p| p.repetition)),
             Covariate::Position => plain("position (mm)", Box::new(move |p| p.position * stroke)),
             Covariate::Speed => plain("speed (%)", Box::new(move |p| speed * p.log_speed.exp())),
-            Covariate::Dwell => plain("dwell (s)", Box::new(|p| 3.0 * p.log_dwell.exp())),
+            Covariate::Dwell => {
+                plain("dwell (s)", Box::new(|p| pinswitch_friction::published::DWELL_S * p.log_dwell.exp()))
+            }
             Covariate::Time => plain("time (h)", Box::new(move |p| p.time * session / 3600.0)),
             Covariate::Direction => named(
                 "direction",

@@ -4,45 +4,14 @@
 
 use std::sync::OnceLock;
 
-use crate::config::ConfigError;
 use crate::design::Design;
+use crate::output::BuildError;
 use crate::parallel::map_each;
 use crate::parts::{Part, Role, printed, reference_bodies};
-use crate::scene::assembled;
-use crate::set::SetError;
 use pinswitch_solid::files::stl_bytes;
 use pinswitch_solid::mesh::Mesh;
-use pinswitch_solid::render::{View, render};
-use pinswitch_solid::solid::{CapCache, CapError};
-use pinswitch_solid::validity::{Expectation, Fault, MeshFacts, examine};
-
-/// Pixels of the picture of the exploded assembly, across and up.
-const EXPLODED_PIXELS: (u32, u32) = (900, 675);
-
-/// Why a design cannot be built.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum BuildError {
-    /// The configuration asks for something that cannot be built.
-    #[error(transparent)]
-    Configuration(#[from] ConfigError),
-    /// Contours of a part cross: a bound is missing, and this is a fault of the program.
-    #[error("{part}: {source}; please report the configuration")]
-    Cap {
-        /// The part.
-        part: String,
-        /// Where.
-        source: CapError,
-    },
-    /// A mesh is not valid: a fault of the program.
-    #[error("{part}: invalid mesh: {fault}; please report the configuration")]
-    Invalid {
-        /// The part.
-        part: String,
-        /// What is wrong.
-        fault: Fault,
-    },
-}
+use pinswitch_solid::solid::CapCache;
+use pinswitch_solid::validity::{Expectation, MeshFacts, examine};
 
 /// A body with its mesh about the pulley's axis, standing on z = 0.
 #[derive(Clone, Debug)]
@@ -182,18 +151,9 @@ impl Built {
         &self.reference
     }
 
-    /// The parts pulled apart, as PNG: drawn when a format first asks for it.
-    ///
-    /// # Errors
-    /// [`SetError::Encoding`] if the picture cannot be encoded.
-    pub fn exploded_png(&self) -> Result<&[u8], SetError> {
-        if let Some(known) = self.exploded_png.get() {
-            return Ok(known);
-        }
-        let view = View { turn_deg: 30.0, rise_deg: 40.0 };
-        let (width, height) = EXPLODED_PIXELS;
-        let png = render(&assembled(self, 1.0), view, width, height).png().map_err(SetError::encoding)?;
-        Ok(self.exploded_png.get_or_init(|| png))
+    /// Where the picture of the exploded assembly is kept, once it is drawn.
+    pub(crate) const fn kept_picture(&self) -> &OnceLock<Vec<u8>> {
+        &self.exploded_png
     }
 
     /// Every body of the assembly with its place, printed ones first. The proxy stands in for the silicone only where

@@ -22,6 +22,7 @@ pub mod design;
 pub mod documents;
 pub mod formats;
 pub mod inverse;
+pub mod output;
 mod parallel;
 pub mod parts;
 pub mod prediction;

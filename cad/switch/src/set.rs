@@ -1,26 +1,10 @@
 //! A whole set in memory: nothing is written before everything is known to be right.
 
-use crate::built::{BuildError, Built};
+use crate::built::Built;
 use crate::documents::{FileEntry, Manifest};
 use crate::formats::Format;
+use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
-use pinswitch_plot::PlotError;
-
-/// A file to be written.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OutputFile {
-    /// Its name in the folder.
-    pub name: String,
-    /// Its content.
-    pub bytes: Vec<u8>,
-}
-
-impl OutputFile {
-    /// A file of these bytes.
-    pub fn new(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
-        Self { name: name.into(), bytes: bytes.into() }
-    }
-}
 
 /// A set of parts with its curve, ready to be written; the manifest is the last file.
 #[derive(Clone, Debug)]
@@ -29,28 +13,6 @@ pub struct Set {
     pub manifest: Manifest,
     /// The files, the manifest last.
     pub files: Vec<OutputFile>,
-}
-
-/// Why a set cannot be made.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SetError {
-    /// A part cannot be built.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// The plot cannot be drawn.
-    #[error(transparent)]
-    Plot(#[from] PlotError),
-    /// A file cannot be put together.
-    #[error("cannot put a file together: {0}")]
-    Encoding(String),
-}
-
-impl SetError {
-    /// A file that cannot be put together, for this reason.
-    pub fn encoding(error: impl std::fmt::Display) -> Self {
-        Self::Encoding(error.to_string())
-    }
 }
 
 impl Set {

@@ -37,4 +37,4 @@ pub use plan::{EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan, RigCon
 pub use power::{Power, power};
 pub use raw::{Faults, RawLog, RawRun};
 pub use simulate::{Simulated, simulate};
-pub use study::{Case, Outcome, Study, Truth, plan_of, run_case, study_cases};
+pub use study::{Case, CaseOutcome, Study, Truth, plan_of, run_case, study_cases};

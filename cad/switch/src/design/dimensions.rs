@@ -26,6 +26,13 @@ pub struct Slot {
     pub depth_mm: f64,
 }
 
+impl Slot {
+    /// Radius of the slot's end towards the axis.
+    pub fn inner_edge_mm(&self) -> f64 {
+        self.inner_mm - self.width_mm / 2.0
+    }
+}
+
 impl Dimensions {
     pub(super) const fn new(configuration: Configuration) -> Self {
         Self { configuration }
@@ -152,6 +159,11 @@ impl Dimensions {
         let room = c.shell.width_mm + 2.0 * self.slot().depth_mm - c.pins.end_play_mm;
         // A hair more, so that 18.0 computed as 17.999... is still 18.0.
         ((room + 1e-9) / PIN_LENGTH_STEP_MM).floor() * PIN_LENGTH_STEP_MM
+    }
+
+    /// How far the pins reach into each support.
+    pub fn pin_overhang_mm(&self) -> f64 {
+        (self.pin_length_mm() - self.configuration.shell.width_mm) / 2.0
     }
 
     /// Radius on which the fastener holes lie: the middle of the wall under the grooves.

@@ -8,9 +8,9 @@ use sha2::{Digest, Sha256};
 use super::{Bill, bill_of_materials};
 use crate::config::{Configuration, Origin};
 use crate::design::Design;
+use crate::output::{OutputFile, SetError};
 use crate::parts::{Material, Part};
 use crate::prediction::Prediction;
-use crate::set::{OutputFile, SetError};
 use pinswitch_solid::validity::MeshFacts;
 
 /// One value that the user may set.

@@ -4,8 +4,8 @@ use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::design::Design;
 use crate::documents::{Manifest, friction_csv};
+use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
-use crate::set::{OutputFile, SetError};
 use pinswitch_plot::friction_svg;
 
 pub(super) const FORMAT: Format = Format {

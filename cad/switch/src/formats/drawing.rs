@@ -6,9 +6,9 @@ use std::fmt::Write as _;
 use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::documents::Manifest;
+use crate::output::{OutputFile, SetError};
 use crate::parts::Part;
 use crate::prediction::Prediction;
-use crate::set::{OutputFile, SetError};
 use pinswitch_solid::profile::{Contour, Edge, Point2};
 use pinswitch_solid::solid::Facing;
 

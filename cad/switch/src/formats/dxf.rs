@@ -3,8 +3,8 @@
 use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::documents::Manifest;
+use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
-use crate::set::{OutputFile, SetError};
 use pinswitch_solid::files::dxf;
 
 pub(super) const FORMAT: Format = Format {

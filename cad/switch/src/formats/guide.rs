@@ -8,9 +8,9 @@ use crate::config::MouldKind;
 use crate::design::Design;
 use crate::design::rules::checklist;
 use crate::documents::Manifest;
+use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
-use crate::scene::plate;
-use crate::set::{OutputFile, SetError};
+use crate::scene::{exploded_png, plate};
 use pinswitch_friction::Substrate;
 use pinswitch_solid::render::View;
 
@@ -23,7 +23,7 @@ const PLATE_PIXELS: (u32, u32) = (900, 675);
 fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
     let above = View { turn_deg: 0.0, rise_deg: 55.0 };
     Ok(vec![
-        OutputFile::new("assembly.png", built.exploded_png()?),
+        OutputFile::new("assembly.png", exploded_png(built)?),
         OutputFile::new("plate.png", png(&plate(built), above, PLATE_PIXELS.0, PLATE_PIXELS.1)?),
         OutputFile::new("PRINTING.md", printing_guide(built.design(), manifest)),
     ])

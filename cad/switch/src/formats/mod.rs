@@ -2,8 +2,8 @@
 
 use crate::built::Built;
 use crate::documents::Manifest;
+use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
-use crate::set::{OutputFile, SetError};
 use pinswitch_solid::render::{Body, View, render};
 
 pub use curve::curve_files;

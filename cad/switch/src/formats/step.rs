@@ -3,9 +3,9 @@
 use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::documents::Manifest;
+use crate::output::{OutputFile, SetError};
 use crate::parts::Part;
 use crate::prediction::Prediction;
-use crate::set::{OutputFile, SetError};
 use pinswitch_solid::files::{StepPart, step_assembly, step_part};
 
 pub(super) const FORMAT: Format = Format {

@@ -3,9 +3,9 @@
 use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::documents::Manifest;
+use crate::output::{OutputFile, SetError};
 use crate::parallel::map_each;
 use crate::prediction::Prediction;
-use crate::set::{OutputFile, SetError};
 
 pub(super) const FORMAT: Format =
     Format { name: "stl", about: "One binary STL per part", inclusion: Inclusion::Default, make };

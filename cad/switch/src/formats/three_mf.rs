@@ -4,9 +4,9 @@ use super::{Format, Inclusion, png};
 use crate::built::Built;
 use crate::config::to_toml;
 use crate::documents::{Manifest, friction_csv};
+use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
 use crate::scene::plate;
-use crate::set::{OutputFile, SetError};
 use pinswitch_solid::files::{Object, Package, three_mf};
 use pinswitch_solid::render::View;
 

@@ -35,7 +35,7 @@ pub struct PrintedPart {
 }
 
 /// Every printed part, in the order in which a set lists them.
-pub const PRINTED_PARTS: [PrintedPart; 10] = [
+pub const PRINTED_PARTS: &[PrintedPart] = &[
     PrintedPart { name: "shell", is_wanted: |_| true, build: shell::shell },
     PrintedPart { name: "mould-core", is_wanted: has_split_mould, build: mould::core },
     PrintedPart { name: "mould-ring", is_wanted: has_split_mould, build: mould::ring },
@@ -83,7 +83,7 @@ pub fn reference_bodies(design: &Design) -> Result<Vec<Part>, ConfigError> {
     if !is_rigid(c) {
         bodies.push(silicone_layer(design)?);
     }
-    let z_mm = (c.shell.width_mm - design.pin_length_mm()) / 2.0;
+    let z_mm = -design.pin_overhang_mm();
     for (index, angle) in design.pin_angles_rad().into_iter().enumerate() {
         let outline = Contour::circle(polar(design.contact_radius_mm(), angle), c.pins.diameter_mm / 2.0);
         let solid = Solid::prism(&outline, &[], 0.0, design.pin_length_mm(), 0.0)

@@ -69,8 +69,7 @@ fn support(design: &Design, side: Side) -> Result<Part, ConfigError> {
     for piece in lip {
         tops.push(solid.boss(&turned(piece), plate, lip_top));
     }
-    let slot = design.slot();
-    let under_slots = slot.inner_mm - slot.width_mm / 2.0;
+    let under_slots = design.slot().inner_edge_mm();
     let engraved = engrave(&mut solid, design, &Zone::between_fasteners(design, under_slots), plate);
     tops.extend(engraved.rings);
     solid.cap(Facing::Up, top, &tops);

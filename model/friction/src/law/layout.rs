@@ -164,4 +164,10 @@ mod tests {
         assert!(half(3, 0.3) < half(3, 0.2));
         assert_eq!(LayoutLaw::new(&PinPattern::default(), 1.1), None);
     }
+
+    #[test]
+    fn the_source_names_the_constants_that_are_used() {
+        let named = format!("F_half = {} N sqrt(n/(a p)), s = {}", LayoutLaw::SCALE_N, LayoutLaw::STEEPNESS);
+        assert!(DEFINITION.source.ends_with(&named), "{}", DEFINITION.source);
+    }
 }

@@ -2,7 +2,7 @@
 
 /// A symmetric matrix of half-bandwidth 2, row by row: diagonal, and the entries one and two columns to the right.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Banded {
+pub(super) struct BandedMatrix {
     /// `A[i][i]`.
     pub(super) diagonal: Vec<f64>,
     /// `A[i][i + 1]`; the last entry is unused.
@@ -11,7 +11,7 @@ pub(super) struct Banded {
     pub(super) second: Vec<f64>,
 }
 
-impl Banded {
+impl BandedMatrix {
     /// A matrix of zeros with `n` rows.
     pub(super) fn zeros(n: usize) -> Self {
         Self { diagonal: vec![0.0; n], first: vec![0.0; n], second: vec![0.0; n] }
@@ -78,7 +78,7 @@ mod tests {
             rows in prop::collection::vec((0.1..2.0f64, -1.0..1.0f64, -1.0..1.0f64, -5.0..5.0f64), 1..40)
         ) {
             let n = rows.len();
-            let mut a = Banded::zeros(n);
+            let mut a = BandedMatrix::zeros(n);
             for (i, (d, one, two, _)) in rows.iter().enumerate() {
                 // Diagonally dominant, so positive definite.
                 (a.diagonal[i], a.first[i], a.second[i]) = (4.0 + d, *one, *two);
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn an_indefinite_matrix_is_refused() {
-        let mut a = Banded::zeros(3);
+        let mut a = BandedMatrix::zeros(3);
         a.diagonal = vec![1.0, -1.0, 1.0];
         assert!(!a.solve(&mut [1.0, 1.0, 1.0]));
     }

@@ -8,7 +8,7 @@
 //! with natural ends and `W' = N`, the support of a pin. Newton's method on the active set of touching nodes, with a
 //! line search on the energy: each step lowers it.
 
-use super::banded::Banded;
+use super::banded::BandedMatrix;
 use super::grid::Grid;
 use super::{Bed, PhysicsError};
 
@@ -69,10 +69,10 @@ impl Supports<'_> {
     }
 
     /// Quadratic form and linear term of string and bending: `E = u'Au/2 - r'u`.
-    fn string(&self, tension_n: &[f64]) -> (Banded, Vec<f64>) {
+    fn string(&self, tension_n: &[f64]) -> (BandedMatrix, Vec<f64>) {
         let (grid, rc) = (self.grid, self.bed.axis_radius_mm());
         let n = grid.len();
-        let mut a = Banded::zeros(n);
+        let mut a = BandedMatrix::zeros(n);
         let mut load = vec![0.0; n];
         for (i, length) in grid.element_mm.iter().enumerate() {
             let k = (tension_n[i] + tension_n[i + 1]) / 2.0 / length;
@@ -108,7 +108,7 @@ impl Supports<'_> {
     }
 
     /// Energy, its gradient, and what springs add to the second derivative's diagonal, at `u`.
-    fn evaluate(&self, a: &Banded, load: &[f64], u: &[f64]) -> State {
+    fn evaluate(&self, a: &BandedMatrix, load: &[f64], u: &[f64]) -> State {
         let mut gradient = a.times(u);
         let mut springs = vec![0.0; u.len()];
         let mut energy = 0.0;
@@ -194,7 +194,7 @@ impl State {
 }
 
 /// A direction that lowers the energy: Newton's, or Newton's with a stiffer diagonal where the tendon hangs free.
-fn newton_step(string: &Banded, here: &State) -> Vec<f64> {
+fn newton_step(string: &BandedMatrix, here: &State) -> Vec<f64> {
     let mut shift = 0.0;
     loop {
         let mut matrix = string.clone();

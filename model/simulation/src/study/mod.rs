@@ -6,7 +6,7 @@ mod outcome;
 use std::collections::BTreeMap;
 
 pub use cases::{Case, Truth, plan_of, study_cases};
-pub use outcome::{Outcome, run_case};
+pub use outcome::{CaseOutcome, run_case};
 
 use pinswitch_calibration::median;
 
@@ -26,18 +26,18 @@ use pinswitch_calibration::median;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Study {
-    outcomes: Vec<(Case, Vec<Outcome>)>,
+    outcomes: Vec<(Case, Vec<CaseOutcome>)>,
 }
 
 /// Percentage of the outcomes for which something holds, with their number.
-fn share(outcomes: &[&Outcome], holds: impl Fn(&Outcome) -> bool) -> String {
+fn share(outcomes: &[&CaseOutcome], holds: impl Fn(&CaseOutcome) -> bool) -> String {
     let count = outcomes.iter().filter(|o| holds(o)).count();
     format!("{count} of {} ({:.1} %)", outcomes.len(), 100.0 * count as f64 / outcomes.len().max(1) as f64)
 }
 
 impl Study {
     /// Adds the outcomes of a case.
-    pub fn add(&mut self, case: Case, outcomes: Vec<Outcome>) {
+    pub fn add(&mut self, case: Case, outcomes: Vec<CaseOutcome>) {
         self.outcomes.push((case, outcomes));
     }
 
@@ -70,7 +70,7 @@ impl Study {
 
     /// The figures that a calibrator is judged by, in words.
     pub fn summary(&self) -> String {
-        let of = |wanted: fn(&Truth) -> bool| -> Vec<&Outcome> {
+        let of = |wanted: fn(&Truth) -> bool| -> Vec<&CaseOutcome> {
             self.outcomes.iter().filter(|(c, _)| wanted(&c.truth)).flat_map(|(_, o)| o).collect()
         };
         let nulls = of(|t| *t == Truth::Nothing);
@@ -108,7 +108,7 @@ impl Study {
 }
 
 /// How many of the intervals hold the truth; empty without any.
-fn held(outcomes: &[Outcome]) -> String {
+fn held(outcomes: &[CaseOutcome]) -> String {
     let all: Vec<bool> = outcomes.iter().flat_map(|o| o.covered.clone()).collect();
     if all.is_empty() {
         return String::new();
@@ -117,7 +117,7 @@ fn held(outcomes: &[Outcome]) -> String {
 }
 
 /// How often the probability of the largest gain falls below some levels; it should as often as the level says.
-fn calibration_of_p(nulls: &[&Outcome]) -> String {
+fn calibration_of_p(nulls: &[&CaseOutcome]) -> String {
     let below = |level: f64| {
         let count = nulls.iter().filter(|o| o.p_value < level).count();
         format!("below {level} in {:.1} %", 100.0 * count as f64 / nulls.len().max(1) as f64)
@@ -126,7 +126,7 @@ fn calibration_of_p(nulls: &[&Outcome]) -> String {
 }
 
 /// Median of the error after over the error before on fresh rows.
-fn median_ratio<'a>(outcomes: impl Iterator<Item = &'a Outcome>) -> f64 {
+fn median_ratio<'a>(outcomes: impl Iterator<Item = &'a CaseOutcome>) -> f64 {
     let mut ratios: Vec<f64> = outcomes.map(|o| o.fresh_n[1] / o.fresh_n[0].max(1e-9)).collect();
     if ratios.is_empty() { f64::NAN } else { median(&mut ratios) }
 }

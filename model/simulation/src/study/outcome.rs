@@ -14,7 +14,7 @@ use crate::simulate::simulate;
 
 /// What the calibrator said of one rig.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
+pub struct CaseOutcome {
     /// The verdict.
     pub verdict: Verdict,
     /// What it named, `a|b` for rivals, sorted; `unattributed:covariate` for what has no name.
@@ -39,7 +39,7 @@ pub struct Outcome {
 }
 
 /// Simulates one rig and calibrates it from the table's text alone. `None` if its table cannot be read back.
-pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<Outcome> {
+pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<CaseOutcome> {
     let plan = plan_of(case, seed);
     let simulated = simulate(&plan);
     let rows = PlateauTable::read(PlateauTable::write(&simulated.rows).as_bytes(), "simulated").ok()?.rows;
@@ -73,7 +73,7 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<Outcome> {
     };
     let largest_gain = found.candidates.first().map_or(0.0, |c| c.gain);
     let degrees = degrees_of_freedom(&data, found.baseline.model.values().len());
-    Some(Outcome {
+    Some(CaseOutcome {
         verdict,
         named,
         fresh_n: [error(&found.baseline.model), error(&found.augmented.model)],

@@ -37,7 +37,7 @@ fn slots_in_plate(i: &Inspection<'_>) -> Assessment {
 fn land_between_slots(i: &Inspection<'_>) -> Assessment {
     let (slot, wall) = (i.slot(), least_wall_mm(i.configuration(), 1.0));
     let half = slot.width_mm / 2.0;
-    let land = 2.0 * (slot.inner_mm - half) * (i.pitch_rad() / 2.0).sin() - 2.0 * half;
+    let land = 2.0 * slot.inner_edge_mm() * (i.pitch_rad() / 2.0).sin() - 2.0 * half;
     require(i.configuration().segment.grooves < 2 || land >= wall, || {
         (
             format!("leaves {land:.3} mm between neighbouring slots; {wall:.3} mm is the least"),
@@ -50,7 +50,7 @@ fn wall_beyond_slots(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     let slot = i.slot();
     let half = slot.width_mm / 2.0;
-    let end = (slot.inner_mm - half) * i.half_pitch_rad().sin() + c.segment.end_margin_mm - half;
+    let end = slot.inner_edge_mm() * i.half_pitch_rad().sin() + c.segment.end_margin_mm - half;
     let least = least_wall_mm(c, 0.5);
     require(end >= least, || {
         (
@@ -85,7 +85,7 @@ fn slot_travel(i: &Inspection<'_>) -> Assessment {
 
 fn pin_engagement(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
-    let engagement = (i.pin_length_mm() - c.shell.width_mm) / 2.0;
+    let engagement = i.pin_overhang_mm();
     let least = c.pins.diameter_mm;
     require(engagement >= least, || {
         (
@@ -111,7 +111,7 @@ fn holes_in_wall(i: &Inspection<'_>) -> Assessment {
     let radial = c.shell.wall_mm - c.segment.groove_radius_mm - 2.0 * edge;
     // The slots of the supports may reach below the shell's face.
     let slot = i.slot();
-    let under_slots = 2.0 * (slot.inner_mm - slot.width_mm / 2.0 - edge - i.fastener_radius_mm());
+    let under_slots = 2.0 * (slot.inner_edge_mm() - edge - i.fastener_radius_mm());
     let most = radial.min(under_slots);
     require(c.fasteners.hole_diameter_mm <= most, || {
         (

@@ -10,9 +10,9 @@ use crate::built::{Built, MeshedBody};
 use crate::design::Design;
 use crate::design::rules::{Check, checklist};
 use crate::documents::{Manifest, friction_csv};
+use crate::output::SetError;
 use crate::parts::{Material, Role};
 use crate::prediction::Prediction;
-use crate::set::SetError;
 use pinswitch_solid::mesh::{Mesh, Vector3};
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::polar;
@@ -56,7 +56,6 @@ struct Body {
     mesh: usize,
     /// From its mesh into the assembly, column by column.
     matrix: [f64; 16],
-    #[serde(rename = "way_out")]
     explode_offset: [f64; 3],
     sink: Option<Sink>,
 }

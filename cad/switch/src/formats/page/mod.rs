@@ -10,8 +10,9 @@ use base64::engine::general_purpose::STANDARD;
 use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::documents::Manifest;
+use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
-use crate::set::{OutputFile, SetError};
+use crate::scene::exploded_png;
 
 pub use data::PageData;
 
@@ -24,7 +25,7 @@ pub(super) const FORMAT: Format = Format {
 
 fn make(built: &Built, prediction: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
     let data = PageData::new(built, prediction, manifest, None);
-    let still = format!("data:image/png;base64,{}", STANDARD.encode(built.exploded_png()?));
+    let still = format!("data:image/png;base64,{}", STANDARD.encode(exploded_png(built)?));
     Ok(vec![OutputFile::new("report.html", page_html(&data, &still)?)])
 }
 

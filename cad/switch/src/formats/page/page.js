@@ -95,7 +95,7 @@ class Assembly {
   pose(load, apart) {
     for (const node of this.bodies) {
       const { body, home } = node.userData;
-      const way = new THREE.Vector3(...body.way_out).multiplyScalar(apart);
+      const way = new THREE.Vector3(...body.explode_offset).multiplyScalar(apart);
       if (body.sink) {
         const depth = at(this.data.contact.load_n, body.sink.depth_mm, load);
         way.add(new THREE.Vector3(body.sink.towards[0], body.sink.towards[1], 0).multiplyScalar(depth));
@@ -150,7 +150,9 @@ class Assembly {
 
 // ---- the curve ----------------------------------------------------------------------------------------------------
 
-const COLOURS = { main: '#0072c6', band: 'rgba(0, 114, 198, 0.16)', paper: '#00866a', layout: '#a24bb0', physics: '#d0284b', calibrated: '#777', measured: '#d9822b' };
+const COLOURS = { main: '#0072c6', band: 'rgba(0, 114, 198, 0.16)', measured: '#d9822b' };
+// Lines of other laws, in their order, again from the first.
+const OTHER_COLOURS = ['#00866a', '#a24bb0', '#d0284b'];
 let chart;
 let shownLoad = 0;
 
@@ -166,7 +168,7 @@ function drawChart(data) {
     { label: `${curve.law}`, stroke: COLOURS.main, width: 3 },
     { label: 'band, low', stroke: 'transparent' },
     { label: 'band, high', stroke: 'transparent' },
-    ...others.map((other) => ({ label: other.law, stroke: COLOURS[other.law], width: 1.2, dash: [6, 4] })),
+    ...others.map((other, i) => ({ label: other.law, stroke: OTHER_COLOURS[i % OTHER_COLOURS.length], width: 1.2, dash: [6, 4] })),
     { label: 'measured', stroke: COLOURS.measured, paths: () => null, points: { show: true, size: 10, fill: COLOURS.measured } },
   ].map((s) => ({ spanGaps: true, points: { show: false }, value: (_, v) => v?.toFixed(3) ?? '', ...s }));
   const columns = [loads, inside(curve.load_n, curve.friction_n), inside(curve.load_n, curve.band_low_n), inside(curve.load_n, curve.band_high_n),

@@ -8,6 +8,9 @@ use serde_json::Value;
 
 use crate::harness::{beside_repository, done, ended, files, say_skipped};
 
+/// Exit code of the judges where none of those asked for is installed.
+const NONE_COULD_RUN: i32 = 3;
+
 /// The Python that `../shared/tools/setup_judges.sh` installs the judges into.
 fn judges_python() -> Option<&'static Path> {
     let python = Path::new("/tmp/judges-venv/bin/python");
@@ -95,11 +98,15 @@ fn readers_of_3mf_and_step_accept_the_three_layouts() {
                 .args(extra)
                 .output()
                 .unwrap();
-            (output.status.success(), String::from_utf8_lossy(&output.stdout).into_owned())
+            (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
         };
         let judged = |file: &str, extra: &[&str]| {
-            let (fine, said) = ask(file, extra);
-            assert!(fine, "{layout}: {file}: {said}");
+            let (code, said) = ask(file, extra);
+            if code == Some(NONE_COULD_RUN) {
+                say_skipped(&format!("{layout}: {file}: no judge of {} is installed", extra[1]));
+            } else {
+                assert_eq!(code, Some(0), "{layout}: {file}: {said}");
+            }
         };
         // pymeshlab reads the last object of a package only, and is left out.
         judged("assembly.3mf", &["--only", "prusa_info,prusa_slice,lib3mf,opc3mf,manifold3d"]);

@@ -180,6 +180,16 @@ fn pictures_are_drawn() {
 }
 
 #[test]
+fn views_from_nowhere_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for view in ["--turn=nan", "--rise=inf"] {
+        let output = pinswitch(folder.path(), &["render", "three-double", view, "--out", "p.png"]);
+        assert_eq!(output.status.code(), Some(2), "{view}");
+    }
+    assert!(!folder.path().join("p.png").exists());
+}
+
+#[test]
 fn check_names_what_is_wrong() {
     let folder = tempfile::tempdir().unwrap();
     done(folder.path(), &["generate", "three-double", "--out", "set"]);

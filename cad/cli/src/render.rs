@@ -48,6 +48,11 @@ enum Scene {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    for (flag, degrees) in [("--turn", arguments.turn), ("--rise", arguments.rise)] {
+        if !degrees.is_finite() {
+            return Err(Failure::bad_input(format!("{flag} = {degrees}: give an angle in degrees")));
+        }
+    }
     let design = arguments.source.design()?;
     let built = Built::new(design).map_err(|e| match e {
         BuildError::Configuration(e) => Failure::bad_input(e),

@@ -58,7 +58,7 @@ impl Destination {
     /// [`DestinationError`] for a URL of no known store.
     pub fn open(text: &str, partial: &str) -> Result<Self, DestinationError> {
         match text.strip_prefix("file://") {
-            Some(path) => Ok(Self::Folder(Folder::new(path, partial))),
+            Some(path) => Ok(Self::Folder(Folder::new(&folder_of_url(text, path)?, partial))),
             None if !text.contains("://") => Ok(Self::Folder(Folder::new(text, partial))),
             None => Self::open_store(text),
         }
@@ -231,6 +231,15 @@ impl Destination {
     }
 }
 
+/// The folder that the `path` of a `file://` URL names: absolute, with its escapes undone.
+fn folder_of_url(url: &str, path: &str) -> Result<String, DestinationError> {
+    if !path.starts_with('/') {
+        return Err(no_store(url, "a file:// URL names a folder from the root, such as file:///data/sweep"));
+    }
+    let decoded = percent_encoding::percent_decode_str(path).decode_utf8();
+    decoded.map(Into::into).map_err(|e| no_store(url, &format!("its escapes are no text: {e}")))
+}
+
 /// The error for a URL that no store answers to.
 fn no_store(text: &str, problem: &str) -> DestinationError {
     DestinationError {
@@ -303,6 +312,15 @@ mod tests {
         assert!(open(".partial-2-of-2").lock().is_ok());
         drop(claim);
         assert!(!partial.exists() && open(".partial-1-of-2").lock().is_ok());
+    }
+
+    #[test]
+    fn file_urls_name_absolute_folders_and_their_escapes_are_undone() {
+        for url in ["file://", "file://data", "file:///%ff"] {
+            let error = Destination::open(url, "").unwrap_err().to_string();
+            assert!(error.starts_with(&format!("{url}: ")), "{error}");
+        }
+        assert_eq!(Destination::open("file:///a%20b", "").unwrap().name(), "/a b");
     }
 
     #[test]

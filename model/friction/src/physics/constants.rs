@@ -20,6 +20,11 @@ impl Constants {
         super::fit::PUBLISHED_FIT.constants()
     }
 
+    /// Covariance of the logarithms of the published constants, from the scatter of the maxima about the fit.
+    pub fn published_covariance() -> [[f64; 3]; 3] {
+        super::fit::PUBLISHED_FIT.covariance
+    }
+
     /// Natural logarithms, in which they are fitted: all are positive, and their errors are relative.
     pub fn logarithms(&self) -> Vector3<f64> {
         Vector3::new(self.kappa_per_sqrt_n.ln(), self.mu_silicone.ln(), self.flush_force_n.ln())

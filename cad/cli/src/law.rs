@@ -11,7 +11,7 @@ use pinswitch_switch::prediction::Prediction;
 /// The law behind the curve.
 #[derive(Args, Clone, Debug)]
 pub(super) struct LawChoice {
-    /// Law of the curve [default: the best supported for the layout].
+    /// Law of the curve [default: physics, for every configuration].
     #[arg(long, value_parser = laws())]
     law: Option<String>,
 }

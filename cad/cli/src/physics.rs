@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_friction::physics::hypotheses::{HypothesisFinding, hypotheses};
+use pinswitch_friction::evidence::{LawEvidence, evidence};
+use pinswitch_friction::physics::hypotheses::{HypothesisFinding, hypotheses, weights};
 use pinswitch_friction::physics::{
     Bed, FitError, LayoutLeftOut, MaximaFit, contact_profile, fit_maxima, leave_one_layout_out,
 };
-use pinswitch_friction::{Direction, Substrate};
+use pinswitch_friction::{Direction, Law, Substrate};
 use serde::Serialize;
 
 use super::source::Source;
@@ -16,13 +17,15 @@ use crate::write::write_set;
 use pinswitch_plot::contact_svg;
 use pinswitch_switch::output::OutputFile;
 
+/// Squared standard deviations from which a fact tells against a hypothesis.
+const AGAINST: f64 = 1.0;
 /// Loads of the profile, as shares of the heaviest.
 const PROFILE_LOADS: [f64; 4] = [0.1, 0.3, 0.6, 1.0];
 
 /// Show the physics: its constants, what it says of layouts left out, and what the tendon does outside the pins.
 ///
-/// Fits the three constants to the seven published maxima again, leaves each layout out in turn, and asks every hypothesis
-/// about the tendon's path about all published facts. With --out, draws the tendon over the pins of a configuration.
+/// Fits the three constants to the seven published maxima again, leaves each layout out in turn, compares the laws, and
+/// weighs the hypotheses about the tendon's path by all published facts. With --out, draws the tendon over the pins of a configuration.
 #[derive(Args, Debug)]
 #[command(mut_arg("config", |a| a.required(false).default_value("three-double")))]
 pub(super) struct Arguments {
@@ -42,6 +45,7 @@ struct Report {
     bed: Bed,
     fit: MaximaFit,
     left_out: Vec<LayoutLeftOut>,
+    evidence: Vec<LawEvidence>,
     hypotheses: Vec<HypothesisFinding>,
 }
 
@@ -82,6 +86,7 @@ fn report() -> Result<Report, FitError> {
         bed,
         fit: fit_maxima(&bed)?,
         left_out: leave_one_layout_out(&bed)?,
+        evidence: evidence()?,
         hypotheses: hypotheses().iter().map(|h| h.test()).collect::<Result<_, _>>()?,
     })
 }
@@ -111,12 +116,23 @@ fn text(report: &Report) -> String {
             .map(|l| percent(if name.ends_with("device") { l.device_error } else { l.pins_error }));
         text += &format!("{name:<28} {:<9} {}\n", percent(*error), left_out.unwrap_or_default());
     }
-    text += "\nWhat does the tendon do outside the pins? The same constants fitted under each hypothesis:\n";
-    for finding in &report.hypotheses {
-        let verdict = if finding.survives() { "survives" } else { "falls" };
-        text += &format!("{verdict:<9} {}\n", finding.hypothesis.name);
-        for fact in &finding.contradicts {
-            text += &format!("            against {fact}\n");
+    text += "\nError of each law on the seven maxima, root mean square: as it is, and with nothing given of the layout predicted\n";
+    for law in &report.evidence {
+        let shown = |rms: Option<f64>| rms.map_or("-".to_owned(), |rms| format!("{:.1} %", 100.0 * rms));
+        let default = if law.law == Law::DEFAULT { "  the default" } else { "" };
+        text += &format!(
+            "{:<9} {:>8} {:>8}{default}\n",
+            law.law.as_str(),
+            shown(law.rms_in_sample),
+            shown(law.rms_left_out)
+        );
+    }
+    text += "\nWhat does the tendon do outside the pins? Each hypothesis with its own best constants; its share of the\n\
+             likelihood of all, and the facts that tell against it, in standard deviations:\n";
+    for (finding, weight) in report.hypotheses.iter().zip(weights(&report.hypotheses)) {
+        text += &format!("{:>4.0} %  {}\n", 100.0 * weight, finding.hypothesis.name);
+        for c in finding.compared.iter().filter(|c| c.chi_squared > AGAINST && c.fact != "the seven maxima") {
+            text += &format!("          {:.1} off {}: {}\n", c.chi_squared.sqrt(), c.fact, c.here);
         }
     }
     text += "No hypothesis explains why three-double ends 14 % above three-single.\n";

@@ -27,7 +27,7 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// The prediction of `design` by the best supported law.
+    /// The prediction of `design` by the default law.
     pub fn of(design: &Design) -> Self {
         Self::with_curve(design, predicted_curve(design))
     }
@@ -47,7 +47,7 @@ impl Prediction {
     }
 }
 
-/// The curve of `design` by the best supported law, without the others.
+/// The curve of `design` by the default law, without the others.
 pub fn predicted_curve(design: &Design) -> FrictionCurve {
     predict(design.contact(), &loads_n(design))
 }

@@ -57,7 +57,7 @@ pub enum ContactError {
 /// let pins = PinPattern::new([-15.0f64, 0.0, 15.0, 40.0].map(f64::to_radians).to_vec());
 /// let contact = Contact::new(Substrate::Silicone, pins, 64f64.to_radians())?;
 /// assert_eq!(contact.pins().count(), 3);
-/// assert!(contact.departures().iter().any(|reason| reason.contains("outside the wrap")));
+/// assert!(contact.remarks().iter().any(|reason| reason.contains("outside the wrap")));
 ///
 /// let nothing = Contact::new(Substrate::Abs, PinPattern::default(), 1.0);
 /// assert!(matches!(nothing, Err(ContactError::NothingTouches { .. })));
@@ -67,15 +67,15 @@ pub enum ContactError {
 pub struct Contact {
     substrate: Substrate,
     pins: PinPattern,
-    outside: usize,
+    all_pins: PinPattern,
     wrap_rad: f64,
-    departures: Vec<String>,
+    unmodelled: Vec<String>,
     six_single_threshold: f64,
     bed: Bed,
 }
 
 impl Contact {
-    /// A contact over `wrap_rad` radians. Pins outside the wrap are counted but do not touch the tendon.
+    /// A contact over `wrap_rad` radians: the angle between the directions in which the tendon arrives and leaves.
     ///
     /// # Errors
     /// [`ContactError`] if the angle is unusable or if nothing would touch the tendon.
@@ -88,13 +88,12 @@ impl Contact {
         if substrate == Substrate::Abs && touched.count() == 0 {
             return Err(ContactError::NothingTouches { degrees });
         }
-        let outside = pins.count() - touched.count();
         Ok(Self {
             substrate,
             pins: touched,
-            outside,
+            all_pins: pins,
             wrap_rad,
-            departures: Vec::new(),
+            unmodelled: Vec::new(),
             six_single_threshold: published::LAYOUTS[0].threshold,
             bed: Bed::published(),
         })
@@ -108,12 +107,26 @@ impl Contact {
         self
     }
 
-    /// Adds ways in which the part departs from the one that was measured (another silicone, another pin):
-    /// the friction numbers are then an extrapolation, and each reason is shown.
+    /// Adds ways in which the part departs from the one that was measured and of which no law knows (another mix of the
+    /// silicone): the friction numbers are then an extrapolation, and each is shown.
     #[must_use]
-    pub fn with_departures(mut self, departures: Vec<String>) -> Self {
-        self.departures = departures;
+    pub fn with_unmodelled(mut self, unmodelled: Vec<String>) -> Self {
+        self.unmodelled = unmodelled;
         self
+    }
+
+    /// The same part under a tendon that wraps it over another angle, in radians.
+    ///
+    /// # Errors
+    /// [`ContactError`] as [`Contact::new`].
+    pub fn with_wrap_rad(&self, wrap_rad: f64) -> Result<Self, ContactError> {
+        let other = Self::new(self.substrate, self.all_pins.clone(), wrap_rad)?;
+        Ok(Self {
+            unmodelled: self.unmodelled.clone(),
+            six_single_threshold: self.six_single_threshold,
+            bed: self.bed,
+            ..other
+        })
     }
 
     /// Lays the pins on `bed` instead of the published one; the physics reads it.
@@ -138,23 +151,23 @@ impl Contact {
         &self.pins
     }
 
+    /// All pins of the part. One just beyond the wrap may still touch the span that leaves it, and carries less the
+    /// farther it lies: the physics asks for all.
+    pub fn all_pins(&self) -> &PinPattern {
+        &self.all_pins
+    }
+
     /// The wrap angle in radians.
     pub fn wrap_rad(&self) -> f64 {
         self.wrap_rad
     }
 
-    /// Every way in which this contact departs from the published experiment, besides the layout of its pins.
-    pub fn departures(&self) -> Vec<String> {
-        let mut all = self.departures.clone();
-        if (self.wrap_rad - published::wrap_angle_rad()).abs() > 1e-6 {
-            all.push(format!(
-                "the wrap angle is {:.2} deg, measured was {} deg",
-                self.wrap_rad.to_degrees(),
-                published::WRAP_ANGLE_DEG
-            ));
-        }
-        if self.outside > 0 {
-            all.push(format!("{} pin(s) lie outside the wrap and are left out", self.outside));
+    /// In what this contact departs from the published rig that no parameter of its bed shows.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut all = self.unmodelled.clone();
+        let outside = self.all_pins.count() - self.pins.count();
+        if outside > 0 {
+            all.push(format!("{outside} pin(s) lie outside the wrap"));
         }
         all
     }
@@ -185,12 +198,11 @@ mod tests {
             let pins = PinPattern::even(layout.pins, layout.pitch_rad());
             let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap();
             assert_eq!(contact.published_layout(), Some(*layout));
-            assert!(contact.departures().is_empty());
+            assert!(contact.remarks().is_empty());
         }
         let pins = PinPattern::even(4, 0.2);
         let contact = Contact::new(Substrate::Silicone, pins, 1.0).unwrap();
         assert_eq!(contact.published_layout(), None);
-        assert_eq!(contact.departures().len(), 1);
     }
 
     #[test]

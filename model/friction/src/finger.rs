@@ -60,7 +60,7 @@ pub fn finger(curve: &FrictionCurve) -> Vec<FingerPoint> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Contact, PinPattern, Substrate, predict, published};
+    use crate::{Contact, Law, PinPattern, Substrate, predict, predict_by, published};
 
     /// On bare silicone the capstan gives all three in closed form.
     #[test]
@@ -68,7 +68,7 @@ mod tests {
         let wrap = published::wrap_angle_rad();
         let contact = Contact::new(Substrate::Silicone, PinPattern::default(), wrap).unwrap();
         let x = published::MU_SILICONE * wrap;
-        let all = finger(&predict(&contact, &[0.0, 10.0, 50.0]));
+        let all = finger(&predict_by(Law::Paper, &contact, &[0.0, 10.0, 50.0]).unwrap());
         assert_eq!(all.len(), 2);
         for point in all {
             assert!((point.extra_holding - x.exp_m1()).abs() < 1e-12);

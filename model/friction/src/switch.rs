@@ -91,7 +91,7 @@ impl Switch for PaperSwitch {
 mod tests {
     use super::*;
     use crate::PinPattern;
-    use crate::{Contact, Substrate, predict};
+    use crate::{Contact, Law, Substrate, predict_by};
 
     /// `model/doc/friction-laws.md`: "D at max load" and its error, to the digits given.
     #[test]
@@ -114,7 +114,7 @@ mod tests {
     fn misses_the_seven_published_maxima_by_31_percent() {
         let max = |substrate, pins| {
             let contact = Contact::new(substrate, pins, published::wrap_angle_rad()).unwrap();
-            predict(&contact, &[published::heaviest_load_n()]).friction_n[0]
+            predict_by(Law::Paper, &contact, &[published::heaviest_load_n()]).unwrap().friction_n[0]
         };
         let mut errors =
             vec![max(Substrate::Silicone, PinPattern::default()) / published::SILICONE_ALONE_MAX_N - 1.0];

@@ -2,15 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::departure::{Departure, is_published_rig};
 use crate::published;
 use crate::{Contact, Substrate};
 
-/// Relative uncertainty outside what was measured, where every law is a guess.
-pub(crate) const EXTRAPOLATED_SPREAD: f64 = 0.40;
 /// Number of pins between which the published layouts lie.
 const PINS_MEASURED: std::ops::RangeInclusive<usize> = 3..=6;
 /// Slack on the published pitches, in radians.
 const PITCH_SLACK_RAD: f64 = 1e-3;
+/// Slack on the tested loads, relative.
+const LOAD_SLACK: f64 = 1e-3;
 
 /// How far a curve can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -24,42 +25,116 @@ pub enum Trust {
     Extrapolated,
 }
 
-/// How far the friction of `contact` is known from measurements, and why no further.
-pub(crate) fn trust(contact: &Contact) -> (Trust, Vec<String>) {
-    let mut reasons = contact.departures();
-    let pins = contact.pins();
-    let bare_silicone = contact.substrate() == Substrate::Silicone && pins.count() == 0;
-    if bare_silicone || contact.published_layout().is_some() {
-        let trust = if reasons.is_empty() { Trust::Published } else { Trust::Extrapolated };
-        return (trust, reasons);
+/// Whether the paper measured this very condition: silicone alone or one of its layouts, on its rig.
+pub(crate) fn is_measured(contact: &Contact) -> bool {
+    let bare = contact.substrate() == Substrate::Silicone && contact.all_pins().count() == 0;
+    (bare || contact.published_layout().is_some())
+        && contact.remarks().is_empty()
+        && is_published_rig(contact)
+}
+
+/// How far the friction of `contact` is known at `loads_n`, and why no further; `departures` are its own.
+pub(crate) fn trust(contact: &Contact, departures: &[Departure], loads_n: &[f64]) -> (Trust, Vec<String>) {
+    let heaviest_n = loads_n.iter().copied().fold(0.0, f64::max);
+    let mut reasons: Vec<String> = departures.iter().map(|d| d.reason(heaviest_n)).collect();
+    reasons.extend(contact.remarks());
+    reasons.extend(untested_loads(loads_n));
+    let measured = contact.published_layout().is_some() || contact.all_pins().count() == 0;
+    if !measured {
+        reasons.extend(unmeasured_layout(contact));
     }
+    if !reasons.is_empty() {
+        return (Trust::Extrapolated, reasons);
+    }
+    if measured {
+        let (light, heavy) = (published::lightest_load_n(), published::heaviest_load_n());
+        if loads_n.iter().any(|load| *load < 0.9 * heavy) {
+            reasons.push(format!(
+                "the paper prints the friction of this condition at {heavy:.2} N only; from {light:.2} N up to there the band also covers what the laws disagree on"
+            ));
+        }
+        return (Trust::Published, reasons);
+    }
+    let (narrow, wide) = measured_pitches_rad();
+    reasons.push(format!(
+        "{} pins {:.2} deg apart lie between the layouts that were measured: 3 to 6 pins, {:.2} to {:.2} deg",
+        contact.pins().count(),
+        contact.pins().mean_pitch_rad().unwrap_or_default().to_degrees(),
+        narrow.to_degrees(),
+        wide.to_degrees()
+    ));
+    (Trust::Interpolated, reasons)
+}
+
+/// The loads outside those tested, in words.
+fn untested_loads(loads_n: &[f64]) -> Option<String> {
+    let lightest = loads_n.iter().copied().fold(f64::INFINITY, f64::min);
+    let heaviest = loads_n.iter().copied().fold(0.0, f64::max);
+    let (from, to) = (published::lightest_load_n(), published::heaviest_load_n());
+    (lightest < from * (1.0 - LOAD_SLACK) || heaviest > to * (1.0 + LOAD_SLACK)).then(|| {
+        format!("the loads reach from {lightest:.2} to {heaviest:.2} N; tested were {from:.2} to {to:.2} N")
+    })
+}
+
+fn measured_pitches_rad() -> (f64, f64) {
+    let pitches = published::LAYOUTS.map(|l| l.pitch_rad());
+    (pitches.iter().copied().fold(f64::MAX, f64::min), pitches.iter().copied().fold(0.0, f64::max))
+}
+
+/// In what a layout lies outside the measured ones.
+fn unmeasured_layout(contact: &Contact) -> Vec<String> {
+    let pins = contact.pins();
+    let mut reasons = Vec::new();
     if !PINS_MEASURED.contains(&pins.count()) {
         reasons.push(format!("{} pin(s); measured were 3 and 6", pins.count()));
     }
-    let pitches = published::LAYOUTS.map(|l| l.pitch_rad());
-    let (narrow, wide) =
-        (pitches.iter().copied().fold(f64::MAX, f64::min), pitches.iter().copied().fold(0.0, f64::max));
-    match pins.mean_pitch_rad() {
-        Some(pitch) if pitch < narrow - PITCH_SLACK_RAD || pitch > wide + PITCH_SLACK_RAD => {
-            reasons.push(format!(
-                "the pitch is {:.2} deg; measured were {:.2} to {:.2} deg",
-                pitch.to_degrees(),
-                narrow.to_degrees(),
-                wide.to_degrees()
-            ))
-        }
-        _ => {}
+    let (narrow, wide) = measured_pitches_rad();
+    if let Some(pitch) = pins.mean_pitch_rad()
+        && !(narrow - PITCH_SLACK_RAD..=wide + PITCH_SLACK_RAD).contains(&pitch)
+    {
+        reasons.push(format!(
+            "the pitch is {:.2} deg; measured were {:.2} to {:.2} deg",
+            pitch.to_degrees(),
+            narrow.to_degrees(),
+            wide.to_degrees()
+        ));
     }
+    let degrees = || {
+        let angles: Vec<_> = pins.angles_rad().iter().map(|a| format!("{:.2}", a.to_degrees())).collect();
+        angles.join(", ")
+    };
     if !pins.is_even() {
-        reasons.push("the pins are unevenly spaced; measured were even ones".to_owned());
+        reasons.push(format!("the pins are unevenly spaced, at {} deg; measured were even ones", degrees()));
     }
     if !pins.is_centred() {
-        reasons.push("the pins lie off the middle of the wrap; measured were centred ones".to_owned());
+        reasons.push(format!(
+            "the pins lie off the middle of the wrap, at {} deg; measured were centred ones",
+            degrees()
+        ));
     }
-    if reasons.is_empty() {
-        reasons.push("this layout lies between those that were measured".to_owned());
-        (Trust::Interpolated, reasons)
-    } else {
-        (Trust::Extrapolated, reasons)
+    reasons
+}
+
+/// How far the layout of `contact` lies from the nearest measured one, as a length in the logarithms of number and
+/// pitch, unevenness and offset; and how far beyond the range of the measured ones.
+pub(crate) fn layout_distance(contact: &Contact) -> (f64, f64) {
+    let pins = contact.all_pins();
+    if pins.count() == 0 {
+        return (0.0, 0.0);
     }
+    let angles = pins.angles_rad();
+    let wrap = contact.wrap_rad();
+    let (log_count, pitch) = ((pins.count() as f64).ln(), pins.mean_pitch_rad().unwrap_or(wrap));
+    let gaps = angles.windows(2).map(|w| ((w[1] - w[0]) / pitch - 1.0).powi(2));
+    let uneven = gaps.sum::<f64>() / (pins.count().max(2) - 1) as f64;
+    let offset = (angles.iter().sum::<f64>() / pins.count() as f64 / (wrap / 2.0)).powi(2);
+    let nearest = published::LAYOUTS
+        .iter()
+        .map(|l| (log_count - (l.pins as f64).ln()).powi(2) + (pitch / l.pitch_rad()).ln().powi(2))
+        .fold(f64::INFINITY, f64::min);
+    let outside = |x: f64, from: f64, to: f64| (from - x).max(x - to).max(0.0);
+    let (narrow, wide) = measured_pitches_rad();
+    let beyond = outside(log_count, 3f64.ln(), 6f64.ln()).powi(2)
+        + outside(pitch.ln(), narrow.ln(), wide.ln()).powi(2);
+    ((nearest + uneven + offset).sqrt(), (beyond + uneven + offset).sqrt())
 }

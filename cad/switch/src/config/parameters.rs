@@ -73,7 +73,7 @@ configuration! {
         silicone: SiliconeTable {
             thickness_mm: f64 = 2.0, 0.3..=10.0, Published, "thickness of the layer";
             side_clearance_mm: f64 = 0.2, 0.0..=1.0, Chosen, "gap to each side support; the layer must bulge without rubbing";
-            hardness_shore_a: f64 = 50.0, 10.0..=80.0, Published, "Sylgard 184 after a hot cure; goes into the trust in the curve only";
+            hardness_shore_a: f64 = 50.0, 10.0..=80.0, Published, "Sylgard 184 after a hot cure; moves friction, by the stiffness that Gent's formula gives it";
             density_g_cm3: f64 = 1.03, 0.8..=1.5, Assumed, "cured Sylgard 184";
             mix_ratio: f64 = 10.0, 1.0..=20.0, Published, "base to curing agent by mass";
             waste_factor: f64 = 1.3, 1.0..=3.0, Chosen, "what stays in cup and syringe";

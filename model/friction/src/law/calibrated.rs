@@ -1,6 +1,6 @@
 //! `calibrated`: a model fitted to measured data; its curves come from a model file, not from a contact alone.
 
-use super::{Definition, LawError, Support};
+use super::{Definition, LawError};
 
 pub(super) static DEFINITION: Definition = Definition {
     word: "calibrated",
@@ -8,8 +8,10 @@ pub(super) static DEFINITION: Definition = Definition {
     summary: "A model calibrated on measured data: the layouts of its rig",
     source: "a model calibrated on measured data, see the reasons for what it holds",
     needs_model: true,
-    support: |_| Support::LastResort,
-    curve: |_, _| {
-        Err(LawError::DoesNotApply { why: "a calibrated law comes from a model file; give it with --model" })
-    },
+    states: |_, _| Err(NEEDS_MODEL),
+    uncertain: |_, _| Err(NEEDS_MODEL),
+    remark: |_| None,
 };
+
+const NEEDS_MODEL: LawError =
+    LawError::DoesNotApply { why: "a calibrated law comes from a model file; give it with --model" };

@@ -1,9 +1,9 @@
 //! `layout`: from number and pitch of the pins to a switch, fitted to the three published layouts.
 
-use super::{Definition, Law, LawError, Support};
-use crate::curve::Banded;
-use crate::trust::{EXTRAPOLATED_SPREAD, trust};
-use crate::{Contact, FrictionCurve, PinPattern, Substrate, Switch, Trust};
+use super::{Definition, LawError, Uncertain};
+use crate::band::BandSource;
+use crate::published::{self, PublishedLayout};
+use crate::{Contact, PinPattern, Substrate, Switch, SwitchState};
 
 pub(super) static DEFINITION: Definition = Definition {
     word: "layout",
@@ -11,60 +11,44 @@ pub(super) static DEFINITION: Definition = Definition {
     summary: "The law fitted to the three layouts' thresholds: number and pitch of the pins",
     source: "layout law fitted to the three published layouts: F_half = 13.1 N sqrt(n/(a p)), s = 4.64",
     needs_model: false,
-    support,
-    curve: layout_curve,
+    states: layout_states,
+    uncertain: layout_uncertain,
+    remark: |_| None,
 };
 
-/// Relative uncertainties of half load and friction.
-struct Spread {
-    half_load: f64,
-    friction: f64,
-}
+/// Relative uncertainty of friction besides that of the half load: what the law misses of the three maxima.
+const FRICTION_UNCERTAINTY: f64 = 0.10;
 
-/// Between the published layouts (`model/doc/friction-laws.md`).
-const INTERPOLATED: Spread = Spread { half_load: LayoutLaw::UNCERTAINTY, friction: 0.10 };
-/// Outside them the law is a guess.
-const EXTRAPOLATED: Spread = Spread { half_load: EXTRAPOLATED_SPREAD, friction: EXTRAPOLATED_SPREAD };
-
-/// At its best between the layouts that it was fitted to.
-fn support(contact: &Contact) -> Support {
-    if trust(contact).0 == Trust::Interpolated && contact.substrate() == Substrate::Silicone {
-        Support::Interpolated
-    } else {
-        Support::StandIn
-    }
-}
-
-fn layout_curve(contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve, LawError> {
-    let law = (contact.substrate() == Substrate::Silicone)
+fn law_of(contact: &Contact) -> Result<LayoutLaw, LawError> {
+    (contact.substrate() == Substrate::Silicone)
         .then(|| LayoutLaw::new(contact.pins(), contact.wrap_rad()))
         .flatten()
         .ok_or(LawError::DoesNotApply {
             why: "the layout law describes pins on silicone only; use the law paper or physics",
-        })?;
-    let trusted = trust(contact);
-    let points = layout_device(contact, law, trusted.0, loads_n);
-    Ok(FrictionCurve::of(Law::Layout, trusted, &points))
+        })
 }
 
-/// The layout law; its band is the envelope over both uncertainties.
-fn layout_device(contact: &Contact, law: LayoutLaw, trust: Trust, loads_n: &[f64]) -> Vec<Banded> {
-    let spread = if trust == Trust::Extrapolated { EXTRAPOLATED } else { INTERPOLATED };
-    let (early, late) = (
-        law.with_half_load_scaled(1.0 / (1.0 + spread.half_load)),
-        law.with_half_load_scaled(1.0 + spread.half_load),
-    );
-    loads_n
-        .iter()
-        .map(|&load| {
-            let friction = |law: &LayoutLaw| law.state(load, contact.wrap_rad()).friction_n;
-            let state = law.state(load, contact.wrap_rad());
-            let (a, b) = (friction(&early), friction(&late));
-            let low_n = a.min(b).min(state.friction_n) / (1.0 + spread.friction);
-            let high_n = a.max(b).max(state.friction_n) * (1.0 + spread.friction);
-            Banded { state, low_n, high_n }
-        })
-        .collect()
+fn layout_states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, LawError> {
+    let law = law_of(contact)?;
+    Ok(loads_n.iter().map(|&load| law.state(load, contact.wrap_rad())).collect())
+}
+
+/// What the half load and the misses at the maxima leave open, at twice their standard deviations.
+fn layout_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawError> {
+    let law = law_of(contact)?;
+    let factor = 1.0 + 2.0 * LayoutLaw::UNCERTAINTY;
+    let (early, late) = (law.with_half_load_scaled(1.0 / factor), law.with_half_load_scaled(factor));
+    let log = |law: &LayoutLaw, load: f64| law.state(load, contact.wrap_rad()).friction_n.ln();
+    let side = |moved: &LayoutLaw, sign: f64| {
+        loads_n.iter().map(|&load| (sign * (log(moved, load) - log(&law, load))).max(0.0)).collect()
+    };
+    Ok(Uncertain {
+        friction_n: loads_n.iter().map(|&load| log(&law, load).exp()).collect(),
+        sources: vec![
+            BandSource { name: "half load".to_owned(), down: side(&late, -1.0), up: side(&early, 1.0) },
+            BandSource::even("misses at the measured maxima", vec![2.0 * FRICTION_UNCERTAINTY; loads_n.len()]),
+        ],
+    })
 }
 
 /// `w = n/30` reproduces the three published weights.
@@ -83,7 +67,35 @@ const WEIGHT_PER_PIN: f64 = 1.0 / 30.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayoutLaw {
     half_load_n: f64,
+    steepness: f64,
     weight: f64,
+}
+
+/// How a half load follows from a layout: `F_half = C sqrt(n/(a p))`, with one steepness for all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThresholdRule {
+    /// `C`, in newtons.
+    pub scale_n: f64,
+    /// `s`, dimensionless.
+    pub steepness: f64,
+}
+
+impl ThresholdRule {
+    /// The rule that the printed thresholds of these layouts follow, on average; `None` without any. The half load is
+    /// where `F_r` reaches `F_thr`, the steepness the slope of `F_r` there times that load.
+    pub fn fitted(layouts: &[PublishedLayout]) -> Option<Self> {
+        let (light, heavy) = (published::lightest_load_n(), published::heaviest_load_n());
+        let (mut log_scale, mut steepness) = (0.0, 0.0);
+        for layout in layouts {
+            let (from, to) = layout.reduced_load;
+            let half_load = light + (layout.threshold - from) / (to - from) * (heavy - light);
+            let unit = (layout.pins as f64 / (published::wrap_angle_rad() * layout.pitch_rad())).sqrt();
+            log_scale += (half_load / unit).ln();
+            steepness += (to - from) / (heavy - light) * half_load;
+        }
+        let count = layouts.len() as f64;
+        (count > 0.0).then(|| Self { scale_n: (log_scale / count).exp(), steepness: steepness / count })
+    }
 }
 
 impl LayoutLaw {
@@ -104,10 +116,16 @@ impl LayoutLaw {
     /// The law for `pins` within a wrap of `wrap_rad` radians; uneven pins enter with their mean pitch,
     /// a single pin with the whole wrap as its pitch. `None` without pins: there is nothing to switch.
     pub fn new(pins: &PinPattern, wrap_rad: f64) -> Option<Self> {
+        Self::by_rule(pins, wrap_rad, ThresholdRule { scale_n: Self::SCALE_N, steepness: Self::STEEPNESS })
+    }
+
+    /// The law for `pins` by another rule than its own.
+    pub fn by_rule(pins: &PinPattern, wrap_rad: f64, rule: ThresholdRule) -> Option<Self> {
         let n = pins.count() as f64;
         let pitch = pins.mean_pitch_rad().unwrap_or(wrap_rad);
         (pins.count() > 0).then(|| Self {
-            half_load_n: Self::half_load_at_n(n, pitch, wrap_rad),
+            half_load_n: Self::half_load_at_n(n, pitch, wrap_rad) * rule.scale_n / Self::SCALE_N,
+            steepness: rule.steepness,
             weight: (n * WEIGHT_PER_PIN).min(1.0),
         })
     }
@@ -126,7 +144,7 @@ impl LayoutLaw {
 
 impl Switch for LayoutLaw {
     fn switched(&self, load_n: f64) -> f64 {
-        1.0 / (1.0 + (-Self::STEEPNESS * (load_n / self.half_load_n - 1.0)).exp())
+        1.0 / (1.0 + (-self.steepness * (load_n / self.half_load_n - 1.0)).exp())
     }
 
     fn weight(&self) -> f64 {
@@ -137,7 +155,6 @@ impl Switch for LayoutLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::published;
 
     /// `model/doc/friction-laws.md`: the maxima come out at 0.0 / +6.5 / -3.4 %; its constants are printed to three
     /// digits, which leaves 0.7 % open.
@@ -163,6 +180,18 @@ mod tests {
         assert!(half(6, 0.2) > half(3, 0.2));
         assert!(half(3, 0.3) < half(3, 0.2));
         assert_eq!(LayoutLaw::new(&PinPattern::default(), 1.1), None);
+    }
+
+    /// `model/doc/friction-laws.md`: half loads of 68.3, 39.5 and 44.0 N.
+    #[test]
+    fn a_rule_follows_from_the_printed_thresholds() {
+        for (layout, half_load) in published::LAYOUTS.iter().zip([68.3, 39.5, 44.0]) {
+            let rule = ThresholdRule::fitted(&[*layout]).unwrap();
+            let pins = PinPattern::even(layout.pins, layout.pitch_rad());
+            let law = LayoutLaw::by_rule(&pins, published::wrap_angle_rad(), rule).unwrap();
+            assert!((law.half_load_n() - half_load).abs() < 0.06, "{}: {law:?}", layout.name);
+        }
+        assert_eq!(ThresholdRule::fitted(&[]), None);
     }
 
     #[test]

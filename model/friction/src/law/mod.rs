@@ -1,12 +1,14 @@
-//! The laws that predict friction: one file per law, and which of them is best supported for a contact.
+//! The laws that predict friction, one file per law, and the one that is used unless another is asked for.
 //!
-//! To add a law, write its file with a `DEFINITION` and add its line to the list below; choice, comparison, words and
+//! To add a law, write its file with a `DEFINITION` and add its line to the list below; comparison, bands, words and
 //! sources follow from there. `model/doc/friction-laws.md` explains the laws with their sources.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::band::{Band, BandSource};
 use crate::physics::PhysicsError;
-use crate::{Contact, FrictionCurve};
+use crate::trust::trust;
+use crate::{Contact, FrictionCurve, SwitchState};
 
 /// What a law is and does.
 pub(crate) struct Definition {
@@ -20,25 +22,19 @@ pub(crate) struct Definition {
     pub(crate) source: &'static str,
     /// Whether it needs a model file beside the contact.
     pub(crate) needs_model: bool,
-    /// How well it is supported for a contact.
-    pub(crate) support: fn(&Contact) -> Support,
-    /// Predicts the curve of a contact at loads in newtons.
-    pub(crate) curve: fn(&Contact, &[f64]) -> Result<FrictionCurve, LawError>,
+    /// Predicts the states of a contact at loads in newtons.
+    pub(crate) states: fn(&Contact, &[f64]) -> Result<Vec<SwitchState>, LawError>,
+    /// Friction at loads in newtons, with what the law itself leaves uncertain about it: its constants, its scatter on
+    /// what was measured.
+    pub(crate) uncertain: fn(&Contact, &[f64]) -> Result<Uncertain, LawError>,
+    /// What the law is known to get wrong of a contact, in words.
+    pub(crate) remark: fn(&Contact) -> Option<String>,
 }
 
-/// How well a law is supported for a contact, weakest first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Support {
-    /// It may be asked when all others have failed.
-    LastResort,
-    /// It can stand in for a better one.
-    StandIn,
-    /// It applies to contacts of any kind.
-    General,
-    /// The contact lies between measured ones that it was fitted to.
-    Interpolated,
-    /// The contact was measured.
-    Measured,
+/// Friction in newtons with the sources of a law's own uncertainty, load by load.
+pub(crate) struct Uncertain {
+    pub(crate) friction_n: Vec<f64>,
+    pub(crate) sources: Vec<BandSource>,
 }
 
 /// Declares the files of the laws, their ids and the registry.
@@ -73,6 +69,11 @@ laws! {
 }
 
 impl Law {
+    /// The law of every curve for which no other is asked: of those that predict every contact and change with each of
+    /// its parameters, the one whose error is smallest on published layouts of which it was told nothing
+    /// (`model/doc/friction-laws.md` has the table, [`crate::evidence`] makes it).
+    pub const DEFAULT: Self = Self::Physics;
+
     /// The law of a word, such as `paper`.
     pub fn named(word: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|law| law.as_str() == word)
@@ -139,20 +140,6 @@ pub enum LawError {
     Physics(#[from] PhysicsError),
 }
 
-/// The laws that predict `contact` from itself alone, the best supported first.
-fn by_support(contact: &Contact) -> Vec<Law> {
-    let mut laws: Vec<Law> = Law::predictive().collect();
-    laws.sort_by_cached_key(|law| std::cmp::Reverse((law.definition().support)(contact)));
-    laws
-}
-
-/// The law that is best supported for a contact: the paper's own where it measured; between its layouts the layout law,
-/// whose error on devices left out is smaller (6 % against 8 %); physics for pins on the proxy, and wherever the layout
-/// law would be a guess, because it alone knows of uneven, off-centre and single pins.
-pub fn best_law(contact: &Contact) -> Law {
-    by_support(contact).first().copied().unwrap_or(Law::Paper)
-}
-
 /// Predicts tension and friction of `contact` at `loads_n` newtons by this law.
 ///
 /// ```
@@ -169,11 +156,41 @@ pub fn best_law(contact: &Contact) -> Law {
 /// # Errors
 /// [`LawError`] if the law does not apply or has no solution.
 pub fn predict_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve, LawError> {
-    (law.definition().curve)(contact, loads_n)
+    let states = (law.definition().states)(contact, loads_n)?;
+    let band = Band::of(law, contact, loads_n)?;
+    let (trust, mut reasons) = trust(contact, &band.departures, loads_n);
+    if let Some((rival, load_n, ratio)) = band.widest_rival(NOTEWORTHY) {
+        let law = law.title();
+        reasons.push(if ratio > 1.0 {
+            format!(
+                "the laws disagree: at {load_n:.2} N {rival} gives {ratio:.1} times the friction of {law}"
+            )
+        } else {
+            format!(
+                "the laws disagree: at {load_n:.2} N {law} gives {:.1} times the friction of {rival}",
+                1.0 / ratio
+            )
+        });
+    }
+    reasons.extend((law.definition().remark)(contact));
+    Ok(FrictionCurve::of(law, trust, reasons, &states, &band))
 }
 
-/// Predicts by the best supported law ([`best_law`]). Where that has no solution the next best stands in, and the curve
-/// says so.
+/// Ratio of two laws' frictions that a curve's reasons name.
+const NOTEWORTHY: f64 = 1.25;
+
+/// Friction of `contact` by `law` at `loads_n` newtons, without band.
+pub(crate) fn friction_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Vec<f64>, LawError> {
+    Ok((law.definition().states)(contact, loads_n)?.iter().map(|s| s.friction_n).collect())
+}
+
+/// Friction of `contact` by `law`, with what the law itself leaves uncertain.
+pub(crate) fn uncertain_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawError> {
+    (law.definition().uncertain)(contact, loads_n)
+}
+
+/// Predicts by [`Law::DEFAULT`], the same law for every contact. Should it have no solution, the layout law or the
+/// paper's capstan stands in, and the curve says so in its reasons and in its law.
 ///
 /// ```
 /// use pinswitch_friction::{Contact, Law, PinPattern, Substrate, Trust, predict, published};
@@ -182,24 +199,19 @@ pub fn predict_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Fricti
 /// let pins = PinPattern::even(4, 14f64.to_radians());
 /// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
 /// let curve = predict(&contact, &[10.0, 40.0]);
-/// assert_eq!((curve.law, curve.trust), (Law::Layout, Trust::Interpolated));
+/// assert_eq!((curve.law, curve.trust), (Law::Physics, Trust::Interpolated));
 /// assert!(curve.band_low_n[1] < curve.friction_n[1] && curve.friction_n[1] < curve.band_high_n[1]);
 /// # Ok::<(), pinswitch_friction::ContactError>(())
 /// ```
 pub fn predict(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
-    let mut first_failure = None;
-    for law in by_support(contact) {
-        match predict_by(law, contact, loads_n) {
-            Ok(curve) => return with_reason(curve, first_failure),
-            Err(failed) => first_failure = first_failure.or(Some(failed)),
-        }
-    }
-    with_reason(paper::capstan_curve(contact, loads_n), first_failure)
-}
-
-/// The curve with the failure of a better law among its reasons.
-fn with_reason(mut curve: FrictionCurve, failed: Option<LawError>) -> FrictionCurve {
-    curve.reasons.extend(failed.map(|failed| format!("another law stands in: {failed}")));
+    let failed = match predict_by(Law::DEFAULT, contact, loads_n) {
+        Ok(curve) => return curve,
+        Err(failed) => failed,
+    };
+    let mut curve = predict_by(Law::Layout, contact, loads_n)
+        .or_else(|_| predict_by(Law::Paper, contact, loads_n))
+        .unwrap_or_else(|_| paper::capstan_curve(contact, loads_n));
+    curve.reasons.push(format!("another law stands in: {failed}"));
     curve
 }
 
@@ -218,17 +230,6 @@ mod tests {
 
     fn contact(substrate: Substrate, pins: PinPattern) -> Contact {
         Contact::new(substrate, pins, published::wrap_angle_rad()).unwrap()
-    }
-
-    #[test]
-    fn the_best_law_follows_what_was_measured() {
-        let silicone = |pins| best_law(&contact(Substrate::Silicone, pins));
-        let double = &published::LAYOUTS[1];
-        assert_eq!(silicone(PinPattern::even(3, double.pitch_rad())), Law::Paper);
-        assert_eq!(silicone(PinPattern::default()), Law::Paper);
-        assert_eq!(silicone(PinPattern::even(4, 0.25)), Law::Layout);
-        assert_eq!(silicone(PinPattern::new(vec![-0.3, 0.0, 0.2])), Law::Physics);
-        assert_eq!(best_law(&contact(Substrate::Abs, PinPattern::even(4, 0.25))), Law::Physics);
     }
 
     #[test]
@@ -267,14 +268,14 @@ mod tests {
     }
 
     #[test]
-    fn one_law_at_least_predicts_every_contact() {
+    fn the_default_law_predicts_every_contact() {
         for (substrate, pins) in [
             (Substrate::Silicone, PinPattern::default()),
             (Substrate::Silicone, PinPattern::new(vec![0.1])),
             (Substrate::Abs, PinPattern::new(vec![-0.4, 0.3])),
         ] {
             let contact = contact(substrate, pins);
-            assert_eq!(predict(&contact, &[10.0]).law, best_law(&contact));
+            assert_eq!(predict(&contact, &[10.0]).law, Law::DEFAULT);
         }
     }
 }

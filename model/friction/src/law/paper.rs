@@ -1,11 +1,12 @@
 //! `paper`: the paper's own capstan and eq. 4, with its constants, for its three layouts and for one material alone.
 
-use super::{Definition, Law, LawError, Support};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::{Definition, Law, LawError, Uncertain};
+use crate::band::BandSource;
 use crate::capstan::{Direction, capstan_friction_n, capstan_tension_n};
-use crate::curve::Banded;
-use crate::published::{self, PublishedLayout};
-use crate::trust::{EXTRAPOLATED_SPREAD, trust};
-use crate::{Contact, FrictionCurve, PaperSwitch, Substrate, Switch, SwitchState, Trust};
+use crate::published::{self, LAYOUTS};
+use crate::{Contact, FrictionCurve, PaperSwitch, Substrate, Switch, SwitchState};
 
 pub(super) static DEFINITION: Definition = Definition {
     word: "paper",
@@ -13,102 +14,84 @@ pub(super) static DEFINITION: Definition = Definition {
     summary: "Capstan and eq. 4 with the paper's constants: its three layouts only",
     source: "capstan and eq. 4 of Dermitzakis & Carbajal, arXiv:1401.5232, with its constants",
     needs_model: false,
-    support,
-    curve: paper_curve,
+    states: paper_states,
+    uncertain: paper_uncertain,
+    remark: threshold_remark,
 };
 
-/// Measured where the paper measured; bare silicone is its capstan at any wrap and load.
-fn support(contact: &Contact) -> Support {
-    if trust(contact).0 == Trust::Published {
-        Support::Measured
-    } else if contact.substrate() == Substrate::Silicone && contact.pins().count() == 0 {
-        Support::Interpolated
-    } else {
-        Support::LastResort
-    }
-}
-
 /// The paper's model; it gives no constants for other pins on silicone than its three layouts.
-fn paper_curve(contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve, LawError> {
+fn paper_states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, LawError> {
     match (contact.substrate(), contact.published_layout()) {
         (Substrate::Silicone, Some(layout)) => {
-            Ok(FrictionCurve::of(Law::Paper, trust(contact), &paper_device(contact, layout, loads_n)))
+            let switch = PaperSwitch::new(layout);
+            Ok(loads_n.iter().map(|&load| switch.state(load, contact.wrap_rad())).collect())
         }
         (Substrate::Silicone, None) if contact.pins().count() > 0 => Err(LawError::DoesNotApply {
             why: "the paper gives constants for six-single, three-double and three-single only (pinswitch layouts shows them); use the law layout or physics",
         }),
-        _ => Ok(capstan_curve(contact, loads_n)),
+        (Substrate::Silicone, None) => Ok(capstan(contact, published::MU_SILICONE, 1.0, loads_n)),
+        (Substrate::Abs, _) => Ok(capstan(contact, published::MU_PINS, 0.0, loads_n)),
     }
 }
 
-/// The paper's capstan on one material: silicone where there are no pins, else the pins alone.
-pub(super) fn capstan_curve(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
-    let points = if contact.pins().count() == 0 {
-        silicone_alone(contact, loads_n)
-    } else {
-        pins_alone(contact, contact.published_layout(), loads_n)
-    };
-    FrictionCurve::of(Law::Paper, trust(contact), &points)
-}
-
-/// A plain capstan with a band of `D / (1 + spread) .. D (1 + spread)`.
-fn capstan(contact: &Contact, mu: f64, spread: f64, share: f64, loads_n: &[f64]) -> Vec<Banded> {
+/// A plain capstan: the friction of one material, of which silicone makes `share`.
+fn capstan(contact: &Contact, mu: f64, share: f64, loads_n: &[f64]) -> Vec<SwitchState> {
     let x = mu * contact.wrap_rad();
     loads_n
         .iter()
-        .map(|&load_n| {
-            let friction_n = capstan_friction_n(load_n, x);
-            let state = SwitchState {
-                load_n,
-                eccentric_n: capstan_tension_n(load_n, x, Direction::Eccentric),
-                concentric_n: capstan_tension_n(load_n, x, Direction::Concentric),
-                friction_n,
-                silicone_share: share,
-            };
-            Banded::within(state, spread)
+        .map(|&load_n| SwitchState {
+            load_n,
+            eccentric_n: capstan_tension_n(load_n, x, Direction::Eccentric),
+            concentric_n: capstan_tension_n(load_n, x, Direction::Concentric),
+            friction_n: capstan_friction_n(load_n, x),
+            silicone_share: share,
         })
         .collect()
 }
 
-/// How far `model` and `measured` lie apart, as a ratio above one less one: the smallest spread that covers both.
-fn miss(model: f64, measured: f64) -> f64 {
-    (model / measured).max(measured / model) - 1.0
-}
-
-fn silicone_alone(contact: &Contact, loads_n: &[f64]) -> Vec<Banded> {
-    let model = capstan_friction_n(
-        published::heaviest_load_n(),
-        published::MU_SILICONE * published::wrap_angle_rad(),
-    );
-    let spread = miss(model, published::SILICONE_ALONE_MAX_N).max(extrapolated_spread(contact));
-    capstan(contact, published::MU_SILICONE, spread, 1.0, loads_n)
-}
-
-/// Pins alone: the paper's constant coefficient, which misses its own three maxima by 42 to 113 %; the band says so.
-fn pins_alone(contact: &Contact, layout: Option<PublishedLayout>, loads_n: &[f64]) -> Vec<Banded> {
-    let model =
-        capstan_friction_n(published::heaviest_load_n(), published::MU_PINS * published::wrap_angle_rad());
-    let spread = match layout {
-        Some(layout) => miss(model, layout.pins_max_n),
-        None => published::LAYOUTS.iter().map(|l| miss(model, l.pins_max_n)).fold(0.0, f64::max),
+/// The paper's capstan on one material, for a contact that nothing else describes; its band is a factor e.
+pub(super) fn capstan_curve(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
+    let bare = contact.pins().count() == 0;
+    let (mu, share) = if bare { (published::MU_SILICONE, 1.0) } else { (published::MU_PINS, 0.0) };
+    let states = capstan(contact, mu, share, loads_n);
+    let band = crate::band::Band {
+        load_n: vec![published::heaviest_load_n()],
+        sources: vec![BandSource::even("model", vec![1.0])],
+        rivals: Vec::new(),
+        departures: Vec::new(),
     };
-    capstan(contact, published::MU_PINS, spread.max(extrapolated_spread(contact)), 0.0, loads_n)
+    FrictionCurve::of(Law::Paper, crate::Trust::Extrapolated, contact.remarks(), &states, &band)
 }
 
-/// A published layout: its own miss at the maximum, and no less than the three layouts' root mean square.
-fn paper_device(contact: &Contact, layout: PublishedLayout, loads_n: &[f64]) -> Vec<Banded> {
-    let own = |l: &PublishedLayout| {
-        let state = PaperSwitch::new(*l).state(published::heaviest_load_n(), published::wrap_angle_rad());
-        miss(state.friction_n, l.device_max_n)
+/// The law's own error: how far it misses the maxima of the same kind, root mean square as logarithms, times Student's
+/// factor for so few. A layout's own miss is not its band.
+fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawError> {
+    let friction_n = paper_states(contact, loads_n)?.iter().map(|s| s.friction_n).collect();
+    let (wrap, heaviest) = (published::wrap_angle_rad(), published::heaviest_load_n());
+    let misses: Vec<f64> = match (contact.substrate(), contact.pins().count()) {
+        (Substrate::Silicone, 0) => {
+            let model = capstan_friction_n(heaviest, published::MU_SILICONE * wrap);
+            vec![(model / published::SILICONE_ALONE_MAX_N).ln()]
+        }
+        (Substrate::Silicone, _) => LAYOUTS
+            .iter()
+            .map(|l| (PaperSwitch::new(*l).state(heaviest, wrap).friction_n / l.device_max_n).ln())
+            .collect(),
+        (Substrate::Abs, _) => {
+            let model = capstan_friction_n(heaviest, published::MU_PINS * wrap);
+            LAYOUTS.iter().map(|l| (model / l.pins_max_n).ln()).collect()
+        }
     };
-    let mean_square =
-        published::LAYOUTS.iter().map(|l| own(l).powi(2)).sum::<f64>() / published::LAYOUTS.len() as f64;
-    let spread = own(&layout).max(mean_square.sqrt()).max(extrapolated_spread(contact));
-    let switch = PaperSwitch::new(layout);
-    loads_n.iter().map(|&load| Banded::within(switch.state(load, contact.wrap_rad()), spread)).collect()
+    let count = misses.len() as f64;
+    let rms = (misses.iter().map(|m| m * m).sum::<f64>() / count).sqrt();
+    let quantile = StudentsT::new(0.0, 1.0, count).map_or(12.7, |t| t.inverse_cdf(0.975));
+    let own = BandSource::even("misses at the measured maxima", vec![quantile * rms; loads_n.len()]);
+    Ok(Uncertain { friction_n, sources: vec![own] })
 }
 
-/// A published layout in a part that departs from the measured one is no longer published.
-fn extrapolated_spread(contact: &Contact) -> f64 {
-    if contact.departures().is_empty() { 0.0 } else { EXTRAPOLATED_SPREAD }
+/// Says when `F_thr` of six-single is not read as printed.
+fn threshold_remark(contact: &Contact) -> Option<String> {
+    let (read, printed) = (contact.published_layout()?, LAYOUTS[0]);
+    (read.name == printed.name && read.threshold != printed.threshold && contact.substrate() == Substrate::Silicone)
+        .then(|| format!("F_thr of six-single is read as {}, printed is {}", read.threshold, printed.threshold))
 }

@@ -36,30 +36,34 @@ impl BandedMatrix {
     /// definite; `b` is then meaningless.
     pub(super) fn solve(&mut self, b: &mut [f64]) -> bool {
         let n = b.len();
+        let (diagonal, first, second) =
+            (&mut self.diagonal[..n], &mut self.first[..n], &mut self.second[..n]);
         for i in 0..n {
-            let pivot = self.diagonal[i];
+            let pivot = diagonal[i];
             if pivot.is_nan() || pivot <= 0.0 {
                 return false;
             }
-            let (one, two) = (self.first[i] / pivot, self.second[i] / pivot);
+            let inverse = 1.0 / pivot;
+            diagonal[i] = inverse;
+            let (one, two) = (first[i] * inverse, second[i] * inverse);
             if i + 1 < n {
-                self.diagonal[i + 1] -= one * self.first[i];
+                diagonal[i + 1] -= one * first[i];
                 b[i + 1] -= one * b[i];
                 if i + 2 < n {
-                    self.first[i + 1] -= one * self.second[i];
-                    self.diagonal[i + 2] -= two * self.second[i];
+                    first[i + 1] -= one * second[i];
+                    diagonal[i + 2] -= two * second[i];
                     b[i + 2] -= two * b[i];
                 }
             }
-            (self.first[i], self.second[i]) = (one, two);
+            (first[i], second[i]) = (one, two);
         }
         for i in (0..n).rev() {
-            let mut x = b[i] / self.diagonal[i];
+            let mut x = b[i] * diagonal[i];
             if i + 1 < n {
-                x -= self.first[i] * b[i + 1];
+                x -= first[i] * b[i + 1];
             }
             if i + 2 < n {
-                x -= self.second[i] * b[i + 2];
+                x -= second[i] * b[i + 2];
             }
             b[i] = x;
         }

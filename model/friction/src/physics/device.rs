@@ -1,28 +1,23 @@
-//! A switch of any layout, from physics: its state at a load, and its curve with a band.
+//! A switch of any layout, from physics: its state at a load, and what is uncertain about it.
 
 use nalgebra::{Matrix3, Vector3};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::equilibrium::Supports;
 use super::fit::PUBLISHED_FIT;
-use super::grid::Grid;
-use super::hypotheses::STIFF_N_MM2;
+use super::grid::{self, Grid};
 use super::march::{Slide, Sliding, pins_alone_exponent, polygon_turns_rad, slide};
-use super::{Bed, Constants, OutsidePins, PhysicsError};
+use super::{Bed, Constants, PhysicsError};
+use crate::band::BandSource;
+use crate::law::Uncertain;
 use crate::published;
-use crate::trust::EXTRAPOLATED_SPREAD;
-use crate::{Contact, Direction, FrictionCurve, Law, Substrate, SwitchState, Trust, capstan_tension_n};
+use crate::trust::is_measured;
+use crate::{Contact, Direction, Substrate, SwitchState, capstan_tension_n};
 
-/// Elements over the wrap: sixteen times as many move the friction of the published layouts by less than 0.1 % (a
-/// test).
-const ELEMENTS: usize = 60;
 /// Share of cases that a band should hold.
 const CONFIDENCE: f64 = 0.95;
 /// Step of a logarithm for the sensitivities.
 const STEP: f64 = 1e-3;
-/// The most of the wrap that lay outside the outermost pins of a measured layout, a side: three-single.
-const WIDEST_FREE_SPAN_RAD: f64 = 0.3495;
-
 /// Contact, bed and constants: all that the friction of a switch depends on.
 ///
 /// ```
@@ -54,12 +49,13 @@ struct Nearby {
 impl PhysicsSwitch {
     /// The switch of `contact` on the bed that the contact carries, with these constants of the published bed.
     pub fn new(contact: &Contact, constants: Constants) -> Self {
-        Self::with_elements(contact, *contact.bed(), constants, ELEMENTS)
+        let bed = *contact.bed();
+        Self::with_elements(contact, bed, constants, grid::elements(contact.wrap_rad(), &bed))
     }
 
     /// The same with another bed and another number of elements over the wrap.
     pub fn with_elements(contact: &Contact, bed: Bed, constants: Constants, elements: usize) -> Self {
-        let grid = Grid::new(contact.wrap_rad(), contact.pins().angles_rad(), &bed, elements);
+        let grid = Grid::new(contact.wrap_rad(), contact.all_pins().angles_rad(), &bed, elements);
         Self { contact: contact.clone(), bed, constants, grid }
     }
 
@@ -105,6 +101,11 @@ impl PhysicsSwitch {
         (angle(touched().next()), angle(touched().next_back()))
     }
 
+    /// Angles of the pins that the tendon can reach.
+    pub(super) fn pins_rad(&self) -> Vec<f64> {
+        self.grid.pins.iter().map(|node| self.grid.angle_rad[*node]).collect()
+    }
+
     pub(super) fn angles_rad(&self) -> &[f64] {
         &self.grid.angle_rad
     }
@@ -116,7 +117,7 @@ impl PhysicsSwitch {
         direction: Direction,
         start: &mut Option<Sliding>,
     ) -> Result<Exponent, PhysicsError> {
-        let pins = self.contact.pins().angles_rad();
+        let pins = self.contact.all_pins().angles_rad();
         if self.contact.substrate() == Substrate::Abs {
             let turns = polygon_turns_rad(pins, self.contact.wrap_rad());
             let kappa = self.constants.kappa_per_sqrt_n * self.bed.ploughing_ratio();
@@ -210,86 +211,44 @@ impl Point {
     }
 }
 
-/// The curve of `contact` from physics, with constants fitted to the published maxima. The band holds the constants'
-/// covariance and the model's own error: for a published condition the scatter of the fit, for any other the error of
-/// layouts left out.
+/// The states of `contact` at `loads_n` newtons, with constants fitted to the published maxima.
 ///
 /// # Errors
 /// [`PhysicsError`] if a load's equilibrium is not found.
-pub fn physics_curve(contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve, PhysicsError> {
+pub(crate) fn states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, PhysicsError> {
+    PhysicsSwitch::new(contact, PUBLISHED_FIT.constants()).states(loads_n)
+}
+
+/// Friction of `contact`, and what the physics leaves uncertain of `ln D` at 95 %: its constants, by their covariance, and its own error, which is
+/// that of published layouts left out of the fit.
+///
+/// # Errors
+/// [`PhysicsError`] if a load's equilibrium is not found.
+pub(crate) fn uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, PhysicsError> {
     let fit = &PUBLISHED_FIT;
     let switch = PhysicsSwitch::new(contact, fit.constants());
     let points = switch.points(loads_n)?;
-    let slopes = switch.sensitivities(loads_n, &points)?;
-    let states: Vec<SwitchState> = points.iter().map(|p| p.state).collect();
-    let (trust, mut reasons) = crate::trust::trust(contact);
-    let own = if trust == Trust::Published { fit.scatter } else { fit.left_out_rms };
-    // Outside what was measured every law is a guess to 40 % (`model/doc/friction-laws.md`): how stiffness and
-    // ploughing follow the materials is assumed, and no measured layout comes near.
-    let guess = if trust == Trust::Extrapolated { (1.0 + EXTRAPOLATED_SPREAD).ln() } else { 0.0 };
     let covariance = Matrix3::from_row_slice(&fit.covariance.concat());
     let quantile =
         StudentsT::new(0.0, 1.0, fit.freedom).map_or(2.78, |t| t.inverse_cdf(0.5 + CONFIDENCE / 2.0));
-    let half: Vec<f64> = slopes
+    let constants = switch
+        .sensitivities(loads_n, &points)?
         .iter()
-        .map(|g| {
-            (quantile.powi(2) * ((g.transpose() * covariance * g)[(0, 0)] + own * own) + guess * guess).sqrt()
-        })
+        .map(|g| quantile * (g.transpose() * covariance * g)[(0, 0)].sqrt())
         .collect();
-    let mut band_low_n: Vec<f64> = states.iter().zip(&half).map(|(s, h)| s.friction_n * (-h).exp()).collect();
-    let mut band_high_n: Vec<f64> = states.iter().zip(&half).map(|(s, h)| s.friction_n * h.exp()).collect();
-    if let Some(outside) = open_span_rad(contact) {
-        // The rival that contradicts one fact only, see `hypotheses`.
-        let on_silicone = Bed {
-            outside: OutsidePins::OnSilicone,
-            softening: 0.0,
-            bending_n_mm2: STIFF_N_MM2,
-            ..*contact.bed()
-        };
-        let rival =
-            PhysicsSwitch::with_elements(contact, on_silicone, fit.constants(), ELEMENTS).states(loads_n)?;
-        for (i, state) in rival.iter().enumerate() {
-            band_low_n[i] = band_low_n[i].min(state.friction_n * (-half[i]).exp());
-            band_high_n[i] = band_high_n[i].max(state.friction_n * half[i].exp());
-        }
-        reasons.push(format!(
-            "{:.1} deg of the wrap lie outside the outermost pin, more than in any measured layout; whether the tendon \
-             touches silicone there is open, and the band covers both",
-            outside.to_degrees()
-        ));
-    }
-    reasons.extend(unexplained(contact));
-    let column = |f: fn(&SwitchState) -> f64| states.iter().map(f).collect::<Vec<_>>();
-    Ok(FrictionCurve {
-        law: Law::Physics,
-        trust,
-        reasons,
-        load_n: column(|s| s.load_n),
-        eccentric_n: column(|s| s.eccentric_n),
-        concentric_n: column(|s| s.concentric_n),
-        friction_n: column(|s| s.friction_n),
-        band_low_n,
-        band_high_n,
-        silicone_share: column(|s| s.silicone_share),
+    Ok(Uncertain {
+        friction_n: points.iter().map(|p| p.state.friction_n).collect(),
+        sources: vec![
+            BandSource::even("constants", constants),
+            BandSource::even("model", vec![quantile * fit.left_out_rms; loads_n.len()]),
+        ],
     })
 }
 
-/// The widest span between an end of the wrap and the outermost pin, if no measured layout had one as wide.
-fn open_span_rad(contact: &Contact) -> Option<f64> {
-    if contact.substrate() == Substrate::Abs {
-        return None;
-    }
-    let (first, last) = (contact.pins().angles_rad().first()?, contact.pins().angles_rad().last()?);
-    let half = contact.wrap_rad() / 2.0;
-    let outside = (first + half).max(half - last);
-    (outside > WIDEST_FREE_SPAN_RAD).then_some(outside)
-}
-
 /// What the physics is known not to explain of a published condition.
-fn unexplained(contact: &Contact) -> Option<String> {
+pub(crate) fn unexplained(contact: &Contact) -> Option<String> {
     let layout = contact.published_layout().filter(|_| contact.substrate() == Substrate::Silicone)?;
-    let wrap = published::wrap_angle_rad();
-    (contact.departures().is_empty() && layout.pins == 3 && (contact.wrap_rad() - wrap).abs() < 1e-6).then(|| {
+    (is_measured(contact) && layout.pins == 3).then(|| {
         format!(
             "physics gives three-double and three-single nearly the same maximum; {:.2} and {:.2} N were measured",
             published::LAYOUTS[1].device_max_n,

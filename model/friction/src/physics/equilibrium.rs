@@ -5,8 +5,8 @@
 //!
 //! `E = int [T/2 u'^2 - T u^2/(2 Rc^2) + T u/Rc + EI/2 (u'' + u/Rc^2 - 1/Rc)^2 + k_s/2 <-u>^2] ds + sum W(<h0 - u_i>)`
 //!
-//! with natural ends and `W' = N`, the support of a pin. Newton's method on the active set of touching nodes, with a
-//! line search on the energy: each step lowers it.
+//! with ends that point along the tangents at both ends of the wrap, and `W' = N`, the support of a pin. Newton's method on the active set of touching nodes, with a
+//! line search along each step.
 
 use super::banded::BandedMatrix;
 use super::grid::Grid;
@@ -16,10 +16,14 @@ use super::{Bed, PhysicsError};
 const MAX_STEPS: usize = 60;
 /// Largest force left unbalanced at a node, as a share of the tension and of `EI/Rc^2`.
 const BALANCE: f64 = 1e-8;
-/// Rounding of the energy, relative.
-const ROUNDING: f64 = 1e-9;
-/// Least share of a Newton step that the line search tries.
-const MIN_STEP: f64 = 1e-6;
+/// Rounding of a node's force, as a share of the largest product that adds to it.
+const ROUNDING: f64 = 1e-12;
+/// Cuts of a step before it is taken as it is.
+const MAX_HALVINGS: usize = 30;
+/// Largest multiple of the string's own negative stiffness that is added to a Newton step's matrix.
+const MOST_SHIFT: f64 = 1e4;
+/// Share of the energy's first slope below which a step has reached the valley.
+const FLAT: f64 = 0.5;
 
 /// The shape and what carries it.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,11 +47,10 @@ pub(super) struct Supports<'a> {
     pub(super) flush_force_n: f64,
 }
 
-/// Force, stiffness and energy of a pin that has sunk.
+/// Force and stiffness of a pin that has sunk.
 struct Support {
     force_n: f64,
     stiffness_n_mm: f64,
-    energy_n_mm: f64,
 }
 
 impl Supports<'_> {
@@ -56,16 +59,10 @@ impl Supports<'_> {
         let h0 = self.bed.protrusion_mm();
         let (x, b) = ((h0 - gap_mm).max(0.0) / h0, self.bed.softening);
         if x == 0.0 {
-            return Support { force_n: 0.0, stiffness_n_mm: 0.0, energy_n_mm: 0.0 };
+            return Support { force_n: 0.0, stiffness_n_mm: 0.0 };
         }
         let (scale, soft) = (self.flush_force_n * (1.0 + b), 1.0 + b * x);
-        // The integral of x/(1 + b x); its series where b x is too small for the logarithm.
-        let integral = if b * x > 1e-4 { (x - (b * x).ln_1p() / b) / b } else { x * x * (0.5 - b * x / 3.0) };
-        Support {
-            force_n: scale * x / soft,
-            stiffness_n_mm: scale / (h0 * soft * soft),
-            energy_n_mm: scale * h0 * integral,
-        }
+        Support { force_n: scale * x / soft, stiffness_n_mm: scale / (h0 * soft * soft) }
     }
 
     /// Quadratic form and linear term of string and bending: `E = u'Au/2 - r'u`.
@@ -84,7 +81,14 @@ impl Supports<'_> {
             a.diagonal[i] -= tension_n[i] * grid.share_mm[i] / (rc * rc);
             load[i] -= tension_n[i] * grid.share_mm[i] / rc;
         }
-        let stiffness = self.bed.bending_n_mm2;
+        // Both ends point along the tangents at the ends of the wrap, from which the nodes beyond turn away: a free string
+        // with u' = 0 at the end of the wrap has u' = tan(m) (1 - u/Rc) at m beyond it.
+        let tilt = grid.reach_rad.tan();
+        for end in [0, n.saturating_sub(1)] {
+            load[end] += tension_n[end] * tilt;
+            a.diagonal[end] += tension_n[end] * tilt / rc;
+        }
+        let stiffness = self.bending_n_mm2(tension_n);
         if stiffness > 0.0 {
             for i in 1..n.saturating_sub(1) {
                 let (left, right) = (grid.element_mm[i - 1], grid.element_mm[i]);
@@ -107,29 +111,25 @@ impl Supports<'_> {
         (a, load)
     }
 
-    /// Energy, its gradient, and what springs add to the second derivative's diagonal, at `u`.
+    /// The energy's gradient, and what springs add to the second derivative's diagonal, at `u`.
     fn evaluate(&self, a: &BandedMatrix, load: &[f64], u: &[f64]) -> State {
         let mut gradient = a.times(u);
         let mut springs = vec![0.0; u.len()];
-        let mut energy = 0.0;
         let k = self.bed.stiffness_n_mm2();
         for i in 0..u.len() {
-            energy += u[i] * (gradient[i] / 2.0 - load[i]);
             gradient[i] -= load[i];
             if u[i] < 0.0 {
                 let spring = k * self.grid.silicone_mm[i];
-                energy += spring * u[i] * u[i] / 2.0;
                 gradient[i] += spring * u[i];
                 springs[i] += spring;
             }
         }
         for p in &self.grid.pins {
             let support = self.pin(u[*p]);
-            energy += support.energy_n_mm;
             gradient[*p] -= support.force_n;
             springs[*p] += support.stiffness_n_mm;
         }
-        State { energy, gradient, springs }
+        State { gradient, springs }
     }
 
     /// The equilibrium under `tension_n` at the nodes, searched from `start` (a gap at each node).
@@ -142,32 +142,78 @@ impl Supports<'_> {
         start: Option<&[f64]>,
     ) -> Result<Equilibrium, PhysicsError> {
         let (a, load) = self.string(tension_n);
-        let bent_n = self.bed.bending_n_mm2 / self.bed.axis_radius_mm().powi(2);
-        let bound = BALANCE * (tension_n.iter().copied().fold(0.0, f64::max) + bent_n);
-        let mut u = start.map_or_else(|| vec![0.0; self.grid.len()], <[f64]>::to_vec);
+        let bent_n = self.bending_n_mm2(tension_n) / self.bed.axis_radius_mm().powi(2);
+        let known = BALANCE * (tension_n.iter().copied().fold(0.0, f64::max) + bent_n);
+        let stiffest = a.diagonal.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+        let rc = self.bed.axis_radius_mm();
+        let hanging: Vec<f64> =
+            tension_n.iter().zip(&self.grid.share_mm).map(|(t, share)| t * share / (rc * rc)).collect();
+        let mut u = start.map_or_else(|| self.pressed(tension_n), <[f64]>::to_vec);
         let mut here = self.evaluate(&a, &load, &u);
         for steps in 0..MAX_STEPS {
-            if here.unbalanced_n() <= bound {
+            let largest_gap = u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+            if here.unbalanced_n() <= known + ROUNDING * stiffest * largest_gap {
                 return Ok(self.carried(u, steps));
             }
-            let step = newton_step(&a, &here);
-            let slope: f64 = step.iter().zip(&here.gradient).map(|(s, g)| s * g).sum();
-            let mut share = 1.0;
-            loop {
-                let moved: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + share * s).collect();
-                let there = self.evaluate(&a, &load, &moved);
-                let lower = there.energy <= here.energy + 1e-4 * share * slope;
-                // Near the end, rounding hides the gain; the forces still tell a good step.
-                let balanced = there.unbalanced_n() <= 0.5 * here.unbalanced_n()
-                    && there.energy <= here.energy + ROUNDING * here.energy.abs();
-                if lower || balanced || share < MIN_STEP {
-                    (u, here) = (moved, there);
-                    break;
-                }
-                share /= 2.0;
-            }
+            let step = newton_step(&a, &hanging, &here);
+            (u, here) = self.along(&a, &load, &u, &step, &here);
         }
         Err(PhysicsError::NotConverged { unbalanced_n: here.unbalanced_n(), steps: MAX_STEPS })
+    }
+
+    /// The tendon's bending stiffness under these tensions, taken at the lowest, N mm².
+    fn bending_n_mm2(&self, tension_n: &[f64]) -> f64 {
+        self.bed.tendon_bending_n_mm2(tension_n.iter().copied().fold(f64::INFINITY, f64::min))
+    }
+
+    /// A first guess: the tendon lies on silicone alone.
+    fn pressed(&self, tension_n: &[f64]) -> Vec<f64> {
+        let k = self.bed.stiffness_n_mm2() * self.bed.axis_radius_mm();
+        tension_n.iter().map(|t| -t / k).collect()
+    }
+
+    /// Where along `step` the energy stops falling, nearly: the slope of the energy is sought, as the energy itself drowns
+    /// in rounding. The energy is convex along almost every step, so the slope crosses zero once.
+    fn along(
+        &self,
+        a: &BandedMatrix,
+        load: &[f64],
+        u: &[f64],
+        step: &[f64],
+        here: &State,
+    ) -> (Vec<f64>, State) {
+        let slope = |state: &State| state.gradient.iter().zip(step).map(|(g, s)| g * s).sum::<f64>();
+        let at = |share: f64| {
+            let moved: Vec<f64> = u.iter().zip(step).map(|(u, s)| u + share * s).collect();
+            let state = self.evaluate(a, load, &moved);
+            (moved, state)
+        };
+        let falling = slope(here);
+        let (mut low, mut high) = ((0.0, falling), None);
+        let mut share = 1.0;
+        let mut tried = at(share);
+        for _ in 0..MAX_HALVINGS {
+            let now = slope(&tried.1);
+            if now.abs() <= FLAT * falling.abs() {
+                break;
+            }
+            if now > 0.0 {
+                high = Some((share, now));
+            } else {
+                low = (share, now);
+            }
+            share = match high {
+                // A full step that still falls is taken: Newton's method speeds up by itself.
+                None => break,
+                // Regula falsi, kept away from both ends.
+                Some((end, rising)) => {
+                    let cut = low.0 + (end - low.0) * low.1.abs() / (low.1.abs() + rising);
+                    cut.clamp(low.0 + 0.1 * (end - low.0), end - 0.1 * (end - low.0))
+                }
+            };
+            tried = at(share);
+        }
+        tried
     }
 
     fn carried(&self, gap_mm: Vec<f64>, steps: usize) -> Equilibrium {
@@ -179,9 +225,8 @@ impl Supports<'_> {
     }
 }
 
-/// Energy and its derivatives at a shape.
+/// Derivatives of the energy at a shape.
 struct State {
-    energy: f64,
     gradient: Vec<f64>,
     springs: Vec<f64>,
 }
@@ -193,17 +238,20 @@ impl State {
     }
 }
 
-/// A direction that lowers the energy: Newton's, or Newton's with a stiffer diagonal where the tendon hangs free.
-fn newton_step(string: &BandedMatrix, here: &State) -> Vec<f64> {
-    let mut shift = 0.0;
+/// A direction that lowers the energy: Newton's, or Newton's with a stiffer diagonal where the tendon hangs free. All
+/// that can make the second derivative indefinite is the string's own `-T/Rc^2`, given in `hanging`; a multiple of it is
+/// added until it is not.
+fn newton_step(string: &BandedMatrix, hanging: &[f64], here: &State) -> Vec<f64> {
+    let mut multiple = 0.0;
     loop {
         let mut matrix = string.clone();
-        matrix.diagonal.iter_mut().zip(&here.springs).for_each(|(d, spring)| *d += spring + shift);
+        for ((d, spring), own) in matrix.diagonal.iter_mut().zip(&here.springs).zip(hanging) {
+            *d += spring + multiple * own;
+        }
         let mut step: Vec<f64> = here.gradient.iter().map(|g| -g).collect();
-        let largest = string.diagonal.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
-        if matrix.solve(&mut step) || shift > largest {
+        if matrix.solve(&mut step) || multiple > MOST_SHIFT {
             return step;
         }
-        shift = if shift == 0.0 { 1e-6 * largest } else { shift * 10.0 };
+        multiple = if multiple == 0.0 { 1.5 } else { multiple * 4.0 };
     }
 }

@@ -1,10 +1,10 @@
-//! Nodes along the wrap: one at every pin, so that the tendon's kinks lie on nodes and refinement converges in second
-//! order.
+//! Nodes along the wrap and a little beyond: one at every pin, so that the tendon's kinks lie on nodes and refinement
+//! converges in second order.
 
 use super::{Bed, OutsidePins};
 use crate::published;
 
-/// Nodes of a wrap. Angles in radians, zero in the middle; lengths in mm along the tendon's axis.
+/// Nodes of a wrap and of the spans that lead to it. Angles in radians, zero in the middle; lengths in mm along the tendon's axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grid {
     /// Angles of the nodes, ascending.
@@ -17,33 +17,71 @@ pub(super) struct Grid {
     pub(super) silicone_mm: Vec<f64>,
     /// Nodes of the pins.
     pub(super) pins: Vec<usize>,
+    /// How far the nodes reach beyond each end of the wrap.
+    pub(super) reach_rad: f64,
 }
 
+/// Length of an element of the straight spans over that of others.
+const STRAIGHT: f64 = 1.5;
 /// Two angles closer than this are one, in radians.
 const SAME_RAD: f64 = 1e-9;
+/// Where the straight span beyond the wrap has risen to this many times a resting pin's height, no pin touches it.
+const CLEAR_OF_PINS: f64 = 1.2;
+
+/// How far beyond an end of the wrap a pin could still touch the span that leaves it: a tangent at `Rc` has risen by
+/// `Rc delta^2/2` there.
+pub(super) fn reach_rad(bed: &Bed) -> f64 {
+    (2.0 * CLEAR_OF_PINS * bed.protrusion_mm() / bed.axis_radius_mm()).sqrt()
+}
+
+/// Fewest elements over a wrap.
+const FEWEST_ELEMENTS: usize = 100;
+/// Length of an element over the length along which the tendon comes down from a pin, `sqrt(h0 Rc)`.
+const ELEMENT_OF_SPAN: f64 = 0.09;
+/// Length of an element over the length along which a stiff tendon presses into silicone, `(EI/k)^(1/4)`.
+const ELEMENT_OF_PRESS: f64 = 0.35;
+/// Most elements, for wraps that are very long against their pins.
+const MOST_ELEMENTS: usize = 1500;
+
+/// Elements over `wrap_rad` on `bed` with which friction lies within 0.2 % of that of ever finer ones (a test): at the
+/// published bed 100, more where the wrap is long against the lengths over which the tendon's shape changes.
+pub(super) fn elements(wrap_rad: f64, bed: &Bed) -> usize {
+    let span_mm = ELEMENT_OF_SPAN * (bed.protrusion_mm() * bed.axis_radius_mm()).sqrt();
+    let press_mm =
+        ELEMENT_OF_PRESS * (bed.tendon_bending_n_mm2(f64::INFINITY) / bed.stiffness_n_mm2()).sqrt().sqrt();
+    let element_mm = if press_mm > 0.0 { span_mm.min(press_mm) } else { span_mm };
+    let needed = (wrap_rad * bed.axis_radius_mm() / element_mm).ceil() as usize;
+    needed.clamp(FEWEST_ELEMENTS, MOST_ELEMENTS)
+}
 
 impl Grid {
-    /// Nodes over `wrap_rad`, about `wrap_rad / elements` apart, with one at each of `pins_rad` (ascending, within the
-    /// wrap).
+    /// Nodes over `wrap_rad` and [`reach_rad`] beyond both ends, about `wrap_rad / elements` apart, with one at each of
+    /// `pins_rad` (ascending; those out of reach are left out).
     pub(super) fn new(wrap_rad: f64, pins_rad: &[f64], bed: &Bed, elements: usize) -> Self {
         let half = wrap_rad / 2.0;
-        let inside: Vec<f64> = pins_rad.iter().map(|p| p.clamp(-half, half)).collect();
+        let reach = reach_rad(bed);
+        let end = half + reach;
+        let inside: Vec<f64> = pins_rad.iter().copied().filter(|p| p.abs() < end).collect();
         let margin = match bed.outside {
             // Up to the edge of the outermost pins' grooves: the silicone that holds them.
             OutsidePins::Free => bed.groove_radius_mm / bed.contact_radius_mm,
             OutsidePins::NextGroove => published::GROOVE_PITCH_DEG.to_radians(),
-            OutsidePins::OnSilicone => wrap_rad,
+            OutsidePins::OnSilicone => f64::INFINITY,
         };
         let span = match (inside.first(), inside.last()) {
-            (Some(first), Some(last)) => ((first - margin).max(-half), (last + margin).min(half)),
-            _ => (-half, half),
+            (Some(first), Some(last)) => ((first - margin).max(-end), (last + margin).min(end)),
+            _ => (-end, end),
         };
-        let mut corners: Vec<f64> = inside.iter().copied().chain([-half, half, span.0, span.1]).collect();
+        let mut corners: Vec<f64> =
+            inside.iter().copied().chain([-end, -half, half, end, span.0, span.1]).collect();
         corners.sort_by(f64::total_cmp);
         corners.dedup_by(|a, b| (*a - *b).abs() < SAME_RAD);
         let step = wrap_rad / elements.max(1) as f64;
         let mut angle_rad: Vec<f64> = corners.first().copied().into_iter().collect();
         for pair in corners.windows(2) {
+            // Beyond the wrap the tendon is all but straight.
+            let beyond = pair[0] + pair[1] > wrap_rad || pair[0] + pair[1] < -wrap_rad;
+            let step = if beyond { STRAIGHT * step } else { step };
             let pieces = ((pair[1] - pair[0]) / step).ceil().max(1.0);
             let piece = (pair[1] - pair[0]) / pieces;
             angle_rad.extend((1..pieces as usize).map(|k| pair[0] + piece * k as f64));
@@ -64,7 +102,7 @@ impl Grid {
             element_mm.push(length);
         }
         let pins = inside.iter().map(|p| angle_rad.partition_point(|a| *a < p - SAME_RAD)).collect();
-        Self { angle_rad, element_mm, share_mm, silicone_mm, pins }
+        Self { angle_rad, element_mm, share_mm, silicone_mm, pins, reach_rad: reach }
     }
 
     /// Number of nodes.
@@ -85,7 +123,7 @@ mod tests {
         for (pin, node) in pins.iter().zip(&grid.pins) {
             assert!((grid.angle_rad[*node] - pin).abs() < 1e-12);
         }
-        let wrap_mm = 1.1 * bed.axis_radius_mm();
+        let wrap_mm = (1.1 + 2.0 * reach_rad(&bed)) * bed.axis_radius_mm();
         for lengths in [&grid.share_mm, &grid.element_mm, &grid.silicone_mm] {
             assert!((lengths.iter().sum::<f64>() - wrap_mm).abs() < 1e-9);
         }
@@ -93,7 +131,7 @@ mod tests {
 
     #[test]
     fn free_ends_have_silicone_between_the_pins_only() {
-        let bed = Bed::published();
+        let bed = Bed { outside: OutsidePins::Free, ..Bed::published() };
         let grid = Grid::new(1.1, &[-0.2, 0.2], &bed, 100);
         let silicone: f64 = grid.silicone_mm.iter().sum();
         let margin = bed.groove_radius_mm / bed.contact_radius_mm;

@@ -10,8 +10,10 @@ use crate::Direction;
 
 /// Rounds of shape and tension before the search is given up; 3 to 6 are usual.
 const MAX_ROUNDS: usize = 40;
+/// Rounds in which the tension found is taken as it is.
+const UNDAMPED_ROUNDS: usize = 8;
 /// Largest relative change of the tension between rounds at which they agree.
-const AGREEMENT: f64 = 1e-7;
+const AGREEMENT: f64 = 1e-6;
 
 /// A loaded tendon that slides in one direction.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,13 +65,20 @@ pub(super) fn slide(tendon: Slide<'_>, start: Option<&Sliding>) -> Result<Slidin
         None => vec![load_n; nodes],
     };
     let mut gap: Option<Vec<f64>> = start.map(|s| s.shape.gap_mm.clone()).filter(|gap| gap.len() == nodes);
-    for _ in 0..MAX_ROUNDS {
-        let shape = supports.equilibrium(&tension_n, gap.as_deref())?;
+    for round in 0..MAX_ROUNDS {
+        let shape = supports
+            .equilibrium(&tension_n, gap.as_deref())
+            .or_else(|_| supports.equilibrium(&tension_n, None))?;
         let (sliding, change) = march(tendon, &tension_n, shape)?;
         if change <= AGREEMENT {
             return Ok(sliding);
         }
-        tension_n = sliding.tension_n;
+        if round < UNDAMPED_ROUNDS {
+            tension_n = sliding.tension_n;
+        } else {
+            // Shape and tension chase each other: meet half-way.
+            tension_n.iter_mut().zip(&sliding.tension_n).for_each(|(t, new)| *t = (*t * new).sqrt());
+        }
         gap = Some(sliding.shape.gap_mm);
     }
     Err(PhysicsError::TensionUnsettled { load_n, rounds: MAX_ROUNDS })
@@ -122,8 +131,21 @@ fn march(tendon: Slide<'_>, tension_n: &[f64], shape: Equilibrium) -> Result<(Sl
     Ok((sliding, change))
 }
 
-/// Turn at each pin of a rigid proxy, rad: half of both neighbouring pitches, the outermost take what the wrap leaves.
+/// Turn at each pin of a rigid proxy that touches, rad: half of both neighbouring pitches, the outermost take what the
+/// wrap leaves. A pin beyond the wrap touches as long as the chord to its neighbour turns less than the tendon does in
+/// the end; there its turn reaches zero.
 pub(super) fn polygon_turns_rad(pins_rad: &[f64], wrap_rad: f64) -> Vec<f64> {
+    let mut pins_rad = pins_rad;
+    while let [.., before, last] = pins_rad
+        && before + last >= wrap_rad
+    {
+        pins_rad = &pins_rad[..pins_rad.len() - 1];
+    }
+    while let [first, after, ..] = pins_rad
+        && first + after <= -wrap_rad
+    {
+        pins_rad = &pins_rad[1..];
+    }
     let half = |i: usize| (pins_rad[i + 1] - pins_rad[i]) / 2.0;
     let last = pins_rad.len().saturating_sub(1);
     (0..pins_rad.len())

@@ -19,10 +19,13 @@ mod profile;
 #[cfg(test)]
 mod tests;
 
-pub use bed::{Bed, OutsidePins, modulus_of_shore_a_mpa};
+pub use bed::{Bed, OutsidePins, modulus_of_shore_a_mpa, shore_a_of_modulus_mpa};
 pub use constants::Constants;
-pub use device::{PhysicsSwitch, physics_curve};
-pub use fit::{FitError, LayoutLeftOut, MaximaFit, fit_maxima, leave_one_layout_out};
+pub use device::PhysicsSwitch;
+pub(crate) use device::{states, uncertain, unexplained};
+pub use fit::{
+    FitError, LayoutLeftOut, MaximaFit, fit_maxima, leave_one_condition_out, leave_one_layout_out,
+};
 pub use profile::{ContactProfile, contact_profile};
 
 /// Why a tendon cannot be computed.

@@ -43,7 +43,7 @@ pub fn contact_profile(
         silicone_rad: switch.silicone_rad(),
         gap_mm: sliding.shape.gap_mm,
         tension_n: sliding.tension_n,
-        pin_angle_rad: contact.pins().angles_rad().to_vec(),
+        pin_angle_rad: switch.pins_rad(),
         pin_n: sliding.shape.pin_n,
         pin_turn_rad: sliding.pin_turn_rad,
         silicone_turn_rad: sliding.silicone_turn_rad,

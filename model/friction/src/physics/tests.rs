@@ -12,7 +12,7 @@ use super::grid::Grid;
 use super::hypotheses::hypotheses;
 use super::*;
 use crate::published::{self, LAYOUTS};
-use crate::{Contact, Direction, Law, PinPattern, Substrate};
+use crate::{Contact, Direction, Law, PinPattern, Substrate, predict_by};
 
 const HEAVIEST_N: f64 = 49.671;
 
@@ -24,10 +24,10 @@ fn device(pins: PinPattern) -> Contact {
     Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap()
 }
 
-/// The bed of the regression values of `model/doc/friction-laws.md`: tendon radius 0.6, linear pins of 200 N/mm,
+/// The bed of the regression values of `model/doc/friction-laws.md`: a string of radius 0.6, linear pins of 200 N/mm,
 /// silicone over the whole wrap.
 fn regression_bed() -> Bed {
-    Bed { tendon_radius_mm: 0.6, softening: 0.0, outside: OutsidePins::OnSilicone, ..Bed::published() }
+    Bed { tendon_radius_mm: 0.6, softening: 0.0, bending_n_mm2: 0.0, ..Bed::published() }
 }
 
 /// A tendon slid from nowhere near its state.
@@ -79,18 +79,21 @@ fn one_uniform_material_gives_the_capstan() {
     }
 }
 
+/// Finer elements change friction by less than 0.2 %, on layouts of all kinds and at all loads.
 #[test]
 fn refinement_converges() {
-    for i in 0..LAYOUTS.len() {
-        let friction = |elements| {
-            let contact = device(layout(i));
-            PhysicsSwitch::with_elements(&contact, *contact.bed(), Constants::published(), elements)
-                .friction_n(HEAVIEST_N)
-                .unwrap()
-        };
-        let (coarse, usual, fine, finest) = (friction(30), friction(60), friction(240), friction(960));
-        assert!((usual / finest - 1.0).abs() < 1e-3, "{coarse} {usual} {fine} {finest}");
-        assert!((fine - finest).abs() < (coarse - finest).abs(), "{coarse} {usual} {fine} {finest}");
+    let groove = published::GROOVE_PITCH_DEG.to_radians();
+    let of = |grooves: &[i32]| PinPattern::new(grooves.iter().map(|g| f64::from(g - 8) * groove).collect());
+    for pins in
+        [layout(0), layout(1), layout(2), of(&[8]), of(&[3, 4, 5]), of(&[2, 3, 9]), of(&[4, 8, 12, 13])]
+    {
+        for load in [1.0, 3.0766, 5.0, 12.0, 25.0, HEAVIEST_N] {
+            let contact = device(pins.clone());
+            let usual = PhysicsSwitch::new(&contact, Constants::published()).friction_n(load).unwrap();
+            let fine = PhysicsSwitch::with_elements(&contact, *contact.bed(), Constants::published(), 720);
+            let fine = fine.friction_n(load).unwrap();
+            assert!((usual / fine - 1.0).abs() < 2e-3, "{pins:?} at {load} N: {usual} {fine}");
+        }
     }
 }
 
@@ -116,12 +119,29 @@ fn the_published_constants_are_the_fit() {
     assert!((rms - known.left_out_rms).abs() < 2e-4, "{rms} {left_out:?}");
 }
 
-/// Of the hypotheses about the tendon's path, the default alone contradicts no printed fact.
+/// Of the hypotheses about the tendon's path two are about as likely: the default, and free spans outside the pins. The
+/// others fall far behind.
 #[test]
-fn the_default_hypothesis_survives_alone() {
+fn the_default_hypothesis_is_among_the_two_that_the_facts_leave() {
     let findings: Vec<_> = hypotheses().iter().map(|h| h.test().unwrap()).collect();
-    let surviving: Vec<_> = findings.iter().filter(|f| f.survives()).map(|f| f.hypothesis.bed).collect();
-    assert_eq!(surviving, [Bed::published()]);
+    let weights = hypotheses::weights(&findings);
+    let named: Vec<_> = findings.iter().map(|f| f.hypothesis).zip(&weights).collect();
+    assert_eq!(findings[0].hypothesis.bed, Bed::published());
+    assert!(*named[0].1 > 0.2, "{named:#?}");
+    let free = named.iter().find(|(h, _)| h.bed.outside == OutsidePins::Free && h.bed.bending_n_mm2 == 0.0);
+    assert!(*free.unwrap().1 > 0.2, "{named:#?}");
+    assert!(named[0].1 + free.unwrap().1 > 0.95, "{named:#?}");
+    // A constant is not judged by the fact that set it.
+    assert!(findings[0].compared.iter().all(|c| !c.fact.contains("onset of")));
+}
+
+/// The bending stiffness puts the onset of three-double where it is printed.
+#[test]
+fn the_bending_stiffness_is_set_by_the_onset() {
+    let loads: Vec<f64> = (0..100).map(|i| 13.0 + 0.05 * f64::from(i)).collect();
+    let states = PhysicsSwitch::new(&device(layout(1)), Constants::published()).states(&loads).unwrap();
+    let onset = states.iter().find(|s| s.silicone_share >= 0.02).unwrap().load_n;
+    assert!((onset - published::THREE_DOUBLE_ONSET_N).abs() < 0.5, "{onset} N");
 }
 
 /// Bands hold the truth as often as they say: rigs with other constants and scattered maxima, fitted as the paper's.
@@ -176,10 +196,11 @@ fn bands_cover_simulated_rigs() {
 #[test]
 fn bands_follow_the_sensitivities() {
     let contact = device(layout(1));
-    let curve = physics_curve(&contact, &[10.0, 30.0, HEAVIEST_N]).unwrap();
-    assert_eq!(curve.law, Law::Physics);
+    let loads = [10.0, 30.0, HEAVIEST_N];
+    let found = uncertain(&contact, &loads).unwrap();
+    let constants = found.sources.iter().find(|s| s.name == "constants").unwrap();
     let covariance = Matrix3::from_row_slice(&PUBLISHED_FIT.covariance.concat());
-    for (i, load) in curve.load_n.iter().enumerate() {
+    for (i, load) in loads.iter().enumerate() {
         let at = Constants::published().logarithms();
         let log_friction = |at: &Vector3<f64>| {
             PhysicsSwitch::new(&contact, Constants::from_logarithms(at)).friction_n(*load).unwrap().ln()
@@ -189,18 +210,52 @@ fn bands_follow_the_sensitivities() {
             moved[k] += 1e-3;
             (log_friction(&moved) - log_friction(&at)) / 1e-3
         });
-        let exact =
-            2.776 * ((slope.transpose() * covariance * slope)[(0, 0)] + PUBLISHED_FIT.scatter.powi(2)).sqrt();
-        let drawn = (curve.band_high_n[i] / curve.friction_n[i]).ln();
-        assert!((drawn / exact - 1.0).abs() < 0.1, "at {load} N: {drawn} for {exact}");
+        let exact = 2.776 * (slope.transpose() * covariance * slope)[(0, 0)].sqrt();
+        assert!((constants.up[i] / exact - 1.0).abs() < 0.15, "at {load} N: {} for {exact}", constants.up[i]);
+    }
+}
+
+/// Each of the seven maxima lies well inside the band that the fit without its layout gives it.
+#[test]
+fn maxima_left_out_lie_inside_their_bands() {
+    let half = 2.776 * PUBLISHED_FIT.left_out_rms;
+    for (name, error) in leave_one_condition_out(&Bed::published()).unwrap() {
+        assert!(error.ln_1p().abs() < 0.75 * half, "{name}: {error} of {half}");
     }
 }
 
 #[test]
 fn a_single_pin_gets_a_band_that_covers_both_readings_of_its_free_spans() {
-    let curve = physics_curve(&device(PinPattern::new(vec![0.0])), &[HEAVIEST_N]).unwrap();
-    assert!(curve.reasons.iter().any(|r| r.contains("outside the outermost pin")), "{:?}", curve.reasons);
+    let curve = predict_by(Law::Physics, &device(PinPattern::new(vec![0.0])), &[HEAVIEST_N]).unwrap();
+    assert!(curve.reasons.iter().any(|r| r.contains("1 pin(s)")), "{:?}", curve.reasons);
     assert!(curve.band_high_n[0] > curve.friction_n[0]);
+}
+
+/// All lengths times L and all loads times L^2 at equal moduli leave D/F as it is.
+#[test]
+fn similar_switches_have_similar_friction() {
+    for (pins, scale) in
+        [(layout(1), 2.0), (PinPattern::new(vec![-0.3, 0.1, 0.2, 0.5]), 0.37), (layout(0), 5.3)]
+    {
+        let contact = device(pins);
+        let b = *contact.bed();
+        let scaled = contact.clone().with_bed(Bed {
+            contact_radius_mm: scale * b.contact_radius_mm,
+            tendon_radius_mm: scale * b.tendon_radius_mm,
+            pin_diameter_mm: scale * b.pin_diameter_mm,
+            groove_radius_mm: scale * b.groove_radius_mm,
+            layer_mm: scale * b.layer_mm,
+            layer_width_mm: scale * b.layer_width_mm,
+            ..b
+        });
+        for load in [2.0, 12.0, HEAVIEST_N] {
+            let share = |contact: &Contact, load: f64| {
+                PhysicsSwitch::new(contact, Constants::published()).friction_n(load).unwrap() / load
+            };
+            let (small, large) = (share(&contact, load), share(&scaled, scale * scale * load));
+            assert!((large / small - 1.0).abs() < 1e-6, "L = {scale}, {load} N: {small} {large}");
+        }
+    }
 }
 
 fn patterns() -> impl Strategy<Value = PinPattern> {
@@ -224,15 +279,18 @@ proptest! {
             let found = slid(supports, &Constants::published(), wrap, load, direction);
             let turned: f64 = found.silicone_turn_rad + found.pin_turn_rad.iter().sum::<f64>();
             prop_assert!((turned - wrap).abs() < 1e-9);
-            // What carries the tendon balances what presses it, T/Rc over the wrap less the string's own term.
+            // What carries the tendon balances what presses it: T/Rc less the string's own term, less what the ends pull up.
             let rc = contact.bed().axis_radius_mm();
             let carried: f64 = found.shape.silicone_n.iter().chain(&found.shape.pin_n).sum();
-            let stiff = contact.bed().bending_n_mm2;
-            if stiff == 0.0 {
-                let pressed: f64 = (0..grid.len())
-                    .map(|i| found.tension_n[i] * grid.share_mm[i] / rc * (1.0 - found.shape.gap_mm[i] / rc))
+            if contact.bed().bending_n_mm2 == 0.0 {
+                let off = |i: usize| 1.0 - found.shape.gap_mm[i] / rc;
+                let pressed: f64 =
+                    (0..grid.len()).map(|i| found.tension_n[i] * grid.share_mm[i] / rc * off(i)).sum();
+                let pulled: f64 = [0, grid.len() - 1]
+                    .map(|end| found.tension_n[end] * grid.reach_rad.tan() * off(end))
+                    .iter()
                     .sum();
-                prop_assert!((carried / pressed - 1.0).abs() < 1e-4, "{carried} N carry {pressed} N");
+                prop_assert!((carried / (pressed - pulled) - 1.0).abs() < 1e-4, "{carried} N carry {pressed} - {pulled} N");
             }
             prop_assert!(found.shape.pin_n.iter().all(|n| *n >= 0.0));
             let monotone = found.tension_n.windows(2).all(|t| direction.sign() * (t[1] - t[0]) >= -1e-12);
@@ -258,7 +316,7 @@ proptest! {
     #[test]
     fn any_pattern_gives_an_ordered_curve(pins in patterns()) {
         let loads: Vec<f64> = (1..=12).map(|i| 5.0 * f64::from(i)).collect();
-        let curve = physics_curve(&device(pins), &loads).unwrap();
+        let curve = predict_by(Law::Physics, &device(pins), &loads).unwrap();
         for (i, load) in loads.iter().enumerate() {
             prop_assert!(curve.eccentric_n[i] <= *load && *load <= curve.concentric_n[i]);
             prop_assert!(curve.band_low_n[i] <= curve.friction_n[i] && curve.friction_n[i] <= curve.band_high_n[i]);

@@ -1,0 +1,235 @@
+//! The band of a curve: what is uncertain about it, source by source.
+//!
+//! Each source gives half widths of `ln D` at 95 %, downwards and upwards; independent sources add as squares. They are
+//! computed at a few loads and drawn through in the logarithm of the load, as they change slowly.
+
+use serde::Serialize;
+
+use crate::departure::{Departure, departures};
+use crate::law::{Law, LawError, Uncertain, friction_by, uncertain_by};
+use crate::physics::{Bed, Constants, OutsidePins, PhysicsSwitch};
+use crate::trust::{is_measured, layout_distance};
+use crate::{Contact, Substrate, published};
+
+/// Loads at which the sources are computed.
+const LOADS: usize = 10;
+/// Half width of a standard normal distribution at 95 %.
+pub(crate) const NORMAL_95: f64 = 1.96;
+/// What is unsure of the effect that physics gives a departure: how the constants follow geometry and hardness is
+/// assumed, never measured. Chosen.
+const UNSURE_EFFECT: f64 = 0.5;
+/// What a departure may do that physics does not know of, as a standard deviation for a factor e. Chosen.
+const UNKNOWN_EFFECT: f64 = 0.1;
+/// Standard deviation for a remark on the contact that no law knows of. Chosen.
+const REMARK: f64 = 0.1;
+/// Standard deviation for a factor e in number or pitch of the pins beyond the measured ones. Chosen.
+const BEYOND_LAYOUTS: f64 = 0.3;
+/// Standard deviation for a factor e in load beyond the tested ones. Chosen.
+const BEYOND_LOADS: f64 = 0.15;
+/// Distance from a measured load, as a logarithm, at which rivals count for two thirds.
+const NEAR_LOAD: f64 = 0.5;
+/// The same for the distance from a measured condition.
+const NEAR_CONDITION: f64 = 0.15;
+
+/// Half widths of `ln D` at 95 % that come from one source, load by load; none is negative.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BandSource {
+    /// The source, such as `constants` or `layer thickness`.
+    pub name: String,
+    /// Downwards.
+    pub down: Vec<f64>,
+    /// Upwards.
+    pub up: Vec<f64>,
+}
+
+impl BandSource {
+    /// A source that is as wide downwards as upwards.
+    pub(crate) fn even(name: impl Into<String>, half: Vec<f64>) -> Self {
+        Self { name: name.into(), down: half.clone(), up: half }
+    }
+}
+
+/// The band of a curve with its sources.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Band {
+    /// Loads at which the sources are given, ascending, in newtons.
+    pub load_n: Vec<f64>,
+    /// The sources: the law's own, what departs from the measured rig, and the rival laws.
+    pub sources: Vec<BandSource>,
+    /// The rivals whose friction the band covers where nothing was measured: name and `ln` of their friction over the
+    /// law's, at each load.
+    pub rivals: Vec<(String, Vec<f64>)>,
+    /// What departs from the published rig, with its effect at each load.
+    pub departures: Vec<Departure>,
+}
+
+impl Band {
+    /// The band of `law` for `contact` over the range of `loads_n`.
+    ///
+    /// ```
+    /// use pinswitch_friction::{Band, Contact, Law, PinPattern, Substrate, published};
+    ///
+    /// let six = &published::LAYOUTS[0];
+    /// let pins = PinPattern::even(six.pins, six.pitch_rad());
+    /// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
+    /// let band = Band::of(Law::Physics, &contact, &[3.08, 49.67])?;
+    /// let [light, heavy] = [0, 1].map(|load| band.half_width(load).1);
+    /// // Its maximum was measured; what it does at light load was not, and the laws disagree there.
+    /// assert!(heavy < 0.25 && light > 0.9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`LawError`] if the law does not describe the contact.
+    pub fn of(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Self, LawError> {
+        let load_n = spaced(loads_n);
+        let departures = departures(contact, &load_n);
+        let Uncertain { friction_n, mut sources } = uncertain_by(law, contact, &load_n)?;
+        for departure in &departures {
+            sources.push(departure_source(departure, load_n.len()));
+        }
+        let remarks = contact.remarks().len() as f64;
+        if remarks > 0.0 {
+            sources.push(BandSource::even(
+                "what no law knows of",
+                vec![NORMAL_95 * REMARK * remarks.sqrt(); load_n.len()],
+            ));
+        }
+        let (nearest, beyond) = layout_distance(contact);
+        if beyond > 0.0 {
+            sources.push(BandSource::even(
+                "layout beyond the measured ones",
+                vec![NORMAL_95 * BEYOND_LAYOUTS * beyond; load_n.len()],
+            ));
+        }
+        if let Some(source) = beyond_loads(&load_n) {
+            sources.push(source);
+        }
+        let rivals = rivals(law, contact, &load_n, &friction_n)?;
+        // A measured condition is near itself; any other is as far as its layout and its departures take it.
+        let apart = departures.iter().map(|d| d.log_ratio.powi(2)).sum::<f64>() + nearest.powi(2);
+        let apart = if is_measured(contact) { 0.0 } else { apart.sqrt() };
+        sources.push(rival_source(&rivals, &load_n, apart));
+        Ok(Self { load_n, sources, rivals, departures })
+    }
+
+    /// Half widths of `ln D` at the load of this index, downwards and upwards.
+    pub fn half_width(&self, load: usize) -> (f64, f64) {
+        let root = |side: fn(&BandSource) -> &Vec<f64>| {
+            self.sources.iter().map(|s| side(s)[load].powi(2)).sum::<f64>().sqrt()
+        };
+        (root(|s| &s.down), root(|s| &s.up))
+    }
+
+    /// Half widths of `ln D` at `load_n` newtons, between those of the loads given.
+    pub fn half_width_at(&self, load_n: f64) -> (f64, f64) {
+        let above = self.load_n.partition_point(|l| *l < load_n);
+        if above == 0 {
+            return self.half_width(0);
+        }
+        if above == self.load_n.len() {
+            return self.half_width(above - 1);
+        }
+        let (from, to) = (self.load_n[above - 1], self.load_n[above]);
+        let share = (load_n / from).ln() / (to / from).ln();
+        let ((a, b), (c, d)) = (self.half_width(above - 1), self.half_width(above));
+        (a + share * (c - a), b + share * (d - b))
+    }
+
+    /// The rival that differs most from the law, wherever it does: its name, the load, and the ratio of its friction to
+    /// the law's. `None` if all lie within a factor of `tolerance`.
+    pub fn widest_rival(&self, tolerance: f64) -> Option<(&str, f64, f64)> {
+        let all = self.rivals.iter().flat_map(|(name, logs)| {
+            logs.iter().zip(&self.load_n).map(move |(log, load)| (name.as_str(), *load, *log))
+        });
+        all.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))
+            .filter(|(_, _, log)| log.abs() > tolerance.ln())
+            .map(|(name, load, log)| (name, load, log.exp()))
+    }
+}
+
+/// A few loads over the range of `loads_n`, evenly in their logarithm; the loads themselves if they are few.
+fn spaced(loads_n: &[f64]) -> Vec<f64> {
+    let mut positive: Vec<f64> = loads_n.iter().copied().filter(|l| *l > 0.0).collect();
+    positive.sort_by(f64::total_cmp);
+    positive.dedup();
+    let (Some(&from), Some(&to)) = (positive.first(), positive.last()) else {
+        return vec![published::heaviest_load_n()];
+    };
+    if positive.len() <= LOADS {
+        return positive;
+    }
+    (0..LOADS).map(|i| from * (to / from).powf(i as f64 / (LOADS - 1) as f64)).collect()
+}
+
+fn departure_source(departure: &Departure, loads: usize) -> BandSource {
+    let unknown = UNKNOWN_EFFECT * departure.log_ratio;
+    let half = (0..loads)
+        .map(|i| {
+            // Where physics cannot say, a change counts in full.
+            let effect = departure.log_effect.get(i).copied().unwrap_or(departure.log_ratio / UNSURE_EFFECT);
+            NORMAL_95 * (UNSURE_EFFECT * effect).hypot(unknown)
+        })
+        .collect();
+    BandSource::even(departure.parameter, half)
+}
+
+fn beyond_loads(load_n: &[f64]) -> Option<BandSource> {
+    let (from, to) = (published::lightest_load_n(), published::heaviest_load_n());
+    let beyond = |load: f64| (from / load).ln().max((load / to).ln()).max(0.0);
+    let half: Vec<f64> = load_n.iter().map(|load| NORMAL_95 * BEYOND_LOADS * beyond(*load)).collect();
+    half.iter().any(|h| *h > 0.0).then(|| BandSource::even("loads beyond the tested ones", half))
+}
+
+/// What the rivals of `law` say: `ln` of their friction over its own.
+fn rivals(
+    law: Law,
+    contact: &Contact,
+    load_n: &[f64],
+    own: &[f64],
+) -> Result<Vec<(String, Vec<f64>)>, LawError> {
+    let on_proxy = contact.substrate() == Substrate::Abs;
+    let mut all: Vec<(String, Vec<f64>)> = Law::predictive()
+        // On the proxy the paper's constant coefficient is refuted by its own maxima; what is left of it is its trend
+        // with load, see below.
+        .filter(|other| *other != law && !(on_proxy && *other == Law::Paper))
+        .filter_map(|other| Some((other.title().to_owned(), friction_by(other, contact, load_n).ok()?)))
+        .collect();
+    if law == Law::Physics && !on_proxy && contact.all_pins().count() > 0 {
+        let free = Bed { outside: OutsidePins::Free, bending_n_mm2: 0.0, ..*contact.bed() };
+        let switch = PhysicsSwitch::new(&contact.clone().with_bed(free), Constants::published());
+        if let Ok(states) = switch.states(load_n) {
+            let friction = states.iter().map(|s| s.friction_n).collect();
+            all.push(("physics with free spans outside the pins".to_owned(), friction));
+        }
+    }
+    if law == Law::Physics && on_proxy {
+        let heaviest = published::heaviest_load_n();
+        let at = friction_by(law, contact, &[heaviest])?[0] / heaviest;
+        all.push(("a constant coefficient".to_owned(), load_n.iter().map(|l| l * at).collect()));
+    }
+    let logs = |friction: Vec<f64>| -> Vec<f64> {
+        let ratio = |(rival, own): (&f64, &f64)| (rival / own).ln();
+        friction.iter().zip(own).map(ratio).map(|log| if log.is_finite() { log } else { 0.0 }).collect()
+    };
+    Ok(all.into_iter().map(|(name, friction)| (name, logs(friction))).collect())
+}
+
+/// The rivals count where nothing was measured: not at all at the heaviest load of a measured condition, wholly far from
+/// it in load or in the contact.
+fn rival_source(rivals: &[(String, Vec<f64>)], load_n: &[f64], apart: f64) -> BandSource {
+    let far = |distance: f64, near: f64| -(-(distance / near).powi(2)).exp_m1();
+    let contact = far(apart, NEAR_CONDITION);
+    let side = |sign: f64| {
+        load_n
+            .iter()
+            .enumerate()
+            .map(|(i, load)| {
+                let load = far((load / published::heaviest_load_n()).ln(), NEAR_LOAD);
+                let farthest = rivals.iter().map(|(_, logs)| sign * logs[i]).fold(0.0, f64::max);
+                (1.0 - (1.0 - load) * (1.0 - contact)) * farthest
+            })
+            .collect()
+    };
+    BandSource { name: "rival laws".to_owned(), down: side(-1.0), up: side(1.0) }
+}

@@ -67,7 +67,7 @@ pub enum ContactError {
 pub struct Contact {
     substrate: Substrate,
     pins: PinPattern,
-    outside: usize,
+    laid: PinPattern,
     wrap_rad: f64,
     departures: Vec<String>,
     six_single_threshold: f64,
@@ -88,16 +88,25 @@ impl Contact {
         if substrate == Substrate::Abs && touched.count() == 0 {
             return Err(ContactError::NothingTouches { degrees });
         }
-        let outside = pins.count() - touched.count();
         Ok(Self {
             substrate,
             pins: touched,
-            outside,
+            laid: pins,
             wrap_rad,
             departures: Vec::new(),
             six_single_threshold: published::LAYOUTS[0].threshold,
             bed: Bed::published(),
         })
+    }
+
+    /// The same contact under another wrap, as when a joint bends: pins that were outside may now touch the tendon, and the
+    /// other way round.
+    ///
+    /// # Errors
+    /// [`ContactError`] if the angle is unusable or if nothing would touch the tendon.
+    pub fn at_wrap(&self, wrap_rad: f64) -> Result<Self, ContactError> {
+        let Self { pins, wrap_rad, .. } = Self::new(self.substrate, self.laid.clone(), wrap_rad)?;
+        Ok(Self { pins, wrap_rad, ..self.clone() })
     }
 
     /// Reads `F_thr` of six-single as `threshold` instead of the printed 5.7: the paper leaves it open
@@ -138,6 +147,11 @@ impl Contact {
         &self.pins
     }
 
+    /// Every pin that was laid, also those outside the wrap.
+    pub fn laid_pins(&self) -> &PinPattern {
+        &self.laid
+    }
+
     /// The wrap angle in radians.
     pub fn wrap_rad(&self) -> f64 {
         self.wrap_rad
@@ -153,8 +167,9 @@ impl Contact {
                 published::WRAP_ANGLE_DEG
             ));
         }
-        if self.outside > 0 {
-            all.push(format!("{} pin(s) lie outside the wrap and are left out", self.outside));
+        let outside = self.laid.count() - self.pins.count();
+        if outside > 0 {
+            all.push(format!("{outside} pin(s) lie outside the wrap and are left out"));
         }
         all
     }
@@ -191,6 +206,18 @@ mod tests {
         let contact = Contact::new(Substrate::Silicone, pins, 1.0).unwrap();
         assert_eq!(contact.published_layout(), None);
         assert_eq!(contact.departures().len(), 1);
+    }
+
+    #[test]
+    fn another_wrap_touches_other_pins_of_the_same_part() {
+        let pins = PinPattern::even(3, 0.3);
+        let contact = Contact::new(Substrate::Silicone, pins.clone(), published::wrap_angle_rad()).unwrap();
+        let contact = contact.with_departures(vec!["another silicone".to_owned()]);
+        let bent = contact.at_wrap(0.4).unwrap();
+        assert_eq!((bent.pins().count(), bent.laid_pins()), (1, &pins));
+        assert_eq!(bent.departures().len(), 3, "silicone, wrap, pins outside");
+        assert_eq!(bent.at_wrap(published::wrap_angle_rad()).unwrap(), contact);
+        assert!(contact.at_wrap(0.0).is_err());
     }
 
     #[test]

@@ -191,7 +191,9 @@ mod tests {
             assert!((point.concentric_penalty.value - x.exp_m1()).abs() < 1e-12);
             assert!((point.motor_mass_saved.value + (-x).exp_m1()).abs() < 1e-12);
             assert!((point.extra_holding.low - low.exp_m1()).abs() < 1e-9);
-            assert!((point.extra_holding.value - extra_holding_of(point.force_difference.value)).abs() < 1e-12);
+            assert!(
+                (point.extra_holding.value - extra_holding_of(point.force_difference.value)).abs() < 1e-12
+            );
         }
     }
 
@@ -210,7 +212,9 @@ mod tests {
         let wrap = published::wrap_angle_rad();
         let differences: Vec<f64> = published::LAYOUTS
             .iter()
-            .map(|l| measured_gains(&contact(PinPattern::even(l.pins, l.pitch_rad()), wrap))[0].force_difference)
+            .map(|l| {
+                measured_gains(&contact(PinPattern::even(l.pins, l.pitch_rad()), wrap))[0].force_difference
+            })
             .collect();
         for (found, layout) in differences.iter().zip(&published::LAYOUTS) {
             assert!((found - 2.0 * layout.device_max_n / published::heaviest_load_n()).abs() < 1e-12);

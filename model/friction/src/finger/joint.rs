@@ -81,7 +81,8 @@ impl JointPath {
     /// [`JointPathError`] names field, value, bound and remedy.
     pub fn new(wrap_at_straight_deg: f64, wrap_per_flexion: f64) -> Result<Self, JointPathError> {
         const START: &str = "give the wrap of the straight finger in degrees, 0 if its tendon runs straight";
-        const SHARE: &str = "give the share of the flexion that turns the tendon on the switch, 1 for all of it";
+        const SHARE: &str =
+            "give the share of the flexion that turns the tendon on the switch, 1 for all of it";
         Ok(Self {
             wrap_at_straight_deg: within(
                 "wrap at the straight finger (deg)",
@@ -109,6 +110,13 @@ impl JointPath {
     pub fn measured_joint_deg(&self) -> Option<f64> {
         let joint_deg = (published::WRAP_ANGLE_DEG - self.wrap_at_straight_deg) / self.wrap_per_flexion;
         (0.0..=LARGEST_FLEXION_DEG).contains(&joint_deg).then_some(joint_deg)
+    }
+}
+
+impl std::fmt::Display for JointPath {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { wrap_at_straight_deg, wrap_per_flexion } = self;
+        write!(f, "wrap = {wrap_at_straight_deg} deg + {wrap_per_flexion} x flexion")
     }
 }
 
@@ -174,8 +182,13 @@ pub fn over_joint(
     predict: impl Fn(&Contact, &[f64]) -> Result<FrictionCurve, LawError>,
 ) -> Result<JointCurve, JointPathError> {
     let gaps = gaps(contact.laid_pins());
-    let mut curve =
-        JointCurve { load_n, laws: Vec::new(), trust: Trust::Published, reasons: Vec::new(), points: Vec::new() };
+    let mut curve = JointCurve {
+        load_n,
+        laws: Vec::new(),
+        trust: Trust::Published,
+        reasons: Vec::new(),
+        points: Vec::new(),
+    };
     let mut left_out: Vec<(f64, String)> = Vec::new();
     for &joint_deg in joints_deg {
         let wrap_deg = path.wrap_deg(joint_deg)?;
@@ -213,7 +226,9 @@ pub fn over_joint(
         ));
     }
     if let Some((first_deg, why)) = left_out.first() {
-        curve.reasons.push(format!("{} flexion(s) are left out, from {first_deg} deg on: {why}", left_out.len()));
+        curve
+            .reasons
+            .push(format!("{} flexion(s) are left out, from {first_deg} deg on: {why}", left_out.len()));
     }
     Ok(curve)
 }

@@ -228,7 +228,7 @@ pub fn over_joint(
     if let Some((first_deg, why)) = left_out.first() {
         curve
             .reasons
-            .push(format!("{} flexion(s) are left out, from {first_deg} deg on: {why}", left_out.len()));
+            .push(format!("{} flexion(s) are left out, the first at {first_deg} deg: {why}", left_out.len()));
     }
     Ok(curve)
 }
@@ -366,7 +366,7 @@ mod tests {
         let paper = |c: &Contact, n: &[f64]| predict_by(Law::Paper, c, n);
         let curve = over_joint(&contact, &JointPath::default(), &[10.0, 60.0], 40.0, paper).unwrap();
         assert_eq!(curve.points.len(), 1);
-        assert!(curve.reasons.iter().any(|r| r.contains("1 flexion(s) are left out, from 10 deg on")));
+        assert!(curve.reasons.iter().any(|r| r.contains("1 flexion(s) are left out, the first at 10 deg")));
     }
 
     #[test]

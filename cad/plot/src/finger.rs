@@ -96,10 +96,9 @@ fn draw(
         second_axis: false,
     };
     over_load.draw(&left, |chart| {
-        for (index, layout) in layouts.iter().enumerate() {
-            let points = || layout.over_load.iter().map(|p| (p.load_n, p.force_difference));
-            curve(chart, index, &points().collect::<Vec<_>>(), top, true)?;
-        }
+        let points =
+            |l: &FingerLayout<'_>| l.over_load.iter().map(|p| (p.load_n, p.force_difference)).collect();
+        curves(chart, &layouts.iter().map(points).collect::<Vec<Points>>(), top)?;
         for (index, layout) in layouts.iter().enumerate() {
             for measured in layout.measured {
                 marker(chart, index, (measured.load_n, 100.0 * measured.force_difference))?;
@@ -116,11 +115,13 @@ fn draw(
         second_axis: true,
     };
     over_joint.draw(&right, |chart| {
+        let points =
+            |c: &JointCurve| c.points.iter().map(|p| (p.joint_deg, p.gains.force_difference)).collect();
+        let heaviest = |l: &FingerLayout<'_>| l.over_joint.last().map(points).unwrap_or_default();
+        curves(chart, &layouts.iter().map(heaviest).collect::<Vec<Points>>(), top)?;
         for (index, layout) in layouts.iter().enumerate() {
-            for (at, joint) in layout.over_joint.iter().enumerate() {
-                let heaviest = at + 1 == layout.over_joint.len();
-                let points = joint.points.iter().map(|p| (p.joint_deg, p.gains.force_difference));
-                curve(chart, index, &points.collect::<Vec<_>>(), top, heaviest)?;
+            for lighter in layout.over_joint.iter().rev().skip(1) {
+                line(chart, index, &points(lighter), top, 1)?;
             }
         }
         for (index, layout) in layouts.iter().enumerate() {
@@ -237,24 +238,28 @@ fn second_axis(area: &Area<'_>, chart: &Chart<'_, '_>, right: f64, top: f64) -> 
     Ok(())
 }
 
-/// One line; with its band if it is a heavy one, thin if it is a light one.
-fn curve(
-    chart: &mut Chart<'_, '_>,
-    index: usize,
-    points: &[(f64, Gain)],
-    top: f64,
-    heavy: bool,
-) -> Result<(), Failed> {
-    let colour = COLOURS[index % COLOURS.len()];
-    let percent = |share: f64| (100.0 * share).min(top);
-    if heavy && points.len() > 1 {
-        let upper = points.iter().map(|(x, gain)| (*x, percent(gain.high)));
-        let lower = points.iter().rev().map(|(x, gain)| (*x, percent(gain.low)));
-        chart
-            .draw_series([Polygon::new(upper.chain(lower).collect::<Vec<_>>(), colour.mix(BAND).filled())])?;
+/// Points of a line: where, and the share with its band.
+type Points = Vec<(f64, Gain)>;
+
+fn percent(share: f64, top: f64) -> f64 {
+    (100.0 * share).min(top)
+}
+
+/// The bands of all layouts, then their lines: a band over a line would change its colour.
+fn curves(chart: &mut Chart<'_, '_>, layouts: &[Points], top: f64) -> Result<(), Failed> {
+    for (index, points) in layouts.iter().enumerate().filter(|(_, points)| points.len() > 1) {
+        let upper = points.iter().map(|(x, gain)| (*x, percent(gain.high, top)));
+        let lower = points.iter().rev().map(|(x, gain)| (*x, percent(gain.low, top)));
+        let colour = COLOURS[index % COLOURS.len()].mix(BAND);
+        chart.draw_series([Polygon::new(upper.chain(lower).collect::<Vec<_>>(), colour.filled())])?;
     }
-    let line = points.iter().map(|(x, gain)| (*x, percent(gain.value)));
-    let style = colour.stroke_width(if heavy { fine(2) } else { fine(1) });
+    layouts.iter().enumerate().try_for_each(|(index, points)| line(chart, index, points, top, 2))
+}
+
+/// One line, `width` pixels wide.
+fn line(chart: &mut Chart<'_, '_>, index: usize, points: &Points, top: f64, width: u8) -> Result<(), Failed> {
+    let line = points.iter().map(|(x, gain)| (*x, percent(gain.value, top)));
+    let style = COLOURS[index % COLOURS.len()].stroke_width(fine(width));
     match DASHES[index % DASHES.len()] {
         (_, 0) => chart.draw_series(LineSeries::new(line, style)).map(drop)?,
         (dash, gap) => chart

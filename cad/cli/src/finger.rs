@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use pinswitch_friction::finger::{
-    FingerPoint, HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG, JointCurve, JointPath,
-    MeasuredGain, MotorSizing, extra_holding_of, finger, measured_gains, over_joint,
+    FingerPoint, JointCurve, JointPath, MeasuredGain, MotorSizing, extra_holding_of, finger, measured_gains,
+    over_joint,
 };
+use pinswitch_friction::published::{HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG};
 use pinswitch_friction::{Contact, FrictionCurve, Law, Trust};
 use pinswitch_plot::{FingerLayout, finger_svg};
 use serde::Serialize;

@@ -2,9 +2,8 @@
 
 use std::fmt::Write;
 
-use pinswitch_friction::finger::{
-    FingerPoint, Gain, HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG, extra_holding_of,
-};
+use pinswitch_friction::finger::{FingerPoint, Gain, extra_holding_of};
+use pinswitch_friction::published::{HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG};
 
 use super::finger::{Layout, Report};
 

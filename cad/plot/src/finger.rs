@@ -5,11 +5,9 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use pinswitch_friction::finger::{
-    FingerPoint, Gain, HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG, JointCurve,
-    MeasuredGain,
-};
+use pinswitch_friction::finger::{FingerPoint, Gain, JointCurve, MeasuredGain};
 use pinswitch_friction::published;
+use pinswitch_friction::published::{HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG};
 
 use super::PlotError;
 use super::scale::{drawable, drawn_size, fine, shown_at_size};

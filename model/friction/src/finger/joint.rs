@@ -310,7 +310,7 @@ mod tests {
             over_joint(&part(PinPattern::default()), &JointPath::default(), &joints, 30.0, best).unwrap();
         let exponent = |p: &JointPoint| (p.gains.force_difference.value / 2.0).asinh();
         let mu = exponent(&curve.points[9]) / 90f64.to_radians();
-        assert!((mu / published::MU_SILICONE - 1.0).abs() < 0.1);
+        assert!((mu / published::MU_SILICONE - 1.0).abs() < 0.2);
         for point in &curve.points {
             assert!((exponent(point) - mu * point.joint_deg.to_radians()).abs() < 1e-9, "{point:?}");
         }

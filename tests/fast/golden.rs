@@ -99,7 +99,7 @@ fn every_other_command_writes_its_bytes() {
     run("-q calibrate --published --out published");
     run("-q predict --model calibrated/model.toml --rows rig/plateaus-fresh.csv --out predicted.csv");
     run("-q generate three-double --model calibrated/model.toml --format stl,page --out set");
-    keep("finger.json", run("-q finger --json"));
+    run("-q finger --out finger");
     keep("layouts.txt", run("layouts"));
     for layout in ["six-single", "three-double", "three-single"] {
         for law in ["paper", "layout", "physics"] {

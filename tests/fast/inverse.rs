@@ -81,7 +81,6 @@ fn wishes_that_cannot_be_read_are_refused() {
         ),
         (&["predict", "proxy-six-single", "--law", "layout"], "pins on silicone only"),
         (&["physics", "silicone-only", "--out", "x"], "pins on silicone"),
-        (&["finger", "no-such-template"], "no such file or template"),
     ] {
         let output = pinswitch(folder.path(), arguments);
         let message = String::from_utf8(output.stderr).unwrap();
@@ -89,22 +88,6 @@ fn wishes_that_cannot_be_read_are_refused() {
         assert!(message.contains(word), "{arguments:?}: {message}");
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-}
-
-#[test]
-fn a_finger_gains_what_the_curve_says() {
-    let folder = tempfile::tempdir().unwrap();
-    let report = json(folder.path(), &["finger", "three-double", "--json"]);
-    let curve = json(folder.path(), &["predict", "three-double", "--json"]);
-    let points = report["layouts"][0]["points"].as_array().unwrap();
-    let (load, e, c) =
-        (column(&curve, "load_n"), column(&curve, "eccentric_n"), column(&curve, "concentric_n"));
-    assert_eq!(points.len(), load.len());
-    for (i, point) in points.iter().enumerate() {
-        let value = |key: &str| point[key].as_f64().unwrap();
-        assert!((value("extra_holding") - (load[i] / e[i] - 1.0)).abs() < 1e-12);
-        assert!((value("concentric_penalty") - (c[i] / load[i] - 1.0)).abs() < 1e-12);
-    }
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod batch;
 mod batch_bad_input;
 mod command_line;
 mod documents;
+mod finger;
 mod fit;
 mod formats;
 mod golden;

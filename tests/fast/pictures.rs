@@ -9,12 +9,13 @@ use std::process::Command;
 use crate::harness::{browser, done, repository, sha256};
 
 /// A picture in `cad/doc`, and the file of a run that it is.
-const DRAWN: [(&str, &str); 6] = [
+const DRAWN: [(&str, &str); 7] = [
     ("exploded.png", "out/three-double/assembly.png"),
     ("plate.png", "out/three-double/plate.png"),
     ("friction.svg", "out/three-double/friction.svg"),
     ("contact.svg", "physics/contact.svg"),
     ("pareto.svg", "designs/pareto.svg"),
+    ("finger.svg", "finger/finger.svg"),
     ("sweep.svg", "batch/curves.svg"),
 ];
 /// A photograph in `cad/doc`, the page that it shows, and the size of the window.
@@ -58,6 +59,7 @@ fn pictures_are_what_the_program_draws() {
     run("-q generate three-double");
     run("-q physics three-double --out physics");
     run("-q design --threshold 26 --max-friction 8.5 --pins 3..6 --best 3 --out designs");
+    run("-q finger --out finger");
     run("init sweep --out sweep.toml");
     run("-q batch sweep.toml --out batch");
     run("-q simulate --randomised --effect coating_ploughing=0.024 --effect load_cell_offset=0.8 --out rig");

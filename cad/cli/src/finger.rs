@@ -1,108 +1,207 @@
 //! `pinswitch finger`: what a switch buys a tendon-driven finger.
 
+use std::path::PathBuf;
+
 use clap::Args;
-use pinswitch_friction::finger::{FingerPoint, HUMAN_FINGER, finger};
-use pinswitch_friction::{FrictionCurve, Law, Trust};
+use pinswitch_friction::finger::{
+    FingerPoint, JointCurve, JointPath, MeasuredGain, MotorSizing, extra_holding_of, finger, measured_gains,
+    over_joint,
+};
+use pinswitch_friction::published::{HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG};
+use pinswitch_friction::{Contact, FrictionCurve, Law, Trust};
+use pinswitch_plot::{FingerLayout, finger_svg};
 use serde::Serialize;
 
+use super::finger_text::{csv, table};
 use super::law::LawChoice;
+use super::range::Range;
 use super::source::Source;
 use super::{Failure, print, print_json};
+use crate::write::write_set;
 use pinswitch_switch::design::Design;
+use pinswitch_switch::output::OutputFile;
 
 /// The conditions that are compared when none is named.
 const PUBLISHED: [&str; 4] = ["six-single", "three-double", "three-single", "silicone-only"];
-/// Loads of the table: light, middle, heavy, as shares of the heaviest.
-const ROWS: [f64; 3] = [0.1, 0.5, 1.0];
+/// The light load over the joint, as a share of the heavy one.
+const LIGHT: f64 = 0.1;
+/// Most flexions of a curve over the joint, a degree apart.
+const MAX_FLEXIONS: u32 = 181;
 
-/// Say what layouts buy at the system level: load held beyond the motor's tension, motor mass saved, cost of pulling.
+/// What is taken for granted, as it is printed; `model/doc/finger.md` has the reasons.
+fn assumptions(path: &JointPath) -> Vec<String> {
+    vec![
+        "motor mass is in proportion to torque, on the same drum; the motor holds by torque alone, without brake or \
+         self-locking gear"
+            .to_owned(),
+        "friction carries its full share of a load that is held".to_owned(),
+        format!("the tendon runs straight along both links, the pins are centred on it, and {path}"),
+    ]
+}
+
+/// Say what layouts buy at the system level, over load and over the joint of a finger, beside the human finger.
 ///
-/// Holding and giving way (eccentric use), friction carries a part of the load; pulling (concentric use), the motor must
-/// overcome it. Motor mass is taken in proportion to torque.
+/// Force difference, (T_c - T_e)/F: tension to pull minus tension to hold, as a share of the load; the human finger's
+/// 9 to 12 % are that. Extra holding, F/T_e - 1: load held beyond the motor's tension; about half of it. Motor mass is
+/// taken in proportion to torque.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch finger
-  pinswitch finger three-double my-switch.toml --json")]
+  pinswitch finger three-double my-switch.toml --json
+  pinswitch finger --out out/finger
+  pinswitch finger three-double --joint 0..60 --wrap-at-straight 20")]
 pub(super) struct Arguments {
     /// Configurations or templates [default: the published layouts and bare silicone].
     configs: Vec<String>,
     #[command(flatten)]
     law: LawChoice,
-    /// Print JSON: every load of each curve.
+    /// Flexions of the joint in degrees; the published segment ends at a wrap of 89.45.
+    #[arg(long, value_name = "A..B", default_value = "0..89")]
+    joint: Range<f64>,
+    /// Wrap of the tendon on the switch when the finger is straight, in degrees.
+    #[arg(long, value_name = "DEG", default_value_t = 0.0)]
+    wrap_at_straight: f64,
+    /// Degrees of wrap that each degree of flexion adds.
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
+    wrap_per_flexion: f64,
+    /// Load over the joint in newtons [default: the heaviest of each curve]; a tenth of it is the light one.
+    #[arg(long, value_name = "N")]
+    load: Option<f64>,
+    /// Folder for finger.svg, finger.csv and finger.json.
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print JSON: every load and every flexion of each curve.
     #[arg(long)]
     json: bool,
 }
 
 /// One layout's gains.
 #[derive(Serialize)]
-struct Layout {
-    name: String,
-    law: Law,
-    trust: Trust,
-    points: Vec<FingerPoint>,
+pub(super) struct Layout {
+    pub(super) name: String,
+    pub(super) law: Law,
+    pub(super) trust: Trust,
+    pub(super) reasons: Vec<String>,
+    /// Wrap of `points`, degrees.
+    pub(super) wrap_deg: f64,
+    pub(super) points: Vec<FingerPoint>,
+    pub(super) measured: Vec<MeasuredGain>,
+    pub(super) motor: Option<MotorSizing>,
+    /// At a light and at a heavy load.
+    pub(super) over_joint: Vec<JointCurve>,
 }
 
-/// What is printed with `--json`.
+/// The human finger, for comparison.
 #[derive(Serialize)]
-struct Report {
-    human_finger_extra_holding: [f64; 2],
-    layouts: Vec<Layout>,
+struct Human {
+    force_difference: [f64; 2],
+    /// What that would be as extra holding.
+    extra_holding: [f64; 2],
+    largest_force_difference: f64,
+    largest_at_joint_deg: f64,
+}
+
+/// What is printed with `--json` and written as finger.json.
+#[derive(Serialize)]
+pub(super) struct Report {
+    human: Human,
+    pub(super) assumptions: Vec<String>,
+    joint_path: JointPath,
+    pub(super) layouts: Vec<Layout>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let path =
+        JointPath::new(arguments.wrap_at_straight, arguments.wrap_per_flexion).map_err(Failure::bad_input)?;
+    let joints_deg = flexions(arguments.joint, &path)?;
+    if let Some(load) = arguments.load.filter(|load| !(*load > 0.0 && load.is_finite())) {
+        return Err(Failure::bad_input(format!(
+            "--load = {load} is outside 0 < load; give the load on the tendon in newtons"
+        )));
+    }
     let names: Vec<&str> = if arguments.configs.is_empty() {
         PUBLISHED.to_vec()
     } else {
         arguments.configs.iter().map(String::as_str).collect()
     };
-    let layouts: Vec<Layout> =
-        names.iter().map(|name| layout(name, &arguments.law)).collect::<Result<_, _>>()?;
-    if arguments.json {
-        let report = Report { human_finger_extra_holding: [HUMAN_FINGER.0, HUMAN_FINGER.1], layouts };
-        return print_json(&report);
+    let layouts =
+        names.iter().map(|name| layout(name, arguments, &path, &joints_deg)).collect::<Result<_, _>>()?;
+    let (low, high) = HUMAN_FORCE_DIFFERENCE;
+    let report = Report {
+        human: Human {
+            force_difference: [low, high],
+            extra_holding: [low, high].map(extra_holding_of),
+            largest_force_difference: HUMAN_PEAK_DIFFERENCE,
+            largest_at_joint_deg: HUMAN_PEAK_JOINT_DEG,
+        },
+        assumptions: assumptions(&path),
+        joint_path: path,
+        layouts,
+    };
+    if let Some(folder) = &arguments.out {
+        write_set(folder, &files(&report)?).map_err(Failure::failed)?;
+        log::info!("{}: finger.svg, finger.csv, finger.json", folder.display());
     }
-    print(table(&layouts).as_bytes())
+    if arguments.json { print_json(&report) } else { print(table(&report).as_bytes()) }
 }
 
-fn layout(name: &str, law: &LawChoice) -> Result<Layout, Failure> {
+/// The flexions of the range, a degree apart, with its end.
+fn flexions(range: Range<f64>, path: &JointPath) -> Result<Vec<f64>, Failure> {
+    for end in [range.from, range.to] {
+        path.wrap_deg(end).map_err(|e| Failure::bad_input(format!("--joint: {e}")))?;
+    }
+    let whole = (0..MAX_FLEXIONS).map(|i| range.from + f64::from(i)).take_while(|deg| *deg < range.to);
+    Ok(whole.chain([range.to]).collect())
+}
+
+fn layout(
+    name: &str,
+    arguments: &Arguments,
+    path: &JointPath,
+    joints_deg: &[f64],
+) -> Result<Layout, Failure> {
     let design: Design = Source::named(name).design()?;
-    let curve: FrictionCurve = law.prediction(&design)?.curve;
+    let curve: FrictionCurve = arguments.law.prediction(&design)?.curve;
+    let contact = design.contact();
+    let points = finger(&curve);
+    let heavy_n = arguments.load.or(points.last().map(|p| p.load_n)).unwrap_or_default();
+    let predicted = |contact: &Contact, loads_n: &[f64]| arguments.law.curve(contact, loads_n);
+    let over_joint = [LIGHT * heavy_n, heavy_n]
+        .into_iter()
+        .map(|load_n| over_joint(contact, path, joints_deg, load_n, predicted).map_err(Failure::bad_input))
+        .collect::<Result<_, _>>()?;
     Ok(Layout {
         name: design.configuration().switch.name.clone(),
         law: curve.law,
         trust: curve.trust,
-        points: finger(&curve),
+        reasons: curve.reasons.clone(),
+        wrap_deg: contact.wrap_rad().to_degrees(),
+        measured: measured_gains(contact),
+        motor: MotorSizing::of(&points),
+        points,
+        over_joint,
     })
 }
 
-fn table(layouts: &[Layout]) -> String {
-    let mut text = format!(
-        "{:<16} {:>8} {:>10} {:>14} {:>13} {:>10}\n",
-        "layout", "load", "holds with", "extra holding", "motor saved", "pull costs"
-    );
-    for layout in layouts {
-        let heaviest = layout.points.last().map_or(0.0, |p| p.load_n);
-        for share in ROWS {
-            let nearest = layout.points.iter().min_by(|a, b| {
-                (a.load_n - share * heaviest).abs().total_cmp(&(b.load_n - share * heaviest).abs())
-            });
-            if let Some(p) = nearest {
-                text += &format!(
-                    "{:<16} {:>6.1} N {:>8.1} N {:>+12.1} % {:>11.1} % {:>+8.1} %\n",
-                    layout.name,
-                    p.load_n,
-                    p.holding_n,
-                    100.0 * p.extra_holding,
-                    100.0 * p.motor_mass_saved,
-                    100.0 * p.concentric_penalty
-                );
-            }
-        }
-    }
-    text += &format!(
-        "human finger: {:.0} to {:.0} % extra holding, from the friction of its tendon sheath\n",
-        100.0 * HUMAN_FINGER.0,
-        100.0 * HUMAN_FINGER.1
-    );
-    text
+fn files(report: &Report) -> Result<Vec<OutputFile>, Failure> {
+    let layouts: Vec<FingerLayout<'_>> = report
+        .layouts
+        .iter()
+        .map(|l| FingerLayout {
+            name: &l.name,
+            wrap_deg: l.wrap_deg,
+            over_load: &l.points,
+            measured: &l.measured,
+            over_joint: &l.over_joint,
+            measured_joint_deg: report.joint_path.measured_joint_deg(),
+        })
+        .collect();
+    let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
+    let mut json = serde_json::to_vec_pretty(report).map_err(Failure::failed)?;
+    json.push(b'\n');
+    Ok(vec![
+        file("finger.svg", finger_svg(&layouts).map_err(Failure::failed)?.into_bytes()),
+        file("finger.csv", csv(report).into_bytes()),
+        file("finger.json", json),
+    ])
 }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use pinswitch_friction::{FrictionCurve, Law};
+use pinswitch_friction::{Contact, FrictionCurve, Law, LawError, predict, predict_by};
 
 use super::Failure;
 use pinswitch_switch::design::Design;
@@ -32,6 +32,17 @@ impl LawChoice {
             None => Ok(Prediction::of(design)),
             Some(law) => Prediction::by(law, design)
                 .map_err(|e| Failure::bad_input(format!("--law {}: {e}", law.as_str()))),
+        }
+    }
+
+    /// The curve of any contact by the chosen law.
+    ///
+    /// # Errors
+    /// [`LawError`] if the law does not apply to the contact.
+    pub(super) fn curve(&self, contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve, LawError> {
+        match self.law.as_deref().and_then(Law::named) {
+            None => Ok(predict(contact, loads_n)),
+            Some(law) => predict_by(law, contact, loads_n),
         }
     }
 }

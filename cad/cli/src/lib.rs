@@ -65,6 +65,7 @@ use clap::{Parser, Subcommand};
 use clap_verbosity_flag::{InfoLevel, Verbosity};
 
 mod failure;
+mod finger_text;
 mod law;
 mod predict_rows;
 mod range;

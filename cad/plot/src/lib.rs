@@ -20,6 +20,7 @@
 mod calibration;
 mod calibration_page;
 mod contact;
+mod finger;
 mod friction;
 mod log;
 mod pareto;
@@ -29,6 +30,7 @@ mod scale;
 pub use calibration::{Plot, PlotFailure, plots};
 pub use calibration_page::page;
 pub use contact::contact_svg;
+pub use finger::{FingerLayout, finger_svg};
 pub use friction::{PlotError, friction_svg};
 pub use log::log_svg;
 pub use pareto::pareto_svg;

@@ -119,7 +119,7 @@ impl Contact {
     ///
     /// # Errors
     /// [`ContactError`] as [`Contact::new`].
-    pub fn with_wrap_rad(&self, wrap_rad: f64) -> Result<Self, ContactError> {
+    pub fn at_wrap(&self, wrap_rad: f64) -> Result<Self, ContactError> {
         let other = Self::new(self.substrate, self.all_pins.clone(), wrap_rad)?;
         Ok(Self {
             unmodelled: self.unmodelled.clone(),
@@ -203,6 +203,18 @@ mod tests {
         let pins = PinPattern::even(4, 0.2);
         let contact = Contact::new(Substrate::Silicone, pins, 1.0).unwrap();
         assert_eq!(contact.published_layout(), None);
+    }
+
+    #[test]
+    fn another_wrap_touches_other_pins_of_the_same_part() {
+        let pins = PinPattern::even(3, 0.3);
+        let contact = Contact::new(Substrate::Silicone, pins.clone(), published::wrap_angle_rad()).unwrap();
+        let contact = contact.with_unmodelled(vec!["another mix".to_owned()]);
+        let bent = contact.at_wrap(0.4).unwrap();
+        assert_eq!((bent.pins().count(), bent.all_pins()), (1, &pins));
+        assert_eq!(bent.remarks().len(), 2, "mix, pins outside");
+        assert_eq!(bent.at_wrap(published::wrap_angle_rad()).unwrap(), contact);
+        assert!(contact.at_wrap(0.0).is_err());
     }
 
     #[test]

@@ -43,7 +43,7 @@ static PARAMETERS: [Parameter; 8] = [
         printed: true,
         get: Contact::wrap_rad,
         shown: f64::to_degrees,
-        with: |contact, value| contact.with_wrap_rad(value).ok(),
+        with: |contact, value| contact.at_wrap(value).ok(),
     },
     of_bed!("radius of the silicone's surface", "mm", false, contact_radius_mm, |x| x),
     of_bed!("tendon diameter over the coating", "mm", true, tendon_radius_mm, |x| 2.0 * x),

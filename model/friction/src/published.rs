@@ -1,4 +1,5 @@
-//! The numbers printed in the paper (Dermitzakis & Carbajal, arXiv:1401.5232), as data.
+//! The numbers printed in the paper (Dermitzakis & Carbajal, arXiv:1401.5232), as data, and those of human fingers that are
+//! set beside them.
 
 use crate::Substrate;
 
@@ -32,6 +33,15 @@ pub const MU_SILICONE: f64 = 0.24;
 pub const THREE_DOUBLE_ONSET_N: f64 = 15.31;
 /// The largest friction measured on silicone without pins, in newtons.
 pub const SILICONE_ALONE_MAX_N: f64 = 12.97;
+
+/// Post-eccentric minus post-concentric force of the human finger as a share of its output force: 9 to 12 % at high load
+/// (the paper's abstract). To be set beside [`crate::finger::FingerPoint::force_difference`].
+pub const HUMAN_FORCE_DIFFERENCE: (f64, f64) = (0.09, 0.12);
+/// The flexion of the human middle joint at which its force difference is largest, in degrees (Schweizer et al., J.
+/// Biomech. 42, 2009, 1856-1861: six cadaver fingers, 40 N on each flexor tendon).
+pub const HUMAN_PEAK_JOINT_DEG: f64 = 83.0;
+/// The mean force difference there, a fraction (same source).
+pub const HUMAN_PEAK_DIFFERENCE: f64 = 0.11;
 
 /// One published layout with the constants of eq. 4 and the maxima measured on it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -35,16 +35,16 @@ pub(super) fn reach_rad(bed: &Bed) -> f64 {
 }
 
 /// Fewest elements over a wrap.
-const FEWEST_ELEMENTS: usize = 100;
+const FEWEST_ELEMENTS: usize = 2;
 /// Length of an element over the length along which the tendon comes down from a pin, `sqrt(h0 Rc)`.
-const ELEMENT_OF_SPAN: f64 = 0.09;
+const ELEMENT_OF_SPAN: f64 = 0.08;
 /// Length of an element over the length along which a stiff tendon presses into silicone, `(EI/k)^(1/4)`.
 const ELEMENT_OF_PRESS: f64 = 0.35;
 /// Most elements, for wraps that are very long against their pins.
 const MOST_ELEMENTS: usize = 1500;
 
 /// Elements over `wrap_rad` on `bed` with which friction lies within 0.2 % of that of ever finer ones (a test): at the
-/// published bed 100, more where the wrap is long against the lengths over which the tendon's shape changes.
+/// published bed 101, by the lengths over which the tendon's shape changes.
 pub(super) fn elements(wrap_rad: f64, bed: &Bed) -> usize {
     let span_mm = ELEMENT_OF_SPAN * (bed.protrusion_mm() * bed.axis_radius_mm()).sqrt();
     let press_mm =

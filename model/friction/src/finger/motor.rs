@@ -1,0 +1,73 @@
+//! The motor that a switch allows: sized by what it must hold, and what it can then still pull.
+
+use serde::Serialize;
+
+use super::{FingerPoint, Gain};
+
+/// A motor that is just strong enough to hold the heaviest load of a curve.
+///
+/// Assumed: mass in proportion to torque, on the same drum; the motor holds by its torque (no brake, no self-locking
+/// gear); friction carries its full share when the load is held (`model/doc/finger.md`).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MotorSizing {
+    /// The load that it holds, N.
+    pub holds_n: f64,
+    /// The tension that it needs for this, N.
+    pub tension_n: f64,
+    /// Mass saved against the motor of a tendon without friction, a fraction.
+    pub mass_saved: Gain,
+    /// The heaviest load that it can pull, N: friction is against it then.
+    pub pulls_n: f64,
+}
+
+impl MotorSizing {
+    /// The motor for the heaviest of `points`, which are in the order of their loads; `None` without points.
+    ///
+    /// ```
+    /// use pinswitch_friction::finger::{MotorSizing, finger};
+    /// use pinswitch_friction::{Contact, PinPattern, Substrate, predict, published};
+    ///
+    /// let contact = Contact::new(Substrate::Silicone, PinPattern::default(), published::wrap_angle_rad())?;
+    /// let motor = MotorSizing::of(&finger(&predict(&contact, &[10.0, 50.0]))).ok_or("no load")?;
+    /// assert!(motor.pulls_n < motor.tension_n && motor.tension_n < motor.holds_n);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of(points: &[FingerPoint]) -> Option<Self> {
+        let heaviest = points.last()?;
+        let tension_n = heaviest.holding_n;
+        // From no load at no tension, straight between the loads of the curve.
+        let mut before = (0.0, 0.0);
+        let mut pulls_n = 0.0;
+        for point in points {
+            let (load_n, pulling_n) = (point.load_n, point.pulling_n);
+            if pulling_n > tension_n {
+                let share = (tension_n - before.1) / (pulling_n - before.1).max(f64::MIN_POSITIVE);
+                pulls_n = before.0 + (load_n - before.0) * share.clamp(0.0, 1.0);
+                break;
+            }
+            before = (load_n, pulling_n);
+            pulls_n = load_n;
+        }
+        Some(Self { holds_n: heaviest.load_n, tension_n, mass_saved: heaviest.motor_mass_saved, pulls_n })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::finger;
+    use super::*;
+    use crate::{Contact, PinPattern, Substrate, predict, published};
+
+    /// On one material a motor that holds `F` with `F exp(-x)` pulls `F exp(-2 x)`.
+    #[test]
+    fn a_capstan_pulls_what_two_exponents_leave() {
+        let contact =
+            Contact::new(Substrate::Silicone, PinPattern::default(), published::wrap_angle_rad()).unwrap();
+        let loads: Vec<f64> = (1..=100).map(|i| 0.5 * f64::from(i)).collect();
+        let motor = MotorSizing::of(&finger(&predict(&contact, &loads))).unwrap();
+        let x = (motor.holds_n / motor.tension_n).ln();
+        assert!((motor.pulls_n - motor.holds_n * (-2.0 * x).exp()).abs() < 1e-9);
+        assert!((motor.mass_saved.value + (-x).exp_m1()).abs() < 1e-12);
+        assert_eq!(MotorSizing::of(&[]), None);
+    }
+}

@@ -66,10 +66,10 @@ fn published(out: &Path) -> Result<(), Failure> {
     for e in &all {
         let constants: Vec<String> = e.constants.iter().map(|(n, v)| format!("{n} = {v:.4}")).collect();
         text.push_str(&format!(
-            "{:<20} {:>7.1} %   {:>13.1} %   {}\n",
+            "{:<20} {:>7.1} %   {:>15}   {}\n",
             e.id,
             e.rms_pct,
-            e.left_out_rms_pct,
+            e.left_out_rms_pct.map_or("-".to_owned(), |pct| format!("{pct:.1} %")),
             constants.join(", ")
         ));
     }

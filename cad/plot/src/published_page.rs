@@ -93,6 +93,11 @@ pub const UNEXPLAINED: [&str; 5] = [
     "Three constants are fitted to seven numbers, and a layout left out leaves five: the left-out error is the one to trust",
 ];
 
+/// An error in percent, a dash where there is none.
+fn percent(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |value| format!("{value:.1} %"))
+}
+
 /// The page.
 pub fn published_page(all: &[Explanation], plot: &Plot) -> String {
     let mut html = head("Calibration on the published maxima");
@@ -105,13 +110,13 @@ pub fn published_page(all: &[Explanation], plot: &Plot) -> String {
             html,
             "<p class=\"verdict\">The paper's model lacks: {}.<br>Root mean square relative error on its seven maxima: {:.1} % as printed, \
              <b class=\"b\">{:.1} %</b> with its constants refitted, <b class=\"a\">{:.1} %</b> with the effect.<br>\
-             Each layout predicted from the others: <b class=\"b\">{:.1} %</b> before, <b class=\"a\">{:.1} %</b> after.</p>",
+             Each layout with nothing of it given, its threshold neither: <b class=\"b\">{}</b> before, <b class=\"a\">{}</b> after.</p>",
             escape(best.id),
             printed.rms_pct,
             refitted.rms_pct,
             best.rms_pct,
-            refitted.left_out_rms_pct,
-            best.left_out_rms_pct
+            percent(refitted.left_out_rms_pct),
+            percent(best.left_out_rms_pct)
         );
     }
     html.push_str("<h2>1. Where it misses</h2>\n");
@@ -143,10 +148,10 @@ pub fn published_page(all: &[Explanation], plot: &Plot) -> String {
         };
         let _ = writeln!(
             html,
-            "<tr class=\"{class}\"><td>{}</td><td class=\"n\">{:.1} %</td><td class=\"n\">{:.1} %</td><td>{}</td><td>{decision}</td></tr>",
+            "<tr class=\"{class}\"><td>{}</td><td class=\"n\">{:.1} %</td><td class=\"n\">{}</td><td>{}</td><td>{decision}</td></tr>",
             escape(e.id),
             e.rms_pct,
-            e.left_out_rms_pct,
+            percent(e.left_out_rms_pct),
             escape(&constants.join(", "))
         );
     }

@@ -324,3 +324,64 @@ proptest! {
         }
     }
 }
+
+/// One parameter of a contact moved by a factor, the others as they were.
+fn moved(pins: &[f64], wrap: f64, bed: Bed, which: usize, factor: f64) -> Contact {
+    let mut b = bed;
+    let (mut wrap, mut spread) = (wrap, 1.0);
+    match which {
+        0 => b.contact_radius_mm *= factor,
+        1 => b.tendon_radius_mm *= factor,
+        2 => b.pin_diameter_mm *= factor,
+        3 => b.groove_radius_mm *= factor,
+        4 => b.layer_mm *= factor,
+        5 => b.layer_width_mm *= factor,
+        6 => b.modulus_mpa *= factor,
+        7 => wrap *= factor,
+        _ => spread = factor,
+    }
+    let pins = PinPattern::new(pins.iter().map(|p| p * spread).collect());
+    Contact::new(Substrate::Silicone, pins, wrap).unwrap().with_bed(b)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(192))]
+
+    /// Friction follows every parameter without a jump: a step of 1 % changes it by less than 2 %, or by a slope (a pin
+    /// about to meet the silicone), which a twentieth of the step shows a twentieth of. Pins that pass the end of the wrap
+    /// are among the cases.
+    #[test]
+    fn friction_is_continuous_in_every_parameter(
+        pins in prop::collection::btree_set(-7i32..=7, 1..8),
+        (pitch, wrap) in (0.06..0.14f64, 0.5..1.8f64),
+        (radius, tendon, pin, groove) in (15.0..40.0f64, 0.5..1.2f64, 0.8..1.3f64, 0.35..0.6f64),
+        (layer, width, modulus) in (1.0..4.0f64, 6.0..25.0f64, 0.5..2.0f64),
+        load in 3.0..60.0f64,
+        which in 0usize..9,
+    ) {
+        let angles: Vec<f64> = pins.iter().map(|step| f64::from(*step) * pitch).collect();
+        let published = Bed::published();
+        let bed = Bed {
+            contact_radius_mm: radius,
+            tendon_radius_mm: tendon,
+            pin_diameter_mm: pin,
+            groove_radius_mm: groove,
+            layer_mm: layer,
+            layer_width_mm: width,
+            modulus_mpa: modulus * published.modulus_mpa,
+            ..published
+        };
+        let friction = |factor: f64| {
+            PhysicsSwitch::new(&moved(&angles, wrap, bed, which, factor), Constants::published()).friction_n(load)
+        };
+        let whole = (friction(1.01)? / friction(1.0)?).ln().abs();
+        if whole > 0.02 {
+            let mut before = friction(1.0)?;
+            for part in 1..=20 {
+                let after = friction(1.01f64.powf(f64::from(part) / 20.0))?;
+                prop_assert!((after / before).ln().abs() < 0.25 * whole, "a jump at part {part} of {whole}");
+                before = after;
+            }
+        }
+    }
+}

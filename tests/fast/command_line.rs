@@ -61,32 +61,54 @@ fn every_run_writes_the_same_bytes() {
     assert_eq!(files(&folder.path().join("a")), files(&folder.path().join("b")));
 }
 
+/// The seven measured conditions, with the paper's model and what was measured, in newtons (model/doc/friction-laws.md).
+const CONDITIONS: [(&str, &str, f64); 7] = [
+    ("six-single", "4.07", 5.097),
+    ("three-double", "10.01", 9.667),
+    ("three-single", "8.90", 8.495),
+    ("silicone-only", "13.45", 12.97),
+    ("proxy-six-single", "2.77", 3.935),
+    ("proxy-three-double", "2.77", 5.829),
+    ("proxy-three-single", "2.77", 5.893),
+];
+
+fn column(curve: &serde_json::Value, key: &str) -> Vec<f64> {
+    curve[key].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+}
+
 #[test]
-fn the_seven_conditions_predict_what_the_paper_s_model_says() {
+fn the_paper_s_law_predicts_what_the_paper_s_model_says() {
     let folder = tempfile::tempdir().unwrap();
-    // The paper's model, model/doc/friction-laws.md: D at the heaviest load.
-    for (name, friction) in [
-        ("six-single", "4.07"),
-        ("three-double", "10.01"),
-        ("three-single", "8.90"),
-        ("silicone-only", "13.45"),
-        ("proxy-six-single", "2.77"),
-        ("proxy-three-double", "2.77"),
-        ("proxy-three-single", "2.77"),
-    ] {
-        let curve = json(folder.path(), &["predict", name, "--json"]);
+    for (name, friction, _) in CONDITIONS {
+        let curve = json(folder.path(), &["predict", name, "--law", "paper", "--json"]);
         assert_eq!((curve["law"].as_str(), curve["trust"].as_str()), (Some("paper"), Some("published")));
-        let column = |key: &str| {
-            curve[key].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect::<Vec<_>>()
-        };
-        let (load, d) = (column("load_n"), column("friction_n"));
+        let (load, d) = (column(&curve, "load_n"), column(&curve, "friction_n"));
         assert!((load.last().unwrap() - 49.671).abs() < 1e-9);
         assert_eq!(format!("{:.2}", d.last().unwrap()), friction, "{name}");
-        let (e, c, low, high) =
-            (column("eccentric_n"), column("concentric_n"), column("band_low_n"), column("band_high_n"));
+    }
+}
+
+#[test]
+fn the_default_law_is_one_and_its_bands_hold_what_was_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, _, measured) in CONDITIONS {
+        let curve = json(folder.path(), &["predict", name, "--json"]);
+        assert_eq!((curve["law"].as_str(), curve["trust"].as_str()), (Some("physics"), Some("published")));
+        let (load, d) = (column(&curve, "load_n"), column(&curve, "friction_n"));
+        let (e, c, low, high) = (
+            column(&curve, "eccentric_n"),
+            column(&curve, "concentric_n"),
+            column(&curve, "band_low_n"),
+            column(&curve, "band_high_n"),
+        );
         for i in 0..load.len() {
             assert!(((c[i] - e[i]) / 2.0 - d[i]).abs() < 1e-9 && low[i] <= d[i] && d[i] <= high[i]);
         }
+        let last = load.len() - 1;
+        assert!(low[last] * 1.02 < measured && measured < high[last] / 1.02, "{name}: not inside, but at the edge");
+        // The paper's own law stands beside it.
+        let beside = curve["other_laws"].as_array().unwrap();
+        assert!(beside.iter().any(|law| law["law"] == "paper"), "{name}");
     }
 }
 
@@ -95,11 +117,25 @@ fn other_layouts_say_how_far_to_trust_them() {
     let folder = tempfile::tempdir().unwrap();
     let trust = |set: &str| {
         let curve = json(folder.path(), &["predict", "three-double", "--set", set, "--json"]);
-        (curve["law"].as_str().unwrap().to_owned(), curve["trust"].as_str().unwrap().to_owned())
+        let reasons = curve["reasons"].as_array().unwrap().iter().map(|r| r.as_str().unwrap().to_owned());
+        let trust = curve["trust"].as_str().unwrap().to_owned();
+        (curve["law"].as_str().unwrap().to_owned(), trust, reasons.collect::<Vec<_>>().join("; "))
     };
-    assert_eq!(trust("layout.pins=[5,7,9,11]"), ("layout".into(), "interpolated".into()));
-    assert_eq!(trust("layout.pins=[5,6]"), ("physics".into(), "extrapolated".into()));
-    assert_eq!(trust("silicone.thickness_mm=3"), ("physics".into(), "extrapolated".into()));
+    for (set, word, reason) in [
+        ("layout.pins=[5,7,9,11]", "interpolated", "4 pins 11.93 deg apart"),
+        ("layout.pins=[5,6]", "extrapolated", "2 pin(s)"),
+        ("silicone.thickness_mm=3", "extrapolated", "layer thickness is 3 mm, measured was 2 mm; physics says +"),
+        ("shell.outer_radius_mm=140", "extrapolated", "assumed for the published rig is 22 mm"),
+        ("shell.width_mm=20", "extrapolated", "layer width is 19.6 mm"),
+        ("silicone.hardness_shore_a=45", "extrapolated", "hardness of the silicone is 45 Shore A"),
+        ("silicone.mix_ratio=9", "extrapolated", "silicone.mix_ratio is 9"),
+        ("layout.wrap_angle_deg=70", "extrapolated", "wrap angle is 70 deg"),
+        ("friction.load_max_n=80", "extrapolated", "tested were 3.08 to 49.67 N"),
+    ] {
+        let (law, trust, reasons) = trust(set);
+        assert_eq!((law.as_str(), trust.as_str()), ("physics", word), "{set}");
+        assert!(reasons.contains(reason), "{set}: {reasons}");
+    }
 }
 
 #[test]

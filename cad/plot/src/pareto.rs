@@ -30,7 +30,7 @@ fn draw(
 ) -> Result<(), Box<dyn std::error::Error>> {
     let root = SVGBackend::with_string(svg, drawn_size(SIZE)).into_drawing_area();
     root.fill(&WHITE)?;
-    let at = |c: &LayoutCandidate| Some((c.threshold_n?, c.ratio));
+    let at = |c: &LayoutCandidate| Some((c.threshold_n?, c.friction_n));
     let points: Vec<(f64, f64)> = all.iter().filter_map(at).collect();
     let right = points.iter().map(|p| p.0).fold(1.0, f64::max) * 1.05;
     let top = points.iter().map(|p| p.1).fold(1.0, f64::max) * 1.05;

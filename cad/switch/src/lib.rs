@@ -22,7 +22,7 @@ pub mod config;
 pub mod design;
 pub mod documents;
 pub mod formats;
-// design_search
+pub mod design_search;
 pub mod output;
 mod parallel;
 pub mod parts;

@@ -320,3 +320,6 @@ fn with_any_pins(trial: &Trial<'_>, ask: &Ask, base: &Configuration) -> Option<(
     .flatten()
     .min_by(|a, b| a.1.total_cmp(&b.1))
 }
+
+#[cfg(test)]
+mod tests;

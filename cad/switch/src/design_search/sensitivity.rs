@@ -40,8 +40,10 @@ fn sensitivity(trial: &Trial<'_>, configuration: &Configuration, parameter: Para
         let of = |quantity| curve.value(quantity, trial.range_n);
         Some((of(Quantity::MaxFriction), of(Quantity::Threshold), trial.values(&curve, 1.0)))
     };
-    let (low, high) = (at(value - step)?, at(value + step)?);
-    let slope = |low: f64, high: f64| (high - low) / (2.0 * step);
+    // Where one side cannot be predicted (a pin would leave the wrap), the difference is taken to the other alone.
+    let (below, above) = (at(value - step), at(value + step));
+    let sides = if below.is_some() && above.is_some() { 2.0 } else { 1.0 };
+    let (low, high) = (below.or_else(|| at(value))?, above.or_else(|| at(value))?);
     Some(Sensitivity {
         parameter,
         value,

@@ -44,6 +44,7 @@ fn sensitivity(trial: &Trial<'_>, configuration: &Configuration, parameter: Para
     let (below, above) = (at(value - step), at(value + step));
     let sides = if below.is_some() && above.is_some() { 2.0 } else { 1.0 };
     let (low, high) = (below.or_else(|| at(value))?, above.or_else(|| at(value))?);
+    let slope = |low: f64, high: f64| (high - low) / (sides * step);
     Some(Sensitivity {
         parameter,
         value,

@@ -66,6 +66,9 @@ fn draw(
     let numbered: Vec<(usize, (f64, f64))> =
         chosen.iter().enumerate().filter_map(|(i, c)| Some((i + 1, at(c)?))).collect();
     let shown = || points.iter().chain(numbered.iter().map(|n| &n.1));
+    // A part of the range in which nothing lies is not shown.
+    let least = |of: fn(&(f64, f64)) -> f64| 0.85 * shown().map(of).fold(f64::MAX, f64::min).min(1e6);
+    let (left, bottom) = (least(|p| p.0), least(|p| p.1));
     let right = shown().map(|p| p.0).fold(1.0, f64::max) * 1.05;
     let top = shown().map(|p| p.1).fold(1.0, f64::max) * 1.08;
     let mut chart = ChartBuilder::on(&figure)
@@ -73,7 +76,7 @@ fn draw(
         .caption("pin patterns: when they switch, and how much they rub", ("sans-serif", fine::<i32>(19)))
         .x_label_area_size(fine::<u32>(44))
         .y_label_area_size(fine::<u32>(52))
-        .build_cartesian_2d(drawable(0.0, right), drawable(0.0, top))?;
+        .build_cartesian_2d(drawable(left.min(right), right), drawable(bottom.min(top), top))?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -86,8 +89,9 @@ fn draw(
         .axis_desc_style(("sans-serif", fine::<i32>(15)))
         .draw()?;
     if let Some(region) = asked {
-        let within = |(from, to): (f64, f64), end: f64| (from.clamp(0.0, end), to.clamp(0.0, end));
-        let (x, y) = (within(region.threshold_n, right), within(region.friction_n, top));
+        let within =
+            |(from, to): (f64, f64), low: f64, high: f64| (from.max(low).min(high), to.max(low).min(high));
+        let (x, y) = (within(region.threshold_n, left, right), within(region.friction_n, bottom, top));
         chart.draw_series(std::iter::once(Rectangle::new([(x.0, y.0), (x.1, y.1)], ASKED.mix(0.12).filled())))?;
     }
     chart.draw_series(points.iter().map(|p| Circle::new(*p, fine::<i32>(2), OTHERS.mix(0.6).filled())))?;
@@ -117,10 +121,15 @@ fn draw_numbers(
             root.draw(&PathElement::new([*point, number_at], CHOSEN.mix(0.5).stroke_width(fine(1))))?;
         }
     }
+    for (number_at, _) in &numbers {
+        // A little ground, so that a number can be read over other points.
+        let (x, y, half) = (number_at.0, number_at.1, 8 * fine::<i32>(1));
+        root.draw(&Rectangle::new([(x - half, y - half), (x + half, y + half)], WHITE.mix(0.8).filled()))?;
+    }
     for point in &points {
         root.draw(&Circle::new(*point, fine::<i32>(1) * POINT, CHOSEN.filled()))?;
     }
-    let style = TextStyle::from(("sans-serif", fine::<i32>(14)).into_font())
+    let style = TextStyle::from(("sans-serif", fine::<i32>(15)).into_font().style(FontStyle::Bold))
         .color(&CHOSEN)
         .pos(Pos::new(HPos::Center, VPos::Center));
     for ((number, _), (number_at, _)) in places.iter().zip(&numbers) {

@@ -132,8 +132,13 @@ pub struct Target {
 
 impl std::fmt::Display for Target {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} {}", self.quantity, self.wish)?;
-        f.write_str(if self.quantity.unit() == "N" { " N" } else { "" })
+        let unit = if self.quantity.unit() == "N" { " N" } else { "" };
+        // The unit stands with the value, before what is said of its width.
+        let wish = self.wish.to_string();
+        match wish.split_once(" (") {
+            Some((value, width)) => write!(f, "{} {value}{unit} ({width}", self.quantity),
+            None => write!(f, "{} {wish}{unit}", self.quantity),
+        }
     }
 }
 

@@ -12,7 +12,7 @@ const TRIED: usize = 60;
 /// A parameter this near to the end of its range, as a share of it, lies at the end.
 const AT_THE_END: f64 = 0.01;
 /// Share of the miss that a move must take away to be worth naming.
-const WORTH_NAMING: f64 = 0.1;
+const WORTH_NAMING: f64 = 0.02;
 
 /// A target that the nearest design does not meet.
 #[derive(Clone, Debug, PartialEq, Serialize)]

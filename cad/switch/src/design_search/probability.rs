@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::candidate::{Draw, Trial};
 use crate::config::Configuration;
+use crate::parallel::map_each;
 
 /// How often the draws met the ask.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -51,7 +52,10 @@ pub(super) fn probability(trial: &Trial<'_>, configuration: &Configuration, draw
     let hardness = configuration.silicone.hardness_shore_a;
     // A part that finds no equilibrium is left out of the count: it says nothing of the ask.
     let made: Vec<Vec<f64>> =
-        draws.iter().filter_map(|draw| trial.made(&part, hardness, &error, draw)).collect();
+        map_each(draws.iter().collect(), |draw| trial.made(&part, hardness, &error, draw))
+            .into_iter()
+            .flatten()
+            .collect();
     let count = made.len();
     if count == 0 {
         return None;

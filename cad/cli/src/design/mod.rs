@@ -17,7 +17,7 @@ use crate::write::write_set;
 use calibrated::CalibratedSwitch;
 use flags::AskFlags;
 use pinswitch_plot::{AskedRegion, pareto_svg};
-use pinswitch_switch::ask::{Ask, Quantity};
+use pinswitch_switch::ask::{Ask, Parameter, Quantity};
 use pinswitch_switch::config::{Configuration, to_toml};
 use pinswitch_switch::design_search::{Belief, Blocked, Found, Options, Proposal, PublishedPhysics, search};
 use pinswitch_switch::output::OutputFile;
@@ -88,6 +88,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let base = arguments.source.with_preset(ask.limits.preset.as_deref()).design()?;
     let options = options(arguments)?;
     check_pins(&ask, base.configuration())?;
+    if arguments.model.is_some() && ask.vary.parameters.iter().any(|v| v.parameter == Parameter::WrapDeg) {
+        return Err(Failure::bad_input(
+            "--vary wrap_deg: a calibrated switch is known at the wrap of its rig only; leave out wrap_deg or --model",
+        ));
+    }
     let calibrated = arguments.model.as_deref().map(CalibratedSwitch::read).transpose()?;
     let published = PublishedPhysics::default();
     let belief: &dyn Belief = match &calibrated {

@@ -104,6 +104,14 @@ pub(super) fn refusal(blocked: &Blocked) -> String {
     for m in blocked.moves.iter().take(3) {
         text += &format!("\n  {}", advice(m));
     }
+    if !blocked.together.is_empty() {
+        let all: Vec<String> = blocked
+            .together
+            .iter()
+            .map(|c| format!("{} from {:.2} to {:.2}", c.parameter.name(), c.from, c.to))
+            .collect();
+        text += &format!("\n  together these meet it: {}", all.join(", "));
+    }
     text
 }
 

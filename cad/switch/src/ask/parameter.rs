@@ -20,7 +20,7 @@ pub enum Parameter {
     RadiusMm,
     /// Width of the shell, `shell.width_mm`.
     WidthMm,
-    /// Angle over which the tendon touches, `layout.wrap_angle_deg`.
+    /// Angle over which the tendon touches, `layout.wrap_angle_deg`; a sector that is too short for it gets further grooves.
     WrapDeg,
 }
 
@@ -137,8 +137,22 @@ impl Parameter {
             }
             Self::RadiusMm => c.shell.outer_radius_mm = value,
             Self::WidthMm => c.shell.width_mm = value,
-            Self::WrapDeg => c.layout.wrap_angle_deg = value,
+            Self::WrapDeg => {
+                c.layout.wrap_angle_deg = value;
+                grow_sector(c);
+            }
         }
+    }
+}
+
+/// Adds a groove at both ends of the sector until it spans the wrap; the pins stay where they are, and are numbered anew.
+fn grow_sector(c: &mut Configuration) {
+    const MOST_GROOVES: usize = 60;
+    let pitch_deg = c.segment.span_deg / c.segment.grooves as f64;
+    while c.segment.span_deg < c.layout.wrap_angle_deg && c.segment.grooves + 2 <= MOST_GROOVES {
+        c.segment.grooves += 2;
+        c.segment.span_deg = (pitch_deg * c.segment.grooves as f64 * 1e6).round() / 1e6;
+        c.layout.pins.iter_mut().for_each(|pin| *pin += 1);
     }
 }
 
@@ -166,6 +180,16 @@ mod tests {
                 assert!(assign(&mut c, &format!("{}={:?}", p.field(), least * 0.99)).is_err());
             }
         }
+    }
+
+    #[test]
+    fn the_sector_grows_around_its_pins() {
+        let mut c = Configuration::default();
+        c.layout.pins = vec![5, 8, 11];
+        let pitch = Parameter::PitchDeg.value(&c);
+        Parameter::WrapDeg.set(&mut c, 120.0);
+        assert_eq!((c.segment.grooves, &c.layout.pins[..]), (21, &[8, 11, 14][..]));
+        assert!(c.segment.span_deg >= 120.0 && (Parameter::PitchDeg.value(&c) - pitch).abs() < 1e-6);
     }
 
     #[test]

@@ -3,10 +3,13 @@
 use serde::Serialize;
 
 use super::candidate::Trial;
+use super::refine::{Aim, Place, refined};
 use super::space::{Space, is_predictable};
-use crate::ask::{Ask, Parameter, Target};
+use crate::ask::{Ask, Limits, Materials, Parameter, Target, Varied, Vary};
 use crate::config::Configuration;
 
+/// Steps of the search over all parameters together.
+const TOGETHER_STEPS: u64 = 400;
 /// Values of a parameter that are tried, from one end of its range to the other.
 const TRIED: usize = 60;
 /// A parameter this near to the end of its range, as a share of it, lies at the end.
@@ -53,6 +56,20 @@ pub struct Blocked {
     pub limit: String,
     /// What would move the nearest design, the best first.
     pub moves: Vec<Move>,
+    /// Where no single change meets the ask: changes of several parameters that do so together, if there are any within
+    /// what is usual, with no limits of size and any material.
+    pub together: Vec<Change>,
+}
+
+/// A parameter that changes with others.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Change {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its value in the nearest design.
+    pub from: f64,
+    /// Its value in a design that meets the ask.
+    pub to: f64,
 }
 
 /// Why `nearest` is not what was asked. `other_pins` is the best miss with any number of pins.
@@ -76,20 +93,44 @@ pub(super) fn blocked(
         (b.meets.cmp(&a.meets))
             .then_with(|| if a.meets { change(a).total_cmp(&change(b)) } else { a.miss.total_cmp(&b.miss) })
     });
-    let fewer_limits = other_pins.filter(|(_, other)| *other < (1.0 - WORTH_NAMING) * miss);
-    let limit = match (moves.first(), fewer_limits) {
-        (Some(first), _) if first.meets => first.forbidden_by.clone(),
-        (_, Some((pins, other))) => format!(
-            "limits.pins = {}: with {pins} pin(s) the ask {}",
-            trial.ask.limits.pins.map_or_else(String::new, |(a, b)| format!("{a}..{b}")),
-            if other == 0.0 { "can be met" } else { "is missed by less" }
-        ),
-        (Some(first), None) => {
-            format!("no single parameter reaches the ask; nearest comes {}, and {}", first.parameter.name(), first.forbidden_by)
-        }
-        (None, None) => "the physics: no parameter that the program knows comes nearer; relax a target".to_owned(),
+    let of_pins = |pins: usize, effect: &str| {
+        let asked = trial.ask.limits.pins.map_or_else(String::new, |(a, b)| format!("{a}..{b}"));
+        format!("limits.pins = {asked}: with {pins} pin(s) the ask {effect}")
     };
-    Blocked { missed, limit, moves }
+    let limit = match (moves.first(), other_pins) {
+        (Some(first), _) if first.meets => first.forbidden_by.clone(),
+        (_, Some((pins, other))) if other == 0.0 => of_pins(pins, "can be met"),
+        (None, Some((pins, other))) if other < (1.0 - WORTH_NAMING) * miss => of_pins(pins, "is missed by less"),
+        (Some(first), _) => format!("{}; no single parameter reaches the ask", first.forbidden_by),
+        (None, _) => "the physics: no parameter that the program knows comes nearer; relax a target".to_owned(),
+    };
+    let together = if moves.first().is_some_and(|m| m.meets) { Vec::new() } else { together(trial, nearest) };
+    Blocked { missed, limit, moves, together }
+}
+
+/// Changes of all parameters, from the nearest design, that meet the ask; none if the search finds none.
+fn together(trial: &Trial<'_>, nearest: &Configuration) -> Vec<Change> {
+    let usual = |p: &Parameter| {
+        let (low, high) = p.default_range();
+        let here = p.value(nearest);
+        Varied { parameter: *p, from: low.min(here), to: high.max(here) }
+    };
+    let free = Ask {
+        limits: Limits::default(),
+        materials: Materials::default(),
+        vary: Vary { pattern: false, parameters: Parameter::ALL.iter().map(usual).collect() },
+        ..trial.ask.clone()
+    };
+    let trial = Trial::new(&free, trial.belief, trial.range_n);
+    let space = Space::new(nearest, &free);
+    let start = Place { material: 0, pins: nearest.layout.pins.clone(), at: space.base() };
+    let there = refined(&trial, &space, &start, Aim::Nearest, TOGETHER_STEPS);
+    let found = space.configuration(there.material, &there.pins, &there.at);
+    if trial.median(&found).is_none_or(|values| !trial.is_met(&values)) {
+        return Vec::new();
+    }
+    let change = |p: &Parameter| Change { parameter: *p, from: p.value(nearest), to: p.value(&found) };
+    Parameter::ALL.iter().map(change).filter(|c| (c.to / c.from).ln().abs() > 0.005).collect()
 }
 
 fn missed(target: &Target, value: f64, range_n: (f64, f64)) -> Option<Missed> {
@@ -157,10 +198,10 @@ fn forbidden(ask: &Ask, space: &Space, parameter: Parameter, from: f64, to: f64)
     let list = match parameter {
         Parameter::PinDiameterMm => &ask.materials.pin_diameter_mm,
         Parameter::HardnessShoreA => &ask.materials.hardness_shore_a,
-        _ => return Some(format!("{name} is held at {from:.4}: it is not in vary")),
+        _ => return Some(format!("{name} is held at {from:.2}: it is not in vary")),
     };
     Some(if list.is_empty() {
-        format!("{name} is held at {from:.4}: it is not in vary")
+        format!("{name} is held at {from:.2}: it is not in vary")
     } else {
         format!("materials.{name} = {list:?}")
     })

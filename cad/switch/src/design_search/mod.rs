@@ -25,7 +25,7 @@ use refine::{Aim, Place, cost, refined};
 use space::Space;
 
 pub use belief::{Belief, Believed, ModelError, Part, PublishedPhysics};
-pub use blocked::{Blocked, Missed, Move};
+pub use blocked::{Blocked, Change, Missed, Move};
 pub use curve::{Curve, Switching};
 pub use kinds::differ_in_kind;
 pub use linear::VarianceShare;

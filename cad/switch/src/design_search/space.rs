@@ -72,8 +72,10 @@ impl Space {
         }
         let half_rad = c.layout.wrap_angle_deg.to_radians() / 2.0;
         let pitch_rad = c.segment.span_deg.to_radians() / c.segment.grooves as f64;
-        let middle = (c.segment.grooves as f64 - 1.0) / 2.0;
-        let mut grooves: Vec<(usize, f64)> = (0..c.segment.grooves)
+        // The base's own grooves, in its numbers: where the wrap outgrows them, `configuration` numbers the pins anew.
+        let count = self.materials[material].segment.grooves;
+        let middle = (count as f64 - 1.0) / 2.0;
+        let mut grooves: Vec<(usize, f64)> = (0..count)
             .map(|i| (i + 1, (i as f64 - middle) * pitch_rad))
             // A pin outside the wrap carries nothing: patterns with one are no better than those without.
             .filter(|(_, angle)| angle.abs() <= half_rad)

@@ -66,10 +66,11 @@ impl Space {
 
     /// Patterns to try at a place, mirror images once: those within the wrap, `most` at the most.
     pub(super) fn patterns(&self, material: usize, at: &[f64], most: usize) -> Patterns {
-        let c = self.configuration(material, &self.materials[material].layout.pins, at);
+        let own = &self.materials[material].layout.pins;
         if !self.vary_pattern {
-            return Patterns { all: 1, taken: vec![c.layout.pins] };
+            return Patterns { all: 1, taken: vec![own.clone()] };
         }
+        let c = self.configuration(material, own, at);
         let half_rad = c.layout.wrap_angle_deg.to_radians() / 2.0;
         let pitch_rad = c.segment.span_deg.to_radians() / c.segment.grooves as f64;
         // The base's own grooves, in its numbers: where the wrap outgrows them, `configuration` numbers the pins anew.
@@ -160,6 +161,13 @@ mod tests {
                 assert!(value >= v.from - 1e-6 && value <= v.to + 1e-6, "{value} {v:?}");
             }
         }
+        ask.vary.pattern = false;
+        ask.vary.parameters = vec![Varied { parameter: Parameter::WrapDeg, from: 120.0, to: 120.0 }];
+        let mut kept = Configuration::default();
+        kept.layout.pins = vec![5, 8, 11];
+        let wide = Space::new(&kept, &ask);
+        let pins = &wide.patterns(0, &wide.base(), 9).taken[0];
+        assert_eq!(wide.configuration(0, pins, &wide.base()).layout.pins, [8, 11, 14], "three grooves more on each side");
         let patterns = space.patterns(0, &space.base(), 100);
         assert!(patterns.all > 900 && patterns.taken.len() <= 100 && patterns.taken.len() > 90);
     }

@@ -39,7 +39,10 @@ const ASKS: [(&str, bool); 20] = [
     ("[ask]\nthreshold_n = { about = 20, within = 0.15 }\n[vary]\npattern = false\nlayer_mm = true", true),
     (include_str!("../../templates/asks/impossible.toml"), false),
     ("[ask]\nmax_friction_n = 'at least 30'", false),
-    ("[ask]\nthreshold_n = 'between 34 and 40'\n[limits]\npins = [3, 3]\n[vary]\nlayer_mm = [1.9, 2.1]", false),
+    (
+        "[ask]\nthreshold_n = 'between 34 and 40'\n[limits]\npins = [3, 3]\n[vary]\nlayer_mm = [1.9, 2.1]",
+        false,
+    ),
     (
         "[ask]\nthreshold_n = { about = 9, within = 0.1 }\nfriction = [{ load_n = 50, at_most_n = 8 }]\n[limits]\nouter_radius_mm = 25.1\npins = [3, 3]\n[vary]\nlayer_mm = [2, 5]",
         false,

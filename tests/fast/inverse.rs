@@ -30,7 +30,11 @@ fn designs_meet_what_was_asked_when_predicted_and_generated() {
         let curve = json(folder.path(), &["predict", &file, "--law", "physics", "--json"]);
         let (load, d) = (column(&curve, "load_n"), column(&curve, "friction_n"));
         let friction = proposal["friction_n"].as_f64().unwrap();
-        assert!((d.last().unwrap() / friction - 1.0).abs() < 0.002, "{file}: {} {friction}", d.last().unwrap());
+        assert!(
+            (d.last().unwrap() / friction - 1.0).abs() < 0.002,
+            "{file}: {} {friction}",
+            d.last().unwrap()
+        );
         assert!(*d.last().unwrap() <= 9.0 * 1.002);
         let share = column(&curve, "silicone_share");
         let after = share.iter().position(|s| *s >= 0.5).unwrap();
@@ -73,17 +77,23 @@ fn an_impossible_ask_says_why_and_ends_with_1() {
     let output = pinswitch(folder.path(), &[&asked[..], &SHORT].concat());
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{message}");
-    for word in ["nothing within the ask meets it", "blocked by", "raise wrap_deg", "friction at the heaviest load"] {
+    for word in
+        ["nothing within the ask meets it", "blocked by", "raise wrap_deg", "friction at the heaviest load"]
+    {
         assert!(message.contains(word), "{word}: {message}");
     }
     let report: Value =
         serde_json::from_slice(&std::fs::read(folder.path().join("found/design.json")).unwrap()).unwrap();
-    assert_eq!((&report["possible"], report["proposals"].as_array().unwrap().len()), (&Value::Bool(false), 1));
+    assert_eq!(
+        (&report["possible"], report["proposals"].as_array().unwrap().len()),
+        (&Value::Bool(false), 1)
+    );
     // What is advised is true.
     let best = &report["blocked"]["moves"][0];
     assert_eq!((&best["parameter"], &best["meets"]), (&Value::from("wrap_deg"), &Value::Bool(true)));
     let allowed = format!("wrap_deg={}..{0}", best["to"]);
-    let again = ["design", "found/nearest.toml", "--max-friction", "at least 16", "--keep-pins", "--vary", &allowed];
+    let again =
+        ["design", "found/nearest.toml", "--max-friction", "at least 16", "--keep-pins", "--vary", &allowed];
     assert_eq!(json(folder.path(), &[&again[..], &["--json"], &SHORT].concat())["possible"], true);
 }
 
@@ -92,7 +102,8 @@ fn shipped_asks_can_be_read_and_answered() {
     let folder = tempfile::tempdir().unwrap();
     for (name, code) in [("gripper", 0), ("small-joint", 0), ("impossible", 1)] {
         let file = repository(&format!("templates/asks/{name}.toml"));
-        let asked = ["design", "--ask", &file.to_string_lossy(), "--starts", "3", "--draws", "100", "--best", "2"];
+        let asked =
+            ["design", "--ask", &file.to_string_lossy(), "--starts", "3", "--draws", "100", "--best", "2"];
         let (ended, message) = ended(folder.path(), &asked);
         assert_eq!(ended, Some(code), "{name}: {message}");
     }
@@ -101,24 +112,32 @@ fn shipped_asks_can_be_read_and_answered() {
 #[test]
 fn a_calibrated_switch_can_be_designed_with() {
     let folder = tempfile::tempdir().unwrap();
-    done(folder.path(), &["-q", "simulate", "--randomised", "--effect", "load_cell_offset=0.8", "--out", "rig"]);
+    done(
+        folder.path(),
+        &["-q", "simulate", "--randomised", "--effect", "load_cell_offset=0.8", "--out", "rig"],
+    );
     done(folder.path(), &["-q", "calibrate", "rig/plateaus.csv", "--out", "calibrated"]);
     let model = ["--model", "calibrated/model.toml"];
-    let asked = ["design", "--max-friction", "between 8 and 11", "--pins", "3", "--vary", "none", "--out", "found"];
+    let asked =
+        ["design", "--max-friction", "between 8 and 11", "--pins", "3", "--vary", "none", "--out", "found"];
     let report = json(folder.path(), &[&asked[..], &model, &["--json"], &SHORT].concat());
     assert_eq!(report["possible"], true);
     // The curve that `generate` makes of it with the same model.
     let proposal = &report["proposals"][0];
-    let set =
-        json(folder.path(), &[&["generate", "found/design-1.toml", "--out", "parts", "--json"], &model[..]].concat());
-    let (told, made) = (proposal["friction_n"].as_f64().unwrap(), set["friction"]["friction_n"].as_f64().unwrap());
+    let set = json(
+        folder.path(),
+        &[&["generate", "found/design-1.toml", "--out", "parts", "--json"], &model[..]].concat(),
+    );
+    let (told, made) =
+        (proposal["friction_n"].as_f64().unwrap(), set["friction"]["friction_n"].as_f64().unwrap());
     assert!((told / made - 1.0).abs() < 1e-3, "{told} {made}");
 }
 
 #[test]
 fn wishes_that_cannot_be_read_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("odd.toml"), "[ask]\nthreshold_n = 20\n[vary]\nthickness = true\n").unwrap();
+    std::fs::write(folder.path().join("odd.toml"), "[ask]\nthreshold_n = 20\n[vary]\nthickness = true\n")
+        .unwrap();
     for (arguments, word) in [
         (&["design", "--threshold=-1"][..], "--threshold = -1"),
         (&["design", "--max-friction", "NaN"], "--max-friction = NaN"),

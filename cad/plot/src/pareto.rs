@@ -92,7 +92,10 @@ fn draw(
         let within =
             |(from, to): (f64, f64), low: f64, high: f64| (from.max(low).min(high), to.max(low).min(high));
         let (x, y) = (within(region.threshold_n, left, right), within(region.friction_n, bottom, top));
-        chart.draw_series(std::iter::once(Rectangle::new([(x.0, y.0), (x.1, y.1)], ASKED.mix(0.12).filled())))?;
+        chart.draw_series(std::iter::once(Rectangle::new(
+            [(x.0, y.0), (x.1, y.1)],
+            ASKED.mix(0.12).filled(),
+        )))?;
     }
     chart.draw_series(points.iter().map(|p| Circle::new(*p, fine::<i32>(2), OTHERS.mix(0.6).filled())))?;
     let front: Vec<(f64, f64)> = pareto_front(all).into_iter().filter_map(at).collect();
@@ -163,9 +166,8 @@ fn placed(points: &[(i32, i32)], across: (i32, i32), down: (i32, i32)) -> Vec<((
                 (ring, ((radius * angle.cos()).round() as i32, (radius * angle.sin()).round() as i32))
             })
         });
-        let found = around
-            .map(|(ring, by)| ((point.0 + by.0, point.1 + by.1), ring > 1))
-            .find(|(at, _)| free(*at));
+        let found =
+            around.map(|(ring, by)| ((point.0 + by.0, point.1 + by.1), ring > 1)).find(|(at, _)| free(*at));
         taken.push(found.unwrap_or((*point, false)));
     }
     taken
@@ -174,8 +176,8 @@ fn placed(points: &[(i32, i32)], across: (i32, i32), down: (i32, i32)) -> Vec<((
 /// What the marks mean, line by line beside the figure.
 fn draw_legend(area: &Area<'_>, patterns: usize, has_designs: bool, has_ask: bool) -> Result<(), Failure> {
     let unit = fine::<i32>(1);
-    let style = TextStyle::from(("sans-serif", fine::<i32>(14)).into_font())
-        .pos(Pos::new(HPos::Left, VPos::Center));
+    let style =
+        TextStyle::from(("sans-serif", fine::<i32>(14)).into_font()).pos(Pos::new(HPos::Left, VPos::Center));
     let (mark, text) = (14 * unit, 34 * unit);
     let mut line = 70 * unit;
     let mut next = || {
@@ -219,7 +221,12 @@ mod tests {
                 let side = 2 * NUMBER_HALF * unit;
                 assert!((a.0 - b.0).abs() >= side || (a.1 - b.1).abs() >= side, "{a:?} {b:?}");
             }
-            assert!(points.iter().all(|p| (p.0 - a.0).abs() >= NUMBER_HALF * unit || (p.1 - a.1).abs() >= NUMBER_HALF * unit));
+            assert!(
+                points
+                    .iter()
+                    .all(|p| (p.0 - a.0).abs() >= NUMBER_HALF * unit
+                        || (p.1 - a.1).abs() >= NUMBER_HALF * unit)
+            );
             assert!(a.0 > 50 * unit && a.1 > 20 * unit);
         }
     }

@@ -168,7 +168,11 @@ mod tests {
     fn the_front_holds_what_nothing_beats() {
         let all = search(6..=10).sweep();
         let front = pareto_front(&all);
-        assert!(front.windows(2).all(|w| w[0].threshold_n < w[1].threshold_n && w[0].friction_n > w[1].friction_n));
+        assert!(
+            front
+                .windows(2)
+                .all(|w| w[0].threshold_n < w[1].threshold_n && w[0].friction_n > w[1].friction_n)
+        );
         for c in &all {
             let beaten = front.iter().any(|f| f.threshold_n >= c.threshold_n && f.friction_n >= c.friction_n);
             assert!(c.threshold_n.is_none() || beaten, "{c:?}");

@@ -41,7 +41,8 @@ impl CalibratedSwitch {
     /// The curve of the physics, remembered.
     fn physics(&self, part: &Part, loads_n: &[f64]) -> Option<Curve> {
         let known = |recent: &Vec<(Contact, Curve)>| {
-            let same = |(contact, curve): &&(Contact, Curve)| *contact == part.contact && curve.load_n == loads_n;
+            let same =
+                |(contact, curve): &&(Contact, Curve)| *contact == part.contact && curve.load_n == loads_n;
             recent.iter().find(same).map(|(_, curve)| curve.clone())
         };
         if let Some(curve) = self.recent.lock().ok().and_then(|recent| known(&recent)) {

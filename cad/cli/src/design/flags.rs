@@ -113,18 +113,22 @@ impl AskFlags {
             Some(text) => share_of(text).map_err(|e| Failure::bad_input(format!("--within: {e}")))?,
             None => DEFAULT_WITHIN,
         };
-        let about = |value| Wish::About { value, within };
-        let single: [(&str, &Option<String>, Quantity, &dyn Fn(f64) -> Wish); 4] = [
-            ("--threshold", &self.threshold, Quantity::Threshold, &about),
-            ("--max-friction", &self.max_friction, Quantity::MaxFriction, &Wish::AtMost),
-            ("--low-friction", &self.low_friction, Quantity::LowLoadFriction, &Wish::AtMost),
-            ("--stiffness", &self.stiffness, Quantity::Stiffness, &Wish::AtLeast),
+        // What a bare number means: value and share.
+        type Bare = fn(f64, f64) -> Wish;
+        let about: Bare = |value, within| Wish::About { value, within };
+        let at_most: Bare = |value, _| Wish::AtMost(value);
+        let at_least: Bare = |value, _| Wish::AtLeast(value);
+        let single = [
+            ("--threshold", &self.threshold, Quantity::Threshold, about),
+            ("--max-friction", &self.max_friction, Quantity::MaxFriction, at_most),
+            ("--low-friction", &self.low_friction, Quantity::LowLoadFriction, at_most),
+            ("--stiffness", &self.stiffness, Quantity::Stiffness, at_least),
         ];
         for (flag, text, quantity, bare) in single {
             let Some(text) = text else { continue };
             let refused = |e: String| Failure::bad_input(format!("{flag} = {text}: {e}"));
             let wish = match (parse_wish(text, within).map_err(refused)?, text.trim().parse::<f64>()) {
-                ((_, None), Ok(number)) => bare(number),
+                ((_, None), Ok(number)) => bare(number, within),
                 ((wish, None), Err(_)) => wish,
                 ((_, Some(load)), _) => {
                     return Err(refused(format!("'at {load}' belongs to --friction; leave it out here")));
@@ -152,7 +156,10 @@ fn varied(text: &str) -> Result<Varied, Failure> {
     let (name, range) = text.split_once('=').map_or((text, None), |(name, range)| (name, Some(range)));
     let parameter = Parameter::named(name.trim()).ok_or_else(|| {
         let known: Vec<_> = Parameter::ALL.iter().map(|p| p.name()).collect();
-        Failure::bad_input(format!("--vary {name}: no such parameter; known are {}, or none", known.join(", ")))
+        Failure::bad_input(format!(
+            "--vary {name}: no such parameter; known are {}, or none",
+            known.join(", ")
+        ))
     })?;
     let Some(range) = range else { return Ok(Varied::by_default(parameter)) };
     let range: Range<f64> = range.parse().map_err(|e| Failure::bad_input(format!("--vary {text}: {e}")))?;

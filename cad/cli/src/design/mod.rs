@@ -43,7 +43,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
     #[command(flatten)]
-    ask: AskFlags,
+    ask: Box<AskFlags>,
     /// A model.toml written by `calibrate`: its curve, band and covariance instead of the published constants.
     #[arg(long, value_name = "TOML")]
     model: Option<PathBuf>,
@@ -107,7 +107,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "no pattern that touches the tendon can be printed within the ask; widen limits, --pins or --vary",
         ));
     }
-    log::info!("{} patterns, mirror images once; {} curves of patterns computed", found.patterns, found.tried);
+    log::info!(
+        "{} patterns, mirror images once; {} curves of patterns computed",
+        found.patterns,
+        found.tried
+    );
     let report = Report {
         ask: &ask,
         load_range_n: found.range_n,
@@ -138,7 +142,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn options(arguments: &Arguments) -> Result<Options, Failure> {
     let Arguments { best, draws, seed, starts, .. } = *arguments;
-    for (flag, value, most) in [("--best", best, 100), ("--draws", draws, 1_000_000), ("--starts", starts, 1000)] {
+    for (flag, value, most) in
+        [("--best", best, 100), ("--draws", draws, 1_000_000), ("--starts", starts, 1000)]
+    {
         if value == 0 || value > most {
             return Err(Failure::bad_input(format!("{flag} = {value}: give 1 to {most}")));
         }
@@ -171,9 +177,14 @@ fn files(found: &Found, report: &Report<'_>, ask: &Ask) -> Result<Vec<OutputFile
     let chosen: Vec<LayoutCandidate> = found
         .proposals
         .iter()
-        .map(|p| LayoutCandidate { pins: p.pins.clone(), threshold_n: p.threshold_n, friction_n: p.friction_n })
+        .map(|p| LayoutCandidate {
+            pins: p.pins.clone(),
+            threshold_n: p.threshold_n,
+            friction_n: p.friction_n,
+        })
         .collect();
-    let svg = pareto_svg(&found.candidates, &chosen, asked_region(ask, found.range_n)).map_err(Failure::failed)?;
+    let svg =
+        pareto_svg(&found.candidates, &chosen, asked_region(ask, found.range_n)).map_err(Failure::failed)?;
     files.push(OutputFile { name: "pareto.svg".to_owned(), bytes: svg.into_bytes() });
     let mut bytes = serde_json::to_vec_pretty(report).map_err(Failure::failed)?;
     bytes.push(b'\n');

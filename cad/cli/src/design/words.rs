@@ -84,7 +84,9 @@ fn parameters(p: &Proposal, ask: &Ask) -> String {
     let mut all: Vec<String> = Parameter::ALL
         .iter()
         .filter(|parameter| is_chosen(**parameter))
-        .filter_map(|parameter| Some(format!("{} {:.2}", parameter.name(), p.parameters.get(parameter.name())?)))
+        .filter_map(|parameter| {
+            Some(format!("{} {:.2}", parameter.name(), p.parameters.get(parameter.name())?))
+        })
         .collect();
     if !ask.materials.tendon.is_empty() {
         all.push(format!("rope {} mm with {} mm of coating", p.tendon_mm[0], p.tendon_mm[1]));

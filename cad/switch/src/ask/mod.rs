@@ -132,25 +132,31 @@ impl Ask {
         if let Some((low, high)) = self.load_range_n
             && !(low >= 0.0 && low < high && high <= 1000.0)
         {
-            return fail(format!("load range {low}..{high} N is no range within 0 to 1000 N; give the lightest load first"));
+            return fail(format!(
+                "load range {low}..{high} N is no range within 0 to 1000 N; give the lightest load first"
+            ));
         }
         self.check_limits()?;
         self.check_parameters()?;
         let spreads = self.tolerances.sd();
         match Tolerances::FIELDS.iter().zip(spreads).find(|(_, sd)| !(*sd >= 0.0 && *sd <= 20.0)) {
-            Some((field, sd)) => fail(format!(
-                "tolerances.{field} = {sd} is no standard deviation; give one from 0 to 20"
-            )),
+            Some((field, sd)) => {
+                fail(format!("tolerances.{field} = {sd} is no standard deviation; give one from 0 to 20"))
+            }
             None => Ok(()),
         }
     }
 
     fn check_limits(&self) -> Result<(), AskError> {
-        let lengths =
-            [("outer_radius_mm", self.limits.outer_radius_mm), ("outer_width_mm", self.limits.outer_width_mm)];
+        let lengths = [
+            ("outer_radius_mm", self.limits.outer_radius_mm),
+            ("outer_width_mm", self.limits.outer_width_mm),
+        ];
         for (field, value) in lengths {
             if let Some(value) = value.filter(|v| !(*v > 0.0 && v.is_finite())) {
-                return Err(AskError(format!("limits.{field} = {value} is not above 0 mm; give a length above 0")));
+                return Err(AskError(format!(
+                    "limits.{field} = {value} is not above 0 mm; give a length above 0"
+                )));
             }
         }
         match self.limits.pins {

@@ -3,7 +3,8 @@
 use super::target::Wish;
 
 /// How wishes are written, for errors.
-pub const FORMS: &str = "write 'at most 8', 'at least 8', 'between 4 and 6', 'about 5' or 'about 5 within 15%'";
+pub const FORMS: &str =
+    "write 'at most 8', 'at least 8', 'between 4 and 6', 'about 5' or 'about 5 within 15%'";
 
 /// A wish, and the load that it is about if it ends in `at N`. A bare number means about.
 ///
@@ -91,7 +92,9 @@ mod tests {
 
     #[test]
     fn anything_else_is_refused_with_the_forms() {
-        for text in ["", "at most", "most 8", "at most x", "about -3", "about 5 within 3", "between 6 and 4", "NaN"] {
+        for text in
+            ["", "at most", "most 8", "at most x", "about -3", "about 5 within 3", "between 6 and 4", "NaN"]
+        {
             assert!(parse_wish(text, 0.1).is_err(), "{text}");
         }
     }

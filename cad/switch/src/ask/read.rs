@@ -84,7 +84,9 @@ impl Targets {
     fn targets(&self) -> Result<Vec<Target>, String> {
         let within = self.within.unwrap_or(DEFAULT_WITHIN);
         if !(within > 0.0 && within < 1.0) {
-            return Err(format!("ask.within = {within} is no share; give one above 0 and below 1, such as 0.1"));
+            return Err(format!(
+                "ask.within = {within} is no share; give one above 0 and below 1, such as 0.1"
+            ));
         }
         let single = [
             ("threshold_n", &self.threshold_n, Quantity::Threshold),
@@ -125,7 +127,10 @@ fn wish_of(value: &Value, within: f64) -> Result<Wish, String> {
                 return Err(format!("{key} is unknown here; known are {}", KEYS.join(", ")));
             }
             let number = |key: &str| {
-                table.get(key).map(|v| float(v).ok_or_else(|| format!("{key} = {v} is no number"))).transpose()
+                table
+                    .get(key)
+                    .map(|v| float(v).ok_or_else(|| format!("{key} = {v} is no number")))
+                    .transpose()
             };
             wish(number("at_most")?, number("at_least")?, number("about")?, number("within")?, within)
         }
@@ -187,7 +192,9 @@ fn vary_of(table: &BTreeMap<String, Value>) -> Result<Vary, String> {
                 let ends = ends.ok_or_else(|| format!("vary.{key} = {value}: give two numbers"))?;
                 vary.parameters.push(Varied { parameter, from: ends[0], to: ends[1] });
             }
-            other => return Err(format!("vary.{key} = {other}: give true, false or a range such as [1.0, 3.0]")),
+            other => {
+                return Err(format!("vary.{key} = {other}: give true, false or a range such as [1.0, 3.0]"));
+            }
         }
     }
     Ok(vary)
@@ -244,7 +251,10 @@ groove_diameter_mm = 0.02
             ("[ask]\nthreshold_n = 20\n[vary]\nthickness = true", &["vary.thickness", "layer_mm"]),
             ("[ask]\nthreshold_n = 20\n[vary]\nlayer_mm = [3, 1]", &["vary.layer_mm", "backwards"]),
             ("[ask]\nfriction = [{ load_n = 5 }]", &["ask.friction[0]", "nothing is wanted"]),
-            ("[ask]\nfriction = [{ load_n = 5, at_most_n = 2, at_least_n = 3 }]", &["at least 3 and at most 2"]),
+            (
+                "[ask]\nfriction = [{ load_n = 5, at_most_n = 2, at_least_n = 3 }]",
+                &["at least 3 and at most 2"],
+            ),
             ("[ask]", &["nothing is asked"]),
             ("ask = 3", &["a.toml"]),
             ("[ask]\nthreshold_n = 20\n[materials]\nrods = [1]", &["rods", "pin_diameter_mm"]),

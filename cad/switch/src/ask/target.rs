@@ -98,7 +98,9 @@ impl Wish {
     /// The bound that is nearest to `value`.
     pub fn nearest_bound(self, value: f64) -> f64 {
         let (low, high) = self.interval();
-        if low <= 0.0 || (high.is_finite() && (high / value.max(1e-9)).ln().abs() < (low / value.max(1e-9)).ln().abs()) {
+        if low <= 0.0
+            || (high.is_finite() && (high / value.max(1e-9)).ln().abs() < (low / value.max(1e-9)).ln().abs())
+        {
             high
         } else {
             low

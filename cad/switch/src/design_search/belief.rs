@@ -77,7 +77,8 @@ pub trait Belief: Sync {
             let mut z = zeros.clone();
             z[i] = 1.0;
             let moved = self.curve(part, loads_n, &z)?;
-            for (variance, (m, d)) in friction.iter_mut().zip(moved.friction_n.iter().zip(&middle.friction_n)) {
+            for (variance, (m, d)) in friction.iter_mut().zip(moved.friction_n.iter().zip(&middle.friction_n))
+            {
                 *variance += if *d > 0.0 { (m / d).ln().powi(2) } else { 0.0 };
             }
             threshold += (moved.switching().threshold_n / middle.switching().threshold_n).ln().powi(2);

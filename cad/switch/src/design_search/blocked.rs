@@ -81,7 +81,8 @@ pub(super) fn blocked(
 ) -> Blocked {
     let values = trial.median(nearest).unwrap_or_default();
     let miss = trial.miss(&values);
-    let missed = trial.ask.targets.iter().zip(&values).filter_map(|(t, v)| missed(t, *v, trial.range_n)).collect();
+    let missed =
+        trial.ask.targets.iter().zip(&values).filter_map(|(t, v)| missed(t, *v, trial.range_n)).collect();
     let mut moves: Vec<Move> = Parameter::ALL
         .iter()
         .filter_map(|p| best_move(trial, space, nearest, *p))
@@ -99,10 +100,14 @@ pub(super) fn blocked(
     };
     let limit = match (moves.first(), other_pins) {
         (Some(first), _) if first.meets => first.forbidden_by.clone(),
-        (_, Some((pins, other))) if other == 0.0 => of_pins(pins, "can be met"),
-        (None, Some((pins, other))) if other < (1.0 - WORTH_NAMING) * miss => of_pins(pins, "is missed by less"),
+        (_, Some((pins, other))) if other <= 0.0 => of_pins(pins, "can be met"),
+        (None, Some((pins, other))) if other < (1.0 - WORTH_NAMING) * miss => {
+            of_pins(pins, "is missed by less")
+        }
         (Some(first), _) => format!("{}; no single parameter reaches the ask", first.forbidden_by),
-        (None, _) => "the physics: no parameter that the program knows comes nearer; relax a target".to_owned(),
+        (None, _) => {
+            "the physics: no parameter that the program knows comes nearer; relax a target".to_owned()
+        }
     };
     let together = if moves.first().is_some_and(|m| m.meets) { Vec::new() } else { together(trial, nearest) };
     Blocked { missed, limit, moves, together }
@@ -152,7 +157,12 @@ fn missed(target: &Target, value: f64, range_n: (f64, f64)) -> Option<Missed> {
 }
 
 /// The value of one parameter that comes nearest to the ask, whatever the ask allows.
-fn best_move(trial: &Trial<'_>, space: &Space, nearest: &Configuration, parameter: Parameter) -> Option<Move> {
+fn best_move(
+    trial: &Trial<'_>,
+    space: &Space,
+    nearest: &Configuration,
+    parameter: Parameter,
+) -> Option<Move> {
     let from = parameter.value(nearest);
     let (least, most) = parameter.hard_range();
     let (usual_least, usual_most) = parameter.default_range();
@@ -171,9 +181,8 @@ fn best_move(trial: &Trial<'_>, space: &Space, nearest: &Configuration, paramete
     });
     // Of those that meet it, the one that changes least; otherwise the one that comes nearest.
     let change = |to: f64| (to / from).ln().abs();
-    let (to, miss, moved) = tried.min_by(|a, b| {
-        a.1.total_cmp(&b.1).then_with(|| change(a.0).total_cmp(&change(b.0)))
-    })?;
+    let (to, miss, moved) =
+        tried.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| change(a.0).total_cmp(&change(b.0))))?;
     let forbidden_by = forbidden(trial.ask, space, parameter, from, to)
         .or_else(|| trial.broken_limit(&moved))
         .unwrap_or_else(|| "the search, which stopped near to it: ask again with more --starts".to_owned());

@@ -78,7 +78,8 @@ impl<'a> Trial<'a> {
     }
 
     fn meets(&self, target: &Target, value: f64) -> bool {
-        let within = target.quantity != Quantity::Threshold || (self.range_n.0..=self.range_n.1).contains(&value);
+        let within =
+            target.quantity != Quantity::Threshold || (self.range_n.0..=self.range_n.1).contains(&value);
         within && target.wish.is_met(value)
     }
 
@@ -96,7 +97,13 @@ impl<'a> Trial<'a> {
     }
 
     /// The values of a made part, predicted in full.
-    pub(super) fn made(&self, part: &Part, hardness_shore_a: f64, error: &ModelError, draw: &Draw) -> Option<Vec<f64>> {
+    pub(super) fn made(
+        &self,
+        part: &Part,
+        hardness_shore_a: f64,
+        error: &ModelError,
+        draw: &Draw,
+    ) -> Option<Vec<f64>> {
         let bed = self.ask.tolerances.made(part.contact.bed(), hardness_shore_a, &draw.made);
         let made = Part { pins: part.pins.clone(), contact: part.contact.clone().with_bed(bed) };
         let curve = self.belief.curve(&made, &self.loads_n, &draw.constants)?;
@@ -110,7 +117,12 @@ impl<'a> Trial<'a> {
     }
 
     /// The curve of a part whose dimensions are off by `made`, by the best guess.
-    pub(super) fn curve_of_made(&self, part: &Part, hardness_shore_a: f64, made: &[f64; SOURCES]) -> Option<Curve> {
+    pub(super) fn curve_of_made(
+        &self,
+        part: &Part,
+        hardness_shore_a: f64,
+        made: &[f64; SOURCES],
+    ) -> Option<Curve> {
         let bed = self.ask.tolerances.made(part.contact.bed(), hardness_shore_a, made);
         let made = Part { pins: part.pins.clone(), contact: part.contact.clone().with_bed(bed) };
         self.belief.curve(&made, &self.loads_n, &vec![0.0; self.belief.constants()])

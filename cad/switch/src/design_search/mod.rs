@@ -117,7 +117,13 @@ pub fn load_range_n(base: &Configuration, ask: &Ask) -> (f64, f64) {
 }
 
 /// Searches for designs that meet `ask`, from `base`. The same arguments give the same answer.
-pub fn search(base: &Design, ask: &Ask, belief: &dyn Belief, options: Options, progress: &dyn Progress) -> Found {
+pub fn search(
+    base: &Design,
+    ask: &Ask,
+    belief: &dyn Belief,
+    options: Options,
+    progress: &dyn Progress,
+) -> Found {
     let range_n = load_range_n(base.configuration(), ask);
     let mut configuration = base.configuration().clone();
     (configuration.friction.load_min_n, configuration.friction.load_max_n) = range_n;
@@ -184,10 +190,20 @@ pub fn search(base: &Design, ask: &Ask, belief: &dyn Belief, options: Options, p
 }
 
 /// How often made parts of `configuration` meet `ask`, with draws of another seed: a check of a stated probability.
-pub fn simulated(base: &Design, ask: &Ask, belief: &dyn Belief, draws: usize, seed: u64) -> Option<Probability> {
+pub fn simulated(
+    base: &Design,
+    ask: &Ask,
+    belief: &dyn Belief,
+    draws: usize,
+    seed: u64,
+) -> Option<Probability> {
     let range_n = load_range_n(base.configuration(), ask);
     let trial = Trial::new(ask, belief, range_n);
-    probability::probability(&trial, base.configuration(), &probability::draws(seed, draws, belief.constants()))
+    probability::probability(
+        &trial,
+        base.configuration(),
+        &probability::draws(seed, draws, belief.constants()),
+    )
 }
 
 /// A place whose best guess is known.
@@ -255,7 +271,10 @@ fn enumerate(trial: &Trial<'_>, space: &Space, progress: &dyn Progress) -> Enume
                 patterns = found.all;
             }
             all.extend(
-                found.taken.into_iter().map(|pins| (i == 0 && material == 0, Place { material, pins, at: at.clone() })),
+                found
+                    .taken
+                    .into_iter()
+                    .map(|pins| (i == 0 && material == 0, Place { material, pins, at: at.clone() })),
             );
         }
     }
@@ -297,7 +316,8 @@ fn starts(space: &Space, places: &[(f64, Place)], count: usize) -> Vec<Place> {
     let rest = places.iter().map(|p| &p.1).take(count.saturating_sub(kinds) + kinds);
     let mut starts: Vec<Place> = taken.into_iter().map(|t| t.1).collect();
     for place in rest {
-        let is_new = starts.iter().all(|s| s.pins != place.pins || s.at != place.at || s.material != place.material);
+        let is_new =
+            starts.iter().all(|s| s.pins != place.pins || s.at != place.at || s.material != place.material);
         if starts.len() < count && is_new {
             starts.push(place.clone());
         }

@@ -46,7 +46,11 @@ pub(super) fn draws(seed: u64, count: usize, constants: usize) -> Vec<Draw> {
 }
 
 /// The probability that a made part of `configuration` meets the ask; `None` if it cannot be predicted.
-pub(super) fn probability(trial: &Trial<'_>, configuration: &Configuration, draws: &[Draw]) -> Option<Probability> {
+pub(super) fn probability(
+    trial: &Trial<'_>,
+    configuration: &Configuration,
+    draws: &[Draw],
+) -> Option<Probability> {
     let part = trial.part(configuration)?;
     let error = trial.believed(&part)?.error;
     let hardness = configuration.silicone.hardness_shore_a;

@@ -91,7 +91,8 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
             probability: probability.each[i],
         })
         .collect();
-    let tightest = (0..targets.len()).min_by(|a, b| targets[*a].probability.total_cmp(&targets[*b].probability))?;
+    let tightest =
+        (0..targets.len()).min_by(|a, b| targets[*a].probability.total_cmp(&targets[*b].probability))?;
     let switching = curve.switching();
     let threshold_n = switching.threshold_n;
     let within = switching.is_found && (trial.range_n.0..=trial.range_n.1).contains(&threshold_n);

@@ -29,7 +29,11 @@ pub(super) fn sensitivities(trial: &Trial<'_>, configuration: &Configuration) ->
     Parameter::ALL.iter().filter_map(|p| sensitivity(trial, configuration, *p)).collect()
 }
 
-fn sensitivity(trial: &Trial<'_>, configuration: &Configuration, parameter: Parameter) -> Option<Sensitivity> {
+fn sensitivity(
+    trial: &Trial<'_>,
+    configuration: &Configuration,
+    parameter: Parameter,
+) -> Option<Sensitivity> {
     let value = parameter.value(configuration);
     let step = STEP * value;
     let at = |value: f64| {

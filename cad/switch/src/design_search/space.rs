@@ -107,11 +107,21 @@ fn thinned(all: Vec<Vec<usize>>, most: usize) -> Vec<Vec<usize>> {
     even.truncate(most);
     let room = most - even.len();
     let count = others.len();
-    even.extend(others.into_iter().enumerate().filter(|(i, _)| i * room / count != (i + 1) * room / count).map(|o| o.1));
+    even.extend(
+        others
+            .into_iter()
+            .enumerate()
+            .filter(|(i, _)| i * room / count != (i + 1) * room / count)
+            .map(|o| o.1),
+    );
     even
 }
 
-fn each_with<T>(all: &[Configuration], values: &[T], set: impl Fn(&mut Configuration, &T)) -> Vec<Configuration> {
+fn each_with<T>(
+    all: &[Configuration],
+    values: &[T],
+    set: impl Fn(&mut Configuration, &T),
+) -> Vec<Configuration> {
     all.iter()
         .flat_map(|c| {
             values.iter().map(|value| {
@@ -167,7 +177,11 @@ mod tests {
         kept.layout.pins = vec![5, 8, 11];
         let wide = Space::new(&kept, &ask);
         let pins = &wide.patterns(0, &wide.base(), 9).taken[0];
-        assert_eq!(wide.configuration(0, pins, &wide.base()).layout.pins, [8, 11, 14], "three grooves more on each side");
+        assert_eq!(
+            wide.configuration(0, pins, &wide.base()).layout.pins,
+            [8, 11, 14],
+            "three grooves more on each side"
+        );
         let patterns = space.patterns(0, &space.base(), 100);
         assert!(patterns.all > 900 && patterns.taken.len() <= 100 && patterns.taken.len() > 90);
     }

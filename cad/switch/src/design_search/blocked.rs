@@ -88,11 +88,17 @@ pub(super) fn blocked(
         .filter_map(|p| best_move(trial, space, nearest, *p))
         .filter(|m| m.miss < (1.0 - WORTH_NAMING) * miss)
         .collect();
-    // What meets the ask first, by how little it changes; then what comes nearest.
+    // What meets the ask first: where the ask itself sets the limit before what is merely held, then by how little it
+    // changes. After that what comes nearest.
+    let is_held = |m: &Move| {
+        !space.varied.iter().any(|v| v.parameter == m.parameter) && !is_listed(trial.ask, m.parameter)
+    };
     let change = |m: &Move| (m.to / m.from).ln().abs();
     moves.sort_by(|a, b| {
-        (b.meets.cmp(&a.meets))
-            .then_with(|| if a.meets { change(a).total_cmp(&change(b)) } else { a.miss.total_cmp(&b.miss) })
+        (b.meets.cmp(&a.meets)).then_with(|| match a.meets {
+            true => is_held(a).cmp(&is_held(b)).then(change(a).total_cmp(&change(b))),
+            false => a.miss.total_cmp(&b.miss),
+        })
     });
     let of_pins = |pins: usize, effect: &str| {
         let asked = trial.ask.limits.pins.map_or_else(String::new, |(a, b)| format!("{a}..{b}"));
@@ -187,6 +193,15 @@ fn best_move(
         .or_else(|| trial.broken_limit(&moved))
         .unwrap_or_else(|| "the search, which stopped near to it: ask again with more --starts".to_owned());
     Some(Move { parameter, from, to, meets: miss == 0.0, miss, forbidden_by })
+}
+
+/// Whether the ask names the materials that a parameter is taken from.
+const fn is_listed(ask: &Ask, parameter: Parameter) -> bool {
+    match parameter {
+        Parameter::PinDiameterMm => !ask.materials.pin_diameter_mm.is_empty(),
+        Parameter::HardnessShoreA => !ask.materials.hardness_shore_a.is_empty(),
+        _ => false,
+    }
 }
 
 /// What in the ask keeps a parameter from going there.

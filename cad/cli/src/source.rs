@@ -36,6 +36,12 @@ impl Source {
         Some(PathBuf::from(&self.config)).filter(|path| path.exists())
     }
 
+    /// The same with `preset` under it, unless the command line named one.
+    pub(super) fn with_preset(&self, preset: Option<&str>) -> Self {
+        let preset = self.preset.clone().or_else(|| preset.map(str::to_owned));
+        Self { preset, ..self.clone() }
+    }
+
     /// Reads, overlays and validates.
     ///
     /// # Errors

@@ -33,6 +33,6 @@ pub use contact::contact_svg;
 pub use finger::{FingerLayout, finger_svg};
 pub use friction::{PlotError, friction_svg};
 pub use log::log_svg;
-pub use pareto::pareto_svg;
+pub use pareto::{AskedRegion, pareto_svg};
 pub use published_page::{UNEXPLAINED, published_page, published_plot};
 pub use scale::{drawable, drawn_size, fine, shown_at_size};

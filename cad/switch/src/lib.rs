@@ -16,12 +16,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod ask;
 pub mod built;
 pub mod config;
 pub mod design;
+pub mod design_search;
 pub mod documents;
 pub mod formats;
-pub mod inverse;
 pub mod output;
 mod parallel;
 pub mod parts;

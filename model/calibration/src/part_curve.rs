@@ -74,6 +74,49 @@ impl ModelFile {
         })
     }
 
+    /// How many standard normals draw the constants of [`Self::drawn_part`].
+    pub fn constants_drawn(&self) -> usize {
+        self.covariance().len()
+    }
+
+    /// Friction and the silicone's share at `loads_n`, as in [`Self::part_curve`] but with constants drawn from their
+    /// covariance by standard normals `z`; all zero are the fitted ones.
+    ///
+    /// # Errors
+    /// [`ModelFileError`] as in [`ModelFile::model`].
+    pub fn drawn_part(
+        &self,
+        substrate: Substrate,
+        pins: &[usize],
+        loads_n: &[f64],
+        z: &[f64],
+        file: &str,
+    ) -> Result<(Vec<f64>, Vec<f64>), ModelFileError> {
+        let rows: Vec<PlateauRow> = [Direction::Eccentric, Direction::Concentric]
+            .iter()
+            .flat_map(|d| loads_n.iter().map(|load| self.row(substrate, pins, *load, *d)))
+            .collect();
+        let mut known = self.model(file)?;
+        if z.iter().any(|z| *z != 0.0) {
+            let n = self.covariance().len();
+            let covariance = nalgebra::DMatrix::from_fn(n, n, |i, j| self.covariance()[i][j]);
+            // Eigenvalues rather than a Cholesky root: constants that the data tie together leave it singular.
+            let parts = nalgebra::SymmetricEigen::new(covariance);
+            for (j, z) in z.iter().take(n).enumerate() {
+                let sd = parts.eigenvalues[j].max(0.0).sqrt();
+                (0..n).for_each(|i| known.coordinates[i] += parts.eigenvectors[(i, j)] * sd * z);
+            }
+        }
+        let mut frame = known.frame.clone();
+        frame.extend(&rows[0]);
+        let model = known.in_frame(frame);
+        let points = model.frame.points(&rows).unwrap_or_default();
+        let tension = model.predict_part(&points);
+        let n = loads_n.len();
+        let friction_n = (0..n).map(|i| 0.5 * (tension[n + i] - tension[i])).collect();
+        Ok((friction_n, model.silicone_share(&points[..n])))
+    }
+
     fn row(&self, substrate: Substrate, pins: &[usize], load_n: f64, direction: Direction) -> PlateauRow {
         PlateauRow {
             series: "part".to_owned(),

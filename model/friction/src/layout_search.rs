@@ -11,6 +11,8 @@ use crate::{Contact, PinPattern, Substrate, Transition};
 const LOADS: usize = 24;
 /// Most grooves under the tendon: `2^20` patterns take over half an hour.
 pub const MAX_GROOVES: usize = 20;
+/// Angles that differ by less are mirror images.
+const SYMMETRY_RAD: f64 = 1e-9;
 
 /// The grooves to fill and the loads to look at. Angles in radians, loads in newtons.
 ///
@@ -29,7 +31,8 @@ pub const MAX_GROOVES: usize = 20;
 ///     pins: (2, 3),
 /// };
 /// let candidates = search.sweep();
-/// assert_eq!(candidates.len(), 20);
+/// // 10 pairs and 10 triples, mirror images once.
+/// assert_eq!(candidates.len(), 12);
 /// assert!(pareto_front(&candidates).len() < candidates.len());
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -55,91 +58,77 @@ pub struct LayoutCandidate {
     pub threshold_n: Option<f64>,
     /// Friction at the heaviest load, N.
     pub friction_n: f64,
-    /// That friction over the friction of the pins alone.
-    pub ratio: f64,
-}
-
-/// What is wanted; at least one of the two.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Wanted {
-    /// Threshold, N.
-    pub threshold_n: Option<f64>,
-    /// Friction at the heaviest load, N.
-    pub friction_n: Option<f64>,
-}
-
-impl Wanted {
-    /// Distance from what is wanted: root of the summed squares of the logarithms of both ratios. Infinite if a
-    /// threshold is wanted and there is none.
-    pub fn miss(&self, threshold_n: Option<f64>, friction_n: f64) -> f64 {
-        let apart = |wanted: f64, found: f64| (found / wanted).ln().powi(2);
-        let threshold = match (self.threshold_n, threshold_n) {
-            (Some(wanted), Some(found)) => apart(wanted, found),
-            (Some(_), None) => f64::INFINITY,
-            (None, _) => 0.0,
-        };
-        (threshold + self.friction_n.map_or(0.0, |wanted| apart(wanted, friction_n))).sqrt()
-    }
 }
 
 impl Search {
-    /// Number of patterns that differ in what the tendon touches.
-    pub fn patterns(&self) -> usize {
-        self.masks().count()
-    }
-
-    fn masks(&self) -> impl Iterator<Item = u32> {
-        let (fewest, most) = self.pins;
-        let grooves = self.grooves.len().min(MAX_GROOVES);
-        (1..1u32 << grooves).filter(move |m| (fewest..=most).contains(&(m.count_ones() as usize)))
-    }
-
-    /// Every pattern, in the order of its occupancy as a binary number. A pattern whose equilibrium is not found is
-    /// left out.
+    /// Every pattern, mirror images once, in the order of its occupancy as a binary number. A pattern whose equilibrium is
+    /// not found is left out.
     pub fn sweep(&self) -> Vec<LayoutCandidate> {
-        let masks: Vec<u32> = self.masks().collect();
+        let all = patterns(&self.grooves, self.pins);
         #[cfg(feature = "parallel")]
-        let masks = masks.into_par_iter();
+        let all = all.into_par_iter();
         #[cfg(not(feature = "parallel"))]
-        let masks = masks.into_iter();
-        masks.filter_map(|mask| self.evaluate(mask)).collect()
+        let all = all.into_iter();
+        all.filter_map(|pins| self.evaluate(&pins)).collect()
     }
 
-    fn evaluate(&self, mask: u32) -> Option<LayoutCandidate> {
-        let occupied: Vec<&(usize, f64)> =
-            self.grooves.iter().enumerate().filter(|(i, _)| mask >> i & 1 == 1).map(|(_, g)| g).collect();
+    fn evaluate(&self, pins: &[usize]) -> Option<LayoutCandidate> {
+        let occupied: Vec<&(usize, f64)> = self.grooves.iter().filter(|(n, _)| pins.contains(n)).collect();
         let pattern = PinPattern::new(occupied.iter().map(|g| g.1).collect());
-        let on = |substrate| {
-            Contact::new(substrate, pattern.clone(), self.wrap_rad)
-                .ok()
-                .map(|contact| PhysicsSwitch::new(&contact.with_bed(self.bed), Constants::published()))
-        };
+        let contact = Contact::new(Substrate::Silicone, pattern, self.wrap_rad).ok()?.with_bed(self.bed);
+        let switch = PhysicsSwitch::new(&contact, Constants::published());
         let (from, to) = self.loads_n;
         let step = (to - from) / (LOADS - 1) as f64;
         let loads: Vec<f64> = (0..LOADS).map(|i| from + step * i as f64).collect();
-        let states = on(Substrate::Silicone)?.states(&loads).ok()?;
+        let states = switch.states(&loads).ok()?;
         let shares: Vec<f64> = states.iter().map(|s| s.silicone_share).collect();
-        let friction_n = states.last()?.friction_n;
         Some(LayoutCandidate {
-            pins: occupied.iter().map(|g| g.0).collect(),
+            pins: pins.to_vec(),
             threshold_n: Transition::threshold_n(&loads, &shares),
-            friction_n,
-            ratio: friction_n / on(Substrate::Abs)?.friction_n(to).ok()?,
+            friction_n: states.last()?.friction_n,
         })
     }
 }
 
-/// Candidates that no other beats in both threshold and ratio, by ascending threshold.
+/// Every choice of at least and at most so many of `grooves` (numbers and angles, ascending), in the order of its occupancy
+/// as a binary number. Of two that mirror each other about the middle of the wrap only the first is listed: which way
+/// around a switch lies moves its friction by less than a thousandth.
+///
+/// ```
+/// use pinswitch_friction::layout_search::patterns;
+///
+/// let grooves: Vec<(usize, f64)> = (1..=5).map(|i| (i, 0.1 * (i as f64 - 3.0))).collect();
+/// let pairs = patterns(&grooves, (2, 2));
+/// assert!(pairs.contains(&vec![1, 2]) && !pairs.contains(&vec![4, 5]));
+/// assert_eq!(pairs.len(), 6);
+/// ```
+pub fn patterns(grooves: &[(usize, f64)], (fewest, most): (usize, usize)) -> Vec<Vec<usize>> {
+    let grooves = &grooves[..grooves.len().min(MAX_GROOVES)];
+    let count = grooves.len() as u32;
+    // Only if each groove has a partner on the other side does a mirrored pattern exist.
+    let is_symmetric =
+        grooves.iter().zip(grooves.iter().rev()).all(|(a, b)| (a.1 + b.1).abs() < SYMMETRY_RAD);
+    let mirrored = |mask: u32| mask.reverse_bits() >> (u32::BITS - count.max(1));
+    (1..1u32 << count)
+        .filter(|mask| (fewest..=most).contains(&(mask.count_ones() as usize)))
+        .filter(|mask| !is_symmetric || *mask <= mirrored(*mask))
+        .map(|mask| {
+            grooves.iter().enumerate().filter(|(i, _)| mask >> i & 1 == 1).map(|(_, g)| g.0).collect()
+        })
+        .collect()
+}
+
+/// Candidates that no other beats in both threshold and friction, by ascending threshold.
 pub fn pareto_front(candidates: &[LayoutCandidate]) -> Vec<&LayoutCandidate> {
     let mut switching: Vec<(f64, &LayoutCandidate)> =
         candidates.iter().filter_map(|c| Some((c.threshold_n?, c))).collect();
-    switching.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.ratio.total_cmp(&a.1.ratio)));
+    switching.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.friction_n.total_cmp(&a.1.friction_n)));
     let mut best = 0.0;
     let mut front: Vec<&LayoutCandidate> = switching
         .into_iter()
         .filter(|(_, c)| {
-            let leads = c.ratio > best;
-            best = best.max(c.ratio);
+            let leads = c.friction_n > best;
+            best = best.max(c.friction_n);
             leads
         })
         .map(|(_, c)| c)
@@ -168,7 +157,8 @@ mod tests {
     fn every_pattern_is_tried() {
         let search = search(6..=10);
         let all = search.sweep();
-        assert_eq!((search.patterns(), all.len()), (31, 31));
+        // 31 occupancies; 7 of them mirror themselves, the others one another.
+        assert_eq!(all.len(), (31 - 7) / 2 + 7);
         let three = all.iter().find(|c| c.pins == [6, 8, 10]).unwrap();
         // three-single by physics, see physics::tests.
         assert!((three.friction_n - 8.99).abs() < 0.03, "{three:?}");
@@ -178,18 +168,14 @@ mod tests {
     fn the_front_holds_what_nothing_beats() {
         let all = search(6..=10).sweep();
         let front = pareto_front(&all);
-        assert!(front.windows(2).all(|w| w[0].threshold_n < w[1].threshold_n && w[0].ratio > w[1].ratio));
+        assert!(
+            front
+                .windows(2)
+                .all(|w| w[0].threshold_n < w[1].threshold_n && w[0].friction_n > w[1].friction_n)
+        );
         for c in &all {
-            let beaten = front.iter().any(|f| f.threshold_n >= c.threshold_n && f.ratio >= c.ratio);
+            let beaten = front.iter().any(|f| f.threshold_n >= c.threshold_n && f.friction_n >= c.friction_n);
             assert!(c.threshold_n.is_none() || beaten, "{c:?}");
         }
-    }
-
-    #[test]
-    fn a_miss_is_zero_where_the_wish_is_met() {
-        let wanted = Wanted { threshold_n: Some(20.0), friction_n: Some(8.0) };
-        assert_eq!(wanted.miss(Some(20.0), 8.0), 0.0);
-        assert_eq!(wanted.miss(None, 8.0), f64::INFINITY);
-        assert!((wanted.miss(Some(20.0), 8.8) - 1.1f64.ln()).abs() < 1e-12);
     }
 }

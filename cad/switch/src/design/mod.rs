@@ -73,6 +73,12 @@ impl Design {
     }
 }
 
+/// What the tendon touches by `configuration`, whether it can be built or not: a search looks past the rules, and asks them
+/// for what it keeps.
+pub(crate) fn contact_of(configuration: Configuration) -> Result<Contact, ConfigError> {
+    contact(&Dimensions::new(configuration))
+}
+
 fn contact(dimensions: &Dimensions) -> Result<Contact, ConfigError> {
     let c = dimensions.configuration();
     let pins = PinPattern::new(dimensions.pin_angles_rad());

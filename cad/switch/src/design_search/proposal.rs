@@ -1,0 +1,127 @@
+//! A design that is proposed, and all that is stated of it.
+
+use std::collections::BTreeMap;
+
+use pinswitch_friction::Trust;
+use pinswitch_friction::layout_search::LayoutCandidate;
+use serde::Serialize;
+
+use super::candidate::{Draw, Trial, outer_width_mm};
+use super::curve::Curve;
+use super::linear::{Linear, VarianceShare};
+use super::probability::{Probability, probability};
+use super::sensitivity::{Sensitivity, sensitivities};
+use crate::ask::{Parameter, Quantity, Target};
+use crate::config::Configuration;
+use crate::design::Design;
+
+/// One target and what the proposal has.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TargetResult {
+    /// The target.
+    #[serde(flatten)]
+    pub target: Target,
+    /// The best guess.
+    pub value: f64,
+    /// From which to which value 95 % of made parts lie.
+    pub band: [f64; 2],
+    /// Whether the best guess meets it.
+    pub is_met: bool,
+    /// Share of made parts that meet it.
+    pub probability: f64,
+}
+
+/// A configuration and what is stated of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Proposal {
+    /// Occupied grooves.
+    pub pins: Vec<usize>,
+    /// Continuous parameters by name.
+    pub parameters: BTreeMap<&'static str, f64>,
+    /// Diameter of rope and thickness of its coating, mm.
+    pub tendon_mm: [f64; 2],
+    /// Radius of the assembled switch, mm.
+    pub outer_radius_mm: f64,
+    /// Width of the assembled switch, mm.
+    pub outer_width_mm: f64,
+    /// How far the model is to be trusted there.
+    pub trust: Trust,
+    /// Threshold by the best guess, N; absent if it does not switch within the loads.
+    pub threshold_n: Option<f64>,
+    /// Friction at the heaviest load by the best guess, N.
+    pub friction_n: f64,
+    /// How often made parts meet the ask.
+    pub probability: Probability,
+    /// Standard error of that share, by the number of draws.
+    pub standard_error: f64,
+    /// Target by target.
+    pub targets: Vec<TargetResult>,
+    /// The target that is met least often, by its place in the ask.
+    pub tightest: usize,
+    /// What the uncertainty of that target comes from, largest first.
+    pub uncertainty: Vec<VarianceShare>,
+    /// What a change of each parameter does.
+    pub sensitivity: Vec<Sensitivity>,
+    /// The configuration.
+    #[serde(skip)]
+    pub configuration: Configuration,
+}
+
+/// The proposal of a configuration; `None` if it cannot be built or predicted.
+pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &[Draw]) -> Option<Proposal> {
+    let mut configuration = configuration.clone();
+    configuration.layout.substrate = pinswitch_friction::Substrate::Silicone;
+    configuration.layout.pins.sort_unstable();
+    let design = Design::new(configuration.clone()).ok()?;
+    let part = trial.part(&configuration)?;
+    let curve = trial.belief.curve(&part, &trial.loads_n, &vec![0.0; trial.belief.constants()])?;
+    let values = trial.values(&curve, 1.0);
+    let linear = Linear::of(trial, &configuration)?;
+    let probability = probability(trial, &configuration, draws)?;
+    let targets: Vec<TargetResult> = trial
+        .ask
+        .targets
+        .iter()
+        .enumerate()
+        .map(|(i, target)| TargetResult {
+            target: *target,
+            value: values[i],
+            band: probability.band[i],
+            is_met: target.wish.is_met(values[i]),
+            probability: probability.each[i],
+        })
+        .collect();
+    let tightest =
+        (0..targets.len()).min_by(|a, b| targets[*a].probability.total_cmp(&targets[*b].probability))?;
+    let switching = curve.switching();
+    let threshold_n = switching.threshold_n;
+    let within = switching.is_found && (trial.range_n.0..=trial.range_n.1).contains(&threshold_n);
+    Some(Proposal {
+        pins: configuration.layout.pins.clone(),
+        parameters: Parameter::ALL.iter().map(|p| (p.name(), p.value(&configuration))).collect(),
+        tendon_mm: [configuration.tendon.rope_diameter_mm, configuration.tendon.coating_mm],
+        outer_radius_mm: design.support_radius_mm(),
+        outer_width_mm: outer_width_mm(&configuration),
+        trust: linear.trust,
+        threshold_n: within.then_some(threshold_n),
+        friction_n: curve.value(Quantity::MaxFriction, trial.range_n),
+        standard_error: probability.standard_error(),
+        probability,
+        uncertainty: linear.targets[tightest].shares(),
+        tightest,
+        targets,
+        sensitivity: sensitivities(trial, &configuration),
+        configuration,
+    })
+}
+
+/// A curve as a point of a picture.
+pub(super) fn pictured(curve: &Curve, pins: &[usize], range_n: (f64, f64)) -> LayoutCandidate {
+    let switching = curve.switching();
+    let within = switching.is_found && (range_n.0..=range_n.1).contains(&switching.threshold_n);
+    LayoutCandidate {
+        pins: pins.to_vec(),
+        threshold_n: within.then_some(switching.threshold_n),
+        friction_n: curve.value(Quantity::MaxFriction, range_n),
+    }
+}

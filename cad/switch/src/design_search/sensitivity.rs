@@ -1,0 +1,59 @@
+//! What a small change of each parameter does to a proposal.
+
+use serde::Serialize;
+
+use super::candidate::Trial;
+use crate::ask::{Parameter, Quantity};
+use crate::config::Configuration;
+
+/// Relative step: beyond the mesh of the physics, within its bends.
+const STEP: f64 = 0.02;
+
+/// Derivatives with respect to one parameter, by central differences.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sensitivity {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its value.
+    pub value: f64,
+    /// Change of the friction at the heaviest load, N per unit of the parameter.
+    pub friction_n_per_unit: f64,
+    /// Change of the threshold, N per unit of the parameter.
+    pub threshold_n_per_unit: f64,
+    /// Change of each target's quantity per unit of the parameter.
+    pub targets_per_unit: Vec<f64>,
+}
+
+/// The table of `configuration`; a parameter whose change cannot be predicted is left out.
+pub(super) fn sensitivities(trial: &Trial<'_>, configuration: &Configuration) -> Vec<Sensitivity> {
+    Parameter::ALL.iter().filter_map(|p| sensitivity(trial, configuration, *p)).collect()
+}
+
+fn sensitivity(
+    trial: &Trial<'_>,
+    configuration: &Configuration,
+    parameter: Parameter,
+) -> Option<Sensitivity> {
+    let value = parameter.value(configuration);
+    let step = STEP * value;
+    let at = |value: f64| {
+        let mut moved = configuration.clone();
+        parameter.set(&mut moved, value);
+        let part = trial.part(&moved)?;
+        let curve = trial.belief.curve(&part, &trial.loads_n, &vec![0.0; trial.belief.constants()])?;
+        let of = |quantity| curve.value(quantity, trial.range_n);
+        Some((of(Quantity::MaxFriction), of(Quantity::Threshold), trial.values(&curve, 1.0)))
+    };
+    // Where one side cannot be predicted (a pin would leave the wrap), the difference is taken to the other alone.
+    let (below, above) = (at(value - step), at(value + step));
+    let sides = if below.is_some() && above.is_some() { 2.0 } else { 1.0 };
+    let (low, high) = (below.or_else(|| at(value))?, above.or_else(|| at(value))?);
+    let slope = |low: f64, high: f64| (high - low) / (sides * step);
+    Some(Sensitivity {
+        parameter,
+        value,
+        friction_n_per_unit: slope(low.0, high.0),
+        threshold_n_per_unit: slope(low.1, high.1),
+        targets_per_unit: low.2.iter().zip(&high.2).map(|(l, h)| slope(*l, *h)).collect(),
+    })
+}

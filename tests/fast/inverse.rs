@@ -179,13 +179,13 @@ fn the_physics_shows_its_constants_and_its_misses() {
     let folder = tempfile::tempdir().unwrap();
     let report = json(folder.path(), &["physics", "--out", "shown", "--json"]);
     assert!(report["fit"]["rms"].as_f64().unwrap() <= 0.04);
-    let surviving: Vec<_> = report["hypotheses"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .filter(|h| h["contradicts"].as_array().unwrap().is_empty())
-        .map(|h| h["hypothesis"]["name"].as_str().unwrap())
-        .collect();
-    assert_eq!(surviving, ["free, pins soften as they sink"]);
+    let hypotheses = report["hypotheses"].as_array().unwrap();
+    assert_eq!(hypotheses[0]["hypothesis"]["bed"]["outside"], "on_silicone");
+    assert!(hypotheses.iter().all(|h| !h["compared"].as_array().unwrap().is_empty()));
+    let laws = report["evidence"].as_array().unwrap();
+    let left_out = |law: &str| {
+        laws.iter().find(|l| l["law"] == law).unwrap()["rms_left_out"].as_f64().unwrap()
+    };
+    assert!(left_out("physics") < left_out("layout") && left_out("layout") < left_out("paper"));
     assert!(folder.path().join("shown/contact.svg").exists());
 }

@@ -4,9 +4,9 @@
 
 use divan::Bencher;
 use pinswitch_friction::layout_search::Search;
-use pinswitch_friction::physics::{Bed, Constants, PhysicsSwitch, physics_curve};
+use pinswitch_friction::physics::{Bed, Constants, PhysicsSwitch};
 use pinswitch_friction::published::{self, LAYOUTS};
-use pinswitch_friction::{Contact, PinPattern, Substrate};
+use pinswitch_friction::{Contact, Law, PinPattern, Substrate, predict_by};
 
 fn main() {
     divan::main();
@@ -32,7 +32,7 @@ fn states_50_loads(bencher: Bencher, layout: usize) {
 #[divan::bench(args = [0, 1, 2])]
 fn curve_50_loads(bencher: Bencher, layout: usize) {
     let (contact, loads) = (device(layout), loads());
-    bencher.bench(|| physics_curve(&contact, &loads).unwrap());
+    bencher.bench(|| predict_by(Law::Physics, &contact, &loads).unwrap());
 }
 
 /// All patterns of the grooves that the published wrap touches, and of all 15.

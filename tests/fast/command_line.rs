@@ -105,7 +105,10 @@ fn the_default_law_is_one_and_its_bands_hold_what_was_measured() {
             assert!(((c[i] - e[i]) / 2.0 - d[i]).abs() < 1e-9 && low[i] <= d[i] && d[i] <= high[i]);
         }
         let last = load.len() - 1;
-        assert!(low[last] * 1.02 < measured && measured < high[last] / 1.02, "{name}: not inside, but at the edge");
+        assert!(
+            low[last] * 1.02 < measured && measured < high[last] / 1.02,
+            "{name}: not inside, but at the edge"
+        );
         // The paper's own law stands beside it.
         let beside = curve["other_laws"].as_array().unwrap();
         assert!(beside.iter().any(|law| law["law"] == "paper"), "{name}");
@@ -124,7 +127,11 @@ fn other_layouts_say_how_far_to_trust_them() {
     for (set, word, reason) in [
         ("layout.pins=[5,7,9,11]", "interpolated", "4 pins 11.93 deg apart"),
         ("layout.pins=[5,6]", "extrapolated", "2 pin(s)"),
-        ("silicone.thickness_mm=3", "extrapolated", "layer thickness is 3 mm, measured was 2 mm; physics says +"),
+        (
+            "silicone.thickness_mm=3",
+            "extrapolated",
+            "layer thickness is 3 mm, measured was 2 mm; physics says +",
+        ),
         ("shell.outer_radius_mm=140", "extrapolated", "assumed for the published rig is 22 mm"),
         ("shell.width_mm=20", "extrapolated", "layer width is 19.6 mm"),
         ("silicone.hardness_shore_a=45", "extrapolated", "hardness of the silicone is 45 Shore A"),

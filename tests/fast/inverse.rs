@@ -183,9 +183,8 @@ fn the_physics_shows_its_constants_and_its_misses() {
     assert_eq!(hypotheses[0]["hypothesis"]["bed"]["outside"], "on_silicone");
     assert!(hypotheses.iter().all(|h| !h["compared"].as_array().unwrap().is_empty()));
     let laws = report["evidence"].as_array().unwrap();
-    let left_out = |law: &str| {
-        laws.iter().find(|l| l["law"] == law).unwrap()["rms_left_out"].as_f64().unwrap()
-    };
+    let left_out =
+        |law: &str| laws.iter().find(|l| l["law"] == law).unwrap()["rms_left_out"].as_f64().unwrap();
     assert!(left_out("physics") < left_out("layout") && left_out("layout") < left_out("paper"));
     assert!(folder.path().join("shown/contact.svg").exists());
 }

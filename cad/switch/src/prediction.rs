@@ -101,12 +101,20 @@ mod tests {
                 if (there.0 / published.0 - 1.0).abs() >= 0.02 {
                     moving.push(parameter.path());
                     let same = (&there.1, &there.2) == (&published.1, &published.2);
-                    assert!(!same, "{} = {new} gives {:.3} N for {:.3} N", parameter.path(), there.0, published.0);
+                    assert!(
+                        !same,
+                        "{} = {new} gives {:.3} N for {:.3} N",
+                        parameter.path(),
+                        there.0,
+                        published.0
+                    );
                 }
             }
         }
         moving.dedup();
-        for known in ["silicone.hardness_shore_a", "silicone.thickness_mm", "shell.width_mm", "pins.diameter_mm"] {
+        for known in
+            ["silicone.hardness_shore_a", "silicone.thickness_mm", "shell.width_mm", "pins.diameter_mm"]
+        {
             assert!(moving.iter().any(|p| p == known), "{known} should move friction: {moving:?}");
         }
     }

@@ -2,9 +2,9 @@
 
 use std::convert::Infallible;
 
-use pinswitch_friction::{LayoutLaw, PinPattern, Substrate, Switch, ThresholdRule};
 use pinswitch_friction::least_squares::minimise;
 use pinswitch_friction::published::{self, PublishedLayout};
+use pinswitch_friction::{LayoutLaw, PinPattern, Substrate, Switch, ThresholdRule};
 use serde::Serialize;
 
 use crate::table::Condition;

@@ -69,17 +69,18 @@ impl Supports<'_> {
     fn string(&self, tension_n: &[f64]) -> (BandedMatrix, Vec<f64>) {
         let (grid, rc) = (self.grid, self.bed.axis_radius_mm());
         let n = grid.len();
-        let mut a = BandedMatrix::zeros(n);
-        let mut load = vec![0.0; n];
-        for (i, length) in grid.element_mm.iter().enumerate() {
-            let k = (tension_n[i] + tension_n[i + 1]) / 2.0 / length;
+        let (mut a, mut load) = grid.bending(self.bending_n_mm2(tension_n));
+        for (i, per_mm) in grid.per_element_mm.iter().enumerate() {
+            let k = 0.5 * (tension_n[i] + tension_n[i + 1]) * per_mm;
             a.diagonal[i] += k;
             a.diagonal[i + 1] += k;
             a.first[i] -= k;
         }
+        let per_rc = 1.0 / rc;
         for i in 0..n {
-            a.diagonal[i] -= tension_n[i] * grid.share_mm[i] / (rc * rc);
-            load[i] -= tension_n[i] * grid.share_mm[i] / rc;
+            let pressed = tension_n[i] * grid.share_mm[i] * per_rc;
+            a.diagonal[i] -= pressed * per_rc;
+            load[i] -= pressed;
         }
         // Both ends point along the tangents at the ends of the wrap, from which the nodes beyond turn away: a free string
         // with u' = 0 at the end of the wrap has u' = tan(m) (1 - u/Rc) at m beyond it.
@@ -87,26 +88,6 @@ impl Supports<'_> {
         for end in [0, n.saturating_sub(1)] {
             load[end] += tension_n[end] * tilt;
             a.diagonal[end] += tension_n[end] * tilt / rc;
-        }
-        let stiffness = self.bending_n_mm2(tension_n);
-        if stiffness > 0.0 {
-            for i in 1..n.saturating_sub(1) {
-                let (left, right) = (grid.element_mm[i - 1], grid.element_mm[i]);
-                let k = stiffness * (left + right) / 2.0;
-                // Curvature at the node: the three-point second difference, and u/Rc^2.
-                let c = [
-                    2.0 / (left * (left + right)),
-                    1.0 / (rc * rc) - 2.0 / (left * right),
-                    2.0 / (right * (left + right)),
-                ];
-                for (j, cj) in c.iter().enumerate() {
-                    a.diagonal[i - 1 + j] += k * cj * cj;
-                    load[i - 1 + j] += k * cj / rc;
-                }
-                a.first[i - 1] += k * c[0] * c[1];
-                a.first[i] += k * c[1] * c[2];
-                a.second[i - 1] += k * c[0] * c[2];
-            }
         }
         (a, load)
     }

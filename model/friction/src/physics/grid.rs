@@ -1,6 +1,7 @@
 //! Nodes along the wrap and a little beyond: one at every pin, so that the tendon's kinks lie on nodes and refinement
 //! converges in second order.
 
+use super::banded::BandedMatrix;
 use super::{Bed, OutsidePins};
 use crate::published;
 
@@ -9,8 +10,10 @@ use crate::published;
 pub(super) struct Grid {
     /// Angles of the nodes, ascending.
     pub(super) angle_rad: Vec<f64>,
-    /// Lengths of the elements between the nodes.
-    pub(super) element_mm: Vec<f64>,
+    /// One over the lengths of the elements between the nodes.
+    pub(super) per_element_mm: Vec<f64>,
+    /// Quadratic form and linear term of bending, for a stiffness of 1 N mm².
+    unit_bending: (BandedMatrix, Vec<f64>),
     /// Length that belongs to each node.
     pub(super) share_mm: Vec<f64>,
     /// Length of silicone that belongs to each node.
@@ -102,13 +105,52 @@ impl Grid {
             element_mm.push(length);
         }
         let pins = inside.iter().map(|p| angle_rad.partition_point(|a| *a < p - SAME_RAD)).collect();
-        Self { angle_rad, element_mm, share_mm, silicone_mm, pins, reach_rad: reach }
+        let unit_bending = unit_bending(&element_mm, bed.axis_radius_mm());
+        let per_element_mm = element_mm.iter().map(|length| 1.0 / length).collect();
+        Self { angle_rad, per_element_mm, unit_bending, share_mm, silicone_mm, pins, reach_rad: reach }
+    }
+
+    /// Quadratic form and linear term of bending, `EI/2 (u'' + u/Rc^2 - 1/Rc)^2`, for a stiffness in N mm².
+    pub(super) fn bending(&self, stiffness_n_mm2: f64) -> (BandedMatrix, Vec<f64>) {
+        let (unit, load) = &self.unit_bending;
+        let scaled = |entries: &[f64]| entries.iter().map(|entry| stiffness_n_mm2 * entry).collect();
+        let form = BandedMatrix {
+            diagonal: scaled(&unit.diagonal),
+            first: scaled(&unit.first),
+            second: scaled(&unit.second),
+        };
+        (form, scaled(load))
     }
 
     /// Number of nodes.
     pub(super) fn len(&self) -> usize {
         self.angle_rad.len()
     }
+}
+
+/// Bending by the three-point second difference, with no moment at both ends.
+fn unit_bending(element_mm: &[f64], rc: f64) -> (BandedMatrix, Vec<f64>) {
+    let n = element_mm.len() + 1;
+    let mut form = BandedMatrix::zeros(n);
+    let mut load = vec![0.0; n];
+    for i in 1..n.saturating_sub(1) {
+        let (left, right) = (element_mm[i - 1], element_mm[i]);
+        let share = (left + right) / 2.0;
+        // Curvature at the node: the second difference, and u/Rc^2.
+        let c = [
+            2.0 / (left * (left + right)),
+            1.0 / (rc * rc) - 2.0 / (left * right),
+            2.0 / (right * (left + right)),
+        ];
+        for (j, cj) in c.iter().enumerate() {
+            form.diagonal[i - 1 + j] += share * cj * cj;
+            load[i - 1 + j] += share * cj / rc;
+        }
+        form.first[i - 1] += share * c[0] * c[1];
+        form.first[i] += share * c[1] * c[2];
+        form.second[i - 1] += share * c[0] * c[2];
+    }
+    (form, load)
 }
 
 #[cfg(test)]
@@ -124,7 +166,8 @@ mod tests {
             assert!((grid.angle_rad[*node] - pin).abs() < 1e-12);
         }
         let wrap_mm = (1.1 + 2.0 * reach_rad(&bed)) * bed.axis_radius_mm();
-        for lengths in [&grid.share_mm, &grid.element_mm, &grid.silicone_mm] {
+        let element_mm: Vec<f64> = grid.per_element_mm.iter().map(|per| 1.0 / per).collect();
+        for lengths in [&grid.share_mm, &element_mm, &grid.silicone_mm] {
             assert!((lengths.iter().sum::<f64>() - wrap_mm).abs() < 1e-9);
         }
     }

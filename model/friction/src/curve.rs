@@ -136,15 +136,8 @@ mod tests {
                 Law::predictive().filter_map(|law| predict_by(law, &c, &loads).ok()).collect();
             for a in &curves {
                 for b in &curves {
-                    for i in 0..loads.len() {
-                        assert!(
-                            a.band_low_n[i] <= b.band_high_n[i],
-                            "{:?} and {:?} at {} N of {:?}",
-                            a.law,
-                            b.law,
-                            loads[i],
-                            c.pins()
-                        );
+                    for (load, (low, high)) in loads.iter().zip(a.band_low_n.iter().zip(&b.band_high_n)) {
+                        assert!(low <= high, "{:?} and {:?} at {load} N of {:?}", a.law, b.law, c.pins());
                     }
                 }
             }

@@ -143,7 +143,7 @@ impl Belief for PublishedPhysics {
     }
 
     fn banded(&self, part: &Part, loads_n: &[f64]) -> Option<FrictionCurve> {
-        predict_by(Law::Physics, &part.contact, loads_n).ok()
+        predict_by(Law::DEFAULT, &part.contact, loads_n).ok()
     }
 }
 
@@ -180,7 +180,7 @@ mod tests {
     fn more_friction_is_an_earlier_threshold() {
         let (belief, mut part, loads) = (PublishedPhysics::default(), part(), loads());
         // Far from what was measured, so that the model error is more than the constants'.
-        part.contact = part.contact.with_departures(vec!["another silicone".to_owned()]);
+        part.contact = part.contact.with_unmodelled(vec!["another mix".to_owned()]);
         let Believed { error, middle, .. } = belief.believed(&part, &loads).unwrap();
         let (up, earlier) = error.applied(middle.clone(), 1.0);
         let (down, later) = error.applied(middle.clone(), -1.0);

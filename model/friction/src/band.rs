@@ -15,9 +15,6 @@ use crate::{Contact, Substrate, published};
 const LOADS: usize = 10;
 /// Half width of a standard normal distribution at 95 %.
 pub(crate) const NORMAL_95: f64 = 1.96;
-/// What is unsure of the effect that physics gives a departure: how the constants follow geometry and hardness is
-/// assumed, never measured. Chosen.
-const UNSURE_EFFECT: f64 = 0.5;
 /// What a departure may do that physics does not know of, as a standard deviation for a factor e. Chosen.
 const UNKNOWN_EFFECT: f64 = 0.1;
 /// Standard deviation for a remark on the contact that no law knows of. Chosen.
@@ -88,7 +85,7 @@ impl Band {
         for departure in &departures {
             sources.push(departure_source(departure, load_n.len()));
         }
-        let remarks = contact.remarks().len() as f64;
+        let remarks = contact.unmodelled().len() as f64;
         if remarks > 0.0 {
             sources.push(BandSource::even(
                 "what no law knows of",
@@ -167,8 +164,9 @@ fn departure_source(departure: &Departure, loads: usize) -> BandSource {
     let half = (0..loads)
         .map(|i| {
             // Where physics cannot say, a change counts in full.
-            let effect = departure.log_effect.get(i).copied().unwrap_or(departure.log_ratio / UNSURE_EFFECT);
-            NORMAL_95 * (UNSURE_EFFECT * effect).hypot(unknown)
+            let effect =
+                departure.log_effect.get(i).copied().unwrap_or(departure.log_ratio / departure.unsure);
+            NORMAL_95 * (departure.unsure * effect).hypot(unknown)
         })
         .collect();
     BandSource::even(departure.parameter, half)

@@ -162,6 +162,11 @@ impl Contact {
         self.wrap_rad
     }
 
+    /// What departs from the published rig of which no law knows.
+    pub fn unmodelled(&self) -> &[String] {
+        &self.unmodelled
+    }
+
     /// In what this contact departs from the published rig that no parameter of its bed shows.
     pub fn remarks(&self) -> Vec<String> {
         let mut all = self.unmodelled.clone();

@@ -13,6 +13,8 @@ struct Parameter {
     unit: &'static str,
     /// Whether the paper prints it; else it is assumed for the published rig.
     printed: bool,
+    /// What share of the effect that physics gives it is unsure.
+    unsure: f64,
     /// Its value: any scale on which a ratio means something.
     get: fn(&Contact) -> f64,
     /// The value as it is shown, in `unit`.
@@ -21,6 +23,11 @@ struct Parameter {
     with: fn(&Contact, f64) -> Option<Contact>,
 }
 
+/// How the constants follow geometry and hardness is assumed, never measured: half of an effect is unsure. Chosen.
+const UNSURE_SCALING: f64 = 0.5;
+/// That friction follows the wrap is the capstan's, and asks for no such assumption. Chosen.
+const UNSURE_WRAP: f64 = 0.1;
+
 /// A parameter of the bed.
 macro_rules! of_bed {
     ($name:literal, $unit:literal, $printed:literal, $field:ident, $shown:expr) => {
@@ -28,6 +35,7 @@ macro_rules! of_bed {
             name: $name,
             unit: $unit,
             printed: $printed,
+            unsure: UNSURE_SCALING,
             get: |contact| contact.bed().$field,
             shown: $shown,
             with: |contact, value| Some(contact.clone().with_bed(Bed { $field: value, ..*contact.bed() })),
@@ -41,6 +49,7 @@ static PARAMETERS: [Parameter; 8] = [
         name: "wrap angle",
         unit: "deg",
         printed: true,
+        unsure: UNSURE_WRAP,
         get: Contact::wrap_rad,
         shown: f64::to_degrees,
         with: |contact, value| contact.at_wrap(value).ok(),
@@ -72,6 +81,8 @@ pub struct Departure {
     pub unit: &'static str,
     /// Whether the paper prints the published value; else it is assumed.
     pub printed: bool,
+    /// What share of its effect is unsure, as a standard deviation.
+    pub unsure: f64,
     /// Natural logarithm of the ratio of both.
     pub log_ratio: f64,
     /// What physics says it does: logarithm of friction here over that with the published value, load by load; empty if
@@ -143,6 +154,7 @@ pub(crate) fn departures(contact: &Contact, loads_n: &[f64]) -> Vec<Departure> {
                 published: (p.shown)(published),
                 unit: p.unit,
                 printed: p.printed,
+                unsure: p.unsure,
                 log_ratio: (value / published).ln(),
                 log_effect,
             }

@@ -13,7 +13,7 @@ fn ask(targets: Vec<(Quantity, Wish)>) -> Ask {
 }
 
 fn few(best: usize) -> Options {
-    Options { best, draws: 200, starts: 6, ..Options::default() }
+    Options { best, draws: 100, starts: 3, ..Options::default() }
 }
 
 fn found(ask: &Ask, options: Options) -> Found {
@@ -26,12 +26,12 @@ fn proposals_meet_the_ask_and_differ_in_kind() {
         (Quantity::Threshold, Wish::About { value: 24.0, within: 0.1 }),
         (Quantity::MaxFriction, Wish::AtMost(9.0)),
     ]);
-    ask.limits.pins = Some((2, 6));
+    ask.limits.pins = Some((2, 4));
     let found = found(&ask, few(5));
     assert!(found.blocked.is_none() && found.proposals.len() >= 3, "{}", found.proposals.len());
     for (i, p) in found.proposals.iter().enumerate() {
         assert!(p.targets.iter().all(|t| t.is_met), "{p:?}");
-        assert!((2..=6).contains(&p.pins.len()));
+        assert!((2..=4).contains(&p.pins.len()));
         let others = &found.proposals[..i];
         assert!(others.iter().all(|o| differ_in_kind(&o.configuration, &p.configuration)));
         assert!(others.iter().all(|o| o.probability.all >= p.probability.all));
@@ -44,7 +44,8 @@ fn proposals_meet_the_ask_and_differ_in_kind() {
 
 #[test]
 fn the_same_ask_has_the_same_answer() {
-    let ask = ask(vec![(Quantity::MaxFriction, Wish::AtMost(8.0))]);
+    let mut ask = ask(vec![(Quantity::MaxFriction, Wish::AtMost(8.0))]);
+    ask.limits.pins = Some((2, 3));
     let twice = [found(&ask, few(2)), found(&ask, few(2))].map(|f| format!("{:?}", f.proposals));
     assert_eq!(twice[0], twice[1]);
 }
@@ -87,7 +88,7 @@ fn an_impossible_ask_names_what_blocks_it_and_what_would_move_it() {
 fn stated_probabilities_hold_for_other_draws() {
     let mut ask = ask(vec![(Quantity::MaxFriction, Wish::Between(6.0, 9.0))]);
     ask.limits.pins = Some((3, 4));
-    let options = Options { draws: 1000, ..few(2) };
+    let options = Options { draws: 1000, ..few(1) };
     for p in found(&ask, options).proposals {
         let design = Design::new(p.configuration.clone()).unwrap();
         let again = simulated(&design, &ask, &PublishedPhysics::default(), 1000, 77).unwrap();

@@ -19,9 +19,20 @@ pub(super) static DEFINITION: Definition = Definition {
 /// Relative uncertainty of friction besides that of the half load: what the law misses of the three maxima.
 const FRICTION_UNCERTAINTY: f64 = 0.10;
 
+/// Number of pins that the tendon touches: one beyond the wrap counts less and less, and not at all half a pitch from its
+/// end, where the chord to its neighbour has turned as far as the tendon.
+fn touching(contact: &Contact, pitch_rad: f64) -> f64 {
+    let half = contact.wrap_rad() / 2.0;
+    let share = |angle: &f64| (1.0 - (angle.abs() - half) / (pitch_rad / 2.0)).clamp(0.0, 1.0);
+    contact.all_pins().angles_rad().iter().map(share).sum()
+}
+
 fn law_of(contact: &Contact) -> Result<LayoutLaw, LawError> {
     (contact.substrate() == Substrate::Silicone)
-        .then(|| LayoutLaw::new(contact.pins(), contact.wrap_rad()))
+        .then(|| {
+            let pitch_rad = contact.all_pins().mean_pitch_rad().unwrap_or(contact.wrap_rad());
+            LayoutLaw::of_count(touching(contact, pitch_rad), pitch_rad, contact.wrap_rad(), LayoutLaw::RULE)
+        })
         .flatten()
         .ok_or(LawError::DoesNotApply {
             why: "the layout law describes pins on silicone only; use the law paper or physics",
@@ -102,6 +113,9 @@ impl LayoutLaw {
     /// Steepness `s` of the switch, dimensionless: describes all three published layouts.
     pub const STEEPNESS: f64 = 4.64;
 
+    /// The rule of both constants.
+    pub const RULE: ThresholdRule = ThresholdRule { scale_n: Self::SCALE_N, steepness: Self::STEEPNESS };
+
     /// `C` of `F_half = C sqrt(n/(a p))`, in newtons: describes all three published layouts.
     pub const SCALE_N: f64 = 13.1;
 
@@ -116,15 +130,18 @@ impl LayoutLaw {
     /// The law for `pins` within a wrap of `wrap_rad` radians; uneven pins enter with their mean pitch,
     /// a single pin with the whole wrap as its pitch. `None` without pins: there is nothing to switch.
     pub fn new(pins: &PinPattern, wrap_rad: f64) -> Option<Self> {
-        Self::by_rule(pins, wrap_rad, ThresholdRule { scale_n: Self::SCALE_N, steepness: Self::STEEPNESS })
+        Self::by_rule(pins, wrap_rad, Self::RULE)
     }
 
     /// The law for `pins` by another rule than its own.
     pub fn by_rule(pins: &PinPattern, wrap_rad: f64, rule: ThresholdRule) -> Option<Self> {
-        let n = pins.count() as f64;
-        let pitch = pins.mean_pitch_rad().unwrap_or(wrap_rad);
-        (pins.count() > 0).then(|| Self {
-            half_load_n: Self::half_load_at_n(n, pitch, wrap_rad) * rule.scale_n / Self::SCALE_N,
+        let pitch_rad = pins.mean_pitch_rad().unwrap_or(wrap_rad);
+        Self::of_count(pins.count() as f64, pitch_rad, wrap_rad, rule)
+    }
+
+    fn of_count(n: f64, pitch_rad: f64, wrap_rad: f64, rule: ThresholdRule) -> Option<Self> {
+        (n > 0.0).then(|| Self {
+            half_load_n: Self::half_load_at_n(n, pitch_rad, wrap_rad) * rule.scale_n / Self::SCALE_N,
             steepness: rule.steepness,
             weight: (n * WEIGHT_PER_PIN).min(1.0),
         })

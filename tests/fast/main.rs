@@ -22,3 +22,4 @@ mod pictures;
 mod readme;
 mod reference_shell;
 mod segment_raw;
+mod writing;

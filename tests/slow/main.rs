@@ -7,5 +7,6 @@ mod harness;
 
 mod batch_kill;
 mod closed_loop;
+mod generate_kill;
 mod random_configurations;
 mod undeclared_effect;

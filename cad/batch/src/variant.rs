@@ -9,7 +9,7 @@ use toml_edit::Value;
 use super::axis::ParameterRef;
 use super::source::SweepSource;
 use super::sweep::Sweep;
-use pinswitch_switch::config::{Configuration, to_toml};
+use pinswitch_switch::config::{Configuration, Name, to_toml};
 
 /// Letters of codes: no I, L, O or U, so that they can be read off a print, and neither M nor W, whose strokes leave
 /// less than a printed line between them where a shell has room for small letters only.
@@ -116,7 +116,7 @@ impl Variants {
         if configuration.label.text.is_empty() {
             configuration.label.text.clone_from(&code);
         }
-        configuration.switch.name.clone_from(&id);
+        configuration.switch.name = Name::cleaned(&id);
         let label = configuration.label.text.clone();
         Variant { index, id, label, configuration, repeats: self.repeats.get(&index).copied() }
     }

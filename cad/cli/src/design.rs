@@ -11,7 +11,7 @@ use super::source::Source;
 use super::{Failure, print, print_json};
 use crate::write::write_set;
 use pinswitch_plot::pareto_svg;
-use pinswitch_switch::config::to_toml;
+use pinswitch_switch::config::{Name, to_toml};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::inverse::{Proposal, SearchResult, find, search_for};
 use pinswitch_switch::output::OutputFile;
@@ -140,7 +140,7 @@ fn files(found: &SearchResult, report: &Report<'_>) -> Result<Vec<OutputFile>, F
         .enumerate()
         .map(|(i, proposal)| {
             let mut configuration = proposal.configuration.clone();
-            configuration.switch.name = format!("design-{}", i + 1);
+            configuration.switch.name = Name::cleaned(&format!("design-{}", i + 1));
             OutputFile { name: format!("design-{}.toml", i + 1), bytes: to_toml(&configuration).into_bytes() }
         })
         .collect();

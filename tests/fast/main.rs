@@ -11,6 +11,7 @@ mod harness;
 mod bad_input;
 mod batch;
 mod batch_bad_input;
+mod batch_damage;
 mod command_line;
 mod documents;
 mod finger;

@@ -1,5 +1,6 @@
 //! Runs a batch: variants in parallel, rows in order, with bounded memory, from where an earlier run was stopped.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,6 +12,7 @@ use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
 use super::make::{VariantMaker, VariantOutcome};
 use super::products::{ProductError, Products};
+use super::seal::seal;
 use super::shard::Shard;
 use super::source::SweepSource;
 use super::stamp::{Stamp, StampError};
@@ -94,6 +96,8 @@ pub struct ShardStamp {
     pub shard: Shard,
     /// Its variants.
     pub variants: Range<u64>,
+    /// SHA-256 of its tables, by their names; they hold the hashes of all manifests, and these of all other files.
+    pub tables: BTreeMap<String, String>,
 }
 
 /// Name of the folder for unfinished files of a shard.
@@ -114,7 +118,7 @@ pub fn run(
 ) -> Result<Tally, RunError> {
     // A folder with something else in it is left as it is, before anything is written there.
     let stamp = Stamp::new(source, variants.count());
-    refuse_foreign(&stamp, destination)?;
+    stamp.refuse_foreign(destination)?;
     let _lock = destination.lock().map_err(RunError::Unusable)?;
     let resumed = stamp.put(destination)?;
     let range = options.shard.range(variants.count());
@@ -147,25 +151,22 @@ pub fn run(
         return Ok(products.finish()?);
     }
     let folder = format!("shards/{}/", options.shard.folder());
-    let tally = products.finish_table(&folder)?;
-    let stamp = ShardStamp { sweep_sha256: stamp.sweep_sha256, shard: options.shard, variants: range };
+    let (tally, tables) = products.finish_table(&folder)?;
+    let stamp =
+        ShardStamp { sweep_sha256: stamp.sweep_sha256, shard: options.shard, variants: range, tables };
     let bytes = serde_json::to_vec_pretty(&stamp).map_err(ProductError::from)?;
-    destination.put(&format!("{folder}shard.json"), &bytes).map_err(ProductError::from)?;
+    destination.put(&format!("{folder}shard.json"), &seal(bytes)).map_err(ProductError::from)?;
     Ok(tally)
 }
 
-/// Refuses a destination that holds another sweep or other files.
-fn refuse_foreign(stamp: &Stamp, destination: &Destination) -> Result<(), RunError> {
-    if destination.is_empty()? {
-        return Ok(());
-    }
-    let place = destination.name();
-    match Stamp::read(destination) {
-        Ok(there) if there.sweep_sha256 == stamp.sweep_sha256 => Ok(()),
-        Ok(there) => Err(StampError::OtherSweep { place, name: there.source.name }.into()),
-        Err(StampError::Missing { place }) => Err(StampError::NotEmpty { place }.into()),
-        Err(e) => Err(e.into()),
-    }
+/// Whether a run would be let into `destination`: refuses what [`run`] refuses there before it makes anything, and leaves
+/// nothing behind. Whether a store can be written is not tried.
+///
+/// # Errors
+/// [`RunError`] for a place with another sweep or other files, a busy one, and one that cannot be written.
+pub fn admit(variants: &Variants, source: &SweepSource, destination: &Destination) -> Result<(), RunError> {
+    Stamp::new(source, variants.count()).refuse_foreign(destination)?;
+    destination.lock().map(drop).map_err(RunError::Unusable)
 }
 
 impl From<DestinationError> for RunError {

@@ -72,7 +72,7 @@ impl Sweep {
 
     /// The number of variants; `None` if it is beyond counting.
     pub fn count(&self) -> Option<u64> {
-        self.axes.iter().try_fold(1u64, |n, level| n.checked_mul(level.rows.len() as u64))
+        self.axes.iter().try_fold(1u64, |n, level| n.checked_mul(level.count()))
     }
 }
 

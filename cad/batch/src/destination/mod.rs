@@ -143,6 +143,15 @@ impl Destination {
         }
     }
 
+    /// Whether two names are links to one file; no two objects of a store are.
+    pub fn is_same(&self, one: &str, other: &str) -> bool {
+        match self {
+            Self::Folder(folder) => folder.is_same(one, other),
+            #[cfg(feature = "cloud")]
+            Self::Store(_) => false,
+        }
+    }
+
     /// A file on this machine, to be filled and then handed to [`Self::put_file`].
     ///
     /// # Errors

@@ -88,7 +88,7 @@ fn what_the_new_set_does_not_have_goes_and_what_is_not_ours_stays() {
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("set/coupon.step: changed since it was made, and left"), "{said}");
     is_whole(&out, &["notes.txt", "coupon.step"]);
-    assert!(!out.join("proxy-layer.stl").exists() && !out.join("report.html").exists());
+    assert!(!out.join("proxy.stl").exists() && !out.join("report.html").exists());
 }
 
 #[test]

@@ -23,12 +23,15 @@ use super::variant::Variants;
 /// Variants whose rows are in memory at the same time.
 const CHUNK_VARIANTS: u64 = 512;
 
+/// Threads for a store, where no number is given.
+const STORE_THREADS: usize = 16;
+
 /// How a batch is run.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Which variants are made.
     pub shard: Shard,
-    /// Threads; 0 takes one per processor.
+    /// Threads; 0 takes one per processor, or 16 for a store.
     pub threads: usize,
     /// Whether the first variant that fails ends the run.
     pub fail_fast: bool,
@@ -54,8 +57,10 @@ pub enum RunError {
     #[error("{0}; give an --out that can be written")]
     Unusable(DestinationError),
     /// The destination can no longer be written.
-    #[error("{source}; {done} of {of} variants are there: make room and give the same command again")]
+    #[error("{source}; {done} of {of} variants are there: {remedy} and give the same command again")]
     Destination {
+        /// What to do about it.
+        remedy: &'static str,
         /// Why.
         source: DestinationError,
         /// Variants that are done.
@@ -124,7 +129,7 @@ pub fn run(
     let range = options.shard.range(variants.count());
     let maker = VariantMaker::new(variants, &stamp.sweep_sha256, destination, resumed, options.mesh_maker);
     let mut products = Products::new(variants, destination)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(options, destination)).build()?;
     let (mut done, of) = (0, range.end - range.start);
     let schema = products.schema().clone();
     for start in range.clone().step_by(usize::try_from(CHUNK_VARIANTS).unwrap_or(1)) {
@@ -137,7 +142,8 @@ pub fn run(
                 VariantResult::Row(row) => products.push(index, row)?,
                 VariantResult::Failed { id, reason } => return Err(RunError::Failed { id, reason }),
                 VariantResult::Fatal(source) => {
-                    return Err(RunError::Destination { source, done: done + finished, of });
+                    let remedy = if destination.links() { "make room" } else { "mend that" };
+                    return Err(RunError::Destination { remedy, source, done: done + finished, of });
                 }
                 VariantResult::NotStarted => {}
             }
@@ -157,6 +163,11 @@ pub fn run(
     let bytes = serde_json::to_vec_pretty(&stamp).map_err(ProductError::from)?;
     destination.put(&format!("{folder}shard.json"), &seal(bytes)).map_err(ProductError::from)?;
     Ok(tally)
+}
+
+/// Threads of a run. A thread waits for a store most of the time: so many uploads go on at once.
+fn threads(options: Options, destination: &Destination) -> usize {
+    if options.threads > 0 || destination.links() { options.threads } else { STORE_THREADS }
 }
 
 /// Whether a run would be let into `destination`: refuses what [`run`] refuses there before it makes anything, and leaves

@@ -87,7 +87,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         place.check_source(&origin).map_err(refused)?;
     }
     let built = Built::new(design).map_err(|e| match e {
-        BuildError::Configuration(e) => Failure::bad_input(e),
+        BuildError::Configuration(e) => arguments.source.placed(&e),
         other => Failure::failed(other),
     })?;
     let names: Vec<&str> = arguments.format.iter().map(String::as_str).collect();

@@ -46,7 +46,7 @@ pub(super) struct Arguments {
     /// Make only block K of N; `pinswitch merge` joins them.
     #[arg(long, value_name = "K/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
-    /// Threads [default: one per processor].
+    /// Threads [default: one per processor; 16 for a bucket, which upload at once].
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     threads: usize,
     /// Stop at the first variant that fails.

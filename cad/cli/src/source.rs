@@ -45,6 +45,11 @@ impl Source {
         self.design_and_origin().map(|(design, _)| design)
     }
 
+    /// An error of what was read, with the name of its file.
+    pub(super) fn placed(&self, error: &impl std::fmt::Display) -> Failure {
+        Failure::bad_input(format!("{}: {error}", self.config))
+    }
+
     /// As [`Self::design`], with what the manifest says of the configuration.
     ///
     /// # Errors

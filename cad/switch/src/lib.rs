@@ -19,6 +19,7 @@
 pub mod built;
 pub mod config;
 pub mod design;
+mod diagnosis;
 pub mod documents;
 pub mod formats;
 pub mod inverse;

@@ -10,6 +10,6 @@ mod reference;
 pub use error::{ConfigError, Place};
 pub use name::Name;
 pub use parameter::{Choice, Origin};
-pub use parameters::{Configuration, MouldKind, SlotKind, Slots};
+pub use parameters::{Configuration, MouldKind, MouldTable, SlotKind, Slots};
 pub use read::{Places, assign, read, read_over};
 pub use reference::{reference_toml, to_toml};

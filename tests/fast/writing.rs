@@ -108,6 +108,27 @@ fn a_folder_in_the_way_leaves_the_set_before_whole() {
 }
 
 #[test]
+fn places_that_cannot_be_written_are_one_error_with_a_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    for (arguments, word) in [
+        ("generate three-double --out /proc", "/proc: cannot write"),
+        ("generate three-double --out /proc/x/y", "cannot write"),
+        ("generate three-double --out file", "a file stands where a folder must be"),
+        ("generate three-double --out file/x", "a file stands where a folder must be"),
+        ("init three-double --out no/such/folder.toml", "make its folder"),
+        ("init three-double --out /proc/x.toml", "cannot write"),
+        ("physics --out file", "a file stands where a folder must be"),
+    ] {
+        let arguments: Vec<_> = ["-q"].into_iter().chain(arguments.split(' ')).collect();
+        let (code, said) = ended(folder.path(), &arguments);
+        assert_eq!(code, Some(1), "{arguments:?}: {said}");
+        assert!(said.contains(word) && said.contains("; ") && said.len() < 600, "{arguments:?}: {said}");
+        assert_eq!(names(folder.path()).len(), 1, "{arguments:?}");
+    }
+}
+
+#[test]
 fn another_configuration_asks_before_it_replaces_a_set() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

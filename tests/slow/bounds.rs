@@ -48,7 +48,7 @@ fn fault(assignments: &[String]) -> Option<String> {
 #[test]
 fn every_numeric_field_can_be_walked_to_both_ends() {
     let fields: Vec<_> = Configuration::PARAMETERS.iter().filter_map(|f| Some((f, ends(f)?))).collect();
-    assert!(fields.len() >= 60, "{}", fields.len());
+    assert!(fields.len() >= 55, "{}", fields.len());
     let mut cases: Vec<Vec<String>> = Vec::new();
     for (i, (field, own)) in fields.iter().enumerate() {
         for (end, beyond) in own.iter().zip([-1.0, 1.0]) {

@@ -104,7 +104,13 @@ impl Stamp {
     /// [`StampError`] if it holds anything else.
     pub(super) fn refuse_foreign(&self, destination: &Destination) -> Result<bool, StampError> {
         let place = destination.name();
-        match Self::found(destination) {
+        let found = match Self::found(destination) {
+            Err(StampError::Missing { .. }) if destination.is_empty()? => return Ok(false),
+            // Another shard may have stamped it since it was looked for.
+            Err(StampError::Missing { .. }) => Self::found(destination),
+            found => found,
+        };
+        match found {
             Ok((there, is_intact)) if there.sweep_sha256 == self.sweep_sha256 => {
                 Ok(is_intact && there.variants == self.variants)
             }
@@ -113,7 +119,6 @@ impl Stamp {
                 let name = there.source.name.chars().take(80).collect();
                 Err(StampError::OtherSweep { place, name })
             }
-            Err(StampError::Missing { .. }) if destination.is_empty()? => Ok(false),
             Err(StampError::Missing { place }) => Err(StampError::NotEmpty { place }),
             Err(e) => Err(e),
         }

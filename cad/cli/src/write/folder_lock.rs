@@ -11,12 +11,15 @@ const LOCK: &str = ".pinswitch-lock";
 /// Name of the note on what a run is about to change: it outlives the run that is killed.
 pub(super) const JOURNAL: &str = ".pinswitch-journal";
 
+/// How often a folder may vanish under the lock before it is taken for one in which nothing can be made, such as `/proc`.
+const MAX_VANISHED: usize = 100;
+
 /// What to do while another process writes into the folder.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Waiting {
     /// Refuse.
     Never,
-    /// Wait: for one file, which takes milliseconds.
+    /// Wait: for files that are ready, which takes milliseconds.
     UntilFree,
 }
 
@@ -31,21 +34,22 @@ pub(super) struct FolderLock {
 }
 
 impl FolderLock {
-    /// Locks `folder`; with [`Waiting::Never`], it is made if need be.
+    /// Locks `folder`, which is made if need be.
     ///
     /// # Errors
     /// `WouldBlock` if another process holds it; else whatever keeps the lock from being written.
     pub(super) fn take(folder: &Path, waiting: Waiting) -> Result<Self> {
-        let mut made = Vec::new();
+        let (mut made, mut vanished) = (Vec::new(), 0);
         loop {
-            if waiting == Waiting::Never {
-                made.extend(missing(folder));
-                std::fs::create_dir_all(folder)?;
-            }
+            made.extend(missing(folder));
+            std::fs::create_dir_all(folder)?;
             let path = folder.join(LOCK);
             let file = match File::options().create(true).truncate(false).write(true).open(&path) {
                 // Another process has just removed the folder that it had made.
-                Err(e) if e.kind() == ErrorKind::NotFound && waiting == Waiting::Never => continue,
+                Err(e) if e.kind() == ErrorKind::NotFound && vanished < MAX_VANISHED => {
+                    vanished += 1;
+                    continue;
+                }
                 other => other?,
             };
             match waiting {

@@ -59,6 +59,9 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
         _ => {}
     }
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    if !folder.is_dir() {
+        return Err(WriteError::at(path)(ErrorKind::NotFound.into()));
+    }
     let lock = FolderLock::take(folder, Waiting::UntilFree).map_err(WriteError::at(path))?;
     lock.sweep().map_err(WriteError::at(path))?;
     let mut temporary = builder().prefix(OURS).tempfile_in(folder).map_err(WriteError::at(path))?;
@@ -86,7 +89,7 @@ fn builder() -> tempfile::Builder<'static, 'static> {
 /// # Errors
 /// [`WriteError`] names the path.
 pub fn write_set(folder: &Path, files: &[OutputFile]) -> Result<(), WriteError> {
-    SetFolder::lock(folder)?.replace(files)
+    SetFolder::wait(folder)?.replace(files)
 }
 
 #[cfg(test)]

@@ -59,7 +59,16 @@ impl SetFolder {
     /// # Errors
     /// [`WriteError`] if another process writes there, or nothing can be written.
     pub fn lock(folder: &Path) -> Result<Self, WriteError> {
-        let lock = FolderLock::take(folder, Waiting::Never).map_err(WriteError::at(folder))?;
+        Self::locked(folder, Waiting::Never)
+    }
+
+    /// As [`Self::lock`], once no other process writes there.
+    pub(super) fn wait(folder: &Path) -> Result<Self, WriteError> {
+        Self::locked(folder, Waiting::UntilFree)
+    }
+
+    fn locked(folder: &Path, waiting: Waiting) -> Result<Self, WriteError> {
+        let lock = FolderLock::take(folder, waiting).map_err(WriteError::at(folder))?;
         lock.sweep().map_err(WriteError::at(folder))?;
         Ok(Self { folder: folder.to_owned(), lock })
     }

@@ -128,7 +128,7 @@ fn is_device(text: &str) -> bool {
         stem.strip_prefix(*device)
             .is_some_and(|n| n.len() == 1 && n.starts_with(|d: char| d.is_ascii_digit()))
     };
-    DEVICES.contains(&stem.as_str()) || NUMBERED_DEVICES.iter().any(|device| numbered(&device))
+    DEVICES.contains(&stem.as_str()) || NUMBERED_DEVICES.iter().any(numbered)
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ fn generate(text: &str) -> (Option<i32>, String, usize) {
 }
 
 /// Every rule of cad/doc/dimensions.md that refuses a configuration.
-const REFUSED: [(&str, &[&str]); 25] = [
+const REFUSED: [(&str, &[&str]); 28] = [
     ("[segment]\ngrooves = 40", &["my.toml:2: segment.grooves = 40", "overlap", "lower it to"]),
     (
         "[segment]\nend_margin_mm = 0\n[print]\nelephant_foot_mm = 0.3",
@@ -40,6 +40,15 @@ const REFUSED: [(&str, &[&str]); 25] = [
     ("[fasteners]\nhole_diameter_mm = 5.0", &["fasteners.hole_diameter_mm = 5", "wall"]),
     ("[fasteners]\ncount = 12", &["fasteners.count = 12", "do not fit"]),
     ("[fasteners]\nend_distance_mm = 1.5", &["fasteners.end_distance_mm = 1.5", "raise it to"]),
+    (
+        "[support]\ncorner_radius_mm = 4.7",
+        &["my.toml:2: support.corner_radius_mm = 4.7", "outermost slot", "lower it to"],
+    ),
+    (
+        "[mould]\nkey_diameter_mm = 9.5",
+        &["my.toml:2: mould.key_diameter_mm = 9.5", "between the keys", "lower it to"],
+    ),
+    ("[mould]\nkey_height_mm = 10.0", &["my.toml:2: mould.key_height_mm = 10", "may be", "lower it to"]),
     ("[friction]\nload_min_n = 60", &["friction.load_min_n = 60", "load_max_n = 49.671"]),
     ("[print]\nbed_mm = 50\n[shell]\nouter_radius_mm = 60", &["print.bed_mm = 50", "wide"]),
     ("[layout]\nsubstrate = \"abs\"\npins = []", &["layout.pins = []", "no pin within the wrap"]),

@@ -6,6 +6,7 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+mod bucket;
 mod judges;
 mod page;
 mod recipes;

@@ -6,6 +6,8 @@
 mod harness;
 
 mod batch_kill;
+mod bounds;
 mod closed_loop;
+mod generate_kill;
 mod random_configurations;
 mod undeclared_effect;

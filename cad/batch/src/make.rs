@@ -1,23 +1,25 @@
 //! One variant: refused, kept from an earlier run, or made.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
-
-use serde_json::Value;
-use sha2::{Digest, Sha256};
 
 use super::content::{ContentError, MeshMaker, PartStore, StoredPart, content_path};
 use super::destination::{Destination, DestinationError};
 use super::forecast::{Forecast, Forecasts};
-use super::hexadecimal;
-use super::sweep::Sweep;
+use super::inspect::Inspector;
+use super::seal::seal;
 use super::variant::{Variant, Variants};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::formats::curve_files;
-use pinswitch_switch::output::BuildError;
-use pinswitch_switch::output::{OutputFile, SetError};
-use pinswitch_switch::parts::printed;
+use pinswitch_switch::output::{BuildError, OutputFile, SetError};
+use pinswitch_switch::parts::{Part, printed};
 use pinswitch_switch::prediction::Prediction;
+
+/// The table of a variant's curve.
+const CURVE: &str = "friction.csv";
+/// Its figure, where the sweep asks for plots.
+const FIGURE: &str = "friction.svg";
 
 /// What became of a variant.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,8 +44,8 @@ pub(super) struct VariantMaker<'a> {
     destination: &'a Destination,
     contents: PartStore<'a>,
     forecasts: Forecasts,
-    /// Whether an earlier run may have left variants.
-    resumed: bool,
+    /// What looks at the variants that an earlier run may have left.
+    inspector: Option<Inspector<'a>>,
 }
 
 /// The folder of a variant.
@@ -55,9 +57,12 @@ pub(super) fn variant_folder(id: &str) -> String {
 pub(super) struct AcceptedVariant {
     design: Design,
     forecast: Arc<Forecast>,
+    /// The parts that the sweep asks for.
+    parts: Vec<Part>,
 }
 
-/// A design that fulfils the constraints of a sweep.
+/// A design that fulfils the constraints of a sweep, with its parts: all that can be refused is refused here, so that a
+/// dry run refuses what a run refuses.
 ///
 /// # Errors
 /// The reason for which the variant is refused.
@@ -74,7 +79,11 @@ pub(super) fn accepted(
     let mut constraints = variants.sweep().constraints.iter();
     match constraints.find_map(|c| c.refusal(&design, forecast.curve(&design))) {
         Some(reason) => Err(reason),
-        None => Ok(AcceptedVariant { design, forecast }),
+        None => {
+            let mut parts = printed(&design).map_err(|e| e.to_string())?;
+            parts.retain(|part| variants.sweep().parts.contains(&part.name.as_str()));
+            Ok(AcceptedVariant { design, forecast, parts })
+        }
     }
 }
 
@@ -93,7 +102,7 @@ impl<'a> VariantMaker<'a> {
             destination,
             contents: PartStore::new(destination, mesh_maker),
             forecasts: Forecasts::default(),
-            resumed,
+            inspector: resumed.then(|| Inspector::new(destination)),
         }
     }
 
@@ -106,7 +115,9 @@ impl<'a> VariantMaker<'a> {
             Ok(accepted) => accepted,
             Err(reason) => return Ok(VariantOutcome::Refused(reason)),
         };
-        if let Some(manifest) = self.resumed.then(|| self.whole(variant)).transpose()?.flatten() {
+        if let Some(inspector) = &self.inspector
+            && let Some(manifest) = self.whole(inspector, variant, &accepted)?
+        {
             return Ok(VariantOutcome::Made { manifest, reused: true });
         }
         match self.build(variant, &accepted) {
@@ -120,10 +131,7 @@ impl<'a> VariantMaker<'a> {
     }
 
     fn build(&self, variant: &Variant, accepted: &AcceptedVariant) -> Result<Vec<u8>, ContentError> {
-        let AcceptedVariant { design, forecast } = accepted;
-        let sweep: &Sweep = self.variants.sweep();
-        let mut parts = printed(design).map_err(|e| SetError::from(BuildError::from(e)))?;
-        parts.retain(|part| sweep.parts.contains(&part.name.as_str()));
+        let AcceptedVariant { design, forecast, parts } = accepted;
         let kept: Vec<_> =
             parts.iter().map(|part| self.contents.keep(part, design)).collect::<Result<_, _>>()?;
         let linked: Vec<_> =
@@ -139,7 +147,7 @@ impl<'a> VariantMaker<'a> {
             index: variant.index,
             label: variant.label.clone(),
         });
-        let bytes = manifest.bytes()?;
+        let bytes = seal(manifest.bytes()?);
         let folder = variant_folder(&variant.id);
         for file in curve.files.iter().map(|(file, _)| file).chain(&plots) {
             self.destination.put(&format!("{folder}/{}", file.name), &file.bytes)?;
@@ -164,36 +172,36 @@ impl<'a> VariantMaker<'a> {
         Ok(files)
     }
 
-    /// The manifest of a variant that an earlier run made, if all its files are still what it says.
-    fn whole(&self, variant: &Variant) -> Result<Option<Vec<u8>>, DestinationError> {
-        let folder = variant_folder(&variant.id);
-        let Some(bytes) = self.destination.get(&format!("{folder}/manifest.json"))? else { return Ok(None) };
-        let Ok(manifest) = serde_json::from_slice::<Value>(&bytes) else { return Ok(None) };
-        let own = manifest["batch"]["sweep_sha256"] == self.sweep_sha256
-            && manifest["batch"]["index"] == variant.index;
-        let files = manifest["files"].as_array().filter(|_| own);
-        let Some(files) = files else { return Ok(None) };
-        for file in files {
-            if !self.is_whole(&folder, file)? {
-                log::warn!("{}: {} has changed and is made again", variant.id, file["file"]);
-                return Ok(None);
-            }
+    /// The manifest of a variant that an earlier run made, if it lists what this run would make, and all its files are
+    /// still what it says.
+    fn whole(
+        &self,
+        inspector: &Inspector<'_>,
+        variant: &Variant,
+        accepted: &AcceptedVariant,
+    ) -> Result<Option<Vec<u8>>, DestinationError> {
+        let Some((bytes, listing)) = inspector.manifest(&variant.id)? else { return Ok(None) };
+        if listing.batch.sweep_sha256 != self.sweep_sha256 || listing.batch.index != variant.index {
+            return Ok(None);
+        }
+        let expected: BTreeSet<String> = accepted
+            .parts
+            .iter()
+            .map(|part| format!("{}.stl", part.name))
+            .chain([CURVE.to_owned()])
+            .chain(self.variants.sweep().plots.then(|| FIGURE.to_owned()))
+            .collect();
+        let listed: BTreeSet<String> = listing.files.iter().map(|file| file.file.clone()).collect();
+        let problem = if listed == expected {
+            inspector.damaged(&variant.id, &listing)?
+        } else {
+            Some("manifest.json")
+        };
+        if let Some(file) = problem {
+            log::warn!("{}: {file} has changed and is made again", variant.id);
+            return Ok(None);
         }
         Ok(Some(bytes))
-    }
-
-    fn is_whole(&self, folder: &str, file: &Value) -> Result<bool, DestinationError> {
-        let name = file["file"].as_str().unwrap_or_default();
-        if let Some(content) = file["content"].as_str() {
-            if self.destination.size(content)? != file["bytes"].as_u64() {
-                return Ok(false);
-            }
-            if !self.destination.links() {
-                return Ok(true);
-            }
-        }
-        let found = self.destination.get(&format!("{folder}/{name}"))?;
-        Ok(found.is_some_and(|bytes| file["sha256"] == hexadecimal(&Sha256::digest(&bytes))))
     }
 }
 

@@ -1,10 +1,18 @@
 //! Joins the tables of shards into the products of the whole sweep.
 
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+
 use super::destination::{Destination, DestinationError};
+use super::hexadecimal;
+use super::inspect::Inspector;
+use super::make::variant_folder;
 use super::products::{ProductError, Products};
 use super::run::ShardStamp;
+use super::seal::is_sealed;
 use super::stamp::{Stamp, StampError};
 use super::sweep::Sweep;
+use super::table::{Row, Schema};
 use super::table_files::{BatchTableError, read_rows};
 use super::tally::Tally;
 use super::variant::Variants;
@@ -62,6 +70,11 @@ pub enum MergeError {
     Destination(#[from] DestinationError),
 }
 
+/// Rows that are looked at together.
+const CHUNK_ROWS: usize = 512;
+/// Files that an error names.
+const MAX_NAMED: usize = 3;
+
 /// A finished shard and its place.
 struct FinishedShard<'a> {
     stamp: ShardStamp,
@@ -71,6 +84,19 @@ struct FinishedShard<'a> {
 impl FinishedShard<'_> {
     fn name(&self) -> String {
         format!("{} of {}", self.stamp.shard, self.place.name())
+    }
+
+    /// The bytes of a table of this shard, as it recorded them.
+    fn table(&self, file: &str) -> Result<Vec<u8>, MergeError> {
+        let broken =
+            |problem: &str| MergeError::Broken { shard: self.name(), problem: format!("{file} {problem}") };
+        let bytes = self.place.get(file)?.ok_or_else(|| broken("is missing"))?;
+        let name = file.rsplit('/').next().unwrap_or_default();
+        if self.stamp.tables.get(name) == Some(&hexadecimal(&Sha256::digest(&bytes))) {
+            Ok(bytes)
+        } else {
+            Err(broken("has changed"))
+        }
     }
 }
 
@@ -82,14 +108,29 @@ pub fn merge(places: &[Destination], target: &Destination) -> Result<Tally, Merg
     let stamp = one_sweep(places)?;
     let sweep = Sweep::new(&stamp.source)?;
     let variants = Variants::new(sweep, &stamp.source);
+    if variants.count() != stamp.variants {
+        let problem = format!("it says {} variants, and its sweep has {}", stamp.variants, variants.count());
+        return Err(StampError::Unreadable {
+            place: places.first().map_or_else(String::new, Destination::name),
+            problem,
+        }
+        .into());
+    }
+    stamp.refuse_foreign(target)?;
     let mut found = Vec::new();
     for place in places {
         for folder in place.folders("shards")? {
             if let Some(bytes) = place.get(&format!("shards/{folder}/shard.json"))? {
-                let stamp = serde_json::from_slice(&bytes).map_err(|e| MergeError::Broken {
+                let broken = |problem: String| MergeError::Broken {
                     shard: format!("{folder} of {}", place.name()),
-                    problem: e.to_string(),
-                })?;
+                    problem,
+                };
+                let stamp: ShardStamp =
+                    serde_json::from_slice(&bytes).map_err(|e| broken(format!("shard.json: {e}")))?;
+                let range = stamp.shard.range(variants.count());
+                if !is_sealed(&bytes) || stamp.shard.folder() != folder || stamp.variants != range {
+                    return Err(broken("shard.json was changed or damaged".to_owned()));
+                }
                 found.push(FinishedShard { stamp, place });
             }
         }
@@ -97,29 +138,69 @@ pub fn merge(places: &[Destination], target: &Destination) -> Result<Tally, Merg
     found.sort_by_key(|f| (f.stamp.variants.start, f.stamp.variants.end));
     cover(&found, &stamp)?;
     let _lock = target.lock()?;
-    stamp.put(target)?;
     let mut products = Products::new(&variants, target)?;
     let schema = products.schema().clone();
+    let mut damage: Vec<(String, String)> = Vec::new();
     for shard in &found {
         let broken = |problem: String| MergeError::Broken { shard: shard.name(), problem };
         let file = format!("shards/{}/variants.parquet", shard.stamp.shard.folder());
-        let bytes = shard.place.get(&file)?.ok_or_else(|| broken("its table is missing".to_owned()))?;
+        let bytes = shard.table(&file)?;
+        shard.table(&format!("shards/{}/variants.csv", shard.stamp.shard.folder()))?;
         let rows = read_rows(bytes, &schema).map_err(|e| broken(e.to_string()))?;
         let mut expected = shard.stamp.variants.clone();
-        for row in rows {
-            let row = row.map_err(|e: BatchTableError| broken(e.to_string()))?;
-            let index = expected.next().ok_or_else(|| broken("its table has too many rows".to_owned()))?;
-            #[allow(clippy::cast_precision_loss)]
-            if schema.cell(&row, "index").number() != Some(index as f64) {
-                return Err(broken(format!("its table lacks variant {}", index + 1)));
+        let inspector = Inspector::new(shard.place);
+        let mut rows = rows.map(|row| row.map_err(|e: BatchTableError| broken(e.to_string())));
+        loop {
+            let chunk = rows.by_ref().take(CHUNK_ROWS).collect::<Result<Vec<_>, _>>()?;
+            if chunk.is_empty() {
+                break;
             }
-            products.push(index, row)?;
+            let looks = chunk.par_iter().map(|row| look(&inspector, &schema, row));
+            damage.extend(
+                looks.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().map(|file| (shard.name(), file)),
+            );
+            for row in chunk {
+                let index =
+                    expected.next().ok_or_else(|| broken("its table has too many rows".to_owned()))?;
+                #[allow(clippy::cast_precision_loss)]
+                if schema.cell(&row, "index").number() != Some(index as f64) {
+                    return Err(broken(format!("its table lacks variant {}", index + 1)));
+                }
+                products.push(index, row)?;
+            }
         }
         if !expected.is_empty() {
             return Err(broken(format!("its table lacks the last {} rows", expected.end - expected.start)));
         }
     }
+    if let Some((shard, file)) = damage.first() {
+        let problem = match damage.len() {
+            1 => format!("{file} is missing or has changed"),
+            n => {
+                let some: Vec<_> =
+                    damage.iter().skip(1).take(MAX_NAMED - 1).map(|(_, file)| file.as_str()).collect();
+                let rest = if n > MAX_NAMED { format!(" and {} more", n - MAX_NAMED) } else { String::new() };
+                format!("{file}, {}{rest} are missing or have changed", some.join(", "))
+            }
+        };
+        return Err(MergeError::Broken { shard: shard.clone(), problem });
+    }
+    stamp.put(target)?;
     Ok(products.finish()?)
+}
+
+/// The first file of a row's variant that is missing or is not what the shard has made.
+fn look(inspector: &Inspector<'_>, schema: &Schema, row: &Row) -> Result<Option<String>, DestinationError> {
+    let text = |name: &str| schema.cell(row, name).text().unwrap_or_default();
+    if text("status") != "made" {
+        return Ok(None);
+    }
+    let id = text("id");
+    let named = |file: &str| Some(format!("{}/{file}", variant_folder(id)));
+    let found = inspector.manifest(id)?;
+    let own = found.filter(|(bytes, _)| hexadecimal(&Sha256::digest(bytes)) == text("manifest_sha256"));
+    let Some((_, listing)) = own else { return Ok(named("manifest.json")) };
+    Ok(inspector.damaged(id, &listing)?.and_then(named))
 }
 
 /// The stamp that all places share.

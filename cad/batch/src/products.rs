@@ -1,9 +1,13 @@
 //! What a finished batch or shard leaves beside its variants: the table, and for a whole sweep the plots and the page.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
 
 use super::destination::{Destination, DestinationError};
 use super::gallery::Gallery;
+use super::hexadecimal;
 use super::page::page;
 use super::plots::{curves_svg, threshold_svg};
 use super::table::{Row, Schema};
@@ -98,15 +102,21 @@ impl<'a> Products<'a> {
         }
     }
 
-    /// Completes the table under `folder`, without plots and page.
+    /// Completes the table under `folder`, without plots and page; returns also the SHA-256 of its files, by name.
     ///
     /// # Errors
     /// [`ProductError`] on a full disk, for example.
-    pub(super) fn finish_table(self, folder: &str) -> Result<Tally, ProductError> {
+    pub(super) fn finish_table(
+        self,
+        folder: &str,
+    ) -> Result<(Tally, BTreeMap<String, String>), ProductError> {
         self.table.finish()?;
-        self.destination.put_file(&format!("{folder}variants.csv"), self.csv)?;
-        self.destination.put_file(&format!("{folder}variants.parquet"), self.parquet)?;
-        Ok(self.tally)
+        let mut hashes = BTreeMap::new();
+        for (name, file) in [("variants.csv", self.csv), ("variants.parquet", self.parquet)] {
+            hashes.insert(name.to_owned(), hash_of(file.path()).map_err(BatchTableError::from)?);
+            self.destination.put_file(&format!("{folder}{name}"), file)?;
+        }
+        Ok((self.tally, hashes))
     }
 
     /// Completes everything.
@@ -117,12 +127,24 @@ impl<'a> Products<'a> {
         let gallery = std::mem::take(&mut self.gallery);
         let name = self.variants.sweep().name.clone();
         let destination = self.destination;
-        let tally = self.finish_table("")?;
+        let (tally, _) = self.finish_table("")?;
         let curves = curves_svg(&name, &gallery)?;
         let threshold = threshold_svg(&name, &gallery)?;
         destination.put("curves.svg", curves.as_bytes())?;
         destination.put("threshold.svg", threshold.as_bytes())?;
         destination.put("index.html", page(&name, &gallery, &tally, [&curves, &threshold]).as_bytes())?;
         Ok(tally)
+    }
+}
+
+/// SHA-256 of a file of any length.
+fn hash_of(path: &Path) -> std::io::Result<String> {
+    let mut file = std::fs::File::open(path)?;
+    let (mut hash, mut buffer) = (Sha256::new(), vec![0; 1 << 16]);
+    loop {
+        match std::io::Read::read(&mut file, &mut buffer)? {
+            0 => return Ok(hexadecimal(&hash.finalize())),
+            n => hash.update(&buffer[..n]),
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Runs a batch: variants in parallel, rows in order, with bounded memory, from where an earlier run was stopped.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,6 +12,7 @@ use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
 use super::make::{VariantMaker, VariantOutcome};
 use super::products::{ProductError, Products};
+use super::seal::seal;
 use super::shard::Shard;
 use super::source::SweepSource;
 use super::stamp::{Stamp, StampError};
@@ -21,12 +23,15 @@ use super::variant::Variants;
 /// Variants whose rows are in memory at the same time.
 const CHUNK_VARIANTS: u64 = 512;
 
+/// Threads for a store, where no number is given.
+const STORE_THREADS: usize = 16;
+
 /// How a batch is run.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Which variants are made.
     pub shard: Shard,
-    /// Threads; 0 takes one per processor.
+    /// Threads; 0 takes one per processor, or 16 for a store.
     pub threads: usize,
     /// Whether the first variant that fails ends the run.
     pub fail_fast: bool,
@@ -52,8 +57,10 @@ pub enum RunError {
     #[error("{0}; give an --out that can be written")]
     Unusable(DestinationError),
     /// The destination can no longer be written.
-    #[error("{source}; {done} of {of} variants are there: make room and give the same command again")]
+    #[error("{source}; {done} of {of} variants are there: {remedy} and give the same command again")]
     Destination {
+        /// What to do about it.
+        remedy: &'static str,
         /// Why.
         source: DestinationError,
         /// Variants that are done.
@@ -94,6 +101,8 @@ pub struct ShardStamp {
     pub shard: Shard,
     /// Its variants.
     pub variants: Range<u64>,
+    /// SHA-256 of its tables, by their names; they hold the hashes of all manifests, and these of all other files.
+    pub tables: BTreeMap<String, String>,
 }
 
 /// Name of the folder for unfinished files of a shard.
@@ -114,13 +123,13 @@ pub fn run(
 ) -> Result<Tally, RunError> {
     // A folder with something else in it is left as it is, before anything is written there.
     let stamp = Stamp::new(source, variants.count());
-    refuse_foreign(&stamp, destination)?;
+    stamp.refuse_foreign(destination)?;
     let _lock = destination.lock().map_err(RunError::Unusable)?;
     let resumed = stamp.put(destination)?;
     let range = options.shard.range(variants.count());
     let maker = VariantMaker::new(variants, &stamp.sweep_sha256, destination, resumed, options.mesh_maker);
     let mut products = Products::new(variants, destination)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(options, destination)).build()?;
     let (mut done, of) = (0, range.end - range.start);
     let schema = products.schema().clone();
     for start in range.clone().step_by(usize::try_from(CHUNK_VARIANTS).unwrap_or(1)) {
@@ -133,7 +142,8 @@ pub fn run(
                 VariantResult::Row(row) => products.push(index, row)?,
                 VariantResult::Failed { id, reason } => return Err(RunError::Failed { id, reason }),
                 VariantResult::Fatal(source) => {
-                    return Err(RunError::Destination { source, done: done + finished, of });
+                    let remedy = if destination.links() { "make room" } else { "mend that" };
+                    return Err(RunError::Destination { remedy, source, done: done + finished, of });
                 }
                 VariantResult::NotStarted => {}
             }
@@ -147,25 +157,27 @@ pub fn run(
         return Ok(products.finish()?);
     }
     let folder = format!("shards/{}/", options.shard.folder());
-    let tally = products.finish_table(&folder)?;
-    let stamp = ShardStamp { sweep_sha256: stamp.sweep_sha256, shard: options.shard, variants: range };
+    let (tally, tables) = products.finish_table(&folder)?;
+    let stamp =
+        ShardStamp { sweep_sha256: stamp.sweep_sha256, shard: options.shard, variants: range, tables };
     let bytes = serde_json::to_vec_pretty(&stamp).map_err(ProductError::from)?;
-    destination.put(&format!("{folder}shard.json"), &bytes).map_err(ProductError::from)?;
+    destination.put(&format!("{folder}shard.json"), &seal(bytes)).map_err(ProductError::from)?;
     Ok(tally)
 }
 
-/// Refuses a destination that holds another sweep or other files.
-fn refuse_foreign(stamp: &Stamp, destination: &Destination) -> Result<(), RunError> {
-    if destination.is_empty()? {
-        return Ok(());
-    }
-    let place = destination.name();
-    match Stamp::read(destination) {
-        Ok(there) if there.sweep_sha256 == stamp.sweep_sha256 => Ok(()),
-        Ok(there) => Err(StampError::OtherSweep { place, name: there.source.name }.into()),
-        Err(StampError::Missing { place }) => Err(StampError::NotEmpty { place }.into()),
-        Err(e) => Err(e.into()),
-    }
+/// Threads of a run. A thread waits for a store most of the time: so many uploads go on at once.
+fn threads(options: Options, destination: &Destination) -> usize {
+    if options.threads > 0 || destination.links() { options.threads } else { STORE_THREADS }
+}
+
+/// Whether a run would be let into `destination`: refuses what [`run`] refuses there before it makes anything, and leaves
+/// nothing behind. Whether a store can be written is not tried.
+///
+/// # Errors
+/// [`RunError`] for a place with another sweep or other files, a busy one, and one that cannot be written.
+pub fn admit(variants: &Variants, source: &SweepSource, destination: &Destination) -> Result<(), RunError> {
+    Stamp::new(source, variants.count()).refuse_foreign(destination)?;
+    destination.lock().map(drop).map_err(RunError::Unusable)
 }
 
 impl From<DestinationError> for RunError {

@@ -7,9 +7,26 @@ use serde::{Deserialize, Serialize};
 
 /// Shard `number` of `of`, counted from 1: a contiguous block of the sweep, so that neighbours share parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "UncheckedShard")]
 pub struct Shard {
     number: u64,
     of: u64,
+}
+
+/// A shard as a file says it, which may be none.
+#[derive(Deserialize)]
+struct UncheckedShard {
+    number: u64,
+    of: u64,
+}
+
+impl TryFrom<UncheckedShard> for Shard {
+    type Error = ShardError;
+
+    fn try_from(UncheckedShard { number, of }: UncheckedShard) -> Result<Self, ShardError> {
+        let is_shard = (1..=of).contains(&number);
+        if is_shard { Ok(Self { number, of }) } else { Err(ShardError(format!("{number}/{of}"))) }
+    }
 }
 
 /// Text that is not a shard.
@@ -53,8 +70,8 @@ impl FromStr for Shard {
     fn from_str(text: &str) -> Result<Self, ShardError> {
         let parts = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
         match parts {
-            Some((number, of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
-            _ => Err(ShardError(text.to_owned())),
+            Some((number, of)) => Self::try_from(UncheckedShard { number, of }),
+            None => Err(ShardError(text.to_owned())),
         }
     }
 }
@@ -82,5 +99,6 @@ mod tests {
         for text in ["0/8", "9/8", "2", "a/b", "-1/3", "1/0"] {
             assert!(text.parse::<Shard>().is_err(), "{text}");
         }
+        assert!(serde_json::from_str::<Shard>(r#"{"number":1,"of":0}"#).is_err());
     }
 }

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use toml_edit::Document;
 
 use super::hexadecimal;
-use pinswitch_switch::config::{ConfigError, Configuration, Place, read, to_toml};
+use pinswitch_switch::config::{ConfigError, Configuration, Name, Place, read, to_toml};
 use pinswitch_switch::templates;
 
 /// The texts of a sweep.
@@ -59,7 +59,7 @@ impl SweepSource {
             .transpose()?;
         let stem = path.file_stem().map_or_else(|| "batch".into(), |s| s.to_string_lossy());
         Ok(Self {
-            name: word("sweep", "name").unwrap_or_else(|| stem.into_owned()),
+            name: word("sweep", "name").unwrap_or_else(|| Name::cleaned(&stem).to_string()),
             base: to_toml(&with_preset(&base, preset.as_ref())?),
             file,
             sweep,

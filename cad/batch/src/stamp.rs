@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::destination::{Destination, DestinationError};
+use super::seal::{is_sealed, seal};
 use super::source::SweepSource;
 
 /// Name of the stamp.
@@ -49,7 +50,7 @@ pub enum StampError {
         place: String,
     },
     /// The stamp cannot be read.
-    #[error("{place}/{STAMP}: {problem}; give another --out")]
+    #[error("{place}/{STAMP}: {problem}; restore it, or give another --out")]
     Unreadable {
         /// The destination.
         place: String,
@@ -76,35 +77,73 @@ impl Stamp {
     /// Reads the stamp at `destination`.
     ///
     /// # Errors
-    /// [`StampError`] if there is none.
+    /// [`StampError`] if there is none, or it is not as it was written.
     pub fn read(destination: &Destination) -> Result<Self, StampError> {
-        let place = destination.name();
-        let bytes = destination.get(STAMP)?.ok_or(StampError::Missing { place: place.clone() })?;
-        serde_json::from_slice(&bytes).map_err(|e| StampError::Unreadable { place, problem: e.to_string() })
+        let (stamp, is_intact) = Self::found(destination)?;
+        if is_intact {
+            return Ok(stamp);
+        }
+        let problem = "it was changed or damaged since it was written".to_owned();
+        Err(StampError::Unreadable { place: destination.name(), problem })
     }
 
-    /// Stamps an empty destination; returns whether it already held this sweep.
+    /// The stamp at `destination`, and whether it is as it was written.
+    fn found(destination: &Destination) -> Result<(Self, bool), StampError> {
+        let place = destination.name();
+        let bytes = destination.get(STAMP)?.ok_or(StampError::Missing { place: place.clone() })?;
+        let stamp: Self = serde_json::from_slice(&bytes)
+            .map_err(|e| StampError::Unreadable { place, problem: e.to_string() })?;
+        let is_intact =
+            is_sealed(&bytes) && stamp.schema == SCHEMA && stamp.source.digest() == stamp.sweep_sha256;
+        Ok((stamp, is_intact))
+    }
+
+    /// Whether `destination` already holds this sweep, and its stamp is as it was written.
+    ///
+    /// # Errors
+    /// [`StampError`] if it holds anything else.
+    pub(super) fn refuse_foreign(&self, destination: &Destination) -> Result<bool, StampError> {
+        let place = destination.name();
+        let found = match Self::found(destination) {
+            Err(StampError::Missing { .. }) if destination.is_empty()? => return Ok(false),
+            // Another shard may have stamped it since it was looked for.
+            Err(StampError::Missing { .. }) => Self::found(destination),
+            found => found,
+        };
+        match found {
+            Ok((there, is_intact)) if there.sweep_sha256 == self.sweep_sha256 => {
+                Ok(is_intact && there.variants == self.variants)
+            }
+            Ok((there, _)) => {
+                // A damaged stamp may be of any length.
+                let name = there.source.name.chars().take(80).collect();
+                Err(StampError::OtherSweep { place, name })
+            }
+            Err(StampError::Missing { place }) => Err(StampError::NotEmpty { place }),
+            Err(e) => Err(e),
+        }
+    }
+
+    /// Stamps an empty destination; returns whether it already held this sweep. A stamp of this sweep that was damaged
+    /// is written again.
     ///
     /// # Errors
     /// [`StampError`] if it holds anything else.
     pub fn put(&self, destination: &Destination) -> Result<bool, StampError> {
-        // Another shard may stamp it at the same time: what counts is what is there in the end.
-        if destination.get(STAMP)?.is_none() && destination.is_empty()? {
-            let unwritable = |e: serde_json::Error| StampError::Unreadable {
-                place: destination.name(),
-                problem: e.to_string(),
-            };
-            let mut bytes = serde_json::to_vec_pretty(self).map_err(unwritable)?;
-            bytes.push(b'\n');
-            destination.put(STAMP, &bytes)?;
-            return Ok(false);
+        // Another shard may stamp it at the same time: both write the same.
+        let was_there = destination.get(STAMP)?.is_some();
+        if self.refuse_foreign(destination)? {
+            return Ok(true);
         }
-        let place = destination.name();
-        match Self::read(destination) {
-            Ok(there) if there.sweep_sha256 == self.sweep_sha256 => Ok(true),
-            Ok(there) => Err(StampError::OtherSweep { place, name: there.source.name }),
-            Err(StampError::Missing { place }) => Err(StampError::NotEmpty { place }),
-            Err(e) => Err(e),
+        if was_there {
+            log::warn!("{}/{STAMP}: it was changed or damaged, and is written again", destination.name());
         }
+        let unwritable = |e: serde_json::Error| StampError::Unreadable {
+            place: destination.name(),
+            problem: e.to_string(),
+        };
+        let bytes = serde_json::to_vec_pretty(self).map_err(unwritable)?;
+        destination.put(STAMP, &seal(bytes))?;
+        Ok(was_there)
     }
 }

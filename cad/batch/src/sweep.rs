@@ -5,14 +5,14 @@ use toml_edit::{Document, Item, TableLike};
 use super::axis::{self, AXIS_TABLES, SweepAxis, config_error, fields};
 use super::constraint::Constraint;
 use super::source::SweepSource;
-use pinswitch_switch::config::{ConfigError, Configuration, read};
+use pinswitch_switch::config::{ConfigError, Configuration, Name, read};
 use pinswitch_switch::parts::PRINTED_PARTS;
 
 /// What a sweep asks for, checked.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// Its name.
-    pub name: String,
+    pub name: Name,
     /// What every variant starts from.
     pub base: Configuration,
     /// The parts to make, in the order of [`PRINTED_PARTS`].
@@ -72,7 +72,7 @@ impl Sweep {
 
     /// The number of variants; `None` if it is beyond counting.
     pub fn count(&self) -> Option<u64> {
-        self.axes.iter().try_fold(1u64, |n, level| n.checked_mul(level.rows.len() as u64))
+        self.axes.iter().try_fold(1u64, |n, level| n.checked_mul(level.count()))
     }
 }
 
@@ -109,17 +109,15 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Conf
 }
 
 /// The name goes into folders and figures.
-fn checked_name(name: &str) -> Result<String, ConfigError> {
-    let good = |c: char| c.is_ascii_alphanumeric() || "-_. ".contains(c);
-    if !name.is_empty() && name.len() <= 60 && name.chars().all(good) {
-        return Ok(name.to_owned());
-    }
-    Err(config_error(
-        "sweep.name",
-        Some(&format!("{name:?}")),
-        "is no name",
-        "use up to 60 letters, digits, - and _",
-    ))
+fn checked_name(name: &str) -> Result<Name, ConfigError> {
+    Name::new(name).map_err(|form| config_error("sweep.name", Some(&shortened(name)), "is no name", &form))
+}
+
+/// The beginning of a text that may be of any length, in quotes.
+fn shortened(text: &str) -> String {
+    const SHOWN: usize = 80;
+    let short: String = text.chars().take(SHOWN).collect();
+    if short.len() < text.len() { format!("{short:?}...") } else { format!("{text:?}") }
 }
 
 fn parts(sweep: Option<&dyn TableLike>) -> Result<Vec<&'static str>, ConfigError> {

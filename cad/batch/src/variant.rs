@@ -1,6 +1,6 @@
 //! Variants: which settings each one has, and the id and label by which it is known.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
@@ -9,16 +9,17 @@ use toml_edit::Value;
 use super::axis::ParameterRef;
 use super::source::SweepSource;
 use super::sweep::Sweep;
-use pinswitch_switch::config::{Configuration, to_toml};
+use pinswitch_switch::config::{Configuration, Name, to_toml};
 
 /// Letters of codes: no I, L, O or U, so that they can be read off a print, and neither M nor W, whose strokes leave
 /// less than a printed line between them where a shell has room for small letters only.
 const LETTERS: &[u8; 30] = b"0123456789ABCDEFGHJKNPQRSTVXYZ";
 /// Letters of a code: as many as fit on a published shell.
 const CODE: usize = 5;
-/// Letters of a code in a sweep of more than [`MAX_SHORT_CODES`] variants, which no label tells apart any more.
-const LONG_CODE: usize = 12;
-/// Variants up to which half of all short codes are free.
+/// Letters of a code in a sweep of more than [`MAX_SHORT_CODES`] variants: any number of 64 bits.
+const LONG_CODE: usize = 14;
+/// Variants up to which half of all short codes are free. Beyond it a code is the number of the variant in the sweep, so
+/// that nothing has to be kept in memory, and no variant is looked for that another repeats.
 const MAX_SHORT_CODES: u64 = 12_000_000;
 /// Longest id: it names the variant's folder and its plot.
 const LONGEST_ID: usize = 40;
@@ -55,16 +56,34 @@ pub struct Variants {
 
 impl Variants {
     /// Counts the variants and settles their codes.
+    #[allow(clippy::cast_possible_truncation)]
     pub fn new(sweep: Sweep, source: &SweepSource) -> Self {
         let count = sweep.count().unwrap_or(u64::MAX);
         let salt =
             Sha256::digest([source.base.as_bytes(), to_toml(&sweep.base).as_bytes()].concat()).to_vec();
-        let letters = if count <= MAX_SHORT_CODES { CODE } else { LONG_CODE };
+        if count > MAX_SHORT_CODES {
+            return Self {
+                sweep,
+                count,
+                salt,
+                repeats: HashMap::new(),
+                letters: LONG_CODE,
+                moved: HashMap::new(),
+            };
+        }
+        let letters = CODE;
         let mut all = Self { sweep, count, salt, repeats: HashMap::new(), letters, moved: HashMap::new() };
         let mut hashes: Vec<(u64, u64)> =
             (0..count).into_par_iter().map(|index| (all.hash(index), index)).collect();
         hashes.par_sort_unstable();
-        let mut taken = HashSet::with_capacity(hashes.len());
+        // One bit for every code.
+        let mut taken = vec![0u64; codes(letters).div_ceil(64) as usize];
+        let mut take = |code: u64| {
+            let (word, bit) = (code as usize / 64, 1 << (code % 64));
+            let is_free = taken[word] & bit == 0;
+            taken[word] |= bit;
+            is_free
+        };
         let mut first = None;
         for (hash, index) in hashes {
             match first {
@@ -74,7 +93,7 @@ impl Variants {
                 _ => first = Some((hash, index)),
             }
             let mut turned = hash;
-            while !taken.insert(all.number(turned)) {
+            while !take(all.number(turned)) {
                 // Knuth's linear congruential generator: it goes through all numbers.
                 turned =
                     turned.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -106,29 +125,32 @@ impl Variants {
         let mut configuration = self.sweep.base.clone();
         for (field, value) in self.settings(index) {
             // Every value was accepted when the sweep was read.
-            let accepted = (field.set)(&mut configuration, value);
+            let accepted = (field.set)(&mut configuration, &value);
             debug_assert!(accepted.is_ok());
         }
-        let hash = self.moved.get(&index).copied().unwrap_or_else(|| self.hash(index));
-        let code = code(self.number(hash), self.letters);
+        let number = if self.letters == CODE {
+            self.number(self.moved.get(&index).copied().unwrap_or_else(|| self.hash(index)))
+        } else {
+            index
+        };
+        let code = code(number, self.letters);
         let words = self.words(index, LONGEST_ID - self.letters - 1);
         let id = format!("{words}-{}", code.to_ascii_lowercase());
         if configuration.label.text.is_empty() {
             configuration.label.text.clone_from(&code);
         }
-        configuration.switch.name.clone_from(&id);
+        configuration.switch.name = Name::cleaned(&id);
         let label = configuration.label.text.clone();
         Variant { index, id, label, configuration, repeats: self.repeats.get(&index).copied() }
     }
 
     /// What varies, with the values of variant `index`.
-    pub fn settings(&self, index: u64) -> Vec<(ParameterRef, &Value)> {
+    pub fn settings(&self, index: u64) -> Vec<(ParameterRef, Value)> {
         let mut rest = index;
         let mut all = Vec::new();
         for level in self.sweep.axes.iter().rev() {
-            let rows = level.rows.len() as u64;
-            let row = &level.rows[usize::try_from(rest % rows).unwrap_or_default()];
-            rest /= rows;
+            let row = level.row(rest % level.count());
+            rest /= level.count();
             all.extend(level.fields.iter().copied().zip(row).rev());
         }
         all.reverse();
@@ -137,7 +159,7 @@ impl Variants {
 
     /// The number that the code of a hash stands for.
     fn number(&self, hash: u64) -> u64 {
-        hash % (0..self.letters).fold(1, |all, _| all * LETTERS.len() as u64)
+        hash % codes(self.letters)
     }
 
     /// Hash of the settings: equal settings, whatever their place in the sweep, have equal hashes.
@@ -157,7 +179,7 @@ impl Variants {
     fn words(&self, index: u64, longest: usize) -> String {
         let mut text = String::new();
         for (field, value) in self.settings(index) {
-            let piece = format!("{}{}", short_key(field.key), short_value(value));
+            let piece = format!("{}{}", short_key(field.key), short_value(&value));
             let with = if text.is_empty() { piece } else { format!("{text}_{piece}") };
             if with.len() > longest {
                 break;
@@ -166,6 +188,11 @@ impl Variants {
         }
         if text.is_empty() { "variant".to_owned() } else { text }
     }
+}
+
+/// How many codes there are of few letters.
+fn codes(letters: usize) -> u64 {
+    (0..letters).fold(1, |all, _| all * LETTERS.len() as u64)
 }
 
 /// A key without its unit.
@@ -203,6 +230,7 @@ fn code(mut number: u64, letters: usize) -> String {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::collections::HashSet;
 
     fn variants(sweep: &str) -> Variants {
         let source = SweepSource {
@@ -250,6 +278,23 @@ mod tests {
         assert!(!all.moved.is_empty());
         let labels: HashSet<_> = (0..all.count()).map(|i| all.get(i).label).collect();
         assert_eq!(labels.len(), 30_000);
+    }
+
+    #[test]
+    fn a_sweep_beyond_memory_is_counted_and_each_variant_can_be_had() {
+        let step = |field: &str| format!("\"{field}\" = {{ from = 10, to = 12, step = 1e-6 }}\n");
+        let axes: String = ["shell.width_mm", "support.plate_mm", "tendon.length_mm"].map(step).concat();
+        let all = variants(&format!("[axes]\n{axes}"));
+        assert_eq!(all.count(), 2_000_001 * 2_000_001 * 2_000_001);
+        let ids: HashSet<_> = [0, 1, 1 << 40, all.count() - 1].map(|i| all.get(i).id).into();
+        assert!(ids.len() == 4 && ids.iter().all(|id| id.len() <= LONGEST_ID), "{ids:?}");
+        assert_eq!(all.get(all.count() - 1).configuration.tendon.length_mm, 12.0);
+        let all = variants(
+            "[sample]\nmethod = \"random\"\ncount = 10000000\n[sample.axes]\n\"shell.width_mm\" = { from = 10, to = 14 }\n\
+             [axes]\n\"support.plate_mm\" = { from = 3, to = 4, count = 2 }\n",
+        );
+        assert_eq!(all.count(), 20_000_000);
+        assert_ne!(all.get(7).configuration.shell.width_mm, all.get(8).configuration.shell.width_mm);
     }
 
     #[test]

@@ -171,7 +171,7 @@ fn layout(
         .map(|load_n| over_joint(contact, path, joints_deg, load_n, predicted).map_err(Failure::bad_input))
         .collect::<Result<_, _>>()?;
     Ok(Layout {
-        name: design.configuration().switch.name.clone(),
+        name: design.configuration().switch.name.to_string(),
         law: curve.law,
         trust: curve.trust,
         reasons: curve.reasons.clone(),

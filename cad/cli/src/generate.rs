@@ -9,7 +9,7 @@ use super::law::LawChoice;
 use super::predict_rows::calibrated_curve;
 use super::source::Source;
 use super::{Failure, print};
-use crate::write::write_set;
+use crate::write::{PublishError, SetFolder};
 use pinswitch_switch::built::Built;
 use pinswitch_switch::formats::{ALL, FORMATS, Inclusion, named};
 use pinswitch_switch::output::BuildError;
@@ -21,7 +21,8 @@ use pinswitch_switch::set::Set;
 /// Writes one folder: the parts as binary STL (millimetres, print orientation) and on one plate as 3MF, friction.csv and
 /// friction.svg (the predicted curve with its band), drawing.svg, PRINTING.md with pictures, report.html (open it in a
 /// browser), and manifest.json (every parameter, derived dimension, volume, hash, and the bill of materials). Nothing is
-/// written if anything is wrong.
+/// written if anything is wrong. The set appears whole: its manifest comes last. Files of the set before that the new one
+/// does not have are removed, unless they were changed since; what no manifest lists is never touched.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch generate three-double
@@ -42,6 +43,9 @@ pub(super) struct Arguments {
     format: Vec<String>,
     #[command(flatten)]
     law: LawChoice,
+    /// Replace a set that was made from another configuration, and files that are no set's.
+    #[arg(long)]
+    force: bool,
     /// Print the manifest as JSON.
     #[arg(long)]
     json: bool,
@@ -60,25 +64,42 @@ fn default_formats() -> Vec<&'static str> {
     FORMATS.iter().filter(|f| f.inclusion == Inclusion::Default).map(|f| f.name).collect()
 }
 
+fn refused(error: PublishError) -> Failure {
+    match error {
+        PublishError::Write(e) => Failure::failed(e),
+        other => Failure::bad_input(other),
+    }
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let design = arguments.source.design()?;
+    let (design, origin) = arguments.source.design_and_origin()?;
     let prediction = match &arguments.model {
         Some(model) => Prediction::with_curve(&design, calibrated_curve(&design, model)?),
         None => arguments.law.prediction(&design)?,
     };
-    let built = Built::new(design).map_err(|e| match e {
-        BuildError::Configuration(e) => Failure::bad_input(e),
-        other => Failure::failed(other),
-    })?;
-    let design = built.design();
-    let names: Vec<&str> = arguments.format.iter().map(String::as_str).collect();
-    let formats = named(&names).map_err(Failure::bad_input)?;
-    let set = Set::new(&built, &prediction, &formats).map_err(Failure::failed)?;
     let folder = arguments
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("out").join(&design.configuration().switch.name));
-    write_set(&folder, &set.files).map_err(Failure::failed)?;
+    // Claimed before the work: of two runs at once, one is told so at once.
+    let place = SetFolder::lock(&folder).map_err(Failure::failed)?;
+    if !arguments.force {
+        place.check_source(&origin).map_err(refused)?;
+    }
+    let built = Built::new(design).map_err(|e| match e {
+        BuildError::Configuration(e) => arguments.source.placed(&e),
+        other => Failure::failed(other),
+    })?;
+    let names: Vec<&str> = arguments.format.iter().map(String::as_str).collect();
+    let formats = named(&names).map_err(Failure::bad_input)?;
+    let set = Set::new(&built, &prediction, &formats).map_err(Failure::failed)?;
+    let set = set.made_from(origin.clone()).map_err(Failure::failed)?;
+    for changed in place.publish(&set.files, &origin, arguments.force).map_err(refused)? {
+        log::warn!(
+            "{}: changed since it was made, and left beside the new set",
+            folder.join(changed).display()
+        );
+    }
     for warning in &set.manifest.warnings {
         log::warn!("{warning}");
     }

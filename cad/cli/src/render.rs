@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let design = arguments.source.design()?;
     let built = Built::new(design).map_err(|e| match e {
-        BuildError::Configuration(e) => Failure::bad_input(e),
+        BuildError::Configuration(e) => arguments.source.placed(&e),
         other => Failure::failed(other),
     })?;
     let bodies = match arguments.scene {

@@ -11,7 +11,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::{Failure, print, print_json};
 use pinswitch_batch::{
     Destination, Estimate, Observer, Options, RunError, Shard, Sweep, SweepSource, Tally, VariantOutcome,
-    Variants, estimate, mesh_file, partial_folder, run as run_batch,
+    Variants, admit, estimate, mesh_file, partial_folder, run as run_batch,
 };
 
 /// More variants than this want --yes.
@@ -46,7 +46,7 @@ pub(super) struct Arguments {
     /// Make only block K of N; `pinswitch merge` joins them.
     #[arg(long, value_name = "K/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
-    /// Threads [default: one per processor].
+    /// Threads [default: one per processor; 16 for a bucket, which upload at once].
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     threads: usize,
     /// Stop at the first variant that fails.
@@ -60,7 +60,13 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = SweepSource::read(&arguments.sweep).map_err(Failure::bad_input)?;
     let sweep = Sweep::new(&source).map_err(Failure::bad_input)?;
-    let count = sweep.count().unwrap_or(u64::MAX);
+    let count = sweep.count().ok_or_else(|| {
+        Failure::bad_input(format!(
+            "{}: more variants than can be counted ({}); raise a step, or lower a count",
+            arguments.sweep.display(),
+            u64::MAX
+        ))
+    })?;
     let own = arguments.shard.range(count);
     if own.end - own.start > MAX_WITHOUT_YES && !arguments.yes {
         return Err(Failure::bad_input(format!(
@@ -76,11 +82,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     let variants = Variants::new(sweep, &source);
+    let out = arguments.out.as_deref().unwrap_or_default();
+    let open = || Destination::open(out, &partial_folder(arguments.shard)).map_err(Failure::bad_input);
     if arguments.dry_run {
+        if arguments.out.is_some() {
+            admit(&variants, &source, &open()?).map_err(refused)?;
+        }
         return dry_run(arguments, &variants);
     }
-    let out = arguments.out.as_deref().unwrap_or_default();
-    let destination = Destination::open(out, &partial_folder(arguments.shard)).map_err(Failure::bad_input)?;
+    let destination = open()?;
     let progress = Progress::new(own.end - own.start)?;
     let options = Options {
         shard: arguments.shard,
@@ -90,11 +100,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let outcome = run_batch(&variants, &source, &destination, options, &progress);
     progress.bar.finish_and_clear();
-    let tally = outcome.map_err(|e| match e {
-        RunError::Stamp(_) | RunError::Unusable(_) => Failure::bad_input(e),
-        other => Failure::failed(other),
-    })?;
+    let tally = outcome.map_err(refused)?;
     report(arguments, out, &tally, &progress)
+}
+
+fn refused(error: RunError) -> Failure {
+    match error {
+        RunError::Stamp(_) | RunError::Unusable(_) => Failure::bad_input(error),
+        other => Failure::failed(other),
+    }
 }
 
 fn report(arguments: &Arguments, out: &str, tally: &Tally, progress: &Progress) -> Result<(), Failure> {

@@ -11,6 +11,7 @@ use pinswitch_calibration::table::PlateauTable;
 use super::{Failure, print};
 use crate::write::write_set;
 use pinswitch_plot::log_svg;
+use pinswitch_switch::config::Name;
 use pinswitch_switch::output::OutputFile;
 
 /// Turn raw 200 Hz logs into a plateau table, and list what is wrong with each log.
@@ -46,7 +47,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             let svg = log_svg(&series.file, &log, &found).map_err(Failure::failed)?;
             let log_stem =
                 series.file.trim_end_matches(".gz").trim_end_matches(".csv").replace(['/', '\\'], "-");
-            files.push(OutputFile { name: format!("{stem}-{log_stem}.svg"), bytes: svg.into_bytes() });
+            // A log is named by a path; its figure is a file beside the table.
+            let mut name = format!("{}.svg", Name::cleaned(&format!("{stem}-{log_stem}")));
+            if files.iter().any(|file: &OutputFile| file.name == name) {
+                name = format!("{}.svg", Name::cleaned(&format!("{}-{stem}-{log_stem}", files.len() + 1)));
+            }
+            files.push(OutputFile { name, bytes: svg.into_bytes() });
         }
     }
     let SegmentedRun { rows, report } =

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::Failure;
-use pinswitch_switch::config::{Configuration, Places, assign, read, read_over};
+use pinswitch_switch::config::{Configuration, Name, Places, assign, read, read_over};
 use pinswitch_switch::design::Design;
+use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::templates;
 
 /// A configuration and what is laid over it.
@@ -47,14 +48,28 @@ impl Source {
     /// # Errors
     /// [`Failure::BadInput`] names file, line, field, value, bound and remedy.
     pub(super) fn design(&self) -> Result<Design, Failure> {
+        self.design_and_origin().map(|(design, _)| design)
+    }
+
+    /// An error of what was read, with the name of its file.
+    pub(super) fn placed(&self, error: &impl std::fmt::Display) -> Failure {
+        Failure::bad_input(format!("{}: {error}", self.config))
+    }
+
+    /// As [`Self::design`], with what the manifest says of the configuration.
+    ///
+    /// # Errors
+    /// As [`Self::design`].
+    pub(super) fn design_and_origin(&self) -> Result<(Design, SourceEntry), Failure> {
         let (text, file) = read_text(&self.config)?;
+        let origin = SourceEntry::new(portable_name(&file, &text));
         let base = self.preset.as_ref().map_or(Ok(Configuration::default()), |preset| {
             let (text, file) = read_text(preset)?;
             read(&text, &file).map(|(base, _)| base).map_err(Failure::bad_input)
         })?;
         let (mut configuration, places) = read_over(base, &text, &file).map_err(Failure::bad_input)?;
         if !places.sets("switch.name") {
-            configuration.switch.name = stem(&file);
+            configuration.switch.name = Name::cleaned(&stem(&file));
         }
         for assignment in &self.assignments {
             assign(&mut configuration, assignment).map_err(Failure::bad_input)?;
@@ -63,7 +78,8 @@ impl Source {
             assign(&mut configuration, &format!("mesh.chord_tolerance_mm={mm:?}"))
                 .map_err(|e| Failure::bad_input(e.to_string().replacen("--set", "--tolerance", 1)))?;
         }
-        Design::new(configuration).map_err(|e| Failure::bad_input(placed(e, &places, &file)))
+        let design = Design::new(configuration).map_err(|e| Failure::bad_input(placed(e, &places, &file)))?;
+        Ok((design, origin))
     }
 }
 
@@ -93,6 +109,22 @@ pub(super) fn read_text(name: &str) -> Result<(String, String), Failure> {
             "{name}: no such file or template; the nearest template is {near:?}, `pinswitch layouts` lists all"
         ))
     })
+}
+
+/// The name of a template; else the path of a file below the current folder, or its bare name: the same on every machine.
+fn portable_name(file: &str, text: &str) -> String {
+    let path = Path::new(file);
+    let stem = stem(file);
+    // A template's own file, as in this repository, is the template.
+    if templates::text(&stem).is_some_and(|template| template == text) {
+        return stem;
+    }
+    let below = || {
+        let here = std::env::current_dir().ok()?.canonicalize().ok()?;
+        Some(path.canonicalize().ok()?.strip_prefix(here).ok()?.to_owned())
+    };
+    let bare = || path.file_name().map_or_else(|| path.to_owned(), PathBuf::from);
+    below().unwrap_or_else(bare).to_string_lossy().replace('\\', "/")
 }
 
 fn stem(file: &str) -> String {

@@ -5,6 +5,7 @@
 use std::sync::OnceLock;
 
 use crate::design::Design;
+use crate::diagnosis::diagnosed;
 use crate::output::BuildError;
 use crate::parallel::map_each;
 use crate::parts::{Part, Role, printed, reference_bodies};
@@ -122,7 +123,8 @@ impl Built {
     pub fn new(design: Design) -> Result<Self, BuildError> {
         let printed = map_each(printed(&design)?, |part| BuiltPart::new(part, &design))
             .into_iter()
-            .collect::<Result<Vec<_>, _>>()?;
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|e| diagnosed(e, &design))?;
         let reference = reference_bodies(&design)?
             .into_iter()
             .map(|part| {

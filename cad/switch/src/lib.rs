@@ -21,6 +21,7 @@ pub mod built;
 pub mod config;
 pub mod design;
 pub mod design_search;
+mod diagnosis;
 pub mod documents;
 pub mod formats;
 pub mod output;

@@ -1,10 +1,13 @@
 //! A whole set in memory: nothing is written before everything is known to be right.
 
 use crate::built::Built;
-use crate::documents::{FileEntry, Manifest};
+use crate::documents::{FileEntry, Manifest, SourceEntry};
 use crate::formats::Format;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
+
+/// Name of the file that lists a set; a folder without it holds no whole set.
+pub const MANIFEST: &str = "manifest.json";
 
 /// A set of parts with its curve, ready to be written; the manifest is the last file.
 #[derive(Clone, Debug)]
@@ -42,7 +45,18 @@ impl Set {
             manifest.files.extend(made.iter().map(FileEntry::of));
             files.extend(made);
         }
-        files.push(OutputFile::new("manifest.json", manifest.bytes()?));
+        files.push(OutputFile::new(MANIFEST, manifest.bytes()?));
         Ok(Self { manifest, files })
+    }
+
+    /// The same set, whose manifest says what it was made from.
+    ///
+    /// # Errors
+    /// As [`Manifest::bytes`].
+    pub fn made_from(mut self, source: SourceEntry) -> Result<Self, SetError> {
+        self.manifest.source = Some(source);
+        self.files.retain(|file| file.name != MANIFEST);
+        self.files.push(OutputFile::new(MANIFEST, self.manifest.bytes()?));
+        Ok(self)
     }
 }

@@ -90,7 +90,7 @@ mod tests {
         assert_eq!(conditions.len(), 7);
         for template in conditions {
             let (configuration, _) = read(template.text, template.name).unwrap();
-            assert_eq!(configuration.switch.name, template.name);
+            assert_eq!(configuration.switch.name.as_str(), template.name);
             let design = Design::new(configuration).unwrap();
             let curve = predict(design.contact(), &[published::heaviest_load_n()]);
             assert_eq!(curve.trust, Trust::Published, "{}: {:?}", template.name, curve.reasons);

@@ -23,8 +23,8 @@ fn read(source: &SweepSource, table: &Item) -> Result<Vec<SweepAxis>, ConfigErro
 /// [`ConfigError`] for values that the field does not accept, an empty or repeating list, or a bad range.
 fn axis(path: &str, item: &Item) -> Result<SweepAxis, ConfigError> {
     let field = super::field(path)?;
-    let values = (values::kind(field, item)?.every_value)(field, item)?;
-    Ok(SweepAxis { fields: vec![field], rows: values.into_iter().map(|v| vec![v]).collect() })
+    let series = (values::kind(field, item)?.every_value)(field, item)?;
+    Ok(SweepAxis::new(vec![field], series.count, move |index| vec![(series.at)(index)]))
 }
 
 #[cfg(test)]
@@ -34,7 +34,7 @@ mod tests {
     fn values(path: &str, text: &str) -> Result<Vec<String>, String> {
         let item = Item::Value(text.parse().unwrap());
         let level = axis(path, &item).map_err(|e| e.to_string())?;
-        Ok(level.rows.iter().map(|r| r[0].to_string()).collect())
+        Ok((0..level.count()).map(|i| level.row(i)[0].to_string()).collect())
     }
 
     #[test]

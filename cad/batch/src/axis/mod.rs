@@ -5,6 +5,8 @@
 
 mod values;
 
+use std::sync::Arc;
+
 use toml_edit::{Item, TableLike, Value};
 
 use super::source::SweepSource;
@@ -16,19 +18,40 @@ pub use sample::{Method, unit_points};
 /// A parameter of the configuration.
 pub type ParameterRef = &'static Parameter<Configuration>;
 
-/// One dimension of a sweep: fields, and the values that they take together, row by row.
+/// One dimension of a sweep: fields, and the values that they take together, row by row. Rows are put together when they
+/// are asked for: an axis of millions takes no memory.
 #[derive(Clone)]
 pub struct SweepAxis {
     /// The fields that vary.
     pub fields: Vec<ParameterRef>,
-    /// One value per field in every row.
-    pub rows: Vec<Vec<Value>>,
+    count: u64,
+    row: Arc<dyn Fn(u64) -> Vec<Value> + Send + Sync>,
+}
+
+impl SweepAxis {
+    fn new(
+        fields: Vec<ParameterRef>,
+        count: u64,
+        row: impl Fn(u64) -> Vec<Value> + Send + Sync + 'static,
+    ) -> Self {
+        Self { fields, count, row: Arc::new(row) }
+    }
+
+    /// Number of rows.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// One value per field; `index` is below [`Self::count`].
+    pub fn row(&self, index: u64) -> Vec<Value> {
+        (self.row)(index)
+    }
 }
 
 impl std::fmt::Debug for SweepAxis {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let fields: Vec<_> = self.fields.iter().map(|p| p.path()).collect();
-        write!(f, "{} rows of {}", self.rows.len(), fields.join(", "))
+        write!(f, "{} rows of {}", self.count, fields.join(", "))
     }
 }
 

@@ -29,7 +29,7 @@ fn rows(text: &str, file: &str) -> Result<SweepAxis, ConfigError> {
     let header = reader.headers().map_err(broken)?.clone();
     let fields: Vec<ParameterRef> =
         header.iter().map(|name| super::field(name).map_err(|e| e.at(at(1)))).collect::<Result<_, _>>()?;
-    let mut rows = Vec::new();
+    let mut rows: Vec<Vec<Value>> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(broken)?;
         let line = record.position().map_or(0, csv::Position::line);
@@ -48,7 +48,9 @@ fn rows(text: &str, file: &str) -> Result<SweepAxis, ConfigError> {
             config_error("rows", None, "holds no row", "write one variant a line under the header").at(at(1))
         );
     }
-    Ok(SweepAxis { fields, rows })
+    let count = rows.len() as u64;
+    let row = move |index| usize::try_from(index).ok().and_then(|i| rows.get(i).cloned()).unwrap_or_default();
+    Ok(SweepAxis::new(fields, count, row))
 }
 
 #[cfg(test)]
@@ -62,9 +64,9 @@ mod tests {
             "a.csv",
         );
         let level = level.unwrap();
-        let texts: Vec<_> = level.rows[0].iter().map(ToString::to_string).collect();
+        let texts: Vec<_> = level.row(0).iter().map(ToString::to_string).collect();
         assert_eq!(texts, ["[5, 8]", "12.0", "\"all\""]);
-        assert_eq!(level.rows.len(), 2);
+        assert_eq!(level.count(), 2);
     }
 
     #[test]

@@ -1,12 +1,14 @@
 //! `[sample]`: seeded samples, Latin hypercube (McKay, Beckman and Conover 1979) and plain random.
 
+use std::sync::OnceLock;
+
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use toml_edit::{Item, TableLike};
 
 use super::values::{self, Sampler};
-use super::{AxisTable, SweepAxis, accepted, config_error, fields};
+use super::{AxisTable, SweepAxis, config_error, fields};
 use crate::source::SweepSource;
 use pinswitch_switch::config::ConfigError;
 
@@ -26,25 +28,72 @@ pub enum Method {
     Random,
 }
 
+/// Points of the unit cube; the same seed gives the same points on every machine. Nothing is drawn before the first is
+/// asked for, and only the order of the strata is kept: four bytes a point and axis.
+#[derive(Debug)]
+struct UnitPoints {
+    method: Method,
+    count: usize,
+    axes: usize,
+    seed: u64,
+    draws: OnceLock<Vec<AxisDraw>>,
+}
+
+/// The coordinates along one axis.
+#[derive(Debug)]
+struct AxisDraw {
+    /// The stratum of every point; empty if there are none.
+    strata: Vec<u32>,
+    /// The generator where the first coordinate is drawn.
+    random: ChaCha8Rng,
+}
+
+/// Words of the generator that a coordinate takes.
+const WORDS_PER_COORDINATE: u128 = 2;
+
+impl UnitPoints {
+    fn new(method: Method, count: usize, axes: usize, seed: u64) -> Self {
+        Self { method, count, axes, seed, draws: OnceLock::new() }
+    }
+
+    fn draws(&self) -> &[AxisDraw] {
+        self.draws.get_or_init(|| {
+            let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+            (0..self.axes)
+                .map(|_| {
+                    let mut strata = Vec::new();
+                    if self.method == Method::LatinHypercube {
+                        strata.extend((0..self.count).map(|i| u32::try_from(i).unwrap_or(u32::MAX)));
+                        strata.shuffle(&mut random);
+                    }
+                    let draw = AxisDraw { strata, random: random.clone() };
+                    random.set_word_pos(random.get_word_pos() + WORDS_PER_COORDINATE * self.count as u128);
+                    draw
+                })
+                .collect()
+        })
+    }
+
+    /// Point `index`, which is below the count.
+    fn point(&self, index: u64) -> Vec<f64> {
+        let coordinate = |draw: &AxisDraw| {
+            let mut random = draw.random.clone();
+            random.set_word_pos(random.get_word_pos() + WORDS_PER_COORDINATE * u128::from(index));
+            let within: f64 = random.random();
+            match usize::try_from(index).ok().and_then(|i| draw.strata.get(i)) {
+                #[allow(clippy::cast_precision_loss)]
+                Some(stratum) => (f64::from(*stratum) + within) / self.count as f64,
+                None => within,
+            }
+        };
+        self.draws().iter().map(coordinate).collect()
+    }
+}
+
 /// `count` points of the unit cube in `axes` dimensions; the same seed gives the same points on every machine.
 pub fn unit_points(method: Method, count: usize, axes: usize, seed: u64) -> Vec<Vec<f64>> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut points = vec![vec![0.0; axes]; count];
-    for axis in 0..axes {
-        let mut strata: Vec<usize> = (0..count).collect();
-        if method == Method::LatinHypercube {
-            strata.shuffle(&mut random);
-        }
-        for (point, stratum) in points.iter_mut().zip(strata) {
-            let within: f64 = random.random();
-            point[axis] = match method {
-                #[allow(clippy::cast_precision_loss)]
-                Method::LatinHypercube => (stratum as f64 + within) / count as f64,
-                Method::Random => within,
-            };
-        }
-    }
-    points
+    let points = UnitPoints::new(method, count, axes, seed);
+    (0..count as u64).map(|index| points.point(index)).collect()
 }
 
 fn read(source: &SweepSource, item: &Item) -> Result<Vec<SweepAxis>, ConfigError> {
@@ -99,14 +148,11 @@ fn sample<'a>(
             "give count and at least one field under [sample.axes]",
         ));
     }
-    let rows = unit_points(method, count, fields.len(), seed)
-        .into_iter()
-        .map(|point| {
-            let coordinates = point.iter().zip(&samplers).zip(&fields);
-            coordinates.map(|((share, sampler), field)| accepted(field, &sampler(*share))).collect()
-        })
-        .collect::<Result<_, _>>()?;
-    Ok(SweepAxis { fields, rows })
+    let points = UnitPoints::new(method, count, fields.len(), seed);
+    // Whatever lies between the ends of a range is accepted: the axes were looked at when they were read.
+    Ok(SweepAxis::new(fields, count as u64, move |index| {
+        points.point(index).iter().zip(&samplers).map(|(share, sampler)| sampler(*share)).collect()
+    }))
 }
 
 #[cfg(test)]
@@ -126,6 +172,35 @@ mod tests {
         }
     }
 
+    /// As points were drawn when all of them were kept: their bytes stay.
+    fn drawn_in_order(method: Method, count: usize, axes: usize, seed: u64) -> Vec<Vec<f64>> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut points = vec![vec![0.0; axes]; count];
+        for axis in 0..axes {
+            let mut strata: Vec<usize> = (0..count).collect();
+            if method == Method::LatinHypercube {
+                strata.shuffle(&mut random);
+            }
+            for (point, stratum) in points.iter_mut().zip(strata) {
+                let within: f64 = random.random();
+                point[axis] = match method {
+                    Method::LatinHypercube => (stratum as f64 + within) / count as f64,
+                    Method::Random => within,
+                };
+            }
+        }
+        points
+    }
+
+    #[test]
+    fn points_asked_for_one_by_one_are_those_drawn_in_order() {
+        for method in [Method::LatinHypercube, Method::Random] {
+            for (count, axes, seed) in [(1, 1, 0), (2, 3, 9), (17, 4, 1), (1000, 2, 5)] {
+                assert_eq!(unit_points(method, count, axes, seed), drawn_in_order(method, count, axes, seed));
+            }
+        }
+    }
+
     #[test]
     fn the_seed_decides() {
         let draw = |seed| unit_points(Method::Random, 5, 2, seed);
@@ -139,10 +214,11 @@ mod tests {
         let slots: Item = Item::Value("[\"all\", \"occupied\"]".parse().unwrap());
         let axes = [("shell.width_mm", &width), ("support.slots", &slots)];
         let level = sample(Method::LatinHypercube, 40, 3, axes.into_iter()).unwrap();
-        for row in &level.rows {
+        let rows: Vec<_> = (0..level.count()).map(|i| level.row(i)).collect();
+        for row in &rows {
             let x = row[0].as_float().unwrap();
             assert!((10.0..=12.0).contains(&x) && (x * 2.0).fract() == 0.0, "{x}");
         }
-        assert_eq!(level.rows.iter().filter(|r| r[1].as_str() == Some("all")).count(), 20);
+        assert_eq!(rows.iter().filter(|r| r[1].as_str() == Some("all")).count(), 20);
     }
 }

@@ -17,7 +17,17 @@ pub struct Folder {
 
 /// A lock on a destination; dropping it removes the folder for unfinished files.
 #[derive(Debug)]
-pub struct DestinationLock(Option<(File, PathBuf)>);
+pub struct DestinationLock(Option<HeldFolder>);
+
+/// A locked folder.
+#[derive(Debug)]
+struct HeldFolder {
+    /// Held until all else is dropped.
+    _file: File,
+    partial: PathBuf,
+    /// Folders that were made for the lock, the innermost first.
+    made: Vec<PathBuf>,
+}
 
 impl DestinationLock {
     #[cfg(feature = "cloud")]
@@ -29,9 +39,13 @@ impl DestinationLock {
 
 impl Drop for DestinationLock {
     fn drop(&mut self) {
-        if let Some((_, partial)) = &self.0 {
+        if let Some(held) = &self.0 {
             // What cannot be removed is removed by the next run.
-            let _ = std::fs::remove_dir_all(partial);
+            let _ = std::fs::remove_dir_all(&held.partial);
+            for folder in &held.made {
+                // Only an empty one goes.
+                let _ = std::fs::remove_dir(folder);
+            }
         }
     }
 }
@@ -119,6 +133,10 @@ impl Folder {
         }
     }
 
+    pub(super) fn is_same(&self, one: &str, other: &str) -> bool {
+        same_file::is_same_file(self.root.join(one), self.root.join(other)).unwrap_or(false)
+    }
+
     pub(super) fn local_file(&self) -> std::io::Result<tempfile::NamedTempFile> {
         std::fs::create_dir_all(&self.partial)?;
         builder().tempfile_in(&self.partial)
@@ -148,9 +166,17 @@ impl Folder {
 
     /// `None` if another process holds the same shard. Unfinished files of a killed run are removed.
     pub(super) fn lock(&self) -> std::io::Result<Option<DestinationLock>> {
+        let there = |path: &&Path| path.as_os_str().is_empty() || path.exists();
+        let made: Vec<_> = self.root.ancestors().take_while(|p| !there(p)).map(Path::to_owned).collect();
         std::fs::create_dir_all(&self.partial)?;
-        let lock = File::create(self.partial.join("lock"))?;
+        let path = self.partial.join("lock");
+        let lock = File::create(&path)?;
         if lock.try_lock().is_err() {
+            return Ok(None);
+        }
+        // A run that ended just now has removed the file that was opened here: it locks nothing any more.
+        let held = same_file::Handle::from_file(lock.try_clone()?)?;
+        if same_file::Handle::from_path(&path).ok().as_ref() != Some(&held) {
             return Ok(None);
         }
         for entry in std::fs::read_dir(&self.partial)?.filter_map(Result::ok) {
@@ -158,7 +184,7 @@ impl Folder {
                 std::fs::remove_file(entry.path())?;
             }
         }
-        Ok(Some(DestinationLock(Some((lock, self.partial.clone())))))
+        Ok(Some(DestinationLock(Some(HeldFolder { _file: lock, partial: self.partial.clone(), made }))))
     }
 
     /// A name for a file that is not yet whole.

@@ -1,5 +1,7 @@
 //! Where a batch is written: a folder, or an object store. Every file appears whole or not at all.
 
+#[cfg(feature = "cloud")]
+mod cloud;
 mod folder;
 #[cfg(feature = "cloud")]
 mod store;
@@ -71,16 +73,8 @@ impl Destination {
 
     #[cfg(feature = "cloud")]
     fn open_store(text: &str) -> Result<Self, DestinationError> {
-        // Who does the encryption is settled once for the process, before a client is made: only the first call takes effect.
-        let _ = rustls::crypto::ring::default_provider().install_default();
-        let url = url::Url::parse(text).map_err(|e| no_store(text, &e.to_string()))?;
-        let ours = |key: &String| ["AWS_", "AZURE_", "GOOGLE_"].iter().any(|prefix| key.starts_with(prefix));
-        let environment = std::env::vars()
-            .filter(|(key, _)| ours(key))
-            .map(|(key, value)| (key.to_ascii_lowercase(), value));
-        let (store, prefix) =
-            object_store::parse_url_opts(&url, environment).map_err(|e| no_store(text, &e.to_string()))?;
-        Self::in_store(text, store.into(), prefix)
+        let (store, prefix) = cloud::open(text).map_err(|problem| no_store(text, &problem))?;
+        Self::in_store(text, store, prefix)
     }
 
     /// The prefix of a store that is already open.
@@ -140,6 +134,15 @@ impl Destination {
             // Manifests name the content: a second object would cost storage twice.
             #[cfg(feature = "cloud")]
             Self::Store(_) => Ok(()),
+        }
+    }
+
+    /// Whether two names are links to one file; no two objects of a store are.
+    pub fn is_same(&self, one: &str, other: &str) -> bool {
+        match self {
+            Self::Folder(folder) => folder.is_same(one, other),
+            #[cfg(feature = "cloud")]
+            Self::Store(_) => false,
         }
     }
 

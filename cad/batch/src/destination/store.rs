@@ -7,6 +7,9 @@ use object_store::{Error, ObjectStore, ObjectStoreExt};
 
 use super::DestinationError;
 
+/// Characters of a store's answer that an error repeats.
+const SHOWN: usize = 240;
+
 /// A prefix of an object store.
 #[derive(Debug)]
 pub struct Store {
@@ -19,8 +22,6 @@ pub struct Store {
 impl Store {
     /// The prefix of a store that is already open.
     pub(super) fn new(url: &str, store: Arc<dyn ObjectStore>, prefix: Path) -> std::io::Result<Self> {
-        // The provider of encryption is set once for the process: only the first call takes effect.
-        let _ = rustls::crypto::ring::default_provider().install_default();
         Ok(Self {
             url: url.to_owned(),
             store,
@@ -30,7 +31,15 @@ impl Store {
     }
 
     pub(super) fn failed(&self, name: &str, error: &Error) -> DestinationError {
-        DestinationError { place: format!("{}/{name}", self.url), problem: error.to_string(), is_fatal: true }
+        // Servers answer in lines and pages: their first words tell.
+        let words = error.to_string();
+        let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+        let problem = match words.char_indices().nth(SHOWN) {
+            Some((end, _)) => format!("{}...", &words[..end]),
+            None => words,
+        };
+        let problem = format!("{problem}; see that the store answers and what its variables (AWS_...) say");
+        DestinationError { place: format!("{}/{name}", self.url), problem, is_fatal: true }
     }
 
     pub(super) fn get(&self, name: &str) -> Result<Option<Vec<u8>>, Error> {

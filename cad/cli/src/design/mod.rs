@@ -18,7 +18,7 @@ use calibrated::CalibratedSwitch;
 use flags::AskFlags;
 use pinswitch_plot::{AskedRegion, pareto_svg};
 use pinswitch_switch::ask::{Ask, Parameter, Quantity};
-use pinswitch_switch::config::{Configuration, to_toml};
+use pinswitch_switch::config::{Configuration, Name, to_toml};
 use pinswitch_switch::design_search::{Belief, Blocked, Found, Options, Proposal, PublishedPhysics, search};
 use pinswitch_switch::output::OutputFile;
 use progress::Bar;
@@ -170,7 +170,7 @@ fn files(found: &Found, report: &Report<'_>, ask: &Ask) -> Result<Vec<OutputFile
         .enumerate()
         .map(|(i, proposal)| {
             let mut configuration = proposal.configuration.clone();
-            configuration.switch.name = named(i);
+            configuration.switch.name = Name::cleaned(&named(i));
             OutputFile { name: format!("{}.toml", named(i)), bytes: to_toml(&configuration).into_bytes() }
         })
         .collect();

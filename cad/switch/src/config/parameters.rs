@@ -1,5 +1,6 @@
 //! Every parameter of a switch: unit (in its name), default, range, origin and reason.
 
+use super::name::Name;
 use super::parameter::{choice, choice_values, configuration};
 use pinswitch_friction::{Substrate, published};
 
@@ -42,7 +43,7 @@ configuration! {
     Configuration {
         /// The switch as a whole.
         switch: SwitchTable {
-            name: String = "switch".to_owned(), 40, Chosen, "names the output folder and the plots";
+            name: Name = Name::cleaned("switch"), (), Chosen, "names the output folder and the plots";
         }
         /// Pins, tendon contact and what lies under them.
         layout: LayoutTable {

@@ -1,7 +1,7 @@
 //! `manifest.json`: everything that a person or a program needs to know of a set, and to check it.
 
 use pinswitch_friction::{FrictionCurve, Law, Transition, Trust};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
@@ -131,6 +131,34 @@ pub struct FileEntry {
     pub content: Option<String>,
 }
 
+/// The configuration that a set was made from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SourceEntry {
+    /// The template's name, or the file's path below the folder of the run; its bare name if it lies elsewhere, so that
+    /// no manifest depends on where a machine keeps its files.
+    pub name: String,
+}
+
+impl SourceEntry {
+    /// The entry of a configuration of this name.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into() }
+    }
+
+    /// Whether both may be the same configuration, edited or not. A file has one path from one folder and another from
+    /// another, so that the longer path must end in the shorter one.
+    pub fn may_be(&self, other: &Self) -> bool {
+        let ends_in = |long: &str, short: &str| {
+            long.strip_suffix(short).is_some_and(|before| before.is_empty() || before.ends_with('/'))
+        };
+        ends_in(&self.name, &other.name) || ends_in(&other.name, &self.name)
+    }
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}
+
 /// The batch that a set was made in.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct BatchEntry {
@@ -151,6 +179,9 @@ pub struct Manifest {
     pub name: String,
     /// Program and version that made it.
     pub generator: String,
+    /// The configuration that it was made from, where that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source: Option<SourceEntry>,
     /// The batch that it is part of.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub batch: Option<BatchEntry>,
@@ -185,8 +216,9 @@ impl Manifest {
         let curve = &prediction.curve;
         Self {
             schema: "pinswitch.set/1",
-            name: c.switch.name.clone(),
+            name: c.switch.name.to_string(),
             generator: concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned(),
+            source: None,
             batch: None,
             settings: settings(c),
             derived: derived(design),
@@ -262,8 +294,7 @@ fn part_entry(part: &Part, facts: &MeshFacts, c: &Configuration) -> PartEntry {
 impl FileEntry {
     /// The entry of a file with these bytes.
     pub fn of(file: &OutputFile) -> Self {
-        let digest = Sha256::digest(&file.bytes);
-        let sha256 = digest.iter().map(|b| format!("{b:02x}")).collect();
+        let sha256 = hexadecimal(&Sha256::digest(&file.bytes));
         Self { file: file.name.clone(), bytes: file.bytes.len(), sha256, content: None }
     }
 }

@@ -6,4 +6,6 @@ mod manifest;
 
 pub use bill::{Bill, bill_of_materials};
 pub use friction_csv::friction_csv;
-pub use manifest::{BatchEntry, DerivedDimension, FileEntry, Manifest, PartEntry, derived, toml_to_json};
+pub use manifest::{
+    BatchEntry, DerivedDimension, FileEntry, Manifest, PartEntry, SourceEntry, derived, toml_to_json,
+};

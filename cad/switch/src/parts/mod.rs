@@ -22,6 +22,7 @@ use pinswitch_solid::solid::Solid;
 
 pub use layer::silicone_layer;
 pub use mould::cavity_mm3;
+pub(crate) use mould::keys;
 pub use part::{Material, Part, Role};
 pub use sector::Sector;
 

@@ -13,13 +13,27 @@ pub(super) struct ValueKind {
     /// Whether the values are written in this way.
     pub(super) is_written: fn(&Item) -> bool,
     /// All values in their order, for a grid.
-    pub(super) every_value: fn(ParameterRef, &Item) -> Result<Vec<Value>, ConfigError>,
+    pub(super) every_value: fn(ParameterRef, &Item) -> Result<Series, ConfigError>,
     /// The value at a coordinate, for a sample.
     pub(super) sampler: fn(ParameterRef, &Item) -> Result<Sampler, ConfigError>,
 }
 
 /// The value at a coordinate of 0 to 1.
-pub(super) type Sampler = Box<dyn Fn(f64) -> Value>;
+pub(super) type Sampler = Box<dyn Fn(f64) -> Value + Send + Sync>;
+
+/// Values in their order, each put together when it is asked for.
+pub(super) struct Series {
+    /// How many.
+    pub(super) count: u64,
+    /// The value of a number below that.
+    pub(super) at: Box<dyn Fn(u64) -> Value + Send + Sync>,
+}
+
+impl Series {
+    fn new(count: u64, at: impl Fn(u64) -> Value + Send + Sync + 'static) -> Self {
+        Self { count, at: Box::new(at) }
+    }
+}
 
 /// Declares the files of the kinds and their list.
 macro_rules! value_kinds {

@@ -106,6 +106,7 @@ impl Range {
     /// `x` in the field's type.
     #[allow(clippy::cast_possible_truncation)]
     pub(super) fn value(&self, x: f64) -> Value {
+        // A fraction of a whole number stays one, for the field to refuse.
         if self.whole && x.fract() == 0.0 { Value::from(x as i64) } else { Value::from(x) }
     }
 
@@ -119,16 +120,25 @@ impl Range {
         if self.whole { x.round() } else { without_float_noise(x) }
     }
 
-    /// `numbers` as values that `field` accepts.
+    /// Whether `field` accepts the number.
     ///
     /// # Errors
-    /// [`ConfigError`] for the first that it does not accept.
-    pub(super) fn accepted_by(
-        &self,
-        field: ParameterRef,
-        numbers: impl IntoIterator<Item = f64>,
-    ) -> Result<Vec<Value>, ConfigError> {
-        numbers.into_iter().map(|x| accepted(field, &self.value(x))).collect()
+    /// [`ConfigError`] if it does not.
+    pub(super) fn accept(&self, field: ParameterRef, number: f64) -> Result<(), ConfigError> {
+        accepted(field, &self.value(number)).map(drop)
+    }
+
+    /// How many of `count` values, of which there are many, differ for certain: whole numbers between the ends, or steps
+    /// of this width relative to the larger end.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub(super) fn different(&self, count: usize, least_relative_step: f64) -> usize {
+        let width = self.to - self.from;
+        let least_step =
+            if self.whole { 1.0 } else { least_relative_step * self.from.abs().max(self.to.abs()) };
+        // A logarithmic range is narrowest at its start.
+        let narrowest = if self.logarithmic { width * self.from / self.to } else { width };
+        let most = if least_step > 0.0 { narrowest / least_step + 1.0 } else { 1.0 };
+        count.min(most as usize)
     }
 }
 

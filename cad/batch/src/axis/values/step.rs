@@ -1,9 +1,9 @@
 //! `{ from = 10, to = 12, step = 0.5 }`: a range on a grid that is counted from its start.
 
-use toml_edit::{Item, Value};
+use toml_edit::Item;
 
 use super::range::{Range, has_key, without_float_noise};
-use super::{Sampler, ValueKind};
+use super::{Sampler, Series, ValueKind};
 use crate::axis::{ParameterRef, config_error};
 use pinswitch_switch::config::ConfigError;
 
@@ -13,7 +13,7 @@ pub(super) const KIND: ValueKind =
 /// Number of steps beyond which a range is taken for a typing error.
 const MAX_STEPS: f64 = 1e7;
 
-fn every_value(field: ParameterRef, item: &Item) -> Result<Vec<Value>, ConfigError> {
+fn every_value(field: ParameterRef, item: &Item) -> Result<Series, ConfigError> {
     let range = Range::read(field, item)?;
     let step = range.step.unwrap_or(1.0);
     let last = last_step(&range, step);
@@ -25,14 +25,21 @@ fn every_value(field: ParameterRef, item: &Item) -> Result<Vec<Value>, ConfigErr
             "raise step",
         ));
     }
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
-    let numbers = (0..=last as usize).map(|i| without_float_noise(range.from + step * i as f64));
-    range.accepted_by(field, numbers)
+    #[allow(clippy::cast_precision_loss)]
+    let number = move |i: u64| without_float_noise(range.from + step * i as f64);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let count = last as u64 + 1;
+    // Between two ends that are accepted only a fraction is not, and then the second value is one already.
+    range.accept(field, number(1.min(count - 1)))?;
+    Ok(Series::new(count, move |i| range.value(number(i))))
 }
 
 fn sampler(field: ParameterRef, item: &Item) -> Result<Sampler, ConfigError> {
     let range = Range::read(field, item)?;
     let step = range.step.unwrap_or(1.0);
+    if last_step(&range, step) >= 1.0 {
+        range.accept(field, without_float_noise(range.from + step))?;
+    }
     Ok(on_grid(range, step))
 }
 

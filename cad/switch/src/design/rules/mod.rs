@@ -153,6 +153,17 @@ fn require(is_kept: bool, reason: impl FnOnce() -> (String, String)) -> Assessme
     Assessment::Broken { problem, remedy }
 }
 
+/// The largest value below `value_mm` that fits, rounded down to what a message shows; 0 if none does.
+fn largest(value_mm: f64, fits: impl Fn(f64) -> bool) -> f64 {
+    const SHOWN_MM: f64 = 1e-3;
+    let (mut low, mut high) = (0.0, value_mm);
+    while high - low > SHOWN_MM / 4.0 {
+        let middle = (low + high) / 2.0;
+        if fits(middle) { low = middle } else { high = middle }
+    }
+    (low / SHOWN_MM).floor() * SHOWN_MM
+}
+
 /// The least thickness of a wall that may be as thin as `lines` times the thinnest accepted one: chamfers on both of
 /// its bottom edges must leave it a foot.
 fn least_wall_mm(c: &Configuration, lines: f64) -> f64 {

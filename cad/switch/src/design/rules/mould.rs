@@ -1,8 +1,10 @@
 //! Rules for the ends of sectors, the mould, and the loads.
 
 use super::shell::MIN_INNER_RADIUS_MM;
-use super::{Assessment, Inspection, Rule, Severity, require};
+use super::{Assessment, Inspection, Rule, Severity, largest, least_wall_mm, require};
 use crate::config::MouldKind;
+use crate::parts::keys;
+use pinswitch_friction::Substrate;
 
 /// Largest shift of a sector's ends, as a share of its inner radius: beyond it they miss the circle.
 const LARGEST_SHIFT: f64 = 0.9;
@@ -17,6 +19,8 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "mould.wall_mm", severity: Severity::Error, assess: room_in_tray },
     Rule { field: "mould.wall_mm", severity: Severity::Error, assess: mould_ends_in_sector },
     Rule { field: "segment.span_deg", severity: Severity::Error, assess: mould_ends_apart },
+    Rule { field: "mould.key_diameter_mm", severity: Severity::Error, assess: keys_apart },
+    Rule { field: "mould.key_height_mm", severity: Severity::Error, assess: keys_in_ring },
     Rule { field: "friction.load_min_n", severity: Severity::Error, assess: load_range },
 ];
 
@@ -109,6 +113,64 @@ fn mould_ends_in_sector(i: &Inspection<'_>) -> Assessment {
 fn mould_ends_apart(i: &Inspection<'_>) -> Assessment {
     Ends::of_mould(i).map_or(Assessment::NotApplicable, |ends| {
         ends.assess_gap(i.half_span_rad(), ", raise shell.outer_radius_mm, or set mould.kind = \"none\"")
+    })
+}
+
+fn has_keys(i: &Inspection<'_>) -> bool {
+    let c = i.configuration();
+    c.mould.kind == MouldKind::Split && c.layout.substrate == Substrate::Silicone
+}
+
+/// Keys need a wall between each other and at the ends of the ring.
+fn keys_apart(i: &Inspection<'_>) -> Assessment {
+    if !has_keys(i) {
+        return Assessment::NotApplicable;
+    }
+    let diameter = i.configuration().mould.key_diameter_mm;
+    require(keys_fit(i, diameter), || {
+        let most = largest(diameter, |mm| keys_fit(i, mm));
+        (
+            "leaves no wall between the keys of the mould, or at its ends".to_owned(),
+            format!("lower it to {most:.3}, raise segment.span_deg, or set mould.kind = \"one-piece\""),
+        )
+    })
+}
+
+fn keys_fit(i: &Inspection<'_>, diameter_mm: f64) -> bool {
+    let c = i.configuration();
+    let scale = 1.0 / (1.0 - c.mould.shrinkage_pct / 100.0);
+    let radius = i.contact_radius_mm() * scale + keys::ring_wall_mm(&c.mould, diameter_mm) / 2.0;
+    let wall = least_wall_mm(c, 1.0);
+    let hole = diameter_mm / 2.0 + c.mould.clearance_mm;
+    let chord = |share: f64| 2.0 * radius * (share * i.half_span_rad() / 2.0).min(1.5).sin();
+    let between = keys::PLACES.windows(2).all(|two| chord(two[1] - two[0]) >= 2.0 * hole + wall);
+    // The ends of the ring lie outside the radial planes.
+    let shift = c.segment.end_margin_mm * scale + c.mould.wall_mm;
+    let at_end = |place: &f64| radius * ((1.0 - place.abs()) * i.half_span_rad()).min(1.5).sin() + shift;
+    between && keys::PLACES.iter().all(|place| at_end(place) >= hole + wall)
+}
+
+/// A key must keep a head, and its hole must end inside the ring.
+fn keys_in_ring(i: &Inspection<'_>) -> Assessment {
+    if !has_keys(i) {
+        return Assessment::NotApplicable;
+    }
+    let c = i.configuration();
+    let ring = i.layer_width_mm() / (1.0 - c.mould.shrinkage_pct / 100.0);
+    let most = (ring - keys::HOLE_END_MM).min(keys::highest_mm(c.mould.key_diameter_mm));
+    require(c.mould.key_height_mm <= most, || {
+        let remedy = if most >= keys::LOWEST_MM {
+            format!("lower it to {:.3}", (most * 1e3).floor() / 1e3)
+        } else {
+            "raise shell.width_mm or mould.key_diameter_mm".to_owned()
+        };
+        (
+            format!(
+                "does not fit: in a ring of {ring:.3} mm, keys of {} mm may be {most:.3} mm high",
+                c.mould.key_diameter_mm
+            ),
+            format!("{remedy}, or set mould.kind = \"one-piece\""),
+        )
     })
 }
 

@@ -1,6 +1,6 @@
 //! Rules for the side supports, their slots and the fasteners.
 
-use super::{Assessment, Inspection, Rule, Severity, least_wall_mm, require};
+use super::{Assessment, Inspection, Rule, Severity, largest, least_wall_mm, require};
 use crate::config::SlotKind;
 
 /// Wall left around a fastener hole (cad/doc/print-limits.md).
@@ -12,6 +12,7 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "support.rise_mm", severity: Severity::Error, assess: slots_in_plate },
     Rule { field: "support.slot_clearance_mm", severity: Severity::Error, assess: land_between_slots },
     Rule { field: "segment.end_margin_mm", severity: Severity::Error, assess: wall_beyond_slots },
+    Rule { field: "support.corner_radius_mm", severity: Severity::Error, assess: corners_in_plate },
     Rule { field: "support.slot_floor_mm", severity: Severity::Error, assess: blind_slot_depth },
     Rule { field: "support.travel_margin_mm", severity: Severity::Error, assess: slot_travel },
     Rule { field: "support.plate_mm", severity: Severity::Error, assess: pin_engagement },
@@ -58,6 +59,48 @@ fn wall_beyond_slots(i: &Inspection<'_>) -> Assessment {
             format!("raise it by {:.3}", least - end),
         )
     })
+}
+
+/// Rounded corners must leave a wall around the outermost slots and holes, and something of the ends.
+fn corners_in_plate(i: &Inspection<'_>) -> Assessment {
+    let radius = i.configuration().support.corner_radius_mm;
+    require(corner_fits(i, radius), || {
+        let most = largest(radius, |mm| corner_fits(i, mm));
+        (
+            "cuts into the outermost slot or hole, or takes the whole end of the plate".to_owned(),
+            format!("lower it to {most:.3}, or raise segment.end_margin_mm"),
+        )
+    })
+}
+
+fn corner_fits(i: &Inspection<'_>, radius_mm: f64) -> bool {
+    if radius_mm <= 0.0 {
+        return true;
+    }
+    let c = i.configuration();
+    let (half_span, shift) = (i.half_span_rad(), c.segment.end_margin_mm);
+    // In the frame of an end: along its radial plane, and outwards across it. A slot has round ends.
+    let at = |mm: f64, rad: f64| [mm * (half_span - rad.abs()).cos(), -mm * (half_span - rad.abs()).sin()];
+    let (across, reach) = (shift - radius_mm, i.support_radius_mm() - radius_mm);
+    if reach <= across.abs() {
+        return false;
+    }
+    let centre = [(reach * reach - across * across).sqrt(), across];
+    let slot = i.slot();
+    let slots = i.slot_angles_rad().into_iter().flat_map(|rad| {
+        [slot.inner_mm, slot.outer_mm].map(|mm| (at(mm, rad), slot.width_mm / 2.0 + least_wall_mm(c, 0.5)))
+    });
+    let hole_mm = c.fasteners.hole_diameter_mm / 2.0 + hole_edge_mm(i);
+    let holes = i.fastener_angles_rad().into_iter().map(|rad| (at(i.fastener_radius_mm(), rad), hole_mm));
+    let is_inside = |(point, room_mm): ([f64; 2], f64)| {
+        let from = [point[0] - centre[0], point[1] - centre[1]];
+        // Only beyond the centre both outwards and along the end is the outline the rounded corner.
+        let is_beyond = from[0] > 0.0 && from[1] * centre[0] > from[0] * centre[1];
+        !is_beyond || from[0].hypot(from[1]) + room_mm <= radius_mm
+    };
+    let ends_outside = centre[0].hypot(shift) >= i.inner_radius_mm() + least_wall_mm(c, 1.0);
+    let before_middle = half_span + (across / reach).asin() > 0.0;
+    ends_outside && before_middle && slots.chain(holes).all(is_inside)
 }
 
 fn blind_slot_depth(i: &Inspection<'_>) -> Assessment {

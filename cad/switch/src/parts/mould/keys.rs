@@ -1,5 +1,6 @@
 //! Keys: cones that register the parts of a split mould. One sits off centre, so that they fit one way only.
 
+use crate::config::MouldTable;
 use crate::design::Design;
 use pinswitch_solid::profile::{Contour, OffsetError, polar};
 use pinswitch_solid::solid::{Facing, RingId, Solid};
@@ -7,25 +8,41 @@ use pinswitch_solid::solid::{Facing, RingId, Solid};
 use super::Cavity;
 
 /// Where the keys lie, as shares of half the span.
-const PLACES: [f64; 3] = [-0.8, 0.35, 0.8];
+pub(crate) const PLACES: [f64; 3] = [-0.8, 0.35, 0.8];
 /// How much narrower a key is at its head, per side and mm of height.
 const TAPER: f64 = 0.2;
 /// Play between a key's head and the end of its hole, mm.
 const HEAD_PLAY_MM: f64 = 0.4;
 /// Least wall around a key, mm.
 const WALL_MM: f64 = 1.0;
+/// Least radius of a key's head, mm.
+const LEAST_HEAD_MM: f64 = 0.1;
+/// What the ring must be higher than a key.
+pub(crate) const HOLE_END_MM: f64 = HEAD_PLAY_MM + WALL_MM;
+/// The lowest key that can be configured, mm.
+pub(crate) const LOWEST_MM: f64 = 0.5;
 
-/// Radial thickness of the ring that the keys need.
-pub(super) fn ring_wall_mm(design: &Design) -> f64 {
+/// Radial thickness of the ring that keys of this diameter need.
+pub(crate) fn ring_wall_mm(m: &MouldTable, key_diameter_mm: f64) -> f64 {
+    m.wall_mm.max(key_diameter_mm + 2.0 * (m.clearance_mm + WALL_MM))
+}
+
+/// Height at which a key's head would be too narrow.
+pub(crate) fn highest_mm(key_diameter_mm: f64) -> f64 {
+    (key_diameter_mm / 2.0 - LEAST_HEAD_MM) / TAPER
+}
+
+/// Radial thickness of the ring of a design.
+pub(super) fn wall_of_ring_mm(design: &Design) -> f64 {
     let m = &design.configuration().mould;
-    m.wall_mm.max(m.key_diameter_mm + 2.0 * (m.clearance_mm + WALL_MM))
+    ring_wall_mm(m, m.key_diameter_mm)
 }
 
 /// Circles of the keys' feet, counter-clockwise, widened by `play_mm`.
 fn feet(design: &Design, play_mm: f64) -> Vec<Contour> {
     let m = &design.configuration().mould;
     let cavity = Cavity::of(design).sector;
-    let radius = cavity.outer_mm + ring_wall_mm(design) / 2.0;
+    let radius = cavity.outer_mm + wall_of_ring_mm(design) / 2.0;
     let key = |place: f64| {
         Contour::circle(polar(radius, place * cavity.half_span_rad), m.key_diameter_mm / 2.0 + play_mm)
     };
@@ -71,9 +88,4 @@ pub(super) fn blind_holes(solid: &mut Solid, design: &Design, z_mm: f64) -> Resu
 pub(super) fn through_holes(design: &Design) -> Vec<Contour> {
     let clearance = design.configuration().mould.clearance_mm;
     feet(design, clearance).iter().map(Contour::reversed).collect()
-}
-
-/// Height that the ring needs to take blind holes from below.
-pub(super) fn least_height_mm(design: &Design) -> f64 {
-    design.configuration().mould.key_height_mm + HEAD_PLAY_MM + WALL_MM
 }

@@ -1,6 +1,6 @@
 //! The casting mould, axis upright, open on top (cad/doc/dimensions.md, "Mould").
 
-mod keys;
+pub(crate) mod keys;
 mod lid;
 mod one_piece;
 mod split;

@@ -24,7 +24,7 @@ fn core_sector(design: &Design, cavity: &Cavity) -> Sector {
 
 /// The base under core and ring, and the lid above them.
 pub(super) fn plate_sector(design: &Design, cavity: &Cavity) -> Sector {
-    Sector { outer_mm: cavity.sector.outer_mm + keys::ring_wall_mm(design), ..core_sector(design, cavity) }
+    Sector { outer_mm: cavity.sector.outer_mm + keys::wall_of_ring_mm(design), ..core_sector(design, cavity) }
 }
 
 pub(in crate::parts) fn core(design: &Design) -> Result<Part, ConfigError> {
@@ -62,18 +62,6 @@ pub(in crate::parts) fn ring(design: &Design) -> Result<Part, ConfigError> {
     let c = design.configuration();
     let cavity = Cavity::of(design);
     let height = cavity.depth_mm;
-    if height < keys::least_height_mm(design) {
-        return Err(ConfigError {
-            field: "mould.key_height_mm".to_owned(),
-            value: Some(c.mould.key_height_mm.to_string()),
-            problem: format!("does not fit in a ring of {height:.3} mm"),
-            remedy: format!(
-                "lower it by {:.3} or set mould.kind = \"one-piece\"",
-                keys::least_height_mm(design) - height
-            ),
-            place: None,
-        });
-    }
     let key = offset_error("mould.key_height_mm");
     let mut solid = Solid::new();
     let (bottom, top) = solid

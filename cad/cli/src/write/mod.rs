@@ -1,0 +1,125 @@
+//! Files are written whole or not at all, and so are sets: staged beside their target, then renamed into their names.
+//!
+//! One process writes into a folder at a time, under a lock. What a run that was killed has left is removed by the next.
+
+mod folder_lock;
+mod record;
+mod set_folder;
+mod steps;
+
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use pinswitch_switch::output::OutputFile;
+
+use folder_lock::{FolderLock, Waiting};
+pub use set_folder::{PublishError, SetFolder};
+
+/// Beginning of the names of everything that is not there to stay.
+const OURS: &str = ".pinswitch-";
+
+/// A file or folder cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: cannot write: {source}; {}", path.display(), remedy(source))]
+pub struct WriteError {
+    path: PathBuf,
+    source: std::io::Error,
+}
+
+impl WriteError {
+    fn at(path: &Path) -> impl FnOnce(std::io::Error) -> Self + '_ {
+        |source| Self { path: path.to_owned(), source }
+    }
+}
+
+fn remedy(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+            "a file stands where a folder must be: move it away, or give another --out"
+        }
+        ErrorKind::IsADirectory => {
+            "a folder stands where a file must be: move it away, or give another --out"
+        }
+        ErrorKind::WouldBlock => "wait for it or end it, or give another --out",
+        ErrorKind::NotFound => "make its folder, or give another --out",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room, or give another --out",
+        _ => "give an --out that can be written",
+    }
+}
+
+/// Writes `bytes` to `path`: a reader sees the old file or the new one, never a part of it.
+///
+/// # Errors
+/// [`WriteError`] names the path; the old file is untouched.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    match std::fs::metadata(path) {
+        Ok(there) if there.is_dir() => return Err(WriteError::at(path)(ErrorKind::IsADirectory.into())),
+        // A pipe or a terminal has no old content, and is not replaced by a file.
+        Ok(there) if !there.is_file() => return std::fs::write(path, bytes).map_err(WriteError::at(path)),
+        _ => {}
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    if !folder.is_dir() {
+        return Err(WriteError::at(path)(ErrorKind::NotFound.into()));
+    }
+    let lock = FolderLock::take(folder, Waiting::UntilFree).map_err(WriteError::at(path))?;
+    lock.sweep().map_err(WriteError::at(path))?;
+    let mut temporary = builder().prefix(OURS).tempfile_in(folder).map_err(WriteError::at(path))?;
+    temporary.write_all(bytes).map_err(WriteError::at(path))?;
+    temporary.persist(path).map_err(|e| WriteError::at(path)(e.error))?;
+    Ok(())
+}
+
+/// Temporary files are private; what takes the target's name is an ordinary file.
+#[cfg(unix)]
+fn builder() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
+    builder
+}
+
+#[cfg(not(unix))]
+fn builder() -> tempfile::Builder<'static, 'static> {
+    tempfile::Builder::new()
+}
+
+/// Writes all files into `folder`, which is made if need be. Every file is complete on disk before the first takes its
+/// name. The last one stands for the whole: it is taken away first and comes back last.
+///
+/// # Errors
+/// [`WriteError`] names the path.
+pub fn write_set(folder: &Path, files: &[OutputFile]) -> Result<(), WriteError> {
+    SetFolder::wait(folder)?.replace(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_set_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| OutputFile { name: name.to_owned(), bytes: b"new".to_vec() };
+        std::fs::write(folder.path().join("a"), "old").unwrap();
+        for bad in ["no/such/folder", "..", "", "/x"] {
+            let failed = write_set(folder.path(), &[file("a"), file(bad), file("z")]);
+            assert!(failed.unwrap_err().to_string().contains("cannot write"));
+            assert_eq!(std::fs::read_to_string(folder.path().join("a")).unwrap(), "old");
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        }
+        write_set(folder.path(), &[file("a"), file("b")]).unwrap();
+        assert_eq!(std::fs::read_to_string(folder.path().join("a")).unwrap(), "new");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_single_file_sweeps_what_a_dead_run_left_and_never_takes_the_place_of_a_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(".pinswitch-gone"), "half").unwrap();
+        write_file(&folder.path().join("a"), b"one").unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        std::fs::create_dir(folder.path().join("b")).unwrap();
+        let error = write_file(&folder.path().join("b"), b"one").unwrap_err().to_string();
+        assert!(error.contains("a folder stands where a file must be"), "{error}");
+    }
+}

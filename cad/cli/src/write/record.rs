@@ -1,0 +1,101 @@
+//! What earlier runs have written into a folder, as its manifest says, and the journal of a run that was killed.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::ErrorKind;
+use std::path::{Component, Path};
+
+use pinswitch_switch::documents::SourceEntry;
+use pinswitch_switch::output::OutputFile;
+use pinswitch_switch::set::MANIFEST;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::folder_lock::JOURNAL;
+
+/// Every file that is ours, with the SHA-256 of each content that we gave it, and what they were made from.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Record {
+    pub(super) source: Option<SourceEntry>,
+    pub(super) files: BTreeMap<String, BTreeSet<String>>,
+}
+
+/// What is read of a manifest.
+#[derive(Deserialize)]
+struct Listing {
+    schema: String,
+    source: Option<SourceEntry>,
+    files: Vec<ListedFile>,
+}
+
+#[derive(Deserialize)]
+struct ListedFile {
+    file: String,
+    sha256: String,
+}
+
+impl Record {
+    /// What manifest and journal of `folder` say. A manifest that is none of ours says nothing.
+    ///
+    /// # Errors
+    /// If one of them is there and cannot be read.
+    pub(super) fn read(folder: &Path) -> std::io::Result<Self> {
+        let mut record = Self::default();
+        if let Some(bytes) = read_if_there(&folder.join(MANIFEST))?
+            && let Ok(listing) = serde_json::from_slice::<Listing>(&bytes)
+            && listing.schema.starts_with("pinswitch.set/")
+        {
+            record.source = listing.source;
+            record.add(MANIFEST, sha256(&bytes));
+            listing.files.into_iter().for_each(|file| record.add(&file.file, file.sha256));
+        }
+        if let Some(bytes) = read_if_there(&folder.join(JOURNAL))?
+            && let Ok(killed) = serde_json::from_slice::<Self>(&bytes)
+        {
+            // The run that was killed came after the one that left the manifest.
+            record.source = killed.source.or(record.source);
+            for (name, hashes) in killed.files {
+                hashes.into_iter().for_each(|hash| record.add(&name, hash));
+            }
+        }
+        Ok(record)
+    }
+
+    /// The record after `files` have been added.
+    pub(super) fn with(&self, files: &[OutputFile], source: &SourceEntry) -> Self {
+        let mut all = self.clone();
+        all.source = Some(source.clone());
+        files.iter().for_each(|file| all.add(&file.name, sha256(&file.bytes)));
+        all
+    }
+
+    /// Whether the content is one that we gave the file.
+    pub(super) fn wrote(&self, name: &str, bytes: &[u8]) -> bool {
+        self.files.get(name).is_some_and(|hashes| hashes.contains(&sha256(bytes)))
+    }
+
+    /// A manifest may be anybody's: what is no plain name in its own folder is not listened to.
+    fn add(&mut self, name: &str, hash: String) {
+        if is_plain(name) {
+            self.files.entry(name.to_owned()).or_default().insert(hash);
+        }
+    }
+}
+
+/// Whether `name` is that of a file in its own folder, and no path.
+pub(super) fn is_plain(name: &str) -> bool {
+    let mut parts = Path::new(name).components();
+    matches!((parts.next(), parts.next()), (Some(Component::Normal(only)), None) if only == name)
+}
+
+/// The bytes of a file; `None` if there is none.
+pub(super) fn read_if_there(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
+    match std::fs::read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(e),
+    }
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+}

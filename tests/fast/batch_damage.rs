@@ -1,0 +1,243 @@
+//! Batches whose files were damaged, edited or deleted: a resumed run makes them again, a merge names them; and sweeps
+//! that are refused before they are expanded, by a dry run as by a run.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use crate::harness::{SWEEP, differences, done, ended, hashes, with_sweep};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Flips one bit of a file.
+fn flip(path: &Path, random: &mut ChaCha8Rng) {
+    let mut bytes = std::fs::read(path).unwrap();
+    let bit = random.random_range(0..8 * bytes.len());
+    bytes[bit / 8] ^= 1 << (bit % 8);
+    // A new file: parts are links to one.
+    std::fs::remove_file(path).unwrap();
+    std::fs::write(path, bytes).unwrap();
+}
+
+/// The JSON with the hash of its bytes as a batch writes it, for a forger who knows how.
+fn sealed(value: &serde_json::Value) -> String {
+    let text = serde_json::to_string_pretty(value).unwrap();
+    let body = text.strip_suffix("\n}").unwrap();
+    format!("{body},\n  \"checksum\": \"{}\"\n}}\n", crate::harness::sha256(body.as_bytes()))
+}
+
+fn read_json(path: &Path) -> serde_json::Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+#[test]
+fn a_resumed_run_makes_again_what_was_damaged() {
+    let folder = with_sweep(SWEEP);
+    let (path, b) = (folder.path(), folder.path().join("b"));
+    let run = || done(path, &["-q", "batch", "sweep.toml", "--out", "b"]);
+    run();
+    let whole = hashes(&b);
+    let mended = |what: &str| {
+        assert_ne!(hashes(&b), whole, "{what}");
+        run();
+        assert_eq!(differences(&whole, &hashes(&b)), Vec::<String>::new(), "{what}");
+    };
+    let names: Vec<_> = whole.keys().filter(|n| n.contains('/')).collect();
+    let mut random = ChaCha8Rng::seed_from_u64(6);
+    let manifests: Vec<_> = names.iter().filter(|n| n.ends_with("manifest.json")).collect();
+    // Several at once, in different files: each must be seen.
+    for round in 0..4 {
+        for name in &manifests {
+            flip(&b.join(name), &mut random);
+        }
+        mended(&format!("manifests, round {round}"));
+        for name in names.iter().filter(|n| n.starts_with("parts/") == (round % 2 == 0)).step_by(3) {
+            flip(&b.join(name), &mut random);
+        }
+        mended(&format!("files, round {round}"));
+    }
+    // A forged manifest that lists nothing, and the shell is gone.
+    let manifest = b.join(manifests[0]);
+    let mut forged = read_json(&manifest);
+    forged["files"] = serde_json::json!([]);
+    forged.as_object_mut().unwrap().remove("checksum");
+    std::fs::write(&manifest, sealed(&forged)).unwrap();
+    std::fs::remove_file(manifest.with_file_name("shell.stl")).unwrap();
+    mended("forged");
+    // The stamp: what does not tell another sweep is written again.
+    let stamp = std::fs::read_to_string(b.join("batch.json")).unwrap();
+    for (from, to) in
+        [("\"variants\": 24", "\"variants\": 23"), ("13, to", "12, to"), ("sweep.toml\"", "s.toml\"")]
+    {
+        assert!(stamp.contains(from), "{from}");
+        std::fs::write(b.join("batch.json"), stamp.replace(from, to)).unwrap();
+        mended(from);
+    }
+}
+
+#[test]
+fn a_merge_names_what_is_missing_or_changed() {
+    let folder = with_sweep(SWEEP);
+    let path = folder.path();
+    for shard in ["1/2", "2/2"] {
+        done(path, &["-q", "batch", "sweep.toml", "--out", "b", "--shard", shard]);
+    }
+    let copy = |name: &str| {
+        let made = Command::new("cp").args(["-r", "b", name]).current_dir(path).status().unwrap();
+        assert!(made.success());
+        path.join(name)
+    };
+    let refused = |what: &str, name: &str, words: &[&str]| {
+        let before = hashes(&path.join(name));
+        let (code, said) = ended(path, &["-q", "merge", name]);
+        assert_eq!(code, Some(2), "{what}: {said}");
+        assert!(
+            said.starts_with("error: ") && said.len() < 600 && said.lines().count() == 1,
+            "{what}: {said}"
+        );
+        for word in words {
+            assert!(said.contains(word), "{what}: {word}: {said}");
+        }
+        assert_eq!(hashes(&path.join(name)), before, "{what}: something was written");
+    };
+    let whole = path.join("b");
+    let variant = std::fs::read_dir(whole.join("variants")).unwrap().next().unwrap().unwrap();
+    let id = variant.file_name().to_string_lossy().into_owned();
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let damaged = copy("damaged");
+    for file in [
+        "shards/1-of-2/variants.parquet",
+        "shards/2-of-2/variants.csv",
+        "shards/1-of-2/shard.json",
+        "batch.json",
+    ] {
+        let rounds = if file.ends_with("parquet") { 24 } else { 8 };
+        for round in 0..rounds {
+            flip(&damaged.join(file), &mut random);
+            let shard = if file.starts_with("shards") { "of damaged: " } else { "damaged" };
+            refused(&format!("{file} {round}"), "damaged", &[shard]);
+            std::fs::copy(whole.join(file), damaged.join(file)).unwrap();
+        }
+    }
+    for (file, named) in
+        [("shell.stl", "shell.stl"), ("friction.csv", "friction.csv"), ("manifest.json", "manifest.json")]
+    {
+        let place = damaged.join("variants").join(&id).join(file);
+        flip(&place, &mut random);
+        refused("changed", "damaged", &[&format!("{id}/{named} is missing or has changed"), "run it again"]);
+        std::fs::remove_file(&place).unwrap();
+        refused("deleted", "damaged", &[&format!("{id}/{named}")]);
+        std::fs::copy(variant.path().join(file), &place).unwrap();
+    }
+    std::fs::remove_dir_all(damaged.join("variants").join(&id)).unwrap();
+    refused("variant", "damaged", &[&format!("{id}/manifest.json is missing")]);
+    std::fs::remove_dir_all(damaged.join("parts")).unwrap();
+    refused("parts", "damaged", &[" more are missing or have changed"]);
+
+    // Stamps that were edited, with the hash of what they say now.
+    let edited = copy("edited");
+    let stamp = read_json(&edited.join("batch.json"));
+    for (pointer, value) in [
+        ("/variants", serde_json::json!(12)),
+        ("/variants", serde_json::json!(u64::MAX)),
+        ("/source/sweep", serde_json::json!(SWEEP.replace("[200, 300]", "[200, 301]"))),
+        ("/source/base", serde_json::json!("")),
+        ("/source/name", serde_json::json!("../../x")),
+        ("/schema", serde_json::json!("pinswitch.batch/9")),
+    ] {
+        let mut forged = stamp.clone();
+        *forged.pointer_mut(pointer).unwrap() = value;
+        forged.as_object_mut().unwrap().remove("checksum");
+        std::fs::write(edited.join("batch.json"), sealed(&forged)).unwrap();
+        refused(pointer, "edited", &["edited/batch.json: "]);
+    }
+    std::fs::copy(whole.join("batch.json"), edited.join("batch.json")).unwrap();
+    let place = edited.join("shards/2-of-2/shard.json");
+    let stamp = read_json(&place);
+    for (pointer, value) in [
+        ("/variants/start", serde_json::json!(13)),
+        ("/variants/end", serde_json::json!(25)),
+        ("/shard/of", serde_json::json!(0)),
+        ("/shard/number", serde_json::json!(1)),
+        ("/tables", serde_json::json!({})),
+    ] {
+        let mut forged = stamp.clone();
+        *forged.pointer_mut(pointer).unwrap() = value;
+        forged.as_object_mut().unwrap().remove("checksum");
+        std::fs::write(&place, sealed(&forged)).unwrap();
+        refused(pointer, "edited", &[]);
+    }
+    std::fs::copy(whole.join("shards/2-of-2/shard.json"), &place).unwrap();
+    done(path, &["-q", "merge", "edited"]);
+}
+
+#[test]
+fn a_sweep_that_is_too_large_is_refused_before_it_is_expanded() {
+    let fine = |field: &str| format!("\"{field}\" = {{ from = 10, to = 12, step = 1e-6 }}\n");
+    let three = ["shell.width_mm", "support.plate_mm", "tendon.length_mm"].map(fine).concat();
+    let sample = "[sample]\ncount = 10000000\n[sample.axes]\n\"shell.width_mm\" = { from = 12, to = 16 }\n\
+                  \"support.plate_mm\" = { from = 3, to = 4 }\n\"support.slots\" = [\"all\", \"occupied\"]\n";
+    let many = "[axes]\n\"shell.width_mm\" = { from = 12, to = 16, count = 9999999 }\n";
+    let start = Instant::now();
+    for sweep in
+        [&format!("[axes]\n{three}"), sample, many, &format!("{sample}[axes]\n{}", fine("tendon.length_mm"))]
+    {
+        let folder = with_sweep(sweep);
+        for more in ["--out b", "--dry-run", "--dry-run --out b"] {
+            // 256 MB of addresses, of which threads and the program itself take most.
+            let command = format!("ulimit -v 262144; exec \"$0\" batch sweep.toml {more}");
+            let mut run = Command::new("sh");
+            run.args(["-c", &command, env!("CARGO_BIN_EXE_pinswitch")]).current_dir(folder.path());
+            let output = run.output().unwrap();
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{said}");
+            assert!(said.contains(" variants are more than 10000; give --yes"), "{said}");
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+    assert!(start.elapsed() < Duration::from_secs(5), "12 refusals took {:?}", start.elapsed());
+}
+
+#[test]
+fn a_dry_run_refuses_what_the_run_refuses() {
+    let folder = with_sweep(SWEEP);
+    let path = folder.path();
+    std::fs::write(path.join("file"), "").unwrap();
+    std::fs::create_dir(path.join("papers")).unwrap();
+    std::fs::write(path.join("papers/thesis"), "dear").unwrap();
+    std::fs::write(path.join("other.toml"), SWEEP.replace("\"small\"", "\"other\"")).unwrap();
+    done(path, &["-q", "batch", "other.toml", "--out", "other"]);
+    std::fs::create_dir(path.join("broken")).unwrap();
+    std::fs::write(path.join("broken/batch.json"), "{").unwrap();
+    let before = hashes(path);
+    let places: Vec<&str> =
+        vec!["file", "file/b", "/proc/b", "gopher://x/b", "file://b", "papers", "other", "broken"];
+    for out in places {
+        let run = ended(path, &["batch", "sweep.toml", "--out", out]);
+        let dry = ended(path, &["batch", "sweep.toml", "--out", out, "--dry-run"]);
+        assert_eq!(run, dry);
+        assert_eq!(run.0, Some(2), "{out}");
+        assert_eq!(hashes(path), before, "{out}");
+    }
+    for more in [&["--shard", "1/99"][..], &["--shard", "3/2"]] {
+        let run = ended(path, &[&["batch", "sweep.toml", "--out", "new"], more].concat());
+        let dry = ended(path, &[&["batch", "sweep.toml", "--out", "new", "--dry-run"], more].concat());
+        assert_eq!(run, dry);
+    }
+    // Nothing of a place that is fine is left, not even the folders on the way.
+    done(path, &["-q", "batch", "sweep.toml", "--out", "deep/new", "--dry-run"]);
+    assert!(!path.join("deep").exists());
+
+    // Variants, too: keys that do not fit are found when the mould is put together.
+    let sweep = "[sweep]\nparts = [\"shell\", \"mould-ring\"]\n[axes]\n\"mould.key_height_mm\" = [2, 10]\n\
+                 \"shell.width_mm\" = [5, 14]\n\"mould.key_diameter_mm\" = [3, 9.5]\n\"support.corner_radius_mm\" = [1.5, 4.7]\n";
+    std::fs::write(path.join("keys.toml"), sweep).unwrap();
+    let estimate: serde_json::Value =
+        serde_json::from_str(&done(path, &["-q", "batch", "keys.toml", "--dry-run", "--json"])).unwrap();
+    let refused: u64 =
+        estimate["refused"].as_array().unwrap().iter().map(|r| r["count"].as_u64().unwrap()).sum();
+    let tally: serde_json::Value =
+        serde_json::from_str(&done(path, &["-q", "batch", "keys.toml", "--out", "keys", "--json"])).unwrap();
+    assert_eq!((tally["refused"].as_u64().unwrap(), tally["failed"].as_u64().unwrap()), (refused, 0));
+    assert!(refused > 0 && tally["made"].as_u64().unwrap() == estimate["made"].as_u64().unwrap());
+}

@@ -1,0 +1,76 @@
+//! `generate` killed (SIGKILL) at random moments leaves the whole set of before, the whole new one, or no manifest; the
+//! next run removes what is left over. A unit test of `cad/cli/src/write/set_folder.rs` stops after every single step.
+
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+use crate::harness::{binary, differences, done, hashes};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Kills in all.
+const KILLS: usize = 60;
+
+/// The sets take turns, so that each run has other files to remove and to replace.
+const SETS: [&[&str]; 3] = [
+    &["-q", "generate", "three-double", "--format", "stl,step,dxf"],
+    &["-q", "generate", "three-double", "--format", "stl", "--set", "shell.width_mm=16"],
+    &["-q", "generate", "three-double", "--format", "all", "--set", "parts.coupon=false"],
+];
+
+#[test]
+fn a_killed_set_is_whole_or_has_no_manifest() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = |name: &'static str, set: usize| [SETS[set], &["--out", name]].concat();
+    let mut whole_run_s = [0.0; SETS.len()];
+    let whole: Vec<_> = (0..SETS.len())
+        .map(|set| {
+            let name = ["whole-0", "whole-1", "whole-2"][set];
+            let start = Instant::now();
+            done(folder.path(), &out(name, set));
+            whole_run_s[set] = start.elapsed().as_secs_f64();
+            hashes(&folder.path().join(name))
+        })
+        .collect();
+    let place = folder.path().join("killed");
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let (mut kills, mut without_manifest, mut run) = (0, 0, 0);
+    while kills < KILLS {
+        let set = run % SETS.len();
+        run += 1;
+        let mut child = binary()
+            .args(out("killed", set))
+            .current_dir(folder.path())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Half of the kills are aimed at the end, where files take their names.
+        let share =
+            if run % 2 == 0 { random.random_range(0.0..1.0) } else { random.random_range(0.85..1.02) };
+        std::thread::sleep(Duration::from_secs_f64(whole_run_s[set] * share));
+        if child.try_wait().unwrap().is_none() {
+            child.kill().unwrap();
+            kills += 1;
+        }
+        child.wait().unwrap();
+        without_manifest += usize::from(place.exists() && !is_whole_or_unlisted(&place, &whole));
+        if run % 5 == 0 {
+            done(folder.path(), &out("killed", set));
+            assert_eq!(differences(&whole[set], &hashes(&place)), Vec::<String>::new());
+        }
+        assert!(run < 20 * KILLS, "the runs end before they are killed");
+    }
+    println!("{kills} kills of {run} runs, {without_manifest} of which left no manifest");
+}
+
+/// Whether a manifest is there; then it lists a whole set, and no file of another is beside it.
+fn is_whole_or_unlisted(place: &Path, whole: &[std::collections::BTreeMap<String, String>]) -> bool {
+    let mut there = hashes(place);
+    there.retain(|name, _| !name.starts_with(".pinswitch-"));
+    if !there.contains_key("manifest.json") {
+        return false;
+    }
+    assert!(whole.contains(&there), "{:?}", there.keys());
+    true
+}

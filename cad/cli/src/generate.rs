@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
 use super::law::LawChoice;
-use super::predict_rows::calibrated_curve;
+use super::calibrated_curve::calibrated_curve;
 use super::source::Source;
 use super::{Failure, print};
 use crate::write::{PublishError, SetFolder};

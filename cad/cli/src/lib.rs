@@ -64,6 +64,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use clap_verbosity_flag::{InfoLevel, Verbosity};
 
+mod calibrated_curve;
 mod failure;
 mod finger_text;
 mod law;

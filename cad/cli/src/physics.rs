@@ -107,26 +107,31 @@ fn text(report: &Report) -> String {
         fit.constants.flush_force_n,
         sd(2)
     );
-    text += "Maximum                      fitted    layout left out\n";
-    for (name, error) in &fit.errors {
-        let left_out = report
-            .left_out
-            .iter()
-            .find(|l| name.starts_with(l.layout))
-            .map(|l| percent(if name.ends_with("device") { l.device_error } else { l.pins_error }));
-        text += &format!("{name:<28} {:<9} {}\n", percent(*error), left_out.unwrap_or_default());
-    }
-    text += "\nError of each law on the seven maxima, root mean square: as it is, and with nothing given of the layout predicted\n";
+    text += "Error of each law on the seven maxima: as it is / with nothing given of the layout that is predicted\n";
+    text += &format!("{:<26}", "");
     for law in &report.evidence {
-        let shown = |rms: Option<f64>| rms.map_or("-".to_owned(), |rms| format!("{:.1} %", 100.0 * rms));
-        let default = if law.law == Law::DEFAULT { "  the default" } else { "" };
-        text += &format!(
-            "{:<9} {:>8} {:>8}{default}\n",
-            law.law.as_str(),
-            shown(law.rms_in_sample),
-            shown(law.rms_left_out)
-        );
+        let default = if law.law == Law::DEFAULT { ", the default" } else { "" };
+        text += &format!("{:<22}", format!("{}{default}", law.law.as_str()));
     }
+    text.push('\n');
+    let pair = |a: Option<f64>, b: Option<f64>| {
+        let shown = |share: Option<f64>| share.map_or("-".to_owned(), percent);
+        if a.or(b).is_none() { "-".to_owned() } else { format!("{} / {}", shown(a), shown(b)) }
+    };
+    let maxima = report.evidence.first().map_or(0, |law| law.errors.len());
+    for row in 0..maxima {
+        let name = report.evidence.first().map_or("", |law| law.errors[row].maximum.as_str());
+        text += &format!("{name:<26}");
+        for law in &report.evidence {
+            text += &format!("{:<22}", pair(law.errors[row].in_sample, law.errors[row].left_out));
+        }
+        text = text.trim_end().to_owned() + "\n";
+    }
+    text += &format!("{:<26}", "root mean square");
+    for law in &report.evidence {
+        text += &format!("{:<22}", pair(law.rms_in_sample, law.rms_left_out).replace('+', ""));
+    }
+    text = text.trim_end().to_owned() + "\n";
     text += "\nWhat does the tendon do outside the pins? Each hypothesis with its own best constants; its share of the\n\
              likelihood of all, and the facts that tell against it, in standard deviations:\n";
     for (finding, weight) in report.hypotheses.iter().zip(weights(&report.hypotheses)) {

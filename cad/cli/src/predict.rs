@@ -4,6 +4,7 @@ use clap::Args;
 use pinswitch_friction::FrictionCurve;
 use serde::Serialize;
 
+use super::calibrated_curve::calibrated_curve;
 use super::law::{LawChoice, side_by_side};
 use super::predict_rows::{Rows, SourceUnlessRows};
 use super::{Failure, print, print_json};
@@ -48,7 +49,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         )
     })?;
     let design = source.design()?;
-    let Prediction { curve, others } = arguments.law.prediction(&design)?;
+    let Prediction { curve, others } = match &arguments.rows.model {
+        Some(model) => Prediction::with_curve(&design, calibrated_curve(&design, model)?),
+        None => arguments.law.prediction(&design)?,
+    };
     log::info!("{}", side_by_side(&curve, &others));
     for reason in &curve.reasons {
         log::info!("{reason}");

@@ -5,20 +5,17 @@ use std::path::{Path, PathBuf};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use pinswitch_calibration::ModelFile;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_friction::{FrictionCurve, published};
 
 use super::source::Source;
 use super::{Failure, print};
 use crate::write::write_file;
-use pinswitch_switch::design::Design;
-use pinswitch_switch::prediction::loads_n;
 
 /// Rows of a plateau table, predicted by a calibrated model.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Rows {
-    /// A model.toml or baseline.toml written by `calibrate`.
-    #[arg(long, value_name = "TOML", requires = "rows")]
-    model: Option<PathBuf>,
+    /// A model.toml or baseline.toml written by `calibrate`: predicts the rows, or the curve of the configuration.
+    #[arg(long, value_name = "TOML")]
+    pub(super) model: Option<PathBuf>,
     /// A plateau table whose rows are predicted; its force_N is not used.
     #[arg(long, value_name = "CSV", requires = "model")]
     rows: Option<PathBuf>,
@@ -75,22 +72,4 @@ impl Rows {
             None => print(csv.as_bytes()),
         }
     }
-}
-
-/// The curve of a design by a calibrated model: effects of the switch in, effects of the rig out.
-pub(super) fn calibrated_curve(design: &Design, model: &Path) -> Result<FrictionCurve, Failure> {
-    let name = model.display().to_string();
-    let text = std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
-    let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
-    let substrate = design.contact().substrate();
-    let wrap_deg = design.contact().wrap_rad().to_degrees();
-    if (wrap_deg - published::WRAP_ANGLE_DEG).abs() > 0.005 {
-        return Err(Failure::bad_input(format!(
-            "layout.wrap_angle_deg = {wrap_deg:.2} is not the {} deg of the calibrated rig; leave out --model",
-            published::WRAP_ANGLE_DEG
-        )));
-    }
-    let mut pins = design.configuration().layout.pins.clone();
-    pins.sort_unstable();
-    file.part_curve(substrate, &pins, &loads_n(design), &name).map_err(Failure::bad_input)
 }

@@ -5,7 +5,7 @@
 
 use serde::Serialize;
 
-use crate::departure::{Departure, departures};
+use crate::departure::{Departure, departures, published_rig};
 use crate::law::{Law, LawError, Uncertain, friction_by, uncertain_by};
 use crate::physics::{Bed, Constants, OutsidePins, PhysicsSwitch};
 use crate::trust::{is_measured, layout_distance};
@@ -103,10 +103,18 @@ impl Band {
             sources.push(source);
         }
         let rivals = rivals(law, contact, &load_n, &friction_n)?;
+        // On another rig rivals may happen to agree: doubt is no less than with the same pins on the published one.
+        let on_published = match published_rig(contact).filter(|_| !departures.is_empty()) {
+            Some(rig) => {
+                self::rivals(law, &rig, &load_n, &friction_by(law, &rig, &load_n)?).unwrap_or_default()
+            }
+            None => Vec::new(),
+        };
         // A measured condition is near itself; any other is as far as its layout and its departures take it.
         let apart = departures.iter().map(|d| d.log_ratio.powi(2)).sum::<f64>() + nearest.powi(2);
         let apart = if is_measured(contact) { 0.0 } else { apart.sqrt() };
-        sources.push(rival_source(&rivals, &load_n, apart));
+        let doubted: Vec<_> = rivals.iter().chain(&on_published).cloned().collect();
+        sources.push(rival_source(&doubted, &load_n, apart));
         Ok(Self { load_n, sources, rivals, departures })
     }
 
@@ -188,9 +196,10 @@ fn rivals(
 ) -> Result<Vec<(String, Vec<f64>)>, LawError> {
     let on_proxy = contact.substrate() == Substrate::Abs;
     let mut all: Vec<(String, Vec<f64>)> = Law::predictive()
-        // On the proxy the paper's constant coefficient is refuted by its own maxima; what is left of it is its trend
-        // with load, see below.
-        .filter(|other| *other != law && !(on_proxy && *other == Law::Paper))
+        // The paper's constants are those of three layouts and one wrap: as a rival they would come and go at once. At light
+        // load the layout law says the same; on the proxy what is left of the constant coefficient, which its own maxima
+        // refute, is its trend with load, see below.
+        .filter(|other| *other != law && *other != Law::Paper)
         .filter_map(|other| Some((other.title().to_owned(), friction_by(other, contact, load_n).ok()?)))
         .collect();
     if law == Law::Physics && !on_proxy && contact.all_pins().count() > 0 {

@@ -103,8 +103,12 @@ impl Departure {
                 format!("physics says {:+.1} % of friction at {heaviest_n:.2} N", 100.0 * effect.exp_m1())
             }
         };
+        // As many digits as tell the two apart.
+        let places = (3..9)
+            .find(|places| format!("{:.places$}", self.value) != format!("{:.places$}", self.published))
+            .unwrap_or(9);
         let digits = |x: f64| {
-            let text = format!("{x:.3}");
+            let text = format!("{x:.places$}");
             text.trim_end_matches('0').trim_end_matches('.').to_owned()
         };
         format!(
@@ -173,7 +177,7 @@ pub(crate) fn is_published_rig(contact: &Contact) -> bool {
 }
 
 /// The same pins on the published rig.
-fn published_rig(contact: &Contact) -> Option<Contact> {
+pub(crate) fn published_rig(contact: &Contact) -> Option<Contact> {
     let all = contact.all_pins().clone();
     let wrap = published::wrap_angle_rad();
     // A proxy whose pins all lie outside the published wrap has no counterpart; a bare bed has the same parameters.

@@ -31,6 +31,7 @@
 
 mod band;
 mod capstan;
+mod carry;
 mod contact;
 mod curve;
 mod departure;
@@ -48,6 +49,7 @@ mod trust;
 
 pub use band::{Band, BandSource};
 pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};
+pub use carry::Carry;
 pub use contact::{Contact, ContactError, Substrate};
 pub use curve::{FrictionCurve, PublishedPoint, published_points};
 pub use departure::Departure;

@@ -11,7 +11,6 @@ use super::{Bed, Constants, PhysicsError};
 use crate::band::BandSource;
 use crate::law::Uncertain;
 use crate::published;
-use crate::trust::is_measured;
 use crate::{Contact, Direction, Substrate, SwitchState, capstan_tension_n};
 
 /// Share of cases that a band should hold.
@@ -248,7 +247,7 @@ pub(crate) fn uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain,
 /// What the physics is known not to explain of a published condition.
 pub(crate) fn unexplained(contact: &Contact) -> Option<String> {
     let layout = contact.published_layout().filter(|_| contact.substrate() == Substrate::Silicone)?;
-    (is_measured(contact) && layout.pins == 3).then(|| {
+    (layout.pins == 3).then(|| {
         format!(
             "physics gives three-double and three-single nearly the same maximum; {:.2} and {:.2} N were measured",
             published::LAYOUTS[1].device_max_n,

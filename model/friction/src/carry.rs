@@ -1,0 +1,231 @@
+//! What the physics says a change of the part does to a curve that was measured on another: how a calibrated switch is
+//! carried to other dimensions.
+
+use crate::band::NORMAL_95;
+use crate::departure::departures;
+use crate::physics::{Constants, PhysicsError, PhysicsSwitch};
+use crate::{Contact, Direction, FrictionCurve, Transition, Trust, capstan_tension_n};
+
+/// How much of a change that the physics makes may be wrong, as a standard deviation. Chosen: no calibration has yet
+/// measured a change of dimensions.
+const UNSURE_CHANGE: f64 = 0.5;
+/// What the change may do beside, as a standard deviation for a factor e of a parameter. Chosen.
+const UNKNOWN_CHANGE: f64 = 0.1;
+/// Loads over which thresholds are compared, as factors of the lightest and the heaviest, and their number.
+const THRESHOLDS: (f64, f64, usize) = (0.3, 4.0, 48);
+/// Relative difference below which two contacts are one.
+const SAME: f64 = 1e-6;
+
+/// The change from one contact, the rig's, to another, by the physics.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Carry {
+    /// `ln` of friction there over friction on the rig, load by load; zeros if both are one.
+    pub log_friction: Vec<f64>,
+    /// Factor on the load at which it switches.
+    pub threshold_factor: f64,
+    /// Half width of `ln D` at 95 % that the change adds, load by load.
+    pub half_width: Vec<f64>,
+    /// What differs, in words; empty if both are one.
+    pub reasons: Vec<String>,
+}
+
+impl Carry {
+    /// The change from `rig` to `part` at `loads_n` newtons, ascending.
+    ///
+    /// ```
+    /// use pinswitch_friction::physics::Bed;
+    /// use pinswitch_friction::{Carry, Contact, PinPattern, Substrate, published};
+    ///
+    /// let pins = PinPattern::even(3, published::LAYOUTS[1].pitch_rad());
+    /// let rig = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
+    /// let thick = rig.clone().with_bed(Bed { layer_mm: 3.0, ..*rig.bed() });
+    /// let carry = Carry::between(&rig, &thick, &[10.0, 49.671])?;
+    /// assert!(carry.log_friction[1] > 0.0 && carry.threshold_factor < 1.0, "a thick layer switches earlier");
+    /// assert!(carry.reasons[0].starts_with("layer thickness is 3 mm"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`PhysicsError`] if an equilibrium is not found.
+    pub fn between(rig: &Contact, part: &Contact, loads_n: &[f64]) -> Result<Self, PhysicsError> {
+        let heaviest_n = loads_n.iter().copied().fold(0.0, f64::max);
+        let departures = departures(part, &[heaviest_n]);
+        let mut reasons: Vec<String> = departures.iter().map(|d| d.reason(heaviest_n)).collect();
+        reasons.extend(part.remarks());
+        let moved = moved_pins(rig, part);
+        reasons.extend(moved.then(|| pins_reason(rig, part)));
+        let none = vec![0.0; loads_n.len()];
+        if reasons.is_empty() {
+            return Ok(Self { log_friction: none.clone(), threshold_factor: 1.0, half_width: none, reasons });
+        }
+        let switch = |contact: &Contact| PhysicsSwitch::new(contact, Constants::published());
+        let (there, here) = (switch(part).states(loads_n)?, switch(rig).states(loads_n)?);
+        let log_friction: Vec<f64> = there
+            .iter()
+            .zip(&here)
+            .map(|(a, b)| (a.friction_n / b.friction_n).ln())
+            .map(|log| if log.is_finite() { log } else { 0.0 })
+            .collect();
+        let mut apart: f64 = departures.iter().map(|d| d.log_ratio.powi(2)).sum();
+        if let (true, Some(a), Some(b)) =
+            (moved, part.all_pins().mean_pitch_rad(), rig.all_pins().mean_pitch_rad())
+        {
+            apart += (a / b).ln().powi(2);
+        }
+        let half_width = log_friction
+            .iter()
+            .map(|log| NORMAL_95 * (UNSURE_CHANGE * log).hypot(UNKNOWN_CHANGE * apart.sqrt()))
+            .collect();
+        let threshold_factor = threshold_n(part, loads_n)? / threshold_n(rig, loads_n)?;
+        Ok(Self { log_friction, threshold_factor, half_width, reasons })
+    }
+
+    /// Whether both contacts are one.
+    pub fn is_none(&self) -> bool {
+        self.reasons.is_empty()
+    }
+
+    /// Friction and share of the silicone there, of the rig's at the same loads; a share belongs to the load at which the
+    /// rig has switched as far.
+    pub fn applied(
+        &self,
+        loads_n: &[f64],
+        friction_n: &[f64],
+        silicone_share: &[f64],
+    ) -> (Vec<f64>, Vec<f64>) {
+        let friction = friction_n.iter().zip(&self.log_friction).map(|(d, by)| d * by.exp()).collect();
+        let share =
+            loads_n.iter().map(|load| at(loads_n, silicone_share, load / self.threshold_factor)).collect();
+        (friction, share)
+    }
+
+    /// A curve of the rig, there: tensions by the friction exponents, the band as wide as the change asks for, trusted no
+    /// further than an extrapolation if anything differs.
+    pub fn carried(&self, mut curve: FrictionCurve) -> FrictionCurve {
+        if self.is_none() {
+            return curve;
+        }
+        let (wanted, share) = self.applied(&curve.load_n, &curve.friction_n, &curve.silicone_share);
+        for (i, &load) in curve.load_n.iter().enumerate() {
+            let (down, up) = (
+                (curve.friction_n[i] / curve.band_low_n[i].max(1e-9)).ln().max(0.0),
+                (curve.band_high_n[i] / curve.friction_n[i].max(1e-9)).ln().max(0.0),
+            );
+            if load > 0.0 && curve.friction_n[i] > 0.0 {
+                let by = (wanted[i] / load).asinh() / (curve.friction_n[i] / load).asinh();
+                let exponent = |tension: f64| by * (tension / load).ln().abs();
+                curve.eccentric_n[i] =
+                    capstan_tension_n(load, exponent(curve.eccentric_n[i]), Direction::Eccentric);
+                curve.concentric_n[i] =
+                    capstan_tension_n(load, exponent(curve.concentric_n[i]), Direction::Concentric);
+                curve.friction_n[i] = (curve.concentric_n[i] - curve.eccentric_n[i]) / 2.0;
+            }
+            curve.band_low_n[i] = curve.friction_n[i] * (-down.hypot(self.half_width[i])).exp();
+            curve.band_high_n[i] = curve.friction_n[i] * up.hypot(self.half_width[i]).exp();
+        }
+        curve.silicone_share = share;
+        curve.trust = Trust::Extrapolated;
+        curve.reasons.extend(self.reasons.iter().cloned());
+        curve
+    }
+}
+
+/// The load at which the physics switches, N; an end of the range looked at if it does so beyond.
+fn threshold_n(contact: &Contact, loads_n: &[f64]) -> Result<f64, PhysicsError> {
+    let (lightest, heaviest) = (
+        loads_n.iter().copied().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min),
+        loads_n.iter().copied().fold(0.0, f64::max),
+    );
+    if !lightest.is_finite() {
+        return Ok(1.0);
+    }
+    let (down, up, count) = THRESHOLDS;
+    let (from, to) = (down * lightest, up * heaviest);
+    let loads: Vec<f64> =
+        (0..count).map(|i| from * (to / from).powf(i as f64 / (count - 1) as f64)).collect();
+    let shares: Vec<f64> = PhysicsSwitch::new(contact, Constants::published())
+        .states(&loads)?
+        .iter()
+        .map(|s| s.silicone_share)
+        .collect();
+    let on_silicone = shares.first().is_some_and(|share| *share >= 0.5);
+    Ok(Transition::threshold_n(&loads, &shares).unwrap_or(if on_silicone { from } else { to }))
+}
+
+fn moved_pins(rig: &Contact, part: &Contact) -> bool {
+    let (a, b) = (rig.all_pins().angles_rad(), part.all_pins().angles_rad());
+    a.len() != b.len() || a.iter().zip(b).any(|(a, b)| (a - b).abs() > SAME)
+}
+
+fn pins_reason(rig: &Contact, part: &Contact) -> String {
+    let degrees = |contact: &Contact| {
+        let all: Vec<_> =
+            contact.all_pins().angles_rad().iter().map(|a| format!("{:.2}", a.to_degrees())).collect();
+        all.join(", ")
+    };
+    format!("the pins lie at {} deg, on the calibrated rig at {}", degrees(part), degrees(rig))
+}
+
+/// `column` at `load`, linear between its points and constant beyond them.
+fn at(loads_n: &[f64], column: &[f64], load: f64) -> f64 {
+    let above = loads_n.partition_point(|l| *l < load);
+    match (
+        above.checked_sub(1).and_then(|i| loads_n.get(i).zip(column.get(i))),
+        loads_n.get(above).zip(column.get(above)),
+    ) {
+        (Some((l0, c0)), Some((l1, c1))) => c0 + (c1 - c0) * (load - l0) / (l1 - l0),
+        (Some((_, only)), None) | (None, Some((_, only))) => *only,
+        (None, None) => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Bed;
+    use crate::{Law, PinPattern, Substrate, predict_by, published};
+
+    fn rig() -> Contact {
+        let pins = PinPattern::even(3, published::LAYOUTS[1].pitch_rad());
+        Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap()
+    }
+
+    fn loads() -> Vec<f64> {
+        (1..=25).map(|i| 2.0 * f64::from(i)).collect()
+    }
+
+    #[test]
+    fn the_rig_itself_is_carried_nowhere() {
+        let carry = Carry::between(&rig(), &rig(), &loads()).unwrap();
+        let curve = predict_by(Law::Physics, &rig(), &loads()).unwrap();
+        assert!(carry.is_none());
+        assert_eq!(carry.carried(curve.clone()), curve);
+    }
+
+    /// Carrying the physics' own curve gives the physics' own curve there.
+    #[test]
+    fn the_physics_is_carried_to_itself() {
+        for (bed, wrap) in [
+            (Bed { layer_mm: 3.0, ..Bed::published() }, published::wrap_angle_rad()),
+            (Bed { pin_diameter_mm: 0.8, layer_width_mm: 20.0, ..Bed::published() }, 1.3),
+        ] {
+            let part = rig().with_bed(bed).at_wrap(wrap).unwrap();
+            let carry = Carry::between(&rig(), &part, &loads()).unwrap();
+            let there = carry.carried(predict_by(Law::Physics, &rig(), &loads()).unwrap());
+            let known = predict_by(Law::Physics, &part, &loads()).unwrap();
+            for i in 0..loads().len() {
+                assert!(
+                    (there.friction_n[i] / known.friction_n[i] - 1.0).abs() < 0.01,
+                    "{i}: {} {}",
+                    there.friction_n[i],
+                    known.friction_n[i]
+                );
+                assert!(there.eccentric_n[i] <= there.load_n[i] && there.load_n[i] <= there.concentric_n[i]);
+            }
+            let threshold = |curve: &FrictionCurve| Transition::of(curve).unwrap().threshold_n;
+            assert!((threshold(&there) / threshold(&known) - 1.0).abs() < 0.15);
+            assert_eq!(there.trust, Trust::Extrapolated);
+            assert!(!there.reasons.is_empty());
+        }
+    }
+}

@@ -147,6 +147,16 @@ fn wishes_that_cannot_be_read_are_refused() {
             &["design", "--friction", "at most 3 at 50", "--friction", "at least 5 at 50"],
             "'friction at 50 N at most 3 N' and 'friction at 50 N at least 5 N'",
         ),
+        (&["design", "--threshold", "24", "--load-range", "30..60"], "ask.load_range_n = 30..60"),
+        (
+            &["design", "--max-friction", "5", "--friction", "at least 8 at 49.671"],
+            "'friction at 49.671 N at least 8 N'",
+        ),
+        (
+            &["design", "--friction", "at most 5 at 50", "--friction", "at least 8 at 30"],
+            "friction grows with load",
+        ),
+        (&["design", "--threshold", "1e-30"], "0.2 to 1000"),
         (&["design", "--threshold", "20", "--pins", "6..3"], "runs backwards"),
         (&["design", "--threshold", "20", "--pins", "0..3"], "at least 1 pin"),
         (&["design", "--threshold", "20", "--pins", "3..99"], "1 to 15 pins"),

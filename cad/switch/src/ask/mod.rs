@@ -188,7 +188,9 @@ impl Ask {
                     } else {
                         format!("friction grows with load, and {load} N is less than {other_load} N")
                     };
-                    return Err(AskError(format!("'{a}' and '{b}' cannot both hold: {why}; drop one, or widen it")));
+                    return Err(AskError(format!(
+                        "'{a}' and '{b}' cannot both hold: {why}; drop one, or widen it"
+                    )));
                 }
             }
         }
@@ -313,7 +315,8 @@ mod tests {
             let error = refused(targets.clone(), (3.0766, 49.671));
             assert!(targets.iter().all(|t| error.contains(&t.to_string())), "{error}");
         }
-        let fine = vec![at(30.0, Wish::AtMost(5.0)), at(50.0, Wish::AtLeast(8.0)), of(max, Wish::AtMost(9.0))];
+        let fine =
+            vec![at(30.0, Wish::AtMost(5.0)), at(50.0, Wish::AtLeast(8.0)), of(max, Wish::AtMost(9.0))];
         assert_eq!(ask(fine).check_loads((3.0, 50.0)), Ok(()));
     }
 

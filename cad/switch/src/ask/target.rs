@@ -174,7 +174,9 @@ impl Target {
             && outside(load_n, LOADS_N)
         {
             let (least, most) = LOADS_N;
-            return Err(format!("'{self}': a load of {load_n} N is outside {least} to {most} N; give a load within"));
+            return Err(format!(
+                "'{self}': a load of {load_n} N is outside {least} to {most} N; give a load within"
+            ));
         }
         let values = match self.wish {
             Wish::AtMost(value) | Wish::AtLeast(value) | Wish::About { value, .. } => [value; 2],
@@ -182,7 +184,9 @@ impl Target {
         };
         let (least, most) = self.quantity.range();
         match values.into_iter().find(|v| outside(*v, (least, most))) {
-            Some(value) => Err(format!("'{self}': {value} is outside {least} to {most}; give a value within")),
+            Some(value) => {
+                Err(format!("'{self}': {value} is outside {least} to {most}; give a value within"))
+            }
             None => Ok(()),
         }
     }

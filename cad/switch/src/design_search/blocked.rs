@@ -124,9 +124,15 @@ pub(super) fn blocked(
 /// Changes of all parameters, from the nearest design, that meet the ask; none if the search finds none.
 fn together(trial: &Trial<'_>, nearest: &Configuration) -> Vec<Change> {
     let free = Ask {
-        limits: Limits { pins: None, ..if trial.has_soft_sizes() { trial.ask.limits.clone() } else { Limits::default() } },
+        limits: Limits {
+            pins: None,
+            ..if trial.has_soft_sizes() { trial.ask.limits.clone() } else { Limits::default() }
+        },
         materials: Materials::default(),
-        vary: Vary { pattern: false, parameters: Parameter::ALL.iter().map(|p| usual(*p, nearest)).collect() },
+        vary: Vary {
+            pattern: false,
+            parameters: Parameter::ALL.iter().map(|p| usual(*p, nearest)).collect(),
+        },
         ..trial.ask.clone()
     };
     let trial = trial.with_ask(&free);

@@ -213,7 +213,8 @@ impl<'a> Trial<'a> {
         }
         let broken = self.sizes(configuration).into_iter().find(|(_, size, most)| size > &(most + 1e-9));
         broken.map(|(field, size, most)| {
-            let what = if field.contains("radius") { "the supports reach" } else { "shell and supports take" };
+            let what =
+                if field.contains("radius") { "the supports reach" } else { "shell and supports take" };
             format!("{field} = {most} mm: {what} {size:.2} mm")
         })
     }

@@ -98,6 +98,32 @@ fn an_impossible_ask_says_why_and_ends_with_1() {
 }
 
 #[test]
+fn what_cannot_be_printed_within_the_ask_has_a_nearest_design_and_a_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    for (asked, limit, is_moved) in [
+        (&["design", "--threshold", "20", "--outer-width", "10"][..], "limits.outer_width_mm = 10", true),
+        (&["design", "silicone-only", "--keep-pins", "--threshold", "20"], "layout.pins = []", false),
+    ] {
+        let few = ["--starts", "1", "--best", "1", "--draws", "50", "--vary", "none", "--json"];
+        let output = pinswitch(folder.path(), &[asked, &few[..]].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{message}");
+        assert!(message.contains("blocked by") && message.contains(limit), "{message}");
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["possible"], false);
+        assert_eq!(report["proposals"].as_array().unwrap().len(), 1);
+        assert!(report["blocked"]["limit"].as_str().unwrap().contains(limit));
+        let moves = report["blocked"]["moves"].as_array().unwrap();
+        assert_eq!(moves.iter().any(|m| m["parameter"] == "width_mm"), is_moved, "{moves:?}");
+        // One measure: what a move leaves is stated as what is missed now.
+        for missed in moves.iter().flat_map(|m| m["missed"].as_array().unwrap()) {
+            let of = |key: &str| missed[key].as_f64().unwrap();
+            assert!((of("by") - (of("value") - of("bound")).abs() / of("bound")).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
 fn shipped_asks_can_be_read_and_answered() {
     let folder = tempfile::tempdir().unwrap();
     for (name, code) in [("gripper", 0), ("small-joint", 0), ("impossible", 1)] {
@@ -147,6 +173,16 @@ fn wishes_that_cannot_be_read_are_refused() {
             &["design", "--friction", "at most 3 at 50", "--friction", "at least 5 at 50"],
             "'friction at 50 N at most 3 N' and 'friction at 50 N at least 5 N'",
         ),
+        (&["design", "--threshold", "24", "--load-range", "30..60"], "ask.load_range_n = 30..60"),
+        (
+            &["design", "--max-friction", "5", "--friction", "at least 8 at 49.671"],
+            "'friction at 49.671 N at least 8 N'",
+        ),
+        (
+            &["design", "--friction", "at most 5 at 50", "--friction", "at least 8 at 30"],
+            "friction grows with load",
+        ),
+        (&["design", "--threshold", "1e-30"], "0.2 to 1000"),
         (&["design", "--threshold", "20", "--pins", "6..3"], "runs backwards"),
         (&["design", "--threshold", "20", "--pins", "0..3"], "at least 1 pin"),
         (&["design", "--threshold", "20", "--pins", "3..99"], "1 to 15 pins"),

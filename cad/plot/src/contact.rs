@@ -1,6 +1,9 @@
-//! The tendon over its pins: gap to the silicone along the wrap, at several loads.
+//! The tendon over its pins: gap to the silicone along the wrap, at several loads. The legend stands beside the figure, with
+//! the forces of the pins: at a pin the curves of all loads lie within a few pixels.
 
+use plotters::coord::Shift;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use pinswitch_friction::physics::ContactProfile;
 
@@ -8,7 +11,11 @@ use super::PlotError;
 use super::scale::{drawn_size, fine, shown_at_size};
 
 /// Width and height of the figure in pixels.
-const SIZE: (u32, u32) = (760, 420);
+const SIZE: (u32, u32) = (1000, 420);
+/// Width of what stands beside it, in pixels.
+const LEGEND: u32 = 260;
+/// Forces of pins that fit into a line of the legend.
+const FORCES_IN_A_LINE: usize = 6;
 const SILICONE: RGBColor = RGBColor(214, 226, 236);
 /// From a light load to a heavy one.
 const LOADS: [RGBColor; 4] =
@@ -31,11 +38,12 @@ fn draw(
 ) -> Result<(), Box<dyn std::error::Error>> {
     let root = SVGBackend::with_string(svg, drawn_size(SIZE)).into_drawing_area();
     root.fill(&WHITE)?;
+    let (figure, legend) = root.split_horizontally(fine::<u32>(1) * (SIZE.0 - LEGEND));
     let gaps = || profiles.iter().flat_map(|(_, p)| p.gap_mm.iter().copied());
-    let (low, high) = (gaps().fold(-0.1, f64::min) * 1.1, gaps().fold(0.1, f64::max) * 1.35);
+    let (low, high) = (gaps().fold(-0.1, f64::min) * 1.1, gaps().fold(0.1, f64::max) * 1.1);
     let half =
         profiles.iter().flat_map(|(_, p)| p.angle_rad.last().copied()).fold(0.1, f64::max).to_degrees();
-    let mut chart = ChartBuilder::on(&root)
+    let mut chart = ChartBuilder::on(&figure)
         .margin(fine::<u32>(14))
         .caption(title, ("sans-serif", fine::<i32>(19)))
         .x_label_area_size(fine::<u32>(44))
@@ -52,52 +60,77 @@ fn draw(
         .label_style(("sans-serif", fine::<i32>(14)))
         .axis_desc_style(("sans-serif", fine::<i32>(15)))
         .draw()?;
-    chart
-        .draw_series(profiles.first().map(|(_, p)| {
-            let (from, to) = (p.silicone_rad.0.to_degrees(), p.silicone_rad.1.to_degrees());
-            Rectangle::new([(from, low), (to, 0.0)], SILICONE.filled())
-        }))?
-        .label("silicone that the tendon can touch")
-        .legend(|(x, y)| {
-            Rectangle::new(
-                [(x, y - fine::<i32>(5)), (x + fine::<i32>(22), y + fine::<i32>(5))],
-                SILICONE.filled(),
-            )
-        });
-    for ((load, profile), colour) in profiles.iter().zip(LOADS.iter().cycle()) {
+    chart.draw_series(profiles.first().map(|(_, p)| {
+        let (from, to) = (p.silicone_rad.0.to_degrees(), p.silicone_rad.1.to_degrees());
+        Rectangle::new([(from, low), (to, 0.0)], SILICONE.filled())
+    }))?;
+    for ((_, profile), colour) in profiles.iter().zip(LOADS.iter().cycle()) {
         let line = profile.angle_rad.iter().map(|a| a.to_degrees()).zip(profile.gap_mm.iter().copied());
-        let on_silicone = profile.silicone_turn_rad
-            / (profile.silicone_turn_rad + profile.pin_turn_rad.iter().sum::<f64>()).max(f64::MIN_POSITIVE);
-        chart
-            .draw_series(LineSeries::new(line, colour.stroke_width(fine(2))))?
-            .label(format!("{load:.1} N: {:.0} % of the turn on silicone", 100.0 * on_silicone))
-            .legend(move |(x, y)| {
-                PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(2)))
-            });
-        let pins = profile.pin_n.iter().zip(&profile.pin_angle_rad).map(|(force, angle)| {
+        chart.draw_series(LineSeries::new(line, colour.stroke_width(fine(2))))?;
+        let pins = profile.pin_angle_rad.iter().map(|angle| {
             let nearest =
                 profile.angle_rad.partition_point(|a| *a < angle - 1e-9).min(profile.gap_mm.len() - 1);
-            (angle.to_degrees(), profile.gap_mm[nearest], *force)
+            Circle::new((angle.to_degrees(), profile.gap_mm[nearest]), fine::<i32>(4), colour.filled())
         });
-        chart.draw_series(pins.map(|(angle, gap, force)| {
-            EmptyElement::at((angle, gap))
-                + Circle::new((0, 0), fine::<i32>(4), colour.filled())
-                + Text::new(
-                    format!("{force:.1} N"),
-                    (fine::<i32>(6), -fine::<i32>(16)),
-                    ("sans-serif", fine::<i32>(12)).into_font().color(colour),
-                )
-        }))?;
+        chart.draw_series(pins)?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::LowerMiddle)
-        .margin(fine::<i32>(8))
-        .legend_area_size(fine::<u32>(26))
-        .background_style(WHITE.mix(0.9))
-        .border_style(BLACK.mix(0.3).stroke_width(fine(1)))
-        .label_font(("sans-serif", fine::<i32>(13)))
-        .draw()?;
+    drop(chart);
+    draw_legend(&legend, profiles)?;
     root.present()?;
     Ok(())
+}
+
+/// What the marks mean, line by line beside the figure: each load with the silicone's share and the force on every pin.
+fn draw_legend(
+    area: &DrawingArea<SVGBackend<'_>, Shift>,
+    profiles: &[(f64, ContactProfile)],
+) -> Result<(), Box<dyn std::error::Error>> {
+    let unit = fine::<i32>(1);
+    let style =
+        TextStyle::from(("sans-serif", fine::<i32>(13)).into_font()).pos(Pos::new(HPos::Left, VPos::Center));
+    let text = 32 * unit;
+    let mut y = 60 * unit;
+    area.draw(&Rectangle::new([(4 * unit, y - 6 * unit), (24 * unit, y + 6 * unit)], SILICONE.filled()))?;
+    area.draw(&Text::new("silicone that the tendon can touch", (text, y), style.clone()))?;
+    for ((load, profile), colour) in profiles.iter().zip(LOADS.iter().cycle()) {
+        y += 28 * unit;
+        area.draw(&PathElement::new([(4 * unit, y), (24 * unit, y)], colour.stroke_width(fine(2))))?;
+        let on_silicone = profile.silicone_turn_rad
+            / (profile.silicone_turn_rad + profile.pin_turn_rad.iter().sum::<f64>()).max(f64::MIN_POSITIVE);
+        let words = format!("{load:.1} N: {:.0} % of the turn on silicone", 100.0 * on_silicone);
+        area.draw(&Text::new(words, (text, y), style.clone()))?;
+        let forces: Vec<String> = profile.pin_n.iter().map(|force| format!("{force:.1}")).collect();
+        for (i, row) in forces.chunks(FORCES_IN_A_LINE).enumerate() {
+            y += 17 * unit;
+            let row = row.join(", ");
+            let words = if i == 0 { format!("on pins {row}") } else { row };
+            let words = if (i + 1) * FORCES_IN_A_LINE >= forces.len() { format!("{words} N") } else { words };
+            area.draw(&Text::new(words, (text, y), style.color(colour)))?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pinswitch_friction::physics::contact_profile;
+    use pinswitch_friction::{Contact, Direction, PinPattern, Substrate, published};
+
+    #[test]
+    fn no_word_of_the_legend_lies_on_the_figure() {
+        let pins = PinPattern::even(3, 0.3);
+        let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap();
+        let profiles = [10.0, 40.0].map(|n| (n, contact_profile(&contact, n, Direction::Eccentric).unwrap()));
+        let svg = contact_svg("three pins", &profiles).unwrap();
+        let edge = f64::from(fine::<u32>(1) * (SIZE.0 - LEGEND));
+        let x_of = |words: &str| -> f64 {
+            let end = svg.find(words).unwrap();
+            let tag = &svg[svg[..end].rfind("<text").unwrap()..end];
+            tag.split("x=\"").nth(1).and_then(|x| x.split('"').next()).unwrap().parse().unwrap()
+        };
+        for words in ["silicone that the", "40.0 N: ", "on pins"] {
+            assert!(x_of(words) > edge, "{words} at {} of {edge}", x_of(words));
+        }
+    }
 }

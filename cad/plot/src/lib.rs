@@ -22,6 +22,7 @@ mod calibration_page;
 mod contact;
 mod finger;
 mod friction;
+mod front;
 mod log;
 mod pareto;
 mod published_page;

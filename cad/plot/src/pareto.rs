@@ -1,13 +1,14 @@
-//! Threshold against friction of every pattern that was tried, the front that nothing beats, and what was proposed. The
+//! Threshold against friction of every pattern that was tried, the front of what was asked, and what was proposed. The
 //! legend stands beside the figure, and numbers move aside until none covers another.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use pinswitch_friction::layout_search::{LayoutCandidate, pareto_front};
+use pinswitch_friction::layout_search::LayoutCandidate;
 
 use super::PlotError;
+use super::front::front;
 use super::scale::{drawable, drawn_size, fine, shown_at_size};
 
 const OTHERS: RGBColor = RGBColor(150, 160, 175);
@@ -98,14 +99,17 @@ fn draw(
         )))?;
     }
     chart.draw_series(points.iter().map(|p| Circle::new(*p, fine::<i32>(2), OTHERS.mix(0.6).filled())))?;
-    let front: Vec<(f64, f64)> = pareto_front(all).into_iter().filter_map(at).collect();
-    chart.draw_series(LineSeries::new(front, FRONT.stroke_width(fine(2))))?;
+    let front = asked.and_then(|asked| front(&points, asked));
+    if let Some(front) = &front {
+        chart.draw_series(LineSeries::new(front.points.iter().copied(), FRONT.stroke_width(fine(2))))?;
+    }
     let places: Vec<(usize, (i32, i32))> =
         numbered.iter().map(|(number, p)| (*number, chart.backend_coord(p))).collect();
     let (across, down) = chart.plotting_area().get_pixel_range();
     drop(chart);
     draw_numbers(&root, &places, (across.start, across.end), (down.start, down.end))?;
-    draw_legend(&legend, points.len(), !numbered.is_empty(), asked.is_some())?;
+    let front = front.as_ref().map(|f| f.words.as_str());
+    draw_legend(&legend, points.len(), front, !numbered.is_empty(), asked.is_some())?;
     root.present()?;
     Ok(())
 }
@@ -174,7 +178,13 @@ fn placed(points: &[(i32, i32)], across: (i32, i32), down: (i32, i32)) -> Vec<((
 }
 
 /// What the marks mean, line by line beside the figure.
-fn draw_legend(area: &Area<'_>, patterns: usize, has_designs: bool, has_ask: bool) -> Result<(), Failure> {
+fn draw_legend(
+    area: &Area<'_>,
+    patterns: usize,
+    front: Option<&str>,
+    has_designs: bool,
+    has_ask: bool,
+) -> Result<(), Failure> {
     let unit = fine::<i32>(1);
     let style =
         TextStyle::from(("sans-serif", fine::<i32>(14)).into_font()).pos(Pos::new(HPos::Left, VPos::Center));
@@ -187,9 +197,11 @@ fn draw_legend(area: &Area<'_>, patterns: usize, has_designs: bool, has_ask: boo
     let y = next();
     area.draw(&Circle::new((mark, y), 3 * unit, OTHERS.filled()))?;
     area.draw(&Text::new(format!("{patterns} patterns that switch"), (text, y), style.clone()))?;
-    let y = next();
-    area.draw(&PathElement::new([(4 * unit, y), (24 * unit, y)], FRONT.stroke_width(fine(2))))?;
-    area.draw(&Text::new("none later that rubs more", (text, y), style.clone()))?;
+    if let Some(words) = front {
+        let y = next();
+        area.draw(&PathElement::new([(4 * unit, y), (24 * unit, y)], FRONT.stroke_width(fine(2))))?;
+        area.draw(&Text::new(words.to_owned(), (text, y), style.clone()))?;
+    }
     if has_designs {
         let y = next();
         area.draw(&Circle::new((mark, y), POINT * unit, CHOSEN.filled()))?;
@@ -238,6 +250,8 @@ mod tests {
         let asked = AskedRegion { threshold_n: (9.0, f64::INFINITY), friction_n: (0.0, 6.0) };
         let svg = pareto_svg(&all, &all, Some(asked)).unwrap();
         assert!(svg.contains("\n1\n") && svg.contains("\n2\n") && !svg.contains("\n3\n"), "{svg}");
-        assert!(svg.contains("2 patterns that switch"));
+        assert!(svg.contains("2 patterns that switch") && svg.contains("none later that rubs less"));
+        let about = AskedRegion { threshold_n: (9.0, 11.0), friction_n: (0.0, 6.0) };
+        assert!(!pareto_svg(&all, &all, Some(about)).unwrap().contains("that rubs"));
     }
 }

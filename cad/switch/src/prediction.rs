@@ -59,8 +59,13 @@ pub fn loads_n(design: &Design) -> Vec<f64> {
 
 fn spaced_loads_n(design: &Design, points: usize) -> Vec<f64> {
     let f = &design.configuration().friction;
-    let step = (f.load_max_n - f.load_min_n) / (points - 1) as f64;
-    (0..points).map(|i| f.load_min_n + step * i as f64).collect()
+    evenly((f.load_min_n, f.load_max_n), points)
+}
+
+/// So many loads from the lightest to the heaviest, evenly.
+pub(crate) fn evenly((from, to): (f64, f64), points: usize) -> Vec<f64> {
+    let step = (to - from) / (points - 1) as f64;
+    (0..points).map(|i| from + step * i as f64).collect()
 }
 
 #[cfg(test)]

@@ -51,7 +51,7 @@ impl Transition {
     }
 
     /// The threshold of states at ascending loads, for a sweep that needs no band.
-    pub(crate) fn threshold_n(load_n: &[f64], silicone_share: &[f64]) -> Option<f64> {
+    pub fn threshold_n(load_n: &[f64], silicone_share: &[f64]) -> Option<f64> {
         let starts_on_pins = *silicone_share.first()? < 0.5;
         starts_on_pins.then(|| crossing(load_n, silicone_share, 0.5)).flatten()
     }

@@ -19,7 +19,7 @@ use flags::AskFlags;
 use pinswitch_plot::{AskedRegion, pareto_svg};
 use pinswitch_switch::ask::{Ask, Parameter, Quantity};
 use pinswitch_switch::config::{Configuration, Name, to_toml};
-use pinswitch_switch::design_search::{Belief, Blocked, Found, Options, Proposal, PublishedPhysics, search};
+use pinswitch_switch::design_search::{Belief, Blocked, Found, Options, Proposal, PublishedPhysics, load_range_n, search};
 use pinswitch_switch::output::OutputFile;
 use progress::Bar;
 
@@ -88,6 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let base = arguments.source.with_preset(ask.limits.preset.as_deref()).design()?;
     let options = options(arguments)?;
     check_pins(&ask, base.configuration())?;
+    ask.check_loads(load_range_n(base.configuration(), &ask)).map_err(Failure::bad_input)?;
     if arguments.model.is_some() && ask.vary.parameters.iter().any(|v| v.parameter == Parameter::WrapDeg) {
         return Err(Failure::bad_input(
             "--vary wrap_deg: a calibrated switch is known at the wrap of its rig only; leave out wrap_deg or --model",
@@ -102,11 +103,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bar = Bar::new();
     let found = search(&base, &ask, belief, options, &bar);
     bar.finish();
-    if found.proposals.is_empty() {
-        return Err(Failure::failed(
-            "no pattern that touches the tendon can be printed within the ask; widen limits, --pins or --vary",
-        ));
-    }
     log::info!(
         "{} patterns, mirror images once; {} curves of patterns computed",
         found.patterns,
@@ -119,7 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         seed: options.seed,
         patterns: found.patterns,
         tried: found.tried,
-        possible: found.blocked.is_none(),
+        possible: found.blocked.is_none() && !found.proposals.is_empty(),
         proposals: &found.proposals,
         blocked: found.blocked.as_ref(),
     };
@@ -136,6 +132,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     match &found.blocked {
         Some(blocked) => Err(Failure::failed(words::refusal(blocked))),
+        None if found.proposals.is_empty() => Err(Failure::failed(
+            "nothing that the tendon touches can be printed, whatever the ask; start from another configuration",
+        )),
         None => Ok(()),
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use pinswitch_switch::ask::{Ask, Parameter};
-use pinswitch_switch::design_search::{Blocked, Found, Move, Proposal};
+use pinswitch_switch::design_search::{Blocked, Found, Missed, Move, Proposal};
 
 /// Shares of the variance that are shown.
 const SHARES: usize = 3;
@@ -96,12 +96,12 @@ fn parameters(p: &Proposal, ask: &Ask) -> String {
 
 /// Why the ask cannot be met, for standard error.
 pub(super) fn refusal(blocked: &Blocked) -> String {
-    let missed: Vec<String> = blocked
-        .missed
-        .iter()
-        .map(|m| format!("{} has {:.3}, {:.0} % from {:.3}", m.target, m.value, 100.0 * m.by, m.bound))
-        .collect();
-    let mut text = format!("nothing within the ask meets it; the nearest misses: {}", missed.join("; "));
+    let mut text = "nothing within the ask meets it; the nearest ".to_owned();
+    text += &if blocked.missed.is_empty() {
+        "that can be printed does, and lies outside of it".to_owned()
+    } else {
+        format!("misses: {}", all_missed(&blocked.missed))
+    };
     text += &format!("\n  blocked by: {}", blocked.limit);
     for m in blocked.moves.iter().take(3) {
         text += &format!("\n  {}", advice(m));
@@ -117,12 +117,18 @@ pub(super) fn refusal(blocked: &Blocked) -> String {
     text
 }
 
+/// How far all of these are from their bounds, as shares of the bounds.
+fn all_missed(missed: &[Missed]) -> String {
+    let one = |m: &Missed| format!("{} has {:.3}, {:.1} % from {:.3}", m.target, m.value, 100.0 * m.by, m.bound);
+    missed.iter().map(one).collect::<Vec<_>>().join("; ")
+}
+
 fn advice(m: &Move) -> String {
     let verb = if m.to > m.from { "raise" } else { "lower" };
     let effect = if m.meets {
         "then the ask is met".to_owned()
     } else {
-        format!("then it is missed by {:.0} %", 100.0 * (m.miss.exp() - 1.0))
+        format!("then {}", all_missed(&m.missed))
     };
     format!("{verb} {} from {:.2} to {:.2}: {effect} ({})", m.parameter.name(), m.from, m.to, m.forbidden_by)
 }

@@ -18,6 +18,13 @@ pub use tolerance::{SOURCES, Tolerances};
 /// `within` of an `about` that gives none.
 pub const DEFAULT_WITHIN: f64 = 0.10;
 
+/// Smallest and largest size that can be asked for, mm.
+const LEAST_SIZE_MM: f64 = 0.1;
+/// See [`LEAST_SIZE_MM`].
+const MOST_SIZE_MM: f64 = 1000.0;
+/// Loads that differ by less than this share are one load.
+const SAME_LOAD: f64 = 1e-6;
+
 /// Targets, limits, what may vary, materials at hand, and how well parts are made.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Ask {
@@ -124,6 +131,9 @@ impl Ask {
         if self.targets.is_empty() {
             return fail("nothing is asked; give a threshold, a friction or a stiffness".to_owned());
         }
+        for target in &self.targets {
+            target.check_magnitude().map_err(AskError)?;
+        }
         for (i, a) in self.targets.iter().enumerate() {
             if let Some(b) = self.targets[i + 1..].iter().find(|b| a.contradicts(b)) {
                 return fail(format!("'{a}' and '{b}' cannot both hold; drop one, or widen it"));
@@ -147,6 +157,46 @@ impl Ask {
         }
     }
 
+    /// Checks that the targets can hold together over these loads, the lightest and the heaviest, N.
+    ///
+    /// # Errors
+    /// [`AskError`] if a threshold is asked outside of the loads, or if two frictions contradict each other at one load or
+    /// because friction grows with load.
+    pub fn check_loads(&self, (lightest, heaviest): (f64, f64)) -> Result<(), AskError> {
+        for target in self.targets.iter().filter(|t| t.quantity == Quantity::Threshold) {
+            let (low, high) = target.wish.interval();
+            if low > heaviest || high < lightest {
+                return Err(AskError(format!(
+                    "'{target}' lies outside of the loads, ask.load_range_n = {lightest}..{heaviest} N, within which a \
+                     threshold is looked for; widen the loads (--load-range), or ask for a threshold within them"
+                )));
+            }
+        }
+        let mut frictions: Vec<(f64, &Target)> = self
+            .targets
+            .iter()
+            .filter_map(|t| Some((t.quantity.friction_load_n((lightest, heaviest))?, t)))
+            .collect();
+        frictions.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (i, (load, a)) in frictions.iter().enumerate() {
+            for (other_load, b) in &frictions[i + 1..] {
+                let is_same_load = other_load - load <= SAME_LOAD * load;
+                let (a_of, b_of) = (a.wish.interval(), b.wish.interval());
+                if a_of.0 > b_of.1 || (is_same_load && b_of.0 > a_of.1) {
+                    let why = if is_same_load {
+                        format!("both are about {load} N of load")
+                    } else {
+                        format!("friction grows with load, and {load} N is less than {other_load} N")
+                    };
+                    return Err(AskError(format!(
+                        "'{a}' and '{b}' cannot both hold: {why}; drop one, or widen it"
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn check_limits(&self) -> Result<(), AskError> {
         let lengths = [
             ("outer_radius_mm", self.limits.outer_radius_mm),
@@ -156,6 +206,12 @@ impl Ask {
             if let Some(value) = value.filter(|v| !(*v > 0.0 && v.is_finite())) {
                 return Err(AskError(format!(
                     "limits.{field} = {value} is not above 0 mm; give a length above 0"
+                )));
+            }
+            if let Some(value) = value.filter(|v| !(LEAST_SIZE_MM..=MOST_SIZE_MM).contains(v)) {
+                return Err(AskError(format!(
+                    "limits.{field} = {value} is outside {LEAST_SIZE_MM} to {MOST_SIZE_MM} mm, the sizes that a switch can \
+                     be asked for; give a length within"
                 )));
             }
         }
@@ -239,6 +295,47 @@ mod tests {
         assert_eq!(both.check(), Ok(()));
         both.vary.parameters.push(Varied::by_default(Parameter::PinDiameterMm));
         assert!(both.check().unwrap_err().0.contains("vary.pin_diameter_mm and materials.pin_diameter_mm"));
+    }
+
+    #[test]
+    fn what_loads_rule_out_is_refused_with_both_names() {
+        let of = |quantity, wish| Target { quantity, wish };
+        let at = |load_n, wish| of(Quantity::Friction { load_n }, wish);
+        let (max, low) = (Quantity::MaxFriction, Quantity::LowLoadFriction);
+        let refused = |targets: Vec<Target>, range| ask(targets).check_loads(range).unwrap_err().0;
+        let about = of(Quantity::Threshold, Wish::About { value: 24.0, within: 0.1 });
+        let error = refused(vec![about], (30.0, 60.0));
+        assert!(error.contains("threshold about 24 N") && error.contains("30..60"), "{error}");
+        for targets in [
+            vec![of(max, Wish::AtMost(5.0)), at(49.671, Wish::AtLeast(8.0))],
+            vec![at(3.0766, Wish::AtMost(0.1)), of(low, Wish::AtLeast(0.2))],
+            vec![at(50.0, Wish::AtMost(5.0)), at(30.0, Wish::AtLeast(8.0))],
+            vec![of(low, Wish::AtLeast(6.0)), of(max, Wish::AtMost(5.0))],
+        ] {
+            let error = refused(targets.clone(), (3.0766, 49.671));
+            assert!(targets.iter().all(|t| error.contains(&t.to_string())), "{error}");
+        }
+        let fine =
+            vec![at(30.0, Wish::AtMost(5.0)), at(50.0, Wish::AtLeast(8.0)), of(max, Wish::AtMost(9.0))];
+        assert_eq!(ask(fine).check_loads((3.0, 50.0)), Ok(()));
+    }
+
+    #[test]
+    fn magnitudes_that_no_switch_has_are_refused_with_a_bound() {
+        for (quantity, value) in [
+            (Quantity::Threshold, 1e-30),
+            (Quantity::Threshold, 1e30),
+            (Quantity::MaxFriction, 1e-30),
+            (Quantity::Friction { load_n: 1e-30 }, 1.0),
+            (Quantity::Friction { load_n: 1e5 }, 1.0),
+            (Quantity::Stiffness, 1e9),
+        ] {
+            let error = ask(vec![Target { quantity, wish: Wish::AtLeast(value) }]).check().unwrap_err().0;
+            assert!(error.contains("is outside") && error.contains("give a"), "{error}");
+        }
+        let mut small = ask(vec![Target { quantity: Quantity::Threshold, wish: Wish::AtLeast(5.0) }]);
+        small.limits.outer_width_mm = Some(1e-9);
+        assert!(small.check().unwrap_err().0.contains("0.1 to 1000 mm"));
     }
 
     #[test]

@@ -30,6 +30,25 @@ impl Quantity {
             _ => "N",
         }
     }
+
+    /// The values that can be asked of it: no model says anything beyond.
+    pub const fn range(self) -> (f64, f64) {
+        match self {
+            Self::Threshold => (0.2, 1000.0),
+            Self::Stiffness => (0.1, 20.0),
+            _ => (1e-4, 1000.0),
+        }
+    }
+
+    /// The load at which it is a friction, N, if it is one.
+    pub const fn friction_load_n(self, (lightest, heaviest): (f64, f64)) -> Option<f64> {
+        match self {
+            Self::Friction { load_n } => Some(load_n),
+            Self::LowLoadFriction => Some(lightest),
+            Self::MaxFriction => Some(heaviest),
+            Self::Threshold | Self::Stiffness => None,
+        }
+    }
 }
 
 impl std::fmt::Display for Quantity {
@@ -144,7 +163,34 @@ impl std::fmt::Display for Target {
     }
 }
 
+/// Lightest and heaviest load of a friction that can be asked for, N.
+const LOADS_N: (f64, f64) = (0.01, 1000.0);
+
 impl Target {
+    /// Checks that load and values are of a magnitude that a switch can have.
+    pub(super) fn check_magnitude(&self) -> Result<(), String> {
+        let outside = |value: f64, (least, most): (f64, f64)| !(least..=most).contains(&value);
+        if let Quantity::Friction { load_n } = self.quantity
+            && outside(load_n, LOADS_N)
+        {
+            let (least, most) = LOADS_N;
+            return Err(format!(
+                "'{self}': a load of {load_n} N is outside {least} to {most} N; give a load within"
+            ));
+        }
+        let values = match self.wish {
+            Wish::AtMost(value) | Wish::AtLeast(value) | Wish::About { value, .. } => [value; 2],
+            Wish::Between(low, high) => [low, high],
+        };
+        let (least, most) = self.quantity.range();
+        match values.into_iter().find(|v| outside(*v, (least, most))) {
+            Some(value) => {
+                Err(format!("'{self}': {value} is outside {least} to {most}; give a value within"))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Whether no value can meet both.
     pub fn contradicts(&self, other: &Self) -> bool {
         let ((a, b), (c, d)) = (self.wish.interval(), other.wish.interval());

@@ -34,7 +34,7 @@ impl Slot {
 }
 
 impl Dimensions {
-    pub(super) const fn new(configuration: Configuration) -> Self {
+    pub(crate) const fn new(configuration: Configuration) -> Self {
         Self { configuration }
     }
 

@@ -4,8 +4,9 @@ use serde::Serialize;
 
 use super::candidate::Trial;
 use super::refine::{Aim, Place, refined};
+use super::relaxed::usual;
 use super::space::{Space, is_predictable};
-use crate::ask::{Ask, Limits, Materials, Parameter, Target, Varied, Vary};
+use crate::ask::{Ask, Limits, Materials, Parameter, Target, Vary};
 use crate::config::Configuration;
 
 /// Steps of the search over all parameters together.
@@ -26,7 +27,7 @@ pub struct Missed {
     pub value: f64,
     /// The bound that it would have to reach.
     pub bound: f64,
-    /// How far it lies from the bound, as a share of the bound.
+    /// How far it lies from the bound, as a share of the bound: the one measure in which misses are stated.
     pub by: f64,
 }
 
@@ -41,8 +42,11 @@ pub struct Move {
     pub to: f64,
     /// Whether all targets are met there.
     pub meets: bool,
-    /// How far the targets are missed there, as a root of summed squares of logarithms.
-    pub miss: f64,
+    /// What is missed there.
+    pub missed: Vec<Missed>,
+    /// How far all is missed there, to compare moves by: a root of summed squares of logarithms.
+    #[serde(skip)]
+    pub(super) miss: f64,
     /// What forbids it: a limit of the ask, or a rule of what can be printed.
     pub forbidden_by: String,
 }
@@ -79,10 +83,8 @@ pub(super) fn blocked(
     nearest: &Configuration,
     other_pins: Option<(usize, f64)>,
 ) -> Blocked {
-    let values = trial.median(nearest).unwrap_or_default();
-    let miss = trial.miss(&values);
-    let missed =
-        trial.ask.targets.iter().zip(&values).filter_map(|(t, v)| missed(t, *v, trial.range_n)).collect();
+    let miss = trial.shortfall(nearest).unwrap_or(f64::INFINITY);
+    let missed = all_missed(trial, nearest);
     let mut moves: Vec<Move> = Parameter::ALL
         .iter()
         .filter_map(|p| best_move(trial, space, nearest, *p))
@@ -121,27 +123,41 @@ pub(super) fn blocked(
 
 /// Changes of all parameters, from the nearest design, that meet the ask; none if the search finds none.
 fn together(trial: &Trial<'_>, nearest: &Configuration) -> Vec<Change> {
-    let usual = |p: &Parameter| {
-        let (low, high) = p.default_range();
-        let here = p.value(nearest);
-        Varied { parameter: *p, from: low.min(here), to: high.max(here) }
-    };
     let free = Ask {
-        limits: Limits::default(),
+        limits: Limits {
+            pins: None,
+            ..if trial.has_soft_sizes() { trial.ask.limits.clone() } else { Limits::default() }
+        },
         materials: Materials::default(),
-        vary: Vary { pattern: false, parameters: Parameter::ALL.iter().map(usual).collect() },
+        vary: Vary {
+            pattern: false,
+            parameters: Parameter::ALL.iter().map(|p| usual(*p, nearest)).collect(),
+        },
         ..trial.ask.clone()
     };
-    let trial = Trial::new(&free, trial.belief, trial.range_n);
+    let trial = trial.with_ask(&free);
     let space = Space::new(nearest, &free);
     let start = Place { material: 0, pins: nearest.layout.pins.clone(), at: space.base() };
     let there = refined(&trial, &space, &start, Aim::Nearest, TOGETHER_STEPS);
     let found = space.configuration(there.material, &there.pins, &there.at);
-    if trial.median(&found).is_none_or(|values| !trial.is_met(&values)) {
+    if trial.shortfall(&found).is_none_or(|miss| miss > 0.0) {
         return Vec::new();
     }
     let change = |p: &Parameter| Change { parameter: *p, from: p.value(nearest), to: p.value(&found) };
     Parameter::ALL.iter().map(change).filter(|c| (c.to / c.from).ln().abs() > 0.005).collect()
+}
+
+/// Targets, and sizes where they are wishes, that `configuration` misses.
+fn all_missed(trial: &Trial<'_>, configuration: &Configuration) -> Vec<Missed> {
+    let values = trial.median(configuration).unwrap_or_default();
+    let targets = trial.ask.targets.iter().zip(&values).filter_map(|(t, v)| missed(t, *v, trial.range_n));
+    let sizes = trial.missed_sizes(configuration).into_iter().map(|(field, value, bound)| Missed {
+        target: format!("{field} = {bound} mm"),
+        value,
+        bound,
+        by: (value - bound) / bound,
+    });
+    targets.chain(sizes).collect()
 }
 
 fn missed(target: &Target, value: f64, range_n: (f64, f64)) -> Option<Missed> {
@@ -172,7 +188,11 @@ fn best_move(
     let from = parameter.value(nearest);
     let (least, most) = parameter.hard_range();
     let (usual_least, usual_most) = parameter.default_range();
-    let (low, high) = (usual_least.min(from / 2.0).max(least), usual_most.max(from * 2.0).min(most));
+    let (low, high) = if trial.missed_sizes(nearest).is_empty() {
+        (usual_least.min(from / 2.0).max(least), usual_most.max(from * 2.0).min(most))
+    } else {
+        (least, most)
+    };
     let tried = (0..=TRIED).filter_map(|i| {
         let to = parameter.rounded(low * (high / low).powf(i as f64 / TRIED as f64), (low, high));
         let mut moved = nearest.clone();
@@ -180,7 +200,7 @@ fn best_move(
         if (to - from).abs() < 1e-9 || !is_predictable(&moved) {
             return None;
         }
-        let miss = trial.miss(&trial.median(&moved)?);
+        let miss = trial.shortfall(&moved)?;
         // What no printer makes is no advice.
         let printable = crate::design::Design::new(moved.clone()).is_ok();
         printable.then_some((to, miss, moved))
@@ -192,7 +212,8 @@ fn best_move(
     let forbidden_by = forbidden(trial.ask, space, parameter, from, to)
         .or_else(|| trial.broken_limit(&moved))
         .unwrap_or_else(|| "the search, which stopped near to it: ask again with more --starts".to_owned());
-    Some(Move { parameter, from, to, meets: miss == 0.0, miss, forbidden_by })
+    let missed = all_missed(trial, &moved);
+    Some(Move { parameter, from, to, meets: miss == 0.0, missed, miss, forbidden_by })
 }
 
 /// Whether the ask names the materials that a parameter is taken from.

@@ -1,17 +1,23 @@
 //! A configuration on trial, its curve against the targets, and the loads to look at.
 
-use pinswitch_friction::Substrate;
+use pinswitch_friction::{Substrate, Transition};
 
 use super::belief::{Belief, Believed, ModelError, Part};
 use super::curve::Curve;
 use crate::ask::{Ask, Quantity, SOURCES, Target};
 use crate::config::Configuration;
-use crate::design::{Design, contact_of};
+use crate::design::{Design, Dimensions, contact_of};
+use crate::prediction::evenly;
 
 /// Loads between the ends, evenly in their logarithm.
 const LOADS: usize = 22;
 /// How far the loads reach beyond the range: a made part may switch a little outside of it.
 const REACH: f64 = 1.5;
+
+/// Loads of `predict` on each side of a threshold that are looked at.
+const AROUND: usize = 2;
+/// Share by which a threshold between few loads may be off.
+const NEAR: f64 = 0.05;
 
 /// What does not change during a search.
 pub(super) struct Trial<'a> {
@@ -21,6 +27,10 @@ pub(super) struct Trial<'a> {
     pub(super) range_n: (f64, f64),
     /// Loads at which curves are computed.
     pub(super) loads_n: Vec<f64>,
+    /// The loads of the curve that `predict` shows: its threshold is the one that is stated.
+    predicted_n: Vec<f64>,
+    /// Whether limits of size are wishes, whose excess counts as a miss, and refuse nothing.
+    has_soft_sizes: bool,
 }
 
 /// The draw of one made part: constants, model, dimensions. All standard normal.
@@ -32,7 +42,7 @@ pub(super) struct Draw {
 }
 
 impl<'a> Trial<'a> {
-    pub(super) fn new(ask: &'a Ask, belief: &'a dyn Belief, range_n: (f64, f64)) -> Self {
+    pub(super) fn new(ask: &'a Ask, belief: &'a dyn Belief, range_n: (f64, f64), points: usize) -> Self {
         let (low, high) = ((range_n.0 / REACH).max(0.2), range_n.1 * REACH);
         let mut loads_n: Vec<f64> =
             (0..LOADS).map(|i| low * (high / low).powf(i as f64 / (LOADS - 1) as f64)).collect();
@@ -43,7 +53,46 @@ impl<'a> Trial<'a> {
         }));
         loads_n.sort_by(f64::total_cmp);
         loads_n.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * b.abs());
-        Self { ask, belief, range_n, loads_n }
+        Self { ask, belief, range_n, loads_n, predicted_n: evenly(range_n, points), has_soft_sizes: false }
+    }
+
+    /// The same loads for another ask.
+    pub(super) fn with_ask<'b>(&'b self, ask: &'b Ask) -> Trial<'b> {
+        Trial { ask, loads_n: self.loads_n.clone(), predicted_n: self.predicted_n.clone(), ..*self }
+    }
+
+    /// The same for another ask, whose limits of size are wishes.
+    pub(super) fn with_soft_sizes<'b>(&'b self, ask: &'b Ask) -> Trial<'b> {
+        Trial { has_soft_sizes: true, ..self.with_ask(ask) }
+    }
+
+    /// Whether limits of size are wishes.
+    pub(super) const fn has_soft_sizes(&self) -> bool {
+        self.has_soft_sizes
+    }
+
+    /// Limits of size: field, the size that `configuration` has, and the largest, mm.
+    fn sizes(&self, configuration: &Configuration) -> Vec<(&'static str, f64, f64)> {
+        let limits = &self.ask.limits;
+        let radius_mm = || Dimensions::new(configuration.clone()).support_radius_mm();
+        let radius = limits.outer_radius_mm.map(|most| ("limits.outer_radius_mm", radius_mm(), most));
+        let width =
+            limits.outer_width_mm.map(|most| ("limits.outer_width_mm", outer_width_mm(configuration), most));
+        radius.into_iter().chain(width).collect()
+    }
+
+    /// Sizes that are wishes and not kept: field, size and largest, mm.
+    pub(super) fn missed_sizes(&self, configuration: &Configuration) -> Vec<(&'static str, f64, f64)> {
+        let mut sizes = if self.has_soft_sizes { self.sizes(configuration) } else { Vec::new() };
+        sizes.retain(|(_, size, most)| size > &(most + 1e-9));
+        sizes
+    }
+
+    /// How far a configuration misses the targets, and the sizes where they are wishes.
+    pub(super) fn shortfall(&self, configuration: &Configuration) -> Option<f64> {
+        let targets = self.miss(&self.median(configuration)?);
+        let sizes = self.missed_sizes(configuration);
+        Some(sizes.iter().map(|(_, size, most)| (size / most).ln()).fold(targets, f64::hypot))
     }
 
     /// The part of a configuration on silicone; `None` if the tendon would not lie on all of its pins.
@@ -60,7 +109,31 @@ impl<'a> Trial<'a> {
     pub(super) fn median(&self, configuration: &Configuration) -> Option<Vec<f64>> {
         let part = self.part(configuration)?;
         let curve = self.belief.curve(&part, &self.loads_n, &vec![0.0; self.belief.constants()])?;
-        Some(self.values(&curve, 1.0))
+        Some(self.values(&curve, self.settled(&part, &curve)))
+    }
+
+    /// The factor that takes the threshold of `curve`, between the few loads of a search, to the one between the loads of
+    /// `predict`; 1 where it is found at none of these.
+    pub(super) fn settled(&self, part: &Part, curve: &Curve) -> f64 {
+        let here = curve.switching();
+        let between = |from: usize, to: usize| {
+            let loads = &self.predicted_n[from..to];
+            let fine = self.belief.curve(part, loads, &vec![0.0; self.belief.constants()])?;
+            Transition::threshold_n(loads, &fine.silicone_share)
+        };
+        let count = self.predicted_n.len();
+        let next = self.predicted_n.partition_point(|l| *l < here.threshold_n);
+        // Nearly always a few loads around it are enough.
+        let (from, to) = (next.saturating_sub(AROUND + 1), (next + AROUND).min(count));
+        let is_near = here.is_found && next > 0 && next < count;
+        let is_beyond = here.threshold_n < self.predicted_n[0] * (1.0 - NEAR)
+            || here.threshold_n > self.predicted_n[count - 1] * (1.0 + NEAR);
+        let found = match is_near.then(|| between(from, to)).flatten() {
+            Some(found) => Some(found),
+            None if is_beyond => None,
+            None => between(0, count),
+        };
+        found.map_or(1.0, |found| found / here.threshold_n)
     }
 
     /// Values of the targets on a curve whose threshold is moved by a factor.
@@ -132,24 +205,49 @@ impl<'a> Trial<'a> {
     pub(super) fn broken_limit(&self, configuration: &Configuration) -> Option<String> {
         let mut on_silicone = configuration.clone();
         on_silicone.layout.substrate = Substrate::Silicone;
-        let design = match Design::new(on_silicone) {
-            Ok(design) => design,
-            Err(e) => return Some(e.to_string()),
-        };
-        let limits = &self.ask.limits;
-        let radius_mm = design.support_radius_mm();
-        let width_mm = outer_width_mm(configuration);
-        if let Some(most) = limits.outer_radius_mm.filter(|most| radius_mm > most + 1e-9) {
-            return Some(format!("limits.outer_radius_mm = {most}: the supports reach {radius_mm:.2} mm"));
+        if let Err(e) = Design::new(on_silicone) {
+            return Some(e.to_string());
         }
-        if let Some(most) = limits.outer_width_mm.filter(|most| width_mm > most + 1e-9) {
-            return Some(format!("limits.outer_width_mm = {most}: shell and supports take {width_mm:.2} mm"));
+        if self.has_soft_sizes {
+            return None;
         }
-        None
+        let broken = self.sizes(configuration).into_iter().find(|(_, size, most)| size > &(most + 1e-9));
+        broken.map(|(field, size, most)| {
+            let what =
+                if field.contains("radius") { "the supports reach" } else { "shell and supports take" };
+            format!("{field} = {most} mm: {what} {size:.2} mm")
+        })
     }
 }
 
 /// Width of the assembled switch: the shell between its two supports.
 pub(super) fn outer_width_mm(c: &Configuration) -> f64 {
     c.shell.width_mm + 2.0 * c.support.plate_mm
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::PublishedPhysics;
+    use super::*;
+    use crate::ask::{Target, Wish};
+    use crate::prediction::predicted_curve;
+
+    #[test]
+    fn a_threshold_is_the_one_that_is_predicted() {
+        let ask = Ask {
+            targets: vec![Target { quantity: Quantity::Threshold, wish: Wish::AtLeast(5.0) }],
+            ..Ask::default()
+        };
+        let belief = PublishedPhysics::default();
+        for pins in [vec![5, 8, 11], vec![4, 8, 12], vec![6, 7, 10]] {
+            let mut configuration = Configuration::default();
+            configuration.layout.pins = pins;
+            let f = &configuration.friction;
+            let trial = Trial::new(&ask, &belief, (f.load_min_n, f.load_max_n), f.points);
+            let value = trial.median(&configuration).unwrap()[0];
+            let curve = predicted_curve(&Design::new(configuration).unwrap());
+            let predicted = Transition::of(&curve).unwrap().threshold_n;
+            assert!((value / predicted - 1.0).abs() < 1e-9, "{value} {predicted}");
+        }
+    }
 }

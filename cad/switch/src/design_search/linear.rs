@@ -1,7 +1,6 @@
 //! A cheap guess of the probability: each target's logarithm as a sum of independent errors. It leads the search and says
 //! what the uncertainty comes from; what is stated in the end comes from [`super::probability`].
 
-use pinswitch_friction::Trust;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -39,7 +38,6 @@ pub struct VarianceShare {
 /// A candidate, target by target.
 #[derive(Clone, Debug)]
 pub(super) struct Linear {
-    pub(super) trust: Trust,
     pub(super) targets: Vec<Spread>,
 }
 
@@ -103,7 +101,7 @@ impl Linear {
                 made: made[i],
             })
             .collect();
-        Some(Self { trust: believed.trust, targets })
+        Some(Self { targets })
     }
 
     /// Minus the logarithm of the probability of meeting all targets, as if they were independent.

@@ -10,6 +10,7 @@ mod linear;
 mod probability;
 mod proposal;
 mod refine;
+mod relaxed;
 mod sensitivity;
 mod space;
 
@@ -106,7 +107,8 @@ pub fn load_range_n(base: &Configuration, ask: &Ask) -> (f64, f64) {
     for target in &ask.targets {
         let (least, most) = match (target.quantity, target.wish) {
             (Quantity::Friction { load_n }, _) => (load_n, load_n),
-            (Quantity::Threshold, Wish::AtMost(most)) => (high, most.max(low * 1.2)),
+            // Room under an early threshold, or no load is lighter than it.
+            (Quantity::Threshold, Wish::AtMost(most)) => (most / 1.2, most),
             (Quantity::Threshold, Wish::AtLeast(least)) => (least, least * 1.2),
             (Quantity::Threshold, wish) => wish.interval(),
             _ => continue,
@@ -127,7 +129,7 @@ pub fn search(
     let range_n = load_range_n(base.configuration(), ask);
     let mut configuration = base.configuration().clone();
     (configuration.friction.load_min_n, configuration.friction.load_max_n) = range_n;
-    let trial = Trial::new(ask, belief, range_n);
+    let trial = Trial::new(ask, belief, range_n, base.configuration().friction.points);
     let space = Space::new(&configuration, ask);
     let enumerated = enumerate(&trial, &space, progress);
     let starts = starts(&space, &enumerated.places, options.starts);
@@ -158,6 +160,7 @@ pub fn search(
         proposals: Vec::new(),
         blocked: None,
     };
+    let relaxed = if pool.is_empty() { relaxed::nearest(&trial, &configuration) } else { None };
     let draws = probability::draws(options.seed, options.draws.max(1), belief.constants());
     let is_possible = pool.iter().any(|c| c.meets);
     if is_possible {
@@ -181,7 +184,10 @@ pub fn search(
         b.probability.all.total_cmp(&a.probability.all).then(a.pins.len().cmp(&b.pins.len()))
     });
     proposals.truncate(options.best);
-    if !is_possible && let Some(nearest) = proposals.first() {
+    if let Some((nearest, blocked)) = relaxed {
+        proposals.extend(proposal::propose(&trial, &nearest, &draws));
+        found.blocked = Some(blocked);
+    } else if !is_possible && let Some(nearest) = proposals.first() {
         let other = ask.limits.pins.and_then(|_| with_any_pins(&trial, ask, &configuration));
         found.blocked = Some(blocked::blocked(&trial, &space, &nearest.configuration, other));
     }
@@ -198,7 +204,7 @@ pub fn simulated(
     seed: u64,
 ) -> Option<Probability> {
     let range_n = load_range_n(base.configuration(), ask);
-    let trial = Trial::new(ask, belief, range_n);
+    let trial = Trial::new(ask, belief, range_n, base.configuration().friction.points);
     probability::probability(
         &trial,
         base.configuration(),

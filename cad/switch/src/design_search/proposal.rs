@@ -75,7 +75,8 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
     let design = Design::new(configuration.clone()).ok()?;
     let part = trial.part(&configuration)?;
     let curve = trial.belief.curve(&part, &trial.loads_n, &vec![0.0; trial.belief.constants()])?;
-    let values = trial.values(&curve, 1.0);
+    let settled = trial.settled(&part, &curve);
+    let values = trial.values(&curve, settled);
     let linear = Linear::of(trial, &configuration)?;
     let probability = probability(trial, &configuration, draws)?;
     let targets: Vec<TargetResult> = trial
@@ -94,7 +95,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
     let tightest =
         (0..targets.len()).min_by(|a, b| targets[*a].probability.total_cmp(&targets[*b].probability))?;
     let switching = curve.switching();
-    let threshold_n = switching.threshold_n;
+    let threshold_n = switching.threshold_n * settled;
     let within = switching.is_found && (trial.range_n.0..=trial.range_n.1).contains(&threshold_n);
     Some(Proposal {
         pins: configuration.layout.pins.clone(),
@@ -102,7 +103,8 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
         tendon_mm: [configuration.tendon.rope_diameter_mm, configuration.tendon.coating_mm],
         outer_radius_mm: design.support_radius_mm(),
         outer_width_mm: outer_width_mm(&configuration),
-        trust: linear.trust,
+        // Of the loads that were asked about; the search looks beyond them.
+        trust: trial.belief.banded(&part, &[trial.range_n.0, trial.range_n.1])?.trust,
         threshold_n: within.then_some(threshold_n),
         friction_n: curve.value(Quantity::MaxFriction, trial.range_n),
         standard_error: probability.standard_error(),

@@ -63,7 +63,7 @@ pub(super) fn cost(trial: &Trial<'_>, space: &Space, place: &Place, aim: Aim) ->
     let cost = match aim {
         Aim::Guessed => guessed_cost(trial, &trial.median(&configuration)?),
         Aim::Probable => Linear::of(trial, &configuration)?.cost(trial),
-        Aim::Nearest => trial.miss(&trial.median(&configuration)?),
+        Aim::Nearest => trial.shortfall(&configuration)?,
     };
     cost.is_finite().then_some(cost)
 }

@@ -1,0 +1,98 @@
+//! The nearest design that can be printed, where none can within the ask: sizes become wishes, then pins are let loose, then
+//! all parameters.
+
+use super::blocked::{self, Blocked, Change};
+use super::candidate::Trial;
+use super::refine::{Aim, cost, refined};
+use super::space::Space;
+use super::{GUESSED_STEPS, Silent, enumerate, starts};
+use crate::ask::{Ask, Parameter, Varied};
+use crate::config::Configuration;
+use crate::parallel::map_each;
+
+/// Patterns whose parameters are searched.
+const STARTS: usize = 4;
+
+/// The nearest design and why it is not within `asked`; `None` if nothing at all can be printed from `base`.
+pub(super) fn nearest(asked: &Trial<'_>, base: &Configuration) -> Option<(Configuration, Blocked)> {
+    let within = Space::new(base, asked.ask);
+    let (refused, why) = refusal(asked, &within);
+    relaxations(asked.ask, base).iter().find_map(|ask| {
+        let trial = asked.with_soft_sizes(ask);
+        let space = Space::new(base, ask);
+        let mut places = enumerate(&trial, &space, &Silent).places;
+        places
+            .retain(|(_, p)| trial.broken_limit(&space.configuration(p.material, &p.pins, &p.at)).is_none());
+        let steps = GUESSED_STEPS * (space.varied.len() as u64 + 1);
+        let (_, nearest) = map_each(starts(&space, &places, STARTS), |start| {
+            let there = refined(&trial, &space, &start, Aim::Nearest, steps);
+            let miss = cost(&trial, &space, &there, Aim::Nearest)?;
+            Some((miss, space.configuration(there.material, &there.pins, &there.at)))
+        })
+        .into_iter()
+        .flatten()
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let mut blocked = blocked::blocked(&trial, &within, &nearest, None);
+        blocked.limit = asked.broken_limit(&nearest).unwrap_or_else(|| why.clone());
+        if blocked.missed.is_empty() {
+            blocked.together = left(asked.ask, &refused, &nearest);
+        }
+        Some((nearest, blocked))
+    })
+}
+
+/// What refuses the ask where its search begins: the limit or the rule, with field, value and bound.
+fn refusal(asked: &Trial<'_>, space: &Space) -> (Configuration, String) {
+    let base = space.base();
+    let patterns = space.patterns(0, &base, 1).taken;
+    let Some(pins) = patterns.first() else {
+        let (fewest, most) = asked.ask.limits.pins.unwrap_or_default();
+        let why = format!(
+            "limits.pins = {fewest}..{most}: fewer grooves lie under the tendon; ask for fewer pins (--pins) or raise \
+             layout.wrap_angle_deg"
+        );
+        return (space.materials[0].clone(), why);
+    };
+    let c = space.configuration(0, pins, &base);
+    let why = match asked.broken_limit(&c) {
+        Some(limit) => limit,
+        None if asked.part(&c).is_none() => format!(
+            "layout.pins = {:?}, which vary.pattern = false (--keep-pins) keeps: the tendon must lie on all of its pins, at \
+             least 1; let pins vary, or give others",
+            c.layout.pins
+        ),
+        None => "the rules of what can be printed; widen limits, vary or materials".to_owned(),
+    };
+    (c, why)
+}
+
+/// Asks that allow more and more: any size is a wish in all of them.
+fn relaxations(ask: &Ask, base: &Configuration) -> [Ask; 3] {
+    let mut any_pins = ask.clone();
+    any_pins.vary.pattern = true;
+    any_pins.limits.pins = None;
+    let mut anything = any_pins.clone();
+    anything.materials.pin_diameter_mm.clear();
+    anything.materials.hardness_shore_a.clear();
+    anything.vary.parameters = Parameter::ALL.iter().map(|p| usual(*p, base)).collect();
+    [ask.clone(), any_pins, anything]
+}
+
+/// The default range of a parameter, widened to where it is.
+pub(super) fn usual(parameter: Parameter, at: &Configuration) -> Varied {
+    let ((low, high), here) = (parameter.default_range(), parameter.value(at));
+    Varied { parameter, from: low.min(here), to: high.max(here) }
+}
+
+/// Parameters of `to` that the ask does not allow.
+fn left(ask: &Ask, from: &Configuration, to: &Configuration) -> Vec<Change> {
+    let allows = |p: Parameter| match ask.vary.parameters.iter().find(|v| v.parameter == p) {
+        Some(v) => (v.from - 1e-9..=v.to + 1e-9).contains(&p.value(to)),
+        None => (p.value(from) - p.value(to)).abs() < 1e-6,
+    };
+    Parameter::ALL
+        .into_iter()
+        .filter(|p| !allows(*p))
+        .map(|p| Change { parameter: p, from: p.value(from), to: p.value(to) })
+        .collect()
+}

@@ -22,6 +22,7 @@ mod calibration_page;
 mod contact;
 mod finger;
 mod friction;
+pub mod html;
 mod log;
 mod pareto;
 mod published_page;

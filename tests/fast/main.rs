@@ -23,4 +23,5 @@ mod pictures;
 mod readme;
 mod reference_shell;
 mod segment_raw;
+mod view;
 mod writing;

@@ -1,12 +1,15 @@
 //! `pinswitch view CONFIG`: the page of a set, following its configuration.
 
+mod follow;
+mod server;
+mod state;
+
 use std::net::{Ipv4Addr, SocketAddr};
-use std::path::Path;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::sync::Arc;
 
 use clap::Args;
-use tiny_http::{Header, Request, Response, Server};
+use tokio::net::TcpListener;
+use tokio::sync::watch;
 
 use super::law::LawChoice;
 use super::source::Source;
@@ -15,15 +18,12 @@ use pinswitch_switch::built::Built;
 use pinswitch_switch::formats::named;
 use pinswitch_switch::formats::page::{PageData, page_html};
 use pinswitch_switch::set::Set;
-
-/// How often the file is polled.
-const POLL_INTERVAL: Duration = Duration::from_millis(40);
-/// How long a request for the next state is held before the browser repeats it.
-const LONG_POLL_TIMEOUT: Duration = Duration::from_secs(20);
+use state::State;
 
 /// Show the page of a configuration on this machine, and rebuild it whenever the file changes.
 ///
-/// Serves on 127.0.0.1 only. A configuration that breaks shows its error, and the last good state stays. Ends with Ctrl-C.
+/// Serves on 127.0.0.1 only, and only to its own page. A configuration that breaks shows its error, and the last good
+/// state stays. Ends with Ctrl-C.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:
   pinswitch init three-double --out mine.toml && pinswitch view mine.toml")]
@@ -37,64 +37,33 @@ pub(super) struct Arguments {
     port: u16,
 }
 
-/// The last valid page and the error since then, if any.
-#[derive(Default)]
-struct State {
-    version: u64,
-    /// JSON of the page's data.
-    data: String,
-    page: String,
-    trouble: Option<String>,
-}
-
-/// A state that readers wait for.
-#[derive(Default)]
-struct Shared {
-    state: Mutex<State>,
-    changed: Condvar,
-}
-
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, State> {
-        // A reader that panicked has changed nothing.
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// The JSON of the state after `version`; waits for it, with a timeout.
-    fn after(&self, version: u64) -> String {
-        let state = self.lock();
-        let (state, _) = self
-            .changed
-            .wait_timeout_while(state, LONG_POLL_TIMEOUT, |s| s.version <= version)
-            .unwrap_or_else(PoisonError::into_inner);
-        let data = if state.version > version && state.trouble.is_none() { &state.data } else { "null" };
-        let trouble = serde_json::to_string(&state.trouble).unwrap_or_else(|_| "null".to_owned());
-        format!(r#"{{"version":{},"trouble":{trouble},"data":{data}}}"#, state.version)
-    }
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let shared = Arc::new(Shared::default());
     let (page, data) = build(arguments, 1)?;
-    *shared.lock() = State { version: 1, data, page, trouble: None };
-    let address = SocketAddr::from((Ipv4Addr::LOCALHOST, arguments.port));
-    let server = Server::http(address).map_err(|e| {
-        Failure::bad_input(format!(
-            "--port {}: cannot serve there: {e}; give another port, or 0 for any that is free",
-            arguments.port
-        ))
-    })?;
-    print(format!("http://{}\n", server.server_addr()).as_bytes())?;
-    if let Some(file) = arguments.source.file() {
-        log::info!("following {}; end with Ctrl-C", file.display());
-        let (shared, arguments) = (Arc::clone(&shared), arguments.clone());
-        std::thread::spawn(move || rebuild_on_change(&shared, &arguments, &file));
-    }
-    for request in server.incoming_requests() {
-        let shared = Arc::clone(&shared);
-        std::thread::spawn(move || respond(request, &shared));
-    }
-    Ok(())
+    let (sender, states) =
+        watch::channel(State { version: 1, data: data.into(), page: page.into(), trouble: None });
+    // Kept to the end, also where there is no file to follow: pages that wait are not sent away.
+    let sender = Arc::new(sender);
+    // One thread answers all, however many wait.
+    let runtime =
+        tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failure::failed)?;
+    runtime.block_on(async {
+        let busy = |e| {
+            Failure::bad_input(format!(
+                "--port {}: cannot serve there: {e}; give another port, or 0 for any that is free",
+                arguments.port
+            ))
+        };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, arguments.port)).await.map_err(busy)?;
+        let address: SocketAddr = listener.local_addr().map_err(Failure::failed)?;
+        print(format!("http://{address}\n").as_bytes())?;
+        if let Some(file) = arguments.source.file() {
+            log::info!("following {}; end with Ctrl-C", file.display());
+            let (sender, arguments) = (Arc::clone(&sender), arguments.clone());
+            std::thread::spawn(move || follow::follow(&sender, &arguments, &file));
+        }
+        server::serve(listener, address, states).await;
+        Ok(())
+    })
 }
 
 /// The page and its data.
@@ -108,57 +77,4 @@ fn build(arguments: &Arguments, version: u64) -> Result<(String, String), Failur
     // A live page is rebuilt while somebody waits, in a browser that has shown it already: no picture.
     let page = page_html(&data, "").map_err(Failure::failed)?;
     Ok((page, data.json().map_err(Failure::failed)?))
-}
-
-/// Rebuilds whenever the file's bytes change.
-fn rebuild_on_change(shared: &Shared, arguments: &Arguments, file: &Path) {
-    let mut known = std::fs::read(file).ok();
-    loop {
-        std::thread::sleep(POLL_INTERVAL);
-        let now = std::fs::read(file).ok();
-        // A file that is missing for a moment is one that an editor is saving.
-        if now.is_none() || now == known {
-            continue;
-        }
-        known = now;
-        let next = shared.lock().version + 1;
-        let built = build(arguments, next);
-        let mut state = shared.lock();
-        state.version = next;
-        match built {
-            Ok((page, data)) => {
-                (state.page, state.data, state.trouble) = (page, data, None);
-                log::info!("rebuilt");
-            }
-            Err(failure) => {
-                log::warn!("{}", failure.message());
-                state.trouble = Some(failure.message().to_owned());
-            }
-        }
-        drop(state);
-        shared.changed.notify_all();
-    }
-}
-
-fn respond(request: Request, shared: &Shared) {
-    let url = request.url().to_owned();
-    let (path, query) = url.split_once('?').unwrap_or((&url, ""));
-    let response = match path {
-        "/" => content(shared.lock().page.clone(), "text/html; charset=utf-8"),
-        "/state" => {
-            let version = query.strip_prefix("after=").and_then(|v| v.parse().ok()).unwrap_or(0);
-            content(shared.after(version), "application/json")
-        }
-        _ => Response::from_string("no such page").with_status_code(404),
-    };
-    // A closed connection is no failure.
-    let _ = request.respond(response);
-}
-
-fn content(text: String, kind: &str) -> Response<std::io::Cursor<Vec<u8>>> {
-    let response = Response::from_string(text);
-    match Header::from_bytes("Content-Type", kind) {
-        Ok(header) => response.with_header(header),
-        Err(()) => response,
-    }
 }

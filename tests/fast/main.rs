@@ -18,6 +18,7 @@ mod finger;
 mod fit;
 mod formats;
 mod golden;
+mod input_files;
 mod inverse;
 mod pictures;
 mod readme;

@@ -66,6 +66,7 @@ use clap_verbosity_flag::{InfoLevel, Verbosity};
 
 mod failure;
 mod finger_text;
+mod input;
 mod law;
 mod predict_rows;
 mod range;

@@ -63,8 +63,7 @@ impl Rows {
 
     fn predict(&self, model: &Path, rows: &Path) -> Result<(), Failure> {
         let (model_name, rows_name) = (model.display().to_string(), rows.display().to_string());
-        let text =
-            std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{model_name}: {e}")))?;
+        let text = crate::input::read_text_file(model)?;
         let model = ModelFile::parse(&text, &model_name).map_err(Failure::bad_input)?;
         let file = std::fs::File::open(rows).map_err(|e| Failure::bad_input(format!("{rows_name}: {e}")))?;
         let table = PlateauTable::read_conditions(file, &rows_name).map_err(Failure::bad_input)?;
@@ -80,7 +79,7 @@ impl Rows {
 /// The curve of a design by a calibrated model: effects of the switch in, effects of the rig out.
 pub(super) fn calibrated_curve(design: &Design, model: &Path) -> Result<FrictionCurve, Failure> {
     let name = model.display().to_string();
-    let text = std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let text = crate::input::read_text_file(model)?;
     let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
     let substrate = design.contact().substrate();
     let wrap_deg = design.contact().wrap_rad().to_degrees();

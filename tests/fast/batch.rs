@@ -36,7 +36,7 @@ fn a_batch_leaves_parts_table_plots_and_page() {
     check.extend(stl.iter().map(|p| p.to_str().unwrap()));
     assert_eq!(done(folder.path(), &check).matches(": valid;").count(), (VARIANTS - REFUSED) * 4);
     let page = std::fs::read_to_string(b.join("index.html")).unwrap();
-    assert!(page.contains("<svg") && page.contains(&rows[0]["id"]) && !page.contains("/*DATA*/"));
+    assert!(page.contains("<svg") && page.contains(&rows[0]["id"]) && !page.contains("{{DATA}}"));
     for outside in ["src=\"http", "href=\"http", "@import", "fetch("] {
         assert!(!page.contains(outside), "the page needs {outside}");
     }

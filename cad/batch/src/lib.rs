@@ -69,7 +69,7 @@ pub use merge::{MergeError, merge};
 pub use products::ProductError;
 pub use run::{Observer, Options, RunError, ShardStamp, admit, partial_folder, run};
 pub use shard::{Shard, ShardError};
-pub use source::SweepSource;
+pub use source::{Reach, SweepSource};
 pub use stamp::{Stamp, StampError};
 pub use sweep::Sweep;
 pub use table::{Cell, Column, ColumnType, Row, Schema};

@@ -1,5 +1,6 @@
 //! `index.html`: one self-contained page to look through a sweep, without a network or a server.
 
+use pinswitch_plot::html::{escape, filled, json_in_script, policy};
 use serde_json::json;
 
 use super::gallery::Gallery;
@@ -7,6 +8,8 @@ use super::tally::Tally;
 
 /// The page without its data.
 const TEMPLATE: &str = include_str!("page.html");
+/// What it does.
+const JS: &str = include_str!("page.js");
 
 /// The page of a sweep, with its plots inside.
 pub(super) fn page(name: &str, gallery: &Gallery, tally: &Tally, plots: [&str; 2]) -> String {
@@ -18,16 +21,15 @@ pub(super) fn page(name: &str, gallery: &Gallery, tally: &Tally, plots: [&str; 2
         "tally": tally,
         "variants": gallery.shown,
     });
-    // Inside a script only "</" could end it.
-    let data = data.to_string().replace("</", "<\\/");
+    let data = json_in_script(&data.to_string());
     let figures: String = plots.iter().map(|svg| format!("<figure>{svg}</figure>\n")).collect();
-    TEMPLATE
-        .replace("<!--NAME-->", &escape(name))
-        .replace("<!--PLOTS-->", &figures)
-        .replace("/*DATA*/null", &data)
-}
-
-/// Text that cannot be taken for markup.
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    let (name, policy) = (escape(name), policy(&[JS]));
+    filled(TEMPLATE, |place| match place {
+        "NAME" => Some(name.as_str().into()),
+        "POLICY" => Some(policy.as_str().into()),
+        "PLOTS" => Some(figures.as_str().into()),
+        "DATA" => Some(data.as_str().into()),
+        "JS" => Some(JS.into()),
+        _ => None,
+    })
 }

@@ -27,12 +27,46 @@ pub struct SweepSource {
     pub rows: Option<(String, String)>,
 }
 
+/// The files that a sweep may name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reach {
+    /// Those beside it or below.
+    #[default]
+    Beside,
+    /// Any, on the word of whoever runs it.
+    Anywhere,
+}
+
+impl Reach {
+    /// Whether the existing file `name` of `field` may be read by a sweep in `folder`. Links are followed first.
+    fn check(self, field: &str, name: &str, folder: &Path) -> Result<(), ConfigError> {
+        let is_below =
+            || Some(folder.join(name).canonicalize().ok()?.starts_with(folder.canonicalize().ok()?));
+        if self == Self::Anywhere || is_below() != Some(false) {
+            return Ok(());
+        }
+        Err(ConfigError {
+            remedy: "copy it beside the sweep, or allow it with --read-outside".to_owned(),
+            ..missing(field, name, "lies outside the folder of the sweep")
+        })
+    }
+}
+
 impl SweepSource {
-    /// Reads the sweep at `path` and every file that it names, relative to its own folder.
+    /// Reads the sweep at `path` and every file that it names: beside it or below. A sweep that came from elsewhere
+    /// cannot make its reader open any other file.
     ///
     /// # Errors
     /// [`ConfigError`] names the file that cannot be read, or the field that names none.
     pub fn read(path: &Path) -> Result<Self, ConfigError> {
+        Self::read_within(path, Reach::Beside)
+    }
+
+    /// As [`Self::read`], with the files that it may name.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_within(path: &Path, reach: Reach) -> Result<Self, ConfigError> {
         let file = path.display().to_string();
         let sweep = std::fs::read_to_string(path).map_err(|e| unreadable(&file, &e))?;
         let document: Document<String> = sweep.parse().map_err(|e: toml_edit::TomlError| {
@@ -42,16 +76,18 @@ impl SweepSource {
             let item = document.get(table)?.as_table_like()?.get(key)?;
             Some(item.as_str().unwrap_or_default().to_owned())
         };
-        let folder = path.parent().unwrap_or_else(|| Path::new("."));
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
         let base = match word("sweep", "base") {
-            Some(name) => read_text("sweep.base", &name, folder)?,
+            Some(name) => read_text("sweep.base", &name, folder, reach)?,
             None => (String::new(), "defaults".to_owned()),
         };
-        let preset =
-            word("sweep", "preset").map(|name| read_text("sweep.preset", &name, folder)).transpose()?;
+        let preset = word("sweep", "preset")
+            .map(|name| read_text("sweep.preset", &name, folder, reach))
+            .transpose()?;
         let rows = word("rows", "file")
             .map(|name| {
                 let path = folder.join(&name);
+                reach.check("rows.file", &name, folder)?;
                 std::fs::read_to_string(&path)
                     .map(|text| (name.clone(), text))
                     .map_err(|e| missing("rows.file", &name, &format!("cannot be read: {e}")))
@@ -100,9 +136,10 @@ fn with_preset(
 }
 
 /// The text of a file beside the sweep or of a template, with its name.
-fn read_text(field: &str, name: &str, folder: &Path) -> Result<(String, String), ConfigError> {
+fn read_text(field: &str, name: &str, folder: &Path, reach: Reach) -> Result<(String, String), ConfigError> {
     let path = folder.join(name);
     if path.is_file() {
+        reach.check(field, name, folder)?;
         let text = std::fs::read_to_string(&path).map_err(|e| unreadable(name, &e))?;
         return Ok((text, name.to_owned()));
     }
@@ -127,7 +164,11 @@ fn unreadable(file: &str, error: &std::io::Error) -> ConfigError {
         field: file.to_owned(),
         value: None,
         problem: format!("cannot be read: {error}"),
-        remedy: "give the path of a sweep; see `pinswitch batch --help`".to_owned(),
+        remedy: match error.kind() {
+            std::io::ErrorKind::InvalidData => "give a text file, saved as UTF-8".to_owned(),
+            std::io::ErrorKind::IsADirectory => "it is a folder; give a file".to_owned(),
+            _ => "give the path of a sweep; see `pinswitch batch --help`".to_owned(),
+        },
         place: None,
     }
 }

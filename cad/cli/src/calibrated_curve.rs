@@ -17,7 +17,7 @@ use pinswitch_switch::prediction::loads_n;
 /// [`Failure::BadInput`] names the file and its fault, or what of the design the rig does not have.
 pub(super) fn calibrated_curve(design: &Design, model: &Path) -> Result<FrictionCurve, Failure> {
     let name = model.display().to_string();
-    let text = std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let text = crate::input::read_text_file(model)?;
     let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
     let configuration = design.configuration();
     let pins = rig_grooves(&configuration.layout.pins, configuration.segment.grooves).ok_or_else(|| {

@@ -77,7 +77,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn verdict(file: &Path, arguments: &Arguments) -> Result<Verdict, StlError> {
-    let stl = read_stl(&mut BufReader::new(File::open(file)?))?;
+    let opened = File::open(file)?;
+    if opened.metadata()?.is_dir() {
+        return Err(std::io::Error::other("it is a folder; give the STL files in it").into());
+    }
+    let stl = read_stl(&mut BufReader::new(opened))?;
     let expected =
         Expectation { bodies: arguments.bodies, min_wall_mm: arguments.min_wall, ..Expectation::default() };
     let mut examination = examine(&stl.mesh, &expected);

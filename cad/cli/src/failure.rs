@@ -3,6 +3,29 @@
 use std::fmt::Display;
 use std::process::ExitCode;
 
+/// What stands between several errors of one command.
+const BETWEEN: &str = "\nerror: ";
+/// Most characters of one error.
+const MAX_CHARACTERS: usize = 590;
+/// Characters that are kept of the end of one that is too long: the remedy stands there.
+const KEPT_AT_THE_END: usize = 240;
+
+/// Errors, each short enough to be read: a value of any length that the input holds may stand in one.
+fn bounded(message: &str) -> String {
+    let shortened = |one: &str| {
+        let total = one.chars().count();
+        if total <= MAX_CHARACTERS {
+            return one.to_owned();
+        }
+        let note = format!(" [... {total} characters in all ...] ");
+        let kept = MAX_CHARACTERS - KEPT_AT_THE_END - note.len();
+        let begin: String = one.chars().take(kept).collect();
+        let end: String = one.chars().skip(total - KEPT_AT_THE_END).collect();
+        begin + &note + &end
+    };
+    message.split(BETWEEN).map(shortened).collect::<Vec<_>>().join(BETWEEN)
+}
+
 /// Why a command stopped, and with which exit code.
 #[derive(Debug)]
 pub enum Failure {
@@ -15,12 +38,12 @@ pub enum Failure {
 impl Failure {
     /// Exit code 1 with this message.
     pub fn failed(message: impl Display) -> Self {
-        Self::Failed(message.to_string())
+        Self::Failed(bounded(&message.to_string()))
     }
 
     /// Exit code 2 with this message.
     pub fn bad_input(message: impl Display) -> Self {
-        Self::BadInput(message.to_string())
+        Self::BadInput(bounded(&message.to_string()))
     }
 
     /// What went wrong.
@@ -38,5 +61,26 @@ impl Failure {
         };
         eprintln!("error: {message}");
         ExitCode::from(code)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_short_and_keeps_its_beginning_and_its_remedy() {
+        let long = format!("my.toml:2: layout.pins = [{}]; give fewer", "5, ".repeat(100_000));
+        let failure = Failure::bad_input(&long);
+        let message = failure.message();
+        assert!(message.chars().count() <= 590, "{message}");
+        assert!(
+            message.starts_with("my.toml:2: layout.pins") && message.ends_with("; give fewer"),
+            "{message}"
+        );
+        // Several errors are bounded one by one.
+        let two = Failure::bad_input(format!("a{BETWEEN}{long}"));
+        assert_eq!(two.message(), format!("a{BETWEEN}{message}"));
+        assert_eq!(Failure::failed("short").message(), "short");
     }
 }

@@ -67,6 +67,7 @@ use clap_verbosity_flag::{InfoLevel, Verbosity};
 mod calibrated_curve;
 mod failure;
 mod finger_text;
+mod input;
 mod law;
 mod predict_rows;
 mod range;

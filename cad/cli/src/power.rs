@@ -24,8 +24,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.plan.display().to_string();
-    let text =
-        std::fs::read_to_string(&arguments.plan).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let text = crate::input::read_text_file(&arguments.plan)?;
     let plan = Plan::parse(&text, &name).map_err(Failure::bad_input)?;
     let all = power(&plan, arguments.runs, Levels::default());
     if arguments.json {

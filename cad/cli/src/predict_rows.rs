@@ -60,8 +60,7 @@ impl Rows {
 
     fn predict(&self, model: &Path, rows: &Path) -> Result<(), Failure> {
         let (model_name, rows_name) = (model.display().to_string(), rows.display().to_string());
-        let text =
-            std::fs::read_to_string(model).map_err(|e| Failure::bad_input(format!("{model_name}: {e}")))?;
+        let text = crate::input::read_text_file(model)?;
         let model = ModelFile::parse(&text, &model_name).map_err(Failure::bad_input)?;
         let file = std::fs::File::open(rows).map_err(|e| Failure::bad_input(format!("{rows_name}: {e}")))?;
         let table = PlateauTable::read_conditions(file, &rows_name).map_err(Failure::bad_input)?;

@@ -10,8 +10,8 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Failure, print, print_json};
 use pinswitch_batch::{
-    Destination, Estimate, Observer, Options, RunError, Shard, Sweep, SweepSource, Tally, VariantOutcome,
-    Variants, admit, estimate, mesh_file, partial_folder, run as run_batch,
+    Destination, Estimate, Observer, Options, Reach, RunError, Shard, Sweep, SweepSource, Tally,
+    VariantOutcome, Variants, admit, estimate, mesh_file, partial_folder, run as run_batch,
 };
 
 /// More variants than this want --yes.
@@ -37,6 +37,9 @@ pub(super) struct Arguments {
     /// Folder or object store to write to; the same one takes up a run that was stopped.
     #[arg(long, short, value_name = "DIR|URL", required_unless_present = "dry_run")]
     out: Option<String>,
+    /// Let the sweep name files outside its own folder as base, preset or rows.
+    #[arg(long)]
+    read_outside: bool,
     /// Say how many variants, how long, how large, and what would be refused and why; write nothing.
     #[arg(long)]
     dry_run: bool,
@@ -58,7 +61,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = SweepSource::read(&arguments.sweep).map_err(Failure::bad_input)?;
+    let reach = if arguments.read_outside { Reach::Anywhere } else { Reach::Beside };
+    let source = SweepSource::read_within(&arguments.sweep, reach).map_err(Failure::bad_input)?;
     let sweep = Sweep::new(&source).map_err(Failure::bad_input)?;
     let count = sweep.count().ok_or_else(|| {
         Failure::bad_input(format!(

@@ -32,8 +32,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.run.display().to_string();
-    let text =
-        std::fs::read_to_string(&arguments.run).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    let text = crate::input::read_text_file(&arguments.run)?;
     let plan = RunPlan::parse(&text, &name).map_err(Failure::bad_input)?;
     let folder = arguments.run.parent().unwrap_or_else(|| Path::new("."));
     let stem =

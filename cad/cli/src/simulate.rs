@@ -75,8 +75,7 @@ fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
     let (mut plan, name) = match &arguments.plan {
         Some(path) => {
             let name = path.display().to_string();
-            let text =
-                std::fs::read_to_string(path).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+            let text = crate::input::read_text_file(path)?;
             (Plan::parse(&text, &name).map_err(Failure::bad_input)?, name)
         }
         None if arguments.randomised => (Plan::randomised(), "--effect".to_owned()),

@@ -95,8 +95,7 @@ fn placed(error: pinswitch_switch::config::ConfigError, places: &Places, file: &
 pub(super) fn read_text(name: &str) -> Result<(String, String), Failure> {
     let path = Path::new(name);
     if path.exists() {
-        let text = std::fs::read_to_string(path)
-            .map_err(|e| Failure::bad_input(format!("{name}: cannot read: {e}")))?;
+        let text = crate::input::read_text_file(path)?;
         return Ok((text, name.to_owned()));
     }
     let bare = name.strip_prefix("templates/").unwrap_or(name);

@@ -6,16 +6,13 @@ use pinswitch_calibration::effects::Covariate;
 use pinswitch_calibration::{Calibration, Estimate, Fate, ModelReport, Report, Verdict};
 
 use super::Plot;
-
-/// Text that cannot be taken for markup.
-pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
+use super::html::{escape, policy};
 
 /// Everything before the first heading of a page.
 pub(super) fn head(title: &str) -> String {
     format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title><style>\
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{}\"><title>{}</title><style>\
          body{{font:16px/1.5 sans-serif;max-width:940px;margin:2em auto;padding:0 1em;color:#222}}\
          h2{{margin-top:2em;border-bottom:2px solid #dde5ec;padding-bottom:.2em}}\
          table{{border-collapse:collapse;margin:1em 0}}td,th{{border-bottom:1px solid #ccc;padding:.25em .8em;text-align:left}}\
@@ -24,6 +21,7 @@ pub(super) fn head(title: &str) -> String {
          .grid{{display:grid;grid-template-columns:1fr 1fr;gap:.4em}}.grid figure{{margin:0}}\
          figcaption{{color:#555}}svg{{max-width:100%;height:auto}}.b{{color:#be5014}}.a{{color:#005a9c}}\
          tr.kept td{{background:#e6f0f8}}tr.rival td{{background:#fbf1e8}}</style></head><body>\n",
+        policy(&[]),
         escape(title)
     )
 }
@@ -310,7 +308,7 @@ fn blind(report: &Report) -> String {
             let _ = writeln!(
                 html,
                 "<tr><td>{}</td><td>{}</td><td>{}</td></tr>",
-                i.id,
+                escape(&i.id),
                 escape(&i.why),
                 escape(&i.experiment)
             );

@@ -23,6 +23,7 @@ mod contact;
 mod finger;
 mod friction;
 mod front;
+pub mod html;
 mod log;
 mod pareto;
 mod published_page;

@@ -7,7 +7,8 @@ use pinswitch_calibration::Explanation;
 use plotters::prelude::*;
 
 use super::calibration::{AFTER, BEFORE};
-use super::calibration_page::{escape, head};
+use super::calibration_page::head;
+use super::html::escape;
 use super::{Plot, PlotFailure};
 
 /// Width and height of the figure in pixels.

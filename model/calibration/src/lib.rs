@@ -31,6 +31,7 @@ mod held_out;
 pub mod inference;
 mod layouts_left_out;
 mod median;
+mod model_check;
 mod model_file;
 mod part_curve;
 mod published_maxima;

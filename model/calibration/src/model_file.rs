@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::effects::{Structure, effect_named};
 use crate::inference::{Fit, Model, Noise, Observations, Term, coordinate_covariance, prediction_sd_n};
+use crate::model_check::{Flaw, check_constants, check_covariance, check_finite, check_frame, check_noise};
 use crate::table::{Frame, PlateauRow};
 
 /// Name and version of the format.
@@ -37,6 +38,20 @@ pub enum ModelFileError {
         /// The id found.
         id: String,
     },
+    /// A value that no calibration writes.
+    #[error(
+        "{file}: {field} = {value} is out of bounds ({bound}); use the file as `calibrate` wrote it, or calibrate again"
+    )]
+    Value {
+        /// File name as given.
+        file: String,
+        /// Where it stands.
+        field: String,
+        /// What stands there.
+        value: String,
+        /// What may stand there.
+        bound: String,
+    },
     /// The constants do not belong to the terms.
     #[error("{file}: {found} constants, the terms listed need {needed} finite ones; calibrate again")]
     Constants {
@@ -47,6 +62,13 @@ pub enum ModelFileError {
         /// How many are needed.
         needed: usize,
     },
+}
+
+impl ModelFileError {
+    /// The flaw of a file.
+    fn of(file: &str) -> impl Fn(Flaw) -> Self + '_ {
+        |Flaw { field, value, bound }| Self::Value { file: file.to_owned(), field, value, bound }
+    }
 }
 
 /// One term as it is written.
@@ -158,11 +180,14 @@ impl ModelFile {
             file: file.to_owned(),
             problem: e.to_string().trim_end().to_owned(),
         };
+        let table: toml::Table = toml::from_str(text).map_err(malformed)?;
+        check_finite("", &toml::Value::Table(table)).map_err(ModelFileError::of(file))?;
         let parsed: Self = toml::from_str(text).map_err(malformed)?;
         if parsed.schema != SCHEMA {
             return Err(ModelFileError::Schema { file: file.to_owned(), found: parsed.schema });
         }
-        parsed.model(file)?;
+        let constants = parsed.model(file)?.values().len();
+        check_covariance(&parsed.covariance, constants).map_err(ModelFileError::of(file))?;
         Ok(parsed)
     }
 
@@ -180,6 +205,8 @@ impl ModelFile {
     /// # Errors
     /// [`ModelFileError`] if an effect is unknown or constants are missing.
     pub fn model(&self, file: &str) -> Result<Model, ModelFileError> {
+        let flawed = ModelFileError::of(file);
+        check_frame(&self.frame).and_then(|()| check_noise(&self.noise)).map_err(&flawed)?;
         let mut model = Model::baseline(self.frame.clone());
         for entry in &self.terms {
             let term =
@@ -195,8 +222,12 @@ impl ModelFile {
         }
         let values: Vec<f64> = self.constants.iter().map(|c| c.value).collect();
         let needed = model.values().len();
-        let square = self.covariance.len() == needed && self.covariance.iter().all(|r| r.len() == needed);
-        if !square || values.iter().any(|v| !v.is_finite()) || !model.set_values(&values) {
+        if values.len() != needed {
+            return Err(ModelFileError::Constants { file: file.to_owned(), found: values.len(), needed });
+        }
+        let constants = self.constants.iter().map(|c| (c.name.as_str(), c.unit.as_str(), c.value));
+        check_constants(&model, constants).map_err(&flawed)?;
+        if !model.set_values(&values) {
             return Err(ModelFileError::Constants { file: file.to_owned(), found: values.len(), needed });
         }
         Ok(model)
@@ -214,6 +245,13 @@ impl ModelFile {
         let points = model.frame.points(rows).unwrap_or_default();
         let predicted = model.predict(&points);
         let sd = prediction_sd_n(&model, &points, &self.covariance, self.noise);
+        if let Some(row) = predicted.iter().zip(&sd).position(|(n, sd)| !n.is_finite() || !sd.is_finite()) {
+            return Err(ModelFileError::of(file)(Flaw {
+                field: "constants".to_owned(),
+                value: format!("a prediction of {} N (sd {} N) at row {}", predicted[row], sd[row], row + 1),
+                bound: "finite predictions".to_owned(),
+            }));
+        }
         Ok((predicted, sd))
     }
 

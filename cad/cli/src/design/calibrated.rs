@@ -28,8 +28,7 @@ impl CalibratedSwitch {
     /// [`Failure::BadInput`] names file and fault.
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|e| Failure::bad_input(format!("{name}: cannot read: {e}")))?;
+        let text = crate::input::read_text_file(path)?;
         let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
         Ok(Self { file, name, recent: Mutex::default() })
     }

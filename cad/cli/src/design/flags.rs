@@ -73,8 +73,7 @@ impl AskFlags {
         let mut ask = match &self.ask {
             Some(path) => {
                 let name = path.display().to_string();
-                let text = std::fs::read_to_string(path)
-                    .map_err(|e| Failure::bad_input(format!("{name}: cannot read: {e}")))?;
+                let text = crate::input::read_text_file(path)?;
                 Ask::read(&text, &name).map_err(Failure::bad_input)?
             }
             None => Ask::default(),

@@ -20,7 +20,7 @@ const OURS: &str = ".pinswitch-";
 
 /// A file or folder cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: cannot write: {source}; {}", path.display(), remedy(source))]
+#[error("{}: cannot write: {}; {}", path.display(), reason(source), remedy(source))]
 pub struct WriteError {
     path: PathBuf,
     source: std::io::Error,
@@ -29,6 +29,14 @@ pub struct WriteError {
 impl WriteError {
     fn at(path: &Path) -> impl FnOnce(std::io::Error) -> Self + '_ {
         |source| Self { path: path.to_owned(), source }
+    }
+}
+
+/// What is in the way; what the system says of it ("File exists") would not tell.
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::AlreadyExists => "something stands there already".to_owned(),
+        _ => error.to_string(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Files of any solid or mesh: STL, 3MF, STEP and DXF, as bytes.
 
 mod dxf;
+mod kind;
 mod plate;
 mod step;
 mod stl;

@@ -2,6 +2,7 @@
 
 use std::io::{Read, Seek};
 
+use super::kind::other_kind;
 use super::stl_facets::{Facets, HEADER, RECORD, announced, read_binary};
 use crate::mesh::Mesh;
 
@@ -22,6 +23,9 @@ pub enum StlError {
         /// Bytes in the file.
         found: u64,
     },
+    /// The file is of another kind.
+    #[error("the file is {0}, not an STL; export the part as STL")]
+    OtherKind(&'static str),
     /// The file is an STL without a single triangle.
     #[error("the STL holds no triangle")]
     Empty,
@@ -85,6 +89,9 @@ pub fn stl_bytes(mesh: &Mesh) -> std::io::Result<Vec<u8>> {
 /// [`StlError`] if the file is no STL, cut short, or empty.
 pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {
     let head = Head::read(source)?;
+    if let Some(kind) = other_kind(&head.bytes) {
+        return Err(StlError::OtherKind(kind));
+    }
     head.check_length()?;
     let facets = if head.may_be_ascii() {
         let mut facets = Facets::default();

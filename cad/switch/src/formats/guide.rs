@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::markdown::escape;
 use super::{Format, Inclusion, png};
 use crate::built::Built;
 use crate::config::MouldKind;
@@ -32,7 +33,7 @@ fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<Output
 /// The text of the guide; assembly.png and plate.png lie beside it.
 fn printing_guide(design: &Design, manifest: &Manifest) -> String {
     let c = design.configuration();
-    let mut text = format!("# Printing and assembling {}\n\n", manifest.name);
+    let mut text = format!("# Printing and assembling {}\n\n", escape(&manifest.name));
     let picture = |text: &mut String, alt: &str, file: &str| {
         let _ = writeln!(text, "![{alt}]({file})\n");
     };
@@ -69,8 +70,8 @@ fn print_section(text: &mut String, design: &Design, manifest: &Manifest) {
         let _ = writeln!(
             text,
             "| {} | {} | {:.2} g | {} |",
-            part.name,
-            part.file,
+            escape(&part.name),
+            escape(&part.file),
             part.mass_g,
             bridge(part.widest_bridge_mm)
         );
@@ -95,13 +96,13 @@ fn print_section(text: &mut String, design: &Design, manifest: &Manifest) {
     text.push_str("\n### Checks\n\n");
     for check in checklist(design, manifest.widest_bridge_mm()) {
         let _ = if check.is_kept {
-            writeln!(text, "- ok: {}", check.statement)
+            writeln!(text, "- ok: {}", escape(&check.statement))
         } else {
-            writeln!(text, "- **look**: {}; {}", check.statement, check.remedy)
+            writeln!(text, "- **look**: {}; {}", escape(&check.statement), escape(&check.remedy))
         };
     }
     for warning in &manifest.warnings {
-        let _ = writeln!(text, "- **warning**: {warning}");
+        let _ = writeln!(text, "- **warning**: {}", escape(warning));
     }
     text.push('\n');
 }

@@ -1,5 +1,7 @@
 //! The files of a set: one file per format, and one line of the list below.
 
+mod markdown;
+
 use crate::built::Built;
 use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};

@@ -85,9 +85,21 @@ pub(super) fn real(value: f64) -> String {
     }
 }
 
-/// A string of the format: quotes doubled, anything beyond printable ASCII left out.
+/// A string of the format: quotes and backslashes doubled, anything beyond printable ASCII as `\X2\` and `\X4\` with the
+/// hexadecimal digits of its code point (ISO 10303-21, 6.4.3), control characters left out.
 pub(super) fn text(value: &str) -> String {
-    value.chars().filter(|c| c.is_ascii() && !c.is_ascii_control()).collect::<String>().replace('\'', "''")
+    let mut text = String::new();
+    for c in value.chars().filter(|c| !c.is_control()) {
+        let code = u32::from(c);
+        let _ = match c {
+            '\'' => write!(text, "''"),
+            '\\' => write!(text, r"\\"),
+            ' '..='~' => write!(text, "{c}"),
+            '\0'..='\u{ffff}' => write!(text, r"\X2\{code:04X}\X0\"),
+            _ => write!(text, r"\X4\{code:08X}\X0\"),
+        };
+    }
+    text
 }
 
 #[cfg(test)]
@@ -101,7 +113,9 @@ mod tests {
     }
 
     #[test]
-    fn quotes_are_doubled() {
-        assert_eq!(text("a 'b' \u{e4}\n"), "a ''b'' ");
+    fn no_text_ends_its_string_or_is_a_directive() {
+        assert_eq!(text("a 'b'\n"), "a ''b''");
+        assert_eq!(text(r"\X2\'"), r"\\X2\\''");
+        assert_eq!(text("\u{e4}\u{1f600}"), r"\X2\00E4\X0\\X4\0001F600\X0\");
     }
 }

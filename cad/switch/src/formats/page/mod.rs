@@ -2,8 +2,6 @@
 
 mod data;
 
-use std::borrow::Cow;
-
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
@@ -13,6 +11,7 @@ use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
 use crate::scene::exploded_png;
+use pinswitch_plot::html::{escape, filled, json_in_script, policy};
 
 pub use data::PageData;
 
@@ -44,7 +43,7 @@ const UPLOT_CSS: &str = include_str!("uplot.min.css");
 /// [`SetError::Encoding`] for data that JSON cannot hold.
 pub fn page_html(data: &PageData, still: &str) -> Result<String, SetError> {
     let json = data.json()?;
-    let title = data.title().replace('&', "&amp;").replace('<', "&lt;");
+    let (title, policy) = (escape(data.title()), page_policy());
     Ok(filled(HTML, |place| match place {
         "TITLE" => Some(title.as_str().into()),
         "UPLOT_CSS" => Some(UPLOT_CSS.into()),
@@ -53,43 +52,51 @@ pub fn page_html(data: &PageData, still: &str) -> Result<String, SetError> {
         "UPLOT" => Some(UPLOT.into()),
         "JS" => Some(JS.into()),
         "STILL" => Some(still.into()),
-        // In a script element only the end tag needs care.
-        "DATA" => Some(json.replace("</", "<\\/").into()),
+        "DATA" => Some(json_in_script(&json).into()),
+        "POLICY" => Some(policy.as_str().into()),
         _ => None,
     }))
 }
 
-/// `template` with every `{{PLACE}}` filled in, in one pass: what is filled in is not searched for places again.
-fn filled<'a>(template: &'a str, content: impl Fn(&str) -> Option<Cow<'a, str>>) -> String {
-    let mut page = String::new();
-    let mut rest = template;
-    while let Some((before, after)) = rest.split_once("{{") {
-        page.push_str(before);
-        match after.split_once("}}").and_then(|(place, after)| Some((content(place)?, after))) {
-            Some((text, after)) => {
-                page.push_str(&text);
-                rest = after;
-            }
-            None => {
-                page.push_str("{{");
-                rest = after;
-            }
-        }
-    }
-    page + rest
+/// The Content-Security-Policy of the page, the same where it is saved and where it is served: its three scripts run, and
+/// nothing else does.
+#[must_use]
+pub fn page_policy() -> String {
+    policy(&[THREE, UPLOT, JS])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::read;
+    use crate::design::Design;
+    use crate::formats::named;
+    use crate::set::Set;
+
+    /// What stands between `start` and the next `end`, and what follows.
+    fn between<'a>(text: &'a str, start: &str, end: &str) -> (&'a str, &'a str) {
+        text.split_once(start).and_then(|(_, rest)| rest.split_once(end)).unwrap()
+    }
 
     #[test]
-    fn what_is_filled_in_is_not_filled_again() {
-        let content = |place: &str| match place {
-            "A" => Some("{{B}}".into()),
-            "B" => Some("b".into()),
-            _ => None,
-        };
-        assert_eq!(filled("{{A}} {{B}} {{C}} {{", content), "{{B}} b {{C}} {{");
+    fn no_text_of_a_configuration_is_markup_or_a_place() {
+        let text = "[label]\ntext = \"<!--<script>\"\n[switch]\nname = \"x_y\"";
+        let (configuration, _) = read(text, "x.toml").unwrap();
+        let built = Built::new(Design::new(configuration).unwrap()).unwrap();
+        let prediction = Prediction::of(built.design());
+        let mut manifest = Set::new(&built, &prediction, &named(&["stl"]).unwrap()).unwrap().manifest;
+        manifest.warnings.push("<!--<script>{{JS}}{{DATA}}</script>".to_owned());
+        let data = PageData::new(&built, &prediction, &manifest, None);
+        let page = page_html(&data, "").unwrap();
+        let (json, rest) = between(&page, "id=\"data\">", "</script>");
+        assert!(!json.contains('<') && json.contains("{{JS}}{{DATA}}"));
+        let read: serde_json::Value = serde_json::from_str(json).unwrap();
+        let said = read["manifest"]["warnings"].as_array().unwrap().last().unwrap();
+        assert_eq!(said, "<!--<script>{{JS}}{{DATA}}</script>");
+        // The scripts are those that the policy names, whole.
+        assert!(page.contains(&page_policy()));
+        for script in [THREE, UPLOT, JS] {
+            assert!(rest.contains(&format!("<script>{script}</script>")));
+        }
     }
 }

@@ -1,0 +1,153 @@
+"use strict";
+const data = JSON.parse(document.getElementById("data").textContent);
+const PAGE = 200;
+const make = (name, text, attributes = {}) => {
+  const element = document.createElement(name);
+  if (text !== undefined) element.textContent = text;
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  return element;
+};
+const megabytes = bytes => (bytes / 1e6).toFixed(bytes < 1e7 ? 1 : 0) + " MB";
+const numeric = data.fields.map((_, i) => data.variants.every(v => typeof v.settings[i] === "number"));
+
+// Columns: what varies, and what it does.
+const columns = [
+  { name: "variant", get: v => v.id, words: true },
+  { name: "label", get: v => v.label, words: true },
+  ...data.fields.map((name, i) => ({ name: name.split(".").pop(), full: name, get: v => v.settings[i], words: !numeric[i],
+    show: v => numeric[i] ? +v.settings[i].toPrecision(6) : v.settings[i] })),
+  { name: "friction (N)", get: v => v.friction_n ? v.friction_n[0] : undefined, show: v => v.friction_n ? v.friction_n[0].toFixed(2) : "" },
+  { name: "band (N)", get: v => v.friction_n ? v.friction_n[2] - v.friction_n[1] : undefined,
+    show: v => v.friction_n ? v.friction_n[1].toFixed(2) + " to " + v.friction_n[2].toFixed(2) : "" },
+  { name: "threshold (N)", get: v => v.threshold_n, show: v => v.threshold_n === undefined ? "" : v.threshold_n.toFixed(2) },
+  { name: "trust", get: v => v.trust, words: true },
+  { name: "printed (g)", get: v => v.printed_g, show: v => v.printed_g === undefined ? "" : v.printed_g.toFixed(2) },
+  { name: "curve", get: v => v.friction_n ? v.friction_n[0] : undefined, curve: true },
+];
+const top_n = Math.max(...data.variants.flatMap(v => v.curve_n || [0]), 0.1);
+const heaviest = Math.max(...data.variants.map(v => v.loads_n ? v.loads_n[1] : 0), 0.1);
+
+const t = data.tally;
+document.getElementById("tally").textContent =
+  `${data.of} variants: ${t.made} made, ${t.refused} refused, ${t.failed} failed. ` +
+  `${t.parts} part files, ${t.distinct_parts} of them different: ${megabytes(t.part_bytes)} kept in ${megabytes(t.distinct_bytes)}.` +
+  (data.every > 1 ? ` This page shows every ${data.every}th variant; variants.csv and variants.parquet hold all.` : "");
+
+const path = (v, width, height) => (v.curve_n || []).map((y, i, all) => {
+  const load = v.loads_n[0] + (v.loads_n[1] - v.loads_n[0]) * i / (all.length - 1);
+  return (i ? "L" : "M") + (load / heaviest * width).toFixed(1) + " " + (height - y / top_n * height).toFixed(1);
+}).join("");
+const svg = (width, height, inner) => {
+  const holder = make("span");
+  holder.innerHTML = `<svg width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">${inner}</svg>`;
+  return holder.firstChild;
+};
+
+// Filters.
+const filters = document.getElementById("filters");
+const field = (title, ...inputs) => { const label = make("label", title); const span = make("span"); span.append(...inputs); label.append(span); filters.append(label); };
+const search = make("input", undefined, { type: "search", placeholder: "id, label, reason" });
+const status = make("select");
+for (const word of ["all", "made", "refused", "failed"]) status.append(make("option", word));
+field("find", search);
+field("status", status);
+const limits = [];
+columns.forEach(column => {
+  if (column.curve || column.name === "variant" || column.name === "label" || column.name === "band (N)") return;
+  if (column.words) {
+    const select = make("select");
+    select.append(make("option", "all"));
+    const words = [...new Set(data.variants.map(v => column.get(v)).filter(w => w !== undefined).map(String))].sort();
+    if (words.length > 60) return;
+    words.forEach(word => select.append(make("option", word)));
+    limits.push(v => select.value === "all" || String(column.get(v)) === select.value);
+    field(column.name, select);
+  } else {
+    const low = make("input", undefined, { type: "number", step: "any", placeholder: "from" });
+    const high = make("input", undefined, { type: "number", step: "any", placeholder: "to" });
+    limits.push(v => {
+      const x = column.get(v);
+      return (low.value === "" || x >= +low.value) && (high.value === "" || x <= +high.value);
+    });
+    field(column.name, low, " ", high);
+  }
+});
+filters.addEventListener("submit", event => event.preventDefault());
+filters.addEventListener("input", () => { shown = PAGE; draw(); });
+
+// Table.
+let order = null, falling = false, shown = PAGE, chosen = null;
+const head = document.getElementById("head");
+columns.forEach(column => {
+  const cell = make("th", undefined, column.words ? { class: "words" } : {});
+  const button = make("button", column.name, { type: "button", title: column.full || column.name });
+  button.addEventListener("click", () => {
+    falling = order === column ? !falling : false;
+    order = column;
+    draw();
+  });
+  cell.append(button);
+  head.append(cell);
+});
+const compare = (a, b) => {
+  const [x, y] = [order.get(a), order.get(b)];
+  if (x === undefined || y === undefined) return (x === undefined) - (y === undefined);
+  const sign = typeof x === "number" && typeof y === "number" ? x - y : String(x).localeCompare(String(y), "en", { numeric: true });
+  return falling ? -sign : sign;
+};
+function draw() {
+  const text = search.value.toLowerCase();
+  let rows = data.variants.filter(v =>
+    (status.value === "all" || v.status === status.value) &&
+    (!text || (v.id + " " + v.label + " " + (v.reason || "")).toLowerCase().includes(text)) &&
+    limits.every(limit => limit(v)));
+  if (order) rows = [...rows].sort(compare);
+  document.getElementById("count").textContent = `${rows.length} of ${data.variants.length} shown variants match`;
+  const body = document.getElementById("rows");
+  body.replaceChildren(...rows.slice(0, shown).map(v => {
+    const row = make("tr", undefined, { class: v.status + (v === chosen ? " chosen" : "") });
+    columns.forEach(column => {
+      const cell = make("td", undefined, column.words ? { class: "words" } : {});
+      if (column.curve) {
+        if (v.status === "made") cell.append(svg(110, 34, `<path class="spark" d="${path(v, 110, 34)}"/>`));
+      } else {
+        const value = column.show ? column.show(v) : column.get(v);
+        cell.textContent = value === undefined ? "" : value;
+      }
+      row.append(cell);
+    });
+    if (v.status !== "made") {
+      // The reason takes the place of what there is not.
+      while (row.children.length > 2 + data.fields.length) row.lastChild.remove();
+      row.append(make("td", v.status + ": " + (v.reason || ""), { class: "words", colspan: columns.length - row.children.length }));
+    }
+    row.addEventListener("click", () => { chosen = v; draw(); });
+    return row;
+  }));
+  const more = document.getElementById("more");
+  more.hidden = rows.length <= shown;
+  detail(rows);
+}
+document.getElementById("more").addEventListener("click", () => { shown += PAGE; draw(); });
+
+// The chosen variant before all that match.
+function detail(rows) {
+  const place = document.getElementById("detail");
+  place.hidden = !chosen;
+  if (!chosen) return;
+  const title = make("p");
+  if (chosen.status === "made") {
+    title.append(make("a", chosen.id, { href: "variants/" + chosen.id + "/" }), " ",
+      make("a", "manifest", { href: "variants/" + chosen.id + "/manifest.json" }), " ",
+      make("a", "curve", { href: "variants/" + chosen.id + "/friction.csv" }));
+  } else {
+    title.append(chosen.id + ": " + chosen.status + ", " + (chosen.reason || ""));
+  }
+  title.append(" — " + data.fields.map((name, i) => name + " = " + (numeric[i] ? +chosen.settings[i].toPrecision(6) : chosen.settings[i])).join(", "));
+  const others = rows.filter(v => v.curve_n).slice(0, 300).map(v => `<path class="others" d="${path(v, 520, 150)}"/>`).join("");
+  const axes = `<text x="515" y="146" font-size="11" text-anchor="end">${heaviest.toFixed(0)} N load</text>` +
+    `<text x="3" y="11" font-size="11">${top_n.toFixed(1)} N friction</text>`;
+  place.replaceChildren(title, svg(520, 150,
+    `<rect width="520" height="150" fill="#fafafa" stroke="#ccc"/>${others}<path class="spark" d="${path(chosen, 520, 150)}"/>${axes}`));
+}
+draw();

@@ -1,0 +1,80 @@
+//! `pinswitch view CONFIG`: the page of a set, following its configuration.
+
+mod follow;
+mod server;
+mod state;
+
+use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::Arc;
+
+use clap::Args;
+use tokio::net::TcpListener;
+use tokio::sync::watch;
+
+use super::law::LawChoice;
+use super::source::Source;
+use super::{Failure, print};
+use pinswitch_switch::built::Built;
+use pinswitch_switch::formats::named;
+use pinswitch_switch::formats::page::{PageData, page_html};
+use pinswitch_switch::set::Set;
+use state::State;
+
+/// Show the page of a configuration on this machine, and rebuild it whenever the file changes.
+///
+/// Serves on 127.0.0.1 only, and only to its own page. A configuration that breaks shows its error, and the last good
+/// state stays. Ends with Ctrl-C.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  pinswitch init three-double --out mine.toml && pinswitch view mine.toml")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+    #[command(flatten)]
+    law: LawChoice,
+    /// Port to serve on; 0 takes any that is free.
+    #[arg(long, default_value_t = 8737)]
+    port: u16,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (page, data) = build(arguments, 1)?;
+    let (sender, states) =
+        watch::channel(State { version: 1, data: data.into(), page: page.into(), trouble: None });
+    // Kept to the end, also where there is no file to follow: pages that wait are not sent away.
+    let sender = Arc::new(sender);
+    // One thread answers all, however many wait.
+    let runtime =
+        tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failure::failed)?;
+    runtime.block_on(async {
+        let busy = |e| {
+            Failure::bad_input(format!(
+                "--port {}: cannot serve there: {e}; give another port, or 0 for any that is free",
+                arguments.port
+            ))
+        };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, arguments.port)).await.map_err(busy)?;
+        let address: SocketAddr = listener.local_addr().map_err(Failure::failed)?;
+        print(format!("http://{address}\n").as_bytes())?;
+        if let Some(file) = arguments.source.file() {
+            log::info!("following {}; end with Ctrl-C", file.display());
+            let (sender, arguments) = (Arc::clone(&sender), arguments.clone());
+            std::thread::spawn(move || follow::follow(&sender, &arguments, &file));
+        }
+        server::serve(listener, address, states).await;
+        Ok(())
+    })
+}
+
+/// The page and its data.
+fn build(arguments: &Arguments, version: u64) -> Result<(String, String), Failure> {
+    let design = arguments.source.design()?;
+    let prediction = arguments.law.prediction(&design)?;
+    let built = Built::new(design).map_err(Failure::bad_input)?;
+    let formats = named(&["stl"]).map_err(Failure::failed)?;
+    let set = Set::new(&built, &prediction, &formats).map_err(Failure::bad_input)?;
+    let data = PageData::new(&built, &prediction, &set.manifest, Some(version));
+    // A live page is rebuilt while somebody waits, in a browser that has shown it already: no picture.
+    let page = page_html(&data, "").map_err(Failure::failed)?;
+    Ok((page, data.json().map_err(Failure::failed)?))
+}

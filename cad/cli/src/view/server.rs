@@ -1,0 +1,212 @@
+//! The server of the preview: it answers its own page on this machine, and nobody else. hyper reads and writes HTTP.
+
+use std::convert::Infallible;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use http_body_util::Full;
+use hyper::body::{Bytes, Incoming};
+use hyper::header::{HOST, HeaderValue, ORIGIN};
+use hyper::server::conn::http1;
+use hyper::service::service_fn;
+use hyper::{HeaderMap, Method, Request, Response, StatusCode};
+use hyper_util::rt::{TokioIo, TokioTimer};
+use tokio::net::TcpListener;
+use tokio::sync::{Semaphore, watch};
+
+use super::state::{State, after};
+use pinswitch_switch::formats::page::page_policy;
+
+/// How long a request for the next state is held before the browser repeats it.
+const LONG_POLL_TIMEOUT: Duration = Duration::from_secs(20);
+/// Requests that may wait for the next state at once: a page has one.
+const MAX_LONG_POLLS: usize = 32;
+/// Connections that are open at once; others wait in the queue of the system.
+const MAX_CONNECTIONS: usize = 64;
+/// Bytes of a request's line and headers: browsers send less than 2 kB.
+const MAX_HEADER_BYTES: usize = 16 * 1024;
+/// Headers of a request.
+const MAX_HEADERS: usize = 64;
+/// How long a request may take to arrive.
+const HEADER_TIMEOUT: Duration = Duration::from_secs(5);
+/// How long a connection may live: one answer, waited for and sent.
+const CONNECTION_TIMEOUT: Duration = Duration::from_secs(60);
+
+/// What every request is answered from.
+#[derive(Debug)]
+struct Site {
+    states: watch::Receiver<State>,
+    long_polls: Semaphore,
+    address: SocketAddr,
+    policy: String,
+}
+
+/// Answers requests until the program ends.
+pub(super) async fn serve(listener: TcpListener, address: SocketAddr, states: watch::Receiver<State>) {
+    let long_polls = Semaphore::new(MAX_LONG_POLLS);
+    let site = Arc::new(Site { states, long_polls, address, policy: page_policy() });
+    let connections = Arc::new(Semaphore::new(MAX_CONNECTIONS));
+    while let Ok(place) = Arc::clone(&connections).acquire_owned().await {
+        let Ok((stream, _)) = listener.accept().await else {
+            // Out of file descriptors, as a rule: some come back when connections end.
+            tokio::time::sleep(Duration::from_millis(50)).await;
+            continue;
+        };
+        let site = Arc::clone(&site);
+        tokio::spawn(async move {
+            let answer = service_fn(move |request| {
+                let site = Arc::clone(&site);
+                async move { Ok::<_, Infallible>(site.answer(&request).await) }
+            });
+            let connection = http1::Builder::new()
+                .timer(TokioTimer::new())
+                .header_read_timeout(HEADER_TIMEOUT)
+                .max_buf_size(MAX_HEADER_BYTES)
+                .max_headers(MAX_HEADERS)
+                .keep_alive(false)
+                .serve_connection(TokioIo::new(stream), answer);
+            // A closed or slow connection is no failure.
+            let _ = tokio::time::timeout(CONNECTION_TIMEOUT, connection).await;
+            drop(place);
+        });
+    }
+}
+
+impl Site {
+    async fn answer(&self, request: &Request<Incoming>) -> Response<Full<Bytes>> {
+        if let Some(refusal) = refused(request.method(), request.headers(), self.address) {
+            return self.response(refusal.0, "text/plain; charset=utf-8", refusal.1);
+        }
+        match request.uri().path() {
+            "/" => {
+                let page = Arc::clone(&self.states.borrow().page);
+                self.response(StatusCode::OK, "text/html; charset=utf-8", page.to_string())
+            }
+            "/state" => {
+                let Ok(_place) = self.long_polls.try_acquire() else {
+                    return self.response(
+                        StatusCode::SERVICE_UNAVAILABLE,
+                        "text/plain",
+                        "too many pages wait",
+                    );
+                };
+                let query = request.uri().query().unwrap_or_default();
+                let version = query.strip_prefix("after=").and_then(|v| v.parse().ok()).unwrap_or(0);
+                let state = after(self.states.clone(), version, LONG_POLL_TIMEOUT).await;
+                self.response(StatusCode::OK, "application/json", state)
+            }
+            _ => self.response(StatusCode::NOT_FOUND, "text/plain", "no such page"),
+        }
+    }
+
+    fn response(&self, status: StatusCode, kind: &str, content: impl Into<Bytes>) -> Response<Full<Bytes>> {
+        let mut response = Response::new(Full::new(content.into()));
+        *response.status_mut() = status;
+        let headers = response.headers_mut();
+        for (name, value) in [
+            ("content-type", kind),
+            ("content-security-policy", &self.policy),
+            ("x-content-type-options", "nosniff"),
+            ("x-frame-options", "DENY"),
+            ("cross-origin-resource-policy", "same-origin"),
+            ("referrer-policy", "no-referrer"),
+            ("cache-control", "no-store"),
+        ] {
+            if let Ok(value) = HeaderValue::from_str(value) {
+                headers.insert(name, value);
+            }
+        }
+        if status == StatusCode::METHOD_NOT_ALLOWED {
+            headers.insert("allow", HeaderValue::from_static("GET, HEAD"));
+        }
+        response
+    }
+}
+
+/// Why a request is not answered: it would change something, or comes from a page of elsewhere. A name that was bound to
+/// this address (DNS rebinding) stands in `Host`, a foreign page in `Origin`.
+fn refused(method: &Method, headers: &HeaderMap, address: SocketAddr) -> Option<(StatusCode, &'static str)> {
+    if !matches!(*method, Method::GET | Method::HEAD) {
+        return Some((StatusCode::METHOD_NOT_ALLOWED, "only GET and HEAD are answered"));
+    }
+    let mut hosts = headers.get_all(HOST).iter();
+    let is_host = |host: &HeaderValue| host.to_str().is_ok_and(|host| is_own(host, address));
+    if !matches!((hosts.next(), hosts.next()), (Some(host), None) if is_host(host)) {
+        return Some((
+            StatusCode::FORBIDDEN,
+            "Host is not this machine: open the address that view has printed",
+        ));
+    }
+    let is_origin = |origin: &HeaderValue| {
+        origin.to_str().is_ok_and(|o| o.strip_prefix("http://").is_some_and(|host| is_own(host, address)))
+    };
+    let is_foreign = headers.get("sec-fetch-site").is_some_and(|site| site == "cross-site");
+    let navigates = headers.get("sec-fetch-mode").is_some_and(|mode| mode == "navigate");
+    if !headers.get_all(ORIGIN).iter().all(is_origin) || (is_foreign && !navigates) {
+        return Some((
+            StatusCode::FORBIDDEN,
+            "Origin is another page: open the address that view has printed",
+        ));
+    }
+    None
+}
+
+/// Whether `host` names this server: a name of the loopback with the port, or the bound address.
+fn is_own(host: &str, address: SocketAddr) -> bool {
+    let port = address.port();
+    let is_loopback = ["localhost", "127.0.0.1", "[::1]"].iter().any(|name| {
+        host.eq_ignore_ascii_case(&format!("{name}:{port}"))
+            || (port == 80 && host.eq_ignore_ascii_case(name))
+    });
+    is_loopback || host == address.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn status(method: Method, headers: &[(&'static str, &'static str)]) -> Option<u16> {
+        let headers = headers
+            .iter()
+            .map(|(name, value)| (name.parse().unwrap(), HeaderValue::from_static(value)))
+            .collect();
+        refused(&method, &headers, SocketAddr::from(([127, 0, 0, 1], 8737)))
+            .map(|(status, _)| status.as_u16())
+    }
+
+    #[test]
+    fn only_this_machine_is_answered() {
+        for own in ["127.0.0.1:8737", "localhost:8737", "LocalHost:8737", "[::1]:8737"] {
+            assert_eq!(status(Method::GET, &[("host", own)]), None, "{own}");
+            assert_eq!(status(Method::HEAD, &[("host", own)]), None, "{own}");
+        }
+        for foreign in ["evil.example:8737", "127.0.0.1:1", "127.0.0.1", "localhost.evil.example:8737", ""] {
+            assert_eq!(status(Method::GET, &[("host", foreign)]), Some(403), "{foreign}");
+        }
+        assert_eq!(status(Method::GET, &[]), Some(403));
+        assert_eq!(status(Method::GET, &[("host", "localhost:8737"), ("host", "evil.example")]), Some(403));
+    }
+
+    #[test]
+    fn no_other_page_is_answered() {
+        let host = ("host", "127.0.0.1:8737");
+        assert_eq!(status(Method::GET, &[host, ("origin", "http://127.0.0.1:8737")]), None);
+        for foreign in ["http://evil.example", "null", "https://127.0.0.1:8737", "http://127.0.0.1:1"] {
+            assert_eq!(status(Method::GET, &[host, ("origin", foreign)]), Some(403), "{foreign}");
+        }
+        assert_eq!(status(Method::GET, &[host, ("sec-fetch-site", "cross-site")]), Some(403));
+        // A link that somebody follows.
+        let link = [host, ("sec-fetch-site", "cross-site"), ("sec-fetch-mode", "navigate")];
+        assert_eq!(status(Method::GET, &link), None);
+    }
+
+    #[test]
+    fn nothing_can_be_changed() {
+        for method in
+            [Method::POST, Method::PUT, Method::DELETE, Method::TRACE, Method::OPTIONS, Method::CONNECT]
+        {
+            assert_eq!(status(method, &[("host", "127.0.0.1:8737")]), Some(405));
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! What the preview shows now, and waiting for what comes next.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::watch;
+
+/// The last valid page and the error since then, if any.
+#[derive(Clone, Debug, Default)]
+pub(super) struct State {
+    pub(super) version: u64,
+    /// JSON of the page's data.
+    pub(super) data: Arc<str>,
+    pub(super) page: Arc<str>,
+    pub(super) trouble: Option<String>,
+}
+
+impl State {
+    /// JSON for a page that shows `version`.
+    fn since(&self, version: u64) -> String {
+        let data = if self.version > version && self.trouble.is_none() { &*self.data } else { "null" };
+        let trouble = serde_json::to_string(&self.trouble).unwrap_or_else(|_| "null".to_owned());
+        format!(r#"{{"version":{},"trouble":{trouble},"data":{data}}}"#, self.version)
+    }
+}
+
+/// The JSON of the state after `version`; waits for it, with a timeout.
+pub(super) async fn after(mut states: watch::Receiver<State>, version: u64, timeout: Duration) -> String {
+    // Neither a timeout nor the end of the program is an error: the state of then is the answer.
+    let _ = tokio::time::timeout(timeout, states.wait_for(|state| state.version > version)).await;
+    let state = states.borrow();
+    state.since(version)
+}

@@ -1,0 +1,80 @@
+//! What a file is by its first bytes, where it is not what was asked for.
+
+/// What kinds of files begin with, and their names.
+const BEGINNINGS: [(&[u8], &str); 9] = [
+    (b"PK\x03\x04", "a ZIP archive, such as 3MF"),
+    (b"PK\x05\x06", "an empty ZIP archive"),
+    (b"\x1f\x8b", "compressed with gzip"),
+    (b"ISO-10303-21;", "a STEP file"),
+    (b"ply\n", "a PLY file"),
+    (b"ply\r\n", "a PLY file"),
+    (b"glTF", "a glTF file"),
+    (b"AutoCAD Binary DXF", "a binary DXF drawing"),
+    (b"\x89PNG", "a PNG picture"),
+];
+
+/// The name of the kind of a file that begins with `head`, if it cannot be an STL. A binary STL begins with 80 bytes of
+/// any content: only what no program writes there is recognised.
+pub(super) fn other_kind(head: &[u8]) -> Option<&'static str> {
+    if let Some((_, name)) = BEGINNINGS.iter().find(|(begin, _)| head.starts_with(begin)) {
+        return Some(name);
+    }
+    let text = std::str::from_utf8(head).ok().or_else(|| {
+        // The head may end within a character.
+        head.get(..head.len().saturating_sub(3)).and_then(|whole| std::str::from_utf8(whole).ok())
+    })?;
+    // A binary STL has zeros in its count of triangles, or is longer than any.
+    if text.contains('\0') {
+        return None;
+    }
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    let mut lines = text.lines().map(str::trim);
+    let (first, second) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
+    let is_object = |line: &str| {
+        ["v ", "o ", "g ", "mtllib ", "vn ", "# Blender", "# OBJ"].iter().any(|begin| line.starts_with(begin))
+    };
+    if text.starts_with("<?xml") || text.starts_with("<svg") || text.starts_with("<!doctype") {
+        Some("a text in XML, SVG or HTML")
+    } else if (first == "0" && second == "SECTION") || first == "999" {
+        Some("a DXF drawing")
+    } else if is_object(first) || (first.starts_with('#') && is_object(second)) {
+        Some("an OBJ file")
+    } else if first == "OFF" {
+        Some("an OFF file")
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn other_kinds_are_recognised() {
+        for (head, word) in [
+            (&b"PK\x03\x04\x14\0\0\0"[..], "3MF"),
+            (b"\x1f\x8b\x08\0", "gzip"),
+            (b"ISO-10303-21;\nHEADER;", "STEP"),
+            (b"0\nSECTION\n2\nHEADER", "DXF"),
+            (b"  0\r\nSECTION\r\n", "DXF"),
+            (b"# a cube\nv 0 0 0\n", "OBJ"),
+            (b"<?xml version=\"1.0\"?>", "XML"),
+        ] {
+            assert!(other_kind(head).is_some_and(|kind| kind.contains(word)), "{word}");
+        }
+    }
+
+    #[test]
+    fn no_stl_is_another_kind() {
+        for head in [
+            &b"solid a\nfacet normal 0 0 1"[..],
+            &[0; 84],
+            b"",
+            b"Exported from Blender\0\0\0",
+            b"# made by x\0\0",
+        ] {
+            assert_eq!(other_kind(head), None, "{head:?}");
+        }
+    }
+}

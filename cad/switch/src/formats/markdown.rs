@@ -1,0 +1,44 @@
+//! Text in a Markdown document that stays text.
+
+/// Text that a reader of Markdown shows as it is: no markup, no HTML, no end of its cell, in one line.
+pub(super) fn escape(text: &str) -> String {
+    let characters: Vec<char> = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let at = |i: usize| characters.get(i).copied().unwrap_or(' ');
+    let mut escaped = String::with_capacity(text.len());
+    for (i, &c) in characters.iter().enumerate() {
+        let marks = match c {
+            '\\' | '`' | '*' | '<' | '>' | '|' | '&' | '~' => true,
+            // Within a word it marks nothing: names of fields stay readable.
+            '_' => i == 0 || !at(i - 1).is_alphanumeric() || !at(i + 1).is_alphanumeric(),
+            // A list of numbers is no link.
+            ']' => "([:".contains(at(i + 1)),
+            '#' => i == 0 || i + 1 == characters.len(),
+            _ => false,
+        };
+        if marks {
+            escaped.push('\\');
+        }
+        escaped.push(c);
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_no_markup() {
+        assert_eq!(escape("<script>a</script>"), "\\<script\\>a\\</script\\>");
+        assert_eq!(
+            escape("_x_ *y* `z` a|b &lt; [a](b)\nc"),
+            "\\_x\\_ \\*y\\* \\`z\\` a\\|b \\&lt; [a\\](b) c"
+        );
+    }
+
+    #[test]
+    fn fields_and_lists_stay_readable() {
+        let text = "layout.pins = [5, 8, 11]: support.slot_clearance_mm = 0.2 of three-double 3.1";
+        assert_eq!(escape(text), text.replace("]:", "\\]:"));
+    }
+}

@@ -1,0 +1,127 @@
+//! Files that are not what they are given as: each is one short error with a remedy, exit code 2.
+
+use crate::harness::{done, ended, with_sweep};
+
+/// Most characters of an error.
+const LONGEST: usize = 600;
+
+#[test]
+fn an_edited_model_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    done(
+        folder.path(),
+        &["-q", "simulate", "--randomised", "--effect", "load_cell_offset=0.8", "--out", "rig"],
+    );
+    done(folder.path(), &["-q", "calibrate", "rig/plateaus.csv", "--out", "calibrated"]);
+    let model = std::fs::read_to_string(folder.path().join("calibrated/model.toml")).unwrap();
+    let predict = |text: &str| {
+        std::fs::write(folder.path().join("edited.toml"), text).unwrap();
+        ended(folder.path(), &["predict", "--model", "edited.toml", "--rows", "rig/plateaus.csv"])
+    };
+    assert_eq!(predict(&model).0, Some(0));
+    // The value of one line after `key = `, edited.
+    let edited = |key: &str, value: &str| {
+        let line = model.lines().find(|l| l.starts_with(&format!("{key} = "))).unwrap().to_owned();
+        model.replacen(&line, &format!("{key} = {value}"), 1)
+    };
+    for (key, value) in [
+        ("value", "inf"),
+        ("value", "nan"),
+        ("value", "-1.0"),
+        ("value", "1e300"),
+        ("name", "\"other\""),
+        ("correlation", "7.0"),
+        ("stroke_mm", "0.0"),
+        ("stroke_mm", "-inf"),
+        ("reference_speed_pct", "0.0"),
+        ("wrap_rad", "1e9"),
+        ("schema", "\"pinswitch.model/99\""),
+        ("covariance", "[[1.0]]"),
+    ] {
+        let (code, said) = predict(&edited(key, value));
+        assert_eq!(code, Some(2), "{key} = {value}: {said:.600}");
+        assert!(said.contains("edited.toml") && said.contains(';'), "{key} = {value}: {said}");
+        assert!(said.chars().count() <= LONGEST + 20, "{key} = {value}: {said}");
+    }
+}
+
+#[test]
+fn what_is_no_text_is_named_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("bad.toml"), b"[shell]\nwidth_mm = \"\xff\"\n").unwrap();
+    std::fs::create_dir(folder.path().join("folder")).unwrap();
+    for arguments in [
+        &["generate", "bad.toml"][..],
+        &["predict", "--model", "bad.toml", "--rows", "bad.toml"],
+        &["simulate", "--plan", "bad.toml", "--out", "x"],
+        &["design", "--ask", "bad.toml"],
+    ] {
+        let (code, said) = ended(folder.path(), arguments);
+        assert!(
+            code == Some(2) && said.contains("bad.toml:2: byte 0xff is no UTF-8"),
+            "{arguments:?}: {said}"
+        );
+    }
+    let (code, said) = ended(folder.path(), &["generate", "folder"]);
+    assert!(code == Some(2) && said.contains("folder: is a folder; give a file"), "{said}");
+}
+
+#[test]
+fn a_value_of_any_length_makes_a_short_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = format!("[layout]\npins = [{}]\n", "5, ".repeat(100_000));
+    let text = format!("[label]\ntext = \"{}\"\n", "x".repeat(300_000));
+    let name = format!("[switch]\nname = \"{}\"\n", "x".repeat(300_000));
+    for content in [list, text, name] {
+        std::fs::write(folder.path().join("my.toml"), &content).unwrap();
+        let (code, said) = ended(folder.path(), &["generate", "my.toml"]);
+        assert_eq!(code, Some(2), "{said:.600}");
+        assert!(said.contains("my.toml:2") && said.chars().count() <= LONGEST, "{} {said:.600}", said.len());
+    }
+}
+
+#[test]
+fn another_kind_of_file_is_recognised_before_it_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    done(folder.path(), &["-q", "generate", "three-double", "--out", "set"]);
+    std::fs::write(folder.path().join("a.stl"), b"\x1f\x8b\x08\0\0\0\0\0\0\0").unwrap();
+    std::fs::write(folder.path().join("a.obj"), "# cube\nv 0 0 0\n".repeat(20)).unwrap();
+    for (file, word) in [("a.stl", "gzip"), ("a.obj", "OBJ")] {
+        let (code, said) = ended(folder.path(), &["check", file]);
+        assert!(code == Some(2) && said.contains(word), "{file}: {said}");
+    }
+    for entry in std::fs::read_dir(folder.path().join("set")).unwrap() {
+        let path = entry.unwrap().path();
+        let kind = path.extension().unwrap_or_default().to_string_lossy().into_owned();
+        let word = match kind.as_str() {
+            "3mf" => "3MF",
+            "step" => "STEP",
+            "dxf" => "DXF",
+            _ => continue,
+        };
+        let (code, said) = ended(folder.path(), &["check", &path.to_string_lossy()]);
+        assert!(code == Some(2) && said.contains(word), "{}: {said}", path.display());
+    }
+}
+
+#[test]
+fn a_sweep_reads_beside_itself_or_below() {
+    let sweep = "[sweep]\nbase = \"BASE\"\n[axes]\n\"shell.width_mm\" = [14, 15]\n";
+    let folder = with_sweep("");
+    let below = folder.path().join("below");
+    std::fs::create_dir_all(below.join("deeper")).unwrap();
+    std::fs::write(folder.path().join("outside.toml"), "[shell]\nwall_mm = 3\n").unwrap();
+    std::fs::write(below.join("deeper/inside.toml"), "[shell]\nwall_mm = 3\n").unwrap();
+    let absolute = folder.path().join("outside.toml").display().to_string();
+    for (base, code) in
+        [("../outside.toml", 2), (absolute.as_str(), 2), ("deeper/inside.toml", 0), ("three-double", 0)]
+    {
+        std::fs::write(below.join("sweep.toml"), sweep.replace("BASE", base)).unwrap();
+        for from in [(&below, "sweep.toml"), (&folder.path().to_owned(), "below/sweep.toml")] {
+            let (ended_with, said) = ended(from.0, &["batch", from.1, "--dry-run"]);
+            assert_eq!(ended_with, Some(code), "{base}: {said}");
+            assert!(code == 0 || said.contains("--read-outside"), "{base}: {said}");
+            assert_eq!(ended(from.0, &["batch", from.1, "--dry-run", "--read-outside"]).0, Some(0), "{base}");
+        }
+    }
+}

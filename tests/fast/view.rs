@@ -1,0 +1,150 @@
+//! The preview answers its own page, within bounds, and shows whole files only.
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::Duration;
+
+use crate::harness::{binary, done};
+
+/// A running preview, ended with the test.
+struct Preview {
+    child: Child,
+    address: String,
+}
+
+impl Drop for Preview {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Preview {
+    fn start(folder: &Path, config: &str) -> Self {
+        let mut command = binary();
+        command.args(["view", config, "--port", "0"]).current_dir(folder);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut line = Vec::new();
+        let stdout = child.stdout.as_mut().unwrap();
+        let mut byte = [0];
+        while stdout.read_exact(&mut byte).is_ok() && byte[0] != b'\n' {
+            line.push(byte[0]);
+        }
+        let address = String::from_utf8(line).unwrap().replace("http://", "");
+        Self { child, address }
+    }
+
+    fn connect(&self) -> TcpStream {
+        let stream = TcpStream::connect(&self.address).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
+        stream
+    }
+
+    /// The answer to a request with this line and these headers.
+    fn ask(&self, line: &str, headers: &str) -> String {
+        let mut stream = self.connect();
+        // It may be refused before it was sent whole.
+        let _ = write!(stream, "{line} HTTP/1.1\r\n{headers}\r\n");
+        let mut answer = Vec::new();
+        let _ = stream.read_to_end(&mut answer);
+        String::from_utf8_lossy(&answer).into_owned()
+    }
+
+    fn host(&self) -> String {
+        format!("Host: {}\r\n", self.address)
+    }
+
+    fn state(&self, after: u64) -> serde_json::Value {
+        let answer = self.ask(&format!("GET /state?after={after}"), &self.host());
+        serde_json::from_str(answer.split_once("\r\n\r\n").unwrap().1).unwrap()
+    }
+
+    /// Threads of the process, where the system tells.
+    fn threads(&self) -> usize {
+        std::fs::read_dir(format!("/proc/{}/task", self.child.id())).map_or(0, Iterator::count)
+    }
+}
+
+#[test]
+fn the_preview_answers_its_own_page_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let preview = Preview::start(folder.path(), "three-double");
+    let host = preview.host();
+    let page = preview.ask("GET /", &host);
+    assert!(page.starts_with("HTTP/1.1 200"), "{page:.200}");
+    // The policy of the answer is the one of a saved page.
+    let policy = page.lines().find_map(|l| l.strip_prefix("content-security-policy: ")).unwrap().to_owned();
+    assert!(policy.contains("script-src 'sha256-") && !policy.contains("script-src 'unsafe"), "{policy}");
+    assert!(page.contains(&format!("content=\"{policy}\"")));
+    let port = preview.address.rsplit(':').next().unwrap();
+    assert!(preview.ask("GET /", &format!("Host: localhost:{port}\r\n")).starts_with("HTTP/1.1 200"));
+    for headers in [
+        format!("Host: evil.example:{port}\r\n"),
+        String::new(),
+        format!("{host}Origin: http://evil.example\r\n"),
+        format!("{host}Origin: null\r\n"),
+    ] {
+        let answer = preview.ask("GET /state?after=0", &headers);
+        assert!(answer.starts_with("HTTP/1.1 403"), "{headers:?}: {answer:.200}");
+        assert!(!answer.contains("manifest"));
+    }
+    for method in ["POST", "PUT", "DELETE", "TRACE", "OPTIONS"] {
+        let answer = preview.ask(&format!("{method} /"), &host);
+        assert!(answer.starts_with("HTTP/1.1 405"), "{method}: {answer:.200}");
+    }
+    let head = preview.ask("HEAD /", &host);
+    assert!(head.starts_with("HTTP/1.1 200") && head.ends_with("\r\n\r\n"), "{head:.200}");
+}
+
+#[test]
+fn the_preview_bounds_headers_connections_and_waiting_pages() {
+    let folder = tempfile::tempdir().unwrap();
+    let preview = Preview::start(folder.path(), "three-double");
+    let host = preview.host();
+    let answer = preview.ask("GET /", &format!("{host}X: {}\r\n", "x".repeat(1_000_000)));
+    assert!(!answer.starts_with("HTTP/1.1 200"), "{answer:.200}");
+    let many: String = (0..1000).map(|i| format!("X-{i}: x\r\n")).collect();
+    let answer = preview.ask("GET /", &format!("{host}{many}"));
+    assert!(!answer.starts_with("HTTP/1.1 200"), "{answer:.200}");
+
+    let before = preview.threads();
+    let waiting: Vec<_> = (0..50)
+        .map(|_| {
+            let mut stream = preview.connect();
+            write!(stream, "GET /state?after=1 HTTP/1.1\r\n{host}\r\n").unwrap();
+            stream
+        })
+        .collect();
+    // The page is served beside them, and they cost no threads.
+    assert!(preview.ask("GET /", &host).starts_with("HTTP/1.1 200"));
+    assert!(preview.threads() <= before + 2, "{before} threads became {}", preview.threads());
+    assert!(preview.ask("GET /state?after=1", &host).starts_with("HTTP/1.1 503"));
+    drop(waiting);
+}
+
+#[test]
+fn half_a_save_is_not_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    done(folder.path(), &["init", "three-double", "--out", "mine.toml"]);
+    let file = folder.path().join("mine.toml");
+    let good = std::fs::read_to_string(&file).unwrap();
+    let preview = Preview::start(folder.path(), "mine.toml");
+    let changed = good.replace("[5, 8, 11]", "[6, 8, 10]");
+    // An editor that truncates, and writes in pieces.
+    let mut writer = std::fs::File::create(&file).unwrap();
+    for piece in changed.as_bytes().chunks(changed.len() / 4 + 1) {
+        std::thread::sleep(Duration::from_millis(60));
+        writer.write_all(piece).unwrap();
+    }
+    drop(writer);
+    let state = preview.state(1);
+    assert_eq!(state["version"], 2);
+    assert!(state["data"]["layout"].as_str().unwrap().contains("[6, 8, 10]"), "{}", state["trouble"]);
+    // A save that never comes to its end.
+    std::fs::write(&file, "").unwrap();
+    let state = preview.state(2);
+    assert!(state["trouble"].as_str().unwrap().contains("empty"), "{}", state["trouble"]);
+    assert!(preview.ask("GET /", &preview.host()).contains("[6, 8, 10]"));
+}

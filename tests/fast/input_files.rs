@@ -53,7 +53,7 @@ fn what_is_no_text_is_named_with_its_line() {
     for arguments in [
         &["generate", "bad.toml"][..],
         &["predict", "--model", "bad.toml", "--rows", "bad.toml"],
-        &["simulate", "--plan", "bad.toml", "--out", "x"],
+        &["simulate", "bad.toml", "--out", "x"],
         &["design", "--ask", "bad.toml"],
     ] {
         let (code, said) = ended(folder.path(), arguments);

@@ -132,13 +132,14 @@ pub(crate) fn check_covariance(rows: &[Vec<f64>], needed: usize) -> Result<(), F
         within(&format!("covariance[{i}][{i}]"), matrix[(i, i)], 0.0, f64::MAX)?;
         for j in 0..i {
             let (a, b) = (matrix[(i, j)], matrix[(j, i)]);
-            if !((a - b).abs() <= ROUNDING * largest) {
+            let apart = (a - b).abs();
+            if apart.is_nan() || apart > ROUNDING * largest {
                 return Err(Flaw::new(format!("covariance[{i}][{j}]"), a, format!("{b}, as at [{j}][{i}]")));
             }
         }
     }
     let least = matrix.symmetric_eigenvalues().iter().copied().fold(f64::INFINITY, f64::min);
-    if needed > 0 && !(least >= -ROUNDING * largest) {
+    if needed > 0 && (least.is_nan() || least < -ROUNDING * largest) {
         return Err(Flaw::new("covariance", format!("eigenvalue {least}"), "none below zero"));
     }
     Ok(())

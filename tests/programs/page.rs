@@ -75,8 +75,18 @@ fn the_page_works_in_a_browser() {
     pinswitch(folder.path(), &["generate", "three-double", "--format", "page", "--out", "set"]);
     let page = std::fs::read_to_string(folder.path().join("set/report.html")).unwrap();
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
+    // As it is saved, under its own policy: its scripts fill the table, and one that is put in does not run.
+    let put_in = folder.path().join("put-in.html");
+    std::fs::write(&put_in, page.replace("</body>", &format!("{EXERCISE}</body>"))).unwrap();
+    let dom = browse(name, &put_in, &["--dump-dom"]);
+    assert!(dom.matches("<tr").count() > 101, "the page's own scripts did not run");
+    assert!(!dom.contains("<title>exercised"), "a script that is not the page's ran");
+    // Without the policy, for the script that moves every control.
     let exercised = folder.path().join("exercised.html");
-    std::fs::write(&exercised, page.replace("</body>", &format!("{EXERCISE}</body>"))).unwrap();
+    let policy = page.find("<meta http-equiv=\"Content-Security-Policy\"").unwrap();
+    let end = policy + page[policy..].find('>').unwrap() + 1;
+    let open = format!("{}{}", &page[..policy], &page[end..]);
+    std::fs::write(&exercised, open.replace("</body>", &format!("{EXERCISE}</body>"))).unwrap();
     let dom = browse(name, &exercised, &["--dump-dom"]);
     let title = dom.split("<title>").nth(1).and_then(|t| t.split("</title>").next()).unwrap_or("no title");
     assert_eq!(title.split_whitespace().collect::<Vec<_>>(), ["exercised", "end"], "these controls failed");

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
-use super::law::LawChoice;
 use super::calibrated_curve::calibrated_curve;
+use super::law::LawChoice;
 use super::source::Source;
 use super::{Failure, print};
 use crate::write::{PublishError, SetFolder};

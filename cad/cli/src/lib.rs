@@ -23,8 +23,8 @@
 //! use pinswitch::solid::validity::{Expectation, examine};
 //! use pinswitch::switch::{built::Built, config, design::Design, formats, prediction::Prediction, set::Set};
 //!
-//! // Four pins, 11.9 degrees apart, in a shell that is a little wider than usual.
-//! let text = "[layout]\npins = [5, 7, 9, 11]\n[shell]\nwidth_mm = 16\n[friction]\npoints = 21\n";
+//! // Four pins, 11.9 degrees apart, in a shell whose wall is a little thicker than usual.
+//! let text = "[layout]\npins = [5, 7, 9, 11]\n[shell]\nwall_mm = 6.5\n[friction]\npoints = 21\n";
 //! let (configuration, _) = config::read(text, "four.toml")?;
 //! let design = Design::new(configuration)?; // or one error: field, value, bound and remedy
 //!

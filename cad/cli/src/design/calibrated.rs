@@ -36,7 +36,10 @@ impl CalibratedSwitch {
     /// The change from the same grooves of the rig to `part`, remembered.
     fn carry(&self, part: &Part, loads_n: &[f64]) -> Option<Carry> {
         let known = |recent: &Vec<(Contact, Vec<f64>, Carry)>| {
-            recent.iter().find(|(c, l, _)| *c == part.contact && l == loads_n).map(|(_, _, carry)| carry.clone())
+            recent
+                .iter()
+                .find(|(c, l, _)| *c == part.contact && l == loads_n)
+                .map(|(_, _, carry)| carry.clone())
         };
         if let Some(carry) = self.recent.lock().ok().and_then(|recent| known(&recent)) {
             return Some(carry);

@@ -19,7 +19,9 @@ use flags::AskFlags;
 use pinswitch_plot::{AskedRegion, pareto_svg};
 use pinswitch_switch::ask::{Ask, Parameter, Quantity};
 use pinswitch_switch::config::{Configuration, Name, to_toml};
-use pinswitch_switch::design_search::{Belief, Blocked, Found, Options, Proposal, PublishedPhysics, load_range_n, search};
+use pinswitch_switch::design_search::{
+    Belief, Blocked, Found, Options, Proposal, PublishedPhysics, load_range_n, search,
+};
 use pinswitch_switch::output::OutputFile;
 use progress::Bar;
 

@@ -119,16 +119,14 @@ pub(super) fn refusal(blocked: &Blocked) -> String {
 
 /// How far all of these are from their bounds, as shares of the bounds.
 fn all_missed(missed: &[Missed]) -> String {
-    let one = |m: &Missed| format!("{} has {:.3}, {:.1} % from {:.3}", m.target, m.value, 100.0 * m.by, m.bound);
+    let one =
+        |m: &Missed| format!("{} has {:.3}, {:.1} % from {:.3}", m.target, m.value, 100.0 * m.by, m.bound);
     missed.iter().map(one).collect::<Vec<_>>().join("; ")
 }
 
 fn advice(m: &Move) -> String {
     let verb = if m.to > m.from { "raise" } else { "lower" };
-    let effect = if m.meets {
-        "then the ask is met".to_owned()
-    } else {
-        format!("then {}", all_missed(&m.missed))
-    };
+    let effect =
+        if m.meets { "then the ask is met".to_owned() } else { format!("then {}", all_missed(&m.missed)) };
     format!("{verb} {} from {:.2} to {:.2}: {effect} ({})", m.parameter.name(), m.from, m.to, m.forbidden_by)
 }

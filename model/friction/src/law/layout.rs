@@ -57,7 +57,10 @@ fn layout_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, Law
         friction_n: loads_n.iter().map(|&load| log(&law, load).exp()).collect(),
         sources: vec![
             BandSource { name: "half load".to_owned(), down: side(&late, -1.0), up: side(&early, 1.0) },
-            BandSource::even("misses at the measured maxima", vec![2.0 * FRICTION_UNCERTAINTY; loads_n.len()]),
+            BandSource::even(
+                "misses at the measured maxima",
+                vec![2.0 * FRICTION_UNCERTAINTY; loads_n.len()],
+            ),
         ],
     })
 }

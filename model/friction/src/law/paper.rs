@@ -92,6 +92,10 @@ fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawE
 /// Says when `F_thr` of six-single is not read as printed.
 fn threshold_remark(contact: &Contact) -> Option<String> {
     let (read, printed) = (contact.published_layout()?, LAYOUTS[0]);
-    (read.name == printed.name && read.threshold != printed.threshold && contact.substrate() == Substrate::Silicone)
-        .then(|| format!("F_thr of six-single is read as {}, printed is {}", read.threshold, printed.threshold))
+    (read.name == printed.name
+        && read.threshold != printed.threshold
+        && contact.substrate() == Substrate::Silicone)
+        .then(|| {
+            format!("F_thr of six-single is read as {}, printed is {}", read.threshold, printed.threshold)
+        })
 }

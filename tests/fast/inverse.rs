@@ -194,6 +194,11 @@ fn wishes_that_cannot_be_read_are_refused() {
         (&["design", "--ask", "no-such.toml"], "cannot read"),
         (&["design", "--ask", "odd.toml"], "vary.thickness"),
         (&["design", "--threshold", "20", "--model", "odd.toml"], "odd.toml"),
+        (
+            &["design", "--threshold", "20", "--model", "odd.toml", "--set", "segment.grooves=13"],
+            "segment.grooves = 13",
+        ),
+        (&["predict", "three-double", "--model", "odd.toml", "--law", "paper"], "cannot be used with"),
         (&["design"], "nothing is asked"),
         (
             &["predict", "three-double", "--set", "layout.pins=[2,3,9]", "--law", "paper"],

@@ -14,7 +14,7 @@ use crate::write::write_file;
 #[derive(Args, Clone, Debug)]
 pub(super) struct Rows {
     /// A model.toml or baseline.toml written by `calibrate`: predicts the rows, or the curve of the configuration.
-    #[arg(long, value_name = "TOML")]
+    #[arg(long, value_name = "TOML", conflicts_with = "law")]
     pub(super) model: Option<PathBuf>,
     /// A plateau table whose rows are predicted; its force_N is not used.
     #[arg(long, value_name = "CSV", requires = "model")]

@@ -16,6 +16,7 @@ use super::{Failure, print, print_json};
 use crate::write::write_set;
 use calibrated::CalibratedSwitch;
 use flags::AskFlags;
+use pinswitch_friction::published::GROOVES;
 use pinswitch_plot::{AskedRegion, pareto_svg};
 use pinswitch_switch::ask::{Ask, Parameter, Quantity};
 use pinswitch_switch::config::{Configuration, Name, to_toml};
@@ -95,6 +96,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::bad_input(
             "--vary wrap_deg: a calibrated switch is known at the wrap of its rig only; leave out wrap_deg or --model",
         ));
+    }
+    let grooves = base.configuration().segment.grooves;
+    if arguments.model.is_some() && grooves != GROOVES {
+        return Err(Failure::bad_input(format!(
+            "segment.grooves = {grooves}: a calibrated switch is known by the {GROOVES} grooves of its rig; set {GROOVES} or leave \
+             out --model"
+        )));
     }
     let calibrated = arguments.model.as_deref().map(CalibratedSwitch::read).transpose()?;
     let published = PublishedPhysics::default();

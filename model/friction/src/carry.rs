@@ -4,6 +4,7 @@
 use crate::band::NORMAL_95;
 use crate::departure::departures;
 use crate::physics::{Constants, PhysicsError, PhysicsSwitch};
+use crate::transition::at;
 use crate::{Contact, Direction, FrictionCurve, Transition, Trust, capstan_tension_n};
 
 /// How much of a change that the physics makes may be wrong, as a standard deviation. Chosen: no calibration has yet
@@ -94,8 +95,12 @@ impl Carry {
         silicone_share: &[f64],
     ) -> (Vec<f64>, Vec<f64>) {
         let friction = friction_n.iter().zip(&self.log_friction).map(|(d, by)| d * by.exp()).collect();
-        let share =
-            loads_n.iter().map(|load| at(loads_n, silicone_share, load / self.threshold_factor)).collect();
+        let ends = loads_n.first().zip(loads_n.last());
+        let within = |load: f64| ends.map_or(load, |(from, to)| load.max(*from).min(*to));
+        let share = loads_n
+            .iter()
+            .map(|load| at(loads_n, silicone_share, within(load / self.threshold_factor)))
+            .collect();
         (friction, share)
     }
 
@@ -164,19 +169,6 @@ fn pins_reason(rig: &Contact, part: &Contact) -> String {
         all.join(", ")
     };
     format!("the pins lie at {} deg, on the calibrated rig at {}", degrees(part), degrees(rig))
-}
-
-/// `column` at `load`, linear between its points and constant beyond them.
-fn at(loads_n: &[f64], column: &[f64], load: f64) -> f64 {
-    let above = loads_n.partition_point(|l| *l < load);
-    match (
-        above.checked_sub(1).and_then(|i| loads_n.get(i).zip(column.get(i))),
-        loads_n.get(above).zip(column.get(above)),
-    ) {
-        (Some((l0, c0)), Some((l1, c1))) => c0 + (c1 - c0) * (load - l0) / (l1 - l0),
-        (Some((_, only)), None) | (None, Some((_, only))) => *only,
-        (None, None) => 0.0,
-    }
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ impl Transition {
 }
 
 /// `column` at `load`, linear between its points.
-fn at(load_n: &[f64], column: &[f64], load: f64) -> f64 {
+pub(crate) fn at(load_n: &[f64], column: &[f64], load: f64) -> f64 {
     let i = load_n.partition_point(|l| *l < load).clamp(1, load_n.len().saturating_sub(1).max(1));
     match (load_n.get(i - 1).zip(load_n.get(i)), column.get(i - 1).zip(column.get(i))) {
         (Some((l0, l1)), Some((c0, c1))) => c0 + (c1 - c0) * (load - l0) / (l1 - l0),

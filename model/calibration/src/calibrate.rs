@@ -5,8 +5,8 @@ use pinswitch_friction::Substrate;
 use crate::effects::CATALOGUE;
 use crate::held_out::{SOUND_WEIGHT, held_out};
 use crate::inference::{
-    CandidateEffect, Fit, FoundEffect, Levels, Model, Noise, Observations, Rival, Selection, Term,
-    UNATTRIBUTED, cell_deviation, degrees_of_freedom, family_p_value, interval_half_widths, select,
+    CandidateEffect, Fit, FoundEffect, Levels, Model, Observations, Rival, Selection, Term,
+    UNATTRIBUTED, Weighed, cell_deviation, degrees_of_freedom, family_p_value, interval_half_widths, select,
 };
 use crate::layouts_left_out::layouts_left_out;
 use crate::report::{
@@ -96,14 +96,14 @@ fn estimate(value: f64, half_width: f64, unit: &str, (least, most): (f64, f64)) 
     Estimate { value, ci95, unit: unit.to_owned() }
 }
 
-fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport, f64) {
-    let held = held_out(&fitted.model, data, noise);
+fn model_report(fitted: &Fit, weighed: &Weighed<'_>) -> (ModelReport, f64) {
+    let held = held_out(&fitted.model, weighed);
     let (mut sum, mut count) = (0.0, 0.0);
-    for (r, _) in fitted.residual_n.iter().zip(&data.weights).filter(|(_, w)| **w > SOUND_WEIGHT) {
+    for (r, _) in fitted.residual_n.iter().zip(&weighed.data.weights).filter(|(_, w)| **w > SOUND_WEIGHT) {
         sum += r * r;
         count += 1.0;
     }
-    let widths = interval_half_widths(fitted, data, noise);
+    let widths = interval_half_widths(fitted, weighed);
     let conditions = &fitted.model.frame.conditions;
     let touched = |name: &str| match name {
         "mu_p" => conditions.iter().any(crate::table::Condition::has_pins),
@@ -126,7 +126,7 @@ fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport
         heldout_rmse_n: held.both_n(),
         heldout_series_rmse_n: held.series_n,
         heldout_loads_rmse_n: held.loads_n,
-        heldout_layouts_rmse_n: layouts_left_out(&fitted.model, data, noise),
+        heldout_layouts_rmse_n: layouts_left_out(&fitted.model, weighed),
         parameters,
     };
     (report, held.both_n())
@@ -134,13 +134,14 @@ fn model_report(fitted: &Fit, data: &Observations, noise: Noise) -> (ModelReport
 
 fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations, levels: Levels) -> Report {
     let noise = selection.noise;
-    let (baseline, before_n) = model_report(&selection.baseline, data, noise);
+    let weighed = &Weighed::new(data, noise);
+    let (baseline, before_n) = model_report(&selection.baseline, weighed);
     let (augmented, after_n) = if selection.augmented.model.terms.is_empty() {
         (baseline.clone(), before_n)
     } else {
-        model_report(&selection.augmented, data, noise)
+        model_report(&selection.augmented, weighed)
     };
-    let effects = effects(selection, data, after_n, &augmented);
+    let effects = effects(selection, weighed, after_n, &augmented);
     Report {
         schema: "pinswitch.calibration/1".to_owned(),
         data: DataSummary {
@@ -159,7 +160,7 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations, level
         family_probability: selection.family_probability,
         invisible: invisible(selection),
         never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
-        bad_series: bad_series(rows, selection, data),
+        bad_series: bad_series(rows, selection, weighed),
         extrapolation: None,
     }
 }
@@ -232,24 +233,24 @@ fn candidates(selection: &Selection, data: &Observations, levels: Levels) -> Vec
 
 fn effects(
     selection: &Selection,
-    data: &Observations,
+    weighed: &Weighed<'_>,
     after_n: f64,
     augmented: &ModelReport,
 ) -> Vec<EffectReport> {
-    let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
+    let degrees = degrees_of_freedom(weighed.data, selection.baseline.model.values().len());
     let mut reports: Vec<EffectReport> = selection
         .effects
         .iter()
-        .map(|found| named_report(found, selection, data, degrees, after_n, augmented))
+        .map(|found| named_report(found, selection, weighed, degrees, after_n, augmented))
         .collect();
-    reports.extend(unnamed_report(selection, data, degrees, after_n, augmented));
+    reports.extend(unnamed_report(selection, weighed, degrees, after_n, augmented));
     reports
 }
 
 fn named_report(
     found: &FoundEffect,
     selection: &Selection,
-    data: &Observations,
+    weighed: &Weighed<'_>,
     degrees: f64,
     after_n: f64,
     augmented: &ModelReport,
@@ -270,7 +271,7 @@ fn named_report(
                 Some((p.name.to_owned(), known.clone()))
             })
             .collect(),
-        error_before_n: held_out(&without, data, selection.noise).both_n(),
+        error_before_n: held_out(&without, weighed).both_n(),
         error_after_n: after_n,
         rivals: found.rivals.iter().map(|rival| rival_report(found, rival)).collect(),
     }
@@ -291,7 +292,7 @@ fn rival_report(found: &FoundEffect, rival: &Rival) -> RivalReport {
 /// The report of the structure that no name explains, if there is any.
 fn unnamed_report(
     selection: &Selection,
-    data: &Observations,
+    weighed: &Weighed<'_>,
     degrees: f64,
     after_n: f64,
     augmented: &ModelReport,
@@ -320,7 +321,7 @@ fn unnamed_report(
             .filter(|(name, _)| name.starts_with(UNATTRIBUTED))
             .map(|(name, e)| (name.clone(), e.clone()))
             .collect(),
-        error_before_n: held_out(&bare, data, selection.noise).both_n(),
+        error_before_n: held_out(&bare, weighed).both_n(),
         error_after_n: after_n,
         rivals: Vec::new(),
     })
@@ -332,15 +333,17 @@ const BAD_SERIES_SD: f64 = 4.5;
 pub(crate) const BAD_READING_SD: f64 = 20.0;
 
 /// Series whose mean residual, or one reading, is further off than noise can make it.
-fn bad_series(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Vec<BadSeries> {
+fn bad_series(rows: &[PlateauRow], selection: &Selection, weighed: &Weighed<'_>) -> Vec<BadSeries> {
+    let data = weighed.data;
     let mut bad = Vec::new();
     for (index, (cell, load)) in data.cells.iter().zip(&data.cell_load_n).enumerate() {
-        let (mean, sd) = cell_deviation(&selection.augmented, data, selection.noise, index);
+        let (mean, sd) = cell_deviation(&selection.augmented, weighed, index);
         let worst = cell
             .iter()
             .map(|r| selection.augmented.residual_n[*r])
             .fold(0.0f64, |a, b| if b.abs() > a.abs() { b } else { a });
-        let reading_sd = selection.noise.at(*load);
+        let friction_n = cell.first().map_or(0.0, |r| data.friction_n[*r]);
+        let reading_sd = selection.noise.at(*load, friction_n);
         let (offset_n, sd) = if mean.abs() > BAD_SERIES_SD * sd {
             (mean, sd)
         } else if worst.abs() > BAD_READING_SD * reading_sd {

@@ -25,11 +25,14 @@ pub fn calibrate_below(
     };
     let before = misses(&selection.baseline.model);
     let after = misses(&selection.augmented.model);
+    let model = &selection.augmented.model;
+    let friction_n = model.friction_n(&model.frame.points(&rest).unwrap_or_default());
     let sound: Vec<f64> = after
         .iter()
         .zip(&rest)
-        .filter(|(miss, r)| miss.abs() <= BAD_READING_SD * selection.noise.at(r.load_n))
-        .map(|(miss, _)| *miss)
+        .zip(&friction_n)
+        .filter(|((miss, r), u)| miss.abs() <= BAD_READING_SD * selection.noise.at(r.load_n, **u))
+        .map(|((miss, _), _)| *miss)
         .collect();
     calibration.report.extrapolation = Some(Extrapolation {
         fitted_below_n: share * highest,

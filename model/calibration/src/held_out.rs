@@ -1,6 +1,6 @@
 //! Errors on data held out from the fit: whole series, then whole loads.
 
-use crate::inference::{Model, Noise, Observations, fit};
+use crate::inference::{Model, Weighed, fit};
 
 /// Root mean square errors in newtons on rows that the fit did not see.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,15 +23,16 @@ const FOLDS: usize = 4;
 pub(crate) const SOUND_WEIGHT: f64 = 0.5;
 
 /// Held-out errors of a model that is refitted from where it stands.
-pub fn held_out(model: &Model, data: &Observations, noise: Noise) -> HeldOut {
+pub fn held_out(model: &Model, weighed: &Weighed<'_>) -> HeldOut {
+    let data = weighed.data;
     let mut loads: Vec<f64> = data.points.iter().map(|p| p.load_n).collect();
     loads.sort_by(f64::total_cmp);
     loads.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
     let load_fold = |i: usize| loads.partition_point(|l| *l < data.points[i].load_n - 1e-7) % FOLDS;
     let series_fold = |i: usize| (data.series_of[i] * 7 / 3) % FOLDS;
     HeldOut {
-        series_n: error(model, data, noise, &series_fold),
-        loads_n: if loads.len() > FOLDS { error(model, data, noise, &load_fold) } else { f64::NAN },
+        series_n: error(model, weighed, &series_fold),
+        loads_n: if loads.len() > FOLDS { error(model, weighed, &load_fold) } else { f64::NAN },
     }
     .without_gaps()
 }
@@ -44,14 +45,15 @@ impl HeldOut {
     }
 }
 
-fn error(model: &Model, data: &Observations, noise: Noise, fold: &dyn Fn(usize) -> usize) -> f64 {
+fn error(model: &Model, weighed: &Weighed<'_>, fold: &dyn Fn(usize) -> usize) -> f64 {
+    let data = weighed.data;
     let (mut sum, mut count) = (0.0, 0.0);
     for left_out in 0..FOLDS {
         let seen = data.subset(|i| fold(i) != left_out);
         if seen.points.len() < model.values().len() + 2 || seen.points.len() == data.points.len() {
             continue;
         }
-        let fitted = fit(model, &seen, noise);
+        let fitted = fit(model, &Weighed::new(&seen, weighed.noise));
         let hidden = data.subset(|i| fold(i) == left_out && data.weights[i] > SOUND_WEIGHT);
         for (predicted, read) in fitted.model.predict(&hidden.points).iter().zip(&hidden.force_n) {
             sum += (predicted - read).powi(2);

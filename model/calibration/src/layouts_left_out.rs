@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 
 use crate::held_out::SOUND_WEIGHT;
-use crate::inference::{Model, Noise, Observations, fit};
+use crate::inference::{Model, Weighed, fit};
 
 /// Root mean square error in newtons on layouts that the fit did not see. Each layout is left out in turn, with its
 /// pins on both substrates; all friction coefficients and effects come from the other layouts, and only the layout's
 /// own threshold and range, which no other layout can know, are then fitted to it (`model/doc/naming-an-effect.md`).
 /// `None` with fewer than two layouts.
-pub fn layouts_left_out(model: &Model, data: &Observations, noise: Noise) -> Option<f64> {
+pub fn layouts_left_out(model: &Model, weighed: &Weighed<'_>) -> Option<f64> {
+    let (data, noise) = (weighed.data, weighed.noise);
     let conditions = &model.frame.conditions;
     let layouts: BTreeSet<&[usize]> =
         conditions.iter().filter(|c| c.has_pins()).map(|c| c.pins.as_slice()).collect();
@@ -19,7 +20,7 @@ pub fn layouts_left_out(model: &Model, data: &Observations, noise: Noise) -> Opt
     let (mut sum, mut count) = (0.0, 0.0);
     for pins in layouts {
         let inside = |i: usize| conditions[data.points[i].condition].pins == pins;
-        let others = fit(model, &data.subset(|i| !inside(i)), noise);
+        let others = fit(model, &Weighed::new(&data.subset(|i| !inside(i)), noise));
         let own: Vec<usize> = conditions
             .iter()
             .filter(|c| c.pins == pins)
@@ -28,7 +29,7 @@ pub fn layouts_left_out(model: &Model, data: &Observations, noise: Noise) -> Opt
             .collect();
         let hidden = data.subset(inside);
         // The layout's own constants start from the layout law: the fit of the others has not seen them.
-        let refitted = fit(&others.model.frozen_except(&own), &hidden, noise);
+        let refitted = fit(&others.model.frozen_except(&own), &Weighed::new(&hidden, noise));
         for (residual, _) in
             refitted.residual_n.iter().zip(&hidden.weights).filter(|(_, w)| **w > SOUND_WEIGHT)
         {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::effects::{Structure, effect_named};
-use crate::inference::{Fit, Model, Noise, Observations, Term, coordinate_covariance, prediction_sd_n};
+use crate::inference::{Fit, Model, Noise, Observations, Term, Weighed, coordinate_covariance, prediction_sd_n};
 use crate::model_check::{Flaw, check_constants, check_covariance, check_finite, check_frame, check_noise};
 use crate::table::{Frame, PlateauRow};
 
@@ -136,7 +136,7 @@ impl ModelFile {
     /// The file of a fit.
     pub fn new(fitted: &Fit, data: &Observations, noise: Noise) -> Self {
         let model = &fitted.model;
-        let covariance = coordinate_covariance(fitted, data, noise);
+        let covariance = coordinate_covariance(fitted, &Weighed::new(data, noise));
         Self {
             schema: SCHEMA.to_owned(),
             constants: model

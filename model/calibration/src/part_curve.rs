@@ -4,7 +4,7 @@ use pinswitch_friction::{Direction, FrictionCurve, Law, Substrate, Trust, publis
 
 use crate::inference::prediction_sd_n;
 use crate::model_file::{ModelFile, ModelFileError};
-use crate::table::{PlateauRow, Sweep};
+use crate::table::{Labels, PlateauRow, Sweep};
 
 impl ModelFile {
     /// Curve of pins in these grooves, numbered from 1, on `substrate` at ascending `loads_n`, for a slow first pull at
@@ -133,6 +133,7 @@ impl ModelFile {
             time_s: 0.0,
             force_n: 0.0,
             wrap_angle_deg: published::WRAP_ANGLE_DEG,
+            labels: Labels::default(),
         }
     }
 }

@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::inference::{Model, Term};
-use crate::table::{Frame, PlateauRow, Sweep};
+use crate::table::{Labels, Frame, PlateauRow, Sweep};
 
 /// Repetitions of each series and direction.
 pub(crate) const REPETITIONS: u32 = 9;
@@ -53,6 +53,7 @@ pub(crate) fn session_with(seed: u64, terms: &[(Term, &[f64])]) -> Vec<PlateauRo
                             time_s,
                             force_n: 0.0,
                             wrap_angle_deg: published::WRAP_ANGLE_DEG,
+                            labels: Labels::default(),
                         });
                     }
                 }

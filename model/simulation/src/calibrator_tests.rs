@@ -1,7 +1,7 @@
 //! What only a rig with known effects and noise can tell about the calibrator.
 
 use pinswitch_calibration::calibrate;
-use pinswitch_calibration::inference::{Levels, Model, Observations, interval_half_widths, select};
+use pinswitch_calibration::inference::{Levels, Model, Observations, Weighed, interval_half_widths, select};
 use pinswitch_calibration::segmentation::segment_run;
 use pinswitch_calibration::table::{Frame, PlateauTable};
 
@@ -48,7 +48,7 @@ fn a_spike_of_any_size_leaves_sizes_and_intervals_alone() {
         let frame = Frame::new(&rows);
         let mut data = Observations::new(&frame, &rows).unwrap();
         let found = select(&Model::baseline(frame), &mut data, Levels::default());
-        let widths = interval_half_widths(&found.augmented, &data, found.noise);
+        let widths = interval_half_widths(&found.augmented, &Weighed::new(&data, found.noise));
         (found.augmented.model.values().pop().unwrap(), widths.last().copied().unwrap())
     };
     let (size, width) = found(0.0);

@@ -1,6 +1,6 @@
 //! From a plan to the rows of a session, before any force is known.
 
-use pinswitch_calibration::table::{PlateauRow, Sweep};
+use pinswitch_calibration::table::{Labels, PlateauRow, Sweep};
 use pinswitch_friction::published;
 use pinswitch_friction::{Direction, Substrate};
 use rand::RngExt;
@@ -100,6 +100,7 @@ fn series(
                 time_s: *time_s,
                 force_n: 0.0,
                 wrap_angle_deg: plan.wrap_angle_deg,
+                labels: Labels::default(),
             });
         }
     }

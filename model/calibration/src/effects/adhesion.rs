@@ -21,6 +21,7 @@ static DESCRIPTION: Description = Description {
     parameters: &[Parameter::free("c", "N")],
     // It opposes every move.
     one_sided: true,
+    bends: true,
     scales: true,
     confused_with: &["guide_drag"],
     experiment: "a pins-only run or a blank run without the switch",

@@ -21,6 +21,7 @@ static DESCRIPTION: Description = Description {
     parameters: &[Parameter::free("kappa", "N^-0.5")],
     // Ploughing only adds friction.
     one_sided: true,
+    bends: true,
     scales: true,
     confused_with: &["coating_stiffening", "polygon_bending"],
     experiment: "pins-only runs over load and pin count",

@@ -22,6 +22,7 @@ static DESCRIPTION: Description = Description {
     parameters: &[Parameter::free("k", "1"), Parameter::bounded("m", "1", 0.9, 2.1)],
     // The contact grows with load.
     one_sided: true,
+    bends: true,
     scales: true,
     confused_with: &["polygon_bending", "coating_ploughing"],
     experiment: "pins-only runs over load and pin count",

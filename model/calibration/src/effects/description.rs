@@ -121,6 +121,8 @@ pub struct Description {
     pub parameters: &'static [Parameter],
     /// Whether its size can only be positive: what fits with a negative one is something else.
     pub one_sided: bool,
+    /// Whether its form is an approximation, so that what it leaves may be its own. A constant force or a scale is none.
+    pub bends: bool,
     /// Whether its trace grows in proportion to its first constant, as far as a screening to first order sees.
     pub scales: bool,
     /// Ids of effects that may look the same.

@@ -20,6 +20,7 @@ static DESCRIPTION: Description = Description {
     formula: "x_c = x (1 + k/2), x_e = x (1 - k/2)",
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,
+    bends: true,
     scales: true,
     confused_with: &["load_cell_gain"],
     experiment: "silicone and pins-only runs at the same loads: a gain does not scale with friction",

@@ -20,6 +20,7 @@ static DESCRIPTION: Description = Description {
     formula: "mu_s (1 + k ln(dwell / 3 s))",
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,
+    bends: true,
     scales: true,
     confused_with: &[],
     experiment: "one silicone run with dwells of 0.3, 3 and 30 s",

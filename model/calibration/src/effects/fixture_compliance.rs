@@ -21,6 +21,7 @@ static DESCRIPTION: Description = Description {
     formula: "a (1 + k F/F0), every condition alike",
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,
+    bends: true,
     scales: true,
     confused_with: &["rate_dependence", "substrate_saturation"],
     experiment: "a dial gauge on the mount, or several speeds at one load",

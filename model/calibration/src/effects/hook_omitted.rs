@@ -20,6 +20,7 @@ static DESCRIPTION: Description = Description {
     formula: "F + 0.613 N: the hook of 62.53 g; no free constant",
     parameters: &[],
     one_sided: false,
+    bends: false,
     scales: false,
     confused_with: &["load_cell_offset"],
     experiment: "weigh the hook",

@@ -18,6 +18,7 @@ static DESCRIPTION: Description = Description {
     formula: "reading (1 + g)",
     parameters: &[Parameter::free("g", "1")],
     one_sided: false,
+    bends: false,
     scales: true,
     confused_with: &["direction_asymmetry", "load_cell_nonlinearity"],
     experiment: "dead weights up to 65 N on the cell",

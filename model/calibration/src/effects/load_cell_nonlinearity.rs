@@ -20,6 +20,7 @@ static DESCRIPTION: Description = Description {
     formula: "reading + k (reading/F0)^2",
     parameters: &[Parameter::free("k", "N")],
     one_sided: false,
+    bends: true,
     scales: true,
     confused_with: &["load_cell_gain", "load_cell_saturation"],
     experiment: "dead weights up to 65 N on the cell",

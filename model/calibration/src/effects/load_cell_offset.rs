@@ -18,6 +18,7 @@ static DESCRIPTION: Description = Description {
     formula: "reading + b",
     parameters: &[Parameter::free("b", "N")],
     one_sided: false,
+    bends: false,
     scales: true,
     confused_with: &["hook_omitted"],
     experiment: "a zero reading of the unloaded cell",

@@ -18,6 +18,7 @@ static DESCRIPTION: Description = Description {
     formula: "min(reading, limit)",
     parameters: &[Parameter::free("limit", "N")],
     one_sided: false,
+    bends: true,
     scales: false,
     confused_with: &["load_cell_nonlinearity"],
     experiment: "dead weights up to 65 N on the cell",

@@ -24,6 +24,7 @@ static DESCRIPTION: Description = Description {
     parameters: &[Parameter::free("k", "1")],
     // Sharper turns bend the fibres more.
     one_sided: true,
+    bends: true,
     scales: true,
     confused_with: &["coating_ploughing"],
     experiment: "the same number of loads on a layout with another number of pins",

@@ -20,6 +20,7 @@ static DESCRIPTION: Description = Description {
     formula: "mu (1 + k ln(v/v0)), v0 the geometric mean speed",
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,
+    bends: true,
     scales: true,
     confused_with: &["fixture_compliance", "substrate_saturation"],
     experiment: "several speeds at one load",

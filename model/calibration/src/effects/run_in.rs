@@ -25,6 +25,7 @@ static DESCRIPTION: Description = Description {
     ],
     // Friction is higher before it settles.
     one_sided: true,
+    bends: true,
     scales: true,
     confused_with: &["stroke_position"],
     experiment: "one series started in the middle of the stroke",

@@ -20,6 +20,7 @@ static DESCRIPTION: Description = Description {
     formula: "a (1 + k (s/stroke - 1/2))",
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,
+    bends: true,
     scales: true,
     confused_with: &["run_in"],
     experiment: "both directions over the whole stroke",

@@ -22,6 +22,7 @@ static DESCRIPTION: Description = Description {
     parameters: &[Parameter::free("k", "1"), Parameter::bounded("h", "1", -0.02, 1.02)],
     // The friction of a soft contact falls behind load.
     one_sided: true,
+    bends: true,
     scales: true,
     confused_with: &["rate_dependence", "fixture_compliance"],
     experiment: "several loads at one speed",

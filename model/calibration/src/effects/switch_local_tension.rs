@@ -18,6 +18,7 @@ static DESCRIPTION: Description = Description {
     formula: "S(mean tension over the wrap) instead of S(F); no free constant",
     parameters: &[],
     one_sided: false,
+    bends: true,
     scales: false,
     confused_with: &["switching_hysteresis", "direction_asymmetry"],
     experiment: "both directions on a device at loads near its threshold",

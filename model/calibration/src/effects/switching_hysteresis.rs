@@ -21,6 +21,7 @@ static DESCRIPTION: Description = Description {
     parameters: &[Parameter::free("H", "N")],
     // The silicone recovers late.
     one_sided: true,
+    bends: true,
     scales: true,
     confused_with: &["switch_local_tension"],
     experiment: "a descending sweep of loads on a device",

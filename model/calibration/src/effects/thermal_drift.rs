@@ -18,6 +18,7 @@ static DESCRIPTION: Description = Description {
     formula: "reading + k u, u share of session time",
     parameters: &[Parameter::free("k", "N")],
     one_sided: false,
+    bends: true,
     scales: true,
     confused_with: &["wear_drift"],
     experiment: "a zero reading before and after the session",

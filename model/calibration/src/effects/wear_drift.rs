@@ -20,6 +20,7 @@ static DESCRIPTION: Description = Description {
     formula: "mu (1 + k g(u)), u share of all repetitions, g(u) = u or (1 - exp(-u/t))/(1 - exp(-1/t))",
     parameters: &[Parameter::free("k", "1"), Parameter::bounded("t", "1", 0.08, 3.0)],
     one_sided: false,
+    bends: true,
     scales: true,
     confused_with: &["thermal_drift"],
     experiment: "repeat the first series at the end of the session",

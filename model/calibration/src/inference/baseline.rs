@@ -2,20 +2,20 @@
 
 use super::fit::{Fit, fit, jacobian};
 use super::forward::{Model, Term};
-use super::noise::Noise;
+use super::weighed::Weighed;
 use super::observations::Observations;
 use crate::effects::acting_order;
 
 /// The refitted paper's model from several starts: a stuck fit is indistinguishable from missing physics.
-pub(super) fn fit_baseline(model: &Model, data: &Observations, noise: Noise) -> Fit {
-    let mut best = fit(model, data, noise);
+pub(super) fn fit_baseline(model: &Model, weighed: &Weighed<'_>) -> Fit {
+    let mut best = fit(model, weighed);
     for factor in [0.75f64, 1.3] {
         let mut other = best.model.clone();
         for device in 0..other.frame.devices() {
             let [half_load, _] = Model::device_constants(device);
             other.coordinates[half_load] += factor.ln();
         }
-        let other = fit(&other, data, noise);
+        let other = fit(&other, weighed);
         if other.cost < best.cost {
             best = other;
         }

@@ -7,6 +7,7 @@ use super::forward::Model;
 use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
+use super::weighed::Weighed;
 use super::significance::degrees_of_freedom;
 use crate::table::Point;
 
@@ -43,24 +44,23 @@ fn prior_cost(model: &Model) -> f64 {
     model.coordinates.iter().zip(model.priors()).map(|(c, p)| ((c - p.mean) / p.sd).powi(2)).sum()
 }
 
-fn evaluate(model: &Model, data: &Observations, noise: Noise) -> (f64, Vec<f64>, Vec<f64>) {
-    let predicted = model.predict(&data.points);
-    let residual: Vec<f64> = data.force_n.iter().zip(&predicted).map(|(y, f)| y - f).collect();
+fn evaluate(model: &Model, weighed: &Weighed<'_>) -> (f64, Vec<f64>, Vec<f64>) {
+    let predicted = model.predict(&weighed.data.points);
+    let residual: Vec<f64> = weighed.data.force_n.iter().zip(&predicted).map(|(y, f)| y - f).collect();
     let mut white = residual.clone();
-    noise.whiten(data, &mut white);
+    weighed.whiten(&mut white);
     (dot(&white, &white) + prior_cost(model), predicted, white)
 }
 
 /// The normal equations at a model: `J' V^-1 J + priors` and the gradient.
 pub(crate) fn normal_equations(
     model: &Model,
-    data: &Observations,
-    noise: Noise,
+    weighed: &Weighed<'_>,
     predicted: &[f64],
     white: &[f64],
 ) -> (DMatrix<f64>, DVector<f64>) {
-    let mut columns = jacobian(model, data, predicted);
-    columns.iter_mut().for_each(|c| noise.whiten(data, c));
+    let mut columns = jacobian(model, weighed.data, predicted);
+    columns.iter_mut().for_each(|c| weighed.whiten(c));
     let p = columns.len();
     let (mut a, mut g) = (DMatrix::zeros(p, p), DVector::zeros(p));
     for i in 0..p {
@@ -77,13 +77,13 @@ pub(crate) fn normal_equations(
 }
 
 /// Fits all constants of a model, from where they stand.
-pub fn fit(start: &Model, data: &Observations, noise: Noise) -> Fit {
+pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
     let mut model = start.clone();
-    let (mut cost, mut predicted, mut white) = evaluate(&model, data, noise);
+    let (mut cost, mut predicted, mut white) = evaluate(&model, weighed);
     let mut damping = 1e-4;
     let mut converged = false;
     'outer: for _ in 0..40 {
-        let (a, g) = normal_equations(&model, data, noise, &predicted, &white);
+        let (a, g) = normal_equations(&model, weighed, &predicted, &white);
         for _ in 0..12 {
             let mut damped = a.clone();
             for i in 0..damped.nrows() {
@@ -96,7 +96,7 @@ pub fn fit(start: &Model, data: &Observations, noise: Noise) -> Fit {
             let promised = 2.0 * step.dot(&g) - (&a * &step).dot(&step);
             let mut trial = model.clone();
             trial.coordinates.iter_mut().zip(step.iter()).for_each(|(c, s)| *c += s.clamp(-3.0, 3.0));
-            let (trial_cost, trial_predicted, trial_white) = evaluate(&trial, data, noise);
+            let (trial_cost, trial_predicted, trial_white) = evaluate(&trial, weighed);
             if promised < 1e-3 && trial_cost >= cost {
                 converged = true;
                 break 'outer;
@@ -115,23 +115,23 @@ pub fn fit(start: &Model, data: &Observations, noise: Noise) -> Fit {
         }
         break;
     }
-    let residual_n = data.force_n.iter().zip(&predicted).map(|(y, f)| y - f).collect();
+    let residual_n = weighed.data.force_n.iter().zip(&predicted).map(|(y, f)| y - f).collect();
     Fit { model, cost, residual_n, converged }
 }
 
 /// Covariance of the constants' coordinates, from the normal equations and a scale of at least one.
-pub fn coordinate_covariance(fitted: &Fit, data: &Observations, noise: Noise) -> DMatrix<f64> {
-    let (_, predicted, white) = evaluate(&fitted.model, data, noise);
-    let (a, _) = normal_equations(&fitted.model, data, noise, &predicted, &white);
-    let degrees = (data.points.len() as f64 - a.nrows() as f64).max(1.0);
+pub fn coordinate_covariance(fitted: &Fit, weighed: &Weighed<'_>) -> DMatrix<f64> {
+    let (_, predicted, white) = evaluate(&fitted.model, weighed);
+    let (a, _) = normal_equations(&fitted.model, weighed, &predicted, &white);
+    let degrees = (weighed.data.points.len() as f64 - a.nrows() as f64).max(1.0);
     let scale = (dot(&white, &white) / degrees).max(1.0);
     a.clone().cholesky().map_or_else(|| DMatrix::zeros(a.nrows(), a.ncols()), |c| c.inverse() * scale)
 }
 
 /// Half widths of 95 % intervals of all constants, in the constants' own units: Student's t with the number of series.
-pub fn interval_half_widths(fitted: &Fit, data: &Observations, noise: Noise) -> Vec<f64> {
-    let covariance = coordinate_covariance(fitted, data, noise);
-    let quantile = super::significance::gain_at(0.05, 1, degrees_of_freedom(data, covariance.nrows())).sqrt();
+pub fn interval_half_widths(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<f64> {
+    let covariance = coordinate_covariance(fitted, weighed);
+    let quantile = super::significance::gain_at(0.05, 1, degrees_of_freedom(weighed.data, covariance.nrows())).sqrt();
     (0..covariance.nrows())
         .map(|i| quantile * covariance[(i, i)].max(0.0).sqrt() * fitted.model.value(i).1.abs())
         .collect()
@@ -141,6 +141,7 @@ pub fn interval_half_widths(fitted: &Fit, data: &Observations, noise: Noise) -> 
 /// Rows of `covariance` beyond the model's own constants are ignored, missing ones count as certain.
 pub fn prediction_sd_n(model: &Model, points: &[Point], covariance: &[Vec<f64>], noise: Noise) -> Vec<f64> {
     let at = model.predict(points);
+    let friction = model.friction_n(points);
     let mut shifted = model.clone();
     let columns: Vec<Vec<f64>> = (0..model.coordinates.len())
         .map(|j| {
@@ -154,7 +155,7 @@ pub fn prediction_sd_n(model: &Model, points: &[Point], covariance: &[Vec<f64>],
     let same = covariance.len() == columns.len();
     (0..points.len())
         .map(|row| {
-            let mut variance = noise.at(points[row].load_n).powi(2);
+            let mut variance = noise.at(points[row].load_n, friction[row]).powi(2);
             for (i, line) in covariance.iter().enumerate().filter(|_| same) {
                 for (j, c) in line.iter().enumerate() {
                     variance += columns[i][row] * c * columns[j][row];

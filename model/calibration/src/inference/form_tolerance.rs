@@ -18,6 +18,9 @@ pub(crate) fn bent_copies(model: &Model, data: &Observations, predicted: &[f64])
     let mut all = Vec::new();
     for (index, term) in model.terms.iter().enumerate() {
         let Term::Named(effect) = term else { continue };
+        if !effect.description().bends {
+            continue;
+        }
         let without = model.without_term(index).predict(&data.points);
         let trace: Vec<f64> = predicted.iter().zip(&without).map(|(a, b)| a - b).collect();
         let mut push = |bend: &dyn Fn(&Point) -> f64| {

@@ -2,7 +2,7 @@
 
 use pinswitch_friction::{LayoutLaw, Substrate, published};
 
-use crate::effects::{ContactState, Effect, Side, Stage, Structure};
+use crate::effects::{Channel, ContactState, Covariate, Effect, Shape, Side, Stage, Structure};
 use crate::table::{Condition, Frame, Point};
 
 /// Id of a structure that no named effect explains.
@@ -309,6 +309,19 @@ impl Model {
             _ if index < self.baseline_len() => self.plain[condition] == index,
             _ => true,
         }
+    }
+
+    /// Change of the readings in newtons when the friction exponent grows by one part in one.
+    pub fn friction_n(&self, points: &[Point]) -> Vec<f64> {
+        let everywhere = Structure {
+            covariate: Covariate::Load,
+            channel: Channel::Friction,
+            form: Shape::LoadPower { power: 0, unit_n: 1.0 },
+        };
+        let size = 1e-3;
+        let mut changed = self.with_term(Term::Structure(everywhere), &[size]).predict(points);
+        changed.iter_mut().zip(self.predict(points)).for_each(|(c, p)| *c = (*c - p) / size);
+        changed
     }
 
     /// Tension of a part in newtons: effects of the switch in, effects of the rig out.

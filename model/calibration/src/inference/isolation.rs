@@ -4,7 +4,8 @@
 //! is named. It is told from an effect by standing alone: an effect moves several series.
 
 use super::fit::Fit;
-use super::noise::Noise;
+use super::noise::{Noise, Spread};
+use super::weighed::Weighed;
 use super::observations::Observations;
 use super::screening::Screen;
 
@@ -16,7 +17,8 @@ const AHEAD: f64 = 1.3;
 const MIN_SERIES: usize = 8;
 
 /// Mean residual of a cell over its standard deviation. What was excluded counts with its rows as if sound.
-pub(crate) fn cell_deviation(fitted: &Fit, data: &Observations, noise: Noise, cell: usize) -> (f64, f64) {
+pub(crate) fn cell_deviation(fitted: &Fit, weighed: &Weighed<'_>, cell: usize) -> (f64, f64) {
+    let (data, noise) = (weighed.data, weighed.noise);
     let rows = &data.cells[cell];
     let weights: Vec<f64> = rows.iter().map(|r| data.weights[*r]).collect();
     let total: f64 = weights.iter().sum();
@@ -24,7 +26,9 @@ pub(crate) fn cell_deviation(fitted: &Fit, data: &Observations, noise: Noise, ce
     let excluded = rows.first().is_some_and(|r| data.is_excluded(*r));
     let count = if excluded { rows.len() as f64 } else { total };
     let load = data.cell_load_n[cell];
-    (mean, (noise.repetition.at(load) / count.sqrt()).hypot(noise.series.at(load)))
+    let friction_n = rows.first().map_or(0.0, |r| data.friction_n[*r]);
+    let shared = Noise { repetition: Spread::default(), ..noise }.at(load, friction_n);
+    (mean, (noise.repetition.at(load) / count.sqrt()).hypot(shared))
 }
 
 /// The series whose own offsets explain what is left better than any effect or structure does, if there is one: a bad

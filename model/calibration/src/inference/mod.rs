@@ -19,6 +19,8 @@ mod sign_flips;
 mod significance;
 mod structures;
 mod unnamed;
+mod variance_components;
+mod weighed;
 
 pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_sd_n};
 pub use forward::{Model, Term, UNATTRIBUTED};
@@ -29,3 +31,4 @@ pub use observations::Observations;
 pub use selection::{CandidateEffect, FoundEffect, Rival, Selection, select};
 pub use significance::{degrees_of_freedom, family_p_value};
 pub use unnamed::FoundStructure;
+pub use weighed::Weighed;

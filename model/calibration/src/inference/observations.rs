@@ -1,7 +1,9 @@
 //! A table ready for inference: points, readings, and how the rows are grouped.
 
+use super::noise::Noise;
+use super::weighed::Weighed;
 use crate::median::median;
-use crate::table::{Frame, PlateauRow, Point};
+use crate::table::{Frame, Labels, PlateauRow, Point};
 
 /// Points and readings with their grouping.
 #[derive(Clone, Debug)]
@@ -22,8 +24,51 @@ pub struct Observations {
     pub weights: Vec<f64>,
     /// Roots of the weights.
     pub(crate) roots: Vec<f64>,
+    /// Change of the reading in newtons when the friction exponent grows by one part in one, by row; zero until a model
+    /// is known.
+    pub friction_n: Vec<f64>,
+    /// Rows of each series.
+    pub series_rows: Vec<Vec<usize>>,
+    /// Rows of each mount: of each condition where the table does not say.
+    pub mounts: Vec<Vec<usize>>,
+    /// Rows of each operator; empty with fewer than two.
+    pub operators: Vec<Vec<usize>>,
+    /// Rows of each session; empty with fewer than two.
+    pub sessions: Vec<Vec<usize>>,
+    /// Rows of each specimen; empty with fewer than two.
+    pub specimens: Vec<Vec<usize>>,
     /// Series that are wrong as a whole and decide nothing.
     excluded: Vec<usize>,
+}
+
+/// The means of the series and directions of a table, as a table of their own.
+#[derive(Clone, Debug)]
+pub(crate) struct CellMeans {
+    /// One row per series and direction.
+    pub(crate) observations: Observations,
+    /// The cell of each row.
+    cells: Vec<usize>,
+    axis: Vec<f64>,
+    repetition: Noise,
+}
+
+impl CellMeans {
+    /// Means of a column of the whole table, weighed by the repetition noise.
+    pub(crate) fn mean_of(&self, data: &Observations, column: &[f64]) -> Vec<f64> {
+        let mut white = column.to_vec();
+        Weighed::new(data, self.repetition).whiten(&mut white);
+        self.cells
+            .iter()
+            .map(|cell| {
+                let (mut sum, mut weight) = (0.0, 0.0);
+                for row in &data.cells[*cell] {
+                    sum += self.axis[*row] * white[*row];
+                    weight += self.axis[*row] * self.axis[*row];
+                }
+                if weight > 0.0 { sum / weight } else { 0.0 }
+            })
+            .collect()
+    }
 }
 
 /// Weight below which no row falls, so that its root stays a number; a reading a million times off has no say at it.
@@ -35,9 +80,10 @@ impl Observations {
     /// Groups a table; `None` if the frame lacks a condition.
     pub fn new(frame: &Frame, rows: &[PlateauRow]) -> Option<Self> {
         let points = frame.points(rows)?;
-        let (series_of, series) = crate::table::groups(rows, |r| r.series.clone());
+        let (series_of, series) = crate::table::groups(rows, |r| (r.labels.session.clone(), r.series.clone()));
         let (cell_of, count) = crate::table::groups(rows, |r| {
-            (r.series.clone(), r.direction == pinswitch_friction::Direction::Concentric)
+            let concentric = r.direction == pinswitch_friction::Direction::Concentric;
+            (r.labels.session.clone(), r.series.clone(), concentric)
         });
         let mut cells = vec![Vec::new(); count];
         for (row, cell) in cell_of.iter().enumerate() {
@@ -47,18 +93,38 @@ impl Observations {
         for cell in &mut cells {
             cell.sort_by(|a, b| points[*a].time.total_cmp(&points[*b].time));
         }
+        let by = |key: &dyn Fn(usize) -> String| {
+            let (of, count) = crate::table::groups_of(rows.len(), key);
+            collected(&of, count)
+        };
+        let several = |label: fn(&Labels) -> &str| {
+            let groups = by(&|i| label(&rows[i].labels).to_owned());
+            if groups.len() > 1 { groups } else { Vec::new() }
+        };
+        let labels = |i: usize| &rows[i].labels;
+        // A condition that is put on in two sessions, or from two specimens, is mounted twice.
+        let mounts = by(&|i| {
+            let l = labels(i);
+            format!("{} {} {} {}", points[i].condition, l.session, l.specimen, l.mount)
+        });
         let force_n = rows.iter().map(|r| r.force_n).collect();
         let cell_load_n = loads(&cells, &points);
         let ones = vec![1.0; rows.len()];
         Some(Self {
             points,
             force_n,
-            series_of,
             series,
             cells,
             cell_load_n,
             weights: ones.clone(),
             roots: ones,
+            friction_n: vec![0.0; rows.len()],
+            series_rows: collected(&series_of, series),
+            series_of,
+            mounts,
+            operators: several(|l| &l.operator),
+            sessions: several(|l| &l.session),
+            specimens: several(|l| &l.specimen),
             excluded: Vec::new(),
         })
     }
@@ -72,12 +138,14 @@ impl Observations {
             new_index[*old] = new;
         }
         let points: Vec<Point> = kept.iter().map(|i| self.points[*i]).collect();
-        let cells: Vec<Vec<usize>> = self
-            .cells
-            .iter()
-            .map(|c| c.iter().map(|i| new_index[*i]).filter(|i| *i != usize::MAX).collect::<Vec<_>>())
-            .filter(|c| !c.is_empty())
-            .collect();
+        let among = |groups: &[Vec<usize>]| -> Vec<Vec<usize>> {
+            groups
+                .iter()
+                .map(|c| c.iter().map(|i| new_index[*i]).filter(|i| *i != usize::MAX).collect::<Vec<_>>())
+                .filter(|c| !c.is_empty())
+                .collect()
+        };
+        let cells = among(&self.cells);
         Self {
             cell_load_n: loads(&cells, &points),
             points,
@@ -87,8 +155,53 @@ impl Observations {
             cells,
             weights: kept.iter().map(|i| self.weights[*i]).collect(),
             roots: kept.iter().map(|i| self.roots[*i]).collect(),
+            friction_n: kept.iter().map(|i| self.friction_n[*i]).collect(),
+            series_rows: among(&self.series_rows),
+            mounts: among(&self.mounts),
+            operators: among(&self.operators),
+            sessions: among(&self.sessions),
+            specimens: among(&self.specimens),
             excluded: self.excluded.clone(),
         }
+    }
+
+    /// Mean load in newtons.
+    pub(crate) fn mean_load_n(&self) -> f64 {
+        self.points.iter().map(|p| p.load_n).sum::<f64>() / self.points.len().max(1) as f64
+    }
+
+    /// One row per series and direction: their means, weighed by the repetition noise, which may be a chain.
+    pub(crate) fn cell_means(&self, noise: Noise) -> CellMeans {
+        let repetition = Noise {
+            repetition: noise.repetition,
+            correlation: noise.correlation,
+            ..Noise::constant(0.0, 0.0)
+        };
+        let mut axis = vec![1.0; self.points.len()];
+        Weighed::new(self, repetition).whiten(&mut axis);
+        let mut kept = Vec::new();
+        let mut weights = Vec::new();
+        for (cell, load) in self.cells.iter().zip(&self.cell_load_n) {
+            let Some(first) = cell.first() else { continue };
+            kept.push(*first);
+            let precision: f64 = cell.iter().map(|r| axis[*r] * axis[*r]).sum();
+            weights.push((precision * noise.repetition.at(*load).powi(2)).max(MIN_WEIGHT));
+        }
+        let place: std::collections::HashMap<usize, usize> =
+            kept.iter().enumerate().map(|(new, old)| (*old, new)).collect();
+        let mut observations = self.subset(|i| place.contains_key(&i));
+        // `subset` keeps the order of the rows; the cells may stand in another one.
+        let mut order: Vec<usize> = (0..kept.len()).collect();
+        order.sort_by_key(|i| kept[*i]);
+        let cells: Vec<usize> = order.clone();
+        observations.weights = order.iter().map(|i| weights[*i]).collect();
+        observations.roots = observations.weights.iter().map(|w| w.sqrt()).collect();
+        for (row, cell) in cells.iter().enumerate() {
+            observations.points[row].load_n = self.cell_load_n[*cell];
+        }
+        let mut means = CellMeans { observations, cells, axis, repetition };
+        means.observations.friction_n = means.mean_of(self, &self.friction_n);
+        means
     }
 
     /// Excludes a series: its rows keep their place and have no say.
@@ -153,6 +266,13 @@ impl Observations {
         self.apply_exclusions();
         sd
     }
+}
+
+/// Rows of each group.
+fn collected(of: &[usize], count: usize) -> Vec<Vec<usize>> {
+    let mut groups = vec![Vec::new(); count];
+    of.iter().enumerate().for_each(|(row, group)| groups[*group].push(row));
+    groups
 }
 
 /// Mean load of each cell in newtons.

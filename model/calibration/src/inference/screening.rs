@@ -4,7 +4,7 @@
 use super::fit::{Fit, jacobian};
 use super::form_tolerance::{BEND, bent_copies};
 use super::forward::Term;
-use super::noise::Noise;
+use super::weighed::Weighed;
 use super::observations::Observations;
 use super::projection::{Projection, dot};
 use super::structures::{Group, structures_to_try};
@@ -16,11 +16,13 @@ const WAVE_PENALTY: f64 = 15.0;
 /// What a stretch of time's gain is reduced by: both its ends are free.
 const WINDOW_PENALTY: f64 = 8.0;
 
+/// Places where a stretch of time may begin or end.
+const WINDOW_ENDS: usize = 80;
+
 /// A fitted model with its whitened residual and the directions its constants can take.
 pub(crate) struct Screen<'a> {
     fitted: &'a Fit,
-    data: &'a Observations,
-    noise: Noise,
+    weighed: &'a Weighed<'a>,
     basis: Projection,
     residual: Vec<f64>,
     predicted: Vec<f64>,
@@ -44,6 +46,8 @@ pub(crate) struct EffectScore {
     pub(crate) by_series: Vec<f64>,
     /// The visible sensitivity itself.
     pub(crate) column: Vec<f64>,
+    /// The sensitivity in newtons, before anything is taken out of it.
+    pub(crate) trace_n: Vec<f64>,
 }
 
 /// Score of a structure.
@@ -55,26 +59,27 @@ pub(crate) struct StructureScore {
     pub(crate) sizes: Vec<f64>,
     /// Gain in whitened squares to first order, less the penalty of a wave.
     pub(crate) gain: f64,
+    /// Contributions of the series to the score of the group's best direction; their squared sum is the gain.
+    pub(crate) by_series: Vec<f64>,
 }
 
 impl<'a> Screen<'a> {
     /// Scores on top of a fit.
-    pub(crate) fn new(fitted: &'a Fit, data: &'a Observations, noise: Noise) -> Self {
-        Self::with_nuisances(fitted, data, noise, |_| Vec::new())
+    pub(crate) fn new(fitted: &'a Fit, weighed: &'a Weighed<'a>) -> Self {
+        Self::with_nuisances(fitted, weighed, |_| Vec::new())
     }
 
     /// Scores on top of a fit whose named effects may bend their own forms.
-    pub(crate) fn guarded(fitted: &'a Fit, data: &'a Observations, noise: Noise) -> Self {
-        Self::with_nuisances(fitted, data, noise, |predicted| bent_copies(&fitted.model, data, predicted))
+    pub(crate) fn guarded(fitted: &'a Fit, weighed: &'a Weighed<'a>) -> Self {
+        Self::with_nuisances(fitted, weighed, |predicted| bent_copies(&fitted.model, weighed.data, predicted))
     }
 
     fn with_nuisances(
         fitted: &'a Fit,
-        data: &'a Observations,
-        noise: Noise,
+        weighed: &'a Weighed<'a>,
         nuisances: impl Fn(&[f64]) -> Vec<Vec<f64>>,
     ) -> Self {
-        let model = &fitted.model;
+        let (model, data) = (&fitted.model, weighed.data);
         let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
         let (rows, p) = (predicted.len(), model.coordinates.len());
         let bent = nuisances(&predicted);
@@ -82,13 +87,13 @@ impl<'a> Screen<'a> {
         let own =
             jacobian(model, data, &predicted).into_iter().zip(model.priors().iter().map(|prior| prior.sd));
         for (j, (mut column, sd)) in own.chain(bent.into_iter().map(|b| (b, BEND))).enumerate() {
-            noise.whiten(data, &mut column);
+            weighed.whiten(&mut column);
             column.resize(basis.len(), 0.0);
             column[rows + j] = 1.0 / sd;
             basis.absorb(column);
         }
         let mut residual = fitted.residual_n.clone();
-        noise.whiten(data, &mut residual);
+        weighed.whiten(&mut residual);
         residual.extend(
             model.coordinates.iter().zip(model.priors()).map(|(c, prior)| (prior.mean - c) / prior.sd),
         );
@@ -96,7 +101,11 @@ impl<'a> Screen<'a> {
         let before = dot(&residual, &residual);
         basis.remove(&mut residual);
         let bent_gain = before - dot(&residual, &residual);
-        Self { fitted, data, noise, basis, residual, predicted, bent_gain }
+        Self { fitted, weighed, basis, residual, predicted, bent_gain }
+    }
+
+    fn data(&self) -> &'a Observations {
+        self.weighed.data
     }
 
     /// What the named effects would gain by bending their own forms, in whitened squares.
@@ -107,7 +116,7 @@ impl<'a> Screen<'a> {
     /// Whitens a column in newtons and removes what the model's constants can take over.
     /// Returns it with the share of its length that is left.
     fn visible(&self, mut column: Vec<f64>) -> (Vec<f64>, f64) {
-        self.noise.whiten(self.data, &mut column);
+        self.weighed.whiten(&mut column);
         let before = dot(&column, &column).sqrt();
         column.resize(self.residual.len(), 0.0);
         self.basis.remove(&mut column);
@@ -127,9 +136,9 @@ impl<'a> Screen<'a> {
     fn effect(&self, effect: &'static dyn Effect) -> Option<EffectScore> {
         let mut best: Option<EffectScore> = None;
         for start in effect.starts(&self.fitted.model.frame) {
-            let changed = self.fitted.model.with_term(Term::Named(effect), &start).predict(&self.data.points);
-            let column: Vec<f64> = changed.iter().zip(&self.predicted).map(|(c, p)| c - p).collect();
-            let (column, visible_share) = self.visible(column);
+            let changed = self.fitted.model.with_term(Term::Named(effect), &start).predict(&self.data().points);
+            let trace_n: Vec<f64> = changed.iter().zip(&self.predicted).map(|(c, p)| c - p).collect();
+            let (column, visible_share) = self.visible(trace_n.clone());
             let length2 = dot(&column, &column);
             let along = dot(&column, &self.residual);
             let scales = effect.description().scales;
@@ -141,9 +150,9 @@ impl<'a> Screen<'a> {
                 2.0 * along - length2
             };
             if best.as_ref().is_none_or(|b| gain > b.gain) {
-                let mut by_series = vec![0.0; self.data.series];
+                let mut by_series = vec![0.0; self.data().series];
                 let scale = 1.0 / length2.sqrt().max(1e-9);
-                for (row, series) in self.data.series_of.iter().enumerate() {
+                for (row, series) in self.data().series_of.iter().enumerate() {
                     by_series[*series] += scale * column[row] * self.residual[row];
                 }
                 let mut start = start;
@@ -158,6 +167,7 @@ impl<'a> Screen<'a> {
                     strength: length2.sqrt(),
                     by_series,
                     column,
+                    trace_n,
                 });
             }
         }
@@ -168,7 +178,7 @@ impl<'a> Screen<'a> {
     pub(crate) fn structures(&self) -> Vec<StructureScore> {
         let sensitivity = |channel: Channel| match channel {
             Channel::Reading => vec![1.0; self.predicted.len()],
-            Channel::Drag => self.data.points.iter().map(|p| p.sign).collect(),
+            Channel::Drag => self.data().points.iter().map(|p| p.sign).collect(),
             _ => {
                 let everywhere = Structure {
                     covariate: Covariate::Load,
@@ -180,14 +190,14 @@ impl<'a> Screen<'a> {
                     .fitted
                     .model
                     .with_term(Term::Structure(everywhere), &[size])
-                    .predict(&self.data.points);
+                    .predict(&self.data().points);
                 column.iter_mut().zip(&self.predicted).for_each(|(c, p)| *c = (*c - p) / size);
                 column
             }
         };
         let channels = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone]
             .map(|channel| (channel, sensitivity(channel)));
-        let mut scores: Vec<StructureScore> = structures_to_try(&self.fitted.model.frame, &self.data.points)
+        let mut scores: Vec<StructureScore> = structures_to_try(&self.fitted.model.frame, &self.data().points)
             .into_iter()
             .filter_map(|group| {
                 let columns: Vec<Vec<f64>> = group
@@ -195,7 +205,7 @@ impl<'a> Screen<'a> {
                     .filter_map(|structure| {
                         let (_, along) = channels.iter().find(|(c, _)| *c == structure.channel)?;
                         let column =
-                            self.data.points.iter().zip(along).map(|(p, s)| structure.value(p) * s).collect();
+                            self.data().points.iter().zip(along).map(|(p, s)| structure.value(p) * s).collect();
                         let (column, visible) = self.visible(column);
                         (visible > 0.02).then_some(column)
                     })
@@ -214,17 +224,23 @@ impl<'a> Screen<'a> {
     /// the series, since whitening mixes the rows of a series only.
     fn best_window(&self, channel: Channel, along: &[f64]) -> Option<StructureScore> {
         let mut white = along.to_vec();
-        self.noise.whiten(self.data, &mut white);
-        let mut begins = vec![f64::INFINITY; self.data.series];
-        for (row, series) in self.data.series_of.iter().enumerate() {
-            begins[*series] = begins[*series].min(self.data.points[row].time);
+        self.weighed.whiten(&mut white);
+        let mut begins = vec![f64::INFINITY; self.data().series];
+        for (row, series) in self.data().series_of.iter().enumerate() {
+            begins[*series] = begins[*series].min(self.data().points[row].time);
         }
-        let mut order: Vec<usize> = (0..self.data.series).filter(|s| begins[*s].is_finite()).collect();
+        let mut order: Vec<usize> = (0..self.data().series).filter(|s| begins[*s].is_finite()).collect();
         order.sort_by(|a, b| begins[*a].total_cmp(&begins[*b]));
+        // Ends at up to eighty places, so that thousands of series cost no more than some hundreds.
+        let ends: Vec<usize> = if order.len() <= WINDOW_ENDS {
+            (1..=order.len()).collect()
+        } else {
+            (1..=WINDOW_ENDS).map(|i| i * order.len() / WINDOW_ENDS).collect()
+        };
         let basis = self.basis.basis();
         // Of each series: score, squared length, and the share of each direction of the basis.
-        let mut sums = vec![vec![0.0; 2 + basis.len()]; self.data.series];
-        for (row, series) in self.data.series_of.iter().enumerate() {
+        let mut sums = vec![vec![0.0; 2 + basis.len()]; self.data().series];
+        for (row, series) in self.data().series_of.iter().enumerate() {
             let sum = &mut sums[*series];
             sum[0] += white[row] * self.residual[row];
             sum[1] += white[row] * white[row];
@@ -233,11 +249,15 @@ impl<'a> Screen<'a> {
             }
         }
         let mut best: Option<(f64, f64, usize, usize)> = None;
-        for from in 1..order.len() {
+        for (i, from) in ends.iter().enumerate() {
+            let (from, mut done) = (*from, *from);
             let mut total = vec![0.0; 2 + basis.len()];
             // To the end of the session it would be a step, which stands in the catalogue.
-            for to in from + 1..order.len() {
-                total.iter_mut().zip(&sums[order[to - 1]]).for_each(|(t, s)| *t += s);
+            for to in ends[i + 1..].iter().copied().filter(|to| *to < order.len()) {
+                for series in &order[done..to] {
+                    total.iter_mut().zip(&sums[*series]).for_each(|(t, s)| *t += s);
+                }
+                done = to;
                 let visible = total[1] - dot(&total[2..], &total[2..]);
                 if to - from < 2 || visible < 4e-4 * total[1] || visible < 1e-9 {
                     continue;
@@ -251,17 +271,27 @@ impl<'a> Screen<'a> {
         let (gain, size, from, to) = best?;
         let form = Shape::TimeWindow { from: begins[order[from]] - 1e-9, to: begins[order[to]] - 1e-9 };
         let group = vec![Structure { covariate: Covariate::Time, channel, form }];
-        Some(StructureScore { group, sizes: vec![size], gain })
+        let mut by_series = vec![0.0; self.data().series];
+        let (mut visible, mut scale) = (0.0, 1.0);
+        for series in &order[from..to] {
+            by_series[*series] = sums[*series][0];
+            visible += sums[*series][1];
+        }
+        if visible > 0.0 {
+            scale = visible.sqrt().recip();
+        }
+        by_series.iter_mut().for_each(|v| *v *= scale);
+        Some(StructureScore { group, sizes: vec![size], gain, by_series })
     }
 
     /// Gain of free offsets of each series, one per direction, for the series that are not excluded.
     pub(crate) fn series_offsets(&self) -> Vec<(usize, f64)> {
-        let mut columns = vec![Vec::new(); self.data.series];
-        for cell in &self.data.cells {
-            let Some(row) = cell.first().filter(|r| !self.data.is_excluded(**r)) else { continue };
+        let mut columns = vec![Vec::new(); self.data().series];
+        for cell in &self.data().cells {
+            let Some(row) = cell.first().filter(|r| !self.data().is_excluded(**r)) else { continue };
             let mut column = vec![0.0; self.predicted.len()];
             cell.iter().for_each(|r| column[*r] = 1.0);
-            columns[self.data.series_of[*row]].push(self.visible(column).0);
+            columns[self.data().series_of[*row]].push(self.visible(column).0);
         }
         columns
             .iter()
@@ -280,7 +310,16 @@ impl<'a> Screen<'a> {
         let (gain, sizes) = least_squares(columns, &self.residual)?;
         // A wave has two sizes, and there are hundreds of them at free frequencies: its gain must pay for both.
         let gain = if group.len() > 1 { gain - WAVE_PENALTY } else { gain };
-        Some(StructureScore { group, sizes, gain })
+        let mut by_series = vec![0.0; self.data().series];
+        let mut length2 = 0.0;
+        for (row, series) in self.data().series_of.iter().enumerate() {
+            let value: f64 = columns.iter().zip(&sizes).map(|(c, k)| k * c[row]).sum();
+            by_series[*series] += value * self.residual[row];
+            length2 += value * value;
+        }
+        let scale = length2.sqrt().max(1e-12).recip();
+        by_series.iter_mut().for_each(|v| *v *= scale);
+        Some(StructureScore { group, sizes, gain, by_series })
     }
 }
 
@@ -305,17 +344,16 @@ fn least_squares(columns: &[Vec<f64>], residual: &[f64]) -> Option<(f64, Vec<f64
 mod tests {
     use super::*;
     use crate::effects::effect_named;
-    use crate::inference::{Model, fit};
+    use crate::inference::{Model, Noise, fit};
     use crate::table::{Frame, PlateauRow};
     use crate::test_session::{session, session_with};
 
     const NOISE_N: f64 = 0.05;
 
-    fn fitted(rows: &[PlateauRow]) -> (Fit, Observations, Noise) {
+    fn observed(rows: &[PlateauRow]) -> (Model, Observations) {
         let frame = Frame::new(rows);
         let data = Observations::new(&frame, rows).unwrap();
-        let noise = Noise::constant(NOISE_N, 0.01);
-        (fit(&Model::baseline(frame), &data, noise), data, noise)
+        (Model::baseline(frame), data)
     }
 
     fn score(scores: Vec<EffectScore>, id: &str) -> EffectScore {
@@ -325,8 +363,10 @@ mod tests {
     #[test]
     fn the_effect_that_is_there_scores_highest_and_starts_near_its_size() {
         let offset = effect_named("load_cell_offset").unwrap();
-        let (fitted, data, noise) = fitted(&session_with(1, &[(Term::Named(offset), &[0.5])]));
-        let scores = Screen::new(&fitted, &data, noise).effects();
+        let (model, data) = observed(&session_with(1, &[(Term::Named(offset), &[0.5])]));
+        let weighed = &Weighed::new(&data, Noise::constant(NOISE_N, 0.01));
+        let fitted = fit(&model, weighed);
+        let scores = Screen::new(&fitted, weighed).effects();
         let best = scores.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)).unwrap();
         assert_eq!(best.effect.id(), "load_cell_offset");
         assert!((best.start[0] - 0.5).abs() < 0.05, "{:?}", best.start);
@@ -336,8 +376,10 @@ mod tests {
 
     #[test]
     fn a_trace_without_variation_is_invisible_and_a_fixed_one_is_not_scaled() {
-        let (fitted, data, noise) = fitted(&session(2));
-        let scores = Screen::new(&fitted, &data, noise).effects();
+        let (model, data) = observed(&session(2));
+        let weighed = &Weighed::new(&data, Noise::constant(NOISE_N, 0.01));
+        let fitted = fit(&model, weighed);
+        let scores = Screen::new(&fitted, weighed).effects();
         let dwell = score(scores.clone(), "dwell_relaxation");
         assert!(dwell.strength < 1e-6 && dwell.gain == 0.0, "{dwell:?}");
         // A hook that nobody left out fits worse than none: its size is not free, so the gain is negative.
@@ -349,11 +391,13 @@ mod tests {
     fn what_is_in_the_model_is_scored_no_more_and_may_bend_under_guard() {
         let offset = effect_named("load_cell_offset").unwrap();
         let rows = session_with(3, &[(Term::Named(offset), &[0.5])]);
-        let (base, data, noise) = fitted(&rows);
-        let with = fit(&base.model.with_term(Term::Named(offset), &[0.5]), &data, noise);
-        let open = Screen::new(&with, &data, noise);
+        let (model, data) = observed(&rows);
+        let weighed = &Weighed::new(&data, Noise::constant(NOISE_N, 0.01));
+        let base = fit(&model, weighed);
+        let with = fit(&base.model.with_term(Term::Named(offset), &[0.5]), weighed);
+        let open = Screen::new(&with, weighed);
         assert!(open.effects().iter().all(|s| s.effect.id() != "load_cell_offset"));
-        let guarded = Screen::guarded(&with, &data, noise);
+        let guarded = Screen::guarded(&with, weighed);
         assert!(guarded.bent_gain() >= open.bent_gain());
         let gain = |screen: &Screen<'_>| score(screen.effects(), "load_cell_gain").gain;
         assert!(gain(&guarded) <= gain(&open) + 1e-6, "a guard never adds to what is left to explain");
@@ -365,8 +409,10 @@ mod tests {
         let (from, to) = (rows.len() / 3, rows.len() / 2);
         let (first, last) = (rows[from].time_s, rows[to].time_s);
         rows.iter_mut().filter(|r| (first..last).contains(&r.time_s)).for_each(|r| r.force_n += 0.4);
-        let (fitted, data, noise) = fitted(&rows);
-        let scores = Screen::new(&fitted, &data, noise).structures();
+        let (model, data) = observed(&rows);
+        let weighed = &Weighed::new(&data, Noise::constant(NOISE_N, 0.01));
+        let fitted = fit(&model, weighed);
+        let scores = Screen::new(&fitted, weighed).structures();
         assert!(scores.windows(2).all(|w| w[0].gain >= w[1].gain));
         let best = &scores[0].group[0];
         assert_eq!((best.covariate, best.channel), (Covariate::Time, Channel::Reading));

@@ -3,8 +3,7 @@
 use super::fit::{Fit, fit};
 use super::forward::Term;
 use super::levels::Levels;
-use super::noise::Noise;
-use super::observations::Observations;
+use super::weighed::Weighed;
 use super::screening::{EffectScore, Screen};
 use super::sign_flips::family_probability;
 use super::significance::{degrees_of_freedom, gain_at};
@@ -25,16 +24,15 @@ pub(super) fn possible(effect: &dyn Effect, fitted: &Fit) -> bool {
 /// Full fits of the most promising absent effects, best cost first.
 fn extensions(
     from: &Fit,
-    data: &Observations,
-    noise: Noise,
+    weighed: &Weighed<'_>,
     least: f64,
     beyond_form: f64,
     most: usize,
 ) -> Vec<(&'static dyn Effect, Fit)> {
-    let mut scores = Screen::new(from, data, noise).effects();
+    let mut scores = Screen::new(from, weighed).effects();
     if !from.model.named_effects().is_empty() {
         // What the names so far would explain by bending their own forms is not worth another name.
-        let guarded = Screen::guarded(from, data, noise).effects();
+        let guarded = Screen::guarded(from, weighed).effects();
         scores.retain(|s| {
             s.gain > beyond_form || guarded.iter().any(|g| g.effect.id() == s.effect.id() && g.gain > least)
         });
@@ -44,7 +42,7 @@ fn extensions(
     scores.truncate(most);
     let mut fits: Vec<_> = scores
         .into_iter()
-        .map(|s| (s.effect, fit(&from.model.with_term(Term::Named(s.effect), &s.start), data, noise)))
+        .map(|s| (s.effect, fit(&from.model.with_term(Term::Named(s.effect), &s.start), weighed)))
         .filter(|(effect, fitted)| possible(*effect, fitted))
         .collect();
     fits.sort_by(|a: &(_, Fit), b| a.1.cost.total_cmp(&b.1.cost));
@@ -52,19 +50,19 @@ fn extensions(
 }
 
 /// Adds named effects while each gains enough, then drops and exchanges.
-pub(super) fn search(start: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Fit {
+pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit {
     let mut current = start.clone();
-    let degrees = degrees_of_freedom(data, start.model.coordinates.len());
+    let degrees = degrees_of_freedom(weighed.data, start.model.coordinates.len());
     let first = gain_at(levels.first_p, CATALOGUE.len(), degrees);
-    let scores = Screen::new(start, data, noise).effects();
+    let scores = Screen::new(start, weighed).effects();
     let strongest = scores.iter().map(|s| s.gain).fold(0.0, f64::max);
     // A weak candidate that a few series carry alone is no effect, whatever the noise model says. With few series
     // flips cannot tell, and the noise model decides.
-    if strongest < 3.0 * first && data.series >= 12 && flips(&scores) > levels.flips {
+    if strongest < 3.0 * first && weighed.data.series >= 12 && flips(&scores) > levels.flips {
         return current;
     }
     for _ in 0..4 {
-        let gained = start.cost - current.cost;
+        let gained = bendable_gain(start, &current, weighed);
         let least = if current.model.named_effects().is_empty() {
             first
         } else {
@@ -73,7 +71,7 @@ pub(super) fn search(start: &Fit, data: &Observations, noise: Noise, levels: Lev
         // To first order alone: an effect that is not linear may gain more once fitted.
         let screened = if current.model.named_effects().is_empty() { 0.3 } else { 0.8 } * least;
         let Some((_, best)) =
-            extensions(&current, data, noise, screened, levels.beyond_form * gained, FITTED)
+            extensions(&current, weighed, screened, levels.beyond_form * gained, FITTED)
                 .into_iter()
                 .next()
         else {
@@ -83,10 +81,29 @@ pub(super) fn search(start: &Fit, data: &Observations, noise: Noise, levels: Lev
             break;
         }
         current = best;
-        current = exchange(current, data, noise, levels.beyond_form * gained);
-        current = prune(current, data, noise, levels.further.max(levels.further_share * gained), 1);
+        current = exchange(current, weighed, levels.beyond_form * gained);
+        current = prune(current, weighed, levels.further.max(levels.further_share * gained), 1);
     }
     current
+}
+
+/// What the named effects whose forms may bend have gained over a start, in whitened squares: what is left of them may
+/// be their own. A constant force leaves nothing, however large it is.
+pub(super) fn bendable_gain(start: &Fit, found: &Fit, weighed: &Weighed<'_>) -> f64 {
+    let rigid: Vec<_> = found.model.named_effects().into_iter().filter(|e| !e.description().bends).collect();
+    if rigid.is_empty() || found.model.named_effects().is_empty() {
+        return start.cost - found.cost;
+    }
+    if rigid.len() == found.model.named_effects().len() {
+        return 0.0;
+    }
+    let mut without = found.model.clone();
+    for index in (0..without.terms.len()).rev() {
+        if matches!(&without.terms[index], Term::Named(e) if e.description().bends) {
+            without = without.without_term(index);
+        }
+    }
+    (fit(&without, weighed).cost - found.cost).max(0.0)
 }
 
 /// Probability of the scores by flipped signs.
@@ -97,11 +114,11 @@ pub(super) fn flips(scores: &[EffectScore]) -> f64 {
 }
 
 /// Drops named effects that the others have made superfluous, down to `keep` of them.
-pub(super) fn prune(mut current: Fit, data: &Observations, noise: Noise, least: f64, keep: usize) -> Fit {
+pub(super) fn prune(mut current: Fit, weighed: &Weighed<'_>, least: f64, keep: usize) -> Fit {
     while current.model.named_effects().len() > keep {
         let cheapest = (0..current.model.terms.len())
             .filter(|i| matches!(current.model.terms[*i], Term::Named(_)))
-            .map(|i| fit(&current.model.without_term(i), data, noise))
+            .map(|i| fit(&current.model.without_term(i), weighed))
             .min_by(|a, b| a.cost.total_cmp(&b.cost));
         match cheapest {
             Some(without) if without.cost - current.cost < least => current = without,
@@ -112,7 +129,7 @@ pub(super) fn prune(mut current: Fit, data: &Observations, noise: Noise, least: 
 }
 
 /// Replaces a named effect by another one that fits better in its place.
-fn exchange(mut current: Fit, data: &Observations, noise: Noise, beyond_form: f64) -> Fit {
+fn exchange(mut current: Fit, weighed: &Weighed<'_>, beyond_form: f64) -> Fit {
     if current.model.named_effects().len() < 2 {
         return current;
     }
@@ -120,9 +137,9 @@ fn exchange(mut current: Fit, data: &Observations, noise: Noise, beyond_form: f6
         let mut better = None;
         for i in 0..current.model.terms.len() {
             if matches!(current.model.terms[i], Term::Named(_)) {
-                let without = fit(&current.model.without_term(i), data, noise);
+                let without = fit(&current.model.without_term(i), weighed);
                 let id = current.model.terms[i].id();
-                for (effect, other) in extensions(&without, data, noise, 8.0, beyond_form, 4) {
+                for (effect, other) in extensions(&without, weighed, 8.0, beyond_form, 4) {
                     if effect.id() != id && other.cost < current.cost - 1.0 {
                         better = Some(other);
                         break;

@@ -1,7 +1,7 @@
 //! Which effects a table shows, their rivals, and what no name explains.
 
 use super::baseline::{explainable, fit_baseline};
-use super::fit::{Fit, fit};
+use super::fit::{Fit, fit, jacobian};
 use super::forward::{Model, Term};
 use super::isolation::isolated_series;
 use super::levels::Levels;
@@ -9,8 +9,10 @@ use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
 use super::screening::{EffectScore, Screen};
-use super::search::{VISIBLE_SHARE, flips, possible, search};
+use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
 use super::unnamed::{Context, FoundStructure};
+use super::variance_components;
+use super::weighed::Weighed;
 use crate::effects::{Effect, acting_order};
 
 /// An effect that explains what a named one explains as well.
@@ -116,77 +118,148 @@ const MAX_EXCLUDED: usize = 3;
 /// Runs the whole search on a table. A series that is wrong as a whole is excluded, and the search begins
 /// again.
 pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
+    let guess = Noise::constant(0.1, 0.03);
+    let rough = fit(start, &Weighed::new(data, guess));
+    let sd = data.weigh_outliers(&rough.residual_n);
+    data.friction_n = rough.model.friction_n(&data.points);
+    let guess = Noise::constant(sd, sd);
     loop {
-        let names = search_names(start, data, levels);
-        let explained = names.baseline.cost - names.found.cost;
-        let open = Screen::new(&names.found, data, names.noise);
-        let guarded = Screen::guarded(&names.found, data, names.noise);
-        let mut left = open.structures();
-        let beyond = left.first().is_some_and(|s| s.gain > levels.beyond_form * explained);
-        if !names.found.model.named_effects().is_empty() && !beyond {
-            left = guarded.structures();
+        let rough = fit_baseline(&rough.model, &Weighed::new(data, guess));
+        let noise = variance_components::estimate(data, &rough.residual_n, &explainable(&rough, data), guess);
+        let free = explain(&rough.model, data, noise, levels);
+        if let Some(series) = free.isolated {
+            data.exclude(series);
+            continue;
         }
-        if data.excluded_series() < MAX_EXCLUDED {
+        let chosen = against_mounts(free, data, levels);
+        return finish(chosen, data, levels);
+    }
+}
+
+/// One explanation of a table at one noise.
+struct Explanation {
+    baseline: Fit,
+    augmented: Fit,
+    structure: Option<FoundStructure>,
+    structure_gain: f64,
+    structures_tried: usize,
+    noise: Noise,
+    /// A series that is wrong as a whole and must be left out first.
+    isolated: Option<usize>,
+}
+
+impl Explanation {
+    fn names(&self) -> usize {
+        self.augmented.model.named_effects().len()
+    }
+
+    /// Whitened squares, what shared noise costs, and a toll for each thing believed: the less, the better.
+    fn toll(&self, data: &Observations, levels: Levels) -> f64 {
+        let believed = self.names() as f64 + 2.0 * f64::from(u8::from(self.structure.is_some()));
+        self.augmented.cost + Weighed::new(data, self.noise).shared_log_det() + levels.further * believed
+    }
+}
+
+/// Names and structure at a noise, which is estimated again once something is explained.
+fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> Explanation {
+    let mut noise = noise;
+    let mut weighed = Weighed::new(data, noise);
+    let mut baseline = fit_baseline(start, &weighed);
+    let mut found = search(&baseline, &weighed, levels);
+    if !found.model.terms.is_empty() {
+        let mount_scale = noise.mount_scale;
+        noise = variance_components::estimate(data, &found.residual_n, &explainable(&found, data), noise);
+        noise.mount_scale = mount_scale;
+        weighed = Weighed::new(data, noise);
+        baseline = fit(&baseline.model, &weighed);
+        found = search(&baseline, &weighed, levels);
+    }
+    let explained = bendable_gain(&baseline, &found, &weighed);
+    let open = Screen::new(&found, &weighed);
+    let guarded = Screen::guarded(&found, &weighed);
+    let mut left = open.structures();
+    let beyond = left.first().is_some_and(|s| s.gain > levels.beyond_form * explained);
+    if !found.model.named_effects().is_empty() && !beyond {
+        left = guarded.structures();
+    }
+    let isolated = (data.excluded_series() < MAX_EXCLUDED)
+        .then(|| {
             let structure = left.first().map_or(0.0, |s| s.gain);
             let effect = open.effects().iter().map(|s| s.gain).fold(structure, f64::max);
-            if let Some(series) = isolated_series(&open, data, effect) {
-                data.exclude(series);
-                continue;
-            }
-        }
+            isolated_series(&open, data, effect)
+        })
+        .flatten();
+    let (structure_gain, structures_tried) = (left.first().map_or(0.0, |s| s.gain), left.len());
+    let (augmented, structure) = if isolated.is_some() {
+        (found.clone(), None)
+    } else {
         let bent = guarded.bent_gain();
-        let tried = (left.len(), left.first().map_or(0.0, |s| s.gain));
-        let context = Context { data, noise: names.noise, levels };
-        let (augmented, structure) = context.with_unnamed(&names.baseline, names.found, &left, bent);
-        let scores = Screen::new(&names.baseline, data, names.noise).effects();
-        return Selection {
-            effects: found_effects(&augmented, data, names.noise, levels),
-            structure,
-            family_probability: flips(&scores),
-            structure_gain: tried.1,
-            structures_tried: tried.0,
-            candidates: candidates(scores, &augmented, data, names.noise),
-            baseline: names.baseline,
-            augmented,
-            noise: names.noise,
-        };
-    }
+        Context { weighed: &weighed, levels, explained }.with_unnamed(&baseline, found.clone(), &left, bent)
+    };
+    Explanation { baseline, augmented, structure, structure_gain, structures_tried, noise, isolated }
 }
 
-/// The refitted baseline, what the names make of it, and the noise.
-struct Names {
-    baseline: Fit,
-    found: Fit,
-    noise: Noise,
+/// Whether scatter from mount to mount explains a table as well as what was believed without it: the friction of every
+/// mount is off by some per cent, which costs the likelihood a free number per mount.
+fn against_mounts(free: Explanation, data: &Observations, levels: Levels) -> Explanation {
+    let own = |fitted: &Fit| {
+        let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
+        jacobian(&fitted.model, data, &predicted)
+    };
+    let scale_of = |fitted: &Fit, noise| {
+        variance_components::mount_scale(data, &fitted.residual_n, &own(fitted), noise)
+    };
+    let with_mounts = |explanation: Explanation| {
+        let mount_scale = scale_of(&explanation.augmented, explanation.noise);
+        if mount_scale == explanation.noise.mount_scale {
+            return explanation;
+        }
+        let noise = Noise { mount_scale, ..explanation.noise };
+        let weighed = Weighed::new(data, noise);
+        let baseline = fit(&explanation.baseline.model, &weighed);
+        let augmented = fit(&explanation.augmented.model, &weighed);
+        Explanation { baseline, augmented, noise, ..explanation }
+    };
+    if free.augmented.model.terms.is_empty() {
+        return with_mounts(free);
+    }
+    let mount_scale = scale_of(&free.baseline, free.noise);
+    let free = with_mounts(free);
+    if mount_scale == 0.0 {
+        return free;
+    }
+    let scattered = explain(&free.baseline.model, data, Noise { mount_scale, ..free.noise }, levels);
+    let scattered = with_mounts(scattered);
+    if scattered.toll(data, levels) < free.toll(data, levels) { scattered } else { free }
 }
 
-fn search_names(start: &Model, data: &mut Observations, levels: Levels) -> Names {
-    let guess = Noise::constant(0.1, 0.03);
-    let rough = fit(start, data, guess);
-    let sd = data.weigh_outliers(&rough.residual_n);
-    let start = Noise::constant(sd, sd);
-    let rough = fit_baseline(&rough.model, data, start);
-    let mut noise = Noise::estimate(data, &rough.residual_n, &explainable(&rough, data), start);
-    let mut baseline = fit_baseline(&rough.model, data, noise);
-    let mut found = search(&baseline, data, noise, levels);
-    // Once something is explained, the noise shows better: estimate it again and repeat.
-    if !found.model.terms.is_empty() {
-        noise = Noise::estimate(data, &found.residual_n, &explainable(&found, data), noise);
-        baseline = fit(&baseline.model, data, noise);
-        found = search(&baseline, data, noise, levels);
+/// Everything that is told about the explanation chosen.
+fn finish(chosen: Explanation, data: &Observations, levels: Levels) -> Selection {
+    let weighed = Weighed::new(data, chosen.noise);
+    let scores = Screen::new(&chosen.baseline, &weighed).effects();
+    Selection {
+        effects: found_effects(&chosen.augmented, &weighed, levels),
+        structure: chosen.structure,
+        family_probability: flips(&scores),
+        structure_gain: chosen.structure_gain,
+        structures_tried: chosen.structures_tried,
+        candidates: candidates(scores, &chosen.augmented, &weighed),
+        baseline: chosen.baseline,
+        augmented: chosen.augmented,
+        noise: chosen.noise,
     }
-    Names { baseline, found, noise }
 }
 
 /// Gain and rivals of each named effect of a model.
-fn found_effects(augmented: &Fit, data: &Observations, noise: Noise, levels: Levels) -> Vec<FoundEffect> {
+fn found_effects(augmented: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Vec<FoundEffect> {
     let mut found = Vec::new();
     for (index, term) in augmented.model.terms.iter().enumerate() {
         let Term::Named(effect) = term else { continue };
-        let without = fit(&augmented.model.without_term(index), data, noise);
+        let without = fit(&augmented.model.without_term(index), weighed);
         let gain = without.cost - augmented.cost;
-        let margin = levels.rival.max(levels.rival_share * gain);
-        let mut rivals = rivals(*effect, gain, &without, augmented.cost, data, noise);
+        let bends = f64::from(u8::from(effect.description().bends));
+        let margin = levels.rival.max(levels.rival_share * gain * bends);
+        let mut rivals = rivals(*effect, gain, &without, augmented.cost, weighed);
         rivals.retain(|r| r.worse_by < margin);
         found.push(FoundEffect { effect: *effect, term: index, gain, rivals });
     }
@@ -199,10 +272,9 @@ fn rivals(
     gain: f64,
     without: &Fit,
     cost: f64,
-    data: &Observations,
-    noise: Noise,
+    weighed: &Weighed<'_>,
 ) -> Vec<Rival> {
-    let scores = Screen::new(without, data, noise).effects();
+    let scores = Screen::new(without, weighed).effects();
     let own = scores.iter().find(|s| s.effect.id() == effect.id()).map(|s| s.column.clone());
     let mut others: Vec<_> = scores.into_iter().filter(|s| s.effect.id() != effect.id()).collect();
     others.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -211,7 +283,7 @@ fn rivals(
     others
         .into_iter()
         .filter_map(|score| {
-            let other = fit(&without.model.with_term(Term::Named(score.effect), &score.start), data, noise);
+            let other = fit(&without.model.with_term(Term::Named(score.effect), &score.start), weighed);
             possible(score.effect, &other).then(|| {
                 let cosine = own.as_ref().map_or(0.0, |own| {
                     (dot(own, &score.column) / (dot(own, own) * dot(&score.column, &score.column)).sqrt())
@@ -227,10 +299,9 @@ fn rivals(
 fn candidates(
     scores: Vec<EffectScore>,
     augmented: &Fit,
-    data: &Observations,
-    noise: Noise,
+    weighed: &Weighed<'_>,
 ) -> Vec<CandidateEffect> {
-    let left = Screen::new(augmented, data, noise).effects();
+    let left = Screen::new(augmented, weighed).effects();
     let mut candidates: Vec<_> = scores
         .into_iter()
         .map(|score| CandidateEffect {

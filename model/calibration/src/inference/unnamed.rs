@@ -3,8 +3,7 @@
 use super::fit::{Fit, fit};
 use super::forward::Term;
 use super::levels::Levels;
-use super::noise::Noise;
-use super::observations::Observations;
+use super::weighed::Weighed;
 use super::screening::{Screen, StructureScore};
 use super::search::{prune, search};
 use super::significance::{degrees_of_freedom, gain_at};
@@ -22,9 +21,10 @@ pub struct FoundStructure {
 /// What every step of the comparison reads.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Context<'a> {
-    pub(super) data: &'a Observations,
-    pub(super) noise: Noise,
+    pub(super) weighed: &'a Weighed<'a>,
     pub(super) levels: Levels,
+    /// What the named effects gained whose forms may bend, in whitened squares.
+    pub(super) explained: f64,
 }
 
 impl Context<'_> {
@@ -37,17 +37,16 @@ impl Context<'_> {
         left: &[StructureScore],
         bent_gain: f64,
     ) -> (Fit, Option<FoundStructure>) {
-        let &Context { data, noise, levels } = self;
-        let explained = baseline.cost - found.cost;
+        let &Context { weighed, levels, explained } = self;
         // With few series chance reaches further: the level of the study holds for dozens of them.
-        let degrees = degrees_of_freedom(data, baseline.model.coordinates.len());
+        let degrees = degrees_of_freedom(weighed.data, baseline.model.coordinates.len());
         let chance = gain_at(levels.structure_p, left.len().max(1), degrees);
         let least = levels.structure.max(chance).max(levels.structure_share * explained);
         let on_top = left.first().and_then(|score| self.on_top_of(&found, score, least));
         let alone = if found.model.terms.is_empty() {
             Vec::new()
         } else {
-            Screen::new(baseline, data, noise).structures()
+            Screen::new(baseline, weighed).structures()
         };
         let best = match alone.first().filter(|s| s.gain > least) {
             Some(score) => self.instead_of(baseline, &found, score, bent_gain, on_top),
@@ -57,7 +56,7 @@ impl Context<'_> {
             Some((with, structure)) => {
                 let corrected = self.smooth(with);
                 let least = levels.further.max(0.01 * (baseline.cost - corrected.cost));
-                (prune(corrected, data, noise, least, 0), Some(structure))
+                (prune(corrected, weighed, least, 0), Some(structure))
             }
             None => (found, None),
         }
@@ -71,7 +70,7 @@ impl Context<'_> {
         let with = self.with_structure(found, score);
         let gain = found.cost - with.cost;
         (gain > least).then(|| {
-            let pruned = prune(with, self.data, self.noise, self.levels.further, 0);
+            let pruned = prune(with, self.weighed, self.levels.further, 0);
             (pruned, FoundStructure { covariate: score.group[0].covariate, gain })
         })
     }
@@ -85,7 +84,7 @@ impl Context<'_> {
         bent_gain: f64,
         so_far: Option<(Fit, FoundStructure)>,
     ) -> Option<(Fit, FoundStructure)> {
-        let &Context { data, noise, levels } = self;
+        let &Context { weighed, levels, .. } = self;
         let penalty = |f: &Fit| f.cost + levels.further * f.model.named_effects().len() as f64;
         let with = self.with_structure(baseline, score);
         // One shape against several names: each name beyond the first must have paid for itself.
@@ -96,8 +95,8 @@ impl Context<'_> {
             return so_far;
         }
         let gain = baseline.cost - with.cost;
-        let extended = search(&with, data, noise, levels);
-        let pruned = prune(extended, data, noise, levels.further, 0);
+        let extended = search(&with, weighed, levels);
+        let pruned = prune(extended, weighed, levels.further, 0);
         if so_far.as_ref().is_none_or(|(b, _)| penalty(&pruned) < penalty(b)) {
             Some((pruned, FoundStructure { covariate: score.group[0].covariate, gain }))
         } else {
@@ -112,13 +111,13 @@ impl Context<'_> {
             .iter()
             .zip(&score.sizes)
             .fold(from.model.clone(), |m, (s, k)| m.with_term(Term::Structure(s.clone()), &[*k]));
-        fit(&model, self.data, self.noise)
+        fit(&model, self.weighed)
     }
 
     /// Refines the data-driven correction: more shapes while each gains clearly.
     fn smooth(&self, mut current: Fit) -> Fit {
         for _ in 0..4 {
-            let scores = Screen::new(&current, self.data, self.noise).structures();
+            let scores = Screen::new(&current, self.weighed).structures();
             let Some(score) = scores.first().filter(|s| s.gain > 30.0) else { break };
             let with = self.with_structure(&current, score);
             if current.cost - with.cost < 25.0 {
@@ -134,7 +133,7 @@ impl Context<'_> {
 mod tests {
     use super::*;
     use crate::effects::{Channel, Shape, Structure};
-    use crate::inference::{Model, Observations, select};
+    use crate::inference::{Model, Noise, Observations, select};
     use crate::table::Frame;
     use crate::test_session::{session, session_with};
 
@@ -159,9 +158,10 @@ mod tests {
         let rows = session(1);
         let frame = Frame::new(&rows);
         let data = Observations::new(&frame, &rows).unwrap();
-        let context = Context { data: &data, noise: Noise::constant(0.05, 0.01), levels: Levels::default() };
-        let baseline = fit(&Model::baseline(frame), &data, context.noise);
-        let scores = Screen::new(&baseline, &data, context.noise).structures();
+        let weighed = &Weighed::new(&data, Noise::constant(0.05, 0.01));
+        let context = Context { weighed, levels: Levels::default(), explained: 0.0 };
+        let baseline = fit(&Model::baseline(frame), weighed);
+        let scores = Screen::new(&baseline, weighed).structures();
         let best = &scores[0];
         assert!(context.on_top_of(&baseline, best, best.gain + 1.0).is_none());
         let (with, structure) = context.on_top_of(&baseline, best, 0.5 * best.gain).unwrap();

@@ -9,7 +9,7 @@ use super::finding::Finding;
 use super::log::{Log, LogError};
 use super::plateaus::{Segmented, segment};
 use super::run_plan::{RunPlan, RunPlanError, SeriesPlan};
-use crate::table::PlateauRow;
+use crate::table::{Labels, PlateauRow};
 
 /// Name and version of the report's format.
 const SCHEMA: &str = "pinswitch.segmentation/1";
@@ -204,6 +204,7 @@ fn rows<'a>(
         time_s: start_s + p.time_s,
         force_n: p.force_n,
         wrap_angle_deg: plan.rig.wrap_angle_deg,
+        labels: Labels::default(),
     })
 }
 

@@ -20,6 +20,9 @@ pub(super) const COLUMNS: [&str; 13] = [
 /// Optional: the wrap angle in degrees, where a rig has another one than the paper's.
 pub(super) const WRAP_ANGLE: &str = "wrap_angle_deg";
 
+/// Optional: groupings with a scatter of their own.
+pub(super) const LABELS: [&str; 4] = ["session", "mount", "operator", "specimen"];
+
 /// Name of a column by its place: those of [`COLUMNS`], then the optional one.
 pub(super) fn column_name(index: usize) -> &'static str {
     COLUMNS.get(index).copied().unwrap_or(WRAP_ANGLE)

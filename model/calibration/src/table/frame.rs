@@ -227,12 +227,16 @@ fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
 
 /// Groups rows by a key, in order of first appearance: the group of each row, and the number of groups.
 pub(crate) fn groups<K: Ord>(rows: &[PlateauRow], key: impl Fn(&PlateauRow) -> K) -> (Vec<usize>, usize) {
+    groups_of(rows.len(), |i| key(&rows[i]))
+}
+
+/// The same for the numbers below `count`.
+pub(crate) fn groups_of<K: Ord>(count: usize, key: impl Fn(usize) -> K) -> (Vec<usize>, usize) {
     let mut seen = BTreeMap::new();
-    let of = rows
-        .iter()
-        .map(|row| {
+    let of = (0..count)
+        .map(|i| {
             let next = seen.len();
-            *seen.entry(key(row)).or_insert(next)
+            *seen.entry(key(i)).or_insert(next)
         })
         .collect();
     (of, seen.len())

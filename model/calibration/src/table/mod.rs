@@ -8,10 +8,10 @@ mod row;
 pub(crate) mod substrate_word;
 mod table_error;
 
-pub(crate) use frame::groups;
+pub(crate) use frame::{groups, groups_of};
 pub use frame::{Condition, Frame, Point};
 pub use plateau_table::PlateauTable;
 pub(crate) use plateau_table::{MAX_WRAP_DEG, MIN_WRAP_DEG};
-pub use row::{PlateauRow, Sweep};
+pub use row::{Labels, PlateauRow, Sweep};
 pub use substrate_word::substrate_word;
 pub use table_error::TableError;

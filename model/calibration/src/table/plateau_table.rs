@@ -6,8 +6,8 @@ use std::io::Read;
 use pinswitch_friction::published::{self, GROOVES};
 use pinswitch_friction::{Direction, Substrate};
 
-use super::columns::{COLUMNS, WRAP_ANGLE, column_name};
-use super::row::{PlateauRow, Sweep};
+use super::columns::{COLUMNS, LABELS, WRAP_ANGLE, column_name};
+use super::row::{Labels, PlateauRow, Sweep};
 use super::substrate_word::{WORDS, substrate_word};
 use super::table_error::TableError;
 
@@ -102,6 +102,7 @@ impl PlateauTable {
             }
         }
         let wrap_at = header.iter().position(|name| name == WRAP_ANGLE);
+        let labels_at = LABELS.map(|column| header.iter().position(|name| name == column));
         let (mut rows, mut cells) = (Vec::new(), Vec::new());
         let mut lines = HashMap::new();
         for record in reader.records() {
@@ -110,10 +111,12 @@ impl PlateauTable {
             let place = |index: usize| at.get(index).copied().unwrap_or(wrap_at);
             let cell = |index: usize| place(index).and_then(|i| record.get(i)).unwrap_or("");
             let line = Cells { file, text: &text, byte, cell: &cell, force };
-            let row = parse_row(&line)?;
+            let [session, mount, operator, specimen] =
+                labels_at.map(|at| at.and_then(|i| record.get(i)).unwrap_or("").to_owned());
+            let row = PlateauRow { labels: Labels { session, mount, operator, specimen }, ..parse_row(&line)? };
             // A reading that stands in the table twice counts twice, and no spread between the two says so.
             let reading =
-                (row.series.clone(), row.direction.sign() > 0.0, row.repetition, row.time_s.to_bits());
+                (row.labels.session.clone(), row.series.clone(), row.direction.sign() > 0.0, row.repetition, row.time_s.to_bits());
             if let (Force::Needed, Some(first)) = (force, lines.insert(reading, byte)) {
                 let first = line_at(&text, first);
                 let problem = format!(
@@ -128,6 +131,12 @@ impl PlateauTable {
             return Err(TableError::Empty { file: file.to_owned() });
         }
         Ok(Self { rows, header, cells })
+    }
+
+    /// Columns of the file that no calibration reads, in its order.
+    pub fn ignored_columns(&self) -> Vec<String> {
+        let known = |name: &str| COLUMNS.contains(&name) || LABELS.contains(&name) || name == WRAP_ANGLE;
+        self.header.iter().filter(|name| !known(name)).cloned().collect()
     }
 
     /// Keeps the rows for which `keep` holds.
@@ -314,6 +323,7 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
             Force::Ignored => 0.0,
         },
         wrap_angle_deg: cells.wrap_angle_deg()?,
+        labels: Labels::default(),
     })
 }
 

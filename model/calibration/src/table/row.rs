@@ -54,4 +54,19 @@ pub struct PlateauRow {
     pub force_n: f64,
     /// Wrap angle of the tendon in degrees; without meaning for `plain`.
     pub wrap_angle_deg: f64,
+    /// Session, mount, operator and specimen, where the table names them.
+    pub labels: Labels,
+}
+
+/// What a row was recorded in, with and by: each is a grouping with a scatter of its own. Empty where not told.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Labels {
+    /// A day; the time restarts in each.
+    pub session: String,
+    /// A number that grows each time the switch is taken off and put back.
+    pub mount: String,
+    /// Who measured.
+    pub operator: String,
+    /// Which printed part or tendon.
+    pub specimen: String,
 }

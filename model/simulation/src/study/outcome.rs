@@ -3,7 +3,7 @@
 use pinswitch_calibration::Verdict;
 use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 use pinswitch_calibration::inference::{
-    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, degrees_of_freedom, family_p_value,
+    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, Weighed, degrees_of_freedom, family_p_value,
     interval_half_widths, select,
 };
 use pinswitch_calibration::table::{Frame, PlateauTable};
@@ -89,7 +89,7 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<CaseOutcome> {
 
 /// Whether the interval of each true size holds it. Other forms than the fitter's have other sizes.
 fn covered(plan: &Plan, found: &Selection, data: &Observations) -> Vec<bool> {
-    let widths = interval_half_widths(&found.augmented, data, found.noise);
+    let widths = interval_half_widths(&found.augmented, &Weighed::new(data, found.noise));
     let (names, values) = (found.augmented.model.names(), found.augmented.model.values());
     plan.effects
         .iter()

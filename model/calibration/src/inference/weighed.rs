@@ -1,0 +1,172 @@
+//! A table weighed by its noise: `V^-1/2`, row by row and group by group.
+//!
+//! `V` has the repetition noise of each row, which may hang together from one repetition to the next, and what rows
+//! share: the offset of a series and direction, the offset of a series, its friction scale, the wrap of a mount, the
+//! zero of an operator. Each of those is one random number per group times a direction among the group's rows, so that
+//! `V` is whitened by one step of rank one after the other; the cost is linear in rows.
+
+use super::correlation::unchain;
+use super::noise::{Noise, Part};
+use super::observations::Observations;
+
+/// What the rows of each group of one kind share, in the scale that the steps before have whitened.
+#[derive(Clone, Debug)]
+struct Shared {
+    part: Part,
+    /// Direction of each row's group, of unit length in each group.
+    axis: Vec<f64>,
+    /// Share of that direction which whitening takes out, by group.
+    removed: Vec<f64>,
+}
+
+/// Observations with their noise.
+#[derive(Clone, Debug)]
+pub struct Weighed<'a> {
+    /// The rows.
+    pub data: &'a Observations,
+    /// The noise they are weighed by.
+    pub noise: Noise,
+    shared: Vec<Shared>,
+    /// One over the repetition's standard deviation, times the root of the weight, by row.
+    scale: Vec<f64>,
+}
+
+impl<'a> Weighed<'a> {
+    /// Weighs a table.
+    pub fn new(data: &'a Observations, noise: Noise) -> Self {
+        let scale = data
+            .points
+            .iter()
+            .zip(&data.roots)
+            .map(|(p, root)| root / noise.repetition.at(p.load_n).max(1e-12))
+            .collect();
+        let mut weighed = Self { data, noise, shared: Vec::new(), scale };
+        for part in Part::SHARED {
+            weighed.absorb(part);
+        }
+        weighed
+    }
+
+    /// Adds what the groups of one part share.
+    fn absorb(&mut self, part: Part) {
+        let mut axis = vec![0.0; self.data.points.len()];
+        let groups = part.groups(self.data);
+        let mut any = false;
+        for (row, value) in axis.iter_mut().enumerate() {
+            *value = part.direction_n(self.noise, self.data, row);
+            any |= *value != 0.0;
+        }
+        if !any || groups.is_empty() {
+            return;
+        }
+        self.whiten(&mut axis);
+        let mut removed = vec![0.0; groups.len()];
+        for (group, share) in groups.iter().zip(&mut removed) {
+            let length2: f64 = group.iter().map(|r| axis[*r] * axis[*r]).sum();
+            if length2 > 1e-24 {
+                let length = length2.sqrt();
+                group.iter().for_each(|r| axis[*r] /= length);
+                *share = 1.0 - (1.0 + length2).sqrt().recip();
+            }
+        }
+        self.shared.push(Shared { part, axis, removed });
+    }
+
+    /// Whitens one value per row in place, `V^-1/2 v`.
+    pub(crate) fn whiten(&self, values: &mut [f64]) {
+        values.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
+        if self.noise.correlation > 0.0 {
+            let mut along = Vec::new();
+            for cell in &self.data.cells {
+                along.clear();
+                along.extend(cell.iter().map(|r| values[*r]));
+                unchain(self.noise.correlation, self.data, cell, &mut along);
+                cell.iter().zip(&along).for_each(|(r, v)| values[*r] = *v);
+            }
+        }
+        for shared in &self.shared {
+            for (group, removed) in shared.part.groups(self.data).iter().zip(&shared.removed) {
+                if *removed > 0.0 {
+                    let sum: f64 = group.iter().map(|r| shared.axis[*r] * values[*r]).sum();
+                    let shift = removed * sum;
+                    group.iter().for_each(|r| values[*r] -= shift * shared.axis[*r]);
+                }
+            }
+        }
+    }
+
+    /// `V^-1/2' v` of values that have no neighbours in a chain, as means of series have none.
+    pub(crate) fn whiten_transposed(&self, mut values: Vec<f64>) -> Vec<f64> {
+        for shared in self.shared.iter().rev() {
+            for (group, removed) in shared.part.groups(self.data).iter().zip(&shared.removed) {
+                let sum: f64 = group.iter().map(|r| shared.axis[*r] * values[*r]).sum();
+                group.iter().for_each(|r| values[*r] -= removed * sum * shared.axis[*r]);
+            }
+        }
+        values.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
+        values
+    }
+
+    /// `ln det V` over that of the repetition noise alone: what shared noise costs a likelihood.
+    pub(crate) fn shared_log_det(&self) -> f64 {
+        self.shared.iter().flat_map(|s| &s.removed).map(|removed| -2.0 * (1.0 - removed).ln()).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inference::Spread;
+    use crate::table::Frame;
+    use crate::test_session::session;
+
+    /// `V^-1/2 V V^-1/2' = 1` for a covariance with every part.
+    #[test]
+    fn whitening_undoes_the_covariance() {
+        let rows: Vec<_> = session(1).into_iter().take(54).collect();
+        let frame = Frame::new(&rows);
+        let mut data = Observations::new(&frame, &rows).unwrap();
+        let n = rows.len();
+        data.weights = (0..n).map(|i| if i % 9 == 3 { 0.2 } else { 1.0 }).collect();
+        data.roots = data.weights.iter().map(|w| w.sqrt()).collect();
+        data.friction_n = (0..n).map(|i| data.points[i].sign * (1.0 + 0.1 * i as f64)).collect();
+        let noise = Noise {
+            correlation: 0.6,
+            series_common: Spread { constant_n: 0.05, per_load: 0.0 },
+            series_scale: 0.03,
+            mount_scale: 0.05,
+            ..Noise::constant(0.1, 0.3)
+        };
+        let mut v = nalgebra::DMatrix::zeros(n, n);
+        for i in 0..n {
+            for j in 0..n {
+                let same = |groups: &[Vec<usize>]| groups.iter().any(|g| g.contains(&i) && g.contains(&j));
+                if same(&data.cells) {
+                    let gap = data.points[i].repetition - data.points[j].repetition;
+                    v[(i, j)] += 0.01 * 0.6f64.powf(gap.abs()) / (data.roots[i] * data.roots[j]) + 0.09;
+                }
+                let friction = data.friction_n[i] * data.friction_n[j];
+                if same(&data.series_rows) {
+                    v[(i, j)] += 0.0025 + 0.0009 * friction;
+                }
+                if same(&data.mounts) {
+                    v[(i, j)] += 0.0025 * friction;
+                }
+            }
+        }
+        let weighed = Weighed::new(&data, noise);
+        let mut root = nalgebra::DMatrix::zeros(n, n);
+        for j in 0..n {
+            let mut unit = vec![0.0; n];
+            unit[j] = 1.0;
+            weighed.whiten(&mut unit);
+            (0..n).for_each(|i| root[(i, j)] = unit[i]);
+        }
+        let one = &root * &v * root.transpose();
+        assert!((one - nalgebra::DMatrix::identity(n, n)).amax() < 1e-9);
+        let repetition = Noise::constant(0.1, 0.0);
+        let chained = Weighed::new(&data, Noise { correlation: 0.6, ..repetition });
+        assert!(chained.shared_log_det() == 0.0);
+        assert!(weighed.shared_log_det() > 0.0);
+    }
+}

@@ -210,6 +210,8 @@ mod tests {
             position: 0.8,
             time: 0.7,
             travel: 0.6,
+            previous_load_n: 20.0,
+            through: 0.0,
         };
         for effect in CATALOGUE {
             let read = |k: Option<&[f64]>| {

@@ -126,6 +126,13 @@ pub enum Shape {
         /// `r0`.
         r0: f64,
     },
+    /// What is left of the load before: `(F_before - F)/F_max exp(-r/r0)` after `r` repetitions of the series.
+    Memory {
+        /// Repetitions after which a share `1/e` is left.
+        r0: f64,
+        /// The highest load in newtons.
+        unit_n: f64,
+    },
     /// 1 when the loads descend.
     Descending,
     /// `d` times the load.
@@ -179,6 +186,9 @@ impl Structure {
             }
             Shape::ConditionIs { conditions } => flag(conditions.contains(&p.condition)),
             Shape::Repetition { r0 } => (-(p.repetition - 1.0) / r0).exp(),
+            Shape::Memory { r0, unit_n } => {
+                (p.previous_load_n - p.load_n) / unit_n * (-p.through / r0).exp()
+            }
             Shape::Descending => p.descending,
             Shape::DirectionLoad { power, unit_n } => p.sign * (p.load_n / unit_n).powi(*power),
         }
@@ -262,6 +272,9 @@ impl Structure {
                 format!("another level on {}", conditions.iter().map(name).collect::<Vec<_>>().join(" and "))
             }
             Shape::Repetition { r0 } => format!("a settling over {r0} repetitions"),
+            Shape::Memory { r0, .. } => {
+                format!("a memory of the load before, forgotten over {r0} repetitions")
+            }
             Shape::Descending => "another level when loads descend".to_owned(),
             Shape::DirectionLoad { power, .. } => {
                 format!("a difference of the directions with load to the power {power}")

@@ -34,6 +34,16 @@ impl Term {
         }
     }
 
+    /// Whether it changes from row to row of a series: with the repetition, the position or the time.
+    pub(crate) fn moves_along_a_series(&self) -> bool {
+        let covariate = match self {
+            Term::Named(effect) => effect.description().covariate,
+            Term::Structure(Structure { form: Shape::Memory { .. }, .. }) => return true,
+            Term::Structure(structure) => structure.covariate,
+        };
+        matches!(covariate, Covariate::Repetition | Covariate::Position | Covariate::Time)
+    }
+
     /// Bounds of its constants; `None` for sizes.
     fn bounds(&self) -> Vec<Option<(f64, f64)>> {
         match self {
@@ -282,21 +292,46 @@ impl Model {
     /// Readings in newtons at the points.
     pub fn predict(&self, points: &[Point]) -> Vec<f64> {
         let values = self.values();
+        self.readings(&values, points, |_| true, &[])
+    }
+
+    /// Readings at the points that are `touched`, those of `before` elsewhere. Neighbours that differ in nothing that
+    /// the model reads have one reading: the rows of a series, unless something moves along it.
+    fn readings(
+        &self,
+        values: &[f64],
+        points: &[Point],
+        touched: impl Fn(&Point) -> bool,
+        before: &[f64],
+    ) -> Vec<f64> {
         let offsets: Vec<usize> = (0..self.terms.len()).map(|i| self.term_offset(i)).collect();
-        points.iter().map(|point| self.read(&values, &offsets, point, false)).collect()
+        let moves = self.terms.iter().any(Term::moves_along_a_series);
+        let mut last: Option<(Point, f64)> = None;
+        points
+            .iter()
+            .enumerate()
+            .map(|(i, point)| {
+                if !touched(point) {
+                    return before[i];
+                }
+                match last {
+                    Some((other, reading)) if !moves && other.is_of_one_setting(point) => reading,
+                    _ => {
+                        let reading = self.read(values, &offsets, point, false);
+                        last = Some((*point, reading));
+                        reading
+                    }
+                }
+            })
+            .collect()
     }
 
     /// Readings after one constant has changed, where `before` were those at the points: only conditions that the
     /// constant touches are computed again.
     pub(crate) fn predict_changed(&self, points: &[Point], before: &[f64], index: usize) -> Vec<f64> {
         let values = self.values();
-        let offsets: Vec<usize> = (0..self.terms.len()).map(|i| self.term_offset(i)).collect();
         let touched: Vec<bool> = (0..self.frame.conditions.len()).map(|c| self.touches(index, c)).collect();
-        points
-            .iter()
-            .zip(before)
-            .map(|(p, b)| if touched[p.condition] { self.read(&values, &offsets, p, false) } else { *b })
-            .collect()
+        self.readings(&values, points, |p| touched[p.condition], before)
     }
 
     /// Whether a constant enters the readings on a condition.

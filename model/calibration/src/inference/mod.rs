@@ -4,6 +4,7 @@
 
 mod baseline;
 mod correlation;
+mod evidence;
 mod fit;
 mod form_tolerance;
 mod forward;

@@ -31,6 +31,8 @@ pub struct Observations {
     pub series_rows: Vec<Vec<usize>>,
     /// Rows of each mount: of each condition where the table does not say.
     pub mounts: Vec<Vec<usize>>,
+    /// Rows of each stretch of neighbouring series, in the order of time.
+    pub stretches: Vec<Vec<usize>>,
     /// Rows of each operator; empty with fewer than two.
     pub operators: Vec<Vec<usize>>,
     /// Rows of each session; empty with fewer than two.
@@ -107,6 +109,7 @@ impl Observations {
             let l = labels(i);
             format!("{} {} {} {}", points[i].condition, l.session, l.specimen, l.mount)
         });
+        let stretches = stretches(&collected(&series_of, series), &points);
         let force_n = rows.iter().map(|r| r.force_n).collect();
         let cell_load_n = loads(&cells, &points);
         let ones = vec![1.0; rows.len()];
@@ -121,6 +124,7 @@ impl Observations {
             friction_n: vec![0.0; rows.len()],
             series_rows: collected(&series_of, series),
             series_of,
+            stretches,
             mounts,
             operators: several(|l| &l.operator),
             sessions: several(|l| &l.session),
@@ -158,6 +162,7 @@ impl Observations {
             friction_n: kept.iter().map(|i| self.friction_n[*i]).collect(),
             series_rows: among(&self.series_rows),
             mounts: among(&self.mounts),
+            stretches: among(&self.stretches),
             operators: among(&self.operators),
             sessions: among(&self.sessions),
             specimens: among(&self.specimens),
@@ -266,6 +271,17 @@ impl Observations {
         self.apply_exclusions();
         sd
     }
+}
+
+/// Series in a stretch: offsets that hang together from one series to the next are known by such stretches.
+const STRETCH: usize = 4;
+
+/// Rows of neighbouring series, in the order in which the series begin.
+fn stretches(series_rows: &[Vec<usize>], points: &[Point]) -> Vec<Vec<usize>> {
+    let begin = |rows: &[usize]| rows.iter().map(|r| points[*r].time).fold(f64::INFINITY, f64::min);
+    let mut order: Vec<&Vec<usize>> = series_rows.iter().collect();
+    order.sort_by(|a, b| begin(a).total_cmp(&begin(b)));
+    order.chunks(STRETCH).map(|series| series.iter().copied().flatten().copied().collect()).collect()
 }
 
 /// Rows of each group.

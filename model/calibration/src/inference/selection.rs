@@ -1,6 +1,7 @@
 //! Which effects a table shows, their rivals, and what no name explains.
 
 use super::baseline::{explainable, fit_baseline};
+use super::evidence::evidence;
 use super::fit::{Fit, fit, jacobian};
 use super::forward::{Model, Term};
 use super::isolation::isolated_series;
@@ -11,9 +12,9 @@ use super::projection::dot;
 use super::screening::{EffectScore, Screen};
 use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
 use super::unnamed::{Context, FoundStructure};
-use super::variance_components;
+use super::variance_components::{Scatter, estimate, scatter_size};
 use super::weighed::Weighed;
-use crate::effects::{Effect, acting_order};
+use crate::effects::{CATALOGUE, Effect, acting_order};
 
 /// An effect that explains what a named one explains as well.
 #[derive(Clone, Debug)]
@@ -125,13 +126,13 @@ pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selecti
     let guess = Noise::constant(sd, sd);
     loop {
         let rough = fit_baseline(&rough.model, &Weighed::new(data, guess));
-        let noise = variance_components::estimate(data, &rough.residual_n, &explainable(&rough, data), guess);
+        let noise = estimate(data, &rough.residual_n, &explainable(&rough, data), guess);
         let free = explain(&rough.model, data, noise, levels);
         if let Some(series) = free.isolated {
             data.exclude(series);
             continue;
         }
-        let chosen = against_mounts(free, data, levels);
+        let chosen = against_scatter(free, data, levels);
         return finish(chosen, data, levels);
     }
 }
@@ -153,10 +154,13 @@ impl Explanation {
         self.augmented.model.named_effects().len()
     }
 
-    /// Whitened squares, what shared noise costs, and a toll for each thing believed: the less, the better.
-    fn toll(&self, data: &Observations, levels: Levels) -> f64 {
-        let believed = self.names() as f64 + 2.0 * f64::from(u8::from(self.structure.is_some()));
-        self.augmented.cost + Weighed::new(data, self.noise).shared_log_det() + levels.further * believed
+    /// Minus twice the logarithm of its posterior probability, up to a constant: the evidence, and for each thing
+    /// believed how many there were to choose from.
+    fn toll(&self, data: &Observations) -> f64 {
+        let choices = 2.0 * (CATALOGUE.len() as f64).ln() * self.names() as f64;
+        let shapes = self.structure.map_or(0.0, |_| 2.0 * (self.structures_tried.max(1) as f64).ln());
+        let scatter: f64 = Scatter::ALL.iter().map(|s| s.cost(self.noise)).sum();
+        evidence(&self.augmented, &Weighed::new(data, self.noise)) + choices + shapes + scatter
     }
 }
 
@@ -167,9 +171,9 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
     let mut baseline = fit_baseline(start, &weighed);
     let mut found = search(&baseline, &weighed, levels);
     if !found.model.terms.is_empty() {
-        let mount_scale = noise.mount_scale;
-        noise = variance_components::estimate(data, &found.residual_n, &explainable(&found, data), noise);
-        noise.mount_scale = mount_scale;
+        let before = noise;
+        noise = estimate(data, &found.residual_n, &explainable(&found, data), noise);
+        noise = Scatter::ALL.iter().fold(noise, |n, scatter| scatter.in_noise(n, scatter.of(before)));
         weighed = Weighed::new(data, noise);
         baseline = fit(&baseline.model, &weighed);
         found = search(&baseline, &weighed, levels);
@@ -199,38 +203,42 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
     Explanation { baseline, augmented, structure, structure_gain, structures_tried, noise, isolated }
 }
 
-/// Whether scatter from mount to mount explains a table as well as what was believed without it: the friction of every
-/// mount is off by some per cent, which costs the likelihood a free number per mount.
-fn against_mounts(free: Explanation, data: &Observations, levels: Levels) -> Explanation {
-    let own = |fitted: &Fit| {
+/// Whether scatter from mount to mount, or offsets that wander from series to series, explain a table as well as what
+/// was believed without them. Their groups are few, so that no variance is known well: they compete as explanations.
+fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Explanation {
+    let size_of = |scatter: Scatter, fitted: &Fit, noise| {
         let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
-        jacobian(&fitted.model, data, &predicted)
+        let own = jacobian(&fitted.model, data, &predicted);
+        scatter_size(scatter, data, &fitted.residual_n, &own, noise)
     };
-    let scale_of = |fitted: &Fit, noise| {
-        variance_components::mount_scale(data, &fitted.residual_n, &own(fitted), noise)
-    };
-    let with_mounts = |explanation: Explanation| {
-        let mount_scale = scale_of(&explanation.augmented, explanation.noise);
-        if mount_scale == explanation.noise.mount_scale {
+    // What is believed is kept, and the scatter beside it estimated.
+    let with_scatter = |explanation: Explanation| {
+        let noise = Scatter::ALL.iter().fold(explanation.noise, |noise, scatter| {
+            let without = scatter.in_noise(noise, 0.0);
+            scatter.in_noise(without, size_of(*scatter, &explanation.augmented, without))
+        });
+        if noise == explanation.noise {
             return explanation;
         }
-        let noise = Noise { mount_scale, ..explanation.noise };
         let weighed = Weighed::new(data, noise);
         let baseline = fit(&explanation.baseline.model, &weighed);
         let augmented = fit(&explanation.augmented.model, &weighed);
         Explanation { baseline, augmented, noise, ..explanation }
     };
     if free.augmented.model.terms.is_empty() {
-        return with_mounts(free);
+        return with_scatter(free);
     }
-    let mount_scale = scale_of(&free.baseline, free.noise);
-    let free = with_mounts(free);
-    if mount_scale == 0.0 {
-        return free;
+    let sizes = Scatter::ALL.map(|scatter| (scatter, size_of(scatter, &free.baseline, free.noise)));
+    let mut best = with_scatter(free);
+    for (scatter, size) in sizes.into_iter().filter(|(_, size)| *size > 0.0) {
+        let noise = Scatter::ALL.iter().fold(best.noise, |n, other| other.in_noise(n, 0.0));
+        let other = explain(&best.baseline.model, data, scatter.in_noise(noise, size), levels);
+        let other = with_scatter(other);
+        if other.toll(data) < best.toll(data) {
+            best = other;
+        }
     }
-    let scattered = explain(&free.baseline.model, data, Noise { mount_scale, ..free.noise }, levels);
-    let scattered = with_mounts(scattered);
-    if scattered.toll(data, levels) < free.toll(data, levels) { scattered } else { free }
+    best
 }
 
 /// Everything that is told about the explanation chosen.

@@ -143,6 +143,9 @@ fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]
         push(groups, Covariate::Direction, &[Channel::Reading], &Shape::DirectionLoad { power, unit_n });
     }
     push(groups, Covariate::Sweep, &ALL, &Shape::Descending);
+    for r0 in [3.0, 8.0, 20.0, 60.0] {
+        push(groups, Covariate::Load, &channels, &Shape::Memory { r0, unit_n });
+    }
     let loads = levels(points, |p| p.load_n, 1e-3);
     if loads.len() <= 40 && !follows(points, |p| p.log_speed, |p| p.load_n, 0.01) {
         for load_n in loads {
@@ -151,13 +154,30 @@ fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]
     }
 }
 
+/// The values themselves, or thirty places between the ends where there are more.
+fn on_a_grid(values: Vec<f64>) -> Vec<f64> {
+    const MOST: usize = 30;
+    match (values.first(), values.last()) {
+        (Some(first), Some(last)) if values.len() > MOST => {
+            (0..MOST).map(|i| first + (last - first) * i as f64 / (MOST - 1) as f64).collect()
+        }
+        _ => values,
+    }
+}
+
 fn rates(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]) {
     let mut speeds = levels(points, |p| p.log_speed, 1e-3);
     speeds.retain(|_| frame.reference_speed_pct > 0.0);
-    if speeds.len() > 1 && speeds.len() <= 30 {
-        for log_speed in speeds {
-            push(groups, Covariate::Speed, &ALL, &Shape::SpeedLevel { log_speed, half_width: 1e-3 });
-            for width in [0.02, 0.04] {
+    if speeds.len() > 1 {
+        // Measured speeds are all different: bells on a grid that is as fine as a resonance is wide.
+        if speeds.len() <= 30 {
+            for log_speed in &speeds {
+                let form = Shape::SpeedLevel { log_speed: *log_speed, half_width: 1e-3 };
+                push(groups, Covariate::Speed, &ALL, &form);
+            }
+        }
+        for log_speed in on_a_grid(speeds) {
+            for width in [0.02, 0.04, 0.08] {
                 push(groups, Covariate::Speed, &ALL, &Shape::SpeedBump { log_speed, width });
             }
         }
@@ -166,8 +186,8 @@ fn rates(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]) {
         }
     }
     let dwells = levels(points, |p| p.log_dwell, 0.02);
-    if dwells.len() > 1 && dwells.len() <= 30 {
-        for log_dwell in dwells {
+    if dwells.len() > 1 {
+        for log_dwell in on_a_grid(dwells) {
             push(groups, Covariate::Dwell, &ALL, &Shape::DwellLevel { log_dwell });
         }
     }
@@ -190,6 +210,8 @@ mod tests {
             position: 0.0,
             time: 0.0,
             travel: 0.0,
+            previous_load_n: load_n,
+            through: 0.0,
         };
         let points = [point(2.0), point(1.0), point(2.0 + 1e-9)];
         assert_eq!(levels(&points, |p| p.load_n, 1e-3), [1.0, 2.0]);

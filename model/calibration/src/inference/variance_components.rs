@@ -184,7 +184,7 @@ fn with_sizes(noise: Noise, sizes: [f64; 5]) -> Noise {
 
 /// What rows of a series share; `None` with too few series to tell.
 fn between(data: &Observations, residual_n: &[f64], explainable: &[Vec<f64>], noise: Noise) -> Option<Noise> {
-    let noise = Noise { mount_scale: 0.0, ..noise };
+    let noise = Noise { mount_scale: 0.0, stretch_offset_n: 0.0, ..noise };
     let means = data.cell_means(noise);
     let residual = means.mean_of(data, residual_n);
     let mut columns: Vec<Vec<f64>> = explainable.iter().map(|c| means.mean_of(data, c)).collect();
@@ -260,24 +260,89 @@ fn indicator(len: usize, rows: &[usize], value: impl Fn(usize) -> f64) -> Vec<f6
     column
 }
 
-/// The mounts' scatter of the friction that residuals in newtons show beside what `own` columns can take over, up to
-/// [`MOST_MOUNT_SCALE`]. Everything else of the noise stays.
-pub(super) fn mount_scale(data: &Observations, residual_n: &[f64], own: &[Vec<f64>], noise: Noise) -> f64 {
-    if data.mounts.len() < 3 || data.friction_n.iter().all(|u| *u == 0.0) {
+/// A scatter that competes with effects, since few groups tell it: its effects are alike to its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scatter {
+    /// The friction of each mount.
+    Mounts,
+    /// The reading of each stretch of neighbouring series.
+    Stretches,
+}
+
+impl Scatter {
+    pub(super) const ALL: [Scatter; 2] = [Scatter::Mounts, Scatter::Stretches];
+
+    /// The noise with this scatter.
+    pub(super) fn in_noise(self, noise: Noise, size: f64) -> Noise {
+        match self {
+            Scatter::Mounts => Noise { mount_scale: size, ..noise },
+            Scatter::Stretches => Noise { stretch_offset_n: size, ..noise },
+        }
+    }
+
+    /// Its size in a noise.
+    pub(super) fn of(self, noise: Noise) -> f64 {
+        match self {
+            Scatter::Mounts => noise.mount_scale,
+            Scatter::Stretches => noise.stretch_offset_n,
+        }
+    }
+
+    fn groups(self, data: &Observations) -> &[Vec<usize>] {
+        match self {
+            Scatter::Mounts => &data.mounts,
+            Scatter::Stretches => &data.stretches,
+        }
+    }
+
+    /// What a row of a group does when the group is off by one, in newtons.
+    fn direction_n(self, data: &Observations, row: usize) -> f64 {
+        match self {
+            Scatter::Mounts => data.friction_n[row],
+            Scatter::Stretches => 1.0,
+        }
+    }
+
+    /// Sizes: the least that changes a decision, one to start from, what is typical, the largest that is called scatter.
+    fn scale(self) -> [f64; 4] {
+        match self {
+            Scatter::Mounts => [LEAST_SCALE, 0.02, 0.045, MOST_MOUNT_SCALE],
+            Scatter::Stretches => [2e-3, 0.05, 0.15, 0.3],
+        }
+    }
+
+    /// Minus twice the logarithm of how probable a size is before any data, a half-normal law, up to a constant.
+    pub(super) fn cost(self, noise: Noise) -> f64 {
+        (self.of(noise) / self.scale()[2]).powi(2)
+    }
+}
+
+/// The scatter that residuals in newtons show beside what `own` columns can take over. Everything else of the noise
+/// stays.
+pub(super) fn scatter_size(
+    scatter: Scatter,
+    data: &Observations,
+    residual_n: &[f64],
+    own: &[Vec<f64>],
+    noise: Noise,
+) -> f64 {
+    let [least, start, _, most] = scatter.scale();
+    let none = (0..data.points.len()).all(|r| scatter.direction_n(data, r) == 0.0);
+    if scatter.groups(data).len() < 3 || none {
         return 0.0;
     }
     let means = data.cell_means(noise);
     let residual = means.mean_of(data, residual_n);
     let columns: Vec<Vec<f64>> = own.iter().map(|c| means.mean_of(data, c)).collect();
     let means = &means.observations;
-    let groups: Vec<Vec<f64>> = means
-        .mounts
+    let groups: Vec<Vec<f64>> = scatter
+        .groups(means)
         .iter()
-        .map(|rows| indicator(residual.len(), rows, |r| means.friction_n[r]))
+        .map(|rows| indicator(residual.len(), rows, |r| scatter.direction_n(means, r)))
         .collect();
-    let mut theta = 0.02f64.powi(2);
+    let mut theta = start * start;
     for _ in 0..ROUNDS {
-        let weighed = Weighed::new(means, Noise { mount_scale: theta.sqrt(), ..noise });
+        let weighed = Weighed::new(means, scatter.in_noise(noise, theta.sqrt()));
         let mut projection = Projection::new(residual.len());
         let whiten = |column: &[f64]| {
             let mut white = column.to_vec();
@@ -301,11 +366,11 @@ pub(super) fn mount_scale(data: &Observations, residual_n: &[f64], own: &[Vec<f6
             return 0.0;
         }
         theta *= (found / expected).clamp(0.05, 20.0);
-        if theta < LEAST_SCALE * LEAST_SCALE {
+        if theta < least * least {
             return 0.0;
         }
     }
-    theta.sqrt().min(MOST_MOUNT_SCALE)
+    theta.sqrt().min(most)
 }
 
 /// How well the noise itself is known, to tell how many degrees of freedom stand behind a size
@@ -324,7 +389,7 @@ impl Reliability {
     pub(crate) fn new(data: &Observations, noise: Noise, own: &[Vec<f64>]) -> Self {
         let means = data.cell_means(noise);
         let own: Vec<Vec<f64>> = own.iter().map(|c| means.mean_of(data, c)).collect();
-        let local = Noise { mount_scale: 0.0, group_offset_n: 0.0, specimen_scale: 0.0, ..noise };
+        let local = Noise { mount_scale: 0.0, stretch_offset_n: 0.0, group_offset_n: 0.0, specimen_scale: 0.0, ..noise };
         let zeros = vec![0.0; means.observations.points.len()];
         let blocks = blocks(&means.observations, local, &zeros, &own);
         let theta = sizes(noise);

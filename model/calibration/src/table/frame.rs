@@ -132,6 +132,22 @@ pub struct Point {
     pub time: f64,
     /// Share of all repetitions made so far, 0..1.
     pub travel: f64,
+    /// Load of the series before in the session, in newtons; for the first one its own.
+    pub previous_load_n: f64,
+    /// Repetitions made in the series so far, both directions counted.
+    pub through: f64,
+}
+
+impl Point {
+    /// Whether two rows differ at most in repetition, position and time.
+    pub(crate) fn is_of_one_setting(&self, other: &Point) -> bool {
+        self.condition == other.condition
+            && self.load_n == other.load_n
+            && self.sign == other.sign
+            && self.descending == other.descending
+            && self.log_speed == other.log_speed
+            && self.log_dwell == other.log_dwell
+    }
 }
 
 impl Frame {
@@ -194,7 +210,27 @@ impl Frame {
 
     /// The rows as points; `None` for the first row whose condition the frame does not have.
     pub fn points(&self, rows: &[PlateauRow]) -> Option<Vec<Point>> {
-        rows.iter().map(|row| self.point(row)).collect()
+        let mut points: Vec<Point> = rows.iter().map(|row| self.point(row)).collect::<Option<_>>()?;
+        // What came before is known by the order of time, whatever the order of the table.
+        let mut order: Vec<usize> = (0..rows.len()).collect();
+        order.sort_by(|a, b| {
+            let (a, b) = (&rows[*a], &rows[*b]);
+            a.labels.session.cmp(&b.labels.session).then(a.time_s.total_cmp(&b.time_s))
+        });
+        let mut made: BTreeMap<(&str, &str), (f64, f64)> = BTreeMap::new();
+        let mut last: Option<(&str, f64)> = None;
+        for i in order {
+            let row = &rows[i];
+            let session = row.labels.session.as_str();
+            let before = last.filter(|(of, _)| *of == session).map_or(row.load_n, |(_, load)| load);
+            let (previous, through) =
+                made.entry((session, row.series.as_str())).or_insert((before, 0.0));
+            points[i].previous_load_n = *previous;
+            points[i].through = *through;
+            *through += 1.0;
+            last = Some((session, row.load_n));
+        }
+        Some(points)
     }
 
     fn point(&self, row: &PlateauRow) -> Option<Point> {
@@ -210,6 +246,8 @@ impl Frame {
             position: row.position_mm / self.stroke_mm,
             time: row.time_s / self.session_s,
             travel: interpolate(&self.travel_time_s, &self.travel_share, row.time_s),
+            previous_load_n: row.load_n,
+            through: 0.0,
         })
     }
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use pinswitch_calibration::inference::Levels;
-use pinswitch_calibration::table::{PlateauRow, PlateauTable};
+use pinswitch_calibration::table::PlateauRow;
 use pinswitch_simulation::{Case, EffectPlan, Plan, RawRun, Study, Truth, run_case, simulate, study_cases};
 use rayon::prelude::*;
 
@@ -64,8 +64,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut files = if arguments.raw { raw_files(&plan, &simulated.rows, &name)? } else { Vec::new() };
     files.extend([
         file("plan.toml", text),
-        file("plateaus-fresh.csv", PlateauTable::write(&simulated.fresh)),
-        file("plateaus.csv", PlateauTable::write(&simulated.rows)),
+        file("plateaus-fresh.csv", simulated.fresh_table(&plan)),
+        file("plateaus.csv", simulated.table(&plan)),
     ]);
     write_set(out, &files).map_err(Failure::failed)
 }

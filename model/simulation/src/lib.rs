@@ -2,7 +2,6 @@
 //! calibrator. The crate knows physics of its own and must not take a formula of an effect from the fitter.
 //!
 //! A [`Plan`] says what the rig does, what the paper's model lacks on it and how noisy it is. [`simulate`] makes the
-//! table that it would record, [`RawRun`] the logs. [`power()`] tells before any measurement which effects a plan could
 //! show, and [`run_case`] asks the calibrator about rigs whose truth is known.
 //!
 //! ```
@@ -28,13 +27,15 @@ mod plan;
 mod power;
 mod protocol;
 mod raw;
+mod series_marks;
 mod simulate;
 mod study;
 mod twin;
 
-pub use disturbance::{Course, Disturbance, DisturbanceTarget};
-pub use plan::{EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan, RigConstants};
+pub use disturbance::{Course, Disturbance, DisturbanceTarget, Turns};
+pub use plan::{ColumnsPlan, EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan, RigConstants};
 pub use power::{Power, power};
 pub use raw::{Faults, RawLog, RawRun};
+pub use series_marks::{SeriesMark, SeriesMarks};
 pub use simulate::{Simulated, simulate};
 pub use study::{Case, CaseOutcome, Study, Truth, plan_of, run_case, study_cases};

@@ -8,7 +8,9 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauRow;
-use pinswitch_simulation::{Case, EffectPlan, Plan, RawRun, Study, Truth, run_case, simulate, study_cases};
+use pinswitch_simulation::{
+    Case, EffectPlan, Plan, RawRun, Study, Truth, next_session, run_case, simulate, study_cases,
+};
 use rayon::prelude::*;
 
 use super::{Failure, print};
@@ -39,6 +41,9 @@ pub(super) struct Arguments {
     /// Also write raw 200 Hz logs with spikes, lost samples and bad moves: run.toml for `segment`, truth.csv, faults.json.
     #[arg(long, conflicts_with = "study")]
     raw: bool,
+    /// Also write plateaus-next.csv: a later session of the same rig, with noise and order of its own.
+    #[arg(long, conflicts_with = "study")]
+    next: bool,
     /// Calibrate this many rigs of every kind and print what was said of them.
     #[arg(long, value_name = "SEEDS", conflicts_with_all = ["plan", "out"])]
     study: Option<u64>,
@@ -67,6 +72,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         file("plateaus-fresh.csv", simulated.fresh_table(&plan)),
         file("plateaus.csv", simulated.table(&plan)),
     ]);
+    if arguments.next {
+        files.push(file("plateaus-next.csv", next_session(&plan).table(&plan)));
+    }
     write_set(out, &files).map_err(Failure::failed)
 }
 

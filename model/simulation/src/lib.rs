@@ -41,4 +41,4 @@ pub use power::{Power, power};
 pub use raw::{Faults, RawLog, RawRun};
 pub use series_marks::{SeriesMark, SeriesMarks};
 pub use simulate::{Simulated, simulate};
-pub use study::{Case, CaseOutcome, Study, Truth, plan_of, run_case, study_cases};
+pub use study::{Case, CaseOutcome, Group, Study, Truth, plan_of, run_case, study_cases};

@@ -225,4 +225,17 @@ mod tests {
         }
         assert_eq!(Plan::parse("", "plan.toml").unwrap(), Plan::default());
     }
+
+    /// The text of a plan without scatter is what it was before there were keys for it.
+    #[test]
+    fn keys_of_scatter_are_written_only_where_they_say_something() {
+        let text = Plan::default().to_text().unwrap();
+        for key in ["scale", "common", "walk", "resolution", "shuffled", "columns"] {
+            assert!(!text.contains(key), "{key}");
+        }
+        let mut plan = Plan { shuffled: true, ..Plan::randomised() };
+        (plan.noise.mount_scale, plan.columns.operator) = (0.02, true);
+        let text = plan.to_text().unwrap();
+        assert_eq!(Plan::parse(&text, "plan.toml").unwrap(), plan, "{text}");
+    }
 }

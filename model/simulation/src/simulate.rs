@@ -194,6 +194,32 @@ mod tests {
         }
     }
 
+    /// Offsets of a series and direction walk as those do that both directions share.
+    #[test]
+    fn offsets_of_a_direction_walk_as_strongly_as_the_plan_says() {
+        for walk in [0.0, 0.7] {
+            let mut plan = silent();
+            plan.speeds_pct = vec![50.0];
+            (plan.noise.series_n, plan.noise.series_walk) = (0.1, walk);
+            let rows = simulate(&plan).rows;
+            let noise = |r: &PlateauRow| {
+                let x = plan.constants.mu_s * plan.wrap_angle_deg.to_radians();
+                r.force_n - r.load_n * (r.direction.sign() * x).exp()
+            };
+            for sign in [-1.0, 1.0] {
+                let offsets: Vec<f64> = rows
+                    .iter()
+                    .filter(|r| r.repetition == 1 && r.direction.sign() == sign)
+                    .map(noise)
+                    .collect();
+                let square = offsets.iter().map(|o| o * o).sum::<f64>() / offsets.len() as f64;
+                let product = offsets.windows(2).map(|o| o[0] * o[1]).sum::<f64>() / offsets.len() as f64;
+                assert!((product / square - walk).abs() < 0.12, "{} instead of {walk}", product / square);
+                assert!((square.sqrt() / 0.1 - 1.0).abs() < 0.15, "{}", square.sqrt());
+            }
+        }
+    }
+
     #[test]
     fn a_cell_with_steps_reads_multiples_of_them() {
         let mut plan = Plan::default();

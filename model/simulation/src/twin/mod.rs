@@ -173,6 +173,7 @@ fn settling(u: f64, t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
     use crate::effect_forms::FORMS;
     use crate::plan::EffectPlan;
     use pinswitch_calibration::effects::CATALOGUE;
@@ -224,6 +225,35 @@ mod tests {
                 let change = distance(&other, &first) / distance(&first, &none);
                 assert!(change > 1e-3 && change < 1.5, "{id} form {form}: {change}");
             }
+        }
+    }
+
+    /// Through a whole session: each series on silicone remembers the load before it, pins alone remember nothing.
+    #[test]
+    fn a_series_remembers_the_load_before_it() {
+        let mut plan = Plan::default();
+        let mut random = rand::SeedableRng::seed_from_u64(3);
+        let rows = crate::protocol::rows(&plan, &mut random);
+        let without = readings(&plan, &rows, &SeriesMarks::default());
+        let kind = Course::Memory { repetitions: 20.0 };
+        plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Silicone, size: 0.5 });
+        let with = readings(&plan, &rows, &SeriesMarks::default());
+        let exponent = |force_n: f64, row: &PlateauRow| (force_n / row.load_n).ln();
+        let most_n = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
+        let (mut before_n, mut series, mut through) = (0.0, &rows[0], 0);
+        for ((row, a), b) in rows.iter().zip(&without).zip(&with) {
+            if row.series != series.series {
+                (before_n, series, through) = (series.load_n, row, 0);
+            }
+            if row.substrate == Some(pinswitch_friction::Substrate::Abs) {
+                assert_eq!(a, b);
+            } else if row.pins.is_empty() {
+                let kept = (-f64::from(through) / 20.0).exp();
+                let expected = 1.0 + 0.5 * (before_n - row.load_n) / most_n * kept;
+                let found = exponent(*b, row) / exponent(*a, row);
+                assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+            }
+            through += 1;
         }
     }
 }

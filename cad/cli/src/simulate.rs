@@ -7,8 +7,10 @@ use clap::Args;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use pinswitch_calibration::inference::Levels;
-use pinswitch_calibration::table::{PlateauRow, PlateauTable};
-use pinswitch_simulation::{Case, EffectPlan, Plan, RawRun, Study, Truth, run_case, simulate, study_cases};
+use pinswitch_calibration::table::PlateauRow;
+use pinswitch_simulation::{
+    EffectPlan, Group, Plan, RawRun, Study, next_session, run_case, simulate, study_cases,
+};
 use rayon::prelude::*;
 
 use super::{Failure, print};
@@ -23,7 +25,8 @@ use pinswitch_switch::output::OutputFile;
   pinswitch simulate --effect coating_ploughing=0.02 --out rig
   pinswitch simulate plan.toml --out rig
   pinswitch simulate plan.toml --out rig --raw
-  pinswitch simulate --study 20")]
+  pinswitch simulate --study 20
+  pinswitch simulate --study 20 --only nulls --only 'worn spot'")]
 pub(super) struct Arguments {
     /// The plan: layouts, loads, sweeps, speeds, dwells, effects with their sizes, noise, seed. Without one, the paper's rig.
     plan: Option<PathBuf>,
@@ -39,15 +42,18 @@ pub(super) struct Arguments {
     /// Also write raw 200 Hz logs with spikes, lost samples and bad moves: run.toml for `segment`, truth.csv, faults.json.
     #[arg(long, conflicts_with = "study")]
     raw: bool,
+    /// Also write plateaus-next.csv: a later session of the same rig, with noise and order of its own.
+    #[arg(long, conflicts_with = "study")]
+    next: bool,
     /// Calibrate this many rigs of every kind and print what was said of them.
     #[arg(long, value_name = "SEEDS", conflicts_with_all = ["plan", "out"])]
     study: Option<u64>,
     /// In a study, the first seed; others than those a level was tuned on give a fair figure.
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "study")]
     first_seed: u64,
-    /// In a study, only the kinds of rig whose name contains this.
-    #[arg(long, value_name = "NAME", requires = "study")]
-    only: Option<String>,
+    /// In a study, only these kinds of rig: a group (nulls, singles, scattered, pairs, masks, confounded, outside) or a part of a name.
+    #[arg(long, value_name = "GROUP|NAME", requires = "study")]
+    only: Vec<String>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -64,9 +70,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut files = if arguments.raw { raw_files(&plan, &simulated.rows, &name)? } else { Vec::new() };
     files.extend([
         file("plan.toml", text),
-        file("plateaus-fresh.csv", PlateauTable::write(&simulated.fresh)),
-        file("plateaus.csv", PlateauTable::write(&simulated.rows)),
+        file("plateaus-fresh.csv", simulated.fresh_table(&plan)),
+        file("plateaus.csv", simulated.table(&plan)),
     ]);
+    if arguments.next {
+        files.push(file("plateaus-next.csv", next_session(&plan).table(&plan)));
+    }
     write_set(out, &files).map_err(Failure::failed)
 }
 
@@ -119,20 +128,28 @@ fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputF
     Ok(files)
 }
 
-/// The confusion matrix over all kinds of rig; rigs without effect count ten times, for the rate of false alarms.
+/// The confusion matrix over the kinds of rig asked for, and a row for each group of them.
 fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
+    let mut cases = study_cases();
+    for word in &arguments.only {
+        if !cases.iter().any(|case| case.is_meant_by(word)) {
+            let groups = Group::ALL.map(Group::as_str).join(", ");
+            return Err(Failure::bad_input(format!(
+                "--only {word}: no kind of rig has this in its name; the groups are {groups}"
+            )));
+        }
+    }
+    cases
+        .retain(|case| arguments.only.is_empty() || arguments.only.iter().any(|word| case.is_meant_by(word)));
     let mut study = Study::default();
-    let wanted = |case: &Case| arguments.only.as_ref().is_none_or(|o| case.name.contains(o.as_str()));
-    for case in study_cases().into_iter().filter(wanted) {
-        // There are four kinds of noise without effect.
-        let count = if case.truth == Truth::Nothing { (10 * seeds).div_ceil(4) } else { seeds };
-        let first = arguments.first_seed;
-        let outcomes: Vec<_> = (first..first + count)
+    let first = arguments.first_seed;
+    for case in cases {
+        let outcomes: Vec<_> = (first..first + case.rigs(seeds))
             .into_par_iter()
             .filter_map(|s| run_case(&case, s, Levels::default()))
             .collect();
         log::info!("{:?} {}: {} rigs", case.protocol, case.name, outcomes.len());
         study.add(case, outcomes);
     }
-    print(format!("{}\n{}", study.table(), study.summary()).as_bytes())
+    print(format!("{}\n{}\n{}", study.table(), study.groups(), study.summary()).as_bytes())
 }

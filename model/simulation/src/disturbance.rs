@@ -1,10 +1,12 @@
-//! What nobody has named: steps, waves, worn spots, resonances, one defective layout.
+//! What nobody has named: steps, waves, worn spots, resonances, one defective layout, a material that remembers, another
+//! tendon, two operators.
 
 use std::f64::consts::{PI, TAU};
 
 use pinswitch_calibration::effects::Covariate;
-use pinswitch_calibration::table::PlateauRow;
 use serde::{Deserialize, Serialize};
+
+use crate::twin::Moment;
 
 /// What a disturbance acts on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -15,6 +17,8 @@ pub enum DisturbanceTarget {
     Friction,
     /// A share of the friction coefficient of the pins.
     Pins,
+    /// A share of the friction coefficient of the silicone.
+    Silicone,
     /// Newtons on the reading.
     Reading,
     /// Newtons against the motion.
@@ -92,31 +96,65 @@ pub enum Course {
         /// Its occupied grooves.
         pins: Vec<usize>,
     },
+    /// The material remembers the load of the series before: the step down from it, as a share of the highest load of
+    /// the session, forgotten exponentially. The session begins after no load.
+    Memory {
+        /// Repetitions through both directions after which a share of 1/e is left.
+        repetitions: f64,
+    },
+    /// Another tendon from a share of the session on. `size` is the share by which the friction of the pins changes.
+    Swap {
+        /// When.
+        at: f64,
+        /// Share by which the friction of the silicone changes.
+        silicone: f64,
+    },
+    /// Two operators; the second zeroes the cell off by `size`.
+    Operators {
+        /// How they take turns.
+        turns: Turns,
+    },
+}
+
+/// How two operators take turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Turns {
+    /// Each series has one of them at random.
+    Series,
+    /// One has the first half of the session's series, the other the second; who begins is random.
+    Half,
 }
 
 impl Disturbance {
-    /// Where a calibration should find it.
-    pub fn covariate(&self) -> Covariate {
+    /// Where a calibration may find it: any of these is right.
+    pub fn covariates(&self) -> &'static [Covariate] {
         match self.kind {
-            Course::Step { .. } | Course::Window { .. } | Course::TimeWave { .. } => Covariate::Time,
-            Course::StrokeWave { .. } | Course::Spot { .. } => Covariate::Position,
-            Course::Resonance { .. } => Covariate::Speed,
-            Course::Layout { .. } => Covariate::Condition,
+            Course::Step { .. } | Course::Window { .. } | Course::TimeWave { .. } | Course::Swap { .. } => {
+                &[Covariate::Time]
+            }
+            Course::StrokeWave { .. } | Course::Spot { .. } => &[Covariate::Position],
+            Course::Resonance { .. } => &[Covariate::Speed],
+            Course::Layout { .. } => &[Covariate::Condition],
+            Course::Memory { .. } => &[Covariate::Load, Covariate::Repetition],
+            // Groups of series at random go along with everything a little, and with nothing clearly.
+            Course::Operators { .. } => &Covariate::ALL,
         }
     }
 
-    fn course(&self, clock: f64, place: f64, speed_pct: f64, pins: &[usize]) -> f64 {
+    fn course(&self, at: &Moment, pins: &[usize]) -> f64 {
         let flag = |b: bool| f64::from(u8::from(b));
+        let Moment { clock, place, speed_pct, .. } = *at;
         match &self.kind {
-            Course::Step { at, over } => ((clock - at) / over.max(1e-9)).clamp(0.0, 1.0),
+            Course::Step { at: from, over } => ((clock - from) / over.max(1e-9)).clamp(0.0, 1.0),
             Course::Window { from, to } => flag(clock >= *from && clock < *to),
             Course::TimeWave { cycles, phase } => (TAU * cycles * clock + phase).sin(),
             Course::StrokeWave { cycles, phase, square } => {
                 let wave = (TAU * cycles * place + phase).sin();
                 if *square { wave.signum() * PI / 4.0 } else { wave }
             }
-            Course::Spot { at, width, flat } => {
-                let x = (place - at) / width;
+            Course::Spot { at: centre, width, flat } => {
+                let x = (place - centre) / width;
                 if x.abs() > 0.5 {
                     0.0
                 } else if *flat {
@@ -129,26 +167,35 @@ impl Disturbance {
                 1.0 / (1.0 + ((speed_pct - v) / width_pct).powi(2))
             }
             Course::Layout { pins: defective } => flag(pins == defective.as_slice()),
+            Course::Memory { repetitions } => at.step_down * (-(at.through - 1.0) / repetitions).exp(),
+            Course::Swap { at: from, .. } => flag(clock >= *from),
+            Course::Operators { .. } => flag(at.operator == 2),
         }
     }
 
     /// Newtons on a reading.
-    pub(super) fn on_reading_n(&self, clock: f64, place: f64, row: &PlateauRow) -> f64 {
-        let course = || self.size * self.course(clock, place, row.speed_pct, &row.pins);
+    pub(super) fn on_reading_n(&self, at: &Moment, pins: &[usize]) -> f64 {
+        let course = || self.size * self.course(at, pins);
         match self.target {
             DisturbanceTarget::Reading => course(),
-            DisturbanceTarget::Drag => row.direction.sign() * course(),
-            DisturbanceTarget::Friction | DisturbanceTarget::Pins => 0.0,
+            DisturbanceTarget::Drag => at.sign * course(),
+            DisturbanceTarget::Friction | DisturbanceTarget::Pins | DisturbanceTarget::Silicone => 0.0,
         }
     }
 
     /// Factors on the friction of pins and silicone.
-    pub(super) fn on_friction(&self, clock: f64, place: f64, speed_pct: f64, pins: &[usize]) -> (f64, f64) {
-        let factor = 1.0 + self.size * self.course(clock, place, speed_pct, pins);
-        match self.target {
-            DisturbanceTarget::Friction => (factor, factor),
-            DisturbanceTarget::Pins => (factor, 1.0),
-            DisturbanceTarget::Reading | DisturbanceTarget::Drag => (1.0, 1.0),
+    pub(super) fn on_friction(&self, at: &Moment, pins: &[usize]) -> (f64, f64) {
+        let course = self.course(at, pins);
+        let factor = 1.0 + self.size * course;
+        match (self.target, &self.kind) {
+            (DisturbanceTarget::Friction, Course::Swap { silicone, .. }) => (factor, 1.0 + silicone * course),
+            // Pins do not remember.
+            (DisturbanceTarget::Friction, Course::Memory { .. }) | (DisturbanceTarget::Silicone, _) => {
+                (1.0, factor)
+            }
+            (DisturbanceTarget::Friction, _) => (factor, factor),
+            (DisturbanceTarget::Pins, _) => (factor, 1.0),
+            (DisturbanceTarget::Reading | DisturbanceTarget::Drag, _) => (1.0, 1.0),
         }
     }
 }
@@ -159,10 +206,9 @@ mod tests {
 
     #[test]
     fn a_spot_and_a_resonance_end_where_they_should() {
-        let on = |kind: Course, clock, place, speed| {
-            Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.5 }
-                .on_friction(clock, place, speed, &[])
-                .0
+        let on = |kind: Course, clock, place, speed_pct| {
+            let at = Moment { clock, place, speed_pct, ..Moment::default() };
+            Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.5 }.on_friction(&at, &[]).0
         };
         let spot = || Course::Spot { at: 0.5, width: 0.1, flat: false };
         assert_eq!(on(spot(), 0.0, 0.5, 50.0), 1.5);
@@ -171,5 +217,44 @@ mod tests {
         assert_eq!((on(step(), 0.39, 0.0, 50.0), on(step(), 0.41, 0.0, 50.0)), (1.0, 1.5));
         let resonance = Course::Resonance { speed_pct: 50.0, width_pct: 1.0 };
         assert_eq!(on(resonance, 0.0, 0.0, 51.0), 1.25);
+    }
+
+    #[test]
+    fn silicone_forgets_and_pins_never_knew() {
+        let memory = Disturbance {
+            kind: Course::Memory { repetitions: 10.0 },
+            target: DisturbanceTarget::Friction,
+            size: 0.5,
+        };
+        let on = |step_down, through| {
+            memory.on_friction(&Moment { step_down, through, ..Moment::default() }, &[3, 5])
+        };
+        assert_eq!(on(0.8, 1.0), (1.0, 1.4));
+        assert_eq!(on(-0.8, 1.0), (1.0, 0.6));
+        let later = on(0.8, 11.0).1;
+        assert!((later - 1.0 - 0.4 / 1f64.exp()).abs() < 1e-12, "{later}");
+        assert_eq!(memory.covariates(), [Covariate::Load, Covariate::Repetition]);
+    }
+
+    #[test]
+    fn another_tendon_rubs_otherwise_on_pins_and_on_silicone() {
+        let swap = Disturbance {
+            kind: Course::Swap { at: 0.5, silicone: -0.1 },
+            target: DisturbanceTarget::Friction,
+            size: 0.2,
+        };
+        let on = |clock| swap.on_friction(&Moment { clock, ..Moment::default() }, &[]);
+        assert_eq!((on(0.4), on(0.6)), ((1.0, 1.0), (1.2, 0.9)));
+    }
+
+    #[test]
+    fn the_second_operator_alone_is_off() {
+        let two = Disturbance {
+            kind: Course::Operators { turns: Turns::Series },
+            target: DisturbanceTarget::Reading,
+            size: 0.5,
+        };
+        let on = |operator| two.on_reading_n(&Moment { operator, ..Moment::default() }, &[]);
+        assert_eq!((on(1), on(2)), (0.0, 0.5));
     }
 }

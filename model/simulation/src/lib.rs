@@ -2,7 +2,7 @@
 //! calibrator. The crate knows physics of its own and must not take a formula of an effect from the fitter.
 //!
 //! A [`Plan`] says what the rig does, what the paper's model lacks on it and how noisy it is. [`simulate`] makes the
-//! table that it would record, [`RawRun`] the logs. [`power()`] tells before any measurement which effects a plan could
+//! table that it would record, [`next_session`] that of a later session, [`RawRun`] the logs. [`power()`] tells before any measurement which effects a plan could
 //! show, and [`run_case`] asks the calibrator about rigs whose truth is known.
 //!
 //! ```
@@ -24,17 +24,21 @@
 mod calibrator_tests;
 mod disturbance;
 mod effect_forms;
+mod next_session;
 mod plan;
 mod power;
 mod protocol;
 mod raw;
+mod series_marks;
 mod simulate;
 mod study;
 mod twin;
 
-pub use disturbance::{Course, Disturbance, DisturbanceTarget};
-pub use plan::{EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan, RigConstants};
+pub use disturbance::{Course, Disturbance, DisturbanceTarget, Turns};
+pub use next_session::next_session;
+pub use plan::{ColumnsPlan, EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan, RigConstants};
 pub use power::{Power, power};
 pub use raw::{Faults, RawLog, RawRun};
+pub use series_marks::{SeriesMark, SeriesMarks};
 pub use simulate::{Simulated, simulate};
-pub use study::{Case, CaseOutcome, Study, Truth, plan_of, run_case, study_cases};
+pub use study::{Case, CaseOutcome, Group, Study, Truth, plan_of, run_case, study_cases};

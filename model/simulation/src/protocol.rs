@@ -37,6 +37,9 @@ pub(super) fn rows(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<PlateauRow> {
     if plan.protocol == Protocol::Randomised {
         conditions.shuffle(random);
     }
+    if plan.shuffled {
+        return shuffled(plan, &conditions, random);
+    }
     for (substrate, pins) in conditions {
         let sweeps: &[Sweep] =
             if plan.protocol == Protocol::Paper { &[Sweep::Up] } else { &[Sweep::Up, Sweep::Down] };
@@ -60,6 +63,32 @@ pub(super) fn rows(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<PlateauRow> {
                 time_s += random.random_range(20.0..45.0);
             }
         }
+    }
+    session
+}
+
+/// The rows of a session whose series stand in one random order.
+fn shuffled(
+    plan: &Plan,
+    conditions: &[(Option<Substrate>, &[usize])],
+    random: &mut ChaCha8Rng,
+) -> Vec<PlateauRow> {
+    let mut settings = Vec::new();
+    for (substrate, pins) in conditions {
+        for sweep in [Sweep::Up, Sweep::Down] {
+            for mass_g in &plan.weights_g {
+                let speed_pct = plan.speeds_pct[random.random_range(0..plan.speeds_pct.len())];
+                let dwell_s = plan.dwells_s[random.random_range(0..plan.dwells_s.len())];
+                let (substrate, mass_g) = (*substrate, *mass_g);
+                settings.push(Setting { substrate, pins, sweep, mass_g, speed_pct, dwell_s });
+            }
+        }
+    }
+    settings.shuffle(random);
+    let (mut session, mut time_s) = (Vec::new(), random.random_range(60.0..450.0));
+    for setting in settings {
+        series(plan, &setting, &mut time_s, &mut session, random);
+        time_s += random.random_range(20.0..45.0);
     }
     session
 }

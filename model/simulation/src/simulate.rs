@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_calibration::table::PlateauRow;
+use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_friction::published;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
 use super::plan::Plan;
+use super::series_marks::{SeriesMarks, walked};
 use super::{protocol, twin};
 
 /// The tables that a plan makes.
@@ -16,8 +17,23 @@ use super::{protocol, twin};
 pub struct Simulated {
     /// The table as it would be recorded.
     pub rows: Vec<PlateauRow>,
-    /// Rows of the same rig without noise, a part of the session, to judge predictions by.
+    /// Rows of the same rig without noise, a part of the session, to judge predictions by. The tendon is seated ideally
+    /// in all of them.
     pub fresh: Vec<PlateauRow>,
+    /// What each series has of its own.
+    pub marks: SeriesMarks,
+}
+
+impl Simulated {
+    /// The text of the table, with the optional columns that the plan asks for.
+    pub fn table(&self, plan: &Plan) -> String {
+        self.marks.add_columns(plan.columns, &self.rows, PlateauTable::write(&self.rows))
+    }
+
+    /// The text of the rows without noise, with the optional columns that the plan asks for.
+    pub fn fresh_table(&self, plan: &Plan) -> String {
+        self.marks.add_columns(plan.columns, &self.fresh, PlateauTable::write(&self.fresh))
+    }
 }
 
 /// Runs a plan. The same plan makes the same rows, bit for bit.
@@ -34,8 +50,8 @@ pub struct Simulated {
 pub fn simulate(plan: &Plan) -> Simulated {
     let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
     let mut rows = protocol::rows(plan, &mut random);
-    let forces = twin::readings(plan, &rows);
-    rows.iter_mut().zip(forces).for_each(|(row, force)| row.force_n = force);
+    let marks = SeriesMarks::draw(plan, &rows);
+    read(plan, &mut rows, &marks.seated_ideally());
     let mut fresh = Vec::new();
     let share = 400.0 / rows.len().max(1) as f64;
     for row in &rows {
@@ -43,22 +59,35 @@ pub fn simulate(plan: &Plan) -> Simulated {
             fresh.push(row.clone());
         }
     }
-    disturb(plan, &mut rows, &mut random);
-    Simulated { rows, fresh }
+    if plan.noise.series_scale > 0.0 || plan.noise.mount_scale > 0.0 {
+        read(plan, &mut rows, &marks);
+    }
+    disturb(plan, &marks, &mut rows, &mut random);
+    Simulated { rows, fresh, marks }
 }
 
-/// Adds noise per repetition and per series and direction, gross errors, and loses rows.
-fn disturb(plan: &Plan, rows: &mut Vec<PlateauRow>, random: &mut ChaCha8Rng) {
+/// Writes the readings without noise into the rows.
+fn read(plan: &Plan, rows: &mut [PlateauRow], marks: &SeriesMarks) {
+    let forces = twin::readings(plan, rows, marks);
+    rows.iter_mut().zip(forces).for_each(|(row, force)| row.force_n = force);
+}
+
+/// Adds noise per repetition, per series and direction, and per series; gross errors; rounds; loses rows.
+fn disturb(plan: &Plan, marks: &SeriesMarks, rows: &mut Vec<PlateauRow>, random: &mut ChaCha8Rng) {
     let noise = &plan.noise;
     let heavy = StudentT::new(3.0).ok();
     // Of each series and direction: its offset, its factor on the repetition noise, and the last repetition's noise.
     let mut cells: BTreeMap<(String, bool), (f64, f64, f64)> = BTreeMap::new();
     let rho = noise.autocorrelation;
+    // The last series' offset in each direction, in its standard deviations.
+    let mut last = [None; 2];
     for row in rows.iter_mut() {
         let up = row.direction == pinswitch_friction::Direction::Concentric;
         let cell = cells.entry((row.series.clone(), up)).or_insert_with(|| {
             let [offset, factor, before]: [f64; 3] = std::array::from_fn(|_| StandardNormal.sample(random));
             let sd = noise.series_n.hypot(noise.series_per_load * row.load_n);
+            let offset = walked(noise.series_walk, last[usize::from(up)], offset);
+            last[usize::from(up)] = Some(offset);
             (offset * sd, (noise.uneven * factor).exp(), before)
         });
         let unit: f64 = match (noise.heavy_tails, &heavy) {
@@ -73,7 +102,14 @@ fn disturb(plan: &Plan, rows: &mut Vec<PlateauRow>, random: &mut ChaCha8Rng) {
             let gross: f64 = StandardNormal.sample(random);
             error += noise.outlier_n * gross;
         }
+        let common_n = noise.series_common_n.hypot(noise.series_common_per_load * row.load_n);
+        if common_n > 0.0 {
+            error += common_n * marks.of(&row.series).common_offset;
+        }
         row.force_n += error;
+        if noise.resolution_n > 0.0 {
+            row.force_n = (row.force_n / noise.resolution_n).round() * noise.resolution_n;
+        }
     }
     mislabel(plan, rows, random);
     if noise.lost_share > 0.0 {
@@ -100,6 +136,7 @@ fn mislabel(plan: &Plan, rows: &mut [PlateauRow], random: &mut ChaCha8Rng) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::NoisePlan;
 
     #[test]
     fn the_same_plan_makes_the_same_rows_and_another_seed_others() {
@@ -108,5 +145,128 @@ mod tests {
         let other = Plan { seed: 2, ..plan.clone() };
         assert_ne!(simulate(&plan).rows, simulate(&other).rows);
         assert!(simulate(&plan).rows.len() > 2500);
+    }
+
+    /// Standard deviation over the series of a mean over each of them.
+    fn sd_of_means(rows: &[PlateauRow], of: impl Fn(&PlateauRow) -> Option<f64>) -> f64 {
+        let mut series: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+        for row in rows {
+            series.entry(&row.series).or_default().extend(of(row));
+        }
+        let means: Vec<f64> = series.values().map(|v| v.iter().sum::<f64>() / v.len() as f64).collect();
+        let mean = means.iter().sum::<f64>() / means.len() as f64;
+        (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / means.len() as f64).sqrt()
+    }
+
+    /// A rig without any noise; many series of one load on silicone.
+    fn silent() -> Plan {
+        let mut plan = Plan { weights_g: vec![3007.2; 400], layouts: Vec::new(), ..Plan::default() };
+        plan.speeds_pct = vec![50.0];
+        plan.noise = NoisePlan {
+            repetition_n: 0.0,
+            repetition_per_load: 0.0,
+            series_n: 0.0,
+            series_per_load: 0.0,
+            outlier_share: 0.0,
+            ..NoisePlan::default()
+        };
+        plan
+    }
+
+    #[test]
+    fn the_rows_scatter_as_much_as_the_plan_says() {
+        let mut plan = silent();
+        // Of the capstan exponent, in both directions.
+        let exponent = |r: &PlateauRow| Some((r.force_n / r.load_n).ln() * r.direction.sign());
+        assert!(sd_of_means(&simulate(&plan).rows, exponent) < 1e-9);
+        plan.noise.series_scale = 0.02;
+        let x = plan.constants.mu_s * plan.wrap_angle_deg.to_radians();
+        let made = simulate(&plan);
+        assert!((sd_of_means(&made.rows, exponent) / x / 0.02 - 1.0).abs() < 0.1);
+        assert!(sd_of_means(&made.fresh, exponent) < 1e-9, "fresh rows are seated ideally");
+        let mut plan = silent();
+        (plan.noise.series_common_n, plan.noise.series_common_per_load) = (0.03, 0.004);
+        let rows = simulate(&plan).rows;
+        let expected = 0.03f64.hypot(0.004 * rows[0].load_n);
+        for sign in [-1.0, 1.0] {
+            let sd = sd_of_means(&rows, |r| (r.direction.sign() == sign).then_some(r.force_n));
+            assert!((sd / expected - 1.0).abs() < 0.1, "{sd} instead of {expected}");
+        }
+    }
+
+    /// Offsets of a series and direction walk as those do that both directions share.
+    #[test]
+    fn offsets_of_a_direction_walk_as_strongly_as_the_plan_says() {
+        for walk in [0.0, 0.7] {
+            let mut plan = silent();
+            plan.speeds_pct = vec![50.0];
+            (plan.noise.series_n, plan.noise.series_walk) = (0.1, walk);
+            let rows = simulate(&plan).rows;
+            let noise = |r: &PlateauRow| {
+                let x = plan.constants.mu_s * plan.wrap_angle_deg.to_radians();
+                r.force_n - r.load_n * (r.direction.sign() * x).exp()
+            };
+            for sign in [-1.0, 1.0] {
+                let offsets: Vec<f64> = rows
+                    .iter()
+                    .filter(|r| r.repetition == 1 && r.direction.sign() == sign)
+                    .map(noise)
+                    .collect();
+                let square = offsets.iter().map(|o| o * o).sum::<f64>() / offsets.len() as f64;
+                let product = offsets.windows(2).map(|o| o[0] * o[1]).sum::<f64>() / offsets.len() as f64;
+                assert!((product / square - walk).abs() < 0.12, "{} instead of {walk}", product / square);
+                assert!((square.sqrt() / 0.1 - 1.0).abs() < 0.15, "{}", square.sqrt());
+            }
+        }
+    }
+
+    #[test]
+    fn a_cell_with_steps_reads_multiples_of_them() {
+        let mut plan = Plan::default();
+        plan.noise.resolution_n = 0.05;
+        for row in simulate(&plan).rows {
+            let steps = row.force_n / 0.05;
+            assert!((steps - steps.round()).abs() < 1e-6, "{}", row.force_n);
+        }
+    }
+
+    #[test]
+    fn optional_columns_stand_in_the_table_if_asked_for() {
+        let mut plan = Plan::randomised();
+        let made = simulate(&plan);
+        assert_eq!(made.table(&plan), PlateauTable::write(&made.rows));
+        (plan.columns.mount, plan.columns.operator) = (true, true);
+        let text = made.table(&plan);
+        let first = text.lines().next().unwrap();
+        assert!(first.ends_with(",mount,operator"), "{first}");
+        assert!(text.lines().last().unwrap().ends_with(",7,1"));
+        assert_eq!(PlateauTable::read(text.as_bytes(), "t").unwrap().rows.len(), made.rows.len());
+    }
+
+    /// FNV-1a, of 64 bits.
+    fn hash(text: &str) -> u64 {
+        text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
+    }
+
+    fn tables(plan: &Plan) -> String {
+        let made = simulate(plan);
+        PlateauTable::write(&made.rows) + &PlateauTable::write(&made.fresh)
+    }
+
+    /// What a plan could say before series had scatter of their own makes the bytes that it made then.
+    #[test]
+    fn plans_without_scatter_make_the_bytes_they_always_made() {
+        let mut noisy = Plan { seed: 9, ..Plan::randomised() };
+        noisy.noise.heavy_tails = true;
+        noisy.noise.autocorrelation = 0.4;
+        noisy.noise.uneven = 0.3;
+        noisy.noise.lost_share = 0.03;
+        noisy.noise.mislabelled_series = 2;
+        let hashes = [Plan::default(), Plan::randomised(), noisy].map(|plan| hash(&tables(&plan)));
+        assert_eq!(
+            hashes,
+            [0xe6bc_542c_dcf6_c464, 0x13ec_7e9d_543c_4722, 0x264f_ffbb_1205_371c],
+            "{hashes:x?}"
+        );
     }
 }

@@ -3,7 +3,8 @@
 use pinswitch_calibration::effects::{acting_order, effect_named};
 use pinswitch_friction::published;
 
-use super::{EffectPlan, NoisePlan, Plan, PlanError, RawPlan};
+use super::{EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan};
+use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
 use crate::effect_forms::forms_of;
 
 /// A field out of its bounds, before it is known which file it stands in.
@@ -33,7 +34,9 @@ impl Plan {
     pub fn check(&self, file: &str) -> Result<(), PlanError> {
         self.check_series()
             .and_then(|()| check_noise(&self.noise))
+            .and_then(|()| check_scatter(&self.noise))
             .and_then(|()| check_raw(&self.raw))
+            .and_then(|()| self.disturbances.iter().try_for_each(check_disturbance))
             .map_err(|Fault { field, value, bound, remedy }| PlanError::Bound {
                 file: file.to_owned(),
                 field,
@@ -63,6 +66,13 @@ impl Plan {
             || self.wrap_angle_deg.to_string(),
             "1..720",
             "the paper's is 63.89 degrees",
+        )?;
+        require(
+            !self.shuffled || self.protocol == Protocol::Randomised,
+            "shuffled",
+            || "true".to_owned(),
+            "false in the paper's protocol",
+            "set protocol = \"randomised\"",
         )?;
         require(
             self.repetitions.iter().all(|r| (1..=1000).contains(r)),
@@ -112,6 +122,56 @@ fn check_noise(n: &NoisePlan) -> Result<(), Fault> {
         "0..0.9",
         "give shares of the rows",
     )
+}
+
+/// What differs between series and mounts, and the step of the cell.
+fn check_scatter(n: &NoisePlan) -> Result<(), Fault> {
+    let scales = [("noise.series_scale", n.series_scale), ("noise.mount_scale", n.mount_scale)];
+    for (field, value) in scales {
+        let remedy = "give the share by which friction scatters, as 0.02";
+        require((0.0..=0.5).contains(&value), field, || value.to_string(), "0..0.5", remedy)?;
+    }
+    let sizes = [
+        ("noise.series_common_N", n.series_common_n),
+        ("noise.series_common_per_load", n.series_common_per_load),
+        ("noise.resolution_N", n.resolution_n),
+    ];
+    for (field, value) in sizes {
+        let remedy = "0 leaves it out";
+        require((0.0..=10.0).contains(&value), field, || value.to_string(), "0..10", remedy)?;
+    }
+    let walk = n.series_walk;
+    let remedy = "0 is no correlation";
+    require((0.0..=0.99).contains(&walk), "noise.series_walk", || walk.to_string(), "0..0.99", remedy)
+}
+
+fn check_disturbance(d: &Disturbance) -> Result<(), Fault> {
+    let size = "give a share of friction, or newtons";
+    require(d.size.abs() <= 1e3, "disturbances: size", || d.size.to_string(), "-1000..1000", size)?;
+    match &d.kind {
+        Course::Memory { repetitions } => require(
+            (0.1..=1e6).contains(repetitions),
+            "disturbances: memory.repetitions",
+            || repetitions.to_string(),
+            "0.1..1e6",
+            "give the repetitions after which about a third is left",
+        ),
+        Course::Swap { at, silicone } => require(
+            (0.0..=1.0).contains(at) && (-0.9..=10.0).contains(silicone),
+            "disturbances: swap",
+            || format!("at {at}, silicone {silicone}"),
+            "at 0..1 and silicone -0.9..10",
+            "give a share of the session and a share of friction",
+        ),
+        Course::Operators { .. } => require(
+            matches!(d.target, DisturbanceTarget::Reading),
+            "disturbances: target",
+            || format!("{:?}", d.target).to_lowercase(),
+            "what an operator does",
+            "set target = \"reading\"",
+        ),
+        _ => Ok(()),
+    }
 }
 
 fn check_raw(r: &RawPlan) -> Result<(), Fault> {

@@ -1,12 +1,14 @@
 //! `PLAN.toml`: what a synthetic rig does and what is wrong with it.
 
 mod check;
+mod columns;
 mod error;
 mod noise;
 mod raw;
 
 use serde::{Deserialize, Serialize};
 
+pub use columns::ColumnsPlan;
 pub use error::PlanError;
 pub use noise::NoisePlan;
 pub use raw::RawPlan;
@@ -90,6 +92,9 @@ pub struct Plan {
     pub seed: u64,
     /// Order and settings of the series.
     pub protocol: Protocol,
+    /// All series of the randomised protocol in one random order, instead of sweep by sweep.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub shuffled: bool,
     /// Wrap angle of the tendon in degrees; the paper's is not written.
     #[serde(skip_serializing_if = "is_published_wrap")]
     pub wrap_angle_deg: f64,
@@ -119,6 +124,9 @@ pub struct Plan {
     pub noise: NoisePlan,
     /// Sampling and faults of raw logs.
     pub raw: RawPlan,
+    /// Optional columns of the table.
+    #[serde(skip_serializing_if = "ColumnsPlan::is_empty")]
+    pub columns: ColumnsPlan,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
@@ -131,6 +139,7 @@ impl Default for Plan {
         Self {
             seed: 1,
             protocol: Protocol::Paper,
+            shuffled: false,
             wrap_angle_deg: published::WRAP_ANGLE_DEG,
             layouts: published::LAYOUTS.iter().map(|l| l.grooves.to_vec()).collect(),
             silicone: true,
@@ -145,6 +154,7 @@ impl Default for Plan {
             disturbances: Vec::new(),
             noise: NoisePlan::default(),
             raw: RawPlan::default(),
+            columns: ColumnsPlan::default(),
         }
     }
 }
@@ -195,6 +205,16 @@ mod tests {
             ("weights_g = []", "weights_g"),
             ("layouts = [[16]]", "layouts"),
             ("[noise]\noutlier_share = 2", "noise shares"),
+            ("[noise]\nseries_scale = 0.6", "noise.series_scale = 0.6 is outside 0..0.5"),
+            ("[noise]\nmount_scale = -0.01", "noise.mount_scale"),
+            ("[noise]\nseries_common_N = -1", "noise.series_common_N"),
+            ("[noise]\nseries_walk = 1.0", "noise.series_walk"),
+            ("[noise]\nresolution_N = nan", "noise.resolution_N"),
+            ("shuffled = true", "shuffled"),
+            ("[[disturbances]]\nsize = inf\nkind.step.at = 0.5", "disturbances"),
+            ("[[disturbances]]\nsize = 0.4\nkind.memory.repetitions = 0", "disturbances: memory.repetitions"),
+            ("[[disturbances]]\nsize = 0.4\nkind.operators.turns = \"series\"", "disturbances: target"),
+            ("[columns]\nspecimen = true", "unknown field"),
             ("[[effects]]\nid = \"gravity\"", "known are"),
             ("[[effects]]\nid = \"run_in\"\nvalues = [1]", "3 value(s): k, r0, c"),
             ("colour = 1", "unknown field"),
@@ -204,5 +224,18 @@ mod tests {
             assert!(error.contains(expected) && error.starts_with("plan.toml"), "{error}");
         }
         assert_eq!(Plan::parse("", "plan.toml").unwrap(), Plan::default());
+    }
+
+    /// The text of a plan without scatter is what it was before there were keys for it.
+    #[test]
+    fn keys_of_scatter_are_written_only_where_they_say_something() {
+        let text = Plan::default().to_text().unwrap();
+        for key in ["scale", "common", "walk", "resolution", "shuffled", "columns"] {
+            assert!(!text.contains(key), "{key}");
+        }
+        let mut plan = Plan { shuffled: true, ..Plan::randomised() };
+        (plan.noise.mount_scale, plan.columns.operator) = (0.02, true);
+        let text = plan.to_text().unwrap();
+        assert_eq!(Plan::parse(&text, "plan.toml").unwrap(), plan, "{text}");
     }
 }

@@ -31,6 +31,29 @@ pub struct NoisePlan {
     pub mislabelled_series: u32,
     /// Heavy tails: Student's t with three degrees of freedom instead of a normal law, of the same quartiles.
     pub heavy_tails: bool,
+    /// Logarithmic standard deviation of friction from series to series: the tendon is seated anew.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub series_scale: f64,
+    /// Logarithmic standard deviation of friction from mount to mount: the tendon wraps a little more or less.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub mount_scale: f64,
+    /// Of a series, shared by both directions, at zero load, in newtons.
+    #[serde(rename = "series_common_N", skip_serializing_if = "is_zero")]
+    pub series_common_n: f64,
+    /// Its growth with load, dimensionless.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub series_common_per_load: f64,
+    /// Correlation of the offsets of a series with those of the series before it in time, 0..1.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub series_walk: f64,
+    /// Step of the load cell in newtons: readings are multiples of it.
+    #[serde(rename = "resolution_N", skip_serializing_if = "is_zero")]
+    pub resolution_n: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Default for NoisePlan {
@@ -47,6 +70,12 @@ impl Default for NoisePlan {
             uneven: 0.0,
             mislabelled_series: 0,
             heavy_tails: false,
+            series_scale: 0.0,
+            mount_scale: 0.0,
+            series_common_n: 0.0,
+            series_common_per_load: 0.0,
+            series_walk: 0.0,
+            resolution_n: 0.0,
         }
     }
 }

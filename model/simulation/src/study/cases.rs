@@ -4,7 +4,9 @@ use pinswitch_calibration::effects::{CATALOGUE, Covariate, PaperProtocol, effect
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
+use super::masks::{drag_n, masked, sizes};
+use super::nulls::{self, NULLS, OFTEN};
+use super::outside::{OUTSIDE, outside};
 use crate::effect_forms::forms_of;
 use crate::plan::{EffectPlan, Plan, Protocol};
 
@@ -15,10 +17,63 @@ pub enum Truth {
     Nothing,
     /// Effects of the vocabulary.
     Effects(Vec<&'static str>),
-    /// One effect that this protocol cannot tell from another: the answer must name both.
-    Confounded(&'static str),
-    /// Something outside the vocabulary that lies in this covariate.
-    Outside(Covariate),
+    /// Effects of which this protocol cannot tell one from another: the answer must name both.
+    Confounded(Vec<&'static str>),
+    /// The first of two effects that this protocol cannot tell apart, so small that it may be missed: the answer must
+    /// name both, or say that it cannot be excluded.
+    SmallConfounded([&'static str; 2]),
+    /// Something outside the vocabulary.
+    Outside {
+        /// Where it may be found: any of these is right.
+        covariates: &'static [Covariate],
+        /// A name that is as right.
+        or_named: Option<&'static str>,
+    },
+}
+
+/// A group of kinds of rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Group {
+    /// No effect.
+    Nulls,
+    /// One effect.
+    Singles,
+    /// One effect, and friction that differs by 1 to 2 % from series to series.
+    Scattered,
+    /// Two effects.
+    Pairs,
+    /// A drag of the guide pulleys that hides a second effect.
+    Masks,
+    /// One effect that the protocol cannot tell from another.
+    Confounded,
+    /// Something outside the vocabulary.
+    Outside,
+}
+
+impl Group {
+    /// All of them.
+    pub const ALL: [Group; 7] = [
+        Group::Nulls,
+        Group::Singles,
+        Group::Scattered,
+        Group::Pairs,
+        Group::Masks,
+        Group::Confounded,
+        Group::Outside,
+    ];
+
+    /// Its word.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Group::Nulls => "nulls",
+            Group::Singles => "singles",
+            Group::Scattered => "scattered",
+            Group::Pairs => "pairs",
+            Group::Masks => "masks",
+            Group::Confounded => "confounded",
+            Group::Outside => "outside",
+        }
+    }
 }
 
 /// One kind of rig.
@@ -28,29 +83,27 @@ pub struct Case {
     pub name: String,
     /// Its protocol.
     pub protocol: Protocol,
+    /// The group it is counted in.
+    pub group: Group,
     /// What is true of it.
     pub truth: Truth,
 }
 
-/// Kinds of noise on rigs without any effect.
-const NULLS: [&str; 4] = [
-    "no effect",
-    "no effect, heavy tails and outliers",
-    "no effect, uneven and correlated noise",
-    "no effect, one weight mislabelled",
-];
+impl Case {
+    /// Whether a word means it: that of its group, or else a part of its name.
+    pub fn is_meant_by(&self, word: &str) -> bool {
+        match Group::ALL.iter().find(|g| g.as_str() == word) {
+            Some(group) => self.group == *group,
+            None => self.name.contains(word),
+        }
+    }
 
-/// What lies outside the vocabulary in the study.
-const OUTSIDE: [(&str, Covariate); 8] = [
-    ("step of friction in mid-session", Covariate::Time),
-    ("step of the reading in mid-session", Covariate::Time),
-    ("another level for a while", Covariate::Time),
-    ("wave in time", Covariate::Time),
-    ("wave along the stroke", Covariate::Position),
-    ("worn spot", Covariate::Position),
-    ("one defective layout", Covariate::Condition),
-    ("resonance at one speed", Covariate::Speed),
-];
+    /// How many rigs of it a study makes that makes `seeds` of every kind: more of the first kinds without effect.
+    pub fn rigs(&self, seeds: u64) -> u64 {
+        let often = NULLS.iter().take(OFTEN).any(|kind| kind.0 == self.name);
+        if often { (10 * seeds).div_ceil(4) } else { seeds }
+    }
+}
 
 /// Pairs of effects in the study.
 const PAIRS: [(&str, &str); 4] = [
@@ -60,29 +113,49 @@ const PAIRS: [(&str, &str); 4] = [
     ("coating_stiffening", "run_in"),
 ];
 
+/// Small effects that the paper's protocol cannot tell from another, with their sizes.
+const SMALL: [(&str, &str, f64); 2] =
+    [("rate_dependence", "fixture_compliance", 0.2), ("fixture_compliance", "rate_dependence", 0.05)];
+
 /// All kinds of rig. Effects that a protocol cannot show are left out of it.
 pub fn study_cases() -> Vec<Case> {
+    [Protocol::Paper, Protocol::Randomised].into_iter().flat_map(cases_of).collect()
+}
+
+fn cases_of(protocol: Protocol) -> Vec<Case> {
     let mut cases = Vec::new();
-    for protocol in [Protocol::Paper, Protocol::Randomised] {
-        let mut push = |name: String, truth| cases.push(Case { name, protocol, truth });
-        for name in NULLS {
-            push(name.to_owned(), Truth::Nothing);
+    let mut push = |group, name: String, truth| cases.push(Case { name, protocol, group, truth });
+    for (name, _) in NULLS {
+        push(Group::Nulls, name.to_owned(), Truth::Nothing);
+    }
+    let mut scattered = Vec::new();
+    for effect in CATALOGUE {
+        let id = effect.id();
+        let (group, truth) = match (protocol, effect.description().study.paper) {
+            (Protocol::Paper, PaperProtocol::Hidden) => continue,
+            (Protocol::Paper, PaperProtocol::Confounded) => (Group::Confounded, Truth::Confounded(vec![id])),
+            _ => (Group::Singles, Truth::Effects(vec![id])),
+        };
+        push(group, id.to_owned(), truth.clone());
+        scattered.push((format!("{id} under scatter"), truth));
+    }
+    for (name, truth) in scattered {
+        push(Group::Scattered, name, truth);
+    }
+    for (a, b) in PAIRS {
+        push(Group::Pairs, format!("{a} + {b}"), Truth::Effects(vec![a, b]));
+    }
+    for (name, truth) in masked(protocol) {
+        push(Group::Masks, name, truth);
+    }
+    if protocol == Protocol::Paper {
+        for (id, rival, size) in SMALL {
+            push(Group::Confounded, format!("small {id} of {size}"), Truth::SmallConfounded([id, rival]));
         }
-        for effect in CATALOGUE {
-            let id = effect.id();
-            let truth = match (protocol, effect.description().study.paper) {
-                (Protocol::Paper, PaperProtocol::Hidden) => continue,
-                (Protocol::Paper, PaperProtocol::Confounded) => Truth::Confounded(id),
-                _ => Truth::Effects(vec![id]),
-            };
-            push(id.to_owned(), truth);
-        }
-        for (a, b) in PAIRS {
-            push(format!("{a} + {b}"), Truth::Effects(vec![a, b]));
-        }
-        for (name, covariate) in OUTSIDE {
-            push(name.to_owned(), Truth::Outside(covariate));
-        }
+    }
+    for (name, covariates) in OUTSIDE {
+        let or_named = (name == "two operators").then_some("load_cell_offset");
+        push(Group::Outside, name.to_owned(), Truth::Outside { covariates, or_named });
     }
     cases
 }
@@ -108,41 +181,47 @@ pub fn plan_of(case: &Case, seed: u64) -> Plan {
     plan.noise.uneven = if seed.is_multiple_of(2) { 0.15 } else { 0.0 };
     plan.noise.lost_share = if seed.is_multiple_of(4) { 0.03 } else { 0.0 };
     match &case.truth {
-        Truth::Nothing => null(&case.name, &mut plan),
-        Truth::Effects(ids) => {
+        Truth::Nothing => nulls::make(&case.name, &mut plan.noise, &mut random),
+        Truth::Effects(ids) | Truth::Confounded(ids) => {
+            let drag_n = drag_n(&case.name);
             for id in ids {
-                plan.effects.extend(drawn(id, &mut random));
+                plan.effects.extend(match drag_n {
+                    Some(n) if *id == "guide_drag" => drawn(id, Some((n, n)), &mut random),
+                    Some(_) => drawn(id, sizes(id, case.protocol), &mut random),
+                    None => drawn(id, None, &mut random),
+                });
             }
         }
-        Truth::Confounded(id) => plan.effects.extend(drawn(id, &mut random)),
-        Truth::Outside(_) => {
+        Truth::SmallConfounded([id, _]) => {
+            let size = SMALL.iter().find(|s| s.0 == *id).map(|s| (s.2, s.2));
+            plan.effects.extend(drawn(id, size, &mut random));
+        }
+        Truth::Outside { .. } => {
             let layouts = plan.layouts.clone();
             plan.disturbances.push(outside(&case.name, case.protocol, &layouts, &mut random));
         }
     }
+    if case.group == Group::Scattered {
+        plan.noise.series_scale = random.random_range(0.01..0.02);
+    }
+    plan.shuffled = is_shuffled(case, seed);
     plan
 }
 
-/// Noise of a rig without effect.
-fn null(name: &str, plan: &mut Plan) {
-    if name.contains("outliers") {
-        plan.noise.heavy_tails = true;
-        plan.noise.outlier_share = 0.01;
-        plan.noise.outlier_n = 3.0;
-    } else if name.contains("correlated") {
-        plan.noise.autocorrelation = 0.4;
-        plan.noise.uneven = 0.3;
-    } else if name.contains("mislabelled") {
-        plan.noise.mislabelled_series = 1;
-    }
+/// Whether the series of a randomised rig stand in one random order: where the load before matters, and in half of the
+/// rigs whose friction differs from series to series or that hide an effect.
+fn is_shuffled(case: &Case, seed: u64) -> bool {
+    let half = matches!(case.group, Group::Scattered | Group::Masks) || case.name.contains("series scale");
+    let always = case.name == "memory of the load before";
+    case.protocol == Protocol::Randomised && (always || half && (seed / 2).is_multiple_of(2))
 }
 
-/// An effect with its size, shape and form drawn.
-fn drawn(id: &str, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
+/// An effect with its size, shape and form drawn; the size from the range of the study unless another is given.
+fn drawn(id: &str, sizes: Option<(f64, f64)>, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
     let range = effect_named(id)?.description().study;
     let mut values = Vec::new();
-    if let Some((least, most)) = range.size {
-        let size = (least.ln() + (most / least).ln() * random.random::<f64>()).exp();
+    if let Some((least, most)) = sizes.or(range.size) {
+        let size = (least.ln() + (most / least).ln() * random.random::<f64>()).exp().clamp(least, most);
         values.push(if range.signed && random.random::<bool>() { -size } else { size });
     }
     values.extend(range.shapes.iter().map(|(least, most)| least + (most - least) * random.random::<f64>()));
@@ -150,71 +229,10 @@ fn drawn(id: &str, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
     Some(EffectPlan { id: id.to_owned(), values, form })
 }
 
-/// Something outside the vocabulary.
-fn outside(name: &str, protocol: Protocol, layouts: &[Vec<usize>], random: &mut ChaCha8Rng) -> Disturbance {
-    let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
-    let friction = random.random_range(0.08..0.25);
-    let newtons = random.random_range(0.3..0.8);
-    let of = |kind, target, size| Disturbance { kind, target, size };
-    let phase = random.random_range(0.0..std::f64::consts::TAU);
-    let even = random.random::<bool>();
-    match name {
-        "step of friction in mid-session" => {
-            let over = if even { 0.0 } else { 0.02 };
-            of(
-                Course::Step { at: random.random_range(0.3..0.7), over },
-                DisturbanceTarget::Friction,
-                sign * friction,
-            )
-        }
-        "step of the reading in mid-session" => of(
-            Course::Step { at: random.random_range(0.3..0.7), over: 0.0 },
-            DisturbanceTarget::Reading,
-            sign * newtons,
-        ),
-        "another level for a while" => {
-            let from = random.random_range(0.2..0.6);
-            let to = from + random.random_range(0.1..0.3);
-            of(Course::Window { from, to }, DisturbanceTarget::Reading, sign * newtons)
-        }
-        "wave in time" => {
-            let cycles = random.random_range(3.0..40.0);
-            of(Course::TimeWave { cycles, phase }, DisturbanceTarget::Reading, 0.5 * newtons)
-        }
-        "wave along the stroke" => {
-            let cycles = random.random_range(1.5..4.5);
-            of(
-                Course::StrokeWave { cycles, phase, square: even },
-                DisturbanceTarget::Friction,
-                0.5 * friction,
-            )
-        }
-        "worn spot" => {
-            let (at, width) = (random.random_range(0.25..0.75), random.random_range(0.08..0.2));
-            of(Course::Spot { at, width, flat: even }, DisturbanceTarget::Friction, friction)
-        }
-        "one defective layout" => {
-            // With three layouts, the one with another number of pins is what bending is known by.
-            let pins = layouts[random.random_range(1..layouts.len())].clone();
-            let target = if even { DisturbanceTarget::Friction } else { DisturbanceTarget::Pins };
-            of(Course::Layout { pins }, target, sign * friction * if even { 1.0 } else { 2.0 })
-        }
-        _ => {
-            let (least, most, width_pct) = match protocol {
-                Protocol::Paper => (49.0f64, 55.0, 0.6),
-                Protocol::Randomised => (40.0, 70.0, 3.0),
-            };
-            let mut speed_pct = random.random_range(least..most).round();
-            if protocol == Protocol::Randomised {
-                speed_pct = (speed_pct / 10.0).round().clamp(5.0, 6.0) * 10.0;
-            }
-            of(Course::Resonance { speed_pct, width_pct }, DisturbanceTarget::Friction, friction)
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use pinswitch_calibration::table::PlateauTable;
+
     use super::*;
 
     #[test]
@@ -224,5 +242,62 @@ mod tests {
             let text = toml::to_string(&plan).unwrap();
             assert_eq!(Plan::parse(&text, "plan.toml").unwrap(), plan, "{}", case.name);
         }
+    }
+
+    /// The kinds that the study began with.
+    fn first_kinds() -> impl Iterator<Item = Case> {
+        let first = |case: &Case| match case.group {
+            Group::Nulls => NULLS[..4].iter().any(|k| k.0 == case.name),
+            Group::Outside => OUTSIDE[..8].iter().any(|k| k.0 == case.name),
+            Group::Scattered | Group::Masks => false,
+            Group::Confounded => !case.name.starts_with("small"),
+            Group::Singles | Group::Pairs => true,
+        };
+        study_cases().into_iter().filter(first)
+    }
+
+    /// FNV-1a over the tables of these: figures of the study before and after compare.
+    #[test]
+    fn the_first_kinds_make_the_bytes_they_always_made() {
+        assert_eq!(first_kinds().count(), 72);
+        let mut hash = 0xcbf2_9ce4_8422_2325u64;
+        for case in first_kinds() {
+            let text = PlateauTable::write(&crate::simulate(&plan_of(&case, 3)).rows);
+            hash = text.bytes().fold(hash, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+        }
+        assert_eq!(hash, 0x7cd8_2337_9b64_01d8, "{hash:x}");
+    }
+
+    #[test]
+    fn plans_are_what_the_names_say() {
+        let plan = |name: &str, protocol| {
+            let case = study_cases().into_iter().find(|c| c.name == name && c.protocol == protocol);
+            plan_of(&case.unwrap(), 4)
+        };
+        let mask = plan("guide_drag of 10 N + load_cell_gain", Protocol::Randomised);
+        assert_eq!(mask.effects[0].values, [10.0]);
+        assert!((0.03..0.06).contains(&mask.effects[1].values[0].abs()));
+        assert_eq!(plan("small rate_dependence of 0.2", Protocol::Paper).effects[0].values[0].abs(), 0.2);
+        assert_eq!(plan("no effect, series scale 5 %", Protocol::Paper).noise.series_scale, 0.05);
+        let scattered = plan("run_in under scatter", Protocol::Randomised);
+        assert!((0.01..0.02).contains(&scattered.noise.series_scale) && scattered.effects.len() == 1);
+        assert!(plan("memory of the load before", Protocol::Randomised).shuffled);
+        for case in study_cases() {
+            let plan = plan_of(&case, 4);
+            plan.check(&case.name).unwrap();
+            if let Truth::Outside { covariates, .. } = case.truth {
+                assert_eq!(plan.disturbances[0].covariates(), covariates, "{}", case.name);
+            }
+        }
+    }
+
+    #[test]
+    fn a_word_means_a_group_or_else_names() {
+        let meant = |word: &str| study_cases().iter().filter(|c| c.is_meant_by(word)).count();
+        assert_eq!(meant("nulls"), 2 * NULLS.len());
+        assert_eq!(meant("masks"), 21);
+        assert_eq!(meant("worn spot"), 2);
+        assert!(meant("singles") > 30 && meant("scattered") >= meant("singles"));
+        assert_eq!(meant("nothing like it"), 0);
     }
 }

@@ -6,9 +6,11 @@ use pinswitch_calibration::inference::{
     FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, Weighed, degrees_of_freedom, family_p_value,
     interval_half_widths, select,
 };
-use pinswitch_calibration::table::{Frame, PlateauTable};
+use pinswitch_calibration::table::{Frame, PlateauRow, PlateauTable};
 
-use super::cases::{Case, Truth, plan_of};
+use super::cases::{Case, plan_of};
+use super::said::Said;
+use crate::next_session::next_session;
 use crate::plan::Plan;
 use crate::simulate::simulate;
 
@@ -21,10 +23,16 @@ pub struct CaseOutcome {
     pub named: Vec<String>,
     /// Root mean square errors on fresh rows, baseline and augmented, in newtons.
     pub fresh_n: [f64; 2],
+    /// Root mean square errors on the readings of the next session of the same rig, baseline and augmented, in newtons.
+    pub next_n: [f64; 2],
+    /// Error promised for a new session over that on the next one; none unless one was promised.
+    pub promise_ratio: Option<f64>,
     /// Whether the answer is the right one: the truth alone, or both rivals where the protocol confounds them.
     pub exact: bool,
     /// Whether every true effect is named or among the rivals, and nothing else stands alone.
     pub honest: bool,
+    /// What it said beside the truth.
+    pub extras: Vec<String>,
     /// For each size of a true effect in the form of `model/doc/effect-catalogue.md`: whether its 95 % interval holds
     /// it.
     pub covered: Vec<bool>,
@@ -46,45 +54,47 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<CaseOutcome> {
     let frame = Frame::new(&rows);
     let mut data = Observations::new(&frame, &rows)?;
     let found = select(&Model::baseline(frame.clone()), &mut data, levels);
-    let points = frame.points(&simulated.fresh)?;
-    let error = |model: &Model| {
-        let predicted = model.predict(&points);
-        let sum: f64 = predicted.iter().zip(&simulated.fresh).map(|(p, r)| (p - r.force_n).powi(2)).sum();
-        (sum / predicted.len().max(1) as f64).sqrt()
-    };
+    let (baseline, augmented) = (&found.baseline.model, &found.augmented.model);
+    let next = next_session(&plan).rows;
+    let next_n = [error_n(baseline, &frame, &next)?, error_n(augmented, &frame, &next)?];
+    let fresh = &simulated.fresh;
     let sets: Vec<Vec<&str>> = found.effects.iter().map(FoundEffect::ids).collect();
     let verdict = Verdict::of(&found);
     let mut named: Vec<String> = sets.iter().map(|s| s.join("|")).collect();
     named.extend(found.structure.map(|s| format!("{UNATTRIBUTED}:{}", s.covariate.as_str())));
     named.sort();
-    let holds = |truth: &[&str]| {
-        found.structure.is_none()
-            && sets.iter().all(|s| truth.iter().any(|t| s.contains(t)))
-            && truth.iter().all(|t| sets.iter().any(|s| s.contains(t)))
-    };
-    let (exact, honest) = match &case.truth {
-        Truth::Nothing => (named.is_empty(), named.is_empty()),
-        Truth::Effects(ids) => (holds(ids) && verdict == Verdict::Attributed, holds(ids)),
-        Truth::Confounded(id) => (holds(&[id]) && verdict == Verdict::Ambiguous, holds(&[id])),
-        Truth::Outside(covariate) => {
-            let right = found.structure.is_some_and(|s| s.covariate == *covariate);
-            (right && sets.is_empty(), right)
-        }
-    };
+    let said = Said { sets: &sets, place: found.structure.map(|s| s.covariate), verdict };
+    let (exact, honest) = said.judged(case, &plan);
     let largest_gain = found.candidates.first().map_or(0.0, |c| c.gain);
     let degrees = degrees_of_freedom(&data, found.baseline.model.values().len());
     Some(CaseOutcome {
         verdict,
         named,
-        fresh_n: [error(&found.baseline.model), error(&found.augmented.model)],
+        fresh_n: [error_n(baseline, &frame, fresh)?, error_n(augmented, &frame, fresh)?],
+        next_n,
+        // The one place where a promise is wired: `Some(promise_n)` once a calibration makes one.
+        promise_ratio: promise_ratio(None, next_n[1]),
         exact,
         honest,
+        extras: said.extras(case),
         covered: covered(&plan, &found, &data),
         largest_gain,
         p_value: family_p_value(largest_gain, CATALOGUE.len(), degrees),
         structure_gain: found.structure_gain,
         excluded: data.excluded_series(),
     })
+}
+
+/// Root mean square of prediction minus reading, in newtons.
+fn error_n(model: &Model, frame: &Frame, rows: &[PlateauRow]) -> Option<f64> {
+    let predicted = model.predict(&frame.points(rows)?);
+    let sum: f64 = predicted.iter().zip(rows).map(|(p, r)| (p - r.force_n).powi(2)).sum();
+    Some((sum / predicted.len().max(1) as f64).sqrt())
+}
+
+/// A promised error over that on the next session.
+fn promise_ratio(promise_n: Option<f64>, next_n: f64) -> Option<f64> {
+    promise_n.map(|promise_n| promise_n / next_n.max(1e-9))
 }
 
 /// Whether the interval of each true size holds it. Other forms than the fitter's have other sizes.

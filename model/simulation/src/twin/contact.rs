@@ -108,7 +108,7 @@ impl TwinContact {
     fn exponents(&self, plan: &Plan, at: &Moment, load_n: f64, tension_n: f64) -> Exponents {
         let share = load_n / F0_N;
         let mean_share = 0.5 * (load_n + tension_n) / F0_N;
-        let (mut pins, mut silicone, mut both, mut ploughing) = (1.0, 1.0, 1.0, 0.0);
+        let (mut pins, mut silicone, mut both, mut ploughing) = (1.0, 1.0, at.seating, 0.0);
         for e in &plan.effects {
             let k = e.values.first().copied().unwrap_or(0.0);
             let shape = e.values.get(1).copied().unwrap_or(0.0);
@@ -149,7 +149,7 @@ impl TwinContact {
             }
         }
         for d in &plan.disturbances {
-            let (p, s) = d.on_friction(at.clock, at.place, at.speed_pct, &self.pins);
+            let (p, s) = d.on_friction(at, &self.pins);
             pins *= p;
             silicone *= s;
             ploughing *= p;

@@ -17,40 +17,53 @@ use pinswitch_friction::published;
 
 use crate::effect_forms::has_own_formula;
 use crate::plan::Plan;
+use crate::series_marks::SeriesMarks;
 
 /// Reference load in newtons (`model/doc/effect-catalogue.md`).
 const F0_N: f64 = 50.0;
 
 /// What an effect may depend on in one row, beside the load and the contact.
-#[derive(Clone, Copy, Debug)]
-struct Moment {
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Moment {
     /// -1 eccentric, +1 concentric.
-    sign: f64,
-    down: bool,
-    speed_pct: f64,
+    pub(crate) sign: f64,
+    /// Whether loads descend.
+    pub(crate) down: bool,
+    /// Speed in percent.
+    pub(crate) speed_pct: f64,
     /// Geometric mean of the session's speeds in percent.
-    mean_speed_pct: f64,
-    dwell_s: f64,
+    pub(crate) mean_speed_pct: f64,
+    /// Pause before the reading in seconds.
+    pub(crate) dwell_s: f64,
     /// Repetition inside series and direction, from 1.
-    repetition: f64,
+    pub(crate) repetition: f64,
     /// Repetition inside the series, both directions counted, from 1.
-    through: f64,
+    pub(crate) through: f64,
     /// Share of the stroke, 0..1.
-    place: f64,
+    pub(crate) place: f64,
     /// Share of the session's time, 0..1.
-    clock: f64,
+    pub(crate) clock: f64,
     /// Share of the session's repetitions made before, 0..1.
-    travel: f64,
+    pub(crate) travel: f64,
+    /// The step down from the load of the series before, as a share of the session's highest load.
+    pub(crate) step_down: f64,
+    /// Who measures: 1 or 2.
+    pub(crate) operator: u32,
+    /// Factor on all friction that this seating of the tendon has.
+    pub(crate) seating: f64,
 }
 
 /// Readings in newtons without noise, one per row of a whole session in the order of time.
-pub(super) fn readings(plan: &Plan, session: &[PlateauRow]) -> Vec<f64> {
+pub(super) fn readings(plan: &Plan, session: &[PlateauRow], marks: &SeriesMarks) -> Vec<f64> {
     let end_s = session.iter().map(|r| r.time_s).fold(1e-9, f64::max);
     let mean_speed_pct =
         (session.iter().map(|r| r.speed_pct.ln()).sum::<f64>() / session.len().max(1) as f64).exp();
     let mut contacts = BTreeMap::new();
     let mut devices = 0;
     let mut in_series = BTreeMap::new();
+    let most_n = session.iter().map(|r| r.load_n).fold(1e-9, f64::max);
+    // Load of this series and of the one before.
+    let (mut name, mut load_n, mut before_n) = ("", 0.0, 0.0);
     let mut out = Vec::with_capacity(session.len());
     for (made, row) in session.iter().enumerate() {
         let contact = contacts.entry((row.substrate, row.pins.clone())).or_insert_with(|| {
@@ -60,6 +73,10 @@ pub(super) fn readings(plan: &Plan, session: &[PlateauRow]) -> Vec<f64> {
         });
         let through: &mut f64 = in_series.entry(row.series.clone()).or_insert(0.0);
         *through += 1.0;
+        if name != row.series {
+            (name, before_n, load_n) = (&row.series, load_n, row.load_n);
+        }
+        let mark = marks.of(&row.series);
         let moment = Moment {
             sign: row.direction.sign(),
             down: row.sweep == pinswitch_calibration::table::Sweep::Down,
@@ -71,6 +88,9 @@ pub(super) fn readings(plan: &Plan, session: &[PlateauRow]) -> Vec<f64> {
             place: row.position_mm / published::STROKE_MM,
             clock: row.time_s / end_s,
             travel: made as f64 / session.len() as f64,
+            step_down: (before_n - load_n) / most_n,
+            operator: mark.operator,
+            seating: mark.friction_factor,
         };
         out.push(reading(plan, contact, &moment, row));
     }
@@ -132,7 +152,7 @@ fn reading(plan: &Plan, contact: &TwinContact, at: &Moment, row: &PlateauRow) ->
         force_n += k[0] * at.clock;
     }
     for d in &plan.disturbances {
-        force_n += d.on_reading_n(at.clock, at.place, row);
+        force_n += d.on_reading_n(at, &row.pins);
     }
     if let Some((k, form)) = has("load_cell_saturation") {
         force_n = if form == 1 {
@@ -153,6 +173,7 @@ fn settling(u: f64, t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
     use crate::effect_forms::FORMS;
     use crate::plan::EffectPlan;
     use pinswitch_calibration::effects::CATALOGUE;
@@ -171,8 +192,11 @@ mod tests {
             let frame = Frame::new(&rows);
             let model = Model::baseline(frame.clone()).with_term(Term::Named(*effect), &values);
             let fitters = model.predict(&frame.points(&rows).unwrap());
-            let worst =
-                readings(&plan, &rows).iter().zip(&fitters).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let worst = readings(&plan, &rows, &SeriesMarks::default())
+                .iter()
+                .zip(&fitters)
+                .map(|(a, b)| (a - b).abs())
+                .fold(0.0, f64::max);
             // The fitter reads the share of travel off 400 points.
             // The fitter substitutes the local tension three times, the twin until it settles.
             let bound = if ["wear_drift", "switch_local_tension"].contains(&id) { 1e-2 } else { 1e-3 };
@@ -192,7 +216,7 @@ mod tests {
                     plan.effects.push(EffectPlan { id: id.to_owned(), values, form });
                 }
                 let mut random = rand::SeedableRng::seed_from_u64(3);
-                readings(&plan, &crate::protocol::rows(&plan, &mut random))
+                readings(&plan, &crate::protocol::rows(&plan, &mut random), &SeriesMarks::default())
             };
             let distance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).abs()).sum::<f64>();
             let (none, first) = (with(None), with(Some(0)));
@@ -201,6 +225,35 @@ mod tests {
                 let change = distance(&other, &first) / distance(&first, &none);
                 assert!(change > 1e-3 && change < 1.5, "{id} form {form}: {change}");
             }
+        }
+    }
+
+    /// Through a whole session: each series on silicone remembers the load before it, pins alone remember nothing.
+    #[test]
+    fn a_series_remembers_the_load_before_it() {
+        let mut plan = Plan::default();
+        let mut random = rand::SeedableRng::seed_from_u64(3);
+        let rows = crate::protocol::rows(&plan, &mut random);
+        let without = readings(&plan, &rows, &SeriesMarks::default());
+        let kind = Course::Memory { repetitions: 20.0 };
+        plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Silicone, size: 0.5 });
+        let with = readings(&plan, &rows, &SeriesMarks::default());
+        let exponent = |force_n: f64, row: &PlateauRow| (force_n / row.load_n).ln();
+        let most_n = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
+        let (mut before_n, mut series, mut through) = (0.0, &rows[0], 0);
+        for ((row, a), b) in rows.iter().zip(&without).zip(&with) {
+            if row.series != series.series {
+                (before_n, series, through) = (series.load_n, row, 0);
+            }
+            if row.substrate == Some(pinswitch_friction::Substrate::Abs) {
+                assert_eq!(a, b);
+            } else if row.pins.is_empty() {
+                let kept = (-f64::from(through) / 20.0).exp();
+                let expected = 1.0 + 0.5 * (before_n - row.load_n) / most_n * kept;
+                let found = exponent(*b, row) / exponent(*a, row);
+                assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+            }
+            through += 1;
         }
     }
 }

@@ -10,8 +10,10 @@ use crate::inference::{Noise, Selection};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// The paper's model explains the data down to its noise.
+    /// The paper's model explains the data down to its noise, and no visible effect of consequence is left possible.
     None,
+    /// Nothing is believed, and a visible effect of consequence is not excluded.
+    Inconclusive,
     /// Every effect found is named and has no rival.
     Attributed,
     /// At least one effect has rivals that this data cannot tell apart.
@@ -26,7 +28,8 @@ impl Verdict {
         if selection.structure.is_some() {
             Verdict::Unattributed
         } else if selection.effects.is_empty() {
-            Verdict::None
+            let hidden = selection.limits.iter().any(|limit| !limit.is_excluded());
+            if hidden { Verdict::Inconclusive } else { Verdict::None }
         } else if selection.effects.iter().any(|e| !e.rivals.is_empty()) {
             Verdict::Ambiguous
         } else {

@@ -8,7 +8,8 @@ use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
 use super::weighed::Weighed;
-use super::significance::degrees_of_freedom;
+use super::significance::gain_at;
+use super::variance_components::Reliability;
 use crate::table::Point;
 
 /// A model fitted to data.
@@ -128,12 +129,24 @@ pub fn coordinate_covariance(fitted: &Fit, weighed: &Weighed<'_>) -> DMatrix<f64
     a.clone().cholesky().map_or_else(|| DMatrix::zeros(a.nrows(), a.ncols()), |c| c.inverse() * scale)
 }
 
-/// Half widths of 95 % intervals of all constants, in the constants' own units: Student's t with the number of series.
+/// Half widths of 95 % intervals of all constants, in the constants' own units: Student's t with the degrees of freedom
+/// that stand behind each of them, since the noise is estimated too (Satterthwaite's approximation).
 pub fn interval_half_widths(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<f64> {
     let covariance = coordinate_covariance(fitted, weighed);
-    let quantile = super::significance::gain_at(0.05, 1, degrees_of_freedom(weighed.data, covariance.nrows())).sqrt();
+    let predicted: Vec<f64> =
+        weighed.data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
+    let columns = jacobian(&fitted.model, weighed.data, &predicted);
+    let quantiles: Vec<f64> = (0..columns.len())
+        .map(|i| {
+            let others: Vec<Vec<f64>> =
+                columns.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, c)| c.clone()).collect();
+            let reliability = Reliability::new(weighed.data, weighed.noise, &others);
+            let information = 1.0 / covariance[(i, i)].max(1e-300);
+            gain_at(0.05, 1, reliability.degrees(weighed.data, &columns[i], information)).sqrt()
+        })
+        .collect();
     (0..covariance.nrows())
-        .map(|i| quantile * covariance[(i, i)].max(0.0).sqrt() * fitted.model.value(i).1.abs())
+        .map(|i| quantiles[i] * covariance[(i, i)].max(0.0).sqrt() * fitted.model.value(i).1.abs())
         .collect()
 }
 

@@ -10,6 +10,7 @@ mod form_tolerance;
 mod forward;
 mod isolation;
 mod levels;
+mod limits;
 mod noise;
 mod observations;
 mod projection;
@@ -27,6 +28,7 @@ pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_
 pub use forward::{Model, Term, UNATTRIBUTED};
 pub(crate) use isolation::cell_deviation;
 pub use levels::Levels;
+pub use limits::{ALIKE, CONSEQUENCE, SizeLimit};
 pub use noise::{Noise, Spread};
 pub use observations::Observations;
 pub use selection::{CandidateEffect, FoundEffect, Rival, Selection, select};

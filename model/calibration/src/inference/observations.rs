@@ -31,7 +31,7 @@ pub struct Observations {
     pub series_rows: Vec<Vec<usize>>,
     /// Rows of each mount: of each condition where the table does not say.
     pub mounts: Vec<Vec<usize>>,
-    /// Rows of each stretch of neighbouring series, in the order of time.
+    /// Rows of each stretch of neighbouring series and direction, in the order of time.
     pub stretches: Vec<Vec<usize>>,
     /// Rows of each operator; empty with fewer than two.
     pub operators: Vec<Vec<usize>>,
@@ -142,6 +142,14 @@ impl Observations {
             new_index[*old] = new;
         }
         let points: Vec<Point> = kept.iter().map(|i| self.points[*i]).collect();
+        let (mut new_series, mut series) = (vec![usize::MAX; self.series], 0);
+        for row in &kept {
+            let new = &mut new_series[self.series_of[*row]];
+            if *new == usize::MAX {
+                *new = series;
+                series += 1;
+            }
+        }
         let among = |groups: &[Vec<usize>]| -> Vec<Vec<usize>> {
             groups
                 .iter()
@@ -154,8 +162,8 @@ impl Observations {
             cell_load_n: loads(&cells, &points),
             points,
             force_n: kept.iter().map(|i| self.force_n[*i]).collect(),
-            series_of: kept.iter().map(|i| self.series_of[*i]).collect(),
-            series: self.series,
+            series_of: kept.iter().map(|i| new_series[self.series_of[*i]]).collect(),
+            series,
             cells,
             weights: kept.iter().map(|i| self.weights[*i]).collect(),
             roots: kept.iter().map(|i| self.roots[*i]).collect(),
@@ -166,7 +174,12 @@ impl Observations {
             operators: among(&self.operators),
             sessions: among(&self.sessions),
             specimens: among(&self.specimens),
-            excluded: self.excluded.clone(),
+            excluded: self
+                .excluded
+                .iter()
+                .map(|s| new_series[*s])
+                .filter(|s| *s != usize::MAX)
+                .collect(),
         }
     }
 
@@ -276,12 +289,19 @@ impl Observations {
 /// Series in a stretch: offsets that hang together from one series to the next are known by such stretches.
 const STRETCH: usize = 4;
 
-/// Rows of neighbouring series, in the order in which the series begin.
+/// Rows of neighbouring series in one direction, in the order in which the series begin.
 fn stretches(series_rows: &[Vec<usize>], points: &[Point]) -> Vec<Vec<usize>> {
     let begin = |rows: &[usize]| rows.iter().map(|r| points[*r].time).fold(f64::INFINITY, f64::min);
     let mut order: Vec<&Vec<usize>> = series_rows.iter().collect();
     order.sort_by(|a, b| begin(a).total_cmp(&begin(b)));
-    order.chunks(STRETCH).map(|series| series.iter().copied().flatten().copied().collect()).collect()
+    let of = |series: &[&Vec<usize>], sign: f64| -> Vec<usize> {
+        series.iter().copied().flatten().copied().filter(|r| points[*r].sign == sign).collect()
+    };
+    order
+        .chunks(STRETCH)
+        .flat_map(|series| [of(series, -1.0), of(series, 1.0)])
+        .filter(|rows| !rows.is_empty())
+        .collect()
 }
 
 /// Rows of each group.

@@ -36,6 +36,10 @@ pub(crate) struct EffectScore {
     pub(crate) effect: &'static dyn Effect,
     /// Constants to start its fit from.
     pub(crate) start: Vec<f64>,
+    /// The first constant at which the trace was taken.
+    pub(crate) size: f64,
+    /// Share of that size which the residual asks for.
+    pub(crate) share: f64,
     /// Gain in whitened squares to first order.
     pub(crate) gain: f64,
     /// Share of the sensitivity's length that the model's own constants cannot take over.
@@ -155,13 +159,15 @@ impl<'a> Screen<'a> {
                 for (row, series) in self.data().series_of.iter().enumerate() {
                     by_series[*series] += scale * column[row] * self.residual[row];
                 }
-                let mut start = start;
+                let (mut start, size) = (start.clone(), start.first().copied().unwrap_or(1.0));
                 if scales && length2 > 1e-9 {
                     start[0] *= along / length2;
                 }
                 best = Some(EffectScore {
                     effect,
                     start,
+                    size,
+                    share: if length2 > 1e-9 { along / length2 } else { 0.0 },
                     gain,
                     visible_share,
                     strength: length2.sqrt(),

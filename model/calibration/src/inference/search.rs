@@ -1,12 +1,13 @@
 //! The search among named effects: forward, backward and exchange steps.
 
-use super::fit::{Fit, fit};
+use super::fit::{Fit, fit, jacobian};
 use super::forward::Term;
 use super::levels::Levels;
 use super::weighed::Weighed;
 use super::screening::{EffectScore, Screen};
 use super::sign_flips::family_probability;
-use super::significance::{degrees_of_freedom, gain_at};
+use super::significance::{degrees_of_freedom, family_p_value, gain_at};
+use super::variance_components::Reliability;
 use crate::effects::{CATALOGUE, Effect};
 
 /// How many candidates of a scan are fitted in full.
@@ -21,6 +22,12 @@ pub(super) fn possible(effect: &dyn Effect, fitted: &Fit) -> bool {
     !effect.description().one_sided || size.is_some_and(|s| s > 0.0)
 }
 
+/// A model with one effect more.
+struct Extension {
+    score: EffectScore,
+    fitted: Fit,
+}
+
 /// Full fits of the most promising absent effects, best cost first.
 fn extensions(
     from: &Fit,
@@ -28,7 +35,7 @@ fn extensions(
     least: f64,
     beyond_form: f64,
     most: usize,
-) -> Vec<(&'static dyn Effect, Fit)> {
+) -> Vec<Extension> {
     let mut scores = Screen::new(from, weighed).effects();
     if !from.model.named_effects().is_empty() {
         // What the names so far would explain by bending their own forms is not worth another name.
@@ -42,11 +49,31 @@ fn extensions(
     scores.truncate(most);
     let mut fits: Vec<_> = scores
         .into_iter()
-        .map(|s| (s.effect, fit(&from.model.with_term(Term::Named(s.effect), &s.start), weighed)))
-        .filter(|(effect, fitted)| possible(*effect, fitted))
+        .map(|score| {
+            let fitted = fit(&from.model.with_term(Term::Named(score.effect), &score.start), weighed);
+            Extension { score, fitted }
+        })
+        .filter(|e| possible(e.score.effect, &e.fitted))
         .collect();
-    fits.sort_by(|a: &(_, Fit), b| a.1.cost.total_cmp(&b.1.cost));
+    fits.sort_by(|a: &Extension, b| a.fitted.cost.total_cmp(&b.fitted.cost));
     fits
+}
+
+/// Whether a gain is more than chance makes of the vocabulary, given how well the noise is known where the effect's trace
+/// lies: a layout is known by few mounts, a repetition by thousands.
+fn is_beyond_chance(
+    score: &EffectScore,
+    gain: f64,
+    from: &Fit,
+    weighed: &Weighed<'_>,
+    levels: Levels,
+) -> bool {
+    let data = weighed.data;
+    let predicted: Vec<f64> = data.force_n.iter().zip(&from.residual_n).map(|(y, r)| y - r).collect();
+    let own = jacobian(&from.model, data, &predicted);
+    let degrees =
+        Reliability::new(data, weighed.noise, &own).degrees(data, &score.trace_n, score.strength.powi(2));
+    family_p_value(gain, CATALOGUE.len(), degrees) <= levels.first_p
 }
 
 /// Adds named effects while each gains enough, then drops and exchanges.
@@ -70,17 +97,17 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
         };
         // To first order alone: an effect that is not linear may gain more once fitted.
         let screened = if current.model.named_effects().is_empty() { 0.3 } else { 0.8 } * least;
-        let Some((_, best)) =
-            extensions(&current, weighed, screened, levels.beyond_form * gained, FITTED)
-                .into_iter()
-                .next()
+        let Some(best) = extensions(&current, weighed, screened, levels.beyond_form * gained, FITTED)
+            .into_iter()
+            .next()
         else {
             break;
         };
-        if current.cost - best.cost < least {
+        let gain = current.cost - best.fitted.cost;
+        if gain < least || !is_beyond_chance(&best.score, gain, &current, weighed, levels) {
             break;
         }
-        current = best;
+        current = best.fitted;
         current = exchange(current, weighed, levels.beyond_form * gained);
         current = prune(current, weighed, levels.further.max(levels.further_share * gained), 1);
     }
@@ -139,9 +166,9 @@ fn exchange(mut current: Fit, weighed: &Weighed<'_>, beyond_form: f64) -> Fit {
             if matches!(current.model.terms[i], Term::Named(_)) {
                 let without = fit(&current.model.without_term(i), weighed);
                 let id = current.model.terms[i].id();
-                for (effect, other) in extensions(&without, weighed, 8.0, beyond_form, 4) {
-                    if effect.id() != id && other.cost < current.cost - 1.0 {
-                        better = Some(other);
+                for other in extensions(&without, weighed, 8.0, beyond_form, 4) {
+                    if other.score.effect.id() != id && other.fitted.cost < current.cost - 1.0 {
+                        better = Some(other.fitted);
                         break;
                     }
                 }

@@ -6,13 +6,14 @@ use super::fit::{Fit, fit, jacobian};
 use super::forward::{Model, Term};
 use super::isolation::isolated_series;
 use super::levels::Levels;
+use super::limits::{SizeLimit, classes, limits};
 use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
 use super::screening::{EffectScore, Screen};
 use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
-use super::unnamed::{Context, FoundStructure};
-use super::variance_components::{Scatter, estimate, scatter_size};
+use super::unnamed::{Context, FoundStructure, with_structure};
+use super::variance_components::{Reliability, Scatter, estimate, scatter_size, shared_again};
 use super::weighed::Weighed;
 use crate::effects::{CATALOGUE, Effect, acting_order};
 
@@ -93,6 +94,10 @@ pub struct Selection {
     pub structure: Option<FoundStructure>,
     /// Every effect of the catalogue, the one with the largest gain first.
     pub candidates: Vec<CandidateEffect>,
+    /// Sizes that the data do not exclude, of visible effects that were not found.
+    pub limits: Vec<SizeLimit>,
+    /// Visible effects that this design cannot tell apart.
+    pub classes: Vec<Vec<&'static str>>,
     /// Probability, by flipped signs of whole series, of the largest candidate without any effect.
     pub family_probability: f64,
     /// Gain of the best structure without a name on top of what was found, in whitened squares.
@@ -113,6 +118,8 @@ impl Selection {
     }
 }
 
+/// Gain, in whitened squares, below which a shape is not worth a look.
+const MIN_SHAPE_GAIN: f64 = 9.0;
 /// Series that may be excluded; more than these are no accidents.
 const MAX_EXCLUDED: usize = 3;
 
@@ -178,6 +185,13 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
         baseline = fit(&baseline.model, &weighed);
         found = search(&baseline, &weighed, levels);
     }
+    // A shape that some series follow looks like scatter of the series as long as it is not in the model.
+    if let Some(sharper) = sharper_noise(&found, data, noise) {
+        noise = sharper;
+        weighed = Weighed::new(data, noise);
+        baseline = fit(&baseline.model, &weighed);
+        found = fit(&found.model, &weighed);
+    }
     let explained = bendable_gain(&baseline, &found, &weighed);
     let open = Screen::new(&found, &weighed);
     let guarded = Screen::guarded(&found, &weighed);
@@ -200,7 +214,45 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
         let bent = guarded.bent_gain();
         Context { weighed: &weighed, levels, explained }.with_unnamed(&baseline, found.clone(), &left, bent)
     };
+    if std::env::var("LAB").is_ok() {
+        eprintln!("  explain: {:?} {:?} best structure {:.1} {:?} | noise scale {:.4} mount {:.4} stretch {:.3} cell {:.3}+{:.4} com {:.3} isolated {:?} baseline cost {:.0}", augmented.model.named_effects().iter().map(|e| e.id()).collect::<Vec<_>>(), structure, structure_gain, left.first().map(|s| &s.group[0]), noise.series_scale, noise.mount_scale, noise.stretch_offset_n, noise.series.constant_n, noise.series.per_load, noise.series_common.constant_n, isolated, baseline.cost);
+    }
     Explanation { baseline, augmented, structure, structure_gain, structures_tried, noise, isolated }
+}
+
+/// Evidence that a shape must gain beside the choice among all shapes before it changes the noise.
+const MIN_EVIDENCE: f64 = 6.0;
+
+/// The noise beside the best shape of each covariate, if one of them makes the table more probable than the noise does
+/// without it.
+fn sharper_noise(found: &Fit, data: &Observations, noise: Noise) -> Option<Noise> {
+    let weighed = Weighed::new(data, noise);
+    let screen = Screen::new(found, &weighed);
+    let shapes = screen.structures();
+    let choice = 2.0 * (shapes.len().max(1) as f64).ln() + MIN_EVIDENCE;
+    let mut best = (evidence(found, &weighed) - choice, None);
+    let mut covariates = Vec::new();
+    let columns = explainable(found, data);
+    for score in shapes.iter().filter(|s| s.gain > MIN_SHAPE_GAIN) {
+        let covariate = score.group[0].covariate;
+        if covariates.contains(&covariate) {
+            continue;
+        }
+        covariates.push(covariate);
+        let with = with_structure(found, score, &weighed);
+        let own = &with.model.terms[found.model.terms.len()..];
+        let mut columns = columns.clone();
+        let predicted: Vec<f64> = data.force_n.iter().zip(&with.residual_n).map(|(y, r)| y - r).collect();
+        let all = jacobian(&with.model, data, &predicted);
+        columns.extend(all.into_iter().rev().take(own.len()));
+        let sharper = shared_again(data, &with.residual_n, &columns, noise);
+        let weighed = Weighed::new(data, sharper);
+        let toll = evidence(&fit(&with.model, &weighed), &weighed);
+        if toll < best.0 {
+            best = (toll, Some(sharper));
+        }
+    }
+    best.1
 }
 
 /// Whether scatter from mount to mount, or offsets that wander from series to series, explain a table as well as what
@@ -234,6 +286,7 @@ fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Ex
         let noise = Scatter::ALL.iter().fold(best.noise, |n, other| other.in_noise(n, 0.0));
         let other = explain(&best.baseline.model, data, scatter.in_noise(noise, size), levels);
         let other = with_scatter(other);
+        if std::env::var("LAB").is_ok() { eprintln!("  best {:.1} vs {:?} {:.1}", best.toll(data), scatter, other.toll(data)); }
         if other.toll(data) < best.toll(data) {
             best = other;
         }
@@ -245,13 +298,21 @@ fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Ex
 fn finish(chosen: Explanation, data: &Observations, levels: Levels) -> Selection {
     let weighed = Weighed::new(data, chosen.noise);
     let scores = Screen::new(&chosen.baseline, &weighed).effects();
+    let predicted: Vec<f64> =
+        data.force_n.iter().zip(&chosen.augmented.residual_n).map(|(y, r)| y - r).collect();
+    let own = jacobian(&chosen.augmented.model, data, &predicted);
+    let reliability = Reliability::new(data, chosen.noise, &own);
+    let candidates = candidates(&scores, &chosen.augmented, &weighed);
+    let visible = |id: &str| candidates.iter().any(|c| c.effect.id() == id && !c.is_invisible());
     Selection {
+        limits: limits(&chosen.augmented, &weighed, &reliability, |effect| visible(effect.id())),
+        classes: classes(&scores, |score| visible(score.effect.id())),
         effects: found_effects(&chosen.augmented, &weighed, levels),
         structure: chosen.structure,
         family_probability: flips(&scores),
         structure_gain: chosen.structure_gain,
         structures_tried: chosen.structures_tried,
-        candidates: candidates(scores, &chosen.augmented, &weighed),
+        candidates,
         baseline: chosen.baseline,
         augmented: chosen.augmented,
         noise: chosen.noise,
@@ -305,13 +366,13 @@ fn rivals(
 
 /// Every effect of the catalogue, by its score over the baseline.
 fn candidates(
-    scores: Vec<EffectScore>,
+    scores: &[EffectScore],
     augmented: &Fit,
     weighed: &Weighed<'_>,
 ) -> Vec<CandidateEffect> {
     let left = Screen::new(augmented, weighed).effects();
     let mut candidates: Vec<_> = scores
-        .into_iter()
+        .iter()
         .map(|score| CandidateEffect {
             effect: score.effect,
             gain: score.gain,

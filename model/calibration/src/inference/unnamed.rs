@@ -9,6 +9,9 @@ use super::search::{prune, search};
 use super::significance::{degrees_of_freedom, gain_at};
 use crate::effects::Covariate;
 
+/// Share of a name's gain that shapes in its place may miss and still replace it.
+const REPLACED_SHARE: f64 = 0.15;
+
 /// Structure that no name explains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoundStructure {
@@ -56,7 +59,8 @@ impl Context<'_> {
             Some((with, structure)) => {
                 let corrected = self.smooth(with);
                 let least = levels.further.max(0.01 * (baseline.cost - corrected.cost));
-                (prune(corrected, weighed, least, 0), Some(structure))
+                let pruned = prune(corrected, weighed, least, 0);
+                (self.without_names_that_shapes_replace(pruned), Some(structure))
             }
             None => (found, None),
         }
@@ -67,7 +71,7 @@ impl Context<'_> {
         if score.gain <= least {
             return None;
         }
-        let with = self.with_structure(found, score);
+        let with = with_structure(found, score, self.weighed);
         let gain = found.cost - with.cost;
         (gain > least).then(|| {
             let pruned = prune(with, self.weighed, self.levels.further, 0);
@@ -86,7 +90,7 @@ impl Context<'_> {
     ) -> Option<(Fit, FoundStructure)> {
         let &Context { weighed, levels, .. } = self;
         let penalty = |f: &Fit| f.cost + levels.further * f.model.named_effects().len() as f64;
-        let with = self.with_structure(baseline, score);
+        let with = with_structure(baseline, score, self.weighed);
         // One shape against several names: each name beyond the first must have paid for itself.
         let names = found.model.named_effects().len() as f64;
         // The names may bend their forms before the shape is said to fit better than they do.
@@ -104,14 +108,24 @@ impl Context<'_> {
         }
     }
 
-    /// Adds a structure's shapes to a model and fits.
-    fn with_structure(&self, from: &Fit, score: &StructureScore) -> Fit {
-        let model = score
-            .group
-            .iter()
-            .zip(&score.sizes)
-            .fold(from.model.clone(), |m, (s, k)| m.with_term(Term::Structure(s.clone()), &[*k]));
-        fit(&model, self.weighed)
+    /// Beside something that has no name, a name is believed only if more shapes cannot stand in its place: it may be
+    /// another part of the same.
+    fn without_names_that_shapes_replace(&self, mut current: Fit) -> Fit {
+        let mut index = 0;
+        while index < current.model.terms.len() {
+            if matches!(current.model.terms[index], Term::Named(_)) {
+                let without = fit(&current.model.without_term(index), self.weighed);
+                let gain = without.cost - current.cost;
+                let bare = self.smooth(without);
+                if bare.cost - current.cost < self.levels.further.max(REPLACED_SHARE * gain) {
+                    current = bare;
+                    index = 0;
+                    continue;
+                }
+            }
+            index += 1;
+        }
+        current
     }
 
     /// Refines the data-driven correction: more shapes while each gains clearly.
@@ -119,7 +133,7 @@ impl Context<'_> {
         for _ in 0..4 {
             let scores = Screen::new(&current, self.weighed).structures();
             let Some(score) = scores.first().filter(|s| s.gain > 30.0) else { break };
-            let with = self.with_structure(&current, score);
+            let with = with_structure(&current, score, self.weighed);
             if current.cost - with.cost < 25.0 {
                 break;
             }
@@ -127,6 +141,16 @@ impl Context<'_> {
         }
         current
     }
+}
+
+/// Adds a structure's shapes to a model and fits.
+pub(super) fn with_structure(from: &Fit, score: &StructureScore, weighed: &Weighed<'_>) -> Fit {
+    let model = score
+        .group
+        .iter()
+        .zip(&score.sizes)
+        .fold(from.model.clone(), |m, (s, k)| m.with_term(Term::Structure(s.clone()), &[*k]));
+    fit(&model, weighed)
 }
 
 #[cfg(test)]

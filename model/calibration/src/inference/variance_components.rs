@@ -47,6 +47,18 @@ pub(super) fn estimate(
     between(data, residual_n, explainable, noise).unwrap_or(noise)
 }
 
+/// The same with the repetition noise and the scatter that competes with effects as they are: what series share, beside
+/// columns that were thought to be explained by more than noise.
+pub(super) fn shared_again(
+    data: &Observations,
+    residual_n: &[f64],
+    explainable: &[Vec<f64>],
+    noise: Noise,
+) -> Noise {
+    let found = between(data, residual_n, explainable, noise).unwrap_or(noise);
+    Noise { mount_scale: noise.mount_scale, stretch_offset_n: noise.stretch_offset_n, ..found }
+}
+
 /// The repetition noise, with the whitened residuals that it was read from.
 fn inside(
     data: &Observations,

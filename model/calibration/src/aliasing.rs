@@ -1,0 +1,100 @@
+//! Covariates that move together in a table: what lies in one of them may as well lie in the other.
+
+use serde::{Deserialize, Serialize};
+
+use crate::table::PlateauRow;
+
+/// Correlation beyond which two covariates are told to move together.
+const TOGETHER: f64 = 0.95;
+
+/// Two covariates that move together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Aliasing {
+    /// Their names.
+    pub covariates: [String; 2],
+    /// Their correlation, of the values or of their ranks, whichever is larger in size.
+    pub correlation: f64,
+}
+
+/// All pairs of a table, over its rows.
+pub fn aliasing(rows: &[PlateauRow]) -> Vec<Aliasing> {
+    let columns: [(&str, fn(&PlateauRow) -> f64); 8] = [
+        ("load", |r| r.load_n),
+        ("direction", |r| r.direction.sign()),
+        ("repetition", |r| f64::from(r.repetition)),
+        ("position", |r| r.position_mm),
+        ("speed", |r| r.speed_pct),
+        ("dwell", |r| r.dwell_s),
+        ("sweep", |r| f64::from(u8::from(r.sweep == crate::table::Sweep::Down))),
+        ("time", |r| r.time_s),
+    ];
+    let values: Vec<(&str, Vec<f64>, Vec<f64>)> = columns
+        .iter()
+        .map(|(name, of)| {
+            let values: Vec<f64> = rows.iter().map(of).collect();
+            let ranks = ranks(&values);
+            (*name, values, ranks)
+        })
+        .collect();
+    let mut found = Vec::new();
+    for (i, (a, values_a, ranks_a)) in values.iter().enumerate() {
+        for (b, values_b, ranks_b) in &values[i + 1..] {
+            let (plain, ranked) = (correlation(values_a, values_b), correlation(ranks_a, ranks_b));
+            let correlation = if ranked.abs() > plain.abs() { ranked } else { plain };
+            if correlation.abs() > TOGETHER {
+                found.push(Aliasing { covariates: [(*a).to_owned(), (*b).to_owned()], correlation });
+            }
+        }
+    }
+    found
+}
+
+/// Ranks from 0; equal values share their mean rank.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut ranks = vec![0.0; values.len()];
+    let mut from = 0;
+    while from < order.len() {
+        let to = (from..order.len()).take_while(|i| values[order[*i]] == values[order[from]]).count() + from;
+        let mean = 0.5 * (from + to - 1) as f64;
+        order[from..to].iter().for_each(|i| ranks[*i] = mean);
+        from = to;
+    }
+    ranks
+}
+
+/// Pearson's correlation; zero where one of both does not vary.
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len().max(1) as f64;
+    let (mean_a, mean_b) = (a.iter().sum::<f64>() / n, b.iter().sum::<f64>() / n);
+    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+    for (x, y) in a.iter().zip(b) {
+        ab += (x - mean_a) * (y - mean_b);
+        aa += (x - mean_a).powi(2);
+        bb += (y - mean_b).powi(2);
+    }
+    if aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_session::session;
+
+    #[test]
+    fn speed_that_follows_the_load_is_told_and_independent_speed_is_not() {
+        let mut rows = session(1);
+        assert!(aliasing(&rows).is_empty(), "{:?}", aliasing(&rows));
+        rows.iter_mut().for_each(|r| r.speed_pct = 40.0 + r.load_n.powi(3) * 1e-4);
+        let found = aliasing(&rows);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].covariates, ["load", "speed"]);
+        assert!(found[0].correlation > 0.999, "as ranks they are one");
+    }
+
+    #[test]
+    fn equal_values_share_a_rank() {
+        assert_eq!(ranks(&[3.0, 1.0, 3.0, 2.0]), [2.5, 0.0, 2.5, 1.0]);
+    }
+}

@@ -1,0 +1,76 @@
+//! The error to expect on a new session of the same rig: the whole procedure, from the noise to the names, is run
+//! without a fourth of the series, and judged on them.
+
+use crate::inference::{Levels, Model, Observations, Selection, Weighed, fit, select};
+
+/// Parts into which the series are dealt.
+const FOLDS: usize = 4;
+/// Readings further off than this many standard deviations count as if they were this far off.
+const FURTHEST_SD: f64 = 20.0;
+
+/// Root mean square errors in newtons on series that had no part in anything.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Promise {
+    /// Of the refitted baseline.
+    pub(crate) baseline_n: f64,
+    /// Of what the procedure made of the other series.
+    pub(crate) augmented_n: f64,
+}
+
+/// The promise for a table; `None` if a part of its series cannot fix the baseline.
+pub(crate) fn promise(whole: &Selection, data: &Observations, levels: Levels) -> Option<Promise> {
+    let start = Model::baseline(whole.baseline.model.frame.clone());
+    let parts = per_part(|left_out| part(left_out, &start, whole, data, levels));
+    let (mut baseline, mut augmented, mut rows) = (0.0, 0.0, 0.0);
+    for (b, a, n) in parts.into_iter().flatten() {
+        baseline += b;
+        augmented += a;
+        rows += n;
+    }
+    (rows > 0.0).then(|| Promise { baseline_n: (baseline / rows).sqrt(), augmented_n: (augmented / rows).sqrt() })
+}
+
+/// Sums of squares on one part and its rows, if the rest could be fitted.
+fn part(
+    left_out: usize,
+    start: &Model,
+    whole: &Selection,
+    data: &Observations,
+    levels: Levels,
+) -> Option<(f64, f64, f64)> {
+    let fold = |row: usize| (data.series_of[row] * 7 / 3) % FOLDS;
+    let mut seen = data.subset(|row| fold(row) != left_out);
+    let hidden = data.subset(|row| fold(row) == left_out && !data.is_excluded(row));
+    if seen.points.len() < start.values().len() + 8 || hidden.points.is_empty() {
+        return None;
+    }
+    let found = select(start, &mut seen, levels);
+    let baseline = fit(&whole.baseline.model, &Weighed::new(&seen, found.noise));
+    let squares = |model: &Model| -> f64 {
+        let predicted = model.predict(&hidden.points);
+        predicted
+            .iter()
+            .zip(&hidden.force_n)
+            .zip(hidden.points.iter().zip(&hidden.friction_n))
+            .map(|((p, y), (point, u))| {
+                let furthest = FURTHEST_SD * whole.noise.at(point.load_n, *u);
+                (p - y).powi(2).min(furthest * furthest)
+            })
+            .sum()
+    };
+    Some((squares(&baseline.model), squares(&found.augmented.model), hidden.points.len() as f64))
+}
+
+/// One result per part, on as many threads as the feature `parallel` allows.
+#[cfg(feature = "parallel")]
+fn per_part<T: Send>(of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    std::thread::scope(|scope| {
+        let handles: Vec<_> = (0..FOLDS).map(|i| scope.spawn({ let of = &of; move || of(i) })).collect();
+        handles.into_iter().enumerate().map(|(i, h)| h.join().unwrap_or_else(|_| of(i))).collect()
+    })
+}
+
+#[cfg(not(feature = "parallel"))]
+fn per_part<T>(of: impl Fn(usize) -> T) -> Vec<T> {
+    (0..FOLDS).map(of).collect()
+}

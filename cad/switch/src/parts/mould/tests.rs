@@ -3,9 +3,10 @@
 use proptest::prelude::*;
 
 use super::super::{Part, printed};
-use super::cavity_mm3;
-use crate::config::{Configuration, MouldKind};
+use super::{cavity_mm3, one_piece};
+use crate::config::{Configuration, MouldKind, assign};
 use crate::design::Design;
+use crate::prediction::predicted_curve;
 use pinswitch_solid::mesh::{Mesh, Point3};
 use pinswitch_solid::profile::{ChordTolerance, polar};
 
@@ -91,6 +92,30 @@ fn mating(design: &Design, parts: &[Part]) -> (Mesh, f64) {
     let name =
         if design.configuration().mould.kind == MouldKind::OnePiece { "mould-tray" } else { "mould-core" };
     (part(parts, name).mesh(design).unwrap(), design.configuration().mould.floor_mm)
+}
+
+#[test]
+fn draft_leans_the_basin_and_nothing_that_friction_knows() {
+    let with = |assignments: &[&str]| {
+        let mut c = Configuration::default();
+        c.mould.kind = MouldKind::OnePiece;
+        assignments.iter().for_each(|a| assign(&mut c, a).unwrap());
+        Design::new(c).unwrap()
+    };
+    let (upright, leaning) = (with(&[]), with(&["mould.draft_deg=3"]));
+    assert_eq!(cavity_mm3(&upright).0, cavity_mm3(&leaning).0);
+    assert!(cavity_mm3(&upright).1 < cavity_mm3(&leaning).1);
+    assert_eq!(predicted_curve(&upright), predicted_curve(&leaning));
+    assert_eq!(upright.warnings(), leaning.warnings());
+    // Without a basin there is nothing to lean, and that is said.
+    let flush = with(&["mould.draft_deg=3", "mould.overfill_mm=0"]);
+    assert!(
+        flush.warnings().iter().any(|w| w.contains("mould.draft_deg = 3 leans no wall")),
+        "{:?}",
+        flush.warnings()
+    );
+    let (flat, flush) = (with(&["mould.overfill_mm=0"]), one_piece(&flush).unwrap());
+    assert_eq!(one_piece(&flat).unwrap().solid, flush.solid);
 }
 
 proptest! {

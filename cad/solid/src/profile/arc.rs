@@ -1,8 +1,11 @@
 //! A circular arc.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use super::{Point2, Vector2};
+
+/// Arcs whose angles agree within this, in radians, lie over the same angles: what is beyond it is rounding.
+const SAME_ANGLE_RAD: f64 = 1e-9;
 
 /// A circular arc; angles in radians, counter-clockwise from +x, as in mathematics.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,5 +56,29 @@ impl Arc {
     pub fn covers(&self, angle_rad: f64) -> bool {
         let forward = (angle_rad - self.start_rad) * self.sweep_rad.signum();
         forward.rem_euclid(TAU) <= self.sweep_rad.abs()
+    }
+
+    /// Angles from this arc's direction to that of `other`, at the first and at the last point, where both are run at an
+    /// even rate; the first within half a turn.
+    pub(super) fn turns_to_rad(&self, other: &Self) -> [f64; 2] {
+        let first = (other.start_rad - self.start_rad + PI).rem_euclid(TAU) - PI;
+        [first, first + (other.sweep_rad - self.sweep_rad)]
+    }
+
+    /// Whether the ruled wall to `other` is neither cylinder nor cone: the arcs lie over different angles.
+    pub(super) fn is_twisted_to(&self, other: &Self) -> bool {
+        self.turns_to_rad(other).iter().any(|turn| turn.abs() > SAME_ANGLE_RAD)
+    }
+
+    /// The integral of `a × db` over both arcs run at an even rate, mm²: `a` this arc, `b` the other.
+    ///
+    /// About the centre it is the cosine of the angle between the two directions, which changes evenly.
+    pub(super) fn swept_with(&self, other: &Self) -> f64 {
+        let [first, last] = self.turns_to_rad(other);
+        let (middle, half) = (f64::midpoint(first, last), (last - first) / 2.0);
+        let sinc = if half.abs() < SAME_ANGLE_RAD { 1.0 } else { half.sin() / half };
+        let moved = other.point_at(1.0, other.radius_mm) - other.point_at(0.0, other.radius_mm);
+        self.centre.coords.perp(&moved)
+            + self.radius_mm * other.radius_mm * other.sweep_rad * middle.cos() * sinc
     }
 }

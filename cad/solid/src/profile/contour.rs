@@ -107,8 +107,9 @@ impl Contour {
         Self { corners: self.corners.iter().map(|p| flip(*p)).collect(), edges: edges.collect() }.reversed()
     }
 
-    /// The contour halfway to `other`, which has the same edges in the same order. Corners and the middles of arcs
-    /// lie midway, which is exact for arcs about one centre and for lines.
+    /// The contour halfway to `other`, which has the same edges in the same order. Corners lie midway, and arcs run
+    /// about the midway centre: exact for lines, and for arcs over the same angles. Where the angles differ the curve
+    /// halfway is no arc; [`Self::midway_area_mm2`] is exact there too.
     #[must_use]
     pub fn midway(&self, other: &Self) -> Self {
         let corners: Vec<_> =
@@ -127,27 +128,58 @@ impl Contour {
 
     /// Signed area in mm² by Green's theorem, exact: positive for outlines, negative for holes.
     pub fn area_mm2(&self) -> f64 {
-        let twice: f64 = (0..self.edges.len())
-            .map(|i| {
-                let (from, to) = self.ends(i);
-                let chord = from.x * to.y - to.x * from.y;
-                match &self.edges[i] {
-                    Edge::Line => chord,
-                    Edge::Arc(a) => chord + a.radius_mm.powi(2) * (a.sweep_rad - a.sweep_rad.sin()),
-                }
-            })
-            .sum();
-        twice / 2.0
+        (0..self.edges.len()).map(|i| self.twice_swept_mm2(i)).sum::<f64>() / 2.0
+    }
+
+    /// Signed area in mm² halfway up the ruled wall to `other`, which has the same edges in the same order; exact.
+    ///
+    /// The wall joins both curves at equal shares of every edge, so that the curve halfway is `m = (a + b)/2`. Where two
+    /// arcs lie over other angles it is no arc, but `∫ m × dm` still has a closed form.
+    pub fn midway_area_mm2(&self, other: &Self) -> f64 {
+        let halfway = self.midway(other);
+        let twice = (0..self.edges.len()).map(|i| match (&self.edges[i], &other.edges[i]) {
+            (Edge::Arc(a), Edge::Arc(b)) if a.is_twisted_to(b) => {
+                (a.swept_with(a) + a.swept_with(b) + b.swept_with(a) + b.swept_with(b)) / 4.0
+            }
+            _ => halfway.twice_swept_mm2(i),
+        });
+        twice.sum::<f64>() / 2.0
+    }
+
+    /// Twice the area that the ray from the origin sweeps along edge `i`.
+    fn twice_swept_mm2(&self, i: usize) -> f64 {
+        let (from, to) = self.ends(i);
+        let chord = from.x * to.y - to.x * from.y;
+        match &self.edges[i] {
+            Edge::Line => chord,
+            Edge::Arc(a) => chord + a.radius_mm.powi(2) * (a.sweep_rad - a.sweep_rad.sin()),
+        }
+    }
+
+    /// Largest angle, in radians, between the directions of edge `i` here and in `other`, at the same share of both.
+    pub(super) fn turn_to_rad(&self, other: &Self, i: usize) -> f64 {
+        match (&self.edges[i], &other.edges[i]) {
+            (Edge::Arc(a), Edge::Arc(b)) => {
+                a.turns_to_rad(b).into_iter().fold(0.0, |most, t| most.max(t.abs()))
+            }
+            _ => {
+                let ((from, to), (from_other, to_other)) = (self.ends(i), other.ends(i));
+                (to - from).angle(&(to_other - from_other))
+            }
+        }
     }
 
     /// Length of the contour in mm.
     pub fn perimeter_mm(&self) -> f64 {
-        (0..self.edges.len())
-            .map(|i| match &self.edges[i] {
-                Edge::Line => (self.ends(i).1 - self.ends(i).0).norm(),
-                Edge::Arc(a) => a.length_mm(),
-            })
-            .sum()
+        (0..self.edges.len()).map(|i| self.edge_mm(i)).sum()
+    }
+
+    /// Length of edge `i` in mm.
+    pub(super) fn edge_mm(&self, i: usize) -> f64 {
+        match &self.edges[i] {
+            Edge::Line => (self.ends(i).1 - self.ends(i).0).norm(),
+            Edge::Arc(a) => a.length_mm(),
+        }
     }
 
     /// Lower left and upper right corner of the exact bounding box.

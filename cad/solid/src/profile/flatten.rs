@@ -4,6 +4,8 @@
 //! inner vertices of each arc lie a little outside it, so that the polygon encloses exactly the area of the arc;
 //! corners stay where they are. Both the overshoot of the vertices and the sag of the chords keep the tolerance.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::{Arc, ChordTolerance, Contour, Edge, Point2};
 
 /// An arc that bulges less than this, in mm, is drawn as its chord: finer vertices would not survive single precision.
@@ -46,8 +48,7 @@ pub fn chords_for(arc: &Arc, tolerance: ChordTolerance) -> usize {
     // Long arcs overshoot by r h²/3: start there and correct, which takes a step or two.
     let half = (3.0 * tolerance.mm() / arc.radius_mm).sqrt().min(1.0);
     let mut chords = ((arc.sweep_rad.abs() / (2.0 * half)) as usize).max(2);
-    while 2.0 * chords as f64 * std::f64::consts::FRAC_PI_2 <= arc.sweep_rad.abs()
-        || deviation_mm(arc, chords) > tolerance.mm()
+    while 2.0 * chords as f64 * FRAC_PI_2 <= arc.sweep_rad.abs() || deviation_mm(arc, chords) > tolerance.mm()
     {
         chords += 1;
     }
@@ -66,19 +67,40 @@ impl Contour {
             .collect()
     }
 
-    /// The closed polygon with `chords[i]` chords on edge `i`; the first point is not repeated.
+    /// Pieces per edge for which a wall up to `other`, which has the same edges in the same order, keeps within
+    /// `tolerance` of its ruled surface in the mean: so its volume does.
+    ///
+    /// Where an edge turns by `d` from one contour to the other, a piece of the wall is no plane, but is drawn as two
+    /// triangles. With lengths `p` and `q` its diagonals pass each other at no more than
+    /// `p q sin d / (n sqrt(p² + q² + 2 p q cos d))`. The surface lies midway between them, and halves the tetrahedron
+    /// of the four corners: that is a sixth of the distance over the whole piece.
+    pub(crate) fn wall_pieces(&self, other: &Self, tolerance: ChordTolerance) -> Vec<usize> {
+        (0..self.edges().len())
+            .map(|i| {
+                let turn = self.turn_to_rad(other, i).min(FRAC_PI_2);
+                let (p, q) = (self.edge_mm(i), other.edge_mm(i));
+                let apart = p * q * turn.sin() / (p * p + q * q + 2.0 * p * q * turn.cos()).sqrt();
+                ((apart / 6.0 / tolerance.mm()).ceil() as usize).max(1)
+            })
+            .collect()
+    }
+
+    /// The closed polygon with `chords[i]` pieces on edge `i`; the first point is not repeated.
     pub fn flattened(&self, chords: &[usize]) -> Vec<Point2> {
         let mut points = Vec::with_capacity(chords.iter().sum());
-        for ((corner, edge), &n) in self.corners().iter().zip(self.edges()).zip(chords) {
+        for (i, ((corner, edge), &n)) in self.corners().iter().zip(self.edges()).zip(chords).enumerate() {
             points.push(*corner);
             if n < 2 {
                 continue;
             }
             match edge {
-                Edge::Line => {}
+                Edge::Line => {
+                    let along = self.ends(i).1 - corner;
+                    points.extend((1..n).map(|k| corner + along * (k as f64 / n as f64)));
+                }
                 Edge::Arc(arc) => {
                     let q = straddling_radius_mm(arc, n);
-                    points.extend((1..n).map(|i| arc.point_at(i as f64 / n as f64, q)));
+                    points.extend((1..n).map(|k| arc.point_at(k as f64 / n as f64, q)));
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! Offsetting a contour into its material: chamfers and draft.
+//! Offsetting a contour into its material: chamfers.
 
 use std::f64::consts::PI;
 

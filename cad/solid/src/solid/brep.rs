@@ -46,7 +46,7 @@ impl Solid {
     /// # Errors
     /// [`BrepError`] if truck finds the shell not closed and oriented.
     pub fn brep(&self) -> Result<TruckSolid, BrepError> {
-        let cuts = self.matched_counts(cuts);
+        let cuts = self.matched_counts(self.rings.iter().map(|ring| cuts(&ring.contour)).collect());
         let wires: Vec<Wire> =
             self.rings.iter().zip(&cuts).map(|(ring, cuts)| wire(&ring.contour, cuts, ring.z_mm)).collect();
         let mut shell = Shell::new();

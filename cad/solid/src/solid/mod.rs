@@ -182,7 +182,7 @@ impl Solid {
     }
 
     /// The contours that bound the material at height `z_mm`, outlines counter-clockwise and holes clockwise;
-    /// slanted walls give the contour midway between their rings.
+    /// slanted walls give the contour midway between their rings ([`Contour::midway`]).
     pub fn section(&self, z_mm: f64) -> Vec<Contour> {
         self.walls
             .iter()
@@ -195,15 +195,14 @@ impl Solid {
             .collect()
     }
 
-    /// Pieces per edge of each ring, from `pieces` of its contour; rings that walls join get the same numbers, the
-    /// larger ones, so that the wall between them is a strip.
-    fn matched_counts(&self, pieces: impl Fn(&Contour) -> Vec<usize>) -> Vec<Vec<usize>> {
-        let mut numbers: Vec<_> = self.rings.iter().map(|r| pieces(&r.contour)).collect();
+    /// Pieces per edge of each ring, `numbers` or more; rings that walls join get the same ones, the larger ones, so
+    /// that the wall between them is a strip.
+    fn matched_counts(&self, mut numbers: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
         loop {
             let mut settled = true;
             for Wall { lower: RingId(a), upper: RingId(b) } in &self.walls {
                 if numbers[*a] != numbers[*b] {
-                    let most: Vec<_> = numbers[*a].iter().zip(&numbers[*b]).map(|(x, y)| *x.max(y)).collect();
+                    let most = larger(&numbers[*a], &numbers[*b]);
                     numbers[*a].clone_from(&most);
                     numbers[*b] = most;
                     settled = false;
@@ -237,4 +236,9 @@ impl Solid {
         heights.dedup();
         heights
     }
+}
+
+/// The larger of each two numbers.
+fn larger(a: &[usize], b: &[usize]) -> Vec<usize> {
+    a.iter().zip(b).map(|(x, y)| *x.max(y)).collect()
 }

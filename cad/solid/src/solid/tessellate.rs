@@ -1,7 +1,7 @@
 //! From a solid to its triangle mesh, within a chord tolerance.
 
 use super::cap::CapError;
-use super::{Cap, CapCache, Facing, Solid};
+use super::{Cap, CapCache, Facing, RingId, Solid, Wall, larger};
 use crate::mesh::{Mesh, Point3};
 use crate::profile::{ChordTolerance, Point2};
 
@@ -26,7 +26,7 @@ impl Solid {
     /// # Errors
     /// [`CapError`] if contours of one cap cross or touch.
     pub fn mesh_with(&self, tolerance: ChordTolerance, caps: &CapCache) -> Result<Mesh, CapError> {
-        let chords = self.matched_counts(|contour| contour.chords(tolerance));
+        let chords = self.matched_counts(self.least_pieces(tolerance));
         let mut positions = Vec::new();
         let rings: Vec<_> = self
             .rings
@@ -49,6 +49,18 @@ impl Solid {
             close(cap, &cut, &rings, &mut triangles);
         }
         Ok(Mesh::new(positions, triangles))
+    }
+}
+
+impl Solid {
+    /// Pieces per edge of each ring for which its curves, and the walls that stand on it, keep `tolerance`.
+    fn least_pieces(&self, tolerance: ChordTolerance) -> Vec<Vec<usize>> {
+        let mut pieces: Vec<_> = self.rings.iter().map(|ring| ring.contour.chords(tolerance)).collect();
+        for Wall { lower: RingId(a), upper: RingId(b) } in &self.walls {
+            let of_wall = self.rings[*a].contour.wall_pieces(&self.rings[*b].contour, tolerance);
+            pieces[*a] = larger(&pieces[*a], &of_wall);
+        }
+        pieces
     }
 }
 
@@ -95,4 +107,47 @@ fn strip(lower: &FlatRing, upper: &FlatRing, positions: &[Point3], triangles: &m
 #[allow(clippy::cast_possible_truncation)]
 fn index(i: usize) -> u32 {
     i as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::{Contour, Pen, polar};
+
+    /// A ring sector, cut shorter or longer than its neighbour above.
+    fn sector(half_rad: f64) -> Contour {
+        let corner = |radius: f64, side: f64| polar(radius, side * half_rad);
+        Pen::at(corner(20.0, 1.0))
+            .line_to(corner(22.0, 1.0))
+            .arc_to(Point2::origin(), corner(22.0, -1.0), true)
+            .line_to(corner(20.0, -1.0))
+            .arc_to(Point2::origin(), corner(20.0, 1.0), false)
+            .close()
+    }
+
+    /// Least distance between the diagonals of a quad: its triangles lie a sixth of it off the ruled surface, in the mean.
+    fn diagonals_apart_mm([a, b, c, d]: [Point3; 4]) -> f64 {
+        let across = (c - a).cross(&(d - b));
+        (b - a).dot(&across).abs() / across.norm()
+    }
+
+    #[test]
+    fn no_piece_of_a_twisted_wall_lies_off_its_surface_by_more_than_the_tolerance() {
+        let mut solid = Solid::new();
+        let (lower, upper) = (solid.ring(sector(0.78), 0.0), solid.ring(sector(0.84), 10.0));
+        solid.wall(lower, upper);
+        for tolerance_mm in [0.1, 0.01, 0.001, 1e-4] {
+            let pieces = solid.matched_counts(solid.least_pieces(ChordTolerance::new(tolerance_mm).unwrap()));
+            let [below, above]: [Vec<Point3>; 2] = [(0, 0.0), (1, 10.0)].map(|(i, z_mm)| {
+                let points = solid.rings[i].contour.flattened(&pieces[i]);
+                points.iter().map(|p| Point3::new(p.x, p.y, z_mm)).collect()
+            });
+            let n = below.len();
+            let quad = |i: usize| [below[i], below[(i + 1) % n], above[(i + 1) % n], above[i]];
+            let worst = (0..n).map(|i| diagonals_apart_mm(quad(i))).fold(0.0, f64::max);
+            assert!(worst / 6.0 <= tolerance_mm * 1.0001, "{worst} at {tolerance_mm}");
+            // Nor are there many more pieces than that takes.
+            assert!(tolerance_mm > 0.001 || worst / 6.0 > tolerance_mm / 2.0, "{worst} at {tolerance_mm}");
+        }
+    }
 }

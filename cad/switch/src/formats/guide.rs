@@ -122,13 +122,21 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
     };
     let pour = match c.mould.kind {
         MouldKind::Split => "Pour slowly through the funnel until silicone rises in both vents.",
-        _ => "Pour slowly at one end until the basin above the layer is full.",
+        _ if c.mould.overfill_mm > 0.0 => "Pour slowly at one end until the basin above the layer is full.",
+        _ => "Pour slowly at one end until the tray is full, and strike it off level with the brim.",
     };
     let release = match c.mould.kind {
         MouldKind::Split => {
             "Lift the lid, slide the ring off along the axis, and peel the layer from the core."
         }
-        _ => "Cut along the ledge of the basin, and peel the layer out from one end.",
+        _ if c.mould.overfill_mm > 0.0 && c.mould.draft_deg > 0.0 => {
+            "Cut along the ledge of the basin, and peel the layer out from one end: above the ledge the walls lean, those \
+             of the layer are upright."
+        }
+        _ if c.mould.overfill_mm > 0.0 => {
+            "Cut along the ledge of the basin, and peel the layer out from one end."
+        }
+        _ => "Peel the layer out from one end.",
     };
     let _ = write!(
         text,

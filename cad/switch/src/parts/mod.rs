@@ -22,7 +22,7 @@ use pinswitch_solid::solid::Solid;
 
 pub use layer::silicone_layer;
 pub use mould::cavity_mm3;
-pub(crate) use mould::keys;
+pub(crate) use mould::{keys, one_piece as tray};
 pub use part::{Material, Part, Role};
 pub use sector::Sector;
 

@@ -30,12 +30,19 @@ fn assert_valid(part: &Part, design: &Design, variant: &[&str]) {
 
 #[test]
 fn all_parts_of_the_variants_are_valid() {
-    let variants: [&[&str]; 9] = [
+    let variants: [&[&str]; 10] = [
         &["layout.pins=[5, 8, 11]"],
         &["layout.pins=[3, 5, 7, 9, 11, 13]", "support.slots=occupied", "parts.guide_pulley=true"],
         &["layout.pins=[1, 2, 15]", "support.slot_kind=through", "segment.end_margin_mm=0.9"],
         &["print.elephant_foot_mm=0.2", "parts.guide_pulley=true"],
         &["mould.kind=one-piece", "mould.draft_deg=2", "mould.shrinkage_pct=1"],
+        &[
+            "mould.kind=one-piece",
+            "mould.draft_deg=5",
+            "mould.overfill_mm=10",
+            "segment.end_margin_mm=0.9",
+            "print.elephant_foot_mm=0.2",
+        ],
         &[
             "mould.kind=one-piece",
             "mould.overfill_mm=0",

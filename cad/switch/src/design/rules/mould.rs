@@ -3,12 +3,12 @@
 use super::shell::MIN_INNER_RADIUS_MM;
 use super::{Assessment, Inspection, Rule, Severity, largest, least_wall_mm, require};
 use crate::config::MouldKind;
-use crate::parts::keys;
+use crate::parts::{keys, tray};
 use pinswitch_friction::Substrate;
 
 /// Largest shift of a sector's ends, as a share of its inner radius: beyond it they miss the circle.
 const LARGEST_SHIFT: f64 = 0.9;
-/// How far the base or the basin of a mould reaches beyond what it holds.
+/// How far the base of a split mould reaches beyond what it holds.
 const MOULD_MARGIN_MM: f64 = 1.0;
 /// What must stay open behind a sector, so that its ends do not meet.
 const MIN_GAP_MM: f64 = 0.5;
@@ -21,6 +21,7 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "segment.span_deg", severity: Severity::Error, assess: mould_ends_apart },
     Rule { field: "mould.key_diameter_mm", severity: Severity::Error, assess: keys_apart },
     Rule { field: "mould.key_height_mm", severity: Severity::Error, assess: keys_in_ring },
+    Rule { field: "mould.draft_deg", severity: Severity::Warning, assess: draft_without_basin },
     Rule { field: "friction.load_min_n", severity: Severity::Error, assess: load_range },
 ];
 
@@ -45,8 +46,7 @@ impl Ends {
         match c.mould.kind {
             MouldKind::None => None,
             MouldKind::OnePiece => {
-                let depth = i.layer_width_mm() * scale;
-                let around = c.mould.wall_mm + MOULD_MARGIN_MM + depth * c.mould.draft_deg.to_radians().tan();
+                let around = tray::around_mm(&c.mould);
                 Some(Self { inner_mm: c.shell.outer_radius_mm * scale - around, shift_mm: margin + around })
             }
             MouldKind::Split => {
@@ -113,6 +113,29 @@ fn mould_ends_in_sector(i: &Inspection<'_>) -> Assessment {
 fn mould_ends_apart(i: &Inspection<'_>) -> Assessment {
     Ends::of_mould(i).map_or(Assessment::NotApplicable, |ends| {
         ends.assess_gap(i.half_span_rad(), ", raise shell.outer_radius_mm, or set mould.kind = \"none\"")
+    })
+}
+
+/// Whether a tray is made, which has no basin unless it is overfilled.
+fn has_tray(i: &Inspection<'_>) -> bool {
+    let c = i.configuration();
+    c.mould.kind == MouldKind::OnePiece && c.layout.substrate == Substrate::Silicone
+}
+
+/// Only the basin's walls may lean: all others shape the layer.
+fn draft_without_basin(i: &Inspection<'_>) -> Assessment {
+    let m = &i.configuration().mould;
+    if !has_tray(i) {
+        return Assessment::NotApplicable;
+    }
+    require(m.draft_deg == 0.0 || m.overfill_mm > 0.0, || {
+        (
+            format!(
+                "mould.draft_deg = {} leans no wall: without a basin every wall of the tray shapes the layer",
+                m.draft_deg
+            ),
+            "set it to 0, or raise mould.overfill_mm".to_owned(),
+        )
     })
 }
 

@@ -2,27 +2,27 @@
 
 pub(crate) mod keys;
 mod lid;
-mod one_piece;
+pub(crate) mod one_piece;
 mod split;
 
 use super::Sector;
 use super::layer::layer_sector;
 use crate::config::MouldKind;
 use crate::design::Design;
+use pinswitch_solid::profile::Contour;
 
 pub(super) use lid::lid;
 pub(super) use one_piece::one_piece;
 pub(super) use split::{core, ring};
 
-/// Volume in mm³ of the mould's cavity up to the layer's width, and of what lies above it: the basin of the one-piece
-/// mould, or the split mould's funnel and vents. Draft counts as overfill: it is cut or pressed away.
+/// Volume in mm³ of the mould's cavity, which is the layer, and of what lies above it: the basin of the one-piece mould,
+/// or the split mould's funnel and vents.
 pub fn cavity_mm3(design: &Design) -> (f64, f64) {
     let cavity = Cavity::of(design);
-    let section = cavity.sector.grooved(&cavity.groove_angles_rad, cavity.groove_radius_mm).area_mm2();
-    let layer = section * cavity.depth_mm;
+    let layer = cavity.section().area_mm2() * cavity.depth_mm;
     let above = match design.configuration().mould.kind {
         MouldKind::None => 0.0,
-        MouldKind::OnePiece => one_piece::filled_mm3(design) - layer,
+        MouldKind::OnePiece => one_piece::basin_mm3(design),
         MouldKind::Split => lid::openings_mm3(design),
     };
     (layer, above)
@@ -47,4 +47,12 @@ impl Cavity {
             depth_mm: design.layer_width_mm() * scale,
         }
     }
+
+    /// What every section of the layer is, counter-clockwise: the sector with the grooves that the ribs form.
+    fn section(&self) -> Contour {
+        self.sector.grooved(&self.groove_angles_rad, self.groove_radius_mm)
+    }
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,7 +8,7 @@
 use pinswitch_calibration::effects::{
     Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
 };
-use pinswitch_calibration::inference::{Model, Noise, Observations, Term, fit, interval_half_widths};
+use pinswitch_calibration::inference::{Model, Noise, Observations, Term, Weighed, fit, interval_half_widths};
 use pinswitch_calibration::table::{Frame, Point};
 use pinswitch_simulation::{Plan, simulate};
 
@@ -23,6 +23,7 @@ static CREEP: Description = Description {
     formula: "reading (1 + k ln(dwell / 3 s))",
     parameters: &[Parameter::free("k", "1")],
     one_sided: true,
+    bends: true,
     scales: true,
     confused_with: &["dwell_relaxation"],
     experiment: "dead weights with two pauses",
@@ -53,17 +54,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         *force_n = Creep.on_reading(&[TRUE_SIZE], point, *force_n);
     }
 
-    let noise = Noise::constant(0.05, 0.1);
-    let without = fit(&Model::baseline(frame), &data, noise);
+    let weighed = Weighed::new(&data, Noise::constant(0.05, 0.1));
+    let without = fit(&Model::baseline(frame), &weighed);
     let with = fit(
         &without.model.with_term(Term::Named(&Creep), &Creep.starts(&without.model.frame)[0]),
-        &data,
-        noise,
+        &weighed,
     );
     let rms = |r: &[f64]| (r.iter().map(|r| r * r).sum::<f64>() / r.len() as f64).sqrt();
     println!("without {}: {:.3} N are left", Creep.id(), rms(&without.residual_n));
     println!("with it: {:.3} N", rms(&with.residual_n));
-    let widths = interval_half_widths(&with, &data, noise);
+    let widths = interval_half_widths(&with, &weighed);
     for (((name, unit), value), width) in with.model.names().iter().zip(with.model.values()).zip(widths) {
         println!("  {name} = {value:.4} +- {width:.4} {unit}");
     }

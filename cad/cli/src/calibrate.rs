@@ -16,7 +16,7 @@ use pinswitch_switch::output::OutputFile;
 
 /// Refit the paper's model to a plateau table, trace what it misses to an effect, and report the error before and after.
 ///
-/// The verdict is none, attributed, ambiguous or unattributed; the best model is written for `predict` and `generate`.
+/// The verdict is none, inconclusive, attributed, ambiguous or unattributed; the best model is written for `predict` and `generate`.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: pinswitch calibrate plateaus.csv --out calibration")]
 pub(super) struct Arguments {
@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let table = PlateauTable::read(file, &name).map_err(Failure::bad_input)?;
     table.require_baseline(&name).map_err(Failure::bad_input)?;
     let mut table = table;
-    let calibration = match arguments.fit_below {
+    let mut calibration = match arguments.fit_below {
         None => calibrate(&table.rows, Levels::default()),
         Some(percent) => {
             let share = f64::from(percent) / 100.0;
@@ -54,6 +54,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     .map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    calibration.report.ignored_columns = table.ignored_columns();
     let files = files(&table, &calibration, &name)?;
     write_set(&arguments.out, &files).map_err(Failure::failed)?;
     print(summary(&calibration.report).as_bytes())
@@ -125,6 +126,9 @@ const SHOWN_SERIES: usize = 6;
 fn summary(report: &Report) -> String {
     let verdict = match report.verdict {
         Verdict::None => "none: the paper's model explains the data down to its noise",
+        Verdict::Inconclusive => {
+            "inconclusive: nothing is believed, and effects of consequence are not excluded"
+        }
         Verdict::Attributed => "attributed",
         Verdict::Ambiguous => "ambiguous: this data cannot tell rivals apart",
         Verdict::Unattributed => "unattributed: structure is left that no named effect explains",

@@ -51,6 +51,11 @@ fn conclusion(report: &Report) -> String {
     let names: Vec<&str> = report.effects.iter().map(|e| e.id.as_str()).collect();
     let text = match report.verdict {
         Verdict::None => "The paper's model explains this data down to its noise.".to_owned(),
+        Verdict::Inconclusive => {
+            let open: Vec<&str> =
+                report.limits.iter().filter(|l| !l.excluded).map(|l| l.id.as_str()).collect();
+            format!("Nothing is believed, and this data does not exclude: {}.", open.join(", "))
+        }
         Verdict::Attributed => format!("The paper's model lacks: {}.", names.join(", ")),
         Verdict::Ambiguous => {
             let sets: Vec<String> = report

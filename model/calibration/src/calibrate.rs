@@ -2,6 +2,7 @@
 
 use pinswitch_friction::Substrate;
 
+use crate::aliasing::aliasing;
 use crate::effects::CATALOGUE;
 use crate::held_out::{SOUND_WEIGHT, held_out};
 use crate::inference::{
@@ -9,9 +10,10 @@ use crate::inference::{
     UNATTRIBUTED, Weighed, cell_deviation, degrees_of_freedom, family_p_value, interval_half_widths, select,
 };
 use crate::layouts_left_out::layouts_left_out;
+use crate::promise::{Promise, promise};
 use crate::report::{
-    BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Fate, Invisible, ModelReport, Report,
-    RivalReport, Verdict,
+    BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Fate, Invisible, LimitReport, ModelReport,
+    NoisePart, Report, RivalReport, Verdict,
 };
 use crate::table::{Frame, PlateauRow};
 
@@ -85,8 +87,13 @@ pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, Cal
     if rows.len() < needed {
         return Err(too_few);
     }
-    let selection = select(&start, &mut data, levels);
-    let report = report(rows, &selection, &data, levels);
+    let mut selection = select(&start, &mut data, levels);
+    let promised = promise(&selection, &data, levels);
+    // What does not help on series that had no part in finding it is not kept.
+    if promised.is_some_and(|p| p.augmented_n > p.baseline_n) && !selection.augmented.model.terms.is_empty() {
+        selection = selection.without_findings(&data, levels);
+    }
+    let report = report(rows, &selection, &data, levels, promised);
     Ok(Calibration { report, selection, data })
 }
 
@@ -132,7 +139,13 @@ fn model_report(fitted: &Fit, weighed: &Weighed<'_>) -> (ModelReport, f64) {
     (report, held.both_n())
 }
 
-fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations, levels: Levels) -> Report {
+fn report(
+    rows: &[PlateauRow],
+    selection: &Selection,
+    data: &Observations,
+    levels: Levels,
+    promised: Option<Promise>,
+) -> Report {
     let noise = selection.noise;
     let weighed = &Weighed::new(data, noise);
     let (baseline, before_n) = model_report(&selection.baseline, weighed);
@@ -142,6 +155,7 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations, level
         model_report(&selection.augmented, weighed)
     };
     let effects = effects(selection, weighed, after_n, &augmented);
+    let promise_n = promised.map(|p| if effects.is_empty() { p.baseline_n } else { p.augmented_n });
     Report {
         schema: "pinswitch.calibration/1".to_owned(),
         data: DataSummary {
@@ -153,6 +167,18 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations, level
         verdict: Verdict::of(selection),
         noise_floor_n: noise.floor_n(data),
         noise,
+        noise_parts: noise_parts(selection, data),
+        adequate: is_adequate(augmented.heldout_series_rmse_n, noise.floor_n(data), data),
+        promise_n,
+        promise_baseline_n: promised.map(|p| p.baseline_n),
+        limits: limits(selection),
+        classes: selection
+            .classes
+            .iter()
+            .map(|class| class.iter().map(|id| (*id).to_owned()).collect())
+            .collect(),
+        aliasing: aliasing(rows),
+        ignored_columns: Vec::new(),
         baseline,
         augmented,
         candidates: candidates(selection, data, levels),
@@ -163,6 +189,86 @@ fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations, level
         bad_series: bad_series(rows, selection, weighed),
         extrapolation: None,
     }
+}
+
+/// Whether an error on held-out series is no larger than the noise and its scatter over the series allow.
+fn is_adequate(held_out_n: f64, floor_n: f64, data: &Observations) -> bool {
+    let series = data.series.max(1) as f64;
+    held_out_n <= floor_n * (1.0 + 3.0 / (2.0 * series).sqrt()) || held_out_n.is_nan()
+}
+
+/// Load in newtons at which parts of the noise are told.
+const TOLD_AT_N: f64 = 20.0;
+
+/// The parts of the noise that are there, the smallest groups first.
+fn noise_parts(selection: &Selection, data: &Observations) -> Vec<NoisePart> {
+    let noise = selection.noise;
+    let bounds = selection.noise_factors;
+    let part = |part: &str, what: &str, size: f64, unit: &str, factor: Option<f64>| NoisePart {
+        part: part.to_owned(),
+        what: what.to_owned(),
+        size,
+        ci95: factor.map(|f| [size / f, size * f]),
+        unit: unit.to_owned(),
+    };
+    let repetitions = (data.points.len() as f64 - data.cells.len() as f64).max(1.0);
+    let mut parts = vec![
+        part(
+            "repetition",
+            "one reading, from repetition to repetition",
+            noise.repetition.at(TOLD_AT_N),
+            "N",
+            Some((1.96 / (2.0 * repetitions).sqrt()).exp()),
+        ),
+        part(
+            "series_and_direction",
+            "an offset that the rows of one series and direction share",
+            noise.series.at(TOLD_AT_N),
+            "N",
+            bounds.cell,
+        ),
+        part(
+            "series",
+            "an offset that both directions of a series share",
+            noise.series_common.at(TOLD_AT_N),
+            "N",
+            bounds.common,
+        ),
+        part(
+            "series_scale",
+            "friction from series to series: the tendon is seated anew",
+            noise.series_scale,
+            "1",
+            bounds.scale,
+        ),
+        part("mount", "friction, or wrap, from mount to mount", noise.mount_scale, "1", bounds.mount),
+        part(
+            "stretch",
+            "an offset that wanders over some neighbouring series",
+            noise.stretch_offset_n,
+            "N",
+            None,
+        ),
+        part("group", "an offset from session to session and operator to operator", noise.group_offset_n, "N", None),
+        part("specimen", "friction from specimen to specimen", noise.specimen_scale, "1", None),
+    ];
+    parts.retain(|p| p.size > 0.0);
+    parts
+}
+
+fn limits(selection: &Selection) -> Vec<LimitReport> {
+    selection
+        .limits
+        .iter()
+        .map(|limit| LimitReport {
+            id: limit.effect.id().to_owned(),
+            parameter: limit.effect.parameters().first().map_or("present", |p| p.name).to_owned(),
+            low: limit.interval[0],
+            high: limit.interval[1],
+            typical: limit.typical,
+            excluded: limit.is_excluded(),
+        })
+        .collect()
 }
 
 /// What no data of such a rig can show after the refit.

@@ -24,6 +24,7 @@
 //! reads a clock or the environment. `model/doc/file-formats.md` describes the files, `model/doc/effect-catalogue.md`
 //! the effects and `model/doc/naming-an-effect.md` how one is named.
 
+mod aliasing;
 mod calibrate;
 pub mod effects;
 mod extrapolation;
@@ -34,6 +35,7 @@ mod median;
 mod model_check;
 mod model_file;
 mod part_curve;
+mod promise;
 mod published_maxima;
 mod report;
 pub mod segmentation;
@@ -41,6 +43,7 @@ pub mod table;
 #[cfg(test)]
 mod test_session;
 
+pub use aliasing::{Aliasing, aliasing};
 pub use calibrate::{Calibration, CalibrationError, calibrate};
 pub use extrapolation::calibrate_below;
 pub use held_out::{HeldOut, held_out};
@@ -50,5 +53,5 @@ pub use model_file::{ModelFile, ModelFileError};
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
     BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible,
-    ModelReport, Report, RivalReport, Verdict,
+    LimitReport, ModelReport, NoisePart, Report, RivalReport, Verdict,
 };

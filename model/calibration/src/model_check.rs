@@ -68,7 +68,18 @@ pub(crate) fn check_constants<'a>(
 
 /// The noise is one: no negative spread, no correlation beyond one.
 pub(crate) fn check_noise(noise: &Noise) -> Result<(), Flaw> {
-    for (name, spread) in [("repetition", noise.repetition), ("series", noise.series)] {
+    for (name, size) in [
+        ("series_scale", noise.series_scale),
+        ("mount_scale", noise.mount_scale),
+        ("stretch_offset_N", noise.stretch_offset_n),
+        ("group_offset_N", noise.group_offset_n),
+        ("specimen_scale", noise.specimen_scale),
+    ] {
+        within(&format!("noise.{name}"), size, 0.0, MAX_CONSTANT)?;
+    }
+    for (name, spread) in
+        [("repetition", noise.repetition), ("series", noise.series), ("series_common", noise.series_common)]
+    {
         within(&format!("noise.{name}.constant_n"), spread.constant_n, 0.0, MAX_CONSTANT)?;
         within(&format!("noise.{name}.per_load"), spread.per_load, 0.0, MAX_CONSTANT)?;
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::aliasing::Aliasing;
 use crate::inference::{Noise, Selection};
 
 /// What the data say about the paper's model.
@@ -179,6 +180,39 @@ pub struct BadSeries {
     pub standard_deviations: f64,
 }
 
+/// One part of the noise with its size.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NoisePart {
+    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount`, `stretch`, `group` or `specimen`.
+    pub part: String,
+    /// What it does to a reading, in words.
+    pub what: String,
+    /// Standard deviation at a load of 20 N, or relative.
+    pub size: f64,
+    /// 95 % interval of the size; absent for what is set and not estimated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ci95: Option<[f64; 2]>,
+    /// `N`, or `1` for a share of the friction.
+    pub unit: String,
+}
+
+/// Sizes of an effect that the data do not exclude.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LimitReport {
+    /// Its id.
+    pub id: String,
+    /// Its size constant; `present` for an effect without one, of which 1 is the whole.
+    pub parameter: String,
+    /// Lower end of what 95 % do not exclude.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Size that changes friction, or the reading, by 5 % somewhere in the table.
+    pub typical: f64,
+    /// Whether every size left is smaller than the typical one.
+    pub excluded: bool,
+}
+
 /// `report.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
@@ -188,11 +222,22 @@ pub struct Report {
     pub data: DataSummary,
     /// The verdict.
     pub verdict: Verdict,
+    /// Whether the error on held-out series reaches the noise within its scatter: if not, something is left.
+    pub adequate: bool,
+    /// Error to expect on a new session of the same rig, in newtons: the whole procedure repeated without each fourth of
+    /// the series and judged on it. Absent if too few series are left to do so.
+    #[serde(rename = "promise_N", default, skip_serializing_if = "Option::is_none")]
+    pub promise_n: Option<f64>,
+    /// The same of the paper's model refitted.
+    #[serde(rename = "promise_baseline_N", default, skip_serializing_if = "Option::is_none")]
+    pub promise_baseline_n: Option<f64>,
     /// Standard deviation of a reading about the best model, in newtons.
     #[serde(rename = "noise_floor_N")]
     pub noise_floor_n: f64,
-    /// The noise by its parts.
+    /// The noise as the model file holds it.
     pub noise: Noise,
+    /// The noise by its parts, with intervals.
+    pub noise_parts: Vec<NoisePart>,
     /// The paper's model, refitted.
     pub baseline: ModelReport,
     /// With what was found.
@@ -203,6 +248,14 @@ pub struct Report {
     pub candidates: Vec<CandidateReport>,
     /// Probability of the largest candidate without any effect, by flipped signs of whole series.
     pub family_probability: f64,
+    /// Sizes that the data do not exclude, of visible effects that were not found.
+    pub limits: Vec<LimitReport>,
+    /// Effects whose traces this design cannot tell apart.
+    pub classes: Vec<Vec<String>>,
+    /// Covariates that move together.
+    pub aliasing: Vec<Aliasing>,
+    /// Columns of the table that no calibration reads.
+    pub ignored_columns: Vec<String>,
     /// What this data cannot see.
     pub invisible: Vec<Invisible>,
     /// What no data of such a rig can see after the refit.

@@ -34,4 +34,5 @@ pub use observations::Observations;
 pub use selection::{CandidateEffect, FoundEffect, Rival, Selection, select};
 pub use significance::{degrees_of_freedom, family_p_value};
 pub use unnamed::FoundStructure;
+pub use variance_components::NoiseFactors;
 pub use weighed::Weighed;

@@ -2,7 +2,7 @@
 
 use super::baseline::{explainable, fit_baseline};
 use super::evidence::evidence;
-use super::fit::{Fit, fit, jacobian};
+use super::fit::{Fit, fit, interval_half_widths, jacobian};
 use super::forward::{Model, Term};
 use super::isolation::isolated_series;
 use super::levels::Levels;
@@ -13,7 +13,7 @@ use super::projection::dot;
 use super::screening::{EffectScore, Screen};
 use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
 use super::unnamed::{Context, FoundStructure, with_structure};
-use super::variance_components::{Reliability, Scatter, estimate, scatter_size, shared_again};
+use super::variance_components::{NoiseFactors, Reliability, Scatter, estimate, scatter_size, shared_again};
 use super::weighed::Weighed;
 use crate::effects::{CATALOGUE, Effect, acting_order};
 
@@ -106,9 +106,26 @@ pub struct Selection {
     pub structures_tried: usize,
     /// The noise.
     pub noise: Noise,
+    /// How well its parts are known.
+    pub noise_factors: NoiseFactors,
 }
 
 impl Selection {
+    /// The same table with nothing believed: what was found did not help on data that had no part in it.
+    #[must_use]
+    pub fn without_findings(self, data: &Observations, levels: Levels) -> Self {
+        let bare = Explanation {
+            augmented: self.baseline.clone(),
+            baseline: self.baseline,
+            structure: None,
+            structure_gain: self.structure_gain,
+            structures_tried: self.structures_tried,
+            noise: self.noise,
+            isolated: None,
+        };
+        finish(bare, data, levels)
+    }
+
     /// Effects that this data cannot show, in the order in which they act.
     pub fn invisible(&self) -> impl Iterator<Item = &CandidateEffect> {
         acting_order()
@@ -294,9 +311,27 @@ fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Ex
     best
 }
 
+/// A model without the names whose sizes may as well be zero.
+fn without_uncertain_names(mut current: Fit, weighed: &Weighed<'_>) -> Fit {
+    loop {
+        let (values, widths) = (current.model.values(), interval_half_widths(&current, weighed));
+        let uncertain = (0..current.model.terms.len()).find(|index| {
+            let at = current.model.term_offset(*index);
+            let Term::Named(effect) = &current.model.terms[*index] else { return false };
+            let free = effect.parameters().first().is_some_and(|p| p.bounds.is_none());
+            free && effect.description().scales && values[at].abs() <= widths[at]
+        });
+        match uncertain {
+            Some(index) => current = fit(&current.model.without_term(index), weighed),
+            None => return current,
+        }
+    }
+}
+
 /// Everything that is told about the explanation chosen.
-fn finish(chosen: Explanation, data: &Observations, levels: Levels) -> Selection {
+fn finish(mut chosen: Explanation, data: &Observations, levels: Levels) -> Selection {
     let weighed = Weighed::new(data, chosen.noise);
+    chosen.augmented = without_uncertain_names(chosen.augmented, &weighed);
     let scores = Screen::new(&chosen.baseline, &weighed).effects();
     let predicted: Vec<f64> =
         data.force_n.iter().zip(&chosen.augmented.residual_n).map(|(y, r)| y - r).collect();
@@ -305,6 +340,7 @@ fn finish(chosen: Explanation, data: &Observations, levels: Levels) -> Selection
     let candidates = candidates(&scores, &chosen.augmented, &weighed);
     let visible = |id: &str| candidates.iter().any(|c| c.effect.id() == id && !c.is_invisible());
     Selection {
+        noise_factors: reliability.factors(),
         limits: limits(&chosen.augmented, &weighed, &reliability, |effect| visible(effect.id())),
         classes: classes(&scores, |score| visible(score.effect.id())),
         effects: found_effects(&chosen.augmented, &weighed, levels),

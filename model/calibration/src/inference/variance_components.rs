@@ -44,7 +44,11 @@ pub(super) fn estimate(
     if noise.correlation > 0.0 {
         noise.repetition = inside(data, residual_n, explainable, noise).0;
     }
-    between(data, residual_n, explainable, noise).unwrap_or(noise)
+    let noise = between(data, residual_n, explainable, noise).unwrap_or(noise);
+    [Scatter::Groups, Scatter::Specimens].iter().fold(noise, |noise, labelled| {
+        let without = labelled.in_noise(noise, 0.0);
+        labelled.in_noise(without, scatter_size(*labelled, data, residual_n, &[], without))
+    })
 }
 
 /// The same with the repetition noise and the scatter that competes with effects as they are: what series share, beside
@@ -279,9 +283,14 @@ pub(super) enum Scatter {
     Mounts,
     /// The reading of each stretch of neighbouring series.
     Stretches,
+    /// The reading of each operator and of each session, where the table names them.
+    Groups,
+    /// The friction of each specimen, where the table names them.
+    Specimens,
 }
 
 impl Scatter {
+    /// Those that compete with effects. The others are known by the table's own labels.
     pub(super) const ALL: [Scatter; 2] = [Scatter::Mounts, Scatter::Stretches];
 
     /// The noise with this scatter.
@@ -289,6 +298,8 @@ impl Scatter {
         match self {
             Scatter::Mounts => Noise { mount_scale: size, ..noise },
             Scatter::Stretches => Noise { stretch_offset_n: size, ..noise },
+            Scatter::Groups => Noise { group_offset_n: size, ..noise },
+            Scatter::Specimens => Noise { specimen_scale: size, ..noise },
         }
     }
 
@@ -297,21 +308,33 @@ impl Scatter {
         match self {
             Scatter::Mounts => noise.mount_scale,
             Scatter::Stretches => noise.stretch_offset_n,
+            Scatter::Groups => noise.group_offset_n,
+            Scatter::Specimens => noise.specimen_scale,
         }
     }
 
-    fn groups(self, data: &Observations) -> &[Vec<usize>] {
+    fn groups(self, data: &Observations) -> Vec<&Vec<usize>> {
         match self {
-            Scatter::Mounts => &data.mounts,
-            Scatter::Stretches => &data.stretches,
+            Scatter::Mounts => data.mounts.iter().collect(),
+            Scatter::Stretches => data.stretches.iter().collect(),
+            Scatter::Groups => data.operators.iter().chain(&data.sessions).collect(),
+            Scatter::Specimens => data.specimens.iter().collect(),
+        }
+    }
+
+    /// Groups without which nothing can be told of the scatter between them.
+    fn least_groups(self) -> usize {
+        match self {
+            Scatter::Mounts | Scatter::Stretches => 3,
+            Scatter::Groups | Scatter::Specimens => 2,
         }
     }
 
     /// What a row of a group does when the group is off by one, in newtons.
     fn direction_n(self, data: &Observations, row: usize) -> f64 {
         match self {
-            Scatter::Mounts => data.friction_n[row],
-            Scatter::Stretches => 1.0,
+            Scatter::Mounts | Scatter::Specimens => data.friction_n[row],
+            Scatter::Stretches | Scatter::Groups => 1.0,
         }
     }
 
@@ -320,6 +343,8 @@ impl Scatter {
         match self {
             Scatter::Mounts => [LEAST_SCALE, 0.02, 0.045, MOST_MOUNT_SCALE],
             Scatter::Stretches => [2e-3, 0.05, 0.15, 0.3],
+            Scatter::Groups => [2e-3, 0.2, 0.5, 10.0],
+            Scatter::Specimens => [LEAST_SCALE, 0.05, 0.1, 1.0],
         }
     }
 
@@ -340,7 +365,7 @@ pub(super) fn scatter_size(
 ) -> f64 {
     let [least, start, _, most] = scatter.scale();
     let none = (0..data.points.len()).all(|r| scatter.direction_n(data, r) == 0.0);
-    if scatter.groups(data).len() < 3 || none {
+    if scatter.groups(data).len() < scatter.least_groups() || none {
         return 0.0;
     }
     let means = data.cell_means(noise);
@@ -396,7 +421,40 @@ pub(crate) struct Reliability {
     places: Vec<usize>,
 }
 
+/// Factors by which the sizes of the noise's parts may be off, up or down, with 95 %; `None` for a part that is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NoiseFactors {
+    /// Of the offset of a series and direction.
+    pub cell: Option<f64>,
+    /// Of the offset of a series.
+    pub common: Option<f64>,
+    /// Of the friction scale of a series.
+    pub scale: Option<f64>,
+    /// Of the friction scale of a mount.
+    pub mount: Option<f64>,
+}
+
 impl Reliability {
+    /// How well the parts of the noise are known.
+    pub(crate) fn factors(&self) -> NoiseFactors {
+        let theta = sizes(self.noise);
+        // A standard deviation is a square root: half the relative error of the variance.
+        let of = |place: usize| {
+            let at = self.places.iter().position(|p| *p == place)?;
+            let relative = self.covariance[(at, at)].max(0.0).sqrt() / theta[place];
+            Some((1.96 * 0.5 * relative).exp())
+        };
+        let last = self.places.len();
+        let mount = self.noise.mount_scale;
+        NoiseFactors {
+            cell: of(1).or(of(0)),
+            common: of(3).or(of(2)),
+            scale: of(4),
+            mount: (mount > 0.0)
+                .then(|| (1.96 * 0.5 * self.covariance[(last, last)].max(0.0).sqrt() / (mount * mount)).exp()),
+        }
+    }
+
     /// Of a noise, beside what the model's own columns take over.
     pub(crate) fn new(data: &Observations, noise: Noise, own: &[Vec<f64>]) -> Self {
         let means = data.cell_means(noise);

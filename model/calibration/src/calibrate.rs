@@ -243,9 +243,9 @@ fn noise_parts(selection: &Selection, data: &Observations) -> Vec<NoisePart> {
         ),
         part("mount", "friction, or wrap, from mount to mount", noise.mount_scale, "1", bounds.mount),
         part(
-            "stretch",
-            "an offset that wanders over some neighbouring series",
-            noise.stretch_offset_n,
+            "walk",
+            "an offset that wanders from series to series",
+            noise.walk_n,
             "N",
             None,
         ),

@@ -71,7 +71,7 @@ pub(crate) fn check_noise(noise: &Noise) -> Result<(), Flaw> {
     for (name, size) in [
         ("series_scale", noise.series_scale),
         ("mount_scale", noise.mount_scale),
-        ("stretch_offset_N", noise.stretch_offset_n),
+        ("walk_N", noise.walk_n),
         ("group_offset_N", noise.group_offset_n),
         ("specimen_scale", noise.specimen_scale),
     ] {

@@ -183,7 +183,7 @@ pub struct BadSeries {
 /// One part of the noise with its size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NoisePart {
-    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount`, `stretch`, `group` or `specimen`.
+    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount`, `walk`, `group` or `specimen`.
     pub part: String,
     /// What it does to a reading, in words.
     pub what: String,

@@ -1,7 +1,7 @@
 //! How probable a table is under a model and a noise, whatever the constants are: the marginal likelihood, by Laplace's
 //! approximation. It weighs explanations against each other that differ in their noise, which a sum of squares cannot.
 
-use super::fit::{Fit, normal_equations};
+use super::fit::{Fit, Slopes};
 use super::forward::{Model, Term};
 use super::weighed::Weighed;
 use crate::effects::Channel;
@@ -15,9 +15,7 @@ const PRIOR_N: f64 = 0.5;
 pub(super) fn evidence(fitted: &Fit, weighed: &Weighed<'_>) -> f64 {
     let predicted: Vec<f64> =
         weighed.data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
-    let mut white = fitted.residual_n.clone();
-    weighed.whiten(&mut white);
-    let (mut a, _) = normal_equations(&fitted.model, weighed, &predicted, &white);
+    let mut a = Slopes::new(&fitted.model, weighed, &predicted).normal;
     let prior_sd = prior_sd(&fitted.model);
     let mut cost = fitted.cost + weighed.shared_log_det();
     for (i, (sd, prior)) in prior_sd.iter().zip(fitted.model.priors()).enumerate() {

@@ -53,29 +53,42 @@ fn evaluate(model: &Model, weighed: &Weighed<'_>) -> (f64, Vec<f64>, Vec<f64>) {
     (dot(&white, &white) + prior_cost(model), predicted, white)
 }
 
-/// The normal equations at a model: `J' V^-1 J + priors` and the gradient.
-pub(crate) fn normal_equations(
-    model: &Model,
-    weighed: &Weighed<'_>,
-    predicted: &[f64],
-    white: &[f64],
-) -> (DMatrix<f64>, DVector<f64>) {
-    let mut columns = jacobian(model, weighed.data, predicted);
-    columns.iter_mut().for_each(|c| weighed.whiten(c));
-    let p = columns.len();
-    let (mut a, mut g) = (DMatrix::zeros(p, p), DVector::zeros(p));
-    for i in 0..p {
-        for j in 0..=i {
-            let value = dot(&columns[i], &columns[j]);
-            a[(i, j)] = value;
-            a[(j, i)] = value;
-        }
-        let prior = model.priors()[i];
-        a[(i, i)] += prior.sd.powi(-2);
-        g[i] = dot(&columns[i], white) - (model.coordinates[i] - prior.mean) / prior.sd.powi(2);
-    }
-    (a, g)
+/// Whitened sensitivities at a model, with what follows from them alone.
+pub(crate) struct Slopes {
+    columns: Vec<Vec<f64>>,
+    /// `J' V^-1 J` plus the priors' share.
+    pub(crate) normal: DMatrix<f64>,
 }
+
+impl Slopes {
+    /// Of a model that predicts `predicted`.
+    pub(crate) fn new(model: &Model, weighed: &Weighed<'_>, predicted: &[f64]) -> Self {
+        let mut columns = jacobian(model, weighed.data, predicted);
+        columns.iter_mut().for_each(|c| weighed.whiten(c));
+        let p = columns.len();
+        let mut normal = DMatrix::zeros(p, p);
+        for i in 0..p {
+            for j in 0..=i {
+                let value = dot(&columns[i], &columns[j]);
+                normal[(i, j)] = value;
+                normal[(j, i)] = value;
+            }
+            normal[(i, i)] += model.priors()[i].sd.powi(-2);
+        }
+        Self { columns, normal }
+    }
+
+    /// Half the gradient of the cost, downhill.
+    fn gradient(&self, model: &Model, white: &[f64]) -> DVector<f64> {
+        DVector::from_fn(self.columns.len(), |i, _| {
+            let prior = model.priors()[i];
+            dot(&self.columns[i], white) - (model.coordinates[i] - prior.mean) / prior.sd.powi(2)
+        })
+    }
+}
+
+/// A step that gains this share of what the linear model promised leaves the model linear enough for another one.
+const STILL_LINEAR: std::ops::RangeInclusive<f64> = 0.8..=1.2;
 
 /// Fits all constants of a model, from where they stand.
 pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
@@ -83,8 +96,11 @@ pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
     let (mut cost, mut predicted, mut white) = evaluate(&model, weighed);
     let mut damping = 1e-4;
     let mut converged = false;
-    'outer: for _ in 0..40 {
-        let (a, g) = normal_equations(&model, weighed, &predicted, &white);
+    let mut slopes = Slopes::new(&model, weighed, &predicted);
+    let mut fresh = true;
+    'outer: for _ in 0..60 {
+        let g = slopes.gradient(&model, &white);
+        let a = &slopes.normal;
         for _ in 0..12 {
             let mut damped = a.clone();
             for i in 0..damped.nrows() {
@@ -94,7 +110,7 @@ pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
                 damping *= 10.0;
                 continue;
             };
-            let promised = 2.0 * step.dot(&g) - (&a * &step).dot(&step);
+            let promised = 2.0 * step.dot(&g) - (a * &step).dot(&step);
             let mut trial = model.clone();
             trial.coordinates.iter_mut().zip(step.iter()).for_each(|(c, s)| *c += s.clamp(-3.0, 3.0));
             let (trial_cost, trial_predicted, trial_white) = evaluate(&trial, weighed);
@@ -110,6 +126,16 @@ pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
                     converged = true;
                     break 'outer;
                 }
+                // Old slopes may serve once more where the model has been linear.
+                fresh = !(fresh && STILL_LINEAR.contains(&(gained / promised)));
+                if fresh {
+                    slopes = Slopes::new(&model, weighed, &predicted);
+                }
+                continue 'outer;
+            }
+            if !fresh {
+                fresh = true;
+                slopes = Slopes::new(&model, weighed, &predicted);
                 continue 'outer;
             }
             damping = (damping * 8.0).max(1e-6);
@@ -123,7 +149,7 @@ pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
 /// Covariance of the constants' coordinates, from the normal equations and a scale of at least one.
 pub fn coordinate_covariance(fitted: &Fit, weighed: &Weighed<'_>) -> DMatrix<f64> {
     let (_, predicted, white) = evaluate(&fitted.model, weighed);
-    let (a, _) = normal_equations(&fitted.model, weighed, &predicted, &white);
+    let a = Slopes::new(&fitted.model, weighed, &predicted).normal;
     let degrees = (weighed.data.points.len() as f64 - a.nrows() as f64).max(1.0);
     let scale = (dot(&white, &white) / degrees).max(1.0);
     a.clone().cholesky().map_or_else(|| DMatrix::zeros(a.nrows(), a.ncols()), |c| c.inverse() * scale)

@@ -30,7 +30,7 @@ pub struct Levels {
 impl Default for Levels {
     fn default() -> Self {
         Self {
-            first_p: 0.015,
+            first_p: 0.006,
             flips: 0.1,
             further: 18.0,
             further_share: 0.001,

@@ -22,6 +22,7 @@ mod significance;
 mod structures;
 mod unnamed;
 mod variance_components;
+mod walk;
 mod weighed;
 
 pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_sd_n};

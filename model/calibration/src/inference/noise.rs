@@ -82,9 +82,9 @@ pub struct Noise {
     /// Of the friction exponent, or the wrap, from mount to mount, relative.
     #[serde(default)]
     pub mount_scale: f64,
-    /// Of the reading from one stretch of neighbouring series to the next, in newtons.
-    #[serde(rename = "stretch_offset_N", default)]
-    pub stretch_offset_n: f64,
+    /// Of an offset of the reading that wanders from series to series, in each direction by itself, in newtons.
+    #[serde(rename = "walk_N", default)]
+    pub walk_n: f64,
     /// Of the reading from operator to operator and from session to session, in newtons.
     #[serde(rename = "group_offset_N", default)]
     pub group_offset_n: f64,
@@ -104,7 +104,7 @@ impl Noise {
             series_common: same(0.0),
             series_scale: 0.0,
             mount_scale: 0.0,
-            stretch_offset_n: 0.0,
+            walk_n: 0.0,
             group_offset_n: 0.0,
             specimen_scale: 0.0,
         }
@@ -118,7 +118,7 @@ impl Noise {
             .at(load_n)
             .hypot(self.series.at(load_n))
             .hypot(self.series_common.at(load_n))
-            .hypot(self.stretch_offset_n)
+            .hypot(self.walk_n)
             .hypot(self.group_offset_n)
             .hypot(scale * friction_n)
     }
@@ -142,8 +142,6 @@ pub(crate) enum Part {
     SeriesScale,
     /// Friction, or wrap, of a mount.
     Mount,
-    /// Reading of a stretch of neighbouring series.
-    Stretch,
     /// Reading of an operator.
     Operator,
     /// Reading of a session.
@@ -153,13 +151,11 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    /// All of them, the smallest groups first.
-    pub(crate) const SHARED: [Part; 8] = [
-        Part::Cell,
+    /// Those of groups wider than a cell, the smallest first.
+    pub(crate) const WIDER: [Part; 6] = [
         Part::SeriesOffset,
         Part::SeriesScale,
         Part::Mount,
-        Part::Stretch,
         Part::Operator,
         Part::Session,
         Part::Specimen,
@@ -171,7 +167,6 @@ impl Part {
             Part::Cell => &data.cells,
             Part::SeriesOffset | Part::SeriesScale => &data.series_rows,
             Part::Mount => &data.mounts,
-            Part::Stretch => &data.stretches,
             Part::Operator => &data.operators,
             Part::Session => &data.sessions,
             Part::Specimen => &data.specimens,
@@ -186,7 +181,6 @@ impl Part {
             Part::SeriesOffset => noise.series_common.at(load_n),
             Part::SeriesScale => noise.series_scale * data.friction_n[row],
             Part::Mount => noise.mount_scale * data.friction_n[row],
-            Part::Stretch => noise.stretch_offset_n,
             Part::Operator | Part::Session => noise.group_offset_n,
             Part::Specimen => noise.specimen_scale * data.friction_n[row],
         }

@@ -31,8 +31,8 @@ pub struct Observations {
     pub series_rows: Vec<Vec<usize>>,
     /// Rows of each mount: of each condition where the table does not say.
     pub mounts: Vec<Vec<usize>>,
-    /// Rows of each stretch of neighbouring series and direction, in the order of time.
-    pub stretches: Vec<Vec<usize>>,
+    /// Cells of each direction in the order of time: their offsets may wander.
+    pub walks: Vec<Vec<usize>>,
     /// Rows of each operator; empty with fewer than two.
     pub operators: Vec<Vec<usize>>,
     /// Rows of each session; empty with fewer than two.
@@ -109,10 +109,10 @@ impl Observations {
             let l = labels(i);
             format!("{} {} {} {}", points[i].condition, l.session, l.specimen, l.mount)
         });
-        let stretches = stretches(&collected(&series_of, series), &points);
         let force_n = rows.iter().map(|r| r.force_n).collect();
         let cell_load_n = loads(&cells, &points);
         let ones = vec![1.0; rows.len()];
+        let walks = walks(&cells, &points);
         Some(Self {
             points,
             force_n,
@@ -124,7 +124,7 @@ impl Observations {
             friction_n: vec![0.0; rows.len()],
             series_rows: collected(&series_of, series),
             series_of,
-            stretches,
+            walks,
             mounts,
             operators: several(|l| &l.operator),
             sessions: several(|l| &l.session),
@@ -158,6 +158,7 @@ impl Observations {
                 .collect()
         };
         let cells = among(&self.cells);
+        let walks = walks(&cells, &kept.iter().map(|i| self.points[*i]).collect::<Vec<_>>());
         Self {
             cell_load_n: loads(&cells, &points),
             points,
@@ -170,7 +171,7 @@ impl Observations {
             friction_n: kept.iter().map(|i| self.friction_n[*i]).collect(),
             series_rows: among(&self.series_rows),
             mounts: among(&self.mounts),
-            stretches: among(&self.stretches),
+            walks,
             operators: among(&self.operators),
             sessions: among(&self.sessions),
             specimens: among(&self.specimens),
@@ -286,21 +287,18 @@ impl Observations {
     }
 }
 
-/// Series in a stretch: offsets that hang together from one series to the next are known by such stretches.
-const STRETCH: usize = 4;
-
-/// Rows of neighbouring series in one direction, in the order in which the series begin.
-fn stretches(series_rows: &[Vec<usize>], points: &[Point]) -> Vec<Vec<usize>> {
-    let begin = |rows: &[usize]| rows.iter().map(|r| points[*r].time).fold(f64::INFINITY, f64::min);
-    let mut order: Vec<&Vec<usize>> = series_rows.iter().collect();
-    order.sort_by(|a, b| begin(a).total_cmp(&begin(b)));
-    let of = |series: &[&Vec<usize>], sign: f64| -> Vec<usize> {
-        series.iter().copied().flatten().copied().filter(|r| points[*r].sign == sign).collect()
-    };
-    order
-        .chunks(STRETCH)
-        .flat_map(|series| [of(series, -1.0), of(series, 1.0)])
-        .filter(|rows| !rows.is_empty())
+/// Cells of each direction in the order in which they begin.
+fn walks(cells: &[Vec<usize>], points: &[Point]) -> Vec<Vec<usize>> {
+    let begin = |cell: usize| cells[cell].iter().map(|r| points[*r].time).fold(f64::INFINITY, f64::min);
+    [-1.0, 1.0]
+        .iter()
+        .map(|sign| {
+            let mut walk: Vec<usize> = (0..cells.len())
+                .filter(|c| cells[*c].first().is_some_and(|r| points[*r].sign == *sign))
+                .collect();
+            walk.sort_by(|a, b| begin(*a).total_cmp(&begin(*b)));
+            walk
+        })
         .collect()
 }
 

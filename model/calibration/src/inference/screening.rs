@@ -203,6 +203,8 @@ impl<'a> Screen<'a> {
         };
         let channels = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone]
             .map(|channel| (channel, sensitivity(channel)));
+        // The same shape is tried on several channels in a row.
+        let mut last: Vec<(Shape, Vec<f64>)> = Vec::new();
         let mut scores: Vec<StructureScore> = structures_to_try(&self.fitted.model.frame, &self.data().points)
             .into_iter()
             .filter_map(|group| {
@@ -210,8 +212,16 @@ impl<'a> Screen<'a> {
                     .iter()
                     .filter_map(|structure| {
                         let (_, along) = channels.iter().find(|(c, _)| *c == structure.channel)?;
-                        let column =
-                            self.data().points.iter().zip(along).map(|(p, s)| structure.value(p) * s).collect();
+                        let known = last.iter().position(|(form, _)| *form == structure.form);
+                        let at = known.unwrap_or_else(|| {
+                            if last.len() > 1 {
+                                last.remove(0);
+                            }
+                            let values = self.data().points.iter().map(|p| structure.value(p)).collect();
+                            last.push((structure.form.clone(), values));
+                            last.len() - 1
+                        });
+                        let column = last[at].1.iter().zip(along).map(|(v, s)| v * s).collect();
                         let (column, visible) = self.visible(column);
                         (visible > 0.02).then_some(column)
                     })

@@ -15,7 +15,7 @@ use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
 use super::unnamed::{Context, FoundStructure, with_structure};
 use super::variance_components::{NoiseFactors, Reliability, Scatter, estimate, scatter_size, shared_again};
 use super::weighed::Weighed;
-use crate::effects::{CATALOGUE, Effect, acting_order};
+use crate::effects::{CATALOGUE, Effect, Shape, acting_order};
 
 /// An effect that explains what a named one explains as well.
 #[derive(Clone, Debug)]
@@ -162,6 +162,7 @@ pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selecti
 }
 
 /// One explanation of a table at one noise.
+#[derive(Clone)]
 struct Explanation {
     baseline: Fit,
     augmented: Fit,
@@ -174,6 +175,17 @@ struct Explanation {
 }
 
 impl Explanation {
+    /// Shapes without a name; the sine and the cosine of a wave are one.
+    fn shapes(&self) -> usize {
+        let is_one = |term: &&Term| match term {
+            Term::Structure(s) => {
+                !matches!(s.form, Shape::TimeWave { quarter: 1, .. } | Shape::PositionWave { quarter: 1, .. })
+            }
+            Term::Named(_) => false,
+        };
+        self.augmented.model.terms.iter().filter(is_one).count()
+    }
+
     fn names(&self) -> usize {
         self.augmented.model.named_effects().len()
     }
@@ -182,9 +194,38 @@ impl Explanation {
     /// believed how many there were to choose from.
     fn toll(&self, data: &Observations) -> f64 {
         let choices = 2.0 * (CATALOGUE.len() as f64).ln() * self.names() as f64;
-        let shapes = self.structure.map_or(0.0, |_| 2.0 * (self.structures_tried.max(1) as f64).ln());
+        let shapes = 2.0 * (self.structures_tried.max(1) as f64).ln() * self.shapes() as f64;
         let scatter: f64 = Scatter::ALL.iter().map(|s| s.cost(self.noise)).sum();
         evidence(&self.augmented, &Weighed::new(data, self.noise)) + choices + shapes + scatter
+    }
+}
+
+/// Evidence by which believing less may be behind and still be searched for.
+const WORTH_A_SEARCH: f64 = 25.0;
+
+impl Explanation {
+    /// The explanations that believe one thing less, or nothing.
+    fn with_less(&self) -> impl Iterator<Item = Explanation> {
+        let terms = &self.augmented.model.terms;
+        let bare = (0..terms.len()).rev().fold(self.augmented.model.clone(), |m, i| m.without_term(i));
+        let named = (0..terms.len())
+            .filter(|i| matches!(terms[*i], Term::Named(_)))
+            .map(|i| (self.augmented.model.without_term(i), self.structure));
+        let shapeless = (0..terms.len())
+            .rev()
+            .filter(|i| matches!(terms[*i], Term::Structure(_)))
+            .fold(self.augmented.model.clone(), |m, i| m.without_term(i));
+        [(bare, None), (shapeless, None)].into_iter().chain(named).map(|(model, structure)| Explanation {
+            augmented: Fit { model, ..self.augmented.clone() },
+            structure,
+            ..self.clone()
+        })
+    }
+
+    /// The same things believed at another noise.
+    fn at(&self, data: &Observations, noise: Noise) -> Explanation {
+        let augmented = fit(&self.augmented.model, &Weighed::new(data, noise));
+        Explanation { augmented, noise, ..self.clone() }
     }
 }
 
@@ -232,7 +273,7 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
         Context { weighed: &weighed, levels, explained }.with_unnamed(&baseline, found.clone(), &left, bent)
     };
     if std::env::var("LAB").is_ok() {
-        eprintln!("  explain: {:?} {:?} best structure {:.1} {:?} | noise scale {:.4} mount {:.4} stretch {:.3} cell {:.3}+{:.4} com {:.3} isolated {:?} baseline cost {:.0}", augmented.model.named_effects().iter().map(|e| e.id()).collect::<Vec<_>>(), structure, structure_gain, left.first().map(|s| &s.group[0]), noise.series_scale, noise.mount_scale, noise.stretch_offset_n, noise.series.constant_n, noise.series.per_load, noise.series_common.constant_n, isolated, baseline.cost);
+        eprintln!("  explain: {:?} {:?} best structure {:.1} {:?} | noise scale {:.4} mount {:.4} walk {:.3} cell {:.3}+{:.4} com {:.3} isolated {:?} baseline cost {:.0}", augmented.model.named_effects().iter().map(|e| e.id()).collect::<Vec<_>>(), structure, structure_gain, left.first().map(|s| &s.group[0]), noise.series_scale, noise.mount_scale, noise.walk_n, noise.series.constant_n, noise.series.per_load, noise.series_common.constant_n, isolated, baseline.cost);
     }
     Explanation { baseline, augmented, structure, structure_gain, structures_tried, noise, isolated }
 }
@@ -300,8 +341,14 @@ fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Ex
     let sizes = Scatter::ALL.map(|scatter| (scatter, size_of(scatter, &free.baseline, free.noise)));
     let mut best = with_scatter(free);
     for (scatter, size) in sizes.into_iter().filter(|(_, size)| *size > 0.0) {
-        let noise = Scatter::ALL.iter().fold(best.noise, |n, other| other.in_noise(n, 0.0));
-        let other = explain(&best.baseline.model, data, scatter.in_noise(noise, size), levels);
+        let bare = Scatter::ALL.iter().fold(best.noise, |n, other| other.in_noise(n, 0.0));
+        let noise = scatter.in_noise(bare, size);
+        // The search is only worth its time if believing less than now comes near.
+        let toll = best.toll(data);
+        if !best.with_less().any(|less| less.at(data, noise).toll(data) < toll + WORTH_A_SEARCH) {
+            continue;
+        }
+        let other = explain(&best.baseline.model, data, noise, levels);
         let other = with_scatter(other);
         if std::env::var("LAB").is_ok() { eprintln!("  best {:.1} vs {:?} {:.1}", best.toll(data), scatter, other.toll(data)); }
         if other.toll(data) < best.toll(data) {

@@ -60,7 +60,7 @@ pub(super) fn shared_again(
     noise: Noise,
 ) -> Noise {
     let found = between(data, residual_n, explainable, noise).unwrap_or(noise);
-    Noise { mount_scale: noise.mount_scale, stretch_offset_n: noise.stretch_offset_n, ..found }
+    Noise { mount_scale: noise.mount_scale, walk_n: noise.walk_n, ..found }
 }
 
 /// The repetition noise, with the whitened residuals that it was read from.
@@ -200,7 +200,7 @@ fn with_sizes(noise: Noise, sizes: [f64; 5]) -> Noise {
 
 /// What rows of a series share; `None` with too few series to tell.
 fn between(data: &Observations, residual_n: &[f64], explainable: &[Vec<f64>], noise: Noise) -> Option<Noise> {
-    let noise = Noise { mount_scale: 0.0, stretch_offset_n: 0.0, ..noise };
+    let noise = Noise { mount_scale: 0.0, walk_n: 0.0, ..noise };
     let means = data.cell_means(noise);
     let residual = means.mean_of(data, residual_n);
     let mut columns: Vec<Vec<f64>> = explainable.iter().map(|c| means.mean_of(data, c)).collect();
@@ -281,8 +281,8 @@ fn indicator(len: usize, rows: &[usize], value: impl Fn(usize) -> f64) -> Vec<f6
 pub(super) enum Scatter {
     /// The friction of each mount.
     Mounts,
-    /// The reading of each stretch of neighbouring series.
-    Stretches,
+    /// Offsets that wander from series to series.
+    Walk,
     /// The reading of each operator and of each session, where the table names them.
     Groups,
     /// The friction of each specimen, where the table names them.
@@ -291,13 +291,13 @@ pub(super) enum Scatter {
 
 impl Scatter {
     /// Those that compete with effects. The others are known by the table's own labels.
-    pub(super) const ALL: [Scatter; 2] = [Scatter::Mounts, Scatter::Stretches];
+    pub(super) const ALL: [Scatter; 2] = [Scatter::Mounts, Scatter::Walk];
 
     /// The noise with this scatter.
     pub(super) fn in_noise(self, noise: Noise, size: f64) -> Noise {
         match self {
             Scatter::Mounts => Noise { mount_scale: size, ..noise },
-            Scatter::Stretches => Noise { stretch_offset_n: size, ..noise },
+            Scatter::Walk => Noise { walk_n: size, ..noise },
             Scatter::Groups => Noise { group_offset_n: size, ..noise },
             Scatter::Specimens => Noise { specimen_scale: size, ..noise },
         }
@@ -307,7 +307,7 @@ impl Scatter {
     pub(super) fn of(self, noise: Noise) -> f64 {
         match self {
             Scatter::Mounts => noise.mount_scale,
-            Scatter::Stretches => noise.stretch_offset_n,
+            Scatter::Walk => noise.walk_n,
             Scatter::Groups => noise.group_offset_n,
             Scatter::Specimens => noise.specimen_scale,
         }
@@ -316,7 +316,7 @@ impl Scatter {
     fn groups(self, data: &Observations) -> Vec<&Vec<usize>> {
         match self {
             Scatter::Mounts => data.mounts.iter().collect(),
-            Scatter::Stretches => data.stretches.iter().collect(),
+            Scatter::Walk => Vec::new(),
             Scatter::Groups => data.operators.iter().chain(&data.sessions).collect(),
             Scatter::Specimens => data.specimens.iter().collect(),
         }
@@ -325,7 +325,8 @@ impl Scatter {
     /// Groups without which nothing can be told of the scatter between them.
     fn least_groups(self) -> usize {
         match self {
-            Scatter::Mounts | Scatter::Stretches => 3,
+            Scatter::Mounts => 3,
+            Scatter::Walk => 0,
             Scatter::Groups | Scatter::Specimens => 2,
         }
     }
@@ -334,7 +335,7 @@ impl Scatter {
     fn direction_n(self, data: &Observations, row: usize) -> f64 {
         match self {
             Scatter::Mounts | Scatter::Specimens => data.friction_n[row],
-            Scatter::Stretches | Scatter::Groups => 1.0,
+            Scatter::Walk | Scatter::Groups => 1.0,
         }
     }
 
@@ -342,7 +343,7 @@ impl Scatter {
     fn scale(self) -> [f64; 4] {
         match self {
             Scatter::Mounts => [LEAST_SCALE, 0.02, 0.045, MOST_MOUNT_SCALE],
-            Scatter::Stretches => [2e-3, 0.05, 0.15, 0.3],
+            Scatter::Walk => [2e-3, 0.05, 0.15, 0.3],
             Scatter::Groups => [2e-3, 0.2, 0.5, 10.0],
             Scatter::Specimens => [LEAST_SCALE, 0.05, 0.1, 1.0],
         }
@@ -363,6 +364,9 @@ pub(super) fn scatter_size(
     own: &[Vec<f64>],
     noise: Noise,
 ) -> f64 {
+    if scatter == Scatter::Walk {
+        return walk_size(data, residual_n, own, noise);
+    }
     let [least, start, _, most] = scatter.scale();
     let none = (0..data.points.len()).all(|r| scatter.direction_n(data, r) == 0.0);
     if scatter.groups(data).len() < scatter.least_groups() || none {
@@ -408,6 +412,50 @@ pub(super) fn scatter_size(
         }
     }
     theta.sqrt().min(most)
+}
+
+/// Sizes of a wandering offset that are tried, in newtons.
+const WALKS_N: [f64; 9] = [0.01, 0.02, 0.03, 0.045, 0.065, 0.09, 0.13, 0.19, 0.28];
+/// Cells without which a walk cannot be told from offsets.
+const LEAST_WALK: usize = 24;
+
+/// The size of a wandering offset with the largest restricted likelihood, or zero.
+fn walk_size(data: &Observations, residual_n: &[f64], own: &[Vec<f64>], noise: Noise) -> f64 {
+    if data.cells.len() < LEAST_WALK {
+        return 0.0;
+    }
+    let means = data.cell_means(noise);
+    let residual = means.mean_of(data, residual_n);
+    let columns: Vec<Vec<f64>> = own.iter().map(|c| means.mean_of(data, c)).collect();
+    let cost = |walk_n: f64| {
+        let noise = Noise { walk_n, ..noise };
+        let weighed = Weighed::new(&means.observations, noise);
+        let mut projection = Projection::new(residual.len());
+        let mut log_det = weighed.shared_log_det();
+        for column in &columns {
+            let mut white = column.clone();
+            weighed.whiten(&mut white);
+            // The determinant of the projection's own columns: what they lose of their length to those before.
+            let mut rest = white.clone();
+            projection.remove(&mut rest);
+            let length2 = dot(&rest, &rest);
+            if projection.absorb(white) && length2 > 0.0 {
+                log_det += length2.ln();
+            }
+        }
+        let mut white = residual.clone();
+        weighed.whiten(&mut white);
+        projection.remove(&mut white);
+        dot(&white, &white) + log_det + Scatter::Walk.cost(noise)
+    };
+    let mut best = (cost(0.0), 0.0);
+    for walk_n in WALKS_N {
+        let cost = cost(walk_n);
+        if cost < best.0 {
+            best = (cost, walk_n);
+        }
+    }
+    best.1
 }
 
 /// How well the noise itself is known, to tell how many degrees of freedom stand behind a size
@@ -459,7 +507,7 @@ impl Reliability {
     pub(crate) fn new(data: &Observations, noise: Noise, own: &[Vec<f64>]) -> Self {
         let means = data.cell_means(noise);
         let own: Vec<Vec<f64>> = own.iter().map(|c| means.mean_of(data, c)).collect();
-        let local = Noise { mount_scale: 0.0, stretch_offset_n: 0.0, group_offset_n: 0.0, specimen_scale: 0.0, ..noise };
+        let local = Noise { mount_scale: 0.0, walk_n: 0.0, group_offset_n: 0.0, specimen_scale: 0.0, ..noise };
         let zeros = vec![0.0; means.observations.points.len()];
         let blocks = blocks(&means.observations, local, &zeros, &own);
         let theta = sizes(noise);

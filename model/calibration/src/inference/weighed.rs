@@ -7,6 +7,7 @@
 
 use super::correlation::unchain;
 use super::noise::{Noise, Part};
+use super::walk::Walk;
 use super::observations::Observations;
 
 /// What the rows of each group of one kind share, in the scale that the steps before have whitened.
@@ -19,6 +20,39 @@ struct Shared {
     removed: Vec<f64>,
 }
 
+impl Shared {
+    /// What the groups of one part share, if the noise has any; `whiten` makes the steps before.
+    fn new(part: Part, noise: Noise, data: &Observations, whiten: impl Fn(&mut [f64])) -> Option<Self> {
+        let groups = part.groups(data);
+        let mut axis: Vec<f64> = (0..data.points.len()).map(|row| part.direction_n(noise, data, row)).collect();
+        if groups.is_empty() || axis.iter().all(|a| *a == 0.0) {
+            return None;
+        }
+        whiten(&mut axis);
+        let mut removed = vec![0.0; groups.len()];
+        for (group, share) in groups.iter().zip(&mut removed) {
+            let length2: f64 = group.iter().map(|r| axis[*r] * axis[*r]).sum();
+            if length2 > 1e-24 {
+                let length = length2.sqrt();
+                group.iter().for_each(|r| axis[*r] /= length);
+                *share = 1.0 - (1.0 + length2).sqrt().recip();
+            }
+        }
+        Some(Self { part, axis, removed })
+    }
+
+    /// A symmetric step: it is its own adjoint.
+    fn whiten(&self, data: &Observations, values: &mut [f64]) {
+        for (group, removed) in self.part.groups(data).iter().zip(&self.removed) {
+            if *removed > 0.0 {
+                let sum: f64 = group.iter().map(|r| self.axis[*r] * values[*r]).sum();
+                let shift = removed * sum;
+                group.iter().for_each(|r| values[*r] -= shift * self.axis[*r]);
+            }
+        }
+    }
+}
+
 /// Observations with their noise.
 #[derive(Clone, Debug)]
 pub struct Weighed<'a> {
@@ -26,9 +60,12 @@ pub struct Weighed<'a> {
     pub data: &'a Observations,
     /// The noise they are weighed by.
     pub noise: Noise,
-    shared: Vec<Shared>,
     /// One over the repetition's standard deviation, times the root of the weight, by row.
     scale: Vec<f64>,
+    cells: Option<Shared>,
+    /// Offsets wander from cell to cell: they are whitened while each cell still stands for itself.
+    walk: Option<Walk>,
+    shared: Vec<Shared>,
 }
 
 impl<'a> Weighed<'a> {
@@ -40,36 +77,16 @@ impl<'a> Weighed<'a> {
             .zip(&data.roots)
             .map(|(p, root)| root / noise.repetition.at(p.load_n).max(1e-12))
             .collect();
-        let mut weighed = Self { data, noise, shared: Vec::new(), scale };
-        for part in Part::SHARED {
-            weighed.absorb(part);
+        let mut weighed = Self { data, noise, scale, cells: None, walk: None, shared: Vec::new() };
+        weighed.cells = Shared::new(Part::Cell, noise, data, |v| weighed.whiten(v));
+        if noise.walk_n > 0.0 {
+            weighed.walk = Some(Walk::new(&weighed));
+        }
+        for part in Part::WIDER {
+            let shared = Shared::new(part, noise, data, |v| weighed.whiten(v));
+            weighed.shared.extend(shared);
         }
         weighed
-    }
-
-    /// Adds what the groups of one part share.
-    fn absorb(&mut self, part: Part) {
-        let mut axis = vec![0.0; self.data.points.len()];
-        let groups = part.groups(self.data);
-        let mut any = false;
-        for (row, value) in axis.iter_mut().enumerate() {
-            *value = part.direction_n(self.noise, self.data, row);
-            any |= *value != 0.0;
-        }
-        if !any || groups.is_empty() {
-            return;
-        }
-        self.whiten(&mut axis);
-        let mut removed = vec![0.0; groups.len()];
-        for (group, share) in groups.iter().zip(&mut removed) {
-            let length2: f64 = group.iter().map(|r| axis[*r] * axis[*r]).sum();
-            if length2 > 1e-24 {
-                let length = length2.sqrt();
-                group.iter().for_each(|r| axis[*r] /= length);
-                *share = 1.0 - (1.0 + length2).sqrt().recip();
-            }
-        }
-        self.shared.push(Shared { part, axis, removed });
     }
 
     /// Whitens one value per row in place, `V^-1/2 v`.
@@ -84,32 +101,25 @@ impl<'a> Weighed<'a> {
                 cell.iter().zip(&along).for_each(|(r, v)| values[*r] = *v);
             }
         }
-        for shared in &self.shared {
-            for (group, removed) in shared.part.groups(self.data).iter().zip(&shared.removed) {
-                if *removed > 0.0 {
-                    let sum: f64 = group.iter().map(|r| shared.axis[*r] * values[*r]).sum();
-                    let shift = removed * sum;
-                    group.iter().for_each(|r| values[*r] -= shift * shared.axis[*r]);
-                }
-            }
-        }
+        self.cells.iter().for_each(|cells| cells.whiten(self.data, values));
+        self.walk.iter().for_each(|walk| walk.whiten(self.data, values));
+        self.shared.iter().for_each(|shared| shared.whiten(self.data, values));
     }
 
     /// `V^-1/2' v` of values that have no neighbours in a chain, as means of series have none.
     pub(crate) fn whiten_transposed(&self, mut values: Vec<f64>) -> Vec<f64> {
-        for shared in self.shared.iter().rev() {
-            for (group, removed) in shared.part.groups(self.data).iter().zip(&shared.removed) {
-                let sum: f64 = group.iter().map(|r| shared.axis[*r] * values[*r]).sum();
-                group.iter().for_each(|r| values[*r] -= removed * sum * shared.axis[*r]);
-            }
-        }
+        self.shared.iter().rev().for_each(|shared| shared.whiten(self.data, &mut values));
+        self.walk.iter().for_each(|walk| walk.whiten_transposed(self.data, &mut values));
+        self.cells.iter().for_each(|cells| cells.whiten(self.data, &mut values));
         values.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
         values
     }
 
     /// `ln det V` over that of the repetition noise alone: what shared noise costs a likelihood.
     pub(crate) fn shared_log_det(&self) -> f64 {
-        self.shared.iter().flat_map(|s| &s.removed).map(|removed| -2.0 * (1.0 - removed).ln()).sum()
+        let shared: f64 =
+            self.cells.iter().chain(&self.shared).flat_map(|s| &s.removed).map(|removed| -2.0 * (1.0 - removed).ln()).sum();
+        shared + self.walk.as_ref().map_or(0.0, Walk::log_det)
     }
 }
 
@@ -135,6 +145,7 @@ mod tests {
             series_common: Spread { constant_n: 0.05, per_load: 0.0 },
             series_scale: 0.03,
             mount_scale: 0.05,
+            walk_n: 0.04,
             ..Noise::constant(0.1, 0.3)
         };
         let mut v = nalgebra::DMatrix::zeros(n, n);
@@ -144,6 +155,13 @@ mod tests {
                 if same(&data.cells) {
                     let gap = data.points[i].repetition - data.points[j].repetition;
                     v[(i, j)] += 0.01 * 0.6f64.powf(gap.abs()) / (data.roots[i] * data.roots[j]) + 0.09;
+                }
+                let cell_of = |r: usize| data.cells.iter().position(|c| c.contains(&r)).unwrap();
+                for walk in &data.walks {
+                    let place = |r: usize| walk.iter().position(|c| *c == cell_of(r));
+                    if let (Some(a), Some(b)) = (place(i), place(j)) {
+                        v[(i, j)] += 0.0016 * 0.75f64.powi(a.abs_diff(b) as i32);
+                    }
                 }
                 let friction = data.friction_n[i] * data.friction_n[j];
                 if same(&data.series_rows) {
@@ -163,7 +181,16 @@ mod tests {
             (0..n).for_each(|i| root[(i, j)] = unit[i]);
         }
         let one = &root * &v * root.transpose();
-        assert!((one - nalgebra::DMatrix::identity(n, n)).amax() < 1e-9);
+        let off = (one - nalgebra::DMatrix::identity(n, n)).amax();
+        assert!(off < 1e-9, "{off}");
+        // Without a chain the adjoint is that of the same map.
+        let unchained = Weighed::new(&data, Noise { correlation: 0.0, ..noise });
+        let (a, b): (Vec<f64>, Vec<f64>) = (0..n).map(|i| ((i as f64).sin(), (i as f64).cos())).unzip();
+        let mut white = a.clone();
+        unchained.whiten(&mut white);
+        let through: f64 = white.iter().zip(&b).map(|(x, y)| x * y).sum();
+        let back: f64 = unchained.whiten_transposed(b).iter().zip(&a).map(|(x, y)| x * y).sum();
+        assert!((through / back - 1.0).abs() < 1e-9, "{through} {back}");
         let repetition = Noise::constant(0.1, 0.0);
         let chained = Weighed::new(&data, Noise { correlation: 0.6, ..repetition });
         assert!(chained.shared_log_det() == 0.0);

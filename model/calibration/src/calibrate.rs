@@ -4,10 +4,10 @@ use pinswitch_friction::Substrate;
 
 use crate::aliasing::aliasing;
 use crate::effects::CATALOGUE;
-use crate::held_out::{SOUND_WEIGHT, held_out};
+use crate::held_out::held_out;
 use crate::inference::{
-    CandidateEffect, Fit, FoundEffect, Levels, Model, Observations, Rival, Selection, Term,
-    UNATTRIBUTED, Weighed, cell_deviation, degrees_of_freedom, family_p_value, interval_half_widths, select,
+    CandidateEffect, Fit, FoundEffect, Levels, MOST_ROWS, Model, Noise, Observations, Rival, Selection, Term,
+    UNATTRIBUTED, Weighed, cell_deviation, degrees_of_freedom, family_p_value, fit, interval_half_widths, select,
 };
 use crate::layouts_left_out::layouts_left_out;
 use crate::promise::{Promise, promise};
@@ -83,17 +83,35 @@ pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, Cal
     let start = Model::baseline(frame.clone());
     let needed = start.values().len() + ROWS_FOR_NOISE;
     let too_few = CalibrationError::TooFewRows { found: rows.len(), needed };
-    let mut data = Observations::new(&frame, rows).ok_or_else(|| too_few.clone())?;
+    let mut whole = Observations::new(&frame, rows).ok_or_else(|| too_few.clone())?;
     if rows.len() < needed {
         return Err(too_few);
     }
+    let mut data = if whole.points.len() > MOST_ROWS {
+        let rough = fit(&start, &Weighed::new(&whole, Noise::constant(0.1, 0.03)));
+        whole.weigh_outliers(&rough.residual_n);
+        whole.friction_n = rough.model.friction_n(&whole.points);
+        whole.compacted()
+    } else {
+        whole.clone()
+    };
     let mut selection = select(&start, &mut data, levels);
     let promised = promise(&selection, &data, levels);
     // What does not help on series that had no part in finding it is not kept.
     if promised.is_some_and(|p| p.augmented_n > p.baseline_n) && !selection.augmented.model.terms.is_empty() {
         selection = selection.without_findings(&data, levels);
     }
-    let report = report(rows, &selection, &data, levels, promised);
+    if data.points.len() == whole.points.len() {
+        whole = data.clone();
+    }
+    let outliers = (0..whole.points.len()).filter(|i| !whole.is_sound(*i)).count();
+    let report = report(rows, &selection, &data, levels, promised, outliers);
+    // What is told row by row is told of every row.
+    for fitted in [&mut selection.baseline, &mut selection.augmented] {
+        let predicted = fitted.model.predict(&whole.points);
+        fitted.residual_n = whole.force_n.iter().zip(predicted).map(|(y, p)| y - p).collect();
+    }
+    let data = whole;
     Ok(Calibration { report, selection, data })
 }
 
@@ -105,11 +123,9 @@ fn estimate(value: f64, half_width: f64, unit: &str, (least, most): (f64, f64)) 
 
 fn model_report(fitted: &Fit, weighed: &Weighed<'_>) -> (ModelReport, f64) {
     let held = held_out(&fitted.model, weighed);
-    let (mut sum, mut count) = (0.0, 0.0);
-    for (r, _) in fitted.residual_n.iter().zip(&weighed.data.weights).filter(|(_, w)| **w > SOUND_WEIGHT) {
-        sum += r * r;
-        count += 1.0;
-    }
+    let data = weighed.data;
+    let sound = (0..data.points.len()).filter(|i| data.is_sound(*i));
+    let rmse_n = data.root_mean_square_n(sound.map(|i| (i, fitted.residual_n[i])));
     let widths = interval_half_widths(fitted, weighed);
     let conditions = &fitted.model.frame.conditions;
     let touched = |name: &str| match name {
@@ -129,7 +145,7 @@ fn model_report(fitted: &Fit, weighed: &Weighed<'_>) -> (ModelReport, f64) {
         })
         .collect();
     let report = ModelReport {
-        rmse_n: (sum / f64::max(count, 1.0)).sqrt(),
+        rmse_n: if rmse_n.is_nan() { 0.0 } else { rmse_n },
         heldout_rmse_n: held.both_n(),
         heldout_series_rmse_n: held.series_n,
         heldout_loads_rmse_n: held.loads_n,
@@ -145,6 +161,7 @@ fn report(
     data: &Observations,
     levels: Levels,
     promised: Option<Promise>,
+    outliers: usize,
 ) -> Report {
     let noise = selection.noise;
     let weighed = &Weighed::new(data, noise);
@@ -162,7 +179,7 @@ fn report(
             rows: rows.len(),
             series: data.series,
             conditions: selection.baseline.model.frame.conditions.len(),
-            outliers: data.weights.iter().filter(|w| **w <= SOUND_WEIGHT).count(),
+            outliers,
         },
         verdict: Verdict::of(selection),
         noise_floor_n: noise.floor_n(data),
@@ -457,7 +474,7 @@ fn bad_series(rows: &[PlateauRow], selection: &Selection, weighed: &Weighed<'_>)
         } else {
             continue;
         };
-        if let Some(row) = cell.first().and_then(|r| rows.get(*r)) {
+        if let Some(row) = cell.first().and_then(|r| rows.get(data.source[*r])) {
             bad.push(BadSeries {
                 series: row.series.clone(),
                 direction: row.direction.as_str().to_owned(),

@@ -19,9 +19,6 @@ impl HeldOut {
 }
 
 const FOLDS: usize = 4;
-/// Rows weighed down further than this are outliers and judge no model.
-pub(crate) const SOUND_WEIGHT: f64 = 0.5;
-
 /// Held-out errors of a model that is refitted from where it stands.
 pub fn held_out(model: &Model, weighed: &Weighed<'_>) -> HeldOut {
     let data = weighed.data;
@@ -47,18 +44,16 @@ impl HeldOut {
 
 fn error(model: &Model, weighed: &Weighed<'_>, fold: &dyn Fn(usize) -> usize) -> f64 {
     let data = weighed.data;
-    let (mut sum, mut count) = (0.0, 0.0);
+    let mut misses = Vec::new();
     for left_out in 0..FOLDS {
         let seen = data.subset(|i| fold(i) != left_out);
         if seen.points.len() < model.values().len() + 2 || seen.points.len() == data.points.len() {
             continue;
         }
         let fitted = fit(model, &Weighed::new(&seen, weighed.noise));
-        let hidden = data.subset(|i| fold(i) == left_out && data.weights[i] > SOUND_WEIGHT);
-        for (predicted, read) in fitted.model.predict(&hidden.points).iter().zip(&hidden.force_n) {
-            sum += (predicted - read).powi(2);
-            count += 1.0;
-        }
+        let predicted = fitted.model.predict(&data.points);
+        let hidden = (0..predicted.len()).filter(|i| fold(*i) == left_out && data.is_sound(*i));
+        misses.extend(hidden.map(|i| (i, data.force_n[i] - predicted[i])));
     }
-    if count > 0.0 { (sum / count).sqrt() } else { f64::NAN }
+    data.root_mean_square_n(misses.into_iter())
 }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use crate::held_out::SOUND_WEIGHT;
 use crate::inference::{Model, Weighed, fit};
 
 /// Root mean square error in newtons on layouts that the fit did not see. Each layout is left out in turn, with its
@@ -30,11 +29,12 @@ pub fn layouts_left_out(model: &Model, weighed: &Weighed<'_>) -> Option<f64> {
         let hidden = data.subset(inside);
         // The layout's own constants start from the layout law: the fit of the others has not seen them.
         let refitted = fit(&others.model.frozen_except(&own), &Weighed::new(&hidden, noise));
-        for (residual, _) in
-            refitted.residual_n.iter().zip(&hidden.weights).filter(|(_, w)| **w > SOUND_WEIGHT)
-        {
-            sum += residual * residual;
-            count += 1.0;
+        let sound = (0..hidden.points.len()).filter(|i| hidden.is_sound(*i));
+        let n: f64 = sound.clone().map(|i| hidden.counts[i]).sum();
+        if n > 0.0 {
+            let error_n = hidden.root_mean_square_n(sound.map(|i| (i, refitted.residual_n[i])));
+            sum += n * error_n * error_n;
+            count += n;
         }
     }
     (count > 0.0).then(|| f64::sqrt(sum / count))

@@ -25,6 +25,7 @@
 //! the effects and `model/doc/naming-an-effect.md` how one is named.
 
 mod aliasing;
+mod beyond_range;
 mod calibrate;
 pub mod effects;
 mod extrapolation;

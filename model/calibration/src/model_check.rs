@@ -66,6 +66,11 @@ pub(crate) fn check_constants<'a>(
     Ok(())
 }
 
+/// A growth of errors is one.
+pub(crate) fn check_beyond_range(beyond_range: f64) -> Result<(), Flaw> {
+    within("beyond_range", beyond_range, 0.0, MAX_CONSTANT)
+}
+
 /// The noise is one: no negative spread, no correlation beyond one.
 pub(crate) fn check_noise(noise: &Noise) -> Result<(), Flaw> {
     for (name, size) in [

@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::beyond_range::error_beyond_range;
 use crate::effects::{Structure, effect_named};
 use crate::inference::{Fit, Model, Noise, Observations, Term, Weighed, coordinate_covariance, prediction_sd_n};
-use crate::model_check::{Flaw, check_constants, check_covariance, check_finite, check_frame, check_noise};
+use crate::model_check::{Flaw, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise};
 use crate::table::{Frame, PlateauRow};
 
 /// Name and version of the format.
@@ -127,6 +128,9 @@ pub struct ModelFile {
     #[serde(default)]
     terms: Vec<TermEntry>,
     noise: Noise,
+    /// Growth of the error with the distance from the loads fitted, in newtons per newton.
+    #[serde(default)]
+    beyond_range: f64,
     frame: Frame,
     /// Covariance of the constants' coordinates, row by row.
     covariance: Vec<Vec<f64>>,
@@ -136,7 +140,10 @@ impl ModelFile {
     /// The file of a fit.
     pub fn new(fitted: &Fit, data: &Observations, noise: Noise) -> Self {
         let model = &fitted.model;
-        let covariance = coordinate_covariance(fitted, &Weighed::new(data, noise));
+        let data = &data.compacted();
+        let weighed = Weighed::new(data, noise);
+        let covariance = coordinate_covariance(fitted, &weighed);
+        let beyond_range = error_beyond_range(model, &weighed);
         Self {
             schema: SCHEMA.to_owned(),
             constants: model
@@ -164,6 +171,7 @@ impl ModelFile {
                 })
                 .collect(),
             noise,
+            beyond_range,
             frame: model.frame.clone(),
             covariance: (0..covariance.nrows())
                 .map(|i| covariance.row(i).iter().copied().collect())
@@ -206,7 +214,10 @@ impl ModelFile {
     /// [`ModelFileError`] if an effect is unknown or constants are missing.
     pub fn model(&self, file: &str) -> Result<Model, ModelFileError> {
         let flawed = ModelFileError::of(file);
-        check_frame(&self.frame).and_then(|()| check_noise(&self.noise)).map_err(&flawed)?;
+        check_frame(&self.frame)
+            .and_then(|()| check_noise(&self.noise))
+            .and_then(|()| check_beyond_range(self.beyond_range))
+            .map_err(&flawed)?;
         let mut model = Model::baseline(self.frame.clone());
         for entry in &self.terms {
             let term =
@@ -244,7 +255,12 @@ impl ModelFile {
         let model = known.in_frame(frame);
         let points = model.frame.points(rows).unwrap_or_default();
         let predicted = model.predict(&points);
-        let sd = prediction_sd_n(&model, &points, &self.covariance, self.noise);
+        let mut sd = prediction_sd_n(&model, &points, &self.covariance, self.noise);
+        let (low, high) = self.frame.load_range_n;
+        for (sd, point) in sd.iter_mut().zip(&points) {
+            let beyond = (point.load_n - high).max(low - point.load_n).max(0.0);
+            *sd = sd.hypot(self.beyond_range * beyond);
+        }
         if let Some(row) = predicted.iter().zip(&sd).position(|(n, sd)| !n.is_finite() || !sd.is_finite()) {
             return Err(ModelFileError::of(file)(Flaw {
                 field: "constants".to_owned(),

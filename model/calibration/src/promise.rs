@@ -41,6 +41,7 @@ fn part(
     let fold = |row: usize| (data.series_of[row] * 7 / 3) % FOLDS;
     let mut seen = data.subset(|row| fold(row) != left_out);
     let hidden = data.subset(|row| fold(row) == left_out && !data.is_excluded(row));
+    let readings: f64 = hidden.counts.iter().sum();
     if seen.points.len() < start.values().len() + 8 || hidden.points.is_empty() {
         return None;
     }
@@ -51,14 +52,14 @@ fn part(
         predicted
             .iter()
             .zip(&hidden.force_n)
-            .zip(hidden.points.iter().zip(&hidden.friction_n))
-            .map(|((p, y), (point, u))| {
-                let furthest = FURTHEST_SD * whole.noise.at(point.load_n, *u);
-                (p - y).powi(2).min(furthest * furthest)
+            .enumerate()
+            .map(|(i, (p, y))| {
+                let furthest = FURTHEST_SD * whole.noise.at(hidden.points[i].load_n, hidden.friction_n[i]);
+                hidden.counts[i] * ((p - y).powi(2).min(furthest * furthest) + hidden.within_n2[i])
             })
             .sum()
     };
-    Some((squares(&baseline.model), squares(&found.augmented.model), hidden.points.len() as f64))
+    Some((squares(&baseline.model), squares(&found.augmented.model), readings))
 }
 
 /// One result per part, on as many threads as the feature `parallel` allows.

@@ -3,6 +3,7 @@
 //! How the steps hang together, and how well they work, stands in `model/doc/naming-an-effect.md`.
 
 mod baseline;
+mod compaction;
 mod correlation;
 mod evidence;
 mod fit;
@@ -25,6 +26,7 @@ mod variance_components;
 mod walk;
 mod weighed;
 
+pub(crate) use compaction::MOST_ROWS;
 pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_sd_n};
 pub use forward::{Model, Term, UNATTRIBUTED};
 pub(crate) use isolation::cell_deviation;

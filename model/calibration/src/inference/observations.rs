@@ -22,6 +22,12 @@ pub struct Observations {
     pub cell_load_n: Vec<f64>,
     /// Weight of each row, 1 for a sound one.
     pub weights: Vec<f64>,
+    /// Readings that each row is the mean of: 1 unless a long table was averaged.
+    pub counts: Vec<f64>,
+    /// Mean square of those readings about their mean, in newtons squared.
+    pub within_n2: Vec<f64>,
+    /// Row of the table that each row came from, or its first one.
+    pub source: Vec<usize>,
     /// Roots of the weights.
     pub(crate) roots: Vec<f64>,
     /// Change of the reading in newtons when the friction exponent grows by one part in one, by row; zero until a model
@@ -73,6 +79,8 @@ impl CellMeans {
     }
 }
 
+/// Rows weighed down further than this are outliers and judge no model.
+const SOUND_WEIGHT: f64 = 0.5;
 /// Weight below which no row falls, so that its root stays a number; a reading a million times off has no say at it.
 const MIN_WEIGHT: f64 = 1e-16;
 /// Weight of the rows of an excluded series: they keep their place and have no say.
@@ -120,6 +128,9 @@ impl Observations {
             cells,
             cell_load_n,
             weights: ones.clone(),
+            counts: ones.clone(),
+            within_n2: vec![0.0; rows.len()],
+            source: (0..rows.len()).collect(),
             roots: ones,
             friction_n: vec![0.0; rows.len()],
             series_rows: collected(&series_of, series),
@@ -167,6 +178,9 @@ impl Observations {
             series,
             cells,
             weights: kept.iter().map(|i| self.weights[*i]).collect(),
+            counts: kept.iter().map(|i| self.counts[*i]).collect(),
+            within_n2: kept.iter().map(|i| self.within_n2[*i]).collect(),
+            source: kept.iter().map(|i| self.source[*i]).collect(),
             roots: kept.iter().map(|i| self.roots[*i]).collect(),
             friction_n: kept.iter().map(|i| self.friction_n[*i]).collect(),
             series_rows: among(&self.series_rows),
@@ -182,6 +196,20 @@ impl Observations {
                 .filter(|s| *s != usize::MAX)
                 .collect(),
         }
+    }
+
+    /// Whether a row was not weighed down as an outlier by more than half.
+    pub(crate) fn is_sound(&self, row: usize) -> bool {
+        self.weights[row] > SOUND_WEIGHT * self.counts[row]
+    }
+
+    /// Root mean square of residuals in newtons over the single readings of the rows; NaN without any.
+    pub(crate) fn root_mean_square_n(&self, rows: impl Iterator<Item = (usize, f64)>) -> f64 {
+        let (sum, count) = rows.fold((0.0, 0.0), |(sum, count), (row, residual)| {
+            let n = self.counts[row];
+            (sum + n * (residual * residual + self.within_n2[row]), count + n)
+        });
+        (sum / count).sqrt()
     }
 
     /// Mean load in newtons.
@@ -277,9 +305,9 @@ impl Observations {
         let part = |load: f64| edges.iter().filter(|e| load >= **e).count();
         let parts: Vec<f64> =
             (0..4).map(|i| spread(&|load| part(load) == i).unwrap_or(sd).max(0.3 * sd)).collect();
-        for ((weight, value), point) in self.weights.iter_mut().zip(&local).zip(&self.points) {
-            let z = (value / parts[part(point.load_n)]).abs();
-            *weight = if z <= 3.2 { 1.0 } else { (3.2 / z).powi(3).max(MIN_WEIGHT) };
+        for (row, weight) in self.weights.iter_mut().enumerate() {
+            let z = (local[row] / parts[part(self.points[row].load_n)]).abs();
+            *weight = self.counts[row] * if z <= 3.2 { 1.0 } else { (3.2 / z).powi(3).max(MIN_WEIGHT) };
         }
         self.roots = self.weights.iter().map(|w| w.sqrt()).collect();
         self.apply_exclusions();

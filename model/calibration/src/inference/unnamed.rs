@@ -6,9 +6,12 @@ use super::levels::Levels;
 use super::weighed::Weighed;
 use super::screening::{Screen, StructureScore};
 use super::search::{prune, search};
+use super::sign_flips::family_probability;
 use super::significance::{degrees_of_freedom, gain_at};
 use crate::effects::Covariate;
 
+/// Largest probability by flipped signs at which a weak shape is believed.
+const MOST_BY_FLIPS: f64 = 0.05;
 /// Share of a name's gain that shapes in its place may miss and still replace it.
 const REPLACED_SHARE: f64 = 0.15;
 
@@ -45,7 +48,10 @@ impl Context<'_> {
         let degrees = degrees_of_freedom(weighed.data, baseline.model.coordinates.len());
         let chance = gain_at(levels.structure_p, left.len().max(1), degrees);
         let least = levels.structure.max(chance).max(levels.structure_share * explained);
-        let on_top = left.first().and_then(|score| self.on_top_of(&found, score, least));
+        let on_top = left
+            .first()
+            .filter(|score| score.gain > 3.0 * least || self.is_carried_by_many(left))
+            .and_then(|score| self.on_top_of(&found, score, least));
         let alone = if found.model.terms.is_empty() {
             Vec::new()
         } else {
@@ -64,6 +70,13 @@ impl Context<'_> {
             }
             None => (found, None),
         }
+    }
+
+    /// Whether the largest score is more than series with flipped signs make, which needs no noise model: a weak shape
+    /// that a few series carry alone is none. With few series flips cannot tell.
+    fn is_carried_by_many(&self, scores: &[StructureScore]) -> bool {
+        let carried: Vec<&[f64]> = scores.iter().map(|s| s.by_series.as_slice()).collect();
+        self.weighed.data.series < 12 || family_probability(&carried) <= MOST_BY_FLIPS
     }
 
     /// The structure on top of the names, if it gains more than `least`.

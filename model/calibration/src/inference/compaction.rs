@@ -1,0 +1,88 @@
+//! Long series in fewer rows: neighbouring repetitions are averaged, so that the cost of a fit depends on the number of
+//! series and not on how long each was measured.
+
+use super::observations::Observations;
+use crate::table::Point;
+
+/// Rows that are fitted as they are; a table beyond it is averaged.
+pub(crate) const MOST_ROWS: usize = 24_000;
+/// Rows that each series and direction keeps at least, so that a course along the stroke stays one.
+const LEAST_PER_CELL: usize = 4;
+
+impl Observations {
+    /// The same table in about [`MOST_ROWS`] rows: means of neighbours in each series and direction, outliers weighed
+    /// down. A table within the limit stays as it is.
+    pub(crate) fn compacted(&self) -> Self {
+        if self.points.len() <= MOST_ROWS {
+            return self.clone();
+        }
+        let per_cell = (MOST_ROWS / self.cells.len().max(1)).max(LEAST_PER_CELL);
+        let mut bins: Vec<&[usize]> = Vec::new();
+        for cell in &self.cells {
+            bins.extend(cell.chunks(cell.len().div_ceil(per_cell).max(1)));
+        }
+        bins.sort_by_key(|rows| rows[0]);
+        let first: std::collections::HashMap<usize, usize> =
+            bins.iter().enumerate().map(|(bin, rows)| (rows[0], bin)).collect();
+        let mut compact = self.subset(|row| first.contains_key(&row));
+        for (bin, rows) in bins.iter().enumerate() {
+            let total: f64 = rows.iter().map(|r| self.weights[*r]).sum();
+            let mean = |of: &dyn Fn(usize) -> f64| {
+                rows.iter().map(|r| self.weights[*r] * of(*r)).sum::<f64>() / total
+            };
+            let along = |of: fn(&Point) -> f64| mean(&|r| of(&self.points[r]));
+            let point = &mut compact.points[bin];
+            point.repetition = along(|p| p.repetition);
+            point.position = along(|p| p.position);
+            point.time = along(|p| p.time);
+            point.travel = along(|p| p.travel);
+            point.through = along(|p| p.through);
+            let force_n = mean(&|r| self.force_n[r]);
+            compact.force_n[bin] = force_n;
+            compact.friction_n[bin] = mean(&|r| self.friction_n[r]);
+            compact.within_n2[bin] = mean(&|r| (self.force_n[r] - force_n).powi(2));
+            compact.counts[bin] = total;
+            compact.weights[bin] = total;
+            compact.roots[bin] = total.sqrt();
+        }
+        compact
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::{Frame, PlateauRow};
+    use crate::test_session::session;
+
+    #[test]
+    fn a_long_table_keeps_its_series_its_means_and_its_spread() {
+        let short = session(1);
+        assert!(Observations::new(&Frame::new(&short), &short).unwrap().compacted().points.len() == short.len());
+        // Every series sixty times as long.
+        let long: Vec<PlateauRow> = (0..60u32)
+            .flat_map(|k| {
+                short.iter().map(move |row| PlateauRow {
+                    repetition: row.repetition + 9 * k,
+                    time_s: row.time_s + 1e4 * f64::from(k),
+                    force_n: row.force_n + if k % 2 == 0 { 0.3 } else { -0.3 },
+                    ..row.clone()
+                })
+            })
+            .collect();
+        let data = Observations::new(&Frame::new(&long), &long).unwrap();
+        let compact = data.compacted();
+        assert!(compact.points.len() < MOST_ROWS * 3 / 2, "{} rows", compact.points.len());
+        assert_eq!((compact.series, compact.cells.len()), (data.series, data.cells.len()));
+        let total: f64 = compact.counts.iter().sum();
+        assert!((total - long.len() as f64).abs() < 1e-6);
+        let mean = |d: &Observations| -> f64 {
+            d.force_n.iter().zip(&d.counts).map(|(y, c)| y * c).sum::<f64>() / d.counts.iter().sum::<f64>()
+        };
+        assert!((mean(&compact) - mean(&data)).abs() < 1e-9);
+        let squares = |d: &Observations| -> f64 {
+            d.force_n.iter().zip(&d.counts).zip(&d.within_n2).map(|((y, c), w)| c * (y * y + w)).sum()
+        };
+        assert!((squares(&compact) / squares(&data) - 1.0).abs() < 1e-9, "nothing of the spread is lost");
+    }
+}

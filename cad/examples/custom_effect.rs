@@ -8,7 +8,9 @@
 use pinswitch_calibration::effects::{
     Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
 };
-use pinswitch_calibration::inference::{Model, Noise, Observations, Term, Weighed, fit, interval_half_widths};
+use pinswitch_calibration::inference::{
+    Model, Noise, Observations, Term, Weighed, fit, interval_half_widths,
+};
 use pinswitch_calibration::table::{Frame, Point};
 use pinswitch_simulation::{Plan, simulate};
 
@@ -56,10 +58,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let weighed = Weighed::new(&data, Noise::constant(0.05, 0.1));
     let without = fit(&Model::baseline(frame), &weighed);
-    let with = fit(
-        &without.model.with_term(Term::Named(&Creep), &Creep.starts(&without.model.frame)[0]),
-        &weighed,
-    );
+    let with =
+        fit(&without.model.with_term(Term::Named(&Creep), &Creep.starts(&without.model.frame)[0]), &weighed);
     let rms = |r: &[f64]| (r.iter().map(|r| r * r).sum::<f64>() / r.len() as f64).sqrt();
     println!("without {}: {:.3} N are left", Creep.id(), rms(&without.residual_n));
     println!("with it: {:.3} N", rms(&with.residual_n));

@@ -40,6 +40,7 @@ pub(crate) fn error_beyond_range(model: &Model, weighed: &Weighed<'_>) -> f64 {
     }
     rates.sort_by(f64::total_cmp);
     let most = FURTHEST * rates[rates.len() / 2];
-    let (sum, count) = rates.iter().filter(|r| **r <= most).fold((0.0, 0.0), |(s, n), r| (s + r * r, n + 1.0));
+    let (sum, count) =
+        rates.iter().filter(|r| **r <= most).fold((0.0, 0.0), |(s, n), r| (s + r * r, n + 1.0));
     f64::sqrt(sum / f64::max(count, 1.0))
 }

@@ -7,13 +7,14 @@ use crate::effects::CATALOGUE;
 use crate::held_out::held_out;
 use crate::inference::{
     CandidateEffect, Fit, FoundEffect, Levels, MOST_ROWS, Model, Noise, Observations, Rival, Selection, Term,
-    UNATTRIBUTED, Weighed, cell_deviation, degrees_of_freedom, family_p_value, fit, interval_half_widths, select,
+    UNATTRIBUTED, Weighed, cell_deviation, degrees_of_freedom, family_p_value, fit, interval_half_widths,
+    select,
 };
 use crate::layouts_left_out::layouts_left_out;
 use crate::promise::{Promise, promise};
 use crate::report::{
-    BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Fate, Invisible, LimitReport, ModelReport,
-    NoisePart, Report, RivalReport, Verdict,
+    BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Fate, Invisible, LimitReport,
+    ModelReport, NoisePart, Report, RivalReport, Verdict,
 };
 use crate::table::{Frame, PlateauRow};
 
@@ -259,14 +260,14 @@ fn noise_parts(selection: &Selection, data: &Observations) -> Vec<NoisePart> {
             bounds.scale,
         ),
         part("mount", "friction, or wrap, from mount to mount", noise.mount_scale, "1", bounds.mount),
+        part("walk", "an offset that wanders from series to series", noise.walk_n, "N", None),
         part(
-            "walk",
-            "an offset that wanders from series to series",
-            noise.walk_n,
+            "group",
+            "an offset from session to session and operator to operator",
+            noise.group_offset_n,
             "N",
             None,
         ),
-        part("group", "an offset from session to session and operator to operator", noise.group_offset_n, "N", None),
         part("specimen", "friction from specimen to specimen", noise.specimen_scale, "1", None),
     ];
     parts.retain(|p| p.size > 0.0);

@@ -4,8 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::beyond_range::error_beyond_range;
 use crate::effects::{Structure, effect_named};
-use crate::inference::{Fit, Model, Noise, Observations, Term, Weighed, coordinate_covariance, prediction_sd_n};
-use crate::model_check::{Flaw, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise};
+use crate::inference::{
+    Fit, Model, Noise, Observations, Term, Weighed, coordinate_covariance, prediction_sd_n,
+};
+use crate::model_check::{
+    Flaw, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
+};
 use crate::table::{Frame, PlateauRow};
 
 /// Name and version of the format.

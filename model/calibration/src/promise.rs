@@ -27,7 +27,8 @@ pub(crate) fn promise(whole: &Selection, data: &Observations, levels: Levels) ->
         augmented += a;
         rows += n;
     }
-    (rows > 0.0).then(|| Promise { baseline_n: (baseline / rows).sqrt(), augmented_n: (augmented / rows).sqrt() })
+    (rows > 0.0)
+        .then(|| Promise { baseline_n: (baseline / rows).sqrt(), augmented_n: (augmented / rows).sqrt() })
 }
 
 /// Sums of squares on one part and its rows, if the rest could be fitted.
@@ -62,13 +63,26 @@ fn part(
     Some((squares(&baseline.model), squares(&found.augmented.model), readings))
 }
 
-/// One result per part, on as many threads as the feature `parallel` allows.
+/// One result per part, on as many threads as there are processors.
 #[cfg(feature = "parallel")]
 fn per_part<T: Send>(of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(FOLDS);
+    let next = AtomicUsize::new(0);
+    let done = std::sync::Mutex::new(Vec::new());
     std::thread::scope(|scope| {
-        let handles: Vec<_> = (0..FOLDS).map(|i| scope.spawn({ let of = &of; move || of(i) })).collect();
-        handles.into_iter().enumerate().map(|(i, h)| h.join().unwrap_or_else(|_| of(i))).collect()
-    })
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some(part) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|p| *p < FOLDS) {
+                    let result = of(part);
+                    done.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((part, result));
+                }
+            });
+        }
+    });
+    let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    done.sort_by_key(|(part, _)| *part);
+    done.into_iter().map(|(_, result)| result).collect()
 }
 
 #[cfg(not(feature = "parallel"))]

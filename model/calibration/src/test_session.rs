@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::inference::{Model, Term};
-use crate::table::{Labels, Frame, PlateauRow, Sweep};
+use crate::table::{Frame, Labels, PlateauRow, Sweep};
 
 /// Repetitions of each series and direction.
 pub(crate) const REPETITIONS: u32 = 9;

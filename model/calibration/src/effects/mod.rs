@@ -98,6 +98,7 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 ///     formula: "reading (1 + k ln(dwell / 3 s))",
 ///     parameters: &[Parameter::free("k", "1")],
 ///     one_sided: true,
+///     bends: true,
 ///     scales: true,
 ///     confused_with: &["dwell_relaxation"],
 ///     experiment: "dead weights with two pauses",

@@ -186,9 +186,7 @@ impl Structure {
             }
             Shape::ConditionIs { conditions } => flag(conditions.contains(&p.condition)),
             Shape::Repetition { r0 } => (-(p.repetition - 1.0) / r0).exp(),
-            Shape::Memory { r0, unit_n } => {
-                (p.previous_load_n - p.load_n) / unit_n * (-p.through / r0).exp()
-            }
+            Shape::Memory { r0, unit_n } => (p.previous_load_n - p.load_n) / unit_n * (-p.through / r0).exp(),
             Shape::Descending => p.descending,
             Shape::DirectionLoad { power, unit_n } => p.sign * (p.load_n / unit_n).powi(*power),
         }

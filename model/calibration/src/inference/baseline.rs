@@ -2,8 +2,8 @@
 
 use super::fit::{Fit, fit, jacobian};
 use super::forward::{Model, Term};
-use super::weighed::Weighed;
 use super::observations::Observations;
+use super::weighed::Weighed;
 use crate::effects::acting_order;
 
 /// The refitted paper's model from several starts: a stuck fit is indistinguishable from missing physics.

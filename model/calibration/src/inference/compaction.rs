@@ -5,9 +5,9 @@ use super::observations::Observations;
 use crate::table::Point;
 
 /// Rows that are fitted as they are; a table beyond it is averaged.
-pub(crate) const MOST_ROWS: usize = 24_000;
+pub(crate) const MOST_ROWS: usize = 12_000;
 /// Rows that each series and direction keeps at least, so that a course along the stroke stays one.
-const LEAST_PER_CELL: usize = 4;
+const LEAST_PER_CELL: usize = 3;
 
 impl Observations {
     /// The same table in about [`MOST_ROWS`] rows: means of neighbours in each series and direction, outliers weighed
@@ -58,7 +58,9 @@ mod tests {
     #[test]
     fn a_long_table_keeps_its_series_its_means_and_its_spread() {
         let short = session(1);
-        assert!(Observations::new(&Frame::new(&short), &short).unwrap().compacted().points.len() == short.len());
+        assert!(
+            Observations::new(&Frame::new(&short), &short).unwrap().compacted().points.len() == short.len()
+        );
         // Every series sixty times as long.
         let long: Vec<PlateauRow> = (0..60u32)
             .flat_map(|k| {

@@ -88,7 +88,8 @@ fn expected_ratio(lengths: &std::collections::BTreeMap<usize, f64>, rho: f64) ->
 /// Takes a line over the load out of each condition, direction and repetition.
 fn without_common_course(data: &Observations, white: &[f64]) -> Vec<f64> {
     let mut groups = std::collections::BTreeMap::<_, Vec<usize>>::new();
-    for (row, p) in data.points.iter().enumerate().filter(|(row, _)| data.weights[*row] == data.counts[*row]) {
+    for (row, p) in data.points.iter().enumerate().filter(|(row, _)| data.weights[*row] == data.counts[*row])
+    {
         groups.entry((p.condition, p.sign > 0.0, p.repetition as u32)).or_default().push(row);
     }
     let mut out = white.to_vec();

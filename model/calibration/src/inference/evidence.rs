@@ -29,7 +29,8 @@ pub(super) fn evidence(fitted: &Fit, weighed: &Weighed<'_>) -> f64 {
     let n = a.nrows();
     let scale: Vec<f64> = (0..n).map(|i| a[(i, i)].max(1e-300).sqrt()).collect();
     let scaled = nalgebra::DMatrix::from_fn(n, n, |i, j| a[(i, j)] / (scale[i] * scale[j]));
-    let log_det = scaled.cholesky().map_or(0.0, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
+    let log_det =
+        scaled.cholesky().map_or(0.0, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
     cost + log_det + 2.0 * scale.iter().map(|s| s.ln()).sum::<f64>()
 }
 

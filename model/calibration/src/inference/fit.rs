@@ -7,9 +7,9 @@ use super::forward::Model;
 use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
-use super::weighed::Weighed;
 use super::significance::gain_at;
 use super::variance_components::Reliability;
+use super::weighed::Weighed;
 use crate::table::Point;
 
 /// A model fitted to data.

@@ -5,9 +5,9 @@
 
 use super::fit::Fit;
 use super::noise::{Noise, Spread};
-use super::weighed::Weighed;
 use super::observations::Observations;
 use super::screening::Screen;
+use super::weighed::Weighed;
 
 /// Least gain, in whitened squares, of an offset of one series in both directions.
 const MIN_GAIN: f64 = 60.0;

@@ -70,8 +70,10 @@ pub(super) fn limits(
 
 /// Largest share of the friction (of the reading, for what acts on it or against the motion) that a trace changes.
 fn largest_share(score: &EffectScore, predicted: &[f64], weighed: &Weighed<'_>) -> f64 {
-    let of_reading =
-        !matches!(score.effect.description().stage, Stage::AddedFriction | Stage::ScaledFriction | Stage::Switch);
+    let of_reading = !matches!(
+        score.effect.description().stage,
+        Stage::AddedFriction | Stage::ScaledFriction | Stage::Switch
+    );
     score
         .trace_n
         .iter()
@@ -85,7 +87,10 @@ fn largest_share(score: &EffectScore, predicted: &[f64], weighed: &Weighed<'_>) 
 }
 
 /// Groups of effects whose visible traces have a cosine above [`ALIKE`], each in the order of the scores.
-pub(super) fn classes(scores: &[EffectScore], visible: impl Fn(&EffectScore) -> bool) -> Vec<Vec<&'static str>> {
+pub(super) fn classes(
+    scores: &[EffectScore],
+    visible: impl Fn(&EffectScore) -> bool,
+) -> Vec<Vec<&'static str>> {
     let seen: Vec<&EffectScore> = scores.iter().filter(|s| visible(s) && s.strength > 1e-6).collect();
     let mut class: Vec<usize> = (0..seen.len()).collect();
     for i in 0..seen.len() {

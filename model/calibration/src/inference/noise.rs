@@ -152,14 +152,8 @@ pub(crate) enum Part {
 
 impl Part {
     /// Those of groups wider than a cell, the smallest first.
-    pub(crate) const WIDER: [Part; 6] = [
-        Part::SeriesOffset,
-        Part::SeriesScale,
-        Part::Mount,
-        Part::Operator,
-        Part::Session,
-        Part::Specimen,
-    ];
+    pub(crate) const WIDER: [Part; 6] =
+        [Part::SeriesOffset, Part::SeriesScale, Part::Mount, Part::Operator, Part::Session, Part::Specimen];
 
     /// The rows of its groups.
     pub(crate) fn groups(self, data: &Observations) -> &[Vec<usize>] {

@@ -90,7 +90,8 @@ impl Observations {
     /// Groups a table; `None` if the frame lacks a condition.
     pub fn new(frame: &Frame, rows: &[PlateauRow]) -> Option<Self> {
         let points = frame.points(rows)?;
-        let (series_of, series) = crate::table::groups(rows, |r| (r.labels.session.clone(), r.series.clone()));
+        let (series_of, series) =
+            crate::table::groups(rows, |r| (r.labels.session.clone(), r.series.clone()));
         let (cell_of, count) = crate::table::groups(rows, |r| {
             let concentric = r.direction == pinswitch_friction::Direction::Concentric;
             (r.labels.session.clone(), r.series.clone(), concentric)
@@ -189,12 +190,7 @@ impl Observations {
             operators: among(&self.operators),
             sessions: among(&self.sessions),
             specimens: among(&self.specimens),
-            excluded: self
-                .excluded
-                .iter()
-                .map(|s| new_series[*s])
-                .filter(|s| *s != usize::MAX)
-                .collect(),
+            excluded: self.excluded.iter().map(|s| new_series[*s]).filter(|s| *s != usize::MAX).collect(),
         }
     }
 

@@ -4,10 +4,10 @@
 use super::fit::{Fit, jacobian};
 use super::form_tolerance::{BEND, bent_copies};
 use super::forward::Term;
-use super::weighed::Weighed;
 use super::observations::Observations;
 use super::projection::{Projection, dot};
 use super::structures::{Group, structures_to_try};
+use super::weighed::Weighed;
 use crate::effects::{Channel, Covariate, Effect, Shape, Structure, acting_order};
 
 /// What a wave's gain is reduced by, in whitened squares.
@@ -140,7 +140,8 @@ impl<'a> Screen<'a> {
     fn effect(&self, effect: &'static dyn Effect) -> Option<EffectScore> {
         let mut best: Option<EffectScore> = None;
         for start in effect.starts(&self.fitted.model.frame) {
-            let changed = self.fitted.model.with_term(Term::Named(effect), &start).predict(&self.data().points);
+            let changed =
+                self.fitted.model.with_term(Term::Named(effect), &start).predict(&self.data().points);
             let trace_n: Vec<f64> = changed.iter().zip(&self.predicted).map(|(c, p)| c - p).collect();
             let (column, visible_share) = self.visible(trace_n.clone());
             let length2 = dot(&column, &column);
@@ -205,30 +206,31 @@ impl<'a> Screen<'a> {
             .map(|channel| (channel, sensitivity(channel)));
         // The same shape is tried on several channels in a row.
         let mut last: Vec<(Shape, Vec<f64>)> = Vec::new();
-        let mut scores: Vec<StructureScore> = structures_to_try(&self.fitted.model.frame, &self.data().points)
-            .into_iter()
-            .filter_map(|group| {
-                let columns: Vec<Vec<f64>> = group
-                    .iter()
-                    .filter_map(|structure| {
-                        let (_, along) = channels.iter().find(|(c, _)| *c == structure.channel)?;
-                        let known = last.iter().position(|(form, _)| *form == structure.form);
-                        let at = known.unwrap_or_else(|| {
-                            if last.len() > 1 {
-                                last.remove(0);
-                            }
-                            let values = self.data().points.iter().map(|p| structure.value(p)).collect();
-                            last.push((structure.form.clone(), values));
-                            last.len() - 1
-                        });
-                        let column = last[at].1.iter().zip(along).map(|(v, s)| v * s).collect();
-                        let (column, visible) = self.visible(column);
-                        (visible > 0.02).then_some(column)
-                    })
-                    .collect();
-                self.group(group, &columns)
-            })
-            .collect();
+        let mut scores: Vec<StructureScore> =
+            structures_to_try(&self.fitted.model.frame, &self.data().points)
+                .into_iter()
+                .filter_map(|group| {
+                    let columns: Vec<Vec<f64>> = group
+                        .iter()
+                        .filter_map(|structure| {
+                            let (_, along) = channels.iter().find(|(c, _)| *c == structure.channel)?;
+                            let known = last.iter().position(|(form, _)| *form == structure.form);
+                            let at = known.unwrap_or_else(|| {
+                                if last.len() > 1 {
+                                    last.remove(0);
+                                }
+                                let values = self.data().points.iter().map(|p| structure.value(p)).collect();
+                                last.push((structure.form.clone(), values));
+                                last.len() - 1
+                            });
+                            let column = last[at].1.iter().zip(along).map(|(v, s)| v * s).collect();
+                            let (column, visible) = self.visible(column);
+                            (visible > 0.02).then_some(column)
+                        })
+                        .collect();
+                    self.group(group, &columns)
+                })
+                .collect();
         for (channel, along) in &channels[..3] {
             scores.extend(self.best_window(*channel, along));
         }
@@ -287,9 +289,10 @@ impl<'a> Screen<'a> {
         let (gain, size, from, to) = best?;
         let form = Shape::TimeWindow { from: begins[order[from]] - 1e-9, to: begins[order[to]] - 1e-9 };
         let group = vec![Structure { covariate: Covariate::Time, channel, form }];
-        let mut by_series = vec![0.0; self.data().series];
+        let flipped = self.flipped_series();
+        let mut by_series = vec![0.0; flipped];
         let (mut visible, mut scale) = (0.0, 1.0);
-        for series in &order[from..to] {
+        for series in order[from..to].iter().filter(|_| flipped > 0) {
             by_series[*series] = sums[*series][0];
             visible += sums[*series][1];
         }
@@ -318,6 +321,12 @@ impl<'a> Screen<'a> {
             .collect()
     }
 
+    /// Series whose signs are flipped: all, or none where there are so many that the noise is known without.
+    fn flipped_series(&self) -> usize {
+        const MOST: usize = 600;
+        Some(self.data().series).filter(|series| *series <= MOST).unwrap_or(0)
+    }
+
     /// Least squares of the residual on one or two visible columns.
     fn group(&self, group: Group, columns: &[Vec<f64>]) -> Option<StructureScore> {
         if columns.len() != group.len() || columns.is_empty() {
@@ -326,9 +335,10 @@ impl<'a> Screen<'a> {
         let (gain, sizes) = least_squares(columns, &self.residual)?;
         // A wave has two sizes, and there are hundreds of them at free frequencies: its gain must pay for both.
         let gain = if group.len() > 1 { gain - WAVE_PENALTY } else { gain };
-        let mut by_series = vec![0.0; self.data().series];
+        let flipped = self.flipped_series();
+        let mut by_series = vec![0.0; flipped];
         let mut length2 = 0.0;
-        for (row, series) in self.data().series_of.iter().enumerate() {
+        for (row, series) in self.data().series_of.iter().enumerate().filter(|_| flipped > 0) {
             let value: f64 = columns.iter().zip(&sizes).map(|(c, k)| k * c[row]).sum();
             by_series[*series] += value * self.residual[row];
             length2 += value * value;

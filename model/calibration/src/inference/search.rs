@@ -3,11 +3,11 @@
 use super::fit::{Fit, fit, jacobian};
 use super::forward::Term;
 use super::levels::Levels;
-use super::weighed::Weighed;
 use super::screening::{EffectScore, Screen};
 use super::sign_flips::family_probability;
 use super::significance::{degrees_of_freedom, family_p_value, gain_at};
 use super::variance_components::Reliability;
+use super::weighed::Weighed;
 use crate::effects::{CATALOGUE, Effect};
 
 /// How many candidates of a scan are fitted in full.
@@ -97,9 +97,8 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
         };
         // To first order alone: an effect that is not linear may gain more once fitted.
         let screened = if current.model.named_effects().is_empty() { 0.3 } else { 0.8 } * least;
-        let Some(best) = extensions(&current, weighed, screened, levels.beyond_form * gained, FITTED)
-            .into_iter()
-            .next()
+        let Some(best) =
+            extensions(&current, weighed, screened, levels.beyond_form * gained, FITTED).into_iter().next()
         else {
             break;
         };

@@ -272,9 +272,6 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
         let bent = guarded.bent_gain();
         Context { weighed: &weighed, levels, explained }.with_unnamed(&baseline, found.clone(), &left, bent)
     };
-    if std::env::var("LAB").is_ok() {
-        eprintln!("  explain: {:?} {:?} best structure {:.1} {:?} | noise scale {:.4} mount {:.4} walk {:.3} cell {:.3}+{:.4} com {:.3} isolated {:?} baseline cost {:.0}", augmented.model.named_effects().iter().map(|e| e.id()).collect::<Vec<_>>(), structure, structure_gain, left.first().map(|s| &s.group[0]), noise.series_scale, noise.mount_scale, noise.walk_n, noise.series.constant_n, noise.series.per_load, noise.series_common.constant_n, isolated, baseline.cost);
-    }
     Explanation { baseline, augmented, structure, structure_gain, structures_tried, noise, isolated }
 }
 
@@ -350,7 +347,6 @@ fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Ex
         }
         let other = explain(&best.baseline.model, data, noise, levels);
         let other = with_scatter(other);
-        if std::env::var("LAB").is_ok() { eprintln!("  best {:.1} vs {:?} {:.1}", best.toll(data), scatter, other.toll(data)); }
         if other.toll(data) < best.toll(data) {
             best = other;
         }
@@ -448,11 +444,7 @@ fn rivals(
 }
 
 /// Every effect of the catalogue, by its score over the baseline.
-fn candidates(
-    scores: &[EffectScore],
-    augmented: &Fit,
-    weighed: &Weighed<'_>,
-) -> Vec<CandidateEffect> {
+fn candidates(scores: &[EffectScore], augmented: &Fit, weighed: &Weighed<'_>) -> Vec<CandidateEffect> {
     let left = Screen::new(augmented, weighed).effects();
     let mut candidates: Vec<_> = scores
         .iter()

@@ -3,11 +3,11 @@
 use super::fit::{Fit, fit};
 use super::forward::Term;
 use super::levels::Levels;
-use super::weighed::Weighed;
 use super::screening::{Screen, StructureScore};
 use super::search::{prune, search};
 use super::sign_flips::family_probability;
 use super::significance::{degrees_of_freedom, gain_at};
+use super::weighed::Weighed;
 use crate::effects::Covariate;
 
 /// Largest probability by flipped signs at which a weak shape is believed.
@@ -76,7 +76,7 @@ impl Context<'_> {
     /// that a few series carry alone is none. With few series flips cannot tell.
     fn is_carried_by_many(&self, scores: &[StructureScore]) -> bool {
         let carried: Vec<&[f64]> = scores.iter().map(|s| s.by_series.as_slice()).collect();
-        self.weighed.data.series < 12 || family_probability(&carried) <= MOST_BY_FLIPS
+        carried.iter().all(|c| c.len() < 12) || family_probability(&carried) <= MOST_BY_FLIPS
     }
 
     /// The structure on top of the names, if it gains more than `least`.

@@ -85,7 +85,8 @@ fn inside(
         projection.remove(&mut white);
         let mut squares = Vec::new();
         let mut one = vec![1.0; residual_n.len()];
-        Weighed::new(data, Noise { correlation: noise.correlation, ..only_repetition(noise) }).whiten(&mut one);
+        Weighed::new(data, Noise { correlation: noise.correlation, ..only_repetition(noise) })
+            .whiten(&mut one);
         for (cell, load) in data.cells.iter().zip(&data.cell_load_n) {
             if cell.len() < 2 || cell.first().is_some_and(|r| data.is_excluded(*r)) {
                 continue;
@@ -209,14 +210,20 @@ fn between(data: &Observations, residual_n: &[f64], explainable: &[Vec<f64>], no
         columns.extend(groups.iter().map(|g| indicator(residual.len(), g, |_| 1.0)));
     }
     let friction = &means.observations.friction_n;
-    columns.extend(means.observations.specimens.iter().map(|g| indicator(residual.len(), g, |r| friction[r])));
+    columns
+        .extend(means.observations.specimens.iter().map(|g| indicator(residual.len(), g, |r| friction[r])));
     let means = &means.observations;
     let has_friction = friction.iter().any(|u| *u != 0.0);
     let least = (0.05 * noise.repetition.constant_n).powi(2).max(1e-12);
     let typical = (0.3 * noise.repetition.at(20.0)).powi(2).max(4.0 * least);
     let mut theta = [typical, 1e-6, typical, 1e-6, if has_friction { 1e-4 } else { 0.0 }];
     for round in 0..ROUNDS {
-        let blocks = blocks(means, Noise { group_offset_n: 0.0, specimen_scale: 0.0, ..with_sizes(noise, theta) }, &residual, &columns);
+        let blocks = blocks(
+            means,
+            Noise { group_offset_n: 0.0, specimen_scale: 0.0, ..with_sizes(noise, theta) },
+            &residual,
+            &columns,
+        );
         let (mut found, mut expected) = ([0.0; 5], [0.0; 5]);
         let mut degrees = 0.0;
         for block in &blocks {
@@ -498,8 +505,9 @@ impl Reliability {
             cell: of(1).or(of(0)),
             common: of(3).or(of(2)),
             scale: of(4),
-            mount: (mount > 0.0)
-                .then(|| (1.96 * 0.5 * self.covariance[(last, last)].max(0.0).sqrt() / (mount * mount)).exp()),
+            mount: (mount > 0.0).then(|| {
+                (1.96 * 0.5 * self.covariance[(last, last)].max(0.0).sqrt() / (mount * mount)).exp()
+            }),
         }
     }
 
@@ -507,7 +515,8 @@ impl Reliability {
     pub(crate) fn new(data: &Observations, noise: Noise, own: &[Vec<f64>]) -> Self {
         let means = data.cell_means(noise);
         let own: Vec<Vec<f64>> = own.iter().map(|c| means.mean_of(data, c)).collect();
-        let local = Noise { mount_scale: 0.0, walk_n: 0.0, group_offset_n: 0.0, specimen_scale: 0.0, ..noise };
+        let local =
+            Noise { mount_scale: 0.0, walk_n: 0.0, group_offset_n: 0.0, specimen_scale: 0.0, ..noise };
         let zeros = vec![0.0; means.observations.points.len()];
         let blocks = blocks(&means.observations, local, &zeros, &own);
         let theta = sizes(noise);
@@ -554,11 +563,7 @@ impl Reliability {
         let total = length2.max(1e-300);
         let mut w = DVector::zeros(self.places.len() + 1);
         for rows in &means.series_rows {
-            let block = Block {
-                members: rows.clone(),
-                p: DMatrix::zeros(0, 0),
-                pr: DVector::zeros(0),
-            };
+            let block = Block { members: rows.clone(), p: DMatrix::zeros(0, 0), pr: DVector::zeros(0) };
             let all = directions(means, &block);
             let local = DVector::from_fn(rows.len(), |i, _| px[rows[i]]);
             for (a, i) in self.places.iter().enumerate() {

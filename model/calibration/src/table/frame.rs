@@ -223,8 +223,7 @@ impl Frame {
             let row = &rows[i];
             let session = row.labels.session.as_str();
             let before = last.filter(|(of, _)| *of == session).map_or(row.load_n, |(_, load)| load);
-            let (previous, through) =
-                made.entry((session, row.series.as_str())).or_insert((before, 0.0));
+            let (previous, through) = made.entry((session, row.series.as_str())).or_insert((before, 0.0));
             points[i].previous_load_n = *previous;
             points[i].through = *through;
             *through += 1.0;

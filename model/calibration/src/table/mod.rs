@@ -8,8 +8,8 @@ mod row;
 pub(crate) mod substrate_word;
 mod table_error;
 
-pub(crate) use frame::{groups, groups_of};
 pub use frame::{Condition, Frame, Point};
+pub(crate) use frame::{groups, groups_of};
 pub use plateau_table::PlateauTable;
 pub(crate) use plateau_table::{MAX_WRAP_DEG, MIN_WRAP_DEG};
 pub use row::{Labels, PlateauRow, Sweep};

@@ -113,10 +113,16 @@ impl PlateauTable {
             let line = Cells { file, text: &text, byte, cell: &cell, force };
             let [session, mount, operator, specimen] =
                 labels_at.map(|at| at.and_then(|i| record.get(i)).unwrap_or("").to_owned());
-            let row = PlateauRow { labels: Labels { session, mount, operator, specimen }, ..parse_row(&line)? };
+            let row =
+                PlateauRow { labels: Labels { session, mount, operator, specimen }, ..parse_row(&line)? };
             // A reading that stands in the table twice counts twice, and no spread between the two says so.
-            let reading =
-                (row.labels.session.clone(), row.series.clone(), row.direction.sign() > 0.0, row.repetition, row.time_s.to_bits());
+            let reading = (
+                row.labels.session.clone(),
+                row.series.clone(),
+                row.direction.sign() > 0.0,
+                row.repetition,
+                row.time_s.to_bits(),
+            );
             if let (Force::Needed, Some(first)) = (force, lines.insert(reading, byte)) {
                 let first = line_at(&text, first);
                 let problem = format!(

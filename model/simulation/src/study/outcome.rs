@@ -3,8 +3,8 @@
 use pinswitch_calibration::Verdict;
 use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 use pinswitch_calibration::inference::{
-    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, Weighed, degrees_of_freedom, family_p_value,
-    interval_half_widths, select,
+    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, Weighed, degrees_of_freedom,
+    family_p_value, interval_half_widths, select,
 };
 use pinswitch_calibration::table::{Frame, PlateauRow, PlateauTable};
 

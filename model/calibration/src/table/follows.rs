@@ -1,0 +1,161 @@
+//! Whether readings follow the loads, condition by condition: by how much a reading changes for each newton of load.
+
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+
+use pinswitch_friction::{Direction, published};
+
+use super::row::PlateauRow;
+use super::substrate_word::substrate_word;
+use crate::median::median;
+
+/// Newtons of reading per newton of load that friction over the paper's wrap, drags and offsets may leave.
+pub(super) const FOLLOWS: RangeInclusive<f64> = 0.2..=5.0;
+/// Wrap in radians that is assumed of `plain`, whose wrap is unknown: one turn.
+const UNKNOWN_WRAP: f64 = std::f64::consts::TAU;
+/// Growth of the bounds' logarithm per radian of wrap beyond the paper's: a friction coefficient that is rarely reached.
+const PER_RADIAN: f64 = 0.4;
+
+/// How a table's readings go with its loads.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Following {
+    /// Conditions whose loads differ enough to tell.
+    pub(super) judged: usize,
+    /// Those of them whose readings follow the loads in neither direction.
+    pub(super) astray: usize,
+    /// Median change of the reading per newton of load over those astray.
+    pub(super) slope: f64,
+    /// Smallest and largest change that is possible, over the wraps of the table.
+    pub(super) bounds: RangeInclusive<f64>,
+}
+
+impl Following {
+    /// Of `force` over `load`, which need not be the columns of that name.
+    pub(super) fn new(
+        rows: &[PlateauRow],
+        load: impl Fn(&PlateauRow) -> f64,
+        force: impl Fn(&PlateauRow) -> f64,
+    ) -> Self {
+        let told: Vec<(Vec<f64>, f64)> = conditions(rows)
+            .iter()
+            .map(|of| (slopes(of, &load, &force), widening(of)))
+            .filter(|(slopes, _)| !slopes.is_empty())
+            .collect();
+        // Where every condition has one load only, the table as a whole can still tell.
+        let told = if told.is_empty() {
+            let all: Vec<&PlateauRow> = rows.iter().collect();
+            vec![(slopes(&all, &load, &force), widening(&all))]
+        } else {
+            told
+        };
+        let widest = told.iter().map(|(_, widening)| *widening).fold(1.0, f64::max);
+        let mut astray: Vec<f64> = told
+            .iter()
+            .filter(|(slopes, widening)| !slopes.is_empty() && !is_possible(slopes, *widening))
+            .map(|(slopes, _)| slopes[0])
+            .collect();
+        Self {
+            judged: told.iter().filter(|(slopes, _)| !slopes.is_empty()).count(),
+            astray: astray.len(),
+            slope: median(&mut astray),
+            bounds: FOLLOWS.start() / widest..=FOLLOWS.end() * widest,
+        }
+    }
+
+    /// Whether most conditions do not follow: one that does not may be a bad run, which is the fit's to find.
+    pub(super) fn is_astray(&self) -> bool {
+        2 * self.astray > self.judged
+    }
+}
+
+/// Rows by condition.
+pub(super) fn conditions(rows: &[PlateauRow]) -> Vec<Vec<&PlateauRow>> {
+    let mut found: BTreeMap<(&str, &[usize], u64), Vec<&PlateauRow>> = BTreeMap::new();
+    for row in rows {
+        // The wrap of `plain` has no meaning.
+        let wrap = row.substrate.map_or(0, |_| row.wrap_angle_deg.to_bits());
+        found.entry((substrate_word(row.substrate), &row.pins, wrap)).or_default().push(row);
+    }
+    found.into_values().collect()
+}
+
+/// Factor by which a wrap beyond the paper's widens the bounds.
+fn widening(rows: &[&PlateauRow]) -> f64 {
+    let wrap = |r: &&PlateauRow| r.substrate.map_or(UNKNOWN_WRAP, |_| r.wrap_angle_deg.to_radians());
+    let largest = rows.iter().map(wrap).fold(0.0, f64::max);
+    (PER_RADIAN * (largest - published::wrap_angle_rad()).max(0.0)).exp()
+}
+
+/// Whether either direction follows, or both do once friction, which divides one and multiplies the other, is out.
+fn is_possible(slopes: &[f64], widening: f64) -> bool {
+    let within =
+        |slope: f64, factor: f64| (FOLLOWS.start() / factor..=FOLLOWS.end() * factor).contains(&slope);
+    match slopes {
+        [one] => within(*one, widening),
+        [one, other] => {
+            let both = *one > 0.0 && *other > 0.0 && within((one * other).sqrt(), 1.0);
+            both || within(*one, 1.0) || within(*other, 1.0)
+        }
+        _ => true,
+    }
+}
+
+/// Change of `force` per unit of `load` in each direction that can tell.
+fn slopes(
+    rows: &[&PlateauRow],
+    load: &impl Fn(&PlateauRow) -> f64,
+    force: &impl Fn(&PlateauRow) -> f64,
+) -> Vec<f64> {
+    [Direction::Eccentric, Direction::Concentric]
+        .into_iter()
+        .filter_map(|direction| {
+            let of = rows.iter().filter(|r| r.direction == direction);
+            slope(of.map(|r| (load(r), force(r))).collect())
+        })
+        .collect()
+}
+
+/// Slope from the medians of the lightest and the heaviest quarter; `None` if their loads are too alike to tell.
+fn slope(mut pairs: Vec<(f64, f64)>) -> Option<f64> {
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let quarter = pairs.len().div_ceil(4);
+    let (light, heavy) = (&pairs[..quarter], &pairs[pairs.len() - quarter..]);
+    let middle = |of: &[(f64, f64)], value: fn(&(f64, f64)) -> f64| {
+        median(&mut of.iter().map(value).collect::<Vec<_>>())
+    };
+    let step = middle(heavy, |r| r.0) - middle(light, |r| r.0);
+    let told = step > 0.3 * middle(heavy, |r| r.0);
+    told.then(|| (middle(heavy, |r| r.1) - middle(light, |r| r.1)) / step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_session::session;
+
+    fn of(rows: &[PlateauRow]) -> Following {
+        Following::new(rows, |r| r.load_n, |r| r.force_n)
+    }
+
+    #[test]
+    fn one_condition_that_ignores_its_loads_is_the_fits_and_most_are_the_tables() {
+        let mut rows = session(1);
+        assert_eq!((of(&rows).judged, of(&rows).astray), (5, 0));
+        rows.iter_mut().filter(|r| r.pins.is_empty()).for_each(|r| r.force_n = 7.0);
+        assert!(of(&rows).astray == 1 && !of(&rows).is_astray());
+        rows.iter_mut().filter(|r| r.pins.len() == 3).for_each(|r| r.force_n = 30.0);
+        assert!(of(&rows).astray == 3 && of(&rows).is_astray(), "{:?}", of(&rows));
+    }
+
+    #[test]
+    fn two_turns_of_wrap_are_possible_though_each_direction_alone_looks_wrong() {
+        let mut rows = session(1);
+        for row in &mut rows {
+            row.wrap_angle_deg = 720.0;
+            row.force_n = row.load_n * (3.0 * row.direction.sign()).exp();
+        }
+        assert_eq!(of(&rows).astray, 0);
+        rows.retain(|r| r.direction == Direction::Eccentric);
+        assert_eq!(of(&rows).astray, 0);
+    }
+}

@@ -7,6 +7,7 @@ use pinswitch_friction::{Direction, published};
 
 use super::row::PlateauRow;
 use super::substrate_word::substrate_word;
+use crate::aliasing::rank_correlation;
 use crate::median::median;
 
 /// Newtons of reading per newton of load that friction over the paper's wrap, drags and offsets may leave.
@@ -15,6 +16,9 @@ pub(super) const FOLLOWS: RangeInclusive<f64> = 0.2..=5.0;
 const UNKNOWN_WRAP: f64 = std::f64::consts::TAU;
 /// Growth of the bounds' logarithm per radian of wrap beyond the paper's: a friction coefficient that is rarely reached.
 const PER_RADIAN: f64 = 0.4;
+
+/// Rank correlation below which readings have nothing to do with loads, whatever the slope.
+const UNRELATED: f64 = 0.5;
 
 /// How a table's readings go with its loads.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +29,8 @@ pub(super) struct Following {
     pub(super) astray: usize,
     /// Median change of the reading per newton of load over those astray.
     pub(super) slope: f64,
+    /// Median over the conditions of the rank correlation of readings and loads.
+    pub(super) correlation: f64,
     /// Smallest and largest change that is possible, over the wraps of the table.
     pub(super) bounds: RangeInclusive<f64>,
 }
@@ -36,28 +42,26 @@ impl Following {
         load: impl Fn(&PlateauRow) -> f64,
         force: impl Fn(&PlateauRow) -> f64,
     ) -> Self {
-        let told: Vec<(Vec<f64>, f64)> = conditions(rows)
+        let course =
+            |of: &[&PlateauRow]| Course { directions: directions(of, &load, &force), widening: widening(of) };
+        let told: Vec<Course> = conditions(rows)
             .iter()
-            .map(|of| (slopes(of, &load, &force), widening(of)))
-            .filter(|(slopes, _)| !slopes.is_empty())
+            .map(|of| course(of))
+            .filter(|course| !course.directions.is_empty())
             .collect();
         // Where every condition has one load only, the table as a whole can still tell.
-        let told = if told.is_empty() {
-            let all: Vec<&PlateauRow> = rows.iter().collect();
-            vec![(slopes(&all, &load, &force), widening(&all))]
-        } else {
-            told
-        };
-        let widest = told.iter().map(|(_, widening)| *widening).fold(1.0, f64::max);
-        let mut astray: Vec<f64> = told
-            .iter()
-            .filter(|(slopes, widening)| !slopes.is_empty() && !is_possible(slopes, *widening))
-            .map(|(slopes, _)| slopes[0])
-            .collect();
+        let told = if told.is_empty() { vec![course(&rows.iter().collect::<Vec<_>>())] } else { told };
+        let told: Vec<Course> = told.into_iter().filter(|course| !course.directions.is_empty()).collect();
+        let widest = told.iter().map(|course| course.widening).fold(1.0, f64::max);
+        let astray = told.iter().filter(|course| !course.is_possible());
+        let mut slopes: Vec<f64> =
+            astray.filter_map(|course| course.directions.first()).map(|d| d.slope).collect();
+        let mut correlations: Vec<f64> = told.iter().map(Course::correlation).collect();
         Self {
-            judged: told.iter().filter(|(slopes, _)| !slopes.is_empty()).count(),
-            astray: astray.len(),
-            slope: median(&mut astray),
+            judged: told.len(),
+            astray: slopes.len(),
+            slope: median(&mut slopes),
+            correlation: median(&mut correlations),
             bounds: FOLLOWS.start() / widest..=FOLLOWS.end() * widest,
         }
     }
@@ -86,37 +90,61 @@ fn widening(rows: &[&PlateauRow]) -> f64 {
     (PER_RADIAN * (largest - published::wrap_angle_rad()).max(0.0)).exp()
 }
 
-/// Whether either direction follows, or both do once friction, which divides one and multiplies the other, is out.
-fn is_possible(slopes: &[f64], widening: f64) -> bool {
-    let within =
-        |slope: f64, factor: f64| (FOLLOWS.start() / factor..=FOLLOWS.end() * factor).contains(&slope);
-    match slopes {
-        [one] => within(*one, widening),
-        [one, other] => {
-            let both = *one > 0.0 && *other > 0.0 && within((one * other).sqrt(), 1.0);
-            both || within(*one, 1.0) || within(*other, 1.0)
+/// How readings go with loads in one condition.
+struct Course {
+    directions: Vec<Along>,
+    widening: f64,
+}
+
+impl Course {
+    /// Whether either direction follows, or both do once friction, which divides one and multiplies the other, is out.
+    fn is_possible(&self) -> bool {
+        let within =
+            |slope: f64, factor: f64| (FOLLOWS.start() / factor..=FOLLOWS.end() * factor).contains(&slope);
+        let slopes: Vec<f64> =
+            self.directions.iter().filter(|d| d.correlation > UNRELATED).map(|d| d.slope).collect();
+        match slopes.as_slice() {
+            [] => false,
+            [one] if self.directions.len() == 1 => within(*one, self.widening),
+            [one] => within(*one, 1.0),
+            [one, other, ..] => {
+                let both = *one > 0.0 && *other > 0.0 && within((one * other).sqrt(), 1.0);
+                both || within(*one, 1.0) || within(*other, 1.0)
+            }
         }
-        _ => true,
+    }
+
+    /// The better of its correlations.
+    fn correlation(&self) -> f64 {
+        self.directions.iter().map(|d| d.correlation).fold(-1.0, f64::max)
     }
 }
 
-/// Change of `force` per unit of `load` in each direction that can tell.
-fn slopes(
+/// How readings go with loads in one direction.
+struct Along {
+    /// Change per newton of load, from the medians of the lightest and the heaviest quarter.
+    slope: f64,
+    /// Rank correlation.
+    correlation: f64,
+}
+
+/// `force` along `load` in each direction that can tell.
+fn directions(
     rows: &[&PlateauRow],
     load: &impl Fn(&PlateauRow) -> f64,
     force: &impl Fn(&PlateauRow) -> f64,
-) -> Vec<f64> {
+) -> Vec<Along> {
     [Direction::Eccentric, Direction::Concentric]
         .into_iter()
         .filter_map(|direction| {
             let of = rows.iter().filter(|r| r.direction == direction);
-            slope(of.map(|r| (load(r), force(r))).collect())
+            along(of.map(|r| (load(r), force(r))).collect())
         })
         .collect()
 }
 
-/// Slope from the medians of the lightest and the heaviest quarter; `None` if their loads are too alike to tell.
-fn slope(mut pairs: Vec<(f64, f64)>) -> Option<f64> {
+/// `None` if the loads are too alike to tell.
+fn along(mut pairs: Vec<(f64, f64)>) -> Option<Along> {
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let quarter = pairs.len().div_ceil(4);
     let (light, heavy) = (&pairs[..quarter], &pairs[pairs.len() - quarter..]);
@@ -124,8 +152,10 @@ fn slope(mut pairs: Vec<(f64, f64)>) -> Option<f64> {
         median(&mut of.iter().map(value).collect::<Vec<_>>())
     };
     let step = middle(heavy, |r| r.0) - middle(light, |r| r.0);
-    let told = step > 0.3 * middle(heavy, |r| r.0);
-    told.then(|| (middle(heavy, |r| r.1) - middle(light, |r| r.1)) / step)
+    let slope = (middle(heavy, |r| r.1) - middle(light, |r| r.1)) / step;
+    let (loads, readings): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
+    (step > 0.3 * middle(heavy, |r| r.0))
+        .then(|| Along { slope, correlation: rank_correlation(&loads, &readings) })
 }
 
 #[cfg(test)]

@@ -146,10 +146,12 @@ fn is_none(shares: &[f64]) -> bool {
     middle.abs() < (ERRORS * standard_error(shares)).clamp(NONE, SOME)
 }
 
-/// Whether some shares are below zero, and not by chance.
+/// Whether the shares are below zero, and not by chance: the middle one by a size that is friction's, or nearly all.
 fn is_negative(shares: &[f64]) -> bool {
-    let least = if shares.len() < 3 { 2.0 * SOME } else { ERRORS * standard_error(shares) };
-    median(&mut shares.to_vec()) < -least.max(NONE)
+    let middle = median(&mut shares.to_vec());
+    let negative = shares.iter().filter(|share| **share < 0.0).count() as f64;
+    let excess = 2.0 * negative - shares.len() as f64;
+    middle < -2.0 * SOME || (middle < -NONE && excess > ERRORS * (shares.len() as f64).sqrt())
 }
 
 /// The gap whose share is in the middle.

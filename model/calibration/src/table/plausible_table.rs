@@ -55,8 +55,15 @@ impl PlateauTable {
         let file = file.to_owned();
         let following = Following::new(&self.rows, |r| r.load_n, |r| r.force_n);
         if following.is_astray() {
-            let Following { judged, astray, slope, bounds } = following;
-            return Some(TableError::Unrelated { file, slope, bounds, conditions: astray, of: judged });
+            let Following { judged, astray, slope, correlation, bounds } = following;
+            return Some(TableError::Unrelated {
+                file,
+                slope,
+                correlation,
+                bounds,
+                conditions: astray,
+                of: judged,
+            });
         }
         if let Some(factor) = self.newtons_per_weight().filter(|factor| !WEIGHS.contains(factor)) {
             return Some(TableError::LoadUnit { file, factor, bounds: WEIGHS });

@@ -25,6 +25,9 @@ const WEIGHS: f64 = 0.01;
 /// The same, beyond which it is not that weight.
 const WEIGHS_NOT: f64 = 0.05;
 
+/// Rank correlation of readings and loads in a table that an exchange has made sound.
+const SOUND: f64 = 0.9;
+
 /// Two columns, and how they were told.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Swapped {
@@ -99,6 +102,7 @@ fn is_sound(
     weighs
         && following.judged > 0
         && 10 * following.astray <= following.judged
+        && following.correlation > SOUND
         && rows.iter().all(|r| load(r) >= 0.0)
         && friction(rows, load, force) == Friction::Measured
 }

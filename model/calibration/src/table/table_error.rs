@@ -47,7 +47,7 @@ pub enum TableError {
     /// The readings do not follow the loads.
     #[error(
         "{file}, column 'force_N': the reading changes by {slope:.2} N for each newton of load_N in {conditions} of {of} \
-         condition(s), {:.2} to {:.2} are possible; check the sign and the unit of both columns, and the load cell's cable",
+         condition(s) (rank correlation over all {correlation:.2}), {:.2} to {:.2} and a correlation above 0.5 are possible; check the sign and the unit of both columns, and the load cell's cable",
         bounds.start(), bounds.end()
     )]
     Unrelated {
@@ -55,6 +55,8 @@ pub enum TableError {
         file: String,
         /// Newtons per newton, the median over the conditions that do not follow.
         slope: f64,
+        /// Rank correlation of readings and loads, the median over all conditions.
+        correlation: f64,
         /// What is possible.
         bounds: std::ops::RangeInclusive<f64>,
         /// Conditions whose readings do not follow.

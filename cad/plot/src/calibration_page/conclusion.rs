@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
+use pinswitch_calibration::effects::effect_named;
 use pinswitch_calibration::{EffectReport, Report, Verdict};
 
 use super::super::html::escape;
-use super::limits::{open_limits, possible, unit_of};
-use super::number::{newtons, with_unit};
-use pinswitch_calibration::effects::effect_named;
+use super::limits::{open_limits, possible, typical};
+use super::number::newtons;
 
 /// Open effects that the conclusion names; the section on limits has them all.
 const NAMED: usize = 4;
@@ -62,18 +62,12 @@ fn inconclusive(report: &Report) -> String {
         .to_owned();
     for limit in open.iter().take(NAMED) {
         let experiment = effect_named(&limit.id).map_or("", |e| e.description().experiment);
-        let typical = match effect_named(&limit.id).map(|e| e.parameters().is_empty()) {
-            Some(true) => String::new(),
-            _ => format!(
-                " ({} changes friction or reading by 5 % somewhere)",
-                with_unit(limit.typical, unit_of(limit))
-            ),
-        };
         let _ = write!(
             html,
-            "<li><b>{}</b>: {} is possible{typical}. To settle it: {}.</li>",
+            "<li><b>{}</b>: {} is possible ({} changes friction or reading by 5 % somewhere). To settle it: {}.</li>",
             escape(&limit.id),
             possible(limit),
+            typical(limit),
             escape(experiment)
         );
     }
@@ -92,15 +86,23 @@ fn errors(report: &Report) -> String {
         return "<p>There is too little to hold anything out of the fit: no error is known.</p>".to_owned();
     }
     let promise = |value: Option<f64>| value.map_or("not known".to_owned(), newtons);
+    // Where nothing was found, both models are one.
+    let both = !report.effects.is_empty();
+    let row = |name: &str, before: String, after: String| match both {
+        true => {
+            format!("<tr><td>{name}</td><td class=\"n b\">{before}</td><td class=\"n a\">{after}</td></tr>")
+        }
+        false => format!("<tr><td>{name}</td><td class=\"n\">{after}</td></tr>"),
+    };
+    let (columns, span) = match both {
+        true => ("<th class=\"b\">the paper's model</th><th class=\"a\">the better model</th>", 2),
+        false => ("<th>the paper's model</th>", 1),
+    };
     format!(
-        "<div class=\"wide\"><table><tr><th>error</th><th class=\"b\">the paper's model</th><th class=\"a\">the better model</th></tr>\
-         <tr><td>on series and loads held out of the fit</td><td class=\"n b\">{}</td><td class=\"n a\">{}</td></tr>\
-         <tr><td>to expect in a new session of the same rig</td><td class=\"n b\">{}</td><td class=\"n a\">{}</td></tr>\
-         <tr><td>noise of one reading</td><td class=\"n\" colspan=\"2\">{}</td></tr></table></div>",
-        newtons(held[0]),
-        newtons(held[1]),
-        promise(promised[0]),
-        promise(promised[1]),
+        "<div class=\"wide\"><table><tr><th>error</th>{columns}</tr>{}{}\
+         <tr><td>noise of one reading</td><td class=\"n\" colspan=\"{span}\">{}</td></tr></table></div>",
+        row("on series and loads held out of the fit", newtons(held[0]), newtons(held[1])),
+        row("to expect in a new session of the same rig", promise(promised[0]), promise(promised[1])),
         newtons(report.noise_floor_n)
     )
 }

@@ -13,7 +13,7 @@ const REACH: f64 = 3.0;
 /// Height of one strip in pixels.
 const ROW: f64 = 24.0;
 /// Where the strips begin and end, in pixels.
-const STRIPS: (f64, f64) = (210.0, 690.0);
+const STRIPS: (f64, f64) = (170.0, 525.0);
 
 /// Limits that leave room for an effect of consequence, the widest first.
 pub(super) fn open_limits(report: &Report) -> Vec<&LimitReport> {
@@ -37,7 +37,7 @@ fn ends(limit: &LimitReport) -> [f64; 2] {
 }
 
 /// Unit of the size of an effect.
-pub(super) fn unit_of(limit: &LimitReport) -> &'static str {
+fn unit_of(limit: &LimitReport) -> &'static str {
     let parameters = effect_named(&limit.id).map_or(&[][..], |e| e.parameters());
     parameters.iter().find(|p| p.name == limit.parameter).map_or("1", |p| p.unit)
 }
@@ -56,6 +56,15 @@ pub(super) fn possible(limit: &LimitReport) -> String {
     match low {
         0.0 => format!("{name} up to {}", sized(high, unit)),
         _ => format!("{name} from {} to {}", sized(low, unit), sized(high, unit)),
+    }
+}
+
+/// The size of consequence, in words.
+pub(super) fn typical(limit: &LimitReport) -> String {
+    match limit.parameter.as_str() {
+        "present" if limit.typical >= 1.0 => "more than the whole effect".to_owned(),
+        "present" => format!("{} of the effect", with_unit(limit.typical, "1")),
+        name => format!("{} = {}", escape(name), sized(limit.typical, unit_of(limit))),
     }
 }
 
@@ -94,10 +103,7 @@ fn table(all: &[&LimitReport]) -> String {
         .to_owned();
     for limit in all {
         let (class, word) = if limit.excluded { (" class=\"soft\"", "excluded") } else { ("", "open") };
-        let typical = match limit.parameter.as_str() {
-            "present" => "the whole effect".to_owned(),
-            name => format!("{} = {}", escape(name), sized(limit.typical, unit_of(limit))),
-        };
+        let typical = typical(limit);
         let _ = writeln!(
             html,
             "<tr{class}><td>{}</td><td>{}</td><td>{typical}</td><td>{word}</td></tr>",
@@ -115,7 +121,7 @@ fn strips(all: &[&LimitReport]) -> String {
     let x = |multiple: f64| left + (right - left) * (multiple.clamp(-REACH, REACH) + REACH) / (2.0 * REACH);
     let foot = ROW * all.len() as f64 + 6.0;
     let mut svg = format!(
-        "<figure class=\"wide\"><svg class=\"strip\" viewBox=\"0 0 700 {0:.0}\" role=\"img\" aria-label=\"Sizes that remain possible\">\
+        "<figure class=\"wide\"><svg class=\"strip\" viewBox=\"0 0 535 {0:.0}\" role=\"img\" aria-label=\"Sizes that remain possible\">\
          <rect class=\"band\" x=\"{1:.1}\" y=\"0\" width=\"{2:.1}\" height=\"{foot:.0}\"/>\
          <line class=\"zero\" x1=\"{3:.1}\" x2=\"{3:.1}\" y1=\"0\" y2=\"{foot:.0}\"/>",
         foot + 22.0,
@@ -209,7 +215,7 @@ mod tests {
 
     #[test]
     fn sizes_are_told_in_words_with_their_unit() {
-        assert_eq!(possible(&limit("guide_drag", "d", -0.1, 0.31)), "d up to 0.310 N");
+        assert_eq!(possible(&limit("guide_drag", "c", -0.1, 0.31)), "c up to 0.310 N");
         assert_eq!(possible(&limit("load_cell_offset", "b", -0.1, 0.31)), "b from -0.100 N to 0.310 N");
         assert_eq!(possible(&limit("switch_local_tension", "present", -0.4, 1.7)), "the whole effect");
         assert_eq!(

@@ -20,7 +20,7 @@ figure{margin:.6em 0}.grid{display:grid;grid-template-columns:1fr 1fr;gap:.4em}.
 @media(max-width:640px){.grid{grid-template-columns:1fr}td,th{padding:.25em .5em}}\
 figcaption,.soft,tr.soft td{color:var(--soft)}svg{max-width:100%;height:auto}.b{color:var(--before)}.a{color:var(--after)}\
 tr.kept td{background:var(--kept)}tr.rival td{background:var(--rival)}\
-.strip{min-width:520px;fill:var(--ink);font:13px sans-serif}.strip .band{fill:var(--band)}.strip .zero{stroke:var(--soft)}\
+.strip{width:700px;min-width:320px;fill:var(--ink);font:13px sans-serif}.strip .band{fill:var(--band)}.strip .zero{stroke:var(--soft)}\
 .strip .open{stroke:var(--before)}.strip .shut{stroke:var(--soft)}.strip .quiet{fill:var(--soft)}";
 
 /// Everything before the first heading of a page.

@@ -236,12 +236,12 @@ proptest! {
         }
     }
 
-    /// Directions the wrong way round, however the rig is.
+    /// Directions the wrong way round, however the rig is, unless it has so little friction that noise may hide it.
     #[test]
     fn swapped_labels_are_refused_on_any_rig(plan in plans()) {
         let mut rows = simulate(&plan).rows;
         rows.iter_mut().for_each(|r| r.direction = turned(r.direction));
-        prop_assume!(rows.len() > 30);
+        prop_assume!(rows.len() > 30 && plan.weights_g.len() > 3 && plan.wrap_angle_deg > 40.0);
         prop_assert!(judged(&written(&rows)).is_err());
     }
 }

@@ -17,6 +17,8 @@ const UNKNOWN_WRAP: f64 = std::f64::consts::TAU;
 /// Growth of the bounds' logarithm per radian of wrap beyond the paper's: a friction coefficient that is rarely reached.
 const PER_RADIAN: f64 = 0.4;
 
+/// Widening of the bounds beyond which an eccentric course alone does not tell.
+const WIDE: f64 = 3.0;
 /// Rank correlation below which readings have nothing to do with loads, whatever the slope.
 const UNRELATED: f64 = 0.5;
 
@@ -44,14 +46,11 @@ impl Following {
     ) -> Self {
         let course =
             |of: &[&PlateauRow]| Course { directions: directions(of, &load, &force), widening: widening(of) };
-        let told: Vec<Course> = conditions(rows)
-            .iter()
-            .map(|of| course(of))
-            .filter(|course| !course.directions.is_empty())
-            .collect();
+        let told: Vec<Course> =
+            conditions(rows).iter().map(|of| course(of)).filter(Course::can_tell).collect();
         // Where every condition has one load only, the table as a whole can still tell.
         let told = if told.is_empty() { vec![course(&rows.iter().collect::<Vec<_>>())] } else { told };
-        let told: Vec<Course> = told.into_iter().filter(|course| !course.directions.is_empty()).collect();
+        let told: Vec<Course> = told.into_iter().filter(Course::can_tell).collect();
         let widest = told.iter().map(|course| course.widening).fold(1.0, f64::max);
         let astray = told.iter().filter(|course| !course.is_possible());
         let mut slopes: Vec<f64> =
@@ -97,21 +96,21 @@ struct Course {
 }
 
 impl Course {
-    /// Whether either direction follows, or both do once friction, which divides one and multiplies the other, is out.
+    /// Whether either direction follows. Friction takes from the eccentric slope and adds to the concentric one.
     fn is_possible(&self) -> bool {
-        let within =
-            |slope: f64, factor: f64| (FOLLOWS.start() / factor..=FOLLOWS.end() * factor).contains(&slope);
-        let slopes: Vec<f64> =
-            self.directions.iter().filter(|d| d.correlation > UNRELATED).map(|d| d.slope).collect();
-        match slopes.as_slice() {
-            [] => false,
-            [one] if self.directions.len() == 1 => within(*one, self.widening),
-            [one] => within(*one, 1.0),
-            [one, other, ..] => {
-                let both = *one > 0.0 && *other > 0.0 && within((one * other).sqrt(), 1.0);
-                both || within(*one, 1.0) || within(*other, 1.0)
-            }
-        }
+        self.directions.iter().any(|along| {
+            let (least, most) = match along.direction {
+                Direction::Eccentric => (FOLLOWS.start() / self.widening, *FOLLOWS.end()),
+                Direction::Concentric => (*FOLLOWS.start(), FOLLOWS.end() * self.widening),
+            };
+            along.correlation > UNRELATED && (least..=most).contains(&along.slope)
+        })
+    }
+
+    /// Whether it can tell: around a wide wrap so little is left of an eccentric load that readings need not follow.
+    fn can_tell(&self) -> bool {
+        let narrow = self.widening < WIDE;
+        self.directions.iter().any(|along| narrow || along.direction == Direction::Concentric)
     }
 
     /// The better of its correlations.
@@ -122,6 +121,7 @@ impl Course {
 
 /// How readings go with loads in one direction.
 struct Along {
+    direction: Direction,
     /// Change per newton of load, from the medians of the lightest and the heaviest quarter.
     slope: f64,
     /// Rank correlation.
@@ -138,13 +138,13 @@ fn directions(
         .into_iter()
         .filter_map(|direction| {
             let of = rows.iter().filter(|r| r.direction == direction);
-            along(of.map(|r| (load(r), force(r))).collect())
+            along(direction, of.map(|r| (load(r), force(r))).collect())
         })
         .collect()
 }
 
 /// `None` if the loads are too alike to tell.
-fn along(mut pairs: Vec<(f64, f64)>) -> Option<Along> {
+fn along(direction: Direction, mut pairs: Vec<(f64, f64)>) -> Option<Along> {
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let quarter = pairs.len().div_ceil(4);
     let (light, heavy) = (&pairs[..quarter], &pairs[pairs.len() - quarter..]);
@@ -154,8 +154,11 @@ fn along(mut pairs: Vec<(f64, f64)>) -> Option<Along> {
     let step = middle(heavy, |r| r.0) - middle(light, |r| r.0);
     let slope = (middle(heavy, |r| r.1) - middle(light, |r| r.1)) / step;
     let (loads, readings): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
-    (step > 0.3 * middle(heavy, |r| r.0))
-        .then(|| Along { slope, correlation: rank_correlation(&loads, &readings) })
+    (step > 0.3 * middle(heavy, |r| r.0)).then(|| Along {
+        direction,
+        slope,
+        correlation: rank_correlation(&loads, &readings),
+    })
 }
 
 #[cfg(test)]

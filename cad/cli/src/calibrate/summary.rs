@@ -14,13 +14,7 @@ pub(super) fn summary(report: &Report) -> String {
     if !report.adequate {
         text.push_str("something is left: held-out series miss by more than the noise, see report.html\n");
     }
-    for pair in &report.aliasing {
-        let [a, b] = &pair.covariates;
-        text.push_str(&format!(
-            "{a} and {b} move together (correlation {:.2}): whatever lies in one may lie in the other\n",
-            pair.correlation
-        ));
-    }
+    text.push_str(&aliasing(report));
     if !report.ignored_columns.is_empty() {
         text.push_str(&format!("columns not read: {}\n", listed(&report.ignored_columns)));
     }
@@ -111,11 +105,24 @@ fn noise(report: &Report) -> String {
     if parts.is_empty() { String::new() } else { format!("noise: {}\n", parts.join(", ")) }
 }
 
+/// Covariates that move together, in one line.
+fn aliasing(report: &Report) -> String {
+    let pairs: Vec<String> = report
+        .aliasing
+        .iter()
+        .map(|pair| format!("{} ({:.2})", pair.covariates.join(" and "), pair.correlation))
+        .collect();
+    if pairs.is_empty() {
+        return String::new();
+    }
+    format!("moving together, so that what lies in one may lie in the other: {}\n", listed(&pairs))
+}
+
 fn extrapolation(report: &Report) -> String {
     let Some(e) = &report.extrapolation else { return String::new() };
     format!(
         "above {:.1} N ({} rows, none fitted): {:.2} N before, {:.2} N after; medians {:.2} and {:.2} N; \
-             {:.2} N after without {} bad reading(s)\n",
+         {:.2} N after without {} bad reading(s)\n",
         e.fitted_below_n,
         e.rows,
         e.rmse_before_n,

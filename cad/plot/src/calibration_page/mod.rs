@@ -45,7 +45,7 @@ pub fn page(title: &str, calibration: &Calibration, plots: &[Plot]) -> String {
 fn data(report: &Report) -> String {
     let d = &report.data;
     let mut html = format!(
-        "<h2>1. The data</h2><p>{} rows in {} series on {} conditions; {} rows weighed down as outliers.</p>\n",
+        "<h2>1. The data</h2><p>{} rows in {} series on {} condition(s); {} rows weighed down as outliers.</p>\n",
         d.rows, d.series, d.conditions, d.outliers
     );
     if !report.ignored_columns.is_empty() {

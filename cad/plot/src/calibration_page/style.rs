@@ -17,7 +17,7 @@ td,th{border-bottom:1px solid var(--line);padding:.25em .8em;text-align:left;ver
 td.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}\
 .verdict{background:var(--box);padding:.1em 1em;border-left:5px solid var(--after)}.verdict table{margin:.4em 0}\
 figure{margin:.6em 0}.grid{display:grid;grid-template-columns:1fr 1fr;gap:.4em}.grid figure{margin:0}\
-@media(max-width:640px){.grid{grid-template-columns:1fr}td,th{padding:.25em .5em}}\
+@media(max-width:640px){.grid{grid-template-columns:1fr}td,th{padding:.25em .5em}.wide td:not(.n){min-width:7em}}\
 figcaption,.soft,tr.soft td{color:var(--soft)}svg{max-width:100%;height:auto}.b{color:var(--before)}.a{color:var(--after)}\
 tr.kept td{background:var(--kept)}tr.rival td{background:var(--rival)}\
 .strip{width:700px;min-width:320px;fill:var(--ink);font:13px sans-serif}.strip .band{fill:var(--band)}.strip .zero{stroke:var(--soft)}\

@@ -1,18 +1,21 @@
 //! `pinswitch calibrate TABLE --out DIR`.
 
+mod summary;
+mod waiting;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_calibration::{
-    Calibration, ModelFile, Report, Verdict, calibrate, calibrate_below, explain_published,
-};
+use pinswitch_calibration::{Calibration, ModelFile, calibrate, calibrate_below, explain_published};
 
 use super::{Failure, print};
 use crate::write::write_set;
 use pinswitch_plot::{UNEXPLAINED, page, plots, published_page, published_plot};
 use pinswitch_switch::output::OutputFile;
+use summary::summary;
+use waiting::Waiting;
 
 /// Refit the paper's model to a plateau table, trace what it misses to an effect, and report the error before and after.
 ///
@@ -43,7 +46,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let table = PlateauTable::read(file, &name).map_err(Failure::bad_input)?;
     table.require_baseline(&name).map_err(Failure::bad_input)?;
     let mut table = table;
-    let mut calibration = match arguments.fit_below {
+    let waiting = Waiting::new(table.rows.len());
+    let calibration = match arguments.fit_below {
         None => calibrate(&table.rows, Levels::default()),
         Some(percent) => {
             let share = f64::from(percent) / 100.0;
@@ -52,8 +56,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             table.retain(|row| row.load_n <= share * highest);
             calibration
         }
-    }
-    .map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    };
+    waiting.end();
+    let mut calibration = calibration.map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
     calibration.report.ignored_columns = table.ignored_columns();
     let files = files(&table, &calibration, &name)?;
     write_set(&arguments.out, &files).map_err(Failure::failed)?;
@@ -117,73 +122,4 @@ fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<
     files.extend(plots.into_iter().map(|p| OutputFile { name: p.file, bytes: p.svg.into_bytes() }));
     files.push(OutputFile { name: "report.json".to_owned(), bytes: json });
     Ok(files)
-}
-
-/// Series to check that the terminal lists.
-const SHOWN_SERIES: usize = 6;
-
-/// The summary for the terminal.
-fn summary(report: &Report) -> String {
-    let verdict = match report.verdict {
-        Verdict::None => "none: the paper's model explains the data down to its noise",
-        Verdict::Inconclusive => {
-            "inconclusive: nothing is believed, and effects of consequence are not excluded"
-        }
-        Verdict::Attributed => "attributed",
-        Verdict::Ambiguous => "ambiguous: this data cannot tell rivals apart",
-        Verdict::Unattributed => "unattributed: structure is left that no named effect explains",
-    };
-    let held_out = [report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n];
-    let mut text = match held_out.map(|n| format!("{n:.4} N")) {
-        _ if held_out.iter().any(|n| n.is_nan()) => {
-            format!("verdict: {verdict}\nheld-out error: none, there is too little to hold anything out\n")
-        }
-        [before, after] => format!(
-            "verdict: {verdict}\nheld-out error: {before} before, {after} after (noise {:.4} N)\n",
-            report.noise_floor_n
-        ),
-    };
-    for effect in &report.effects {
-        let constants: Vec<String> = effect
-            .parameters
-            .iter()
-            .map(|(name, e)| {
-                format!("{name} = {:.4} [{:.4}, {:.4}] {}", e.value, e.ci95[0], e.ci95[1], e.unit)
-            })
-            .collect();
-        text.push_str(&format!("  {} ({}): {}\n", effect.id, effect.covariate, constants.join(", ")));
-        if effect.id == "unattributed" {
-            text.push_str(&format!("    {}\n", effect.formula));
-        }
-        for rival in &effect.rivals {
-            text.push_str(&format!(
-                "    or {}: {}; to settle it: {}\n",
-                rival.id, rival.why, rival.experiment
-            ));
-        }
-    }
-    if let Some(e) = &report.extrapolation {
-        text.push_str(&format!(
-            "above {:.1} N ({} rows, none fitted): {:.2} N before, {:.2} N after; medians {:.2} and {:.2} N; \
-             {:.2} N after without {} bad reading(s)\n",
-            e.fitted_below_n,
-            e.rows,
-            e.rmse_before_n,
-            e.rmse_after_n,
-            e.median_before_n,
-            e.median_after_n,
-            e.rmse_after_without_bad_n,
-            e.bad_rows
-        ));
-    }
-    for bad in report.bad_series.iter().take(SHOWN_SERIES) {
-        text.push_str(&format!(
-            "  check series {} {}: off by {:+.3} N ({:+.1} standard deviations)\n",
-            bad.series, bad.direction, bad.offset_n, bad.standard_deviations
-        ));
-    }
-    if let Some(more) = report.bad_series.len().checked_sub(SHOWN_SERIES).filter(|n| *n > 0) {
-        text.push_str(&format!("  and {more} more, see report.html\n"));
-    }
-    text
 }

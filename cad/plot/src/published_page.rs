@@ -121,7 +121,12 @@ pub fn published_page(all: &[Explanation], plot: &Plot) -> String {
         );
     }
     html.push_str("<h2>1. Where it misses</h2>\n");
-    let _ = writeln!(html, "<figure>{}<figcaption>{}</figcaption></figure>", plot.svg, escape(&plot.caption));
+    let _ = writeln!(
+        html,
+        "<figure class=\"plot\">{}<figcaption>{}</figcaption></figure>",
+        plot.svg,
+        escape(&plot.caption)
+    );
     html.push_str("<table><tr><th>maximum</th>");
     all.iter().for_each(|e| {
         let _ = write!(html, "<th>{}</th>", escape(e.id));

@@ -49,6 +49,11 @@ pub fn aliasing(rows: &[PlateauRow]) -> Vec<Aliasing> {
     found
 }
 
+/// Correlation of the ranks of two columns.
+pub(crate) fn rank_correlation(a: &[f64], b: &[f64]) -> f64 {
+    correlation(&ranks(a), &ranks(b))
+}
+
 /// Ranks from 0; equal values share their mean rank.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();

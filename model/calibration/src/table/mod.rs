@@ -1,11 +1,14 @@
 //! Plateau tables, their rows, and what a session as a whole fixes (`model/doc/file-formats.md`).
 
 mod columns;
+mod follows;
 mod frame;
+mod friction_gap;
 mod plateau_table;
 mod plausible_table;
 mod row;
 pub(crate) mod substrate_word;
+mod swapped_columns;
 mod table_error;
 
 pub use frame::{Condition, Frame, Point};

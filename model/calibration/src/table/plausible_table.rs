@@ -2,49 +2,83 @@
 
 use std::ops::RangeInclusive;
 
-use pinswitch_friction::Direction;
 use pinswitch_friction::published::GRAVITY_M_S2;
 
+use super::follows::Following;
+use super::friction_gap::{Friction, friction};
 use super::plateau_table::PlateauTable;
 use super::row::PlateauRow;
+use super::swapped_columns::{Swapped, evident, repairing};
 use super::table_error::TableError;
 use crate::median::median;
 
-/// Newtons of reading per newton of load that friction over any wrap, drags and offsets may leave.
-const FOLLOWS: RangeInclusive<f64> = 0.2..=5.0;
 /// Declared load over the weight of the declared mass: one, with room for hooks and levers.
 const WEIGHS: RangeInclusive<f64> = 0.5..=2.0;
 
 impl PlateauTable {
-    /// Refuses a table that cannot fix a baseline.
+    /// Refuses a table that cannot fix a baseline, or that no rig can have measured. One odd condition or series is not
+    /// refused: finding it is the fit's.
     ///
     /// # Errors
-    /// [`TableError::TooFewLoads`] with fewer than two loads above zero, [`TableError::Unrelated`] if the readings do
-    /// not follow the loads, [`TableError::LoadUnit`] if loads and masses contradict each other.
+    /// [`TableError::TooFewLoads`] with fewer than two loads above zero, [`TableError::SwappedColumns`] if two columns
+    /// stand in each other's place, [`TableError::Unrelated`] if the readings do not follow the loads in most
+    /// conditions, [`TableError::LoadUnit`] if loads and masses contradict each other, [`TableError::NoFriction`] if the
+    /// directions differ nowhere, [`TableError::SwappedDirections`] if they differ the wrong way round in most
+    /// conditions.
     pub fn require_baseline(&self, file: &str) -> Result<(), TableError> {
         let mut loads: Vec<f64> = self.rows.iter().map(|r| r.load_n).filter(|n| *n > 0.0).collect();
         loads.sort_by(f64::total_cmp);
         loads.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
         let needed = 2;
+        let file = file.to_owned();
+        let swapped = |Swapped { first, second, because }| TableError::SwappedColumns {
+            file: file.clone(),
+            first,
+            second,
+            because,
+        };
+        if let Some(columns) = evident(&self.rows) {
+            return Err(swapped(columns));
+        }
         if loads.len() < needed {
-            return Err(TableError::TooFewLoads {
-                file: file.to_owned(),
-                last_line: self.rows.len() + 1,
-                found: loads.len(),
-                needed,
+            let last_line = self.rows.len() + 1;
+            return Err(TableError::TooFewLoads { file, last_line, found: loads.len(), needed });
+        }
+        match self.contradiction(&file) {
+            None => Ok(()),
+            Some(error) => Err(repairing(&self.rows).map_or(error, swapped)),
+        }
+    }
+
+    /// What no rig can have measured.
+    fn contradiction(&self, file: &str) -> Option<TableError> {
+        let file = file.to_owned();
+        let following = Following::new(&self.rows, |r| r.load_n, |r| r.force_n);
+        if following.is_astray() {
+            let Following { judged, astray, slope, correlation, bounds } = following;
+            return Some(TableError::Unrelated {
+                file,
+                slope,
+                correlation,
+                bounds,
+                conditions: astray,
+                of: judged,
             });
         }
-        let file = file.to_owned();
-        let slopes: Vec<f64> =
-            [Direction::Eccentric, Direction::Concentric].into_iter().filter_map(|d| self.slope(d)).collect();
-        match (slopes.as_slice(), self.newtons_per_weight()) {
-            ([slope, ..], _) if !slopes.iter().any(|s| FOLLOWS.contains(s)) => {
-                Err(TableError::Unrelated { file, slope: *slope, bounds: FOLLOWS })
-            }
-            (_, Some(factor)) if !WEIGHS.contains(&factor) => {
-                Err(TableError::LoadUnit { file, factor, bounds: WEIGHS })
-            }
-            _ => Ok(()),
+        if let Some(factor) = self.newtons_per_weight().filter(|factor| !WEIGHS.contains(factor)) {
+            return Some(TableError::LoadUnit { file, factor, bounds: WEIGHS });
+        }
+        match friction(&self.rows, |r| r.load_n, |r| r.force_n) {
+            Friction::Measured => None,
+            Friction::Nowhere(conditions) => Some(TableError::NoFriction { file, conditions }),
+            Friction::Backwards { backwards, judged, example } => Some(TableError::SwappedDirections {
+                file,
+                conditions: backwards,
+                of: judged,
+                load_n: example.load_n,
+                concentric_n: example.concentric_n,
+                eccentric_n: example.eccentric_n,
+            }),
         }
     }
 
@@ -60,22 +94,6 @@ impl PlateauTable {
             .map(|r| r.load_n / weight_n(r))
             .collect();
         (!factors.is_empty()).then(|| median(&mut factors))
-    }
-
-    /// Newtons of reading per newton of load in one direction, from the medians of the lightest and the heaviest
-    /// quarter of its rows; `None` if their loads are too alike to tell.
-    fn slope(&self, direction: Direction) -> Option<f64> {
-        let of = self.rows.iter().filter(|r| r.direction == direction);
-        let mut rows: Vec<(f64, f64)> = of.map(|r| (r.load_n, r.force_n)).collect();
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let quarter = rows.len().div_ceil(4);
-        let (light, heavy) = (&rows[..quarter], &rows[rows.len() - quarter..]);
-        let middle = |of: &[(f64, f64)], value: fn(&(f64, f64)) -> f64| {
-            median(&mut of.iter().map(value).collect::<Vec<_>>())
-        };
-        let step_n = middle(heavy, |r| r.0) - middle(light, |r| r.0);
-        let told = step_n > 0.3 * middle(heavy, |r| r.0);
-        told.then(|| (middle(heavy, |r| r.1) - middle(light, |r| r.1)) / step_n)
     }
 }
 

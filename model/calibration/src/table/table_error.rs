@@ -46,16 +46,70 @@ pub enum TableError {
     },
     /// The readings do not follow the loads.
     #[error(
-        "{file}, column 'force_N': the reading changes by {slope:.2} N for each newton of load_N, {} to {} are possible; \
-         check the sign and the unit of both columns, and the load cell's cable", bounds.start(), bounds.end()
+        "{file}, column 'force_N': the reading changes by {slope:.2} N for each newton of load_N in {conditions} of {of} \
+         condition(s) (rank correlation over all {correlation:.2}), {:.2} to {:.2} and a correlation above 0.5 are possible; check the sign and the unit of both columns, and the load cell's cable",
+        bounds.start(), bounds.end()
     )]
     Unrelated {
         /// File name as given.
         file: String,
-        /// Newtons per newton.
+        /// Newtons per newton, the median over the conditions that do not follow.
         slope: f64,
+        /// Rank correlation of readings and loads, the median over all conditions.
+        correlation: f64,
         /// What is possible.
         bounds: std::ops::RangeInclusive<f64>,
+        /// Conditions whose readings do not follow.
+        conditions: usize,
+        /// Conditions whose loads differ enough to tell.
+        of: usize,
+    },
+    /// Two columns stand in each other's place.
+    #[error(
+        "{file}, columns '{first}' and '{second}': they stand in each other's place: {because}; exchange the two names in \
+         line 1, or repair what wrote the table"
+    )]
+    SwappedColumns {
+        /// File name as given.
+        file: String,
+        /// The column that comes first in a header.
+        first: &'static str,
+        /// The other.
+        second: &'static str,
+        /// How it was told.
+        because: &'static str,
+    },
+    /// The directions differ the wrong way round.
+    #[error(
+        "{file}, column 'direction': in {conditions} of {of} condition(s) the concentric readings lie below the eccentric \
+         ones, at {load_n:.2} N of load {concentric_n:.2} N below {eccentric_n:.2} N; a load takes more to pull than to \
+         release. Exchange the words concentric and eccentric, or load_N and force_N if these are swapped"
+    )]
+    SwappedDirections {
+        /// File name as given.
+        file: String,
+        /// Conditions where it is so.
+        conditions: usize,
+        /// Conditions with both directions.
+        of: usize,
+        /// A load.
+        load_n: f64,
+        /// The reading there while the load is pulled.
+        concentric_n: f64,
+        /// The reading there while it is released.
+        eccentric_n: f64,
+    },
+    /// The readings hold no friction.
+    #[error(
+        "{file}, column 'force_N': no friction was measured: in none of {conditions} condition(s) does the reading depart \
+         from the load by more than its scatter, pulled or released; check that force_N is the load cell beyond the \
+         switch, and no copy of load_N"
+    )]
+    NoFriction {
+        /// File name as given.
+        file: String,
+        /// Conditions looked at.
+        conditions: usize,
     },
     /// Loads and masses contradict each other.
     #[error(

@@ -1,0 +1,126 @@
+//! The conclusion of a calibration in plain words: the verdict, what is open, and the errors that it promises.
+
+use std::fmt::Write;
+
+use pinswitch_calibration::effects::effect_named;
+use pinswitch_calibration::{EffectReport, Report, Verdict};
+
+use super::super::html::escape;
+use super::limits::{open_limits, possible, typical};
+use super::number::newtons;
+
+/// Open effects that the conclusion names; the section on limits has them all.
+const NAMED: usize = 4;
+
+/// The box at the top of the page.
+pub(super) fn conclusion(report: &Report) -> String {
+    format!("<div class=\"verdict\">{}{}{}</div>\n", verdict(report), errors(report), adequacy(report))
+}
+
+/// The verdict, with what would settle what it leaves open.
+fn verdict(report: &Report) -> String {
+    let names: Vec<&str> =
+        report.effects.iter().map(|e| e.id.as_str()).filter(|id| *id != "unattributed").collect();
+    let beside =
+        if names.is_empty() { String::new() } else { format!(" beside {}", escape(&names.join(", "))) };
+    match report.verdict {
+        Verdict::None => "<p>The paper's model explains this data down to its noise. Each effect that this data can see is \
+                          smaller than what would change friction or reading by 5 % anywhere in the table.</p>"
+            .to_owned(),
+        Verdict::Inconclusive => inconclusive(report),
+        Verdict::Attributed => format!("<p>The paper's model lacks: {}.</p>", escape(&names.join(", "))),
+        Verdict::Ambiguous => {
+            let sets: Vec<String> = report.effects.iter().map(alternatives).collect();
+            let mut html =
+                format!("<p>The paper's model lacks {}; this data cannot tell which.</p>", sets.join(", and "));
+            for rival in report.effects.iter().filter_map(|e| e.rivals.first()) {
+                let _ = write!(html, "<p>To settle it: {}.</p>", escape(&rival.experiment));
+            }
+            html
+        }
+        Verdict::Unattributed => {
+            let of = |e: &&EffectReport| e.id == "unattributed";
+            let places: Vec<&str> = report.effects.iter().filter(of).map(|e| e.covariate.as_str()).collect();
+            format!(
+                "<p>Something is left{beside} that no named effect explains; it lies in {}.</p>",
+                escape(&places.join(", "))
+            )
+        }
+    }
+}
+
+/// An effect with what it may be instead.
+fn alternatives(effect: &EffectReport) -> String {
+    let ids = std::iter::once(effect.id.as_str()).chain(effect.rivals.iter().map(|r| r.id.as_str()));
+    escape(&ids.collect::<Vec<_>>().join(" or "))
+}
+
+fn inconclusive(report: &Report) -> String {
+    let open = open_limits(report);
+    let mut html = "<p>This data settles nothing: no effect gains more than chance may, yet effects of consequence are not excluded. \
+                    To know more, record more.</p><ul>"
+        .to_owned();
+    for limit in open.iter().take(NAMED) {
+        let experiment = effect_named(&limit.id).map_or("", |e| e.description().experiment);
+        let _ = write!(
+            html,
+            "<li><b>{}</b>: {} is possible ({} changes friction or reading by 5 % somewhere). To settle it: {}.</li>",
+            escape(&limit.id),
+            possible(limit),
+            typical(limit),
+            escape(experiment)
+        );
+    }
+    html.push_str("</ul>");
+    if let Some(more) = open.len().checked_sub(NAMED).filter(|n| *n > 0) {
+        let _ = write!(html, "<p>{more} more are open: section 8.</p>");
+    }
+    html
+}
+
+/// Errors on data that no fit has seen, of both models, beside the noise.
+fn errors(report: &Report) -> String {
+    let held = [report.baseline.heldout_rmse_n, report.augmented.heldout_rmse_n];
+    let promised = [report.promise_baseline_n, report.promise_n];
+    if held.iter().all(|e| !e.is_finite()) && promised.iter().all(Option::is_none) {
+        return "<p>There is too little to hold anything out of the fit: no error is known.</p>".to_owned();
+    }
+    let promise = |value: Option<f64>| value.map_or("not known".to_owned(), newtons);
+    // Where nothing was found, both models are one.
+    let both = !report.effects.is_empty();
+    let row = |name: &str, before: String, after: String| match both {
+        true => {
+            format!("<tr><td>{name}</td><td class=\"n b\">{before}</td><td class=\"n a\">{after}</td></tr>")
+        }
+        false => format!("<tr><td>{name}</td><td class=\"n\">{after}</td></tr>"),
+    };
+    let (columns, span) = match both {
+        true => ("<th class=\"b\">the paper's model</th><th class=\"a\">the better model</th>", 2),
+        false => ("<th>the paper's model</th>", 1),
+    };
+    format!(
+        "<div class=\"wide\"><table><tr><th>error</th>{columns}</tr>{}{}\
+         <tr><td>noise of one reading</td><td class=\"n\" colspan=\"{span}\">{}</td></tr></table></div>",
+        row("on series and loads held out of the fit", newtons(held[0]), newtons(held[1])),
+        row("to expect in a new session of the same rig", promise(promised[0]), promise(promised[1])),
+        newtons(report.noise_floor_n)
+    )
+}
+
+/// Whether anything is left, plainly.
+fn adequacy(report: &Report) -> String {
+    let (error, noise) = (report.augmented.heldout_series_rmse_n, report.noise_floor_n);
+    if !error.is_finite() {
+        return String::new();
+    }
+    if report.adequate {
+        return "<p>The model is adequate: on series held out it misses by no more than the noise.</p>"
+            .to_owned();
+    }
+    format!(
+        "<p><b>Something is left.</b> On series held out the model misses by {}, and the noise explains {} only: look at the right \
+         panels of section 4, and at the series listed in section 1.</p>",
+        newtons(error),
+        newtons(noise)
+    )
+}

@@ -1,0 +1,35 @@
+//! The head of a page of a calibration: title, style in light and dark, and what a browser may load.
+
+use super::super::html::{escape, policy};
+
+/// Colours are named once, and again for the dark; figures, which are drawn on white, are turned around there.
+const STYLE: &str = "\
+:root{color-scheme:light dark;--page:#fff;--ink:#222;--soft:#555;--line:#ccc;--rule:#dde5ec;--box:#eef3f8;--before:#a8460f;\
+--after:#005a9c;--kept:#e6f0f8;--rival:#fbf1e8;--band:#e4eaf0}\
+@media(prefers-color-scheme:dark){:root{--page:#14181c;--ink:#e2e6ea;--soft:#a4adb6;--line:#3c444c;--rule:#2c343c;--box:#1d252d;\
+--before:#f09a62;--after:#74b8f0;--kept:#1c3044;--rival:#3a2a1c;--band:#2a323a}\
+figure.plot svg{filter:invert(.92) hue-rotate(180deg)}}\
+body{font:16px/1.5 sans-serif;max-width:940px;margin:2em auto;padding:0 1em;color:var(--ink);background:var(--page);\
+overflow-wrap:break-word}\
+h2{margin-top:2em;border-bottom:2px solid var(--rule);padding-bottom:.2em}\
+.wide{overflow-x:auto}table{border-collapse:collapse;margin:1em 0}\
+td,th{border-bottom:1px solid var(--line);padding:.25em .8em;text-align:left;vertical-align:top;overflow-wrap:normal}\
+td.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}\
+.verdict{background:var(--box);padding:.1em 1em;border-left:5px solid var(--after)}.verdict table{margin:.4em 0}\
+figure{margin:.6em 0}.grid{display:grid;grid-template-columns:1fr 1fr;gap:.4em}.grid figure{margin:0}\
+@media(max-width:640px){.grid{grid-template-columns:1fr}td,th{padding:.25em .5em}.wide td:not(.n){min-width:7em}}\
+figcaption,.soft,tr.soft td{color:var(--soft)}svg{max-width:100%;height:auto}.b{color:var(--before)}.a{color:var(--after)}\
+tr.kept td{background:var(--kept)}tr.rival td{background:var(--rival)}\
+.strip{width:700px;min-width:320px;fill:var(--ink);font:13px sans-serif}.strip .band{fill:var(--band)}.strip .zero{stroke:var(--soft)}\
+.strip .open{stroke:var(--before)}.strip .shut{stroke:var(--soft)}.strip .quiet{fill:var(--soft)}";
+
+/// Everything before the first heading of a page.
+pub(in super::super) fn head(title: &str) -> String {
+    format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\
+         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>{}</title><style>{STYLE}</style></head><body>\n",
+        policy(&[]),
+        escape(title)
+    )
+}

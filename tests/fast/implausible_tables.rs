@@ -1,0 +1,247 @@
+//! Plateau tables that no rig can have measured are refused with a reason, and those that one can have are not.
+
+use std::path::PathBuf;
+
+use pinswitch_calibration::table::{PlateauRow, PlateauTable, TableError, substrate_word};
+use pinswitch_friction::Direction;
+use pinswitch_simulation::{EffectPlan, Plan, plan_of, simulate, study_cases};
+use proptest::prelude::*;
+
+use crate::harness::{beside_repository, ended};
+
+/// Most characters of an error.
+const LONGEST: usize = 600;
+
+fn written(rows: &[PlateauRow]) -> String {
+    PlateauTable::write(rows)
+}
+
+/// The verdict on the text of a table, or on the first cell of it that cannot be read.
+fn judged(text: &str) -> Result<(), TableError> {
+    PlateauTable::read(text.as_bytes(), "t.csv")?.require_baseline("t.csv")
+}
+
+fn turned(direction: Direction) -> Direction {
+    match direction {
+        Direction::Eccentric => Direction::Concentric,
+        Direction::Concentric => Direction::Eccentric,
+    }
+}
+
+/// All tables of rigs and machines that lie beside this repository.
+fn measured() -> Vec<PathBuf> {
+    let mut found: Vec<PathBuf> = ["data/rig", "data/rig2", "data/real"]
+        .iter()
+        .filter_map(|folder| beside_repository(folder))
+        .flat_map(|folder| std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()))
+        .filter(|path| path.extension().is_some_and(|e| e == "csv"))
+        .collect();
+    found.sort();
+    found
+}
+
+/// The text of a table with two columns in each other's place.
+fn exchanged(text: &str, first: &str, second: &str) -> String {
+    let (header, rest) = text.split_once('\n').unwrap();
+    let name = |column: &str| match column {
+        c if c == first => second.to_owned(),
+        c if c == second => first.to_owned(),
+        c => c.to_owned(),
+    };
+    format!("{}\n{rest}", header.split(',').map(name).collect::<Vec<_>>().join(","))
+}
+
+const PAIRS: [[&str; 2]; 10] = [
+    ["load_N", "force_N"],
+    ["position_mm", "force_N"],
+    ["time_s", "force_N"],
+    ["speed_pct", "force_N"],
+    ["load_mass_g", "force_N"],
+    ["load_mass_g", "load_N"],
+    ["load_N", "position_mm"],
+    ["load_N", "time_s"],
+    ["speed_pct", "load_N"],
+    ["position_mm", "time_s"],
+];
+
+/// A table that reads, but is refused as a whole: in one sentence or two, with file, column and remedy.
+fn assert_refused(text: &str, what: &str) {
+    let error = judged(text).expect_err(what).to_string();
+    assert!(error.starts_with("t.csv") && error.contains("column"), "{what}: {error}");
+    assert!(error.contains(';') || error.contains(". "), "{what}: {error}");
+    assert!(error.chars().count() < LONGEST, "{what}: {error}");
+}
+
+#[test]
+fn every_measured_table_passes_and_so_does_each_direction_of_it() {
+    for path in measured() {
+        let table = PlateauTable::read(std::fs::File::open(&path).unwrap(), "t.csv").unwrap();
+        table.require_baseline("t.csv").unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        for direction in [Direction::Eccentric, Direction::Concentric] {
+            let mut one = table.clone();
+            one.retain(|row| row.direction == direction);
+            one.require_baseline("t.csv").unwrap_or_else(|e| panic!("{} {direction:?}: {e}", path.display()));
+        }
+    }
+}
+
+#[test]
+fn swapped_labels_and_copied_loads_are_refused_in_every_measured_table() {
+    for path in measured() {
+        let table = PlateauTable::read(std::fs::File::open(&path).unwrap(), "t.csv").unwrap();
+        let name = path.display().to_string();
+        let of = |change: &dyn Fn(&mut PlateauRow)| {
+            let mut changed = table.clone();
+            changed.rows.iter_mut().for_each(change);
+            changed.require_baseline("t.csv")
+        };
+        let labels = of(&|r| r.direction = turned(r.direction));
+        assert!(matches!(labels, Err(TableError::SwappedDirections { .. })), "{name}: {labels:?}");
+        let copied = of(&|r| r.force_n = r.load_n);
+        assert!(matches!(copied, Err(TableError::NoFriction { .. })), "{name}: {copied:?}");
+        let sign = of(&|r| r.force_n = -r.force_n);
+        assert!(matches!(sign, Err(TableError::Unrelated { .. })), "{name}: {sign:?}");
+    }
+}
+
+#[test]
+fn columns_in_each_others_place_are_refused_in_every_rig_table() {
+    for path in measured().into_iter().filter(|p| !p.to_string_lossy().contains("real")) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for masses in [true, false] {
+            let text = if masses { text.clone() } else { without_masses(&text) };
+            for [first, second] in PAIRS {
+                if !masses && (first == "load_mass_g" || [first, second] == ["speed_pct", "load_N"]) {
+                    continue;
+                }
+                let what = format!("{}: {first} and {second}, masses {masses}", path.display());
+                assert_refused(&exchanged(&text, first, second), &what);
+            }
+        }
+    }
+}
+
+/// The same table where no mass is known.
+fn without_masses(text: &str) -> String {
+    let mut table = PlateauTable::read(text.as_bytes(), "t.csv").unwrap();
+    table.rows.iter_mut().for_each(|r| r.load_mass_g = 0.0);
+    written(&table.rows)
+}
+
+#[test]
+fn the_two_columns_are_named() {
+    let text = written(&simulate(&Plan::randomised()).rows);
+    for [first, second] in PAIRS {
+        match judged(&exchanged(&text, first, second)) {
+            Err(TableError::SwappedColumns { first: a, second: b, .. }) => {
+                assert!([[a, b], [b, a]].contains(&[first, second]), "{first} and {second}: {a} and {b}");
+            }
+            other => panic!("{first} and {second}: {other:?}"),
+        }
+    }
+}
+
+#[test]
+fn the_command_says_why_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rows = simulate(&Plan::randomised()).rows;
+    rows.iter_mut().for_each(|r| r.direction = turned(r.direction));
+    std::fs::write(folder.path().join("turned.csv"), written(&rows)).unwrap();
+    let (code, said) = ended(folder.path(), &["-q", "calibrate", "turned.csv", "--out", "out"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("turned.csv, column 'direction': in 7 of 7 condition(s)"), "{said}");
+    assert!(said.chars().count() < LONGEST && !folder.path().join("out").exists(), "{said}");
+}
+
+/// Every kind of rig of the study, effects and disturbances included.
+#[test]
+fn no_rig_of_the_study_is_refused() {
+    for case in study_cases() {
+        for seed in [901, 902] {
+            let rows = simulate(&plan_of(&case, seed)).rows;
+            judged(&written(&rows)).unwrap_or_else(|e| panic!("{} {seed}: {e}", case.name));
+        }
+    }
+}
+
+/// One condition, or some series, may be as wrong as they like.
+#[test]
+fn one_odd_condition_or_series_is_left_to_the_fit() {
+    let rows = simulate(&Plan::randomised()).rows;
+    type Wrong = fn(&mut PlateauRow);
+    let wrongs: [Wrong; 4] = [
+        |r| r.direction = turned(r.direction),
+        |r| r.force_n = r.load_n,
+        |r| r.force_n = 20.0,
+        |r| r.force_n = -r.force_n,
+    ];
+    for (i, wrong) in wrongs.iter().enumerate() {
+        let mut condition = rows.clone();
+        condition.iter_mut().filter(|r| r.pins.is_empty()).for_each(wrong);
+        judged(&written(&condition)).unwrap_or_else(|e| panic!("condition, {i}: {e}"));
+        let mut series = rows.clone();
+        series.iter_mut().filter(|r| ["3", "17", "40"].contains(&r.series.as_str())).for_each(wrong);
+        judged(&written(&series)).unwrap_or_else(|e| panic!("series, {i}: {e}"));
+    }
+}
+
+fn plans() -> impl Strategy<Value = Plan> {
+    let weights = prop::collection::vec(200.0..8000.0f64, 2..9);
+    (any::<u64>(), any::<bool>(), 15.0..720.0f64, weights, any::<[bool; 2]>(), 0.0..0.15f64, 1..6u32)
+        .prop_map(
+            |(seed, randomised, wrap_angle_deg, mut weights_g, [silicone, proxy], noise_n, repetitions)| {
+                weights_g.sort_by(f64::total_cmp);
+                let mut plan = if randomised { Plan::randomised() } else { Plan::default() };
+                plan.noise.series_n = noise_n;
+                Plan {
+                    seed,
+                    wrap_angle_deg,
+                    weights_g,
+                    silicone,
+                    proxy,
+                    repetitions: [repetitions, repetitions],
+                    repetitions_spread: 0,
+                    ..plan
+                }
+            },
+        )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Any wrap, weights, conditions and noise; with the masses or without; both directions or one; as `plain` too.
+    #[test]
+    fn no_simulated_rig_is_refused(plan in plans(), masses: bool, plain: bool, only: Option<bool>, offset_n in -2.0..2.0f64) {
+        let mut plan = plan;
+        plan.effects.push(EffectPlan { id: "load_cell_offset".to_owned(), values: vec![offset_n], form: 0 });
+        let mut rows = simulate(&plan).rows;
+        rows.retain(|r| only.is_none_or(|up| up == (r.direction == Direction::Concentric)));
+        // Tables with nearly one load are refused for that.
+        let ends = rows.iter().fold((f64::INFINITY, 0.0f64), |(a, b), r| (a.min(r.load_n), b.max(r.load_n)));
+        prop_assume!(!rows.is_empty() && ends.1 - ends.0 > 3.0);
+        for row in &mut rows {
+            row.load_mass_g *= f64::from(u8::from(masses));
+            if plain {
+                row.series = format!("{} {:?} {}", substrate_word(row.substrate), row.pins, row.series);
+            }
+        }
+        if plain {
+            let first = (rows[0].substrate, rows[0].pins.clone());
+            rows.retain(|r| (r.substrate, &r.pins) == (first.0, &first.1));
+            rows.iter_mut().for_each(|r| (r.substrate, r.pins) = (None, Vec::new()));
+        }
+        if let Err(error) = judged(&written(&rows)) {
+            prop_assert!(false, "{error}");
+        }
+    }
+
+    /// Directions the wrong way round, however the rig is, unless it has so little friction that noise may hide it.
+    #[test]
+    fn swapped_labels_are_refused_on_any_rig(plan in plans()) {
+        let mut rows = simulate(&plan).rows;
+        rows.iter_mut().for_each(|r| r.direction = turned(r.direction));
+        prop_assume!(rows.len() > 30 && plan.weights_g.len() > 3 && plan.wrap_angle_deg > 40.0);
+        prop_assert!(judged(&written(&rows)).is_err());
+    }
+}

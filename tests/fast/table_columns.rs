@@ -1,0 +1,104 @@
+//! Optional and unknown columns of a plateau table: what is read, what is listed, and which readings stand twice.
+
+use serde_json::Value;
+
+use pinswitch_calibration::table::{PlateauRow, PlateauTable};
+use pinswitch_simulation::{Plan, simulate};
+
+use crate::harness::pinswitch;
+
+/// The text of a table with columns added at its end.
+fn with_columns(
+    rows: &[PlateauRow],
+    names: &[&str],
+    cells: impl Fn(usize, &PlateauRow) -> Vec<String>,
+) -> String {
+    let text = PlateauTable::write(rows);
+    let (header, lines) = text.split_once('\n').unwrap();
+    let mut out = format!("{header},{}\n", names.join(","));
+    for (i, (line, row)) in lines.lines().zip(rows).enumerate() {
+        out.push_str(&format!("{line},{}\n", cells(i, row).join(",")));
+    }
+    out
+}
+
+/// What the command says of a table, and its report.
+fn calibrated(text: &str) -> (String, Value) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), text).unwrap();
+    let output = pinswitch(folder.path(), &["-q", "calibrate", "t.csv", "--out", "out"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout).unwrap();
+    let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert!(!page.contains("NaN") && !page.contains("inf "), "the page shows what is no number");
+    assert!(page.contains("The noise by its parts") && page.contains("What this data excludes"));
+    let report = std::fs::read(folder.path().join("out/report.json")).unwrap();
+    (said, serde_json::from_slice(&report).unwrap())
+}
+
+fn small() -> Plan {
+    Plan { layouts: vec![vec![5, 8, 11]], repetitions: [6, 6], seed: 31, ..Plan::randomised() }
+}
+
+#[test]
+fn columns_that_are_not_read_are_listed_and_said() {
+    let rows = simulate(&small()).rows;
+    let text = with_columns(&rows, &["humidity", "session", "note"], |_, _| {
+        ["41", "monday", "ok"].map(str::to_owned).to_vec()
+    });
+    let (said, report) = calibrated(&text);
+    assert_eq!(report["ignored_columns"], serde_json::json!(["humidity", "note"]));
+    assert!(said.contains("columns not read: humidity, note\n"), "{said}");
+    let (said, report) = calibrated(&PlateauTable::write(&rows));
+    assert_eq!(report["ignored_columns"], serde_json::json!([]));
+    assert!(!said.contains("columns not read"), "{said}");
+}
+
+#[test]
+fn a_reading_may_stand_in_two_sessions_but_not_twice_in_one() {
+    let rows = simulate(&small()).rows;
+    let of = |second: &str| {
+        let monday = with_columns(&rows, &["session"], |_, _| vec!["monday".to_owned()]);
+        let again = with_columns(&rows, &["session"], |_, _| vec![second.to_owned()]);
+        let text = monday + again.split_once('\n').unwrap().1;
+        PlateauTable::read(text.as_bytes(), "t.csv")
+    };
+    assert_eq!(of("tuesday").unwrap().rows.len(), 2 * rows.len());
+    let error = of("monday").unwrap_err().to_string();
+    let line = rows.len() + 2;
+    assert!(error.starts_with(&format!("t.csv, line {line}, column 'repetition'")), "{error}");
+    assert!(error.contains("stands in line 2 too"), "{error}");
+}
+
+#[test]
+fn session_mount_operator_and_specimen_are_read() {
+    let rows = simulate(&small()).rows;
+    let text = with_columns(&rows, &["specimen", "operator", "mount", "session"], |i, _| {
+        ["b", "ann", "7", if i == 0 { "" } else { "monday" }].map(str::to_owned).to_vec()
+    });
+    let table = PlateauTable::read(text.as_bytes(), "t.csv").unwrap();
+    let labels = &table.rows[1].labels;
+    assert_eq!(
+        [&labels.session, &labels.mount, &labels.operator, &labels.specimen],
+        ["monday", "7", "ann", "b"]
+    );
+    assert_eq!(table.rows[0].labels.session, "");
+    assert!(table.ignored_columns().is_empty());
+}
+
+/// Two operators who zero the cell differently scatter; that is no offset of the cell.
+#[test]
+fn operators_who_zero_differently_are_noise_and_no_offset_of_the_cell() {
+    let mut rows = simulate(&Plan { seed: 32, ..Plan::randomised() }).rows;
+    let ann = |row: &PlateauRow| row.series.parse::<usize>().unwrap() % 2 == 0;
+    for row in &mut rows {
+        row.force_n += if ann(row) { 0.25 } else { -0.25 };
+    }
+    let text =
+        with_columns(&rows, &["operator"], |_, row| vec![if ann(row) { "ann" } else { "ben" }.to_owned()]);
+    let (said, report) = calibrated(&text);
+    let parts: Vec<&str> =
+        report["noise_parts"].as_array().unwrap().iter().filter_map(|p| p["part"].as_str()).collect();
+    assert!(parts.contains(&"group"), "{parts:?}: {said}");
+    assert!(!report["effects"].to_string().contains("load_cell_offset"), "{said}");
+}

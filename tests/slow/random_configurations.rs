@@ -14,12 +14,12 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 /// What became of a configuration.
-enum Outcome {
+pub(super) enum Outcome {
     Parts,
     Refused(String),
 }
 
-fn build(configuration: &Configuration) -> Result<Outcome, String> {
+pub(super) fn build(configuration: &Configuration) -> Result<Outcome, String> {
     let parts = Design::new(configuration.clone()).and_then(|design| {
         let all: Vec<Part> = [printed(&design)?, reference_bodies(&design)?].concat();
         Ok((design, all))
@@ -51,7 +51,7 @@ fn build(configuration: &Configuration) -> Result<Outcome, String> {
 }
 
 /// Configurations over the whole range of sizes; values hang together often enough that many can be built.
-fn configurations() -> impl Strategy<Value = Configuration> {
+pub(super) fn configurations() -> impl Strategy<Value = Configuration> {
     let shape = (8.0..120.0f64, 20.0..340.0f64, 1usize..=40, 0.15..2.0f64, -4.0..-1.0f64);
     let layer = (0.5..4.0f64, 0.0..1.0f64, 4.0..30.0f64, 0.5..1.0f64, 0.0..2.0f64);
     let choices = (0usize..2, 0usize..2, 0usize..3, 0usize..2, 0usize..5);

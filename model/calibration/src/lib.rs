@@ -40,6 +40,7 @@ pub mod segmentation;
 pub mod table;
 #[cfg(test)]
 mod test_session;
+mod toml_text;
 
 pub use calibrate::{Calibration, CalibrationError, calibrate};
 pub use extrapolation::calibrate_below;
@@ -52,3 +53,4 @@ pub use report::{
     BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible,
     ModelReport, Report, RivalReport, Verdict,
 };
+pub use toml_text::toml_error;

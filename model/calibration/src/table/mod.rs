@@ -11,7 +11,7 @@ mod table_error;
 pub(crate) use frame::groups;
 pub use frame::{Condition, Frame, Point};
 pub use plateau_table::PlateauTable;
-pub(crate) use plateau_table::{MAX_WRAP_DEG, MIN_WRAP_DEG};
+pub(crate) use plateau_table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG};
 pub use row::{PlateauRow, Sweep};
 pub use substrate_word::substrate_word;
 pub use table_error::TableError;

@@ -219,7 +219,8 @@ fn model(bytes: &[u8]) -> Result<Reading, String> {
         Err(e) => return refused(&e),
     };
     let written = model.to_text().map_err(|e| e.to_string())?;
-    let again = ModelFile::parse(&written, "written").map_err(|e| format!("what was written is refused: {e}"))?;
+    let again =
+        ModelFile::parse(&written, "written").map_err(|e| format!("what was written is refused: {e}"))?;
     require(again == model, || format!("what was written reads otherwise:\n{written:.300}"))?;
     let rows = PlateauTable::read_conditions(ROWS.as_bytes(), "rows").map_err(|e| e.to_string())?.rows;
     // A single row at a time: one that is refused must not hide another.
@@ -255,14 +256,17 @@ fn plan(bytes: &[u8]) -> Result<Reading, String> {
     let written = plan.to_text().map_err(|e| e.to_string())?;
     let again = Plan::parse(&written, "written").map_err(|e| format!("what was written is refused: {e}"))?;
     require(again == plan, || format!("what was written reads otherwise:\n{written:.300}"))?;
-    let layouts = 1 + 2 * plan.layouts.len();
-    let settings = 2 * plan.weights_g.len() * plan.speeds_pct.len() * plan.dwells_s.len();
-    let repetitions = plan.repetitions.iter().map(|n| u64::from(*n + plan.repetitions_spread)).sum::<u64>();
-    let rows = (layouts as u64).saturating_mul(settings as u64).saturating_mul(repetitions);
+    let settings = (1 + 2 * plan.layouts.len() as u64).saturating_mul(2 * plan.weights_g.len() as u64);
+    let repetitions: u64 =
+        plan.repetitions.iter().map(|n| u64::from(*n) + u64::from(plan.repetitions_spread)).sum();
+    let rows = settings.saturating_mul(repetitions);
     // A plan of any size must be refused before it fills the memory.
-    require(rows <= 1_000_000_000, || format!("a plan of {rows} rows"))?;
+    require(rows <= 1_000_000, || format!("a plan of {rows} rows"))?;
     if rows <= MOST_ROWS {
         let simulated = simulate(&plan);
+        if let Err(e) = simulated.check(FILE) {
+            return refused(&e);
+        }
         for row in simulated.rows.iter().chain(&simulated.fresh) {
             require(row.force_n.is_finite() && row.load_n.is_finite(), || format!("a row of {row:?}"))?;
         }
@@ -296,7 +300,9 @@ const SWEEP_ROWS: &str = "\"shell.width_mm\",\"layout.pins\"\n14,\"[5, 8, 11]\"\
 fn sweep(bytes: &[u8]) -> Result<Reading, String> {
     let source = in_place(|folder| {
         let (rows, path) = (folder.join("rows.csv"), folder.join("sweep.toml"));
-        std::fs::write(rows, SWEEP_ROWS).and_then(|()| std::fs::write(&path, bytes)).map_err(|e| e.to_string())?;
+        std::fs::write(rows, SWEEP_ROWS)
+            .and_then(|()| std::fs::write(&path, bytes))
+            .map_err(|e| e.to_string())?;
         Ok(SweepSource::read(&path))
     })?;
     let source = match source {
@@ -347,7 +353,8 @@ fn stl(bytes: &[u8]) -> Result<Reading, String> {
     // What is valid is valid again when it is written.
     if found.is_valid() {
         let written = stl_bytes(&stl.mesh).map_err(|e| e.to_string())?;
-        let again = read_stl(&mut Cursor::new(written)).map_err(|e| format!("what was written is refused: {e}"))?;
+        let again =
+            read_stl(&mut Cursor::new(written)).map_err(|e| format!("what was written is refused: {e}"))?;
         require(again.mesh.triangles.len() == stl.mesh.triangles.len(), || "facets are lost".to_owned())?;
     }
     Ok(Reading::Accepted)
@@ -372,11 +379,15 @@ fn shard_table(bytes: &[u8]) -> Result<Reading, String> {
     let source = small_source();
     let sweep = Sweep::new(&source).map_err(|e| e.to_string())?;
     let schema = Schema::new(&sweep);
-    let rows = match read_rows(bytes.to_vec(), &schema).and_then(|rows| rows.take(10_000).collect::<Result<Vec<_>, _>>()) {
+    let rows = match read_rows(bytes.to_vec(), &schema)
+        .and_then(|rows| rows.take(10_000).collect::<Result<Vec<_>, _>>())
+    {
         Ok(rows) => rows,
         Err(e) => return refused(&e),
     };
-    require(rows.iter().all(|row| row.len() == schema.columns().len()), || "a row of another width".to_owned())?;
+    require(rows.iter().all(|row| row.len() == schema.columns().len()), || {
+        "a row of another width".to_owned()
+    })?;
     in_place(|folder| {
         let (csv, parquet) = (folder.join("t.csv"), folder.join("t.parquet"));
         let mut table = TableWriter::create(&schema, &csv, &parquet).map_err(|e| e.to_string())?;

@@ -151,7 +151,7 @@ fn shards_merge_to_what_one_run_makes() {
     let (code, said) = ended(path, &["merge", "shards"]);
     assert_eq!(code, Some(2));
     assert!(
-        said.contains("variants 17 to 24 of 24 are in no finished shard; run the missing shards of 3"),
+        said.contains("variants 17 to 24 of 24 are in no finished shard; run --shard 3/3"),
         "{said}"
     );
     done(path, &["batch", "sweep.toml", "--out", "shards", "--shard", "3/3"]);

@@ -9,10 +9,15 @@ pub mod readers;
 #[macro_export]
 macro_rules! target {
     ($name:literal) => {
-        $crate::libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-            if let Err(fault) = $crate::readers::judge($name, bytes) {
-                panic!("{fault}");
+        $crate::libfuzzer_sys::fuzz_target!(
+            // The hook of the fuzzer ends the process at once, also where a reader catches what a library panics at. What is
+            // not caught still ends it.
+            init: std::panic::set_hook(Box::new(|panic| eprintln!("{panic}"))),
+            |bytes: &[u8]| {
+                if let Err(fault) = $crate::readers::judge($name, bytes) {
+                    panic!("{fault}");
+                }
             }
-        });
+        );
     };
 }

@@ -69,7 +69,7 @@ impl Plan {
             "constants",
             || format!("mu_p {}, mu_s {}", c.mu_p, c.mu_s),
             "0..10",
-            "the paper's are 0.2 and 0.24",
+            "leave them out for the paper's",
         )?;
         require(
             c.half_load_factor.iter().chain(&c.steepness).all(|v| *v > 0.0 && *v <= 1000.0),

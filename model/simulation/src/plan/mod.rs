@@ -199,7 +199,7 @@ mod tests {
             ("weights_g = [1e300]", "up to 1000000"),
             ("repetitions_spread = 4000000000", "repetitions_spread"),
             (
-                "repetitions = [1000, 1000]\nrepetitions_spread = 1000\nlayouts = [[1], [2], [3], [4]]",
+                "repetitions = [1000, 1000]\nrepetitions_spread = 1000\nlayouts = [[1], [2], [3], [4], [5], [6]]",
                 "rows is outside",
             ),
             ("[constants]\nmu_p = inf", "mu_p inf"),

@@ -1,9 +1,4 @@
-//! Any text as the plan of a simulated rig: a plan or one error.
+//! See `tests/harness/readers.rs`.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-use pinswitch_simulation::Plan;
-
-fuzz_target!(|text: &str| {
-    let _ = Plan::parse(text, "fuzz.toml");
-});
+pinswitch_fuzz::target!("plan");

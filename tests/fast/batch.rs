@@ -150,10 +150,7 @@ fn shards_merge_to_what_one_run_makes() {
     }
     let (code, said) = ended(path, &["merge", "shards"]);
     assert_eq!(code, Some(2));
-    assert!(
-        said.contains("variants 17 to 24 of 24 are in no finished shard; run the missing shards of 3"),
-        "{said}"
-    );
+    assert!(said.contains("variants 17 to 24 of 24 are in no finished shard; run --shard 3/3"), "{said}");
     done(path, &["batch", "sweep.toml", "--out", "shards", "--shard", "3/3"]);
     done(path, &["merge", "shards"]);
     let mut merged = hashes(&path.join("shards"));
@@ -277,4 +274,23 @@ fn ctrl_c_finishes_what_is_begun() {
     }
     assert!(!folder.path().join("b/variants.csv").exists());
     assert!(!folder.path().join("b/.partial-1-of-1").exists());
+}
+
+#[test]
+fn what_only_meshing_finds_is_refused_and_its_field_is_named() {
+    let folder = with_sweep(
+        "[sweep]\nbase = \"base.toml\"\nparts = [\"proxy\", \"shell\"]\n[set]\n\"friction.points\" = 3\n\
+         [axes]\n\"tendon.length_mm\" = [200]\n\"segment.groove_radius_mm\" = [0.9, 1.0]\n",
+    );
+    let base = crate::harness::repository("tests/corpus/proxy-contours-cross.toml");
+    std::fs::copy(base, folder.path().join("base.toml")).unwrap();
+    done(folder.path(), &["-q", "batch", "sweep.toml", "--out", "b"]);
+    let rows = crate::harness::table(&folder.path().join("b"));
+    let of = |status: &str| rows.iter().filter(|row| row["status"] == status).collect::<Vec<_>>();
+    assert_eq!((of("made").len(), of("refused").len()), (1, 1), "{rows:?}");
+    let reason = &of("refused")[0]["reason"];
+    assert!(
+        reason.starts_with("segment.groove_radius_mm = 1") && reason.contains("; lower it to"),
+        "{reason}"
+    );
 }

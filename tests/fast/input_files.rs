@@ -1,9 +1,7 @@
 //! Files that are not what they are given as: each is one short error with a remedy, exit code 2.
 
-use crate::harness::{done, ended, with_sweep};
-
-/// Most characters of an error.
-const LONGEST: usize = 600;
+use crate::harness::{done, ended, repository, with_sweep};
+use crate::readers::{LONGEST, RIG};
 
 #[test]
 fn an_edited_model_is_refused() {
@@ -40,7 +38,7 @@ fn an_edited_model_is_refused() {
     ] {
         let (code, said) = predict(&edited(key, value));
         assert_eq!(code, Some(2), "{key} = {value}: {said:.600}");
-        assert!(said.contains("edited.toml") && said.contains(';'), "{key} = {value}: {said}");
+        assert!(said.contains("edited.toml:") && said.contains(';'), "{key} = {value}: {said}");
         assert!(said.chars().count() <= LONGEST + 20, "{key} = {value}: {said}");
     }
 }
@@ -50,11 +48,21 @@ fn what_is_no_text_is_named_with_its_line() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("bad.toml"), b"[shell]\nwidth_mm = \"\xff\"\n").unwrap();
     std::fs::create_dir(folder.path().join("folder")).unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("base.toml", "[sweep]\nbase = \"bad.toml\"\n[axes]\n\"shell.width_mm\" = [14]\n");
+    write("rows.toml", "[rows]\nfile = \"bad.toml\"\n");
+    write("run.toml", &RIG.replace("a.csv", "folder"));
+    let model = repository("tests/corpus/model/accepted-baseline.toml");
+    std::fs::copy(model, folder.path().join("model.toml")).unwrap();
     for arguments in [
         &["generate", "bad.toml"][..],
         &["predict", "--model", "bad.toml", "--rows", "bad.toml"],
         &["simulate", "bad.toml", "--out", "x"],
         &["design", "--ask", "bad.toml"],
+        &["batch", "bad.toml", "--dry-run"],
+        &["batch", "base.toml", "--dry-run"],
+        &["batch", "rows.toml", "--dry-run"],
+        &["segment", "bad.toml", "--out", "t.csv"],
     ] {
         let (code, said) = ended(folder.path(), arguments);
         assert!(
@@ -62,8 +70,18 @@ fn what_is_no_text_is_named_with_its_line() {
             "{arguments:?}: {said}"
         );
     }
-    let (code, said) = ended(folder.path(), &["generate", "folder"]);
-    assert!(code == Some(2) && said.contains("folder: is a folder; give a file"), "{said}");
+    for arguments in [
+        &["generate", "folder"][..],
+        &["calibrate", "folder", "--out", "x"],
+        &["predict", "--model", "model.toml", "--rows", "folder"],
+        &["segment", "run.toml", "--out", "t.csv"],
+    ] {
+        let (code, said) = ended(folder.path(), arguments);
+        assert!(
+            code == Some(2) && said.contains("folder: is a folder; give a file"),
+            "{arguments:?}: {said}"
+        );
+    }
 }
 
 #[test]

@@ -7,12 +7,15 @@
 
 #[path = "../harness/mod.rs"]
 mod harness;
+#[path = "../harness/readers.rs"]
+mod readers;
 
 mod bad_input;
 mod batch;
 mod batch_bad_input;
 mod batch_damage;
 mod command_line;
+mod corpus;
 mod documents;
 mod finger;
 mod fit;

@@ -1,11 +1,12 @@
-//! `generate` killed (SIGKILL) at random moments leaves the whole set of before, the whole new one, or no manifest; the
-//! next run removes what is left over. A unit test of `cad/cli/src/write/set_folder.rs` stops after every single step.
+//! `generate` killed (SIGKILL) at random moments, and at every file that it renames or removes, leaves the whole set of
+//! before, the whole new one, or no manifest; the next run removes what is left over. A unit test of
+//! `cad/cli/src/write/set_folder.rs` stops after every single step.
 
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::harness::{binary, differences, done, hashes};
+use crate::harness::{binary, differences, done, hashes, say_skipped};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -73,4 +74,74 @@ fn is_whole_or_unlisted(place: &Path, whole: &[std::collections::BTreeMap<String
     }
     assert!(whole.contains(&there), "{:?}", there.keys());
     true
+}
+
+/// Stands before the C library: kills the process when it is about to rename or remove a file for the n-th time.
+#[cfg(target_os = "linux")]
+const KILLER: &str = r#"
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <unistd.h>
+static void count(void) {
+    static int done = 0;
+    const char *at = getenv("PINSWITCH_KILL_AT");
+    if (at && ++done == atoi(at)) kill(getpid(), SIGKILL);
+}
+int rename(const char *from, const char *to) {
+    count();
+    return ((int (*)(const char *, const char *))dlsym(RTLD_NEXT, "rename"))(from, to);
+}
+int unlink(const char *path) {
+    count();
+    return ((int (*)(const char *))dlsym(RTLD_NEXT, "unlink"))(path);
+}
+"#;
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_set_killed_at_every_file_is_whole_or_has_no_manifest() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("killer.c"), KILLER).unwrap();
+    let compiler = Command::new("cc")
+        .args(["-shared", "-fPIC", "-o", "killer.so", "killer.c", "-ldl"])
+        .current_dir(folder.path())
+        .status();
+    if !compiler.is_ok_and(|status| status.success()) {
+        return say_skipped("no C compiler here");
+    }
+    let whole: Vec<_> = ["whole-0", "whole-1"]
+        .iter()
+        .zip(SETS)
+        .map(|(name, set)| {
+            done(folder.path(), &[set, &["--out", name]].concat());
+            hashes(&folder.path().join(name))
+        })
+        .collect();
+    let place = folder.path().join("killed");
+    let (mut kills, mut without_manifest) = (0, 0);
+    for at in 1.. {
+        done(folder.path(), &[SETS[0], &["--out", "killed"]].concat());
+        assert_eq!(differences(&whole[0], &hashes(&place)), Vec::<String>::new(), "before kill {at}");
+        let status = binary()
+            .args([SETS[1], &["--out", "killed"]].concat())
+            .current_dir(folder.path())
+            .env("LD_PRELOAD", folder.path().join("killer.so"))
+            .env("PINSWITCH_KILL_AT", at.to_string())
+            .stderr(Stdio::null())
+            .status()
+            .unwrap();
+        if status.success() {
+            break;
+        }
+        assert_eq!(status.code(), None, "not killed, but failed");
+        kills += 1;
+        without_manifest += usize::from(!is_whole_or_unlisted(&place, &whole));
+        done(folder.path(), &[SETS[1], &["--out", "killed"]].concat());
+        assert_eq!(differences(&whole[1], &hashes(&place)), Vec::<String>::new(), "after kill {at}");
+    }
+    println!("{kills} kills, {without_manifest} of which left no manifest");
+    // At least one for each file of either set.
+    assert!(kills > whole[1].len() && without_manifest > 0, "{kills} {without_manifest}");
 }

@@ -4,9 +4,12 @@
 
 #[path = "../harness/mod.rs"]
 mod harness;
+#[path = "../harness/readers.rs"]
+mod readers;
 
 mod batch_kill;
 mod bounds;
+mod campaign;
 mod closed_loop;
 mod generate_kill;
 mod random_configurations;

@@ -62,7 +62,7 @@ pub use constraint::Constraint;
 pub use content::{MeshMaker, mesh_file};
 #[cfg(feature = "cloud")]
 pub use destination::Store;
-pub use destination::{Destination, DestinationError, DestinationLock, Folder};
+pub use destination::{Destination, DestinationError, DestinationLock, Folder, temporary_file};
 pub use estimate::{Estimate, Measured, RefusalGroup, estimate};
 pub use make::VariantOutcome;
 pub use merge::{MergeError, merge};

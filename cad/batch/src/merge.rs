@@ -1,5 +1,6 @@
 //! Joins the tables of shards into the products of the whole sweep.
 
+use pinswitch_friction::excerpt;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
@@ -52,7 +53,7 @@ pub enum MergeError {
         second: String,
     },
     /// A shard's table does not hold what its stamp says.
-    #[error("shard {shard}: {problem}; run it again")]
+    #[error("shard {shard}: {}; run it again", excerpt(problem, 300))]
     Broken {
         /// The shard, with its place.
         shard: String,
@@ -222,15 +223,9 @@ fn cover(found: &[FinishedShard<'_>], stamp: &Stamp) -> Result<(), MergeError> {
     let mut next = 0;
     let mut before: Option<&FinishedShard<'_>> = None;
     let gap = |from: u64, to: u64| {
-        let of = found.first().map(|f| f.stamp.shard);
-        let hint = of.map_or_else(
+        let hint = found.first().map_or_else(
             || "; run them with --shard K/N".to_owned(),
-            |shard| {
-                format!(
-                    "; run the missing shards of {}",
-                    shard.folder().rsplit('-').next().unwrap_or_default()
-                )
-            },
+            |f| format!("; run {}", f.stamp.shard.siblings(stamp.variants, from..to)),
         );
         MergeError::Gap { from: from + 1, to, of: stamp.variants, hint }
     };

@@ -52,6 +52,21 @@ impl Shard {
         self.of == 1
     }
 
+    /// The options for those of as many shards that make these variants among `count`: `--shard 2/8, --shard 3/8`.
+    pub(super) fn siblings(self, count: u64, variants: Range<u64>) -> String {
+        const NAMED: usize = 3;
+        let (mut named, mut next) = (Vec::new(), variants.start);
+        while next < variants.end && named.len() < NAMED {
+            // The first shard that ends behind it.
+            let number = (u128::from(self.of) * (u128::from(next) + 1)).div_ceil(u128::from(count.max(1)));
+            let shard =
+                Self { number: u64::try_from(number).map_or(self.of, |n| n.clamp(1, self.of)), of: self.of };
+            named.push(format!("--shard {shard}"));
+            next = shard.range(count).end.max(next + 1);
+        }
+        named.join(", ") + if next < variants.end { " and those after it" } else { "" }
+    }
+
     /// Name of its folder.
     pub fn folder(self) -> String {
         format!("{}-of-{}", self.number, self.of)
@@ -91,6 +106,19 @@ mod tests {
             let sizes = ranges.iter().map(|r| r.end - r.start);
             prop_assert!(sizes.clone().max().unwrap() - sizes.min().unwrap() <= 1);
         }
+    }
+
+    #[test]
+    fn the_shards_of_some_variants_are_named() {
+        let shard = |text: &str| text.parse::<Shard>().unwrap();
+        assert_eq!(shard("1/3").siblings(24, 16..24), "--shard 3/3");
+        assert_eq!(shard("1/2").siblings(4, 0..4), "--shard 1/2, --shard 2/2");
+        assert_eq!(
+            shard("1/18446744073709551615").siblings(2, 1..2),
+            "--shard 18446744073709551615/18446744073709551615"
+        );
+        let text = shard("1/24").siblings(24, 2..24);
+        assert_eq!(text, "--shard 3/24, --shard 4/24, --shard 5/24 and those after it");
     }
 
     #[test]

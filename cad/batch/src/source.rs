@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use toml_edit::Document;
 
 use super::hexadecimal;
-use pinswitch_switch::config::{ConfigError, Configuration, Name, Place, read, to_toml};
+use pinswitch_switch::config::{ConfigError, Configuration, Name, Place, read, text, to_toml};
 use pinswitch_switch::templates;
 
 /// The texts of a sweep.
@@ -68,7 +68,7 @@ impl SweepSource {
     /// As [`Self::read`].
     pub fn read_within(path: &Path, reach: Reach) -> Result<Self, ConfigError> {
         let file = path.display().to_string();
-        let sweep = std::fs::read_to_string(path).map_err(|e| unreadable(&file, &e))?;
+        let sweep = text(std::fs::read(path).map_err(|e| unreadable(&file, &e))?, &file)?;
         let document: Document<String> = sweep.parse().map_err(|e: toml_edit::TomlError| {
             ConfigError::syntax(Place::new(&file, &sweep, e.span().map_or(0, |s| s.start)), e.message())
         })?;
@@ -88,9 +88,9 @@ impl SweepSource {
             .map(|name| {
                 let path = folder.join(&name);
                 reach.check("rows.file", &name, folder)?;
-                std::fs::read_to_string(&path)
-                    .map(|text| (name.clone(), text))
-                    .map_err(|e| missing("rows.file", &name, &format!("cannot be read: {e}")))
+                let bytes = std::fs::read(&path)
+                    .map_err(|e| missing("rows.file", &name, &format!("cannot be read: {e}")))?;
+                Ok((name.clone(), text(bytes, &name)?))
             })
             .transpose()?;
         let stem = path.file_stem().map_or_else(|| "batch".into(), |s| s.to_string_lossy());
@@ -140,7 +140,7 @@ fn read_text(field: &str, name: &str, folder: &Path, reach: Reach) -> Result<(St
     let path = folder.join(name);
     if path.is_file() {
         reach.check(field, name, folder)?;
-        let text = std::fs::read_to_string(&path).map_err(|e| unreadable(name, &e))?;
+        let text = text(std::fs::read(&path).map_err(|e| unreadable(name, &e))?, name)?;
         return Ok((text, name.to_owned()));
     }
     templates::text(name)
@@ -165,7 +165,6 @@ fn unreadable(file: &str, error: &std::io::Error) -> ConfigError {
         value: None,
         problem: format!("cannot be read: {error}"),
         remedy: match error.kind() {
-            std::io::ErrorKind::InvalidData => "give a text file, saved as UTF-8".to_owned(),
             std::io::ErrorKind::IsADirectory => "it is a folder; give a file".to_owned(),
             _ => "give the path of a sweep; see `pinswitch batch --help`".to_owned(),
         },

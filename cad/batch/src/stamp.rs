@@ -1,5 +1,6 @@
 //! `batch.json`: which sweep a destination holds, with all that is needed to resume it.
 
+use pinswitch_friction::excerpt;
 use serde::{Deserialize, Serialize};
 
 use super::destination::{Destination, DestinationError};
@@ -50,7 +51,7 @@ pub enum StampError {
         place: String,
     },
     /// The stamp cannot be read.
-    #[error("{place}/{STAMP}: {problem}; restore it, or give another --out")]
+    #[error("{place}/{STAMP}: {}; restore it, or give another --out", excerpt(problem, 240))]
     Unreadable {
         /// The destination.
         place: String,

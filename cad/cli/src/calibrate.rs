@@ -42,8 +42,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return published(&arguments.out);
     };
     let name = table.display().to_string();
-    let file = std::fs::File::open(table).map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
-    let table = PlateauTable::read(file, &name).map_err(Failure::bad_input)?;
+    let bytes = crate::input::read_file(table)?;
+    let table = PlateauTable::read(bytes.as_slice(), &name).map_err(Failure::bad_input)?;
     table.require_baseline(&name).map_err(Failure::bad_input)?;
     let mut table = table;
     let waiting = Waiting::new(table.rows.len());

@@ -3,27 +3,15 @@
 use std::fmt::Display;
 use std::process::ExitCode;
 
+use pinswitch_friction::excerpt;
+
 /// What stands between several errors of one command.
 const BETWEEN: &str = "\nerror: ";
 /// Most characters of one error.
 const MAX_CHARACTERS: usize = 590;
-/// Characters that are kept of the end of one that is too long: the remedy stands there.
-const KEPT_AT_THE_END: usize = 240;
-
 /// Errors, each short enough to be read: a value of any length that the input holds may stand in one.
 fn bounded(message: &str) -> String {
-    let shortened = |one: &str| {
-        let total = one.chars().count();
-        if total <= MAX_CHARACTERS {
-            return one.to_owned();
-        }
-        let note = format!(" [... {total} characters in all ...] ");
-        let kept = MAX_CHARACTERS - KEPT_AT_THE_END - note.len();
-        let begin: String = one.chars().take(kept).collect();
-        let end: String = one.chars().skip(total - KEPT_AT_THE_END).collect();
-        begin + &note + &end
-    };
-    message.split(BETWEEN).map(shortened).collect::<Vec<_>>().join(BETWEEN)
+    message.split(BETWEEN).map(|one| excerpt(one, MAX_CHARACTERS)).collect::<Vec<_>>().join(BETWEEN)
 }
 
 /// Why a command stopped, and with which exit code.

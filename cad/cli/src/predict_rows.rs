@@ -62,8 +62,9 @@ impl Rows {
         let (model_name, rows_name) = (model.display().to_string(), rows.display().to_string());
         let text = crate::input::read_text_file(model)?;
         let model = ModelFile::parse(&text, &model_name).map_err(Failure::bad_input)?;
-        let file = std::fs::File::open(rows).map_err(|e| Failure::bad_input(format!("{rows_name}: {e}")))?;
-        let table = PlateauTable::read_conditions(file, &rows_name).map_err(Failure::bad_input)?;
+        let bytes = crate::input::read_file(rows)?;
+        let table =
+            PlateauTable::read_conditions(bytes.as_slice(), &rows_name).map_err(Failure::bad_input)?;
         let (predicted, sd) = model.predict(&table.rows, &model_name).map_err(Failure::bad_input)?;
         let csv = table.with_columns(&["predicted_N", "sd_N"], &[predicted, sd], 5);
         match &self.out {

@@ -70,14 +70,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(summary.as_bytes())
 }
 
+/// Most bytes of a log, unpacked: a year at 200 Hz and 25 bytes a line is 160 GB, a day is 430 MB.
+const MAX_LOG: u64 = 1 << 30;
+
 /// The bytes of a log, unpacked if its name ends in `.gz`.
 fn read_log(path: &Path) -> Result<Vec<u8>, Failure> {
-    let bad = |e: std::io::Error| Failure::bad_input(format!("{}: {e}", path.display()));
-    let raw = std::fs::read(path).map_err(bad)?;
+    let raw = crate::input::read_file(path)?;
     if path.extension().is_none_or(|e| e != "gz") {
         return Ok(raw);
     }
     let mut text = Vec::new();
-    MultiGzDecoder::new(raw.as_slice()).read_to_end(&mut text).map_err(bad)?;
+    let unpacked = MultiGzDecoder::new(raw.as_slice()).take(MAX_LOG + 1).read_to_end(&mut text);
+    let name = path.display();
+    unpacked.map_err(|e| Failure::bad_input(format!("{name}: {e}; give a whole file, packed by gzip")))?;
+    if text.len() as u64 > MAX_LOG {
+        let remedy = "give a log of one session";
+        return Err(Failure::bad_input(format!("{name}: unpacks to more than {MAX_LOG} bytes; {remedy}")));
+    }
     Ok(text)
 }

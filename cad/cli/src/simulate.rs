@@ -66,6 +66,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (plan, name) = plan(arguments)?;
     let text = plan.to_text().map_err(Failure::failed)?;
     let simulated = simulate(&plan);
+    simulated.check(&name).map_err(Failure::bad_input)?;
     let file = |name: &str, text: String| OutputFile { name: name.to_owned(), bytes: text.into_bytes() };
     let mut files = if arguments.raw { raw_files(&plan, &simulated.rows, &name)? } else { Vec::new() };
     files.extend([

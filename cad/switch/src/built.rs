@@ -69,7 +69,7 @@ impl BuiltPart {
 }
 
 /// The mesh of `part` as it is written, on the print bed, and what it measures: for one part of many, with the caps that
-/// others have left in `caps`.
+/// others have left in `caps`. Where no mesh can be made, the error names the field that decides, as for [`Built`].
 ///
 /// # Errors
 /// [`BuildError`]; a mesh that the oracle refuses is never returned.
@@ -79,10 +79,13 @@ pub fn examined_print_mesh(
     caps: &CapCache,
 ) -> Result<(Mesh, MeshFacts), BuildError> {
     let mesh = part.solid.mesh_with(design.tolerance(), caps);
-    let mesh = mesh.map_err(|source| BuildError::Cap { part: part.name.clone(), source })?;
-    let mesh = mesh.translated(part.print_shift_mm());
-    let facts = examined(part, &mesh, design)?;
-    Ok((mesh, facts))
+    mesh.map_err(|source| BuildError::Cap { part: part.name.clone(), source })
+        .and_then(|mesh| {
+            let mesh = mesh.translated(part.print_shift_mm());
+            let facts = examined(part, &mesh, design)?;
+            Ok((mesh, facts))
+        })
+        .map_err(|e| diagnosed(e, design))
 }
 
 /// What the mesh measures, if it is valid.

@@ -43,6 +43,7 @@ pub mod segmentation;
 pub mod table;
 #[cfg(test)]
 mod test_session;
+mod toml_text;
 
 pub use aliasing::{Aliasing, aliasing};
 pub use calibrate::{Calibration, CalibrationError, calibrate};
@@ -56,3 +57,4 @@ pub use report::{
     BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible,
     LimitReport, ModelReport, NoisePart, Report, RivalReport, Verdict,
 };
+pub use toml_text::toml_error;

@@ -1,5 +1,6 @@
 //! `baseline.toml` and `model.toml`: a fitted model that predicts rows later.
 
+use pinswitch_friction::excerpt;
 use serde::{Deserialize, Serialize};
 
 use crate::beyond_range::error_beyond_range;
@@ -11,6 +12,7 @@ use crate::model_check::{
     Flaw, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
 };
 use crate::table::{Frame, PlateauRow};
+use crate::toml_text::{place_of, toml_error};
 
 /// Name and version of the format.
 const SCHEMA: &str = "pinswitch.model/1";
@@ -20,15 +22,15 @@ const SCHEMA: &str = "pinswitch.model/1";
 #[non_exhaustive]
 pub enum ModelFileError {
     /// The text is no such TOML.
-    #[error("{file}: {problem}")]
+    #[error("{file}: {}; use the file as `calibrate` wrote it, or calibrate again", excerpt(problem, 240))]
     Malformed {
-        /// File name as given.
+        /// File name as given, with the line.
         file: String,
         /// What is wrong.
         problem: String,
     },
     /// Another format or version.
-    #[error("{file}: schema '{found}' is unknown; this version reads '{SCHEMA}'")]
+    #[error("{file}: schema '{}' is unknown; this version reads '{SCHEMA}'", excerpt(found, 80))]
     Schema {
         /// File name as given.
         file: String,
@@ -36,7 +38,7 @@ pub enum ModelFileError {
         found: String,
     },
     /// An effect that the library does not have.
-    #[error("{file}: effect '{id}' is unknown; use the ids of the effect vocabulary")]
+    #[error("{file}: effect '{}' is unknown; use the ids of the effect vocabulary", excerpt(id, 80))]
     Effect {
         /// File name as given.
         file: String,
@@ -45,10 +47,13 @@ pub enum ModelFileError {
     },
     /// A value that no calibration writes.
     #[error(
-        "{file}: {field} = {value} is out of bounds ({bound}); use the file as `calibrate` wrote it, or calibrate again"
+        "{file}: {} = {} is out of bounds ({}); use the file as `calibrate` wrote it, or calibrate again",
+        excerpt(field, 100),
+        excerpt(value, 100),
+        excerpt(bound, 160)
     )]
     Value {
-        /// File name as given.
+        /// File name as given, with the line.
         file: String,
         /// Where it stands.
         field: String,
@@ -73,6 +78,17 @@ impl ModelFileError {
     /// The flaw of a file.
     fn of(file: &str) -> impl Fn(Flaw) -> Self + '_ {
         |Flaw { field, value, bound }| Self::Value { file: file.to_owned(), field, value, bound }
+    }
+
+    /// The error with the line of its field.
+    fn placed(mut self, name: &str, text: &str) -> Self {
+        match &mut self {
+            Self::Value { file, field, .. } => *file = place_of(name, text, field),
+            Self::Constants { file, .. } => *file = place_of(name, text, "constants"),
+            Self::Effect { file, .. } => *file = place_of(name, text, "terms"),
+            Self::Malformed { .. } | Self::Schema { .. } => {}
+        }
+        self
     }
 }
 
@@ -188,18 +204,22 @@ impl ModelFile {
     /// # Errors
     /// [`ModelFileError`] if the text is no model of this version.
     pub fn parse(text: &str, file: &str) -> Result<Self, ModelFileError> {
-        let malformed = |e: toml::de::Error| ModelFileError::Malformed {
-            file: file.to_owned(),
-            problem: e.to_string().trim_end().to_owned(),
+        let malformed = |e: toml::de::Error| {
+            let (file, problem) = toml_error(file, text, &e);
+            ModelFileError::Malformed { file, problem }
         };
+        let placed = |flaw: Flaw| ModelFileError::of(&place_of(file, text, &flaw.field))(flaw);
         let table: toml::Table = toml::from_str(text).map_err(malformed)?;
-        check_finite("", &toml::Value::Table(table)).map_err(ModelFileError::of(file))?;
+        check_finite("", &toml::Value::Table(table)).map_err(placed)?;
         let parsed: Self = toml::from_str(text).map_err(malformed)?;
         if parsed.schema != SCHEMA {
-            return Err(ModelFileError::Schema { file: file.to_owned(), found: parsed.schema });
+            return Err(ModelFileError::Schema {
+                file: place_of(file, text, "schema"),
+                found: parsed.schema,
+            });
         }
-        let constants = parsed.model(file)?.values().len();
-        check_covariance(&parsed.covariance, constants).map_err(ModelFileError::of(file))?;
+        let constants = parsed.model(file).map_err(|e| e.placed(file, text))?.values().len();
+        check_covariance(&parsed.covariance, constants).map_err(placed)?;
         Ok(parsed)
     }
 

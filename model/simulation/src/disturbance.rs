@@ -142,6 +142,20 @@ impl Disturbance {
         }
     }
 
+    /// Every number of its course, and those of them that are divided by.
+    pub(super) fn numbers(&self) -> (Vec<f64>, Vec<f64>) {
+        match self.kind {
+            Course::Step { at, over } => (vec![at, over], vec![]),
+            Course::Window { from, to } => (vec![from, to], vec![]),
+            Course::TimeWave { cycles, phase } | Course::StrokeWave { cycles, phase, .. } => {
+                (vec![cycles, phase], vec![])
+            }
+            Course::Spot { at, width, .. } => (vec![at, width], vec![width]),
+            Course::Resonance { speed_pct, width_pct } => (vec![speed_pct, width_pct], vec![width_pct]),
+            Course::Layout { .. } | Course::Swap { .. } | Course::Operators { .. } | Course::Memory { .. } => (vec![], vec![]),
+        }
+    }
+
     fn course(&self, at: &Moment, pins: &[usize]) -> f64 {
         let flag = |b: bool| f64::from(u8::from(b));
         let Moment { clock, place, speed_pct, .. } = *at;

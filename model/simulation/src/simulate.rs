@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
-use super::plan::Plan;
+use super::plan::{Plan, PlanError};
 use super::series_marks::{SeriesMarks, walked};
 use super::{protocol, twin};
 
@@ -33,6 +33,26 @@ impl Simulated {
     /// The text of the rows without noise, with the optional columns that the plan asks for.
     pub fn fresh_table(&self, plan: &Plan) -> String {
         self.marks.add_columns(plan.columns, &self.fresh, PlateauTable::write(&self.fresh))
+    }
+}
+
+/// Largest reading in newtons, as in a table.
+const MAX_N: f64 = 1e5;
+
+impl Simulated {
+    /// Whether these are readings that a load cell can give. `file` is the name of the plan, used in errors.
+    ///
+    /// # Errors
+    /// [`PlanError::Reading`] at the first that is none.
+    pub fn check(&self, file: &str) -> Result<(), PlanError> {
+        let is_reading = |row: &PlateauRow| row.force_n.abs() <= MAX_N && row.load_n <= MAX_N;
+        for rows in [&self.rows, &self.fresh] {
+            if let Some(at) = rows.iter().position(|row| !is_reading(row)) {
+                let reading = rows[at].force_n.to_string();
+                return Err(PlanError::Reading { file: file.to_owned(), row: at + 1, reading, most: MAX_N });
+            }
+        }
+        Ok(())
     }
 }
 
@@ -137,6 +157,14 @@ fn mislabel(plan: &Plan, rows: &mut [PlateauRow], random: &mut ChaCha8Rng) {
 mod tests {
     use super::*;
     use crate::plan::NoisePlan;
+
+    #[test]
+    fn a_rig_that_cannot_be_read_is_refused() {
+        assert_eq!(simulate(&Plan::default()).check("plan.toml"), Ok(()));
+        let plan = Plan::parse("wrap_angle_deg = 720\n[constants]\nmu_s = 9\n", "plan.toml").unwrap();
+        let error = simulate(&plan).check("plan.toml").unwrap_err().to_string();
+        assert!(error.starts_with("plan.toml: the plan makes a reading of "), "{error}");
+    }
 
     #[test]
     fn the_same_plan_makes_the_same_rows_and_another_seed_others() {

@@ -61,14 +61,15 @@ fn found<T>(outcome: std::io::Result<T>) -> std::io::Result<Option<T>> {
 
 /// Temporary files are private; what takes a name is an ordinary file.
 #[cfg(unix)]
-fn builder() -> tempfile::Builder<'static, 'static> {
+pub fn temporary_file() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
     builder
 }
 
+/// What takes a name is an ordinary file.
 #[cfg(not(unix))]
-fn builder() -> tempfile::Builder<'static, 'static> {
+pub fn temporary_file() -> tempfile::Builder<'static, 'static> {
     tempfile::Builder::new()
 }
 
@@ -139,7 +140,7 @@ impl Folder {
 
     pub(super) fn local_file(&self) -> std::io::Result<tempfile::NamedTempFile> {
         std::fs::create_dir_all(&self.partial)?;
-        builder().tempfile_in(&self.partial)
+        temporary_file().tempfile_in(&self.partial)
     }
 
     pub(super) fn put_file(&self, name: &str, file: tempfile::NamedTempFile) -> std::io::Result<()> {

@@ -12,7 +12,7 @@ use std::sync::Arc;
 #[cfg(feature = "cloud")]
 use object_store::{ObjectStore, path::Path as StorePath};
 
-pub use folder::{DestinationLock, Folder};
+pub use folder::{DestinationLock, Folder, temporary_file};
 #[cfg(feature = "cloud")]
 pub use store::Store;
 

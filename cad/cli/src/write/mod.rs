@@ -10,6 +10,7 @@ mod steps;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use pinswitch_batch::temporary_file;
 use pinswitch_switch::output::OutputFile;
 
 use folder_lock::{FolderLock, Waiting};
@@ -72,23 +73,10 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     }
     let lock = FolderLock::take(folder, Waiting::UntilFree).map_err(WriteError::at(path))?;
     lock.sweep().map_err(WriteError::at(path))?;
-    let mut temporary = builder().prefix(OURS).tempfile_in(folder).map_err(WriteError::at(path))?;
+    let mut temporary = temporary_file().prefix(OURS).tempfile_in(folder).map_err(WriteError::at(path))?;
     temporary.write_all(bytes).map_err(WriteError::at(path))?;
     temporary.persist(path).map_err(|e| WriteError::at(path)(e.error))?;
     Ok(())
-}
-
-/// Temporary files are private; what takes the target's name is an ordinary file.
-#[cfg(unix)]
-fn builder() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
-    builder
-}
-
-#[cfg(not(unix))]
-fn builder() -> tempfile::Builder<'static, 'static> {
-    tempfile::Builder::new()
 }
 
 /// Writes all files into `folder`, which is made if need be. Every file is complete on disk before the first takes its

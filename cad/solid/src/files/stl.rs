@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 #[non_exhaustive]
 pub enum StlError {
     /// The file cannot be read as STL, binary or ASCII.
-    #[error("not a readable STL: {0}")]
+    #[error("not a readable STL: {}", beginning(.0))]
     Unreadable(#[from] std::io::Error),
     /// The file holds fewer or more bytes than its triangle count says.
     #[error("the header announces {announced} triangles, which take {expected} bytes; the file has {found}")]
@@ -29,6 +29,14 @@ pub enum StlError {
     /// The file is an STL without a single triangle.
     #[error("the STL holds no triangle")]
     Empty,
+}
+
+/// The beginning of a message, which may repeat a line of any length.
+fn beginning(error: &std::io::Error) -> String {
+    const SHOWN: usize = 200;
+    let text = error.to_string();
+    let short: String = text.chars().take(SHOWN).collect();
+    if short.len() < text.len() { short + "..." } else { short }
 }
 
 /// What an STL file holds.
@@ -175,6 +183,8 @@ mod tests {
         assert!(matches!(read(b""), Err(StlError::Unreadable(_))));
         assert!(matches!(read(b"solid x\nfacet normal 0 0 z\n"), Err(StlError::Unreadable(_))));
         assert!(matches!(read(b"solid x\nendsolid x\n"), Err(StlError::Empty)));
+        let long = read(format!("solid x\n{}\n", "facet ".repeat(10_000)).as_bytes()).unwrap_err();
+        assert!(long.to_string().len() < 300, "{long}");
         assert!(matches!(read(&stl_bytes(&Mesh::default()).unwrap()), Err(StlError::Empty)));
     }
 }

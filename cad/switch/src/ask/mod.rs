@@ -8,6 +8,7 @@ mod read;
 mod target;
 mod tolerance;
 
+use pinswitch_friction::excerpt;
 use serde::{Deserialize, Serialize};
 
 pub use parameter::Parameter;
@@ -17,6 +18,9 @@ pub use tolerance::{SOURCES, Tolerances};
 
 /// `within` of an `about` that gives none.
 pub const DEFAULT_WITHIN: f64 = 0.10;
+
+/// Most characters of an error.
+const LONGEST: usize = 580;
 
 /// Smallest and largest size that can be asked for, mm.
 const LEAST_SIZE_MM: f64 = 0.1;
@@ -118,7 +122,7 @@ pub struct Tendon {
 
 /// Why an ask cannot be used: it names the field, the value, the bound and the remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
+#[error("{}", excerpt(.0, LONGEST))]
 pub struct AskError(pub String);
 
 impl Ask {

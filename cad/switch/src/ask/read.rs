@@ -10,6 +10,7 @@ use super::{
     Ask, AskError, DEFAULT_WITHIN, Limits, Materials, Parameter, Quantity, Target, Tolerances, Varied, Vary,
     Wish, parse_wish,
 };
+use crate::config::Place;
 
 /// The file as it is written.
 #[derive(Deserialize)]
@@ -66,7 +67,13 @@ impl Ask {
     /// ```
     pub fn read(text: &str, file: &str) -> Result<Self, AskError> {
         let named = |e: String| AskError(format!("{file}: {e}"));
-        let parsed: File = toml::from_str(text).map_err(|e| named(e.to_string().trim_end().to_owned()))?;
+        let parsed: File = toml::from_str(text).map_err(|e| {
+            let place = Place::new(file, text, e.span().map_or(0, |span| span.start));
+            AskError(format!(
+                "{place}: {}; cad/doc/design.md shows the form",
+                e.message().trim().replace('\n', ", ")
+            ))
+        })?;
         let ask = Self {
             targets: parsed.ask.targets().map_err(named)?,
             load_range_n: parsed.ask.load_range_n,

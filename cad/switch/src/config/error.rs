@@ -2,6 +2,11 @@
 
 use std::fmt;
 
+use pinswitch_friction::excerpt;
+
+/// Most characters of an error behind its place.
+const LONGEST: usize = 520;
+
 /// A place in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -79,11 +84,11 @@ impl fmt::Display for ConfigError {
         if let Some(place) = &self.place {
             write!(f, "{place}: ")?;
         }
-        f.write_str(&self.field)?;
-        if let Some(value) = &self.value {
-            write!(f, " = {value}")?;
-        }
-        write!(f, " {}; {}", self.problem, self.remedy)
+        let value = self.value.as_ref().map(|value| format!(" = {}", excerpt(value, 120)));
+        let value = value.unwrap_or_default();
+        let text = format!("{}{value} {}; {}", excerpt(&self.field, 100), self.problem, self.remedy);
+        // A value of any length may stand in it; the place is that of a file.
+        f.write_str(&excerpt(&text, LONGEST))
     }
 }
 

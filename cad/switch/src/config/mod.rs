@@ -6,6 +6,7 @@ pub mod parameter;
 mod parameters;
 mod read;
 mod reference;
+mod text;
 
 pub use error::{ConfigError, Place};
 pub use name::Name;
@@ -13,3 +14,4 @@ pub use parameter::{Choice, Origin};
 pub use parameters::{Configuration, MouldKind, MouldTable, SlotKind, Slots};
 pub use read::{Places, assign, read, read_over};
 pub use reference::{reference_toml, to_toml};
+pub use text::text;

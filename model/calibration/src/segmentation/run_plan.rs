@@ -1,24 +1,25 @@
 //! `run.toml`: the rig and the series of a raw run.
 
-use pinswitch_friction::{Substrate, published};
+use pinswitch_friction::{Substrate, excerpt, published};
 use serde::Deserialize;
 
-use crate::table::{MAX_WRAP_DEG, MIN_WRAP_DEG, Sweep};
+use crate::table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG, Sweep};
+use crate::toml_text::toml_error;
 
 /// Why a run description cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunPlanError {
     /// The text is no such TOML.
-    #[error("{file}: {problem}")]
+    #[error("{file}: {}; model/doc/file-formats.md shows the form", excerpt(problem, 300))]
     Malformed {
-        /// File name as given.
+        /// File name as given, with the line.
         file: String,
-        /// What is wrong, with the line.
+        /// What is wrong.
         problem: String,
     },
     /// A value is out of bounds.
-    #[error("{file}: {field} = {value} is outside {bound}")]
+    #[error("{file}: {field} = {} is outside {bound}", excerpt(value, 120))]
     Bound {
         /// File name as given.
         file: String,
@@ -88,9 +89,9 @@ impl RunPlan {
     /// # Errors
     /// [`RunPlanError`] at the first value that cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, RunPlanError> {
-        let plan: Self = toml::from_str(text).map_err(|e| RunPlanError::Malformed {
-            file: file.to_owned(),
-            problem: e.to_string().trim_end().to_owned(),
+        let plan: Self = toml::from_str(text).map_err(|e| {
+            let (file, problem) = toml_error(file, text, &e);
+            RunPlanError::Malformed { file, problem }
         })?;
         let refuse = |field: String, value: String, bound| {
             Err(RunPlanError::Bound { file: file.to_owned(), field, value, bound })
@@ -120,11 +121,18 @@ impl RunPlan {
             if !(s.load_mass_g >= 0.0 && s.load_mass_g.is_finite()) {
                 return refuse(field("load_mass_g"), s.load_mass_g.to_string(), "value >= 0");
             }
-            if !(s.speed_pct >= 0.0 && s.speed_pct.is_finite()) {
-                return refuse(field("speed_pct"), s.speed_pct.to_string(), "value >= 0");
+            if !(0.0..=MAX_PERCENT).contains(&s.speed_pct) {
+                return refuse(field("speed_pct"), s.speed_pct.to_string(), "0..1000000");
             }
             if s.pins.iter().any(|p| !(1..=published::GROOVES).contains(p)) {
                 return refuse(field("pins"), format!("{:?}", s.pins), "grooves 1..15");
+            }
+            if s.pins.iter().enumerate().any(|(i, pin)| s.pins[..i].contains(pin)) {
+                return refuse(field("pins"), format!("{:?}", s.pins), "grooves named once each");
+            }
+            if s.load_n(r) > MAX_N {
+                let grams = s.load_mass_g.to_string();
+                return refuse(field("load_mass_g"), grams, "what weighs 100000 N with the hook");
             }
             if s.substrate == Some(Substrate::Abs) && s.pins.is_empty() {
                 return refuse(field("pins"), "[]".to_owned(), "at least one groove on abs");
@@ -155,6 +163,9 @@ mod tests {
             ("load_mass_g=251.2", "load_mass_g=-2.0", "series 1: load_mass_g"),
             ("\"silicone\"", "\"abs\"", "series 1: pins"),
             ("pins=[]", "pins=[99]", "grooves 1..15"),
+            ("pins=[]", "pins=[5, 5]", "once each"),
+            ("load_mass_g=251.2", "load_mass_g=1e9", "series 1: load_mass_g = 1000000000 is outside"),
+            ("speed_pct=47", "speed_pct=1e9", "series 1: speed_pct"),
         ] {
             let text = format!("{RIG}{SERIES}").replacen(from, to, 1);
             assert!(RunPlan::parse(&text, "run.toml").unwrap_err().to_string().contains(expected));

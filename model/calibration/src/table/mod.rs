@@ -14,7 +14,7 @@ mod table_error;
 pub use frame::{Condition, Frame, Point};
 pub(crate) use frame::{groups, groups_of};
 pub use plateau_table::PlateauTable;
-pub(crate) use plateau_table::{MAX_WRAP_DEG, MIN_WRAP_DEG};
+pub(crate) use plateau_table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG};
 pub use row::{Labels, PlateauRow, Sweep};
 pub use substrate_word::substrate_word;
 pub use table_error::TableError;

@@ -12,7 +12,9 @@ use super::substrate_word::{WORDS, substrate_word};
 use super::table_error::TableError;
 
 /// Largest load and reading in newtons: ten tonnes is beyond any tendon.
-const MAX_N: f64 = 1e5;
+pub(crate) const MAX_N: f64 = 1e5;
+/// Highest speed in percent.
+pub(crate) const MAX_PERCENT: f64 = 1e6;
 /// Longest time in seconds: thirty years, or a clock that counts from 1970.
 const MAX_S: f64 = 1e10;
 
@@ -317,7 +319,7 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
         sweep: cells.word(3, &[("up", Sweep::Up), ("down", Sweep::Down)])?,
         load_mass_g: cells.number(4, 0.0, 1e7)?,
         load_n: cells.number(5, 0.0, MAX_N)?,
-        speed_pct: cells.number(6, 0.0, 1e6)?,
+        speed_pct: cells.number(6, 0.0, MAX_PERCENT)?,
         dwell_s: cells.number(7, 0.0, 1e6)?,
         direction: cells
             .word(8, &[("eccentric", Direction::Eccentric), ("concentric", Direction::Concentric)])?,

@@ -1,5 +1,7 @@
 //! Why a plateau table cannot be used.
 
+use pinswitch_friction::excerpt;
+
 use super::columns::COLUMNS;
 
 /// Why a plateau table cannot be used.
@@ -21,7 +23,7 @@ pub enum TableError {
         column: &'static str,
     },
     /// A cell cannot be read.
-    #[error("{file}, line {line}, column '{column}': '{value}' {problem}")]
+    #[error("{file}, line {line}, column '{column}': '{}' {}", excerpt(value, 120), excerpt(problem, 300))]
     Cell {
         /// File name as given.
         file: String,
@@ -35,7 +37,7 @@ pub enum TableError {
         problem: String,
     },
     /// A line is no CSV of the header's width, or no UTF-8.
-    #[error("{file}{}: {problem}", line.map(|l| format!(", line {l}")).unwrap_or_default())]
+    #[error("{file}{}: {}", line.map(|l| format!(", line {l}")).unwrap_or_default(), excerpt(problem, 300))]
     Malformed {
         /// File name as given.
         file: String,

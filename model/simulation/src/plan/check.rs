@@ -7,6 +7,13 @@ use super::{EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan};
 use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
 use crate::effect_forms::forms_of;
 
+/// Largest weight in grams, speed in percent, dwell in seconds, force in newtons and constant of an effect: far above any.
+const MAX_VALUE: f64 = 1e6;
+/// Largest friction coefficient.
+const MAX_FRICTION: f64 = 10.0;
+/// Most rows that a plan may make: a thousand times the paper's.
+const MAX_ROWS: usize = 1_000_000;
+
 /// A field out of its bounds, before it is known which file it stands in.
 struct Fault {
     field: &'static str,
@@ -33,6 +40,7 @@ impl Plan {
     /// [`PlanError`] at the first field that cannot be used.
     pub fn check(&self, file: &str) -> Result<(), PlanError> {
         self.check_series()
+            .and_then(|()| self.check_constants())
             .and_then(|()| check_noise(&self.noise))
             .and_then(|()| check_scatter(&self.noise))
             .and_then(|()| check_raw(&self.raw))
@@ -47,16 +55,61 @@ impl Plan {
         self.effects.iter().try_for_each(|effect| check_effect(effect, file))
     }
 
+    /// Rows that the plan makes at most.
+    fn most_rows(&self) -> usize {
+        let conditions = self.layouts.len().saturating_mul(2).saturating_add(1);
+        let repetitions: u32 = self.repetitions.iter().map(|mean| mean + self.repetitions_spread).sum();
+        // Loads go up and down.
+        [2, self.weights_g.len(), repetitions as usize].into_iter().fold(conditions, usize::saturating_mul)
+    }
+
+    /// Constants, effects and what nobody has named: numbers that a reading survives.
+    fn check_constants(&self) -> Result<(), Fault> {
+        let c = &self.constants;
+        require(
+            [c.mu_p, c.mu_s].iter().all(|mu| (0.0..=MAX_FRICTION).contains(mu)),
+            "constants",
+            || format!("mu_p {}, mu_s {}", c.mu_p, c.mu_s),
+            "0..10",
+            "leave them out for the paper's",
+        )?;
+        require(
+            c.half_load_factor.iter().chain(&c.steepness).all(|v| *v > 0.0 && *v <= 1000.0),
+            "constants",
+            || format!("half_load_factor {:?}, steepness {:?}", c.half_load_factor, c.steepness),
+            "0 < value <= 1000",
+            "leave them out for the paper's",
+        )?;
+        require(
+            self.effects.iter().flat_map(|effect| &effect.values).all(|v| v.abs() <= MAX_VALUE),
+            "effects",
+            || format!("{:?}", self.effects.iter().map(|effect| &effect.values).collect::<Vec<_>>()),
+            "-1000000..1000000",
+            "model/doc/effect-catalogue.md gives the usual sizes",
+        )?;
+        let is_course = |d: &Disturbance| {
+            let (numbers, widths) = d.numbers();
+            numbers.iter().chain([&d.size]).all(|v| v.abs() <= MAX_VALUE) && widths.iter().all(|v| *v > 0.0)
+        };
+        require(
+            self.disturbances.iter().all(is_course),
+            "disturbances",
+            || format!("{:?}", self.disturbances),
+            "-1000000..1000000, and above 0 for a width",
+            "give a size as a share of friction, or newtons",
+        )
+    }
+
     fn check_series(&self) -> Result<(), Fault> {
         for (field, values) in
             [("weights_g", &self.weights_g), ("speeds_pct", &self.speeds_pct), ("dwells_s", &self.dwells_s)]
         {
-            let positive = !values.is_empty() && values.iter().all(|v| *v > 0.0 && v.is_finite());
+            let positive = !values.is_empty() && values.iter().all(|v| *v > 0.0 && *v <= MAX_VALUE);
             require(
                 positive && values.len() <= 1000,
                 field,
                 || format!("{values:?}"),
-                "1 to 1000 positive numbers",
+                "1 to 1000 numbers above 0, up to 1000000",
                 "list the values to run",
             )?;
         }
@@ -81,13 +134,31 @@ impl Plan {
             "1..1000",
             "give two counts",
         )?;
-        let grooves = 1..=published::GROOVES;
         require(
-            self.layouts.iter().all(|l| !l.is_empty() && l.iter().all(|g| grooves.contains(g))),
+            self.repetitions_spread <= 1000,
+            "repetitions_spread",
+            || self.repetitions_spread.to_string(),
+            "0..1000",
+            "0 gives every series the same",
+        )?;
+        let grooves = 1..=published::GROOVES;
+        let is_layout = |layout: &Vec<usize>| {
+            let once = |(i, groove)| grooves.contains(groove) && !layout[..i].contains(groove);
+            !layout.is_empty() && layout.iter().enumerate().all(once)
+        };
+        require(
+            self.layouts.iter().all(is_layout),
             "layouts",
             || format!("{:?}", self.layouts),
             "lists of grooves 1..15",
-            "name occupied grooves",
+            "name each occupied groove once",
+        )?;
+        require(
+            self.most_rows() <= MAX_ROWS,
+            "layouts, weights_g and repetitions",
+            || format!("{} rows", self.most_rows()),
+            "1..1000000 rows",
+            "give fewer of one of them",
         )?;
         require(
             self.silicone || !self.layouts.is_empty(),
@@ -102,10 +173,10 @@ impl Plan {
 fn check_noise(n: &NoisePlan) -> Result<(), Fault> {
     let sizes = [n.repetition_n, n.repetition_per_load, n.series_n, n.series_per_load, n.outlier_n];
     require(
-        sizes.iter().all(|v| v.is_finite() && *v >= 0.0),
+        sizes.iter().all(|v| (0.0..=MAX_VALUE).contains(v)),
         "noise",
         || format!("{sizes:?}"),
-        ">= 0",
+        "0..1000000",
         "give standard deviations",
     )?;
     require(
@@ -114,6 +185,13 @@ fn check_noise(n: &NoisePlan) -> Result<(), Fault> {
         || format!("autocorrelation {}, uneven {}", n.autocorrelation, n.uneven),
         "0..0.99 and 0..2",
         "0 is neither",
+    )?;
+    require(
+        n.mislabelled_series <= 1000,
+        "noise.mislabelled_series",
+        || n.mislabelled_series.to_string(),
+        "0..1000",
+        "count series",
     )?;
     require(
         [n.outlier_share, n.lost_share].iter().all(|v| (0.0..=0.9).contains(v)),
@@ -191,10 +269,10 @@ fn check_raw(r: &RawPlan) -> Result<(), Fault> {
         "give shares of samples and logs",
     )?;
     require(
-        [r.sample_n, r.jitter_s].iter().all(|v| v.is_finite() && *v >= 0.0),
+        [r.sample_n, r.jitter_s].iter().all(|v| (0.0..=MAX_VALUE).contains(v)),
         "raw",
         || format!("sample_N {}, jitter_s {}", r.sample_n, r.jitter_s),
-        ">= 0",
+        "0..1000000",
         "give standard deviations",
     )
 }

@@ -1,19 +1,21 @@
 //! Why a plan cannot be run.
 
+use pinswitch_friction::excerpt;
+
 /// Why a plan cannot be run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
     /// The text is no plan.
-    #[error("{file}: {problem}")]
+    #[error("{file}: {}; model/doc/file-formats.md shows the form", excerpt(problem, 300))]
     Malformed {
-        /// File name as given.
+        /// File name as given, with the line.
         file: String,
-        /// What is wrong, with the line.
+        /// What is wrong.
         problem: String,
     },
     /// A value is out of bounds.
-    #[error("{file}: {field} = {value} is outside {bound}; {remedy}")]
+    #[error("{file}: {field} = {} is outside {bound}; {remedy}", excerpt(value, 200))]
     Bound {
         /// File name as given.
         file: String,
@@ -26,8 +28,23 @@ pub enum PlanError {
         /// What to do.
         remedy: &'static str,
     },
+    /// The rig that is planned cannot be read.
+    #[error(
+        "{file}: the plan makes a reading of {reading} N in row {row}, {most} are possible; lower its constants, effects or \
+         noise"
+    )]
+    Reading {
+        /// File name as given.
+        file: String,
+        /// Row of the table, from 1.
+        row: usize,
+        /// The reading.
+        reading: String,
+        /// The largest one.
+        most: f64,
+    },
     /// An effect the library does not have, or with the wrong number of constants.
-    #[error("{file}: effects: '{id}' with {found} value(s); {remedy}")]
+    #[error("{file}: effects: '{}' with {found} value(s); {}", excerpt(id, 80), excerpt(remedy, 380))]
     Effect {
         /// File name as given.
         file: String,

@@ -14,6 +14,7 @@ pub use noise::NoisePlan;
 pub use raw::RawPlan;
 
 use crate::disturbance::Disturbance;
+use pinswitch_calibration::toml_error;
 use pinswitch_friction::{LayoutLaw, published};
 
 /// Order and settings of the series.
@@ -177,9 +178,9 @@ impl Plan {
     /// # Errors
     /// [`PlanError`] at the first field that cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, PlanError> {
-        let plan: Self = toml::from_str(text).map_err(|e| PlanError::Malformed {
-            file: file.to_owned(),
-            problem: e.to_string().trim_end().to_owned(),
+        let plan: Self = toml::from_str(text).map_err(|e| {
+            let (file, problem) = toml_error(file, text, &e);
+            PlanError::Malformed { file, problem }
         })?;
         plan.check(file)?;
         Ok(plan)
@@ -204,6 +205,17 @@ mod tests {
         let cases = [
             ("weights_g = []", "weights_g"),
             ("layouts = [[16]]", "layouts"),
+            ("layouts = [[5, 5]]", "each occupied groove once"),
+            ("weights_g = [1e300]", "up to 1000000"),
+            ("repetitions_spread = 4000000000", "repetitions_spread"),
+            (
+                "repetitions = [1000, 1000]\nrepetitions_spread = 1000\nlayouts = [[1], [2], [3], [4], [5], [6]]",
+                "rows is outside",
+            ),
+            ("[constants]\nmu_p = inf", "mu_p inf"),
+            ("[constants]\nsteepness = [nan]", "steepness [NaN]"),
+            ("[[effects]]\nid = \"coating_ploughing\"\nvalues = [nan]", "effects = [[NaN]]"),
+            ("[noise]\nmislabelled_series = 4000000000", "mislabelled_series"),
             ("[noise]\noutlier_share = 2", "noise shares"),
             ("[noise]\nseries_scale = 0.6", "noise.series_scale = 0.6 is outside 0..0.5"),
             ("[noise]\nmount_scale = -0.01", "noise.mount_scale"),

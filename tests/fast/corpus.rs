@@ -1,0 +1,63 @@
+//! Every file of `tests/corpus/READER` is given to its reader: what once broke stays mended, and the seeds of the fuzz
+//! targets stay what they are.
+
+use crate::harness::repository;
+use crate::readers::{READERS, Reading, judge};
+
+/// Every file of a folder.
+fn files(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
+    let mut all: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn every_file_of_the_corpus_is_read_or_refused_as_its_name_says() {
+    let mut faults = Vec::new();
+    for reader in &READERS {
+        let of_reader = files(&repository("tests/corpus").join(reader.name));
+        let (mut accepted, mut refused) = (0, 0);
+        for path in of_reader {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            match judge(reader.name, &std::fs::read(&path).unwrap()) {
+                Ok(Reading::Accepted) if name.starts_with("accepted-") => accepted += 1,
+                Ok(Reading::Refused) if name.starts_with("refused-") => refused += 1,
+                other => faults.push(format!("{}/{name}: {other:?}", reader.name)),
+            }
+        }
+        // A fuzzer that starts without anything that is accepted finds little.
+        if accepted == 0 || refused == 0 {
+            faults.push(format!("{}: {accepted} accepted, {refused} refused", reader.name));
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn every_reader_has_a_fuzz_target_and_every_folder_of_the_corpus_a_reader() {
+    for path in files(&repository("tests/corpus")).iter().filter(|path| path.is_dir()) {
+        let name = path.file_name().unwrap().to_string_lossy();
+        assert!(READERS.iter().any(|reader| reader.name == name), "{name}");
+    }
+    let manifest = std::fs::read_to_string(repository("fuzz/Cargo.toml")).unwrap();
+    for reader in &READERS {
+        let name = reader.name;
+        assert!(manifest.contains(&format!("path = \"targets/{name}.rs\"")), "{name} is no target");
+        let target = std::fs::read_to_string(repository(&format!("fuzz/targets/{name}.rs"))).unwrap();
+        assert!(target.contains(&format!("target!(\"{name}\")")), "{name}");
+    }
+}
+
+#[test]
+fn what_ships_with_the_program_is_accepted_by_its_reader() {
+    for path in files(&repository("templates")).iter().filter(|path| path.is_file()) {
+        let bytes = std::fs::read(path).unwrap();
+        assert_eq!(judge("configuration", &bytes), Ok(Reading::Accepted), "{}", path.display());
+    }
+    for path in files(&repository("templates/asks")) {
+        let reading = judge("ask", &std::fs::read(&path).unwrap());
+        assert!(reading.is_ok(), "{}: {reading:?}", path.display());
+    }
+    let sweep = std::fs::read(repository("templates/batch/sweep.toml")).unwrap();
+    assert_eq!(judge("sweep", &sweep), Ok(Reading::Accepted));
+}

@@ -1,0 +1,534 @@
+//! Every reader of files that others wrote, and what must hold for any bytes: one short error, or something whole.
+//!
+//! The fuzz targets (`fuzz/`), the replay of `tests/corpus` and the campaign judge by these.
+
+#![allow(dead_code, missing_docs, unreachable_pub)]
+
+use std::cell::RefCell;
+use std::io::Cursor;
+use std::path::Path;
+
+use pinswitch_batch::{
+    Destination, MergeError, Observer, Options, Schema, Shard, Sweep, SweepSource, TableWriter,
+    VariantOutcome, Variants, merge, mesh_file, partial_folder, read_rows, run,
+};
+use pinswitch_calibration::ModelFile;
+use pinswitch_calibration::segmentation::{Log, RunPlan, segment};
+use pinswitch_calibration::table::PlateauTable;
+use pinswitch_friction::Substrate;
+use pinswitch_simulation::{Plan, simulate};
+use pinswitch_solid::files::{read_stl, stl_bytes};
+use pinswitch_solid::validity::{Expectation, examine};
+use pinswitch_switch::ask::Ask;
+use pinswitch_switch::config::{Configuration, read, read_over, to_toml};
+use pinswitch_switch::design::Design;
+use sha2::{Digest, Sha256};
+
+/// Most characters of an error.
+pub const LONGEST: usize = 600;
+/// Name of the file in errors.
+const FILE: &str = "given";
+
+/// What a reader made of some bytes, where it did what it must.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    Accepted,
+    Refused,
+}
+
+/// A reader, by the name of its folder in `tests/corpus` and of its fuzz target.
+pub struct Reader {
+    pub name: &'static str,
+    /// What became of the bytes, or what is wrong with the reader.
+    pub judge: fn(&[u8]) -> Result<Reading, String>,
+}
+
+/// All of them.
+pub const READERS: [Reader; 13] = [
+    Reader { name: "configuration", judge: configuration },
+    Reader { name: "preset", judge: preset },
+    Reader { name: "ask", judge: ask },
+    Reader { name: "run", judge: run_plan },
+    Reader { name: "log", judge: log },
+    Reader { name: "plateaus", judge: plateaus },
+    Reader { name: "conditions", judge: conditions },
+    Reader { name: "model", judge: model },
+    Reader { name: "plan", judge: plan },
+    Reader { name: "sweep", judge: sweep },
+    Reader { name: "stl", judge: stl },
+    Reader { name: "shard_table", judge: shard_table },
+    Reader { name: "batch_files", judge: batch_files },
+];
+
+/// Judges bytes by the reader of that name.
+///
+/// # Errors
+/// What is wrong with the reader.
+pub fn judge(name: &str, bytes: &[u8]) -> Result<Reading, String> {
+    let reader = READERS.iter().find(|reader| reader.name == name).ok_or(format!("no reader {name}"))?;
+    (reader.judge)(bytes)
+}
+
+/// The text of the bytes; what is none is refused by the command line, before any reader.
+fn text(bytes: &[u8]) -> Option<&str> {
+    std::str::from_utf8(bytes).ok()
+}
+
+/// A refusal, if its message is one that can be read.
+fn refused(error: &impl std::fmt::Display) -> Result<Reading, String> {
+    let message = error.to_string();
+    match message.chars().count() {
+        0 => Err("an empty error".to_owned()),
+        n if n >= LONGEST => Err(format!("an error of {n} characters: {message:.200}")),
+        _ => Ok(Reading::Refused),
+    }
+}
+
+fn require(holds: bool, what: impl FnOnce() -> String) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(what()) }
+}
+
+fn configuration(bytes: &[u8]) -> Result<Reading, String> {
+    let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
+    let (configuration, _) = match read(text, FILE) {
+        Ok(read) => read,
+        Err(e) => return refused(&e),
+    };
+    let written = to_toml(&configuration);
+    let (again, _) = read(&written, "written").map_err(|e| format!("what was written is refused: {e}"))?;
+    require(again == configuration, || format!("what was written reads otherwise:\n{written}"))?;
+    match Design::new(configuration) {
+        Ok(_) => Ok(Reading::Accepted),
+        Err(e) => {
+            let known = Configuration::PARAMETERS.iter().any(|p| p.path() == e.field);
+            require(known && !e.remedy.is_empty(), || format!("an error without field or remedy: {e}"))?;
+            refused(&e)
+        }
+    }
+}
+
+fn preset(bytes: &[u8]) -> Result<Reading, String> {
+    let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
+    let base = match read(text, FILE) {
+        Ok((base, _)) => base,
+        Err(e) => return refused(&e),
+    };
+    let (over, _) = read_over(base.clone(), "", "empty").map_err(|e| e.to_string())?;
+    require(over == base, || "an empty configuration over a preset changes it".to_owned())?;
+    Ok(Reading::Accepted)
+}
+
+fn ask(bytes: &[u8]) -> Result<Reading, String> {
+    let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
+    let ask = match Ask::read(text, FILE) {
+        Ok(ask) => ask,
+        Err(e) => return refused(&e),
+    };
+    require(!ask.targets.is_empty(), || "an ask that asks nothing".to_owned())?;
+    for target in &ask.targets {
+        let (low, high) = target.wish.interval();
+        require(low <= high && low.is_finite(), || format!("{target}: {low} to {high}"))?;
+        require(target.to_string().chars().count() < LONGEST, || "a target without end".to_owned())?;
+    }
+    match ask.check_loads(ask.load_range_n.unwrap_or((2.5, 50.0))) {
+        Ok(()) => Ok(Reading::Accepted),
+        Err(e) => refused(&e),
+    }
+}
+
+fn run_plan(bytes: &[u8]) -> Result<Reading, String> {
+    let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
+    let plan = match RunPlan::parse(text, FILE) {
+        Ok(plan) => plan,
+        Err(e) => return refused(&e),
+    };
+    for series in &plan.series {
+        let load_n = series.load_n(&plan.rig);
+        // What a plateau table may hold.
+        require((0.0..=1e5).contains(&load_n), || format!("a load of {load_n} N"))?;
+        let mut pins = series.pins.clone();
+        pins.sort_unstable();
+        pins.dedup();
+        require(pins.len() == series.pins.len(), || format!("pins {:?}", series.pins))?;
+    }
+    Ok(Reading::Accepted)
+}
+
+/// The rig of the paper.
+pub const RIG: &str = "[rig]\nwrap_angle_deg=63.89\nsample_rate_hz=200.0\nhook_mass_g=62.53\nstroke_mm=152.4\n\
+                       on_s=0.5\ndwell_s=3.0\n[[series]]\nfile=\"a.csv\"\nsubstrate=\"silicone\"\npins=[5, 8, 11]\n\
+                       load_mass_g=251.2\nspeed_pct=47\nsweep=\"up\"\n";
+
+fn log(bytes: &[u8]) -> Result<Reading, String> {
+    let log = match Log::parse(bytes, FILE) {
+        Ok(log) => log,
+        Err(e) => return refused(&e),
+    };
+    require(log.time_s.is_sorted_by(|a, b| a < b), || "time steps back".to_owned())?;
+    let plan = RunPlan::parse(RIG, "run.toml").map_err(|e| e.to_string())?;
+    let found = segment(&log, &plan.rig);
+    for plateau in &found.plateaus {
+        let numbers = [plateau.force_n, plateau.position_mm, plateau.time_s];
+        require(numbers.iter().all(|x| x.is_finite()), || format!("a plateau of {numbers:?}"))?;
+    }
+    for finding in &found.findings {
+        require(finding.to_string().chars().count() < LONGEST, || "a finding without end".to_owned())?;
+    }
+    Ok(Reading::Accepted)
+}
+
+fn plateaus(bytes: &[u8]) -> Result<Reading, String> {
+    let table = match PlateauTable::read(bytes, FILE) {
+        Ok(table) => table,
+        Err(e) => return refused(&e),
+    };
+    for row in &table.rows {
+        let numbers = [row.load_n, row.force_n, row.speed_pct, row.dwell_s, row.position_mm, row.time_s];
+        require(numbers.iter().all(|x| x.is_finite()), || format!("a row of {numbers:?}"))?;
+    }
+    let written = table.with_columns(&[], &[], 0);
+    let again = PlateauTable::read(written.as_bytes(), "written")
+        .map_err(|e| format!("what was written is refused: {e}\n{written:.300}"))?;
+    require(again.rows == table.rows, || format!("what was written reads otherwise:\n{written:.300}"))?;
+    match table.require_baseline(FILE) {
+        Ok(()) => Ok(Reading::Accepted),
+        Err(e) => refused(&e),
+    }
+}
+
+fn conditions(bytes: &[u8]) -> Result<Reading, String> {
+    match PlateauTable::read_conditions(bytes, FILE) {
+        Ok(_) => Ok(Reading::Accepted),
+        Err(e) => refused(&e),
+    }
+}
+
+/// Rows of a plateau table at the ends of what a table may hold.
+const ROWS: &str = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N
+0,silicone,,up,251.2,3.0766,47,3,eccentric,1,6.93,3.5,2.3157
+1,abs,5;8;11,down,251.2,30,0,0,concentric,2,-10,3.5,2.3157
+2,silicone,5;8;11,up,0,100000,1000000,1000000,concentric,1000000,1000000,10000000000,1
+3,silicone,3;5;7;9;11;13,up,0,0,50,3,concentric,1,152,-10000000000,1
+4,plain,,up,0,10,50,3,concentric,1,152,1,1
+";
+
+fn model(bytes: &[u8]) -> Result<Reading, String> {
+    let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
+    let model = match ModelFile::parse(text, FILE) {
+        Ok(model) => model,
+        Err(e) => return refused(&e),
+    };
+    let written = model.to_text().map_err(|e| e.to_string())?;
+    let again =
+        ModelFile::parse(&written, "written").map_err(|e| format!("what was written is refused: {e}"))?;
+    require(again == model, || format!("what was written reads otherwise:\n{written:.300}"))?;
+    let rows = PlateauTable::read_conditions(ROWS.as_bytes(), "rows").map_err(|e| e.to_string())?.rows;
+    // A single row at a time: one that is refused must not hide another.
+    let mut reading = Reading::Accepted;
+    for row in &rows {
+        match model.predict(std::slice::from_ref(row), FILE) {
+            Ok((n, sd)) => require(n.iter().chain(&sd).all(|x| x.is_finite()), || format!("{n:?} {sd:?}"))?,
+            Err(e) => reading = refused(&e)?,
+        }
+    }
+    for pins in [&[][..], &[5, 8, 11]] {
+        match model.part_curve(Substrate::Silicone, pins, &[0.0, 2.5, 50.0], FILE) {
+            Ok(curve) => {
+                let bands = curve.band_low_n.iter().chain(&curve.band_high_n);
+                let mut numbers = curve.friction_n.iter().chain(bands);
+                require(numbers.all(|x| x.is_finite()), || format!("{pins:?}: {curve:?}"))?;
+            }
+            Err(e) => reading = refused(&e)?,
+        }
+    }
+    Ok(reading)
+}
+
+/// Rows of a plan that are simulated while it is judged; larger ones are only read.
+const MOST_ROWS: u64 = 3000;
+
+fn plan(bytes: &[u8]) -> Result<Reading, String> {
+    let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
+    let plan = match Plan::parse(text, FILE) {
+        Ok(plan) => plan,
+        Err(e) => return refused(&e),
+    };
+    let written = plan.to_text().map_err(|e| e.to_string())?;
+    let again = Plan::parse(&written, "written").map_err(|e| format!("what was written is refused: {e}"))?;
+    require(again == plan, || format!("what was written reads otherwise:\n{written:.300}"))?;
+    let settings = (1 + 2 * plan.layouts.len() as u64).saturating_mul(2 * plan.weights_g.len() as u64);
+    let repetitions: u64 =
+        plan.repetitions.iter().map(|n| u64::from(*n) + u64::from(plan.repetitions_spread)).sum();
+    let rows = settings.saturating_mul(repetitions);
+    // A plan of any size must be refused before it fills the memory.
+    require(rows <= 1_000_000, || format!("a plan of {rows} rows"))?;
+    if rows <= MOST_ROWS {
+        let simulated = simulate(&plan);
+        if let Err(e) = simulated.check(FILE) {
+            return refused(&e);
+        }
+        for row in simulated.rows.iter().chain(&simulated.fresh) {
+            require(row.force_n.is_finite() && row.load_n.is_finite(), || format!("a row of {row:?}"))?;
+        }
+    }
+    Ok(Reading::Accepted)
+}
+
+thread_local! {
+    /// A folder in memory, where the system has one.
+    static PLACE: RefCell<Option<tempfile::TempDir>> = const { RefCell::new(None) };
+}
+
+/// Does something in a folder that lasts as long as the thread.
+fn in_place<T>(act: impl FnOnce(&Path) -> Result<T, String>) -> Result<T, String> {
+    PLACE.with_borrow_mut(|place| {
+        if place.is_none() {
+            *place = Some(in_memory()?);
+        }
+        place.as_ref().map_or(Err("no folder".to_owned()), |place| act(place.path()))
+    })
+}
+
+/// A temporary folder, in memory where the system has one.
+pub fn in_memory() -> Result<tempfile::TempDir, String> {
+    tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).map_err(|e| e.to_string())
+}
+
+/// The file of rows that a sweep may name.
+const SWEEP_ROWS: &str = "\"shell.width_mm\",\"layout.pins\"\n14,\"[5, 8, 11]\"\n15,\"[4, 8, 12]\"\n";
+
+fn sweep(bytes: &[u8]) -> Result<Reading, String> {
+    let source = in_place(|folder| {
+        let (rows, path) = (folder.join("rows.csv"), folder.join("sweep.toml"));
+        std::fs::write(rows, SWEEP_ROWS)
+            .and_then(|()| std::fs::write(&path, bytes))
+            .map_err(|e| e.to_string())?;
+        Ok(SweepSource::read(&path))
+    })?;
+    let source = match source {
+        Ok(source) => source,
+        Err(e) => return refused(&e),
+    };
+    let sweep = match Sweep::new(&source) {
+        Ok(sweep) => sweep,
+        Err(e) => return refused(&e),
+    };
+    // The command line refuses more than that before it lists them.
+    if sweep.count().is_none_or(|count| count > 10_000) {
+        return Ok(Reading::Refused);
+    }
+    let variants = Variants::new(sweep, &source);
+    let mut ids = std::collections::HashSet::new();
+    for index in [0, variants.count() / 2, variants.count().saturating_sub(1)] {
+        if index < variants.count() {
+            let variant = variants.get(index);
+            require(!variant.id.is_empty() && variant.id.len() < 256, || format!("id {:?}", variant.id))?;
+            require(variant.index == index, || format!("variant {index} says {}", variant.index))?;
+            ids.insert(variant.id);
+        }
+    }
+    require(variants.count() < 3 || ids.len() == 3, || format!("variants share ids: {ids:?}"))?;
+    Ok(Reading::Accepted)
+}
+
+fn stl(bytes: &[u8]) -> Result<Reading, String> {
+    let stl = match read_stl(&mut Cursor::new(bytes)) {
+        Ok(stl) => stl,
+        Err(e) => return refused(&e),
+    };
+    require(!stl.mesh.triangles.is_empty(), || "an STL without triangles".to_owned())?;
+    if stl.mesh.triangles.len() > 20_000 {
+        return Ok(Reading::Accepted);
+    }
+    let found = examine(&stl.mesh, &Expectation::default());
+    for fault in &found.faults {
+        let text = fault.to_string();
+        require(!text.is_empty() && text.chars().count() < LONGEST, || format!("a fault: {text:.200}"))?;
+        let at = fault.at_mm.iter().flatten();
+        require(at.copied().all(f64::is_finite), || format!("a fault at {:?}", fault.at_mm))?;
+    }
+    let facts = &found.facts;
+    let numbers = facts.low_mm.iter().chain(&facts.high_mm).chain([&facts.volume_mm3]);
+    require(numbers.copied().all(f64::is_finite), || format!("{facts:?}"))?;
+    // What is valid is valid again when it is written.
+    if found.is_valid() {
+        let written = stl_bytes(&stl.mesh).map_err(|e| e.to_string())?;
+        let again =
+            read_stl(&mut Cursor::new(written)).map_err(|e| format!("what was written is refused: {e}"))?;
+        require(again.mesh.triangles.len() == stl.mesh.triangles.len(), || "facets are lost".to_owned())?;
+    }
+    Ok(Reading::Accepted)
+}
+
+/// The sweep of the batches that are judged: two variants of one part.
+const SMALL_SWEEP: &str = "[sweep]\nname = \"small\"\nparts = [\"coupon\"]\n[set]\n\"friction.points\" = 2\n\
+                           [axes]\n\"tendon.length_mm\" = [200, 300]\n";
+
+fn small_source() -> SweepSource {
+    SweepSource {
+        name: "small".to_owned(),
+        file: "sweep.toml".to_owned(),
+        sweep: SMALL_SWEEP.to_owned(),
+        base: to_toml(&Configuration::default()),
+        rows: None,
+    }
+}
+
+/// Sets of rows in a Parquet file, which the batch reads back when shards are merged.
+fn shard_table(bytes: &[u8]) -> Result<Reading, String> {
+    let source = small_source();
+    let sweep = Sweep::new(&source).map_err(|e| e.to_string())?;
+    let schema = Schema::new(&sweep);
+    let rows = match read_rows(bytes.to_vec(), &schema)
+        .and_then(|rows| rows.take(10_000).collect::<Result<Vec<_>, _>>())
+    {
+        Ok(rows) => rows,
+        Err(e) => return refused(&e),
+    };
+    require(rows.iter().all(|row| row.len() == schema.columns().len()), || {
+        "a row of another width".to_owned()
+    })?;
+    in_place(|folder| {
+        let (csv, parquet) = (folder.join("t.csv"), folder.join("t.parquet"));
+        let mut table = TableWriter::create(&schema, &csv, &parquet).map_err(|e| e.to_string())?;
+        for row in &rows {
+            table.push(row.clone()).map_err(|e| format!("what was read cannot be written: {e}"))?;
+        }
+        table.finish().map_err(|e| format!("what was read cannot be written: {e}"))
+    })?;
+    Ok(Reading::Accepted)
+}
+
+/// Nobody watches.
+pub struct Nobody;
+
+impl Observer for Nobody {
+    fn variant_done(&self, _: &VariantOutcome) {}
+    fn stop_requested(&self) -> bool {
+        false
+    }
+}
+
+/// The JSON with the hash that a batch gives it, for a forger who knows how.
+pub fn sealed(json: &[u8]) -> Vec<u8> {
+    let body = json.trim_ascii_end();
+    let body = body.strip_suffix(b"}").unwrap_or(body).trim_ascii_end();
+    let hash: String = Sha256::digest(body).iter().map(|b| format!("{b:02x}")).collect();
+    [body, format!(",\n  \"checksum\": \"{hash}\"\n}}\n").as_bytes()].concat()
+}
+
+/// Two finished shards of one variant each, and what merging them makes.
+struct Shards {
+    folder: tempfile::TempDir,
+    /// Every file that a merge reads, with its bytes.
+    files: Vec<(String, Vec<u8>)>,
+    table: Vec<u8>,
+}
+
+fn open(folder: &Path) -> Result<Destination, String> {
+    Destination::open(&folder.display().to_string(), &partial_folder(Shard::WHOLE)).map_err(|e| e.to_string())
+}
+
+impl Shards {
+    fn new() -> Result<Self, String> {
+        let folder = in_memory()?;
+        let source = small_source();
+        let sweep = Sweep::new(&source).map_err(|e| e.to_string())?;
+        let variants = Variants::new(sweep, &source);
+        let place = open(&folder.path().join("b"))?;
+        for shard in ["1/2", "2/2"] {
+            let shard = shard.parse().map_err(|e: pinswitch_batch::ShardError| e.to_string())?;
+            let options = Options { shard, threads: 1, fail_fast: true, mesh_maker: mesh_file };
+            run(&variants, &source, &place, options, &Nobody).map_err(|e| e.to_string())?;
+        }
+        let mut files = Vec::new();
+        collect(&folder.path().join("b"), "", &mut files)?;
+        files.sort();
+        let mut shards = Self { folder, files, table: Vec::new() };
+        shards.merged().map_err(|e| e.to_string())?;
+        shards.table = shards.made()?;
+        Ok(shards)
+    }
+
+    /// Merges into a new folder.
+    fn merged(&self) -> Result<(), MergeError> {
+        let target = self.folder.path().join("m");
+        let _ = std::fs::remove_dir_all(&target);
+        let open = |folder: &Path| Destination::open(&folder.display().to_string(), ".partial-m");
+        merge(&[open(&self.folder.path().join("b"))?], &open(&target)?).map(drop)
+    }
+
+    fn made(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(self.folder.path().join("m/variants.csv")).map_err(|e| e.to_string())
+    }
+}
+
+/// Every file below a folder.
+fn collect(folder: &Path, prefix: &str, all: &mut Vec<(String, Vec<u8>)>) -> Result<(), String> {
+    for entry in std::fs::read_dir(folder).map_err(|e| e.to_string())? {
+        let entry = entry.map_err(|e| e.to_string())?;
+        let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+        if entry.path().is_dir() {
+            collect(&entry.path(), &format!("{name}/"), all)?;
+        } else {
+            all.push((name, std::fs::read(entry.path()).map_err(|e| e.to_string())?));
+        }
+    }
+    Ok(())
+}
+
+thread_local! {
+    static SHARDS: RefCell<Option<Shards>> = const { RefCell::new(None) };
+}
+
+/// What bytes do to a file: replaced, some bytes changed, cut short, deleted.
+fn damaged(whole: &[u8], how: u8, rest: &[u8]) -> Option<Vec<u8>> {
+    let offset = |pair: &[u8]| pair.iter().fold(0, |n, b| 256 * n + usize::from(*b)) % whole.len().max(1);
+    match how % 4 {
+        0 => Some(rest.to_vec()),
+        1 => {
+            let mut bytes = whole.to_vec();
+            for edit in rest.chunks_exact(3) {
+                if let (Some(byte), [.., value]) = (bytes.get_mut(offset(&edit[..2])), edit) {
+                    *byte ^= value;
+                }
+            }
+            Some(bytes)
+        }
+        2 => Some(whole[..offset(rest.get(..2).unwrap_or_default())].to_vec()),
+        _ => None,
+    }
+}
+
+/// A file of finished shards is damaged: the first byte says which file, and whether it then gets the hash that a batch
+/// would give it; the second how. What is merged all the same is what would have been merged.
+fn batch_files(bytes: &[u8]) -> Result<Reading, String> {
+    let [choice, how, rest @ ..] = bytes else { return Ok(Reading::Refused) };
+    SHARDS.with_borrow_mut(|kept| {
+        if kept.is_none() {
+            *kept = Some(Shards::new()?);
+        }
+        let shards = kept.as_ref().ok_or("no shards")?;
+        let (name, whole) = &shards.files[usize::from(choice >> 1) % shards.files.len()];
+        let is_forged = choice & 1 == 1 && name.ends_with(".json");
+        let content = damaged(whole, *how, rest).map(|bytes| if is_forged { sealed(&bytes) } else { bytes });
+        let path = shards.folder.path().join("b").join(name);
+        // A new file: parts are links to one.
+        std::fs::remove_file(&path).map_err(|e| e.to_string())?;
+        let put = |bytes: &[u8]| std::fs::write(&path, bytes).map_err(|e| e.to_string());
+        content.as_deref().map_or(Ok(()), put)?;
+        let merged = shards.merged();
+        let table = merged.as_ref().ok().map(|()| shards.made());
+        put(whole)?;
+        match (merged, table) {
+            (Err(e), _) => refused(&e),
+            (Ok(()), table) => {
+                let table = table.ok_or("no table")??;
+                require(table == shards.table, || format!("a damaged {name} reached the table"))?;
+                let is_kept = is_forged || content.as_ref() == Some(whole);
+                require(is_kept, || format!("a damaged {name} was not noticed"))?;
+                Ok(Reading::Accepted)
+            }
+        }
+    })
+}

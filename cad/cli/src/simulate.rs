@@ -9,7 +9,7 @@ use flate2::write::GzEncoder;
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauRow;
 use pinswitch_simulation::{
-    EffectPlan, Group, Plan, RawRun, Study, next_session, run_case, simulate, study_cases,
+    Case, EffectPlan, Group, Plan, RawRun, Study, next_session, run_case, simulate, study_cases,
 };
 use rayon::prelude::*;
 
@@ -51,10 +51,16 @@ pub(super) struct Arguments {
     /// In a study, the first seed; others than those a level was tuned on give a fair figure.
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "study")]
     first_seed: u64,
+    /// In a study, ask for the error promised for a new session, too: five times the time.
+    #[arg(long, requires = "study")]
+    promises: bool,
     /// In a study, only these kinds of rig: a group (nulls, singles, scattered, pairs, masks, confounded, outside) or a part of a name.
     #[arg(long, value_name = "GROUP|NAME", requires = "study")]
     only: Vec<String>,
 }
+
+/// Seeds from one kind of rig of a study to the next.
+const SEEDS_PER_CASE: u64 = 1000;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(seeds) = arguments.study {
@@ -131,7 +137,7 @@ fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputF
 
 /// The confusion matrix over the kinds of rig asked for, and a row for each group of them.
 fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
-    let mut cases = study_cases();
+    let cases = study_cases();
     for word in &arguments.only {
         if !cases.iter().any(|case| case.is_meant_by(word)) {
             let groups = Group::ALL.map(Group::as_str).join(", ");
@@ -140,14 +146,18 @@ fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
             )));
         }
     }
-    cases
-        .retain(|case| arguments.only.is_empty() || arguments.only.iter().any(|word| case.is_meant_by(word)));
+    let mut cases: Vec<(u64, Case)> = (0..).zip(cases).collect();
+    cases.retain(|(_, case)| {
+        arguments.only.is_empty() || arguments.only.iter().any(|word| case.is_meant_by(word))
+    });
     let mut study = Study::default();
     let first = arguments.first_seed;
-    for case in cases {
-        let outcomes: Vec<_> = (first..first + case.rigs(seeds))
+    for (place, case) in cases {
+        // One draw of noise must not decide of every kind of rig: each has seeds of its own.
+        let own = first + SEEDS_PER_CASE * place;
+        let outcomes: Vec<_> = (own..own + case.rigs(seeds))
             .into_par_iter()
-            .filter_map(|s| run_case(&case, s, Levels::default()))
+            .filter_map(|s| run_case(&case, s, Levels::default(), arguments.promises))
             .collect();
         log::info!("{:?} {}: {} rigs", case.protocol, case.name, outcomes.len());
         study.add(case, outcomes);

@@ -16,9 +16,12 @@ pub struct Aliasing {
     pub correlation: f64,
 }
 
+/// A covariate of a row by its name.
+type Column = (&'static str, fn(&PlateauRow) -> f64);
+
 /// All pairs of a table, over its rows.
 pub fn aliasing(rows: &[PlateauRow]) -> Vec<Aliasing> {
-    let columns: [(&str, fn(&PlateauRow) -> f64); 8] = [
+    let columns: [Column; 8] = [
         ("load", |r| r.load_n),
         ("direction", |r| r.direction.sign()),
         ("repetition", |r| f64::from(r.repetition)),

@@ -152,7 +152,10 @@ impl Disturbance {
             }
             Course::Spot { at, width, .. } => (vec![at, width], vec![width]),
             Course::Resonance { speed_pct, width_pct } => (vec![speed_pct, width_pct], vec![width_pct]),
-            Course::Layout { .. } | Course::Swap { .. } | Course::Operators { .. } | Course::Memory { .. } => (vec![], vec![]),
+            Course::Layout { .. }
+            | Course::Swap { .. }
+            | Course::Operators { .. }
+            | Course::Memory { .. } => (vec![], vec![]),
         }
     }
 

@@ -22,7 +22,7 @@ use summary::{median_of, said};
 /// use pinswitch_simulation::{Study, run_case, study_cases};
 ///
 /// let case = study_cases().into_iter().find(|c| c.name == "load_cell_gain").ok_or("not a case")?;
-/// let outcome = run_case(&case, 1, Levels::default()).ok_or("the table reads back")?;
+/// let outcome = run_case(&case, 1, Levels::default(), false).ok_or("the table reads back")?;
 /// assert!(outcome.honest, "{:?}", outcome.named);
 /// let mut study = Study::default();
 /// study.add(case, vec![outcome]);

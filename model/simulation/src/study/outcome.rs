@@ -1,12 +1,12 @@
 //! What the calibrator says of one simulated rig, against the truth.
 
-use pinswitch_calibration::Verdict;
 use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 use pinswitch_calibration::inference::{
     FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, Weighed, degrees_of_freedom,
     family_p_value, interval_half_widths, select,
 };
 use pinswitch_calibration::table::{Frame, PlateauRow, PlateauTable};
+use pinswitch_calibration::{Verdict, calibrate};
 
 use super::cases::{Case, plan_of};
 use super::said::Said;
@@ -47,7 +47,9 @@ pub struct CaseOutcome {
 }
 
 /// Simulates one rig and calibrates it from the table's text alone. `None` if its table cannot be read back.
-pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<CaseOutcome> {
+///
+/// `promised` asks for the error promised for a new session too, which repeats the whole procedure four times.
+pub fn run_case(case: &Case, seed: u64, levels: Levels, promised: bool) -> Option<CaseOutcome> {
     let plan = plan_of(case, seed);
     let simulated = simulate(&plan);
     let rows = PlateauTable::read(PlateauTable::write(&simulated.rows).as_bytes(), "simulated").ok()?.rows;
@@ -72,8 +74,10 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels) -> Option<CaseOutcome> {
         named,
         fresh_n: [error_n(baseline, &frame, fresh)?, error_n(augmented, &frame, fresh)?],
         next_n,
-        // The one place where a promise is wired: `Some(promise_n)` once a calibration makes one.
-        promise_ratio: promise_ratio(None, next_n[1]),
+        promise_ratio: promised
+            .then(|| calibrate(&rows, levels).ok()?.report.promise_n)
+            .flatten()
+            .map(|promise_n| promise_n / next_n[1].max(1e-9)),
         exact,
         honest,
         extras: said.extras(case),
@@ -90,11 +94,6 @@ fn error_n(model: &Model, frame: &Frame, rows: &[PlateauRow]) -> Option<f64> {
     let predicted = model.predict(&frame.points(rows)?);
     let sum: f64 = predicted.iter().zip(rows).map(|(p, r)| (p - r.force_n).powi(2)).sum();
     Some((sum / predicted.len().max(1) as f64).sqrt())
-}
-
-/// A promised error over that on the next session.
-fn promise_ratio(promise_n: Option<f64>, next_n: f64) -> Option<f64> {
-    promise_n.map(|promise_n| promise_n / next_n.max(1e-9))
 }
 
 /// Whether the interval of each true size holds it. Other forms than the fitter's have other sizes.

@@ -13,4 +13,5 @@ mod campaign;
 mod closed_loop;
 mod generate_kill;
 mod random_configurations;
+mod second_rig;
 mod undeclared_effect;

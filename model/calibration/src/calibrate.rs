@@ -90,7 +90,8 @@ pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, Cal
     }
     let mut data = if whole.points.len() > MOST_ROWS {
         let rough = fit(&start, &Weighed::new(&whole, Noise::constant(0.1, 0.03)));
-        whole.weigh_outliers(&rough.residual_n);
+        let sd = whole.weigh_outliers(&rough.residual_n);
+        let rough = fit(&rough.model, &Weighed::new(&whole, Noise::constant(sd, sd)));
         whole.friction_n = rough.model.friction_n(&whole.points);
         whole.compacted()
     } else {

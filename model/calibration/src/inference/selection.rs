@@ -146,8 +146,10 @@ pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selecti
     let guess = Noise::constant(0.1, 0.03);
     let rough = fit(start, &Weighed::new(data, guess));
     let sd = data.weigh_outliers(&rough.residual_n);
-    data.friction_n = rough.model.friction_n(&data.points);
     let guess = Noise::constant(sd, sd);
+    // The first fit has seen readings that are absurd; what friction does is told by the next one.
+    let rough = fit_baseline(&rough.model, &Weighed::new(data, guess));
+    data.friction_n = rough.model.friction_n(&data.points);
     loop {
         let rough = fit_baseline(&rough.model, &Weighed::new(data, guess));
         let noise = estimate(data, &rough.residual_n, &explainable(&rough, data), guess);

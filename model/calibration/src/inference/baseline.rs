@@ -26,12 +26,21 @@ pub(super) fn fit_baseline(model: &Model, weighed: &Weighed<'_>) -> Fit {
 /// With fewer series and directions than these, only the model's own columns are taken out before noise is estimated.
 const MIN_CELLS: usize = 50;
 
+/// Series and directions that must be left beside an offset, a drag and a gain.
+const MIN_BESIDE: usize = 11;
+
 /// Columns that could explain residuals, in newtons: the model's own, the library's, and coarse structure.
 pub(super) fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
     let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let mut columns = jacobian(&fitted.model, data, &predicted);
     // So many columns would explain a few series altogether and leave no noise to estimate.
     if data.cells.len() < MIN_CELLS {
+        // What moves all readings alike would still pass for scatter of the series: their mean is not zero.
+        if data.cells.len() > columns.len() + MIN_BESIDE {
+            columns.push(vec![1.0; data.points.len()]);
+            columns.push(data.points.iter().map(|p| p.sign).collect());
+            columns.push(predicted);
+        }
         return columns;
     }
     for effect in acting_order() {

@@ -66,6 +66,22 @@ pub(crate) fn check_constants<'a>(
     Ok(())
 }
 
+/// Friction in newtons of friction per newton of load beyond which no tendon over any wrap gets.
+const MAX_FRICTION: f64 = 1000.0;
+
+/// Friction and its half band in newtons are such as a tendon can have at these loads.
+pub(crate) fn check_friction(loads_n: &[f64], friction_n: &[f64], half_n: &[f64]) -> Result<(), Flaw> {
+    for ((load, friction), half) in loads_n.iter().zip(friction_n).zip(half_n) {
+        let most = MAX_FRICTION * load.max(1.0);
+        if !(friction.abs() <= most && half.abs() <= most) {
+            let value =
+                format!("a friction of {friction:.3e} N (half band {half:.3e} N) at a load of {load:.2} N");
+            return Err(Flaw::new("constants or covariance", value, "a thousand times the load"));
+        }
+    }
+    Ok(())
+}
+
 /// A growth of errors is one.
 pub(crate) fn check_beyond_range(beyond_range: f64) -> Result<(), Flaw> {
     within("beyond_range", beyond_range, 0.0, MAX_CONSTANT)
@@ -175,6 +191,14 @@ mod tests {
         assert!(refused(&[vec![1.0, 2.0], vec![2.0, 1.0]]));
         assert!(refused(&[vec![-1.0, 0.0], vec![0.0, 1.0]]));
         assert!(refused(&[vec![f64::NAN, 0.0], vec![0.0, 1.0]]));
+    }
+
+    #[test]
+    fn friction_that_no_tendon_has_is_refused() {
+        assert!(check_friction(&[10.0], &[3.0], &[0.1]).is_ok());
+        for (friction, half) in [(f64::NAN, 0.1), (-1e12, 0.1), (3.0, f64::INFINITY), (f64::INFINITY, 0.1)] {
+            assert!(check_friction(&[10.0], &[friction], &[half]).is_err(), "{friction} {half}");
+        }
     }
 
     #[test]

@@ -76,7 +76,7 @@ pub enum ModelFileError {
 
 impl ModelFileError {
     /// The flaw of a file.
-    fn of(file: &str) -> impl Fn(Flaw) -> Self + '_ {
+    pub(crate) fn of(file: &str) -> impl Fn(Flaw) -> Self + '_ {
         |Flaw { field, value, bound }| Self::Value { file: file.to_owned(), field, value, bound }
     }
 

@@ -3,6 +3,7 @@
 use pinswitch_friction::{Direction, FrictionCurve, Law, Substrate, Trust, published};
 
 use crate::inference::prediction_sd_n;
+use crate::model_check::check_friction;
 use crate::model_file::{ModelFile, ModelFileError};
 use crate::table::{Labels, PlateauRow, Sweep};
 
@@ -60,6 +61,7 @@ impl ModelFile {
         if !outside.is_empty() {
             reasons.push(format!("effects of the measurement stay out of it: {}", outside.join(", ")));
         }
+        check_friction(loads_n, &friction, &half).map_err(ModelFileError::of(file))?;
         Ok(FrictionCurve {
             law: Law::Calibrated,
             trust: if measured && within { Trust::Interpolated } else { Trust::Extrapolated },

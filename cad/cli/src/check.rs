@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Failure, print, print_json};
-use pinswitch_solid::files::{StlError, read_stl};
+use pinswitch_solid::files::read_stl;
 use pinswitch_solid::validity::{Examination, Expectation, Fault, examine};
 
 /// Check whether STL files, ours or not, are valid printable meshes: what is wrong, where, and how much.
@@ -76,12 +76,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn verdict(file: &Path, arguments: &Arguments) -> Result<Verdict, StlError> {
-    let opened = File::open(file)?;
-    if opened.metadata()?.is_dir() {
-        return Err(std::io::Error::other("it is a folder; give the STL files in it").into());
+fn verdict(file: &Path, arguments: &Arguments) -> Result<Verdict, String> {
+    if file.is_dir() {
+        return Err("it is a folder; give the STL files in it".to_owned());
     }
-    let stl = read_stl(&mut BufReader::new(opened))?;
+    let opened =
+        File::open(file).map_err(|e| format!("cannot read: {e}; give a file that exists and can be read"))?;
+    let stl = read_stl(&mut BufReader::new(opened)).map_err(|e| e.to_string())?;
     let expected =
         Expectation { bodies: arguments.bodies, min_wall_mm: arguments.min_wall, ..Expectation::default() };
     let mut examination = examine(&stl.mesh, &expected);

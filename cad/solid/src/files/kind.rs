@@ -1,7 +1,9 @@
 //! What a file is by its first bytes, where it is not what was asked for.
 
+use super::stl_text::is_ascii;
+
 /// What kinds of files begin with, and their names.
-const BEGINNINGS: [(&[u8], &str); 9] = [
+const BEGINNINGS: [(&[u8], &str); 25] = [
     (b"PK\x03\x04", "a ZIP archive, such as 3MF"),
     (b"PK\x05\x06", "an empty ZIP archive"),
     (b"\x1f\x8b", "compressed with gzip"),
@@ -11,12 +13,36 @@ const BEGINNINGS: [(&[u8], &str); 9] = [
     (b"glTF", "a glTF file"),
     (b"AutoCAD Binary DXF", "a binary DXF drawing"),
     (b"\x89PNG", "a PNG picture"),
+    (b"\xff\xd8\xff", "a JPEG picture"),
+    (b"GIF8", "a GIF picture"),
+    (b"RIFF", "a WebP picture, a sound or a film"),
+    (b"%PDF", "a PDF document"),
+    (b"\x7fELF", "a program"),
+    (b"\xcf\xfa\xed\xfe", "a program"),
+    (b"\0asm", "a WebAssembly module"),
+    (b"\x28\xb5\x2f\xfd", "compressed with zstd"),
+    (b"\xfd7zXZ", "compressed with xz"),
+    (b"7z\xbc\xaf", "a 7z archive"),
+    (b"BZh", "compressed with bzip2"),
+    (b"Rar!", "a RAR archive"),
+    (b"SQLite format 3", "a database"),
+    (b"PAR1", "a Parquet table"),
+    (b"\xff\xfe", "a text in UTF-16"),
+    (b"\xfe\xff", "a text in UTF-16"),
 ];
+/// Beginnings that a header of a binary STL may have as well.
+const WEAK_BEGINNINGS: [(&[u8], &str); 2] = [(b"MZ", "a program"), (b"BM", "a BMP picture")];
 
 /// The name of the kind of a file that begins with `head`, if it cannot be an STL. A binary STL begins with 80 bytes of
-/// any content: only what no program writes there is recognised.
-pub(super) fn other_kind(head: &[u8]) -> Option<&'static str> {
-    if let Some((_, name)) = BEGINNINGS.iter().find(|(begin, _)| head.starts_with(begin)) {
+/// any content, and is as long as it announces (`fits`): only what no program writes there is recognised then.
+pub(super) fn other_kind(head: &[u8], fits: bool) -> Option<&'static str> {
+    let among = |list: &[(&[u8], &'static str)]| {
+        list.iter().find(|(begin, _)| head.starts_with(begin)).map(|(_, n)| *n)
+    };
+    if let Some(name) = among(&BEGINNINGS) {
+        return Some(name);
+    }
+    if !fits && let Some(name) = among(&WEAK_BEGINNINGS) {
         return Some(name);
     }
     let text = std::str::from_utf8(head).ok().or_else(|| {
@@ -41,8 +67,10 @@ pub(super) fn other_kind(head: &[u8]) -> Option<&'static str> {
         Some("an OBJ file")
     } else if first == "OFF" {
         Some("an OFF file")
-    } else {
+    } else if fits || is_ascii(head) || text.chars().any(|c| c.is_control() && !c.is_whitespace()) {
         None
+    } else {
+        Some("a text that does not begin as an ASCII STL does, with the word solid")
     }
 }
 
@@ -60,8 +88,14 @@ mod tests {
             (b"  0\r\nSECTION\r\n", "DXF"),
             (b"# a cube\nv 0 0 0\n", "OBJ"),
             (b"<?xml version=\"1.0\"?>", "XML"),
+            (b"\x7fELF\x02\x01\x01\0", "program"),
+            (b"MZ\x90\0\x03", "program"),
+            (b"[switch]\nname = \"x\"\n", "text"),
+            (b"{\"a\": 1}", "text"),
+            (b"series,load_N\na,3\n", "text"),
+            (b"x", "text"),
         ] {
-            assert!(other_kind(head).is_some_and(|kind| kind.contains(word)), "{word}");
+            assert!(other_kind(head, false).is_some_and(|kind| kind.contains(word)), "{word}");
         }
     }
 
@@ -70,11 +104,12 @@ mod tests {
         for head in [
             &b"solid a\nfacet normal 0 0 1"[..],
             &[0; 84],
-            b"",
+            b"solid",
+            b"MZ by a program of this name\0\0\0",
             b"Exported from Blender\0\0\0",
             b"# made by x\0\0",
         ] {
-            assert_eq!(other_kind(head), None, "{head:?}");
+            assert_eq!(other_kind(head, true), None, "{head:?}");
         }
     }
 }

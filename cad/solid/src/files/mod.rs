@@ -6,6 +6,7 @@ mod plate;
 mod step;
 mod stl;
 mod stl_facets;
+mod stl_text;
 mod three_mf;
 mod vertex_join;
 

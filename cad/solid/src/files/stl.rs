@@ -3,7 +3,8 @@
 use std::io::{Read, Seek};
 
 use super::kind::other_kind;
-use super::stl_facets::{Facets, HEADER, RECORD, announced, read_binary};
+use super::stl_facets::{HEADER, RECORD, announced, read_binary};
+use super::stl_text::{is_ascii, read_ascii};
 use crate::mesh::Mesh;
 
 /// Why a file is no STL.
@@ -14,7 +15,10 @@ pub enum StlError {
     #[error("not a readable STL: {}", beginning(.0))]
     Unreadable(#[from] std::io::Error),
     /// The file holds fewer or more bytes than its triangle count says.
-    #[error("the header announces {announced} triangles, which take {expected} bytes; the file has {found}")]
+    #[error(
+        "the header announces {announced} triangles, which take {expected} bytes; the file has {found}: it was cut short, \
+         or is no STL; export the part again"
+    )]
     Length {
         /// Triangles that the header announces.
         announced: u32,
@@ -26,6 +30,12 @@ pub enum StlError {
     /// The file is of another kind.
     #[error("the file is {0}, not an STL; export the part as STL")]
     OtherKind(&'static str),
+    /// There is nothing in the file.
+    #[error("the file is empty; export the part again")]
+    NoBytes,
+    /// No STL is that short.
+    #[error("the file has {0} bytes, and no STL has less than {HEADER}; export the part again")]
+    TooShort(u64),
     /// The file is an STL without a single triangle.
     #[error("the STL holds no triangle")]
     Empty,
@@ -97,20 +107,14 @@ pub fn stl_bytes(mesh: &Mesh) -> std::io::Result<Vec<u8>> {
 /// [`StlError`] if the file is no STL, cut short, or empty.
 pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {
     let head = Head::read(source)?;
-    if let Some(kind) = other_kind(&head.bytes) {
+    if head.length == 0 {
+        return Err(StlError::NoBytes);
+    }
+    if let Some(kind) = other_kind(&head.bytes, head.fits()) {
         return Err(StlError::OtherKind(kind));
     }
     head.check_length()?;
-    let facets = if head.may_be_ascii() {
-        let mut facets = Facets::default();
-        for facet in stl_io::create_stl_reader(source)? {
-            let facet = facet?;
-            facets.add(facet.normal.0, facet.vertices.map(|v| v.0));
-        }
-        facets
-    } else {
-        read_binary(source, head.length)?
-    };
+    let facets = if is_ascii(&head.bytes) { read_ascii(source)? } else { read_binary(source, head.length)? };
     facets.finish().ok_or(StlError::Empty)
 }
 
@@ -131,22 +135,25 @@ impl Head {
         Ok(Self { bytes, length })
     }
 
-    /// Whether it may be ASCII, which is for `stl_io` to tell: binary files begin like this too.
-    fn may_be_ascii(&self) -> bool {
-        self.bytes.starts_with(b"solid ")
+    /// Facets that a binary STL announces, and the bytes that it has with them.
+    fn announced(&self) -> Option<(u32, u64)> {
+        let announced = announced(&self.bytes)?;
+        Some((announced, HEADER as u64 + RECORD as u64 * u64::from(announced)))
+    }
+
+    /// Whether it is as long as a binary STL with its count of facets. Some programs append bytes; a reader ignores them,
+    /// and so do we.
+    fn fits(&self) -> bool {
+        self.announced().is_some_and(|(_, expected)| expected <= self.length)
     }
 
     /// A binary STL says how long it is; a file cut short must not pass for a smaller part.
     fn check_length(&self) -> Result<(), StlError> {
-        let ascii = self.bytes.starts_with(b"solid") && !self.bytes.contains(&0);
-        if let (false, Some(announced)) = (ascii, announced(&self.bytes)) {
-            let expected = HEADER as u64 + RECORD as u64 * u64::from(announced);
-            // Some programs append bytes; a reader ignores them, and so do we.
-            if expected > self.length {
-                return Err(StlError::Length { announced, expected, found: self.length });
-            }
+        match self.announced() {
+            _ if is_ascii(&self.bytes) || self.fits() => Ok(()),
+            Some((announced, expected)) => Err(StlError::Length { announced, expected, found: self.length }),
+            None => Err(StlError::TooShort(self.length)),
         }
-        Ok(())
     }
 }
 
@@ -180,7 +187,8 @@ mod tests {
         let bytes = stl_bytes(&tetrahedron()).unwrap();
         let read = |bytes: &[u8]| read_stl(&mut Cursor::new(bytes.to_vec()));
         assert!(matches!(read(&bytes[..150]), Err(StlError::Length { announced: 4, .. })));
-        assert!(matches!(read(b""), Err(StlError::Unreadable(_))));
+        assert!(matches!(read(b""), Err(StlError::NoBytes)));
+        assert!(matches!(read(&[1, 0, 2]), Err(StlError::TooShort(3))));
         assert!(matches!(read(b"solid x\nfacet normal 0 0 z\n"), Err(StlError::Unreadable(_))));
         assert!(matches!(read(b"solid x\nendsolid x\n"), Err(StlError::Empty)));
         let long = read(format!("solid x\n{}\n", "facet ".repeat(10_000)).as_bytes()).unwrap_err();

@@ -12,6 +12,9 @@ use super::hexadecimal;
 use pinswitch_switch::config::{ConfigError, Configuration, Name, Place, read, text, to_toml};
 use pinswitch_switch::templates;
 
+/// Longest sweep: every value of its lists is held in memory, at a hundred times its length.
+const MAX_SWEEP_BYTES: usize = 1 << 20;
+
 /// The texts of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SweepSource {
@@ -69,27 +72,43 @@ impl SweepSource {
     pub fn read_within(path: &Path, reach: Reach) -> Result<Self, ConfigError> {
         let file = path.display().to_string();
         let sweep = text(std::fs::read(path).map_err(|e| unreadable(&file, &e))?, &file)?;
+        if sweep.len() > MAX_SWEEP_BYTES {
+            return Err(ConfigError {
+                field: file,
+                value: Some(format!("{} bytes", sweep.len())),
+                problem: format!("is longer than a sweep may be, {MAX_SWEEP_BYTES} bytes"),
+                remedy: "put its values into a CSV, one variant a line, and name that as rows.file"
+                    .to_owned(),
+                place: None,
+            });
+        }
         let document: Document<String> = sweep.parse().map_err(|e: toml_edit::TomlError| {
             ConfigError::syntax(Place::new(&file, &sweep, e.span().map_or(0, |s| s.start)), e.message())
         })?;
+        let item = |table: &str, key: &str| document.get(table)?.as_table_like()?.get(key);
         let word = |table: &str, key: &str| {
-            let item = document.get(table)?.as_table_like()?.get(key)?;
-            Some(item.as_str().unwrap_or_default().to_owned())
+            item(table, key).map(|item| item.as_str().unwrap_or_default().to_owned())
+        };
+        let at = |table: &str, key: &str| {
+            let span = item(table, key).and_then(toml_edit::Item::span);
+            let place = Place::new(&file, &sweep, span.map_or(0, |s| s.start));
+            move |e: ConfigError| e.at(place.clone())
         };
         let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
         let base = match word("sweep", "base") {
-            Some(name) => read_text("sweep.base", &name, folder, reach)?,
+            Some(name) => read_text("sweep.base", &name, folder, reach).map_err(at("sweep", "base"))?,
             None => (String::new(), "defaults".to_owned()),
         };
         let preset = word("sweep", "preset")
-            .map(|name| read_text("sweep.preset", &name, folder, reach))
+            .map(|name| read_text("sweep.preset", &name, folder, reach).map_err(at("sweep", "preset")))
             .transpose()?;
         let rows = word("rows", "file")
             .map(|name| {
                 let path = folder.join(&name);
-                reach.check("rows.file", &name, folder)?;
-                let bytes = std::fs::read(&path)
-                    .map_err(|e| missing("rows.file", &name, &format!("cannot be read: {e}")))?;
+                reach.check("rows.file", &name, folder).map_err(at("rows", "file"))?;
+                let bytes = std::fs::read(&path).map_err(|e| {
+                    at("rows", "file")(missing("rows.file", &name, &format!("cannot be read: {e}")))
+                })?;
                 Ok((name.clone(), text(bytes, &name)?))
             })
             .transpose()?;

@@ -25,6 +25,35 @@ pub struct Sweep {
     pub constraints: Vec<Constraint>,
 }
 
+/// A sweep whose variants are counted, and not looked at one by one: how many there are is known at once, whatever it
+/// asks for.
+#[derive(Clone, Debug)]
+pub struct CountedSweep(Sweep);
+
+impl CountedSweep {
+    /// Reads a sweep and all of it that does not take time in proportion to its variants.
+    ///
+    /// # Errors
+    /// As [`Sweep::new`].
+    pub fn new(source: &SweepSource) -> Result<Self, ConfigError> {
+        Sweep::unchecked(source).map(Self)
+    }
+
+    /// As [`Sweep::count`].
+    pub fn count(&self) -> Option<u64> {
+        self.0.count()
+    }
+
+    /// The sweep, once every row of it is checked.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first row that cannot be used.
+    pub fn checked(self) -> Result<Sweep, ConfigError> {
+        self.0.axes.iter().try_for_each(SweepAxis::check)?;
+        Ok(self.0)
+    }
+}
+
 /// Tables of a sweep and their keys; an empty list takes fields.
 fn tables() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
     let own: [(&str, &[&str]); 2] = [("sweep", &["name", "base", "preset", "parts", "plots"]), ("set", &[])];
@@ -38,6 +67,10 @@ impl Sweep {
     /// # Errors
     /// [`ConfigError`] names file, line, field, value, and what to change.
     pub fn new(source: &SweepSource) -> Result<Self, ConfigError> {
+        CountedSweep::new(source)?.checked()
+    }
+
+    fn unchecked(source: &SweepSource) -> Result<Self, ConfigError> {
         let document: Document<String> = source
             .sweep
             .parse()
@@ -59,11 +92,12 @@ impl Sweep {
         }
         let axes = axis::axes(source, document.as_table())?;
         let sweep = table("sweep");
-        let item = document.get("sweep").unwrap_or(&Item::None);
+        let written =
+            |key: &str| sweep.and_then(|t| t.get(key)).or(document.get("sweep")).unwrap_or(&Item::None);
         Ok(Self {
-            name: checked_name(&source.name).map_err(located(item))?,
+            name: checked_name(&source.name).map_err(located(written("name")))?,
             base,
-            parts: parts(sweep).map_err(located(item))?,
+            parts: parts(sweep).map_err(located(written("parts")))?,
             plots: sweep.and_then(|t| t.get("plots")).and_then(Item::as_bool).unwrap_or(false),
             axes,
             constraints: constraints(source, &document)?,

@@ -26,6 +26,8 @@ pub struct SweepAxis {
     pub fields: Vec<ParameterRef>,
     count: u64,
     row: Arc<dyn Fn(u64) -> Vec<Value> + Send + Sync>,
+    /// What is left to check, row by row, once it is known that there are not too many.
+    check: Option<Arc<dyn Fn() -> Result<(), ConfigError> + Send + Sync>>,
 }
 
 impl SweepAxis {
@@ -34,7 +36,20 @@ impl SweepAxis {
         count: u64,
         row: impl Fn(u64) -> Vec<Value> + Send + Sync + 'static,
     ) -> Self {
-        Self { fields, count, row: Arc::new(row) }
+        Self { fields, count, row: Arc::new(row), check: None }
+    }
+
+    /// The same, with values that are still to be checked.
+    fn checked_by(self, check: impl Fn() -> Result<(), ConfigError> + Send + Sync + 'static) -> Self {
+        Self { check: Some(Arc::new(check)), ..self }
+    }
+
+    /// Whether every row can be used. Takes time in proportion to their number.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first value that its field does not accept.
+    pub(super) fn check(&self) -> Result<(), ConfigError> {
+        self.check.as_ref().map_or(Ok(()), |check| check())
     }
 
     /// Number of rows.

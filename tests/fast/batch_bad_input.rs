@@ -39,12 +39,15 @@ fn sweeps_that_make_no_sense_are_refused() {
         (axes("\"shell.width_mm\" = [12, 500]"), "sweep.toml:2: shell.width_mm = 500 is not accepted"),
         ("[axis]\n".to_owned(), "sweep.toml:1: axis is no table of a sweep; known are sweep, set, axes"),
         ("[sweep]\nbasis = 1\n".to_owned(), "sweep.toml:2: sweep.basis is no known key"),
-        ("[sweep]\nbase = \"four-double\"\n".to_owned(), "sweep.base = \"four-double\" is neither a file"),
+        (
+            "[sweep]\nbase = \"four-double\"\n".to_owned(),
+            "sweep.toml:2: sweep.base = \"four-double\" is neither a file",
+        ),
         (
             "[sweep]\nparts = [\"shel\"]\n[axes]\n\"shell.width_mm\" = [12]\n".to_owned(),
-            "sweep.toml:1: sweep.parts = \"shel\" is no part",
+            "sweep.toml:2: sweep.parts = \"shel\" is no part",
         ),
-        ("[rows]\nfile = \"no.csv\"\n".to_owned(), "rows.file = \"no.csv\" cannot be read"),
+        ("[rows]\nfile = \"no.csv\"\n".to_owned(), "sweep.toml:2: rows.file = \"no.csv\" cannot be read"),
         ("[sample]\ncount = 5\n".to_owned(), "sweep.toml:1: sample is empty"),
         (
             "[sample]\nmethod = \"sobol\"\ncount = 5\n".to_owned(),
@@ -121,10 +124,52 @@ fn a_place_that_cannot_be_written_is_refused() {
     let folder = with_sweep(SWEEP);
     std::fs::write(folder.path().join("file"), "").unwrap();
     // A file is no folder, and nobody writes into /proc, not even an administrator.
-    for out in ["file/b", "/proc/b", "gopher://bucket/b", "s4://bucket/b"] {
+    let long = "x".repeat(300);
+    for out in ["file", "file/b", "/proc/b", "gopher://bucket/b", "s4://bucket/b", &long] {
         let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", out]);
-        assert!(code == Some(2) && error.starts_with(&format!("error: {out}: ")), "{error}");
+        assert!(code == Some(2) && error.starts_with(&format!("error: {out}")), "{error}");
+        assert!(error.contains("; give a") || error.contains("give another --out"), "{error}");
     }
+}
+
+#[test]
+fn what_stands_in_the_way_is_refused_by_a_dry_run_as_by_the_run() {
+    let folder = with_sweep(SWEEP);
+    done(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
+    let before = hashes(&folder.path().join("b"));
+    for name in ["variants.csv", "variants.parquet", "index.html", "curves.svg", "threshold.svg"] {
+        let file = folder.path().join("b").join(name);
+        std::fs::remove_file(&file).unwrap();
+        std::fs::create_dir(&file).unwrap();
+        for more in [&["--dry-run"][..], &[]] {
+            let arguments = [&["batch", "sweep.toml", "--out", "b"], more].concat();
+            let (code, error) = refused(folder.path(), &arguments);
+            assert!(code == Some(2) && error.contains(name) && error.contains("move it away"), "{error}");
+        }
+        std::fs::remove_dir(&file).unwrap();
+    }
+    done(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
+    assert_eq!(differences(&before, &hashes(&folder.path().join("b"))), Vec::<String>::new());
+}
+
+#[test]
+fn too_many_rows_are_counted_and_not_read() {
+    let folder = with_sweep("[rows]\nfile = \"rows.csv\"\n");
+    // Of these rows, all are wrong: had one been read, that would be the error.
+    let rows = format!("shell.width_mm\n{}", "wide\n".repeat(200_000));
+    std::fs::write(folder.path().join("rows.csv"), rows).unwrap();
+    let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
+    assert!(code == Some(2) && error.contains("200000 variants are more than 10000; give --yes"), "{error}");
+    std::fs::write(folder.path().join("rows.csv"), "shell.width_mm\n12\nwide\n").unwrap();
+    let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
+    assert!(
+        code == Some(2) && error.contains("rows.csv:3: shell.width_mm = \"wide\" is not accepted"),
+        "{error}"
+    );
+    let many = format!("[axes]\n\"shell.width_mm\" = [{}]\n", "12.5, ".repeat(200_000));
+    std::fs::write(folder.path().join("sweep.toml"), many).unwrap();
+    let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
+    assert!(code == Some(2) && error.contains("put its values into a CSV"), "{error}");
 }
 
 #[test]
@@ -151,7 +196,8 @@ fn a_full_disk_stops_the_run_and_room_lets_it_go_on() {
     assert_eq!(code, Some(1), "{error}");
     assert!(
         error.contains("No space left on device")
-            && error.contains("make room and give the same command again"),
+            && error.contains("make room")
+            && error.ends_with("variants are there: then give the same command again"),
         "{error}"
     );
     assert_eq!(resumed.0, Some(0), "{}", resumed.1);

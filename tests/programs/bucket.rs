@@ -189,7 +189,7 @@ impl Bucket {
         let half_way = tried.iter().find(|(code, _)| *code == Some(1));
         let said = &half_way.unwrap_or_else(|| panic!("never half-way: {tried:?}")).1;
         let error = said.lines().find(|l| l.starts_with("error: ")).unwrap();
-        assert!(error.contains("variants are there: mend that and give the same command again"), "{said}");
+        assert!(error.contains("variants are there: then give the same command again"), "{said}");
         assert!(error.len() < 600 && !said.contains("panicked"), "{said}");
         let error = self.refused(2, &format!("-q batch sweep.toml --out {url}/gone"));
         assert!(

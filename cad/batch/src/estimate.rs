@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::content::MeshMaker;
-use super::destination::{Destination, DestinationError};
+use super::destination::{Destination, DestinationError, remedy};
 use super::forecast::Forecasts;
 use super::make::{VariantMaker, VariantOutcome, accepted};
 use super::shard::Shard;
@@ -147,6 +147,7 @@ fn measure(
     let failed = |e: std::io::Error| DestinationError {
         place: "the temporary folder".to_owned(),
         problem: e.to_string(),
+        remedy: remedy(&e),
         is_fatal: true,
     };
     let folder = tempfile::tempdir().map_err(failed)?;

@@ -43,6 +43,7 @@ mod gallery;
 mod inspect;
 mod make;
 mod merge;
+mod obstacles;
 mod page;
 mod plots;
 mod products;
@@ -62,7 +63,7 @@ pub use constraint::Constraint;
 pub use content::{MeshMaker, mesh_file};
 #[cfg(feature = "cloud")]
 pub use destination::Store;
-pub use destination::{Destination, DestinationError, DestinationLock, Folder, temporary_file};
+pub use destination::{Destination, DestinationError, DestinationLock, Folder, remedy, temporary_file};
 pub use estimate::{Estimate, Measured, RefusalGroup, estimate};
 pub use make::VariantOutcome;
 pub use merge::{MergeError, merge};
@@ -71,7 +72,7 @@ pub use run::{Observer, Options, RunError, ShardStamp, admit, partial_folder, ru
 pub use shard::{Shard, ShardError};
 pub use source::{Reach, SweepSource};
 pub use stamp::{Stamp, StampError};
-pub use sweep::Sweep;
+pub use sweep::{CountedSweep, Sweep};
 pub use table::{Cell, Column, ColumnType, Row, Schema};
 pub use table_files::{BatchTableError, TableWriter, read_rows};
 pub use tally::Tally;

@@ -8,9 +8,11 @@ use super::destination::{Destination, DestinationError};
 use super::hexadecimal;
 use super::inspect::Inspector;
 use super::make::variant_folder;
+use super::obstacles::refuse_obstacles;
 use super::products::{ProductError, Products};
 use super::run::ShardStamp;
 use super::seal::is_sealed;
+use super::shard::Shard;
 use super::stamp::{Stamp, StampError};
 use super::sweep::Sweep;
 use super::table::{Row, Schema};
@@ -118,6 +120,7 @@ pub fn merge(places: &[Destination], target: &Destination) -> Result<Tally, Merg
         .into());
     }
     stamp.refuse_foreign(target)?;
+    refuse_obstacles(target, Shard::WHOLE)?;
     let mut found = Vec::new();
     for place in places {
         for folder in place.folders("shards")? {

@@ -16,6 +16,11 @@ use super::tally::Tally;
 use super::variant::Variants;
 use pinswitch_plot::PlotError;
 
+/// The table, in both its forms.
+pub(super) const TABLES: [&str; 2] = ["variants.csv", "variants.parquet"];
+/// What stands beside the table of a whole sweep: two figures and the page.
+pub(super) const PRODUCTS: [&str; 3] = ["curves.svg", "threshold.svg", "index.html"];
+
 /// Why the products cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ProductError {
@@ -112,7 +117,7 @@ impl<'a> Products<'a> {
     ) -> Result<(Tally, BTreeMap<String, String>), ProductError> {
         self.table.finish()?;
         let mut hashes = BTreeMap::new();
-        for (name, file) in [("variants.csv", self.csv), ("variants.parquet", self.parquet)] {
+        for (name, file) in TABLES.into_iter().zip([self.csv, self.parquet]) {
             hashes.insert(name.to_owned(), hash_of(file.path()).map_err(BatchTableError::from)?);
             self.destination.put_file(&format!("{folder}{name}"), file)?;
         }
@@ -130,9 +135,10 @@ impl<'a> Products<'a> {
         let (tally, _) = self.finish_table("")?;
         let curves = curves_svg(&name, &gallery)?;
         let threshold = threshold_svg(&name, &gallery)?;
-        destination.put("curves.svg", curves.as_bytes())?;
-        destination.put("threshold.svg", threshold.as_bytes())?;
-        destination.put("index.html", page(&name, &gallery, &tally, [&curves, &threshold]).as_bytes())?;
+        let page = page(&name, &gallery, &tally, [&curves, &threshold]);
+        for (name, text) in PRODUCTS.into_iter().zip([&curves, &threshold, &page]) {
+            destination.put(name, text.as_bytes())?;
+        }
         Ok(tally)
     }
 }

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::content::MeshMaker;
 use super::destination::{Destination, DestinationError};
 use super::make::{VariantMaker, VariantOutcome};
+use super::obstacles::refuse_obstacles;
 use super::products::{ProductError, Products};
 use super::seal::seal;
 use super::shard::Shard;
@@ -54,13 +55,11 @@ pub enum RunError {
     #[error(transparent)]
     Stamp(#[from] StampError),
     /// The destination cannot be written from the start.
-    #[error("{0}; give an --out that can be written")]
+    #[error(transparent)]
     Unusable(DestinationError),
     /// The destination can no longer be written.
-    #[error("{source}; {done} of {of} variants are there: {remedy} and give the same command again")]
+    #[error("{source}; {done} of {of} variants are there: then give the same command again")]
     Destination {
-        /// What to do about it.
-        remedy: &'static str,
         /// Why.
         source: DestinationError,
         /// Variants that are done.
@@ -124,6 +123,7 @@ pub fn run(
     // A folder with something else in it is left as it is, before anything is written there.
     let stamp = Stamp::new(source, variants.count());
     stamp.refuse_foreign(destination)?;
+    refuse_obstacles(destination, options.shard)?;
     let _lock = destination.lock().map_err(RunError::Unusable)?;
     let resumed = stamp.put(destination)?;
     let range = options.shard.range(variants.count());
@@ -142,8 +142,7 @@ pub fn run(
                 VariantResult::Row(row) => products.push(index, row)?,
                 VariantResult::Failed { id, reason } => return Err(RunError::Failed { id, reason }),
                 VariantResult::Fatal(source) => {
-                    let remedy = if destination.links() { "make room" } else { "mend that" };
-                    return Err(RunError::Destination { remedy, source, done: done + finished, of });
+                    return Err(RunError::Destination { source, done: done + finished, of });
                 }
                 VariantResult::NotStarted => {}
             }
@@ -174,9 +173,16 @@ fn threads(options: Options, destination: &Destination) -> usize {
 /// nothing behind. Whether a store can be written is not tried.
 ///
 /// # Errors
-/// [`RunError`] for a place with another sweep or other files, a busy one, and one that cannot be written.
-pub fn admit(variants: &Variants, source: &SweepSource, destination: &Destination) -> Result<(), RunError> {
+/// [`RunError`] for a place with another sweep or other files, with something in the way, a busy one, and one that cannot
+/// be written.
+pub fn admit(
+    variants: &Variants,
+    source: &SweepSource,
+    destination: &Destination,
+    shard: Shard,
+) -> Result<(), RunError> {
     Stamp::new(source, variants.count()).refuse_foreign(destination)?;
+    refuse_obstacles(destination, shard)?;
     destination.lock().map(drop).map_err(RunError::Unusable)
 }
 

@@ -10,7 +10,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Failure, print, print_json};
 use pinswitch_batch::{
-    Destination, Estimate, Observer, Options, Reach, RunError, Shard, Sweep, SweepSource, Tally,
+    CountedSweep, Destination, Estimate, Observer, Options, Reach, RunError, Shard, SweepSource, Tally,
     VariantOutcome, Variants, admit, estimate, mesh_file, partial_folder, run as run_batch,
 };
 
@@ -63,8 +63,8 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let reach = if arguments.read_outside { Reach::Anywhere } else { Reach::Beside };
     let source = SweepSource::read_within(&arguments.sweep, reach).map_err(Failure::bad_input)?;
-    let sweep = Sweep::new(&source).map_err(Failure::bad_input)?;
-    let count = sweep.count().ok_or_else(|| {
+    let counted = CountedSweep::new(&source).map_err(Failure::bad_input)?;
+    let count = counted.count().ok_or_else(|| {
         Failure::bad_input(format!(
             "{}: more variants than can be counted ({}); raise a step, or lower a count",
             arguments.sweep.display(),
@@ -85,12 +85,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.shard
         )));
     }
-    let variants = Variants::new(sweep, &source);
+    let variants = Variants::new(counted.checked().map_err(Failure::bad_input)?, &source);
     let out = arguments.out.as_deref().unwrap_or_default();
     let open = || Destination::open(out, &partial_folder(arguments.shard)).map_err(Failure::bad_input);
     if arguments.dry_run {
         if arguments.out.is_some() {
-            admit(&variants, &source, &open()?).map_err(refused)?;
+            admit(&variants, &source, &open()?, arguments.shard).map_err(refused)?;
         }
         return dry_run(arguments, &variants);
     }

@@ -73,6 +73,23 @@ pub fn temporary_file() -> tempfile::Builder<'static, 'static> {
     tempfile::Builder::new()
 }
 
+/// What to do about a file or folder that cannot be written.
+pub fn remedy(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+            "a file stands where a folder must be: move it away, or give another --out"
+        }
+        ErrorKind::IsADirectory => {
+            "a folder stands where a file must be: move it away, or give another --out"
+        }
+        ErrorKind::WouldBlock => "wait for it or end it, or give another --out",
+        ErrorKind::NotFound => "make its folder, or give another --out",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room, or give another --out",
+        ErrorKind::InvalidFilename => "give a shorter --out, without characters that the system refuses",
+        _ => "give an --out that can be written",
+    }
+}
+
 impl Folder {
     /// The folder `root`, whether it is there or not.
     pub(super) fn new(root: &str, partial: &str) -> Self {
@@ -86,7 +103,7 @@ impl Folder {
             matches!(error.kind(), PermissionDenied | QuotaExceeded | ReadOnlyFilesystem | StorageFull);
         let place = if name.is_empty() { self.root.clone() } else { self.root.join(name) };
         let problem = format!("cannot use it: {error}");
-        DestinationError { place: place.display().to_string(), problem, is_fatal }
+        DestinationError { place: place.display().to_string(), problem, remedy: remedy(error), is_fatal }
     }
 
     pub(super) fn get(&self, name: &str) -> std::io::Result<Option<Vec<u8>>> {
@@ -147,6 +164,11 @@ impl Folder {
         let target = self.root.join(name);
         target.parent().map_or(Ok(()), std::fs::create_dir_all)?;
         file.persist(&target).map(drop).map_err(|e| e.error)
+    }
+
+    /// Whether `name` is a folder; `None` if there is nothing.
+    pub(super) fn is_folder(&self, name: &str) -> std::io::Result<Option<bool>> {
+        Ok(found(std::fs::metadata(self.root.join(name)))?.map(|facts| facts.is_dir()))
     }
 
     pub(super) fn folders(&self, folder: &str) -> std::io::Result<Vec<String>> {

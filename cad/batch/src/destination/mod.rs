@@ -12,7 +12,7 @@ use std::sync::Arc;
 #[cfg(feature = "cloud")]
 use object_store::{ObjectStore, path::Path as StorePath};
 
-pub use folder::{DestinationLock, Folder, temporary_file};
+pub use folder::{DestinationLock, Folder, remedy, temporary_file};
 #[cfg(feature = "cloud")]
 pub use store::Store;
 
@@ -21,12 +21,14 @@ pub(super) const PARTIAL: &str = ".partial-";
 
 /// A place that cannot be read or written.
 #[derive(Debug, thiserror::Error)]
-#[error("{place}: {problem}")]
+#[error("{place}: {problem}; {remedy}")]
 pub struct DestinationError {
     /// The file, with its destination.
     pub place: String,
     /// What went wrong.
     pub problem: String,
+    /// What to do about it.
+    pub remedy: &'static str,
     /// Whether every other file would fail too: a full disk, a read-only folder.
     pub is_fatal: bool,
 }
@@ -90,6 +92,7 @@ impl Destination {
         let failed = |e: std::io::Error| DestinationError {
             place: url.to_owned(),
             problem: e.to_string(),
+            remedy: "let this process start threads",
             is_fatal: true,
         };
         Store::new(url, store, prefix).map(Self::Store).map_err(failed)
@@ -184,6 +187,28 @@ impl Destination {
         Ok(names)
     }
 
+    /// Refuses `name` if it is there, and a folder or not as `is_folder` says; a store has no folders, and nothing in the
+    /// way.
+    ///
+    /// # Errors
+    /// [`DestinationError`] as for a system call that failed with `kind`.
+    pub(super) fn refuse_if(
+        &self,
+        name: &str,
+        is_folder: bool,
+        kind: std::io::ErrorKind,
+    ) -> Result<(), DestinationError> {
+        match self {
+            Self::Folder(folder) => match folder.is_folder(name) {
+                Ok(there) if there == Some(is_folder) => Err(folder.failed(name, &kind.into())),
+                Ok(_) => Ok(()),
+                Err(e) => Err(folder.failed(name, &e)),
+            },
+            #[cfg(feature = "cloud")]
+            Self::Store(_) => Ok(()),
+        }
+    }
+
     /// Whether nothing is there yet.
     ///
     /// # Errors
@@ -207,7 +232,8 @@ impl Destination {
         let claim = folder.lock().map_err(|e| folder.failed("", &e))?;
         claim.ok_or_else(|| DestinationError {
             place: self.name(),
-            problem: "another run is writing the same shard here; wait for it or end it".to_owned(),
+            problem: "another run is writing the same shard here".to_owned(),
+            remedy: "wait for it or end it, or give another --out",
             is_fatal: true,
         })
     }
@@ -228,6 +254,7 @@ impl Destination {
             Self::Store(store) => DestinationError {
                 place: format!("{}/{name}", store.url),
                 problem: error.to_string(),
+                remedy: "make room for temporary files on this machine",
                 is_fatal: true,
             },
         }
@@ -247,9 +274,8 @@ fn folder_of_url(url: &str, path: &str) -> Result<String, DestinationError> {
 fn no_store(text: &str, problem: &str) -> DestinationError {
     DestinationError {
         place: text.to_owned(),
-        problem: format!(
-            "{problem}; give a folder, file:// or, in a build with --features cloud, s3://, gs:// or az://"
-        ),
+        problem: problem.to_owned(),
+        remedy: "give a folder, file:// or, in a build with --features cloud, s3://, gs:// or az://",
         is_fatal: true,
     }
 }

@@ -38,8 +38,12 @@ impl Store {
             Some((end, _)) => format!("{}...", &words[..end]),
             None => words,
         };
-        let problem = format!("{problem}; see that the store answers and what its variables (AWS_...) say");
-        DestinationError { place: format!("{}/{name}", self.url), problem, is_fatal: true }
+        DestinationError {
+            place: format!("{}/{name}", self.url),
+            problem,
+            remedy: "see that the store answers and what its variables (AWS_...) say",
+            is_fatal: true,
+        }
     }
 
     pub(super) fn get(&self, name: &str) -> Result<Option<Vec<u8>>, Error> {

@@ -40,8 +40,20 @@ fn sets() -> Vec<(String, Vec<String>)> {
 
 fn make(folder: &Path, sets: &[(String, Vec<String>)]) {
     for (name, arguments) in sets {
-        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        done(folder, &[&["-q", "generate", "--format", "all", "--out", name], &arguments[..]].concat());
+        // A manifest says where the configuration lies from its own folder: here always in the same place.
+        let beside = |argument: &String| {
+            let path = Path::new(argument);
+            if path.is_absolute() {
+                std::fs::copy(path, folder.join(path.file_name().unwrap())).unwrap();
+            }
+            path.file_name().unwrap().to_string_lossy().into_owned()
+        };
+        let arguments: Vec<String> = arguments.iter().map(beside).collect();
+        let all: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        done(folder, &[&["-q", "generate", "--format", "all", "--out", name], &all[..]].concat());
+        arguments.iter().filter(|name| name.ends_with(".toml")).for_each(|name| {
+            std::fs::remove_file(folder.join(name)).unwrap();
+        });
     }
 }
 

@@ -149,6 +149,7 @@ fn another_configuration_asks_before_it_replaces_a_set() {
     std::fs::write(path.join("mine.toml"), format!("{text}\n[shell]\nwidth_mm = 17.0\n")).unwrap();
     assert_eq!(generate(path, &["./mine.toml"]).0, Some(0));
     assert_eq!(generate(path, &[path.join("mine.toml").to_str().unwrap()]).0, Some(0));
+    assert_eq!(generate(&path.join("out"), &["../mine.toml", "--out", "three-double"]).0, Some(0));
     is_whole(&path.join("out/three-double"), &[]);
     // Files of the same name in two folders are two configurations.
     for (place, width) in [("a", 15), ("b", 16)] {
@@ -159,12 +160,75 @@ fn another_configuration_asks_before_it_replaces_a_set() {
     assert_eq!(generate(path, &["a/x.toml"]).0, Some(0));
     let (code, said) = generate(path, &["b/x.toml"]);
     assert!(code == Some(2) && said.contains("a/x.toml") && said.contains("b/x.toml"), "{said}");
+    // So are a file and one that it is named after, further down, and a file that is called like a template.
+    std::fs::write(path.join("x.toml"), "[switch]\nname = \"both\"\n[shell]\nwidth_mm = 17\n").unwrap();
+    let (code, said) = generate(path, &["x.toml"]);
+    assert!(
+        code == Some(2) && said.contains("made from ../../a/x.toml, and this one is made from ../../x.toml"),
+        "{said}"
+    );
+    std::fs::write(path.join("six-single"), "[shell]\nwidth_mm = 17\n").unwrap();
+    assert_eq!(generate(path, &["six-single", "--out", "six"]).0, Some(0));
+    std::fs::remove_file(path.join("six-single")).unwrap();
+    let (code, said) = generate(path, &["six-single", "--out", "six"]);
+    assert!(
+        code == Some(2) && said.contains("made from ../six-single, and this one is made from six-single;"),
+        "{said}"
+    );
+    // A folder that is called like a template is none.
+    assert_eq!(generate(path, &["six-double", "--out", "six-double"]).0, Some(2));
+    assert_eq!(generate(path, &["three-single", "--out", "three-single"]).0, Some(0));
+    assert_eq!(generate(path, &["three-single", "--out", "three-single"]).0, Some(0));
     // A file that no set of ours lists is not overwritten.
     std::fs::create_dir(path.join("papers")).unwrap();
     std::fs::write(path.join("papers/shell.stl"), "dear").unwrap();
     let (code, said) = generate(path, &["three-double", "--out", "papers"]);
     assert!(code == Some(2) && said.contains("papers/shell.stl is not from a set of ours"), "{said}");
     assert_eq!(files(&path.join("papers")).len(), 1);
+}
+
+#[test]
+fn a_part_that_was_changed_by_hand_is_not_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, part) = (folder.path(), folder.path().join("set/shell.stl"));
+    let again = |more: &[&str]| generate(path, &[&["three-double", "--out", "set"], more].concat());
+    assert_eq!(again(&[]).0, Some(0));
+    let made = std::fs::read(&part).unwrap();
+    std::fs::write(&part, "repaired by hand").unwrap();
+    let (code, said) = again(&["--set", "shell.width_mm=15"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("set/shell.stl was changed since it was made; give --force"), "{said}");
+    assert_eq!(std::fs::read(&part).unwrap(), b"repaired by hand");
+    assert_eq!(again(&["--force"]).0, Some(0));
+    assert_eq!(std::fs::read(&part).unwrap(), made);
+}
+
+#[test]
+fn no_command_writes_over_what_it_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    done(path, &["-q", "init", "three-double", "--out", "own.toml"]);
+    std::fs::write(path.join("shell.stl"), "[parts]\ncoupon = false\n").unwrap();
+    let rig = ["--randomised", "--out", "."];
+    done(path, &[&["-q", "simulate"], &rig[..]].concat());
+    std::fs::rename(path.join("plateaus.csv"), path.join("residuals.csv")).unwrap();
+    std::os::unix::fs::symlink("own.toml", path.join("link.toml")).unwrap();
+    std::fs::copy(repository("tests/corpus/model/accepted-baseline.toml"), path.join("model.toml")).unwrap();
+    let before = files(path);
+    for arguments in [
+        "render own.toml --out own.toml",
+        "render link.toml --out ./own.toml",
+        "render own.toml --out link.toml",
+        "generate shell.stl --out . --force",
+        "predict --model model.toml --rows residuals.csv --out residuals.csv",
+        "predict --model model.toml --rows residuals.csv --out model.toml",
+    ] {
+        let arguments: Vec<_> = ["-q"].into_iter().chain(arguments.split(' ')).collect();
+        let (code, said) = ended(path, &arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {said}");
+        assert!(said.contains("is read by this very command; give another --out"), "{arguments:?}: {said}");
+        assert_eq!(files(path), before, "{arguments:?}");
+    }
 }
 
 #[test]
@@ -209,5 +273,5 @@ fn manifests_do_not_depend_on_where_files_lie() {
     };
     assert_eq!(bytes(""), bytes("../mine.toml"));
     let text = String::from_utf8(bytes("")).unwrap();
-    assert!(text.contains("\"name\": \"mine.toml\"") && !text.contains("/tmp"), "{text}");
+    assert!(text.contains("\"name\": \"../../mine.toml\"") && !text.contains("/tmp"), "{text}");
 }

@@ -61,7 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut calibration = calibration.map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
     calibration.report.ignored_columns = table.ignored_columns();
     let files = files(&table, &calibration, &name)?;
-    write_set(&arguments.out, &files).map_err(Failure::failed)?;
+    write_set(&arguments.out, &files)?;
     print(summary(&calibration.report).as_bytes())
 }
 
@@ -91,7 +91,7 @@ fn published(out: &Path) -> Result<(), Failure> {
     ];
     text.push_str("unexplained, see report.html:\n");
     UNEXPLAINED.iter().for_each(|open| text.push_str(&format!("  {open}.\n")));
-    write_set(out, &files).map_err(Failure::failed)?;
+    write_set(out, &files)?;
     print(text.as_bytes())
 }
 

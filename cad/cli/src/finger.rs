@@ -139,7 +139,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         layouts,
     };
     if let Some(folder) = &arguments.out {
-        write_set(folder, &files(&report)?).map_err(Failure::failed)?;
+        write_set(folder, &files(&report)?)?;
         log::info!("{}: finger.svg, finger.csv, finger.json", folder.display());
     }
     if arguments.json { print_json(&report) } else { print(table(&report).as_bytes()) }

@@ -66,7 +66,7 @@ fn default_formats() -> Vec<&'static str> {
 
 fn refused(error: PublishError) -> Failure {
     match error {
-        PublishError::Write(e) => Failure::failed(e),
+        PublishError::Write(e) => e.into(),
         other => Failure::bad_input(other),
     }
 }
@@ -82,7 +82,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .clone()
         .unwrap_or_else(|| PathBuf::from("out").join(&design.configuration().switch.name));
     // Claimed before the work: of two runs at once, one is told so at once.
-    let place = SetFolder::lock(&folder).map_err(Failure::failed)?;
+    let place = SetFolder::lock(&folder)?;
+    let origin = origin.entry(&folder);
     if !arguments.force {
         place.check_source(&origin).map_err(refused)?;
     }

@@ -35,5 +35,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if path.exists() && !arguments.force {
         return Err(Failure::bad_input(format!("{}: exists; give --force to overwrite it", path.display())));
     }
-    write_file(path, text.as_bytes()).map_err(Failure::failed)
+    write_file(path, text.as_bytes()).map_err(Failure::from)
 }

@@ -1,6 +1,8 @@
-//! Reading a file that the user names.
+//! Reading a file that the user names, and knowing afterwards which ones were read: no command writes over its own input.
 
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use super::Failure;
 use pinswitch_switch::config::text;
@@ -13,7 +15,16 @@ pub(super) fn read_text_file(path: &Path) -> Result<String, Failure> {
     text(read_file(path)?, &path.display().to_string()).map_err(Failure::bad_input)
 }
 
-/// The bytes of the file at `path`.
+/// Every file that was read, without links and dots.
+static READ: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// Whether this run of the program has read the file at `path`, under whatever name.
+pub(super) fn was_read(path: &Path) -> bool {
+    let Ok(real) = path.canonicalize() else { return false };
+    READ.lock().unwrap_or_else(PoisonError::into_inner).contains(&real)
+}
+
+/// The bytes of the file at `path`, which is input from now on.
 ///
 /// # Errors
 /// [`Failure::BadInput`] names the file and what to do.
@@ -22,9 +33,16 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, Failure> {
     if path.is_dir() {
         return Err(Failure::bad_input(format!("{name}: is a folder; give a file")));
     }
-    std::fs::read(path).map_err(|e| {
+    let bytes = std::fs::read(path).map_err(|e| {
         Failure::bad_input(format!("{name}: cannot read: {e}; give a file that exists and can be read"))
-    })
+    })?;
+    // A pipe has no content that could be written over.
+    if path.is_file()
+        && let Ok(real) = path.canonicalize()
+    {
+        READ.lock().unwrap_or_else(PoisonError::into_inner).insert(real);
+    }
+    Ok(bytes)
 }
 
 #[cfg(test)]

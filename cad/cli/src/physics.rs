@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         json.push(b'\n');
         let files = [("contact.svg", svg.into_bytes()), ("physics.json", json)]
             .map(|(name, bytes)| OutputFile { name: name.to_owned(), bytes });
-        write_set(folder, &files).map_err(Failure::failed)?;
+        write_set(folder, &files)?;
         log::info!("{}: contact.svg, physics.json", folder.display());
     }
     if arguments.json { print_json(&report) } else { print(text(&report).as_bytes()) }

@@ -68,7 +68,7 @@ impl Rows {
         let (predicted, sd) = model.predict(&table.rows, &model_name).map_err(Failure::bad_input)?;
         let csv = table.with_columns(&["predicted_N", "sd_N"], &[predicted, sd], 5);
         match &self.out {
-            Some(path) => write_file(path, csv.as_bytes()).map_err(Failure::failed),
+            Some(path) => write_file(path, csv.as_bytes()).map_err(Failure::from),
             None => print(csv.as_bytes()),
         }
     }

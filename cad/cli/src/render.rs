@@ -66,5 +66,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let view = View { turn_deg: arguments.turn, rise_deg: arguments.rise };
     let picture = render(&bodies, view, arguments.width, arguments.width * 3 / 4);
     let bytes = picture.png().map_err(Failure::failed)?;
-    write_file(&arguments.out, &bytes).map_err(Failure::failed)
+    write_file(&arguments.out, &bytes).map_err(Failure::from)
 }

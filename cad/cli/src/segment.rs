@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.out.file_name().map_or_else(|| "plateaus.csv".into(), |n| n.to_string_lossy().into_owned());
     files.push(OutputFile { name: table, bytes: PlateauTable::write(&rows).into_bytes() });
     let out = arguments.out.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    write_set(out, &files).map_err(Failure::failed)?;
+    write_set(out, &files)?;
     let summary: String = report.series.iter().map(|series| format!("{series}\n")).collect();
     print(summary.as_bytes())
 }

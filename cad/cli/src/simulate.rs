@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.next {
         files.push(file("plateaus-next.csv", next_session(&plan).table(&plan)));
     }
-    write_set(out, &files).map_err(Failure::failed)
+    write_set(out, &files).map_err(Failure::from)
 }
 
 /// The plan with the effects asked for, and its name in errors.

@@ -1,6 +1,6 @@
 //! Where a configuration comes from: a file or a template, a preset under it, single values over it.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
 
@@ -34,7 +34,7 @@ impl Source {
 
     /// The file that the configuration is read from; `None` for a template.
     pub(super) fn file(&self) -> Option<PathBuf> {
-        Some(PathBuf::from(&self.config)).filter(|path| path.exists())
+        Some(PathBuf::from(&self.config)).filter(|path| path.exists() && !path.is_dir())
     }
 
     /// The same with `preset` under it, unless the command line named one.
@@ -56,13 +56,13 @@ impl Source {
         Failure::bad_input(format!("{}: {error}", self.config))
     }
 
-    /// As [`Self::design`], with what the manifest says of the configuration.
+    /// As [`Self::design`], with where the configuration comes from.
     ///
     /// # Errors
     /// As [`Self::design`].
-    pub(super) fn design_and_origin(&self) -> Result<(Design, SourceEntry), Failure> {
+    pub(super) fn design_and_origin(&self) -> Result<(Design, Origin), Failure> {
         let (text, file) = read_text(&self.config)?;
-        let origin = SourceEntry::new(portable_name(&file, &text));
+        let origin = Origin::of(&file, &text);
         let base = self.preset.as_ref().map_or(Ok(Configuration::default()), |preset| {
             let (text, file) = read_text(preset)?;
             read(&text, &file).map(|(base, _)| base).map_err(Failure::bad_input)
@@ -94,12 +94,13 @@ fn placed(error: pinswitch_switch::config::ConfigError, places: &Places, file: &
 /// The text of a file or template, and the name to use for it in errors.
 pub(super) fn read_text(name: &str) -> Result<(String, String), Failure> {
     let path = Path::new(name);
-    if path.exists() {
+    let bare = name.strip_prefix("templates/").unwrap_or(name);
+    let bare = bare.strip_suffix(".toml").unwrap_or(bare);
+    // A folder that has the name of a template, such as the one that its set went to, is not in the way.
+    if path.exists() && !(path.is_dir() && templates::text(bare).is_some()) {
         let text = crate::input::read_text_file(path)?;
         return Ok((text, name.to_owned()));
     }
-    let bare = name.strip_prefix("templates/").unwrap_or(name);
-    let bare = bare.strip_suffix(".toml").unwrap_or(bare);
     templates::text(bare).map(|text| (text, name.to_owned())).ok_or_else(|| {
         let names = templates::names();
         let near = names.iter().max_by(|a, b| strsim::jaro_winkler(bare, a).total_cmp(&strsim::jaro_winkler(bare, b)));
@@ -110,22 +111,70 @@ pub(super) fn read_text(name: &str) -> Result<(String, String), Failure> {
     })
 }
 
-/// The name of a template; else the path of a file below the current folder, or its bare name: the same on every machine.
-fn portable_name(file: &str, text: &str) -> String {
-    let path = Path::new(file);
-    let stem = stem(file);
-    // A template's own file, as in this repository, is the template.
-    if templates::text(&stem).is_some_and(|template| template == text) {
-        return stem;
+/// Where a configuration comes from.
+#[derive(Clone, Debug)]
+pub(super) enum Origin {
+    /// A template of this name, or its own file.
+    Template(String),
+    /// A file.
+    File(PathBuf),
+}
+
+impl Origin {
+    fn of(file: &str, text: &str) -> Self {
+        let (path, stem) = (Path::new(file), stem(file));
+        // A template's own file, as in this repository, is the template.
+        if !path.exists() || path.is_dir() || templates::text(&stem).is_some_and(|template| template == text)
+        {
+            Self::Template(stem)
+        } else {
+            Self::File(path.to_owned())
+        }
     }
-    let below = || {
-        let here = std::env::current_dir().ok()?.canonicalize().ok()?;
-        Some(path.canonicalize().ok()?.strip_prefix(here).ok()?.to_owned())
-    };
-    let bare = || path.file_name().map_or_else(|| path.to_owned(), PathBuf::from);
-    below().unwrap_or_else(bare).to_string_lossy().replace('\\', "/")
+
+    /// What a manifest in `folder`, which is there, says of it: of a file its path from that folder, which is the same
+    /// wherever the command is given, and wherever a machine keeps the folder of both.
+    pub(super) fn entry(&self, folder: &Path) -> SourceEntry {
+        let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        match self {
+            Self::Template(name) => SourceEntry::new(name),
+            Self::File(path) => {
+                let name = from_folder(&real(path), &real(folder)).to_string_lossy().replace('\\', "/");
+                let is_a_template_s = templates::names().contains(&name.as_str());
+                SourceEntry::new(if is_a_template_s { format!("./{name}") } else { name })
+            }
+        }
+    }
+}
+
+/// The path to `file` from `folder`, both absolute; `file` itself where they have no root in common.
+fn from_folder(file: &Path, folder: &Path) -> PathBuf {
+    let shared = file.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
+    if shared == 0 {
+        return file.to_owned();
+    }
+    let up = folder.components().skip(shared).map(|_| Component::ParentDir);
+    up.chain(file.components().skip(shared)).collect()
 }
 
 fn stem(file: &str) -> String {
     PathBuf::from(file).file_stem().map_or_else(|| "switch".to_owned(), |s| s.to_string_lossy().into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_has_its_own_name_and_no_templates() {
+        let from =
+            |file: &str, folder: &str| from_folder(Path::new(file), Path::new(folder)).display().to_string();
+        assert_eq!(from("/a/b/x.toml", "/a/b"), "x.toml");
+        assert_eq!(from("/a/c/x.toml", "/a/b"), "../c/x.toml");
+        assert_eq!(from("/x.toml", "/a/b"), "../../x.toml");
+        let text = templates::text("three-double").unwrap();
+        for own in ["three-double", "templates/three-double.toml"] {
+            assert_eq!(Origin::of(own, text).entry(Path::new(".")), SourceEntry::new("three-double"));
+        }
+    }
 }

@@ -131,7 +131,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     if let Some(folder) = &arguments.out {
         let files = files(&found, &report, &ask)?;
-        write_set(folder, &files).map_err(Failure::failed)?;
+        write_set(folder, &files)?;
         let names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
         log::info!("{}: {}", folder.display(), names.join(", "));
     }

@@ -10,26 +10,46 @@ mod steps;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use pinswitch_batch::temporary_file;
+use pinswitch_batch::{remedy, temporary_file};
 use pinswitch_switch::output::OutputFile;
 
 use folder_lock::{FolderLock, Waiting};
 pub use set_folder::{PublishError, SetFolder};
+
+use crate::Failure;
+use crate::input::was_read;
 
 /// Beginning of the names of everything that is not there to stay.
 const OURS: &str = ".pinswitch-";
 
 /// A file or folder cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: cannot write: {}; {}", path.display(), reason(source), remedy(source))]
-pub struct WriteError {
-    path: PathBuf,
-    source: std::io::Error,
+pub enum WriteError {
+    /// The system does not let us.
+    #[error("{}: cannot write: {}; {}", path.display(), reason(source), remedy(source))]
+    System {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// This command has read the file: its input would be lost.
+    #[error("{}: is read by this very command; give another --out", .0.display())]
+    Input(PathBuf),
 }
 
 impl WriteError {
     fn at(path: &Path) -> impl FnOnce(std::io::Error) -> Self + '_ {
-        |source| Self { path: path.to_owned(), source }
+        |source| Self::System { path: path.to_owned(), source }
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::System { .. } => Self::failed(error),
+            WriteError::Input(_) => Self::bad_input(error),
+        }
     }
 }
 
@@ -41,19 +61,12 @@ fn reason(error: &std::io::Error) -> String {
     }
 }
 
-fn remedy(error: &std::io::Error) -> &'static str {
-    match error.kind() {
-        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
-            "a file stands where a folder must be: move it away, or give another --out"
-        }
-        ErrorKind::IsADirectory => {
-            "a folder stands where a file must be: move it away, or give another --out"
-        }
-        ErrorKind::WouldBlock => "wait for it or end it, or give another --out",
-        ErrorKind::NotFound => "make its folder, or give another --out",
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room, or give another --out",
-        _ => "give an --out that can be written",
+/// Before anything changes: neither a folder nor a file that was read may stand where `path` is to be written.
+fn refuse_obstacle(path: &Path) -> Result<(), WriteError> {
+    if std::fs::symlink_metadata(path).is_ok_and(|there| there.is_dir()) {
+        return Err(WriteError::at(path)(ErrorKind::IsADirectory.into()));
     }
+    if was_read(path) { Err(WriteError::Input(path.to_owned())) } else { Ok(()) }
 }
 
 /// Writes `bytes` to `path`: a reader sees the old file or the new one, never a part of it.
@@ -61,6 +74,7 @@ fn remedy(error: &std::io::Error) -> &'static str {
 /// # Errors
 /// [`WriteError`] names the path; the old file is untouched.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    refuse_obstacle(path)?;
     match std::fs::metadata(path) {
         Ok(there) if there.is_dir() => return Err(WriteError::at(path)(ErrorKind::IsADirectory.into())),
         // A pipe or a terminal has no old content, and is not replaced by a file.
@@ -106,6 +120,23 @@ mod tests {
         write_set(folder.path(), &[file("a"), file("b")]).unwrap();
         assert_eq!(std::fs::read_to_string(folder.path().join("a")).unwrap(), "new");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn what_was_read_is_not_written_over_under_any_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let input = folder.path().join("rows.csv");
+        std::fs::write(&input, "dear").unwrap();
+        crate::input::read_file(&input).unwrap();
+        std::fs::create_dir(folder.path().join("sub")).unwrap();
+        for name in ["rows.csv", "sub/../rows.csv"] {
+            let error = write_file(&folder.path().join(name), b"new").unwrap_err().to_string();
+            assert!(error.ends_with("is read by this very command; give another --out"), "{error}");
+        }
+        let set = [OutputFile::new("a", "new"), OutputFile::new("rows.csv", "new")];
+        assert!(matches!(write_set(folder.path(), &set), Err(WriteError::Input(_))));
+        assert_eq!(std::fs::read(&input).unwrap(), b"dear");
+        assert!(!folder.path().join("a").exists());
     }
 
     #[test]

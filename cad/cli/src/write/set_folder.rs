@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::output::OutputFile;
 
-use super::WriteError;
 use super::folder_lock::{FolderLock, JOURNAL, Waiting};
 use super::record::{Record, is_plain, read_if_there};
 use super::steps::Step;
+use super::{WriteError, refuse_obstacle};
 
 /// Name of the folder for files that do not have their names yet.
 const STAGED: &str = ".pinswitch-staged";
@@ -43,6 +43,9 @@ pub enum PublishError {
     /// A file of the set's names is there, and no manifest of ours lists it.
     #[error("{0} is not from a set of ours; give --force to overwrite it, or another --out")]
     Foreign(String),
+    /// A file of the set before was changed, and would be lost.
+    #[error("{0} was changed since it was made; give --force to overwrite it, or another --out")]
+    Changed(String),
 }
 
 /// A locked folder; nobody else of us writes there meanwhile.
@@ -79,7 +82,7 @@ impl SetFolder {
     /// [`PublishError::OtherSource`] if the folder holds the set of another configuration.
     pub fn check_source(&self, source: &SourceEntry) -> Result<(), PublishError> {
         match self.record()?.source {
-            Some(there) if !there.may_be(source) => Err(PublishError::OtherSource {
+            Some(there) if there != *source => Err(PublishError::OtherSource {
                 folder: shown(&self.folder.display().to_string()),
                 there: shown(&there.name),
                 here: shown(&source.name),
@@ -159,28 +162,29 @@ impl SetFolder {
         steps.iter().try_for_each(|step| step.take().map_err(WriteError::at(step.target())))
     }
 
-    /// Before anything changes: no folder may stand where a file must be, and no name may be a path.
+    /// Before anything changes: nothing may stand where a file must be, and no name may be a path.
     fn refuse_obstacles(&self, files: &[OutputFile]) -> Result<(), WriteError> {
         for file in files {
             let path = self.folder.join(&file.name);
             if !is_plain(&file.name) {
                 return Err(WriteError::at(&path)(ErrorKind::InvalidInput.into()));
             }
-            if std::fs::symlink_metadata(&path).is_ok_and(|there| there.is_dir()) {
-                return Err(WriteError::at(&path)(ErrorKind::IsADirectory.into()));
-            }
+            refuse_obstacle(&path)?;
         }
         Ok(())
     }
 
-    /// A file that would be overwritten must be in a manifest of ours, or be the very same already.
+    /// A file that would be overwritten must be as we wrote it, or be the very same already.
     fn refuse_foreign(&self, files: &[OutputFile], before: &Record) -> Result<(), PublishError> {
-        for file in files.iter().filter(|file| !before.files.contains_key(&file.name)) {
+        for file in files {
             let path = self.folder.join(&file.name);
-            let there = read_if_there(&path).map_err(WriteError::at(&path))?;
-            if there.is_some_and(|bytes| bytes != file.bytes) {
-                return Err(PublishError::Foreign(shown(&path.display().to_string())));
+            let Some(there) = read_if_there(&path).map_err(WriteError::at(&path))? else { continue };
+            if there == file.bytes || before.wrote(&file.name, &there) {
+                continue;
             }
+            let name = shown(&path.display().to_string());
+            let is_listed = before.files.contains_key(&file.name);
+            return Err(if is_listed { PublishError::Changed(name) } else { PublishError::Foreign(name) });
         }
         Ok(())
     }
@@ -352,6 +356,10 @@ mod tests {
         assert_eq!(there(place.path()).len(), 1);
         SetFolder::lock(place.path()).unwrap().publish(&old, &source, true).unwrap();
         std::fs::write(place.path().join("b"), "mine").unwrap();
+        let (both, source) = set("a.toml", &[("a", "old"), ("b", "new")]);
+        let error = SetFolder::lock(place.path()).unwrap().publish(&both, &source, false).unwrap_err();
+        assert!(matches!(error, PublishError::Changed(_)), "{error}");
+        assert_eq!(there(place.path())["b"], b"mine");
         let (new, source) = set("a.toml", &[("a", "new")]);
         let kept = SetFolder::lock(place.path()).unwrap().publish(&new, &source, false).unwrap();
         assert_eq!(kept, ["b"]);
@@ -365,10 +373,8 @@ mod tests {
         let folder = SetFolder::lock(place.path()).unwrap();
         folder.publish(&old, &source, false).unwrap();
         let text = |name: &str| folder.check_source(&SourceEntry::new(name)).map_err(|e| e.to_string());
-        for same in ["a/x.toml", "x.toml", "c/a/x.toml"] {
-            assert_eq!(text(same), Ok(()));
-        }
-        for other in ["b/x.toml", "y.toml", "ax.toml", "a"] {
+        assert_eq!(text("a/x.toml"), Ok(()));
+        for other in ["x.toml", "c/a/x.toml", "../a/x.toml", "b/x.toml", "y.toml", "ax.toml", "a", "a/x"] {
             let error = text(other).unwrap_err();
             assert!(["a/x.toml", other, "--force", "--out"].iter().all(|w| error.contains(w)), "{error}");
         }

@@ -134,8 +134,8 @@ pub struct FileEntry {
 /// The configuration that a set was made from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SourceEntry {
-    /// The template's name, or the file's path below the folder of the run; its bare name if it lies elsewhere, so that
-    /// no manifest depends on where a machine keeps its files.
+    /// The template's name, or the file's path from the folder of the set, with `/` on every machine. No file has the
+    /// name of a template alone.
     pub name: String,
 }
 
@@ -143,15 +143,6 @@ impl SourceEntry {
     /// The entry of a configuration of this name.
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into() }
-    }
-
-    /// Whether both may be the same configuration, edited or not. A file has one path from one folder and another from
-    /// another, so that the longer path must end in the shorter one.
-    pub fn may_be(&self, other: &Self) -> bool {
-        let ends_in = |long: &str, short: &str| {
-            long.strip_suffix(short).is_some_and(|before| before.is_empty() || before.ends_with('/'))
-        };
-        ends_in(&self.name, &other.name) || ends_in(&other.name, &self.name)
     }
 }
 

@@ -52,9 +52,37 @@ impl Failure {
     }
 }
 
+/// Prints what is wrong with the arguments, or the help that they ask for, and returns the exit code.
+pub(super) fn report_usage(error: &clap::Error) -> ExitCode {
+    let text = error.render().to_string();
+    if error.use_stderr() && text.chars().count() > MAX_CHARACTERS {
+        // An argument of any length may stand in it.
+        eprintln!("{}", bounded_lines(text.trim_end()));
+    } else {
+        // Nobody may listen any more, as after `head`.
+        let _ = error.print();
+    }
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
+/// A text of several lines, none of which is long, and all of which are short enough to be read.
+fn bounded_lines(text: &str) -> String {
+    let lines: Vec<_> = text.lines().map(|line| excerpt(line, MAX_CHARACTERS / 2)).collect();
+    excerpt(&lines.join("\n"), MAX_CHARACTERS)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_wrong_with_an_argument_is_short_however_long_it_is() {
+        let text =
+            format!("error: invalid value '{}' for '--law'\n\nFor more, try '--help'.", "x".repeat(100_000));
+        let short = bounded_lines(&text);
+        assert!(short.chars().count() <= 590, "{short}");
+        assert!(short.starts_with("error: invalid value") && short.ends_with("try '--help'."), "{short}");
+    }
 
     #[test]
     fn an_error_is_short_and_keeps_its_beginning_and_its_remedy() {

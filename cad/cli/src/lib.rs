@@ -128,7 +128,10 @@ commands! {
 
 /// Runs the command that the arguments name. Exit codes: 0 done, 1 failed, 2 bad input.
 pub fn run() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(e) => return failure::report_usage(&e),
+    };
     env_logger::Builder::new()
         .filter_level(cli.verbosity.log_level_filter())
         .format_timestamp(None)

@@ -31,6 +31,8 @@ fn within(field: &str, value: f64, low: f64, high: f64) -> Result<(), Flaw> {
     if (low..=high).contains(&value) && value.is_finite() {
         Ok(())
     } else {
+        // The least positive number has over three hundred digits.
+        let low = if low == f64::MIN_POSITIVE { "above 0".to_owned() } else { low.to_string() };
         Err(Flaw::new(field, value, format!("{low} to {high}")))
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use toml::Value;
+use toml_edit::Document;
 
 use super::phrase::positive;
 use super::{
@@ -66,7 +67,7 @@ impl Ask {
     /// # Ok::<(), pinswitch_switch::ask::AskError>(())
     /// ```
     pub fn read(text: &str, file: &str) -> Result<Self, AskError> {
-        let named = |e: String| AskError(format!("{file}: {e}"));
+        let named = |e: String| AskError(format!("{}: {e}", place_of(&e, text, file)));
         let parsed: File = toml::from_str(text).map_err(|e| {
             let place = Place::new(file, text, e.span().map_or(0, |span| span.start));
             AskError(format!(
@@ -85,6 +86,28 @@ impl Ask {
         ask.check().map_err(|e| named(e.0))?;
         Ok(ask)
     }
+}
+
+/// The place of the field that an error begins with, such as `ask.friction[0]`; of the innermost table that is there, if
+/// the field itself is not.
+fn place_of(error: &str, text: &str, file: &str) -> Place {
+    let is_of_a_path = |c: char| c.is_ascii_alphanumeric() || "_.[]".contains(c);
+    let path = error.split(|c| !is_of_a_path(c)).next().unwrap_or_default();
+    let span = text.parse::<Document<String>>().ok().and_then(|document| {
+        let mut item = document.as_item().clone();
+        let mut span = None;
+        for key in path.split(['.', '[']) {
+            let inner = match key.strip_suffix(']') {
+                Some(index) => index.parse::<usize>().ok().and_then(|i| item.get(i)),
+                None => item.get(key),
+            };
+            let Some(inner) = inner.cloned() else { break };
+            span = inner.span().or(span);
+            item = inner;
+        }
+        span
+    });
+    Place::new(file, text, span.map_or(0, |span| span.start))
 }
 
 impl Targets {
@@ -252,7 +275,11 @@ groove_diameter_mm = 0.02
     fn what_cannot_be_read_says_what_would_be() {
         for (text, words) in [
             ("[ask]\nthreshhold_n = 20", &["threshhold_n", "threshold_n"][..]),
-            ("[ask]\nthreshold_n = -3", &["ask.threshold_n", "above 0"]),
+            ("[ask]\nthreshold_n = -3", &["a.toml:2: ask.threshold_n", "above 0"]),
+            (
+                "[ask]\nthreshold_n = 9\nfriction = [\n  { load_n = 5, at_most_n = 2 },\n  { load_n = 5 },\n]",
+                &["a.toml:5: ask.friction[1]"],
+            ),
             ("[ask]\nthreshold_n = 'roughly 3'", &["ask.threshold_n", "at most 8"]),
             ("[ask]\nthreshold_n = { around = 3 }", &["around", "at_most"]),
             ("[ask]\nthreshold_n = 20\n[vary]\nthickness = true", &["vary.thickness", "layer_mm"]),
@@ -269,6 +296,7 @@ groove_diameter_mm = 0.02
         ] {
             let error = Ask::read(text, "a.toml").unwrap_err().to_string();
             assert!(words.iter().all(|w| error.contains(w)), "{text}: {error}");
+            assert!(error.starts_with("a.toml:"), "{text}: {error}");
         }
     }
 }

@@ -121,6 +121,7 @@ commands! {
     Init: init,
     Segment: segment,
     Calibrate: calibrate,
+    Experiment: experiment,
     Simulate: simulate,
     Power: power,
     Completions: completions,

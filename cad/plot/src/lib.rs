@@ -27,6 +27,7 @@ pub mod html;
 mod log;
 mod pareto;
 mod published_page;
+mod run_sheet;
 mod scale;
 
 pub use calibration::{Plot, PlotFailure, plots};
@@ -37,4 +38,5 @@ pub use friction::{PlotError, friction_svg};
 pub use log::log_svg;
 pub use pareto::{AskedRegion, pareto_svg};
 pub use published_page::{UNEXPLAINED, published_page, published_plot};
+pub use run_sheet::run_sheet;
 pub use scale::{drawable, drawn_size, fine, shown_at_size};

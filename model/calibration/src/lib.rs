@@ -28,6 +28,7 @@ mod aliasing;
 mod beyond_range;
 mod calibrate;
 pub mod effects;
+pub mod experiment;
 mod extrapolation;
 mod held_out;
 pub mod inference;

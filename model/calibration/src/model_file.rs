@@ -295,6 +295,10 @@ impl ModelFile {
         Ok((predicted, sd))
     }
 
+    pub(crate) fn noise(&self) -> Noise {
+        self.noise
+    }
+
     pub(super) fn covariance(&self) -> &[Vec<f64>] {
         &self.covariance
     }

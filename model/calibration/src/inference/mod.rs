@@ -27,6 +27,7 @@ mod walk;
 mod weighed;
 
 pub(crate) use compaction::MOST_ROWS;
+pub(crate) use fit::jacobian;
 pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_sd_n};
 pub use forward::{Model, Term, UNATTRIBUTED};
 pub(crate) use isolation::cell_deviation;

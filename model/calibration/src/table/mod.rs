@@ -4,6 +4,7 @@ mod columns;
 mod follows;
 mod frame;
 mod friction_gap;
+mod joined;
 mod plateau_table;
 mod plausible_table;
 mod row;

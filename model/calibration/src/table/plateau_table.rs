@@ -40,8 +40,8 @@ pub(crate) const MAX_WRAP_DEG: f64 = 720.0;
 pub struct PlateauTable {
     /// One entry per line, in file order.
     pub rows: Vec<PlateauRow>,
-    header: Vec<String>,
-    cells: Vec<Vec<String>>,
+    pub(super) header: Vec<String>,
+    pub(super) cells: Vec<Vec<String>>,
 }
 
 /// What a reader may leave out.
@@ -167,12 +167,18 @@ impl PlateauTable {
         out
     }
 
-    /// Rows as a plateau table in CSV, with a column `wrap_angle_deg` if any row departs from the paper's wrap angle.
+    /// Rows as a plateau table in CSV, with a column `wrap_angle_deg` if any row departs from the paper's wrap angle, and
+    /// those of session, mount, operator and specimen that any row names.
     pub fn write(rows: &[PlateauRow]) -> String {
         let mut out = String::new();
         let usual = rows.iter().all(|row| row.wrap_angle_deg == published::WRAP_ANGLE_DEG);
         let extra = (!usual).then_some(WRAP_ANGLE);
-        push_line(&mut out, COLUMNS.iter().copied().chain(extra));
+        let told = LABELS
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| rows.iter().any(|row| !row.labels.all()[*i].is_empty()));
+        let told: Vec<(usize, &str)> = told.map(|(i, name)| (i, *name)).collect();
+        push_line(&mut out, COLUMNS.iter().copied().chain(extra).chain(told.iter().map(|(_, name)| *name)));
         for row in rows {
             let pins: Vec<String> = row.pins.iter().map(usize::to_string).collect();
             let cells = [
@@ -191,7 +197,8 @@ impl PlateauTable {
                 format!("{:.4}", row.force_n),
             ];
             let wrap = extra.map(|_| row.wrap_angle_deg.to_string());
-            push_line(&mut out, cells.iter().chain(&wrap).map(String::as_str));
+            let labels = told.iter().map(|(i, _)| row.labels.all()[*i]);
+            push_line(&mut out, cells.iter().chain(&wrap).map(String::as_str).chain(labels));
         }
         out
     }

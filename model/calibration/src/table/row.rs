@@ -70,3 +70,10 @@ pub struct Labels {
     /// Which printed part or tendon.
     pub specimen: String,
 }
+
+impl Labels {
+    /// All of them, in the order of their columns.
+    pub(super) fn all(&self) -> [&str; 4] {
+        [&self.session, &self.mount, &self.operator, &self.specimen]
+    }
+}

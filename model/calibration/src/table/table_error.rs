@@ -14,6 +14,19 @@ pub enum TableError {
         /// File name as given.
         file: String,
     },
+    /// Two files hold rows of one session.
+    #[error(
+        "{file}: its session '{}' is in {other} too; name the sessions in a column session, or leave one of the files out",
+        excerpt(session, 80)
+    )]
+    Session {
+        /// File name as given.
+        file: String,
+        /// The other file.
+        other: String,
+        /// The session.
+        session: String,
+    },
     /// A column is absent from the header.
     #[error("{file}, line 1: column '{column}' is missing; the header must name {}", COLUMNS.join(", "))]
     MissingColumn {

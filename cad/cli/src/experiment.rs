@@ -1,0 +1,119 @@
+//! `pinswitch experiment DIR --out PLAN`.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use pinswitch_calibration::experiment::{ExperimentError, Known, Proposal, RigLimits, propose, write_runs};
+use pinswitch_calibration::inference::Levels;
+use pinswitch_calibration::table::PlateauTable;
+use pinswitch_calibration::{ModelFile, Report};
+use pinswitch_plot::run_sheet;
+use pinswitch_switch::output::OutputFile;
+
+use super::{Failure, print, print_json};
+use crate::input::{read_file, read_text_file};
+use crate::write::write_set;
+
+/// Propose the runs that settle most of what a calibration left open, per minute of work.
+///
+/// Rivals that the data could not tell apart, effects of consequence that it did not exclude, and effects that it could not
+/// see. Writes next-runs.csv (the runs, in order), run-sheet.html (to print) and experiment.json (how probably each question
+/// is settled, and what no run on this rig can settle).
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pinswitch experiment calibration --minutes 60 --out next
+  pinswitch init rig --out rig.toml
+  pinswitch experiment calibration --rig rig.toml --out next
+  pinswitch simulate --runs next/next-runs.csv --model calibration/model.toml --out rehearsal")]
+pub(super) struct Arguments {
+    /// The folder that `calibrate` wrote.
+    calibration: PathBuf,
+    /// Minutes of work there are.
+    #[arg(long, default_value_t = 60.0, value_parser = minutes)]
+    minutes: f64,
+    /// What the rig can do and what its time costs; without it, the paper's rig.
+    #[arg(long, value_name = "TOML")]
+    rig: Option<PathBuf>,
+    /// Folder for the plan.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Print experiment.json instead of a summary.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Most minutes: two weeks.
+const MAX_MINUTES: f64 = 20_000.0;
+
+fn minutes(text: &str) -> Result<f64, String> {
+    let value: Option<f64> = text.parse().ok();
+    value
+        .filter(|m| *m > 0.0 && *m <= MAX_MINUTES)
+        .ok_or_else(|| format!("give a time above 0 and up to {MAX_MINUTES} minutes"))
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let folder = &arguments.calibration;
+    let rig = match &arguments.rig {
+        None => RigLimits::default(),
+        Some(path) => RigLimits::parse(&read_text_file(path)?, &path.display().to_string())
+            .map_err(Failure::bad_input)?,
+    };
+    let report = report(folder)?;
+    let path = folder.join("model.toml");
+    let model =
+        ModelFile::parse(&read_text_file(&path)?, &path.display().to_string()).map_err(Failure::bad_input)?;
+    let path = folder.join("residuals.csv");
+    let table = PlateauTable::read(read_file(&path)?.as_slice(), &path.display().to_string())
+        .map_err(Failure::bad_input)?;
+    let name = folder.display().to_string();
+    let known = Known { report: &report, model: &model, rows: &table.rows, name: &name };
+    let proposal = propose(known, &rig, arguments.minutes, Levels::default()).map_err(|e| match e {
+        ExperimentError::NoTime { .. } => Failure::bad_input(format!("--minutes: {e}")),
+        other => Failure::bad_input(other),
+    })?;
+    let mut json = serde_json::to_vec_pretty(&proposal).map_err(Failure::failed)?;
+    json.push(b'\n');
+    let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
+    let files = [
+        file("next-runs.csv", write_runs(&proposal.runs).into_bytes()),
+        file("run-sheet.html", run_sheet(&name, &proposal).into_bytes()),
+        file("experiment.json", json),
+    ];
+    write_set(&arguments.out, &files)?;
+    if arguments.json { print_json(&proposal) } else { print(summary(&proposal, &arguments.out).as_bytes()) }
+}
+
+fn report(folder: &Path) -> Result<Report, Failure> {
+    let path = folder.join("report.json");
+    let text = read_text_file(&path)?;
+    serde_json::from_str(&text).map_err(|e| {
+        Failure::bad_input(format!("{}: {e}; give the folder as `calibrate` wrote it", path.display()))
+    })
+}
+
+fn summary(proposal: &Proposal, out: &Path) -> String {
+    let mut text = String::new();
+    if proposal.questions.is_empty() && proposal.unanswerable.is_empty() {
+        text.push_str("nothing is open: every effect that matters is found without a rival, or excluded\n");
+    }
+    for q in &proposal.questions {
+        text.push_str(&format!(
+            "{:>3.0} % to settle {} or {}; by the paper's protocol repeated: {:.0} %\n",
+            100.0 * q.resolved_probability,
+            q.between[0],
+            q.between[1],
+            100.0 * q.by_repeating
+        ));
+    }
+    for u in &proposal.unanswerable {
+        text.push_str(&format!("not on this rig: {} or {}: {}\n", u.between[0], u.between[1], u.why));
+    }
+    text.push_str(&format!(
+        "{} runs, {:.0} minutes: {}\n",
+        proposal.runs.len(),
+        proposal.minutes,
+        out.join("run-sheet.html").display()
+    ));
+    text
+}

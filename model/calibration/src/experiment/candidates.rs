@@ -1,0 +1,112 @@
+//! Every run that a rig could make: contact, load, speed, dwell, repetitions, and where a question asks for it the order
+//! of the loads and the time in the session.
+
+use pinswitch_friction::published;
+
+use super::question::Agenda;
+use super::rig::RigLimits;
+use super::runs::{PlannedRun, append};
+use crate::effects::Covariate;
+use crate::inference::Model;
+use crate::table::{PlateauRow, Sweep};
+
+/// Repetitions to choose from, eccentric and concentric.
+const REPETITIONS: [[u32; 2]; 2] = [[4, 4], [10, 10]];
+
+/// A run, and whether it comes in the second half of the session.
+#[derive(Clone, Debug)]
+pub(super) struct Candidate {
+    pub(super) run: PlannedRun,
+    pub(super) late: bool,
+}
+
+impl Candidate {
+    /// Whether both are recorded under one mount.
+    pub(super) fn shares_mount(&self, other: &Self) -> bool {
+        self.late == other.late && self.run.is_mounted_as(&other.run)
+    }
+
+    /// Minutes of recording and of the change of load before it.
+    pub(super) fn minutes(&self, rig: &RigLimits) -> f64 {
+        self.run.recording_minutes(rig) + rig.minutes_per_load_change
+    }
+}
+
+/// All of them, each within what the load cell may read.
+pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec<Candidate> {
+    let sweeps: &[Sweep] =
+        if agenda.asks_along(Covariate::Sweep) { &[Sweep::Up, Sweep::Down] } else { &[Sweep::Up] };
+    let times: &[bool] = if agenda.asks_along(Covariate::Time) { &[false, true] } else { &[false] };
+    let mut all = Vec::new();
+    for (substrate, pins) in rig.contacts() {
+        for load_mass_g in &rig.loads_g {
+            for speed_pct in rig.speeds() {
+                for dwell_s in rig.dwells() {
+                    for repetitions in REPETITIONS {
+                        for sweep in sweeps {
+                            for late in times {
+                                let run = PlannedRun {
+                                    substrate,
+                                    pins: pins.clone(),
+                                    sweep: *sweep,
+                                    load_mass_g: *load_mass_g,
+                                    speed_pct,
+                                    dwell_s,
+                                    repetitions,
+                                    mount: 1,
+                                    minutes: 0.0,
+                                    asks: String::new(),
+                                };
+                                all.push(Candidate { run, late: *late });
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    // The force is greatest while the load is raised; a tenth is left for what the model lacks.
+    let rows: Vec<PlateauRow> = all.iter().filter_map(|c| alone(c, "1", rig, 0.0).pop()).collect();
+    let forces = model.frame.points(&rows).map(|points| model.predict(&points)).unwrap_or_default();
+    let fits: Vec<bool> = forces.iter().map(|force| force * 1.1 <= rig.cell_limit_n).collect();
+    all.into_iter().zip(fits).filter(|(_, fits)| *fits).map(|(candidate, _)| candidate).collect()
+}
+
+/// The rows of a candidate in a session of its own that began `begins_s` seconds before it.
+pub(super) fn alone(candidate: &Candidate, series: &str, rig: &RigLimits, begins_s: f64) -> Vec<PlateauRow> {
+    let (mut rows, mut time_s) = (Vec::new(), begins_s);
+    append(&candidate.run, series, series, rig, &mut time_s, &mut rows);
+    rows
+}
+
+/// The paper's protocol for as many minutes: contact by contact, loads ascending, the speed following the load, one dwell.
+pub(super) fn paper_protocol(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
+    let (mut runs, mut spent): (Vec<PlannedRun>, f64) = (Vec::new(), 0.0);
+    let mut loads = rig.loads_g.clone();
+    loads.sort_by(f64::total_cmp);
+    for (mount, (substrate, pins)) in rig.contacts().into_iter().enumerate() {
+        for (i, load_mass_g) in loads.iter().enumerate() {
+            let mut run = PlannedRun {
+                substrate,
+                pins: pins.clone(),
+                sweep: Sweep::Up,
+                load_mass_g: *load_mass_g,
+                // 47 to 57 %, as in the paper.
+                speed_pct: 47.0 + 10.0 * i as f64 / loads.len().saturating_sub(1).max(1) as f64,
+                dwell_s: published::DWELL_S,
+                repetitions: [12, 29],
+                mount: mount + 1,
+                minutes: 0.0,
+                asks: String::new(),
+            };
+            let change = if i == 0 { rig.minutes_per_mount_change } else { 0.0 };
+            run.minutes = run.recording_minutes(rig) + rig.minutes_per_load_change + change;
+            spent += run.minutes;
+            if spent > minutes {
+                return runs;
+            }
+            runs.push(run);
+        }
+    }
+    runs
+}

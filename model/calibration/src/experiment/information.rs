@@ -1,0 +1,135 @@
+//! Fisher information of rows, recorded or planned, about the constants of a model and the sizes of effects beside it.
+
+use nalgebra::DMatrix;
+
+use crate::effects::Effect;
+use crate::inference::{Model, Noise, Observations, Term, Weighed, jacobian};
+use crate::table::PlateauRow;
+
+/// A column beside those of the model's own constants: what an effect adds to the readings, at one size.
+#[derive(Clone, Debug)]
+pub(super) enum Trace {
+    /// What a term of the model adds.
+    Found {
+        /// Place of the term.
+        term: usize,
+    },
+    /// What an effect would add that the model does not have.
+    Absent {
+        /// The effect.
+        effect: &'static dyn Effect,
+        /// Its constants.
+        values: Vec<f64>,
+    },
+}
+
+/// A model with traces beside it, and the noise that rows have.
+#[derive(Debug)]
+pub(super) struct Design<'a> {
+    pub(super) model: &'a Model,
+    pub(super) noise: Noise,
+    pub(super) traces: &'a [Trace],
+}
+
+impl Design<'_> {
+    /// Number of the model's own constants: their columns come first.
+    pub(super) fn own(&self) -> usize {
+        self.model.values().len()
+    }
+
+    /// Number of all columns.
+    pub(super) fn columns(&self) -> usize {
+        self.own() + self.traces.len()
+    }
+
+    /// What is known of the constants before any data.
+    pub(super) fn priors(&self) -> DMatrix<f64> {
+        let mut known = DMatrix::zeros(self.columns(), self.columns());
+        for (i, prior) in self.model.priors().iter().enumerate() {
+            known[(i, i)] = prior.sd.powi(-2);
+        }
+        known
+    }
+
+    /// Information of a table as a whole; its readings do not matter. `None` if the model lacks a condition.
+    pub(super) fn of(&self, rows: &[PlateauRow]) -> Option<DMatrix<f64>> {
+        let whole = Observations::new(&self.model.frame, rows)?.compacted();
+        let (data, columns) = self.whitened(whole);
+        let all: Vec<usize> = (0..data.points.len()).collect();
+        Some(gram(&columns, &all))
+    }
+
+    /// Information of each series of a table by itself, in the order of their first rows.
+    pub(super) fn by_series(&self, rows: &[PlateauRow]) -> Option<Vec<DMatrix<f64>>> {
+        let (data, columns) = self.whitened(Observations::new(&self.model.frame, rows)?);
+        Some(data.series_rows.iter().map(|rows| gram(&columns, rows)).collect())
+    }
+
+    fn whitened(&self, mut data: Observations) -> (Observations, Vec<Vec<f64>>) {
+        let model = self.model;
+        let predicted = model.predict(&data.points);
+        data.friction_n = model.friction_n(&data.points);
+        let mut columns = jacobian(model, &data, &predicted);
+        for trace in self.traces {
+            let (with, without) = match trace {
+                Trace::Found { term } => (predicted.clone(), model.without_term(*term).predict(&data.points)),
+                Trace::Absent { effect, values } => {
+                    (model.with_term(Term::Named(*effect), values).predict(&data.points), predicted.clone())
+                }
+            };
+            columns.push(with.iter().zip(&without).map(|(w, o)| w - o).collect());
+        }
+        let weighed = Weighed::new(&data, self.noise);
+        columns.iter_mut().for_each(|column| weighed.whiten(column));
+        (data, columns)
+    }
+}
+
+/// Products of all pairs of columns over some rows.
+fn gram(columns: &[Vec<f64>], rows: &[usize]) -> DMatrix<f64> {
+    let n = columns.len();
+    let mut products = DMatrix::zeros(n, n);
+    for i in 0..n {
+        for j in 0..=i {
+            let sum: f64 = rows.iter().map(|r| columns[i][*r] * columns[j][*r]).sum();
+            products[(i, j)] = sum;
+            products[(j, i)] = sum;
+        }
+    }
+    products
+}
+
+/// Squared length, in standard deviations, of column `signal` once the columns `nuisance` have taken over what they can.
+pub(super) fn visible_squares(information: &DMatrix<f64>, signal: usize, nuisance: &[usize]) -> f64 {
+    covariance_given(information, signal, signal, nuisance).max(0.0)
+}
+
+/// Product of two columns once the columns `nuisance` are taken out of both.
+pub(super) fn covariance_given(information: &DMatrix<f64>, a: usize, b: usize, nuisance: &[usize]) -> f64 {
+    let n = nuisance.len();
+    // Columns of very different length: each is scaled to one.
+    let scale: Vec<f64> = nuisance.iter().map(|i| information[(*i, *i)].max(1e-300).sqrt().recip()).collect();
+    let mut inner =
+        DMatrix::from_fn(n, n, |i, j| information[(nuisance[i], nuisance[j])] * scale[i] * scale[j]);
+    // A column that others make up is taken out with them.
+    (0..n).for_each(|i| inner[(i, i)] += 1e-10);
+    let Some(factor) = inner.cholesky() else { return 0.0 };
+    let side = |c: usize| nalgebra::DVector::from_fn(n, |i, _| information[(nuisance[i], c)] * scale[i]);
+    information[(a, b)] - side(a).dot(&factor.solve(&side(b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_nuisance_takes_over_is_not_visible() {
+        // Columns x, y and x + y + e over four rows.
+        let columns = [vec![1.0, 0.0, 0.0, 0.0], vec![0.0, 2.0, 0.0, 0.0], vec![1.0, 2.0, 0.0, 0.5]];
+        let information = gram(&columns, &[0, 1, 2, 3]);
+        assert!((visible_squares(&information, 2, &[]) - 5.25).abs() < 1e-12);
+        assert!((visible_squares(&information, 2, &[0, 1]) - 0.25).abs() < 1e-6);
+        assert!((covariance_given(&information, 0, 2, &[1]) - 1.0).abs() < 1e-6);
+        assert!(visible_squares(&information, 0, &[1, 0]) < 1e-6);
+    }
+}

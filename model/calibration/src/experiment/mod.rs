@@ -1,0 +1,280 @@
+//! The next experiment: which runs settle most of what a calibration leaves open, per minute of work.
+//!
+//! Of each pair of explanations the data could not tell apart, and of each effect that they neither show nor exclude, the
+//! expected squares are known for any runs: what is left of the difference between both when the other one is fitted, in
+//! units of the noise with all its parts (T-optimality, Atkinson and Fedorov 1975; of an effect's own size Ds-optimality).
+//! `model/doc/next-experiment.md` says how runs are chosen by it, and how well that works.
+
+mod candidates;
+mod information;
+mod question;
+mod rig;
+mod runs;
+mod search;
+
+use nalgebra::DMatrix;
+use serde::Serialize;
+
+pub use rig::{RigError, RigLimits};
+pub use runs::{PlannedRun, RunsError, contact_words, read_runs, rows_of, write_runs};
+
+use crate::inference::{Levels, Model, Noise};
+use crate::model_file::{ModelFile, ModelFileError};
+use crate::report::Report;
+use crate::table::{PlateauRow, Sweep};
+use candidates::{Candidate, alone, candidates, paper_protocol};
+use information::{Design, Trace};
+use question::{Agenda, NONE, Question};
+use search::Search;
+
+/// Name and version of `experiment.json`.
+const SCHEMA: &str = "pinswitch.experiment/1";
+/// Probability below which all that a rig can do does not answer a question.
+const ANSWERABLE: f64 = 0.5;
+
+/// A question with what is expected of the runs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct QuestionOutlook {
+    /// What it lies between: two ids, or an id and `none`.
+    pub between: [String; 2],
+    /// Probability that the data of so far and of these runs answer it.
+    pub resolved_probability: f64,
+    /// The same for the paper's protocol repeated for as many minutes.
+    pub by_repeating: f64,
+}
+
+/// What no experiment on the rig can settle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Unanswerable {
+    /// What it lies between: two ids, or an id and `none`.
+    pub between: [String; 2],
+    /// Why.
+    pub why: String,
+}
+
+/// `experiment.json`, with the runs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Proposal {
+    /// Name and version of the format.
+    pub schema: &'static str,
+    /// Minutes that the runs take.
+    pub minutes: f64,
+    /// What they are for, the most probable answer first.
+    pub questions: Vec<QuestionOutlook>,
+    /// What they cannot settle.
+    pub unanswerable: Vec<Unanswerable>,
+    /// The runs, in order.
+    #[serde(skip)]
+    pub runs: Vec<PlannedRun>,
+}
+
+/// Why nothing is proposed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExperimentError {
+    /// The model on file cannot be used.
+    #[error(transparent)]
+    Model(#[from] ModelFileError),
+    /// Rows and model are not of one calibration.
+    #[error("{0}: its rows are not those that model.toml was fitted to; calibrate again")]
+    Rows(String),
+    /// Not one run fits.
+    #[error(
+        "no run fits into {minutes} minutes on this rig, the shortest takes {shortest:.1}; give more --minutes, or mend rig.toml"
+    )]
+    NoTime {
+        /// Minutes there are.
+        minutes: f64,
+        /// Minutes of the shortest run.
+        shortest: f64,
+    },
+}
+
+/// What a calibration has left: its report, its model and its rows.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
+    /// `report.json`.
+    pub report: &'a Report,
+    /// `model.toml`.
+    pub model: &'a ModelFile,
+    /// The rows that were fitted.
+    pub rows: &'a [PlateauRow],
+    /// Name of the folder, for errors.
+    pub name: &'a str,
+}
+
+/// Proposes runs of at most so many minutes. What is asked of them is empty if the report leaves nothing open.
+///
+/// # Errors
+/// [`ExperimentError`] if report, model and rows do not belong together, or there is no time for a single run.
+pub fn propose(
+    known: Known<'_>,
+    rig: &RigLimits,
+    minutes: f64,
+    levels: Levels,
+) -> Result<Proposal, ExperimentError> {
+    let foreign = || ExperimentError::Rows(known.name.to_owned());
+    let (model, noise) = extended(known, rig)?;
+    let of_rows = |traces: &[Trace]| {
+        let design = Design { model: &model, noise, traces };
+        design.of(known.rows).map(|data| data + design.priors())
+    };
+    of_rows(&[]).ok_or_else(foreign)?;
+    let agenda = Agenda::of(known.report, &model, levels, |traces| {
+        of_rows(traces).unwrap_or_else(|| DMatrix::zeros(0, 0))
+    });
+    let design = Design { model: &model, noise, traces: &agenda.traces };
+    let data = of_rows(&agenda.traces).ok_or_else(foreign)?;
+    let all = candidates(&model, rig, &agenda);
+    let shortest =
+        all.iter().map(|c| c.minutes(rig)).fold(f64::INFINITY, f64::min) + rig.minutes_per_mount_change;
+    if shortest > minutes {
+        return Err(ExperimentError::NoTime { minutes, shortest });
+    }
+    let single = of_candidates(&design, &all, rig, minutes).ok_or_else(foreign)?;
+    let everything = single.iter().fold(data.clone(), |sum, i| sum + i);
+    let (open, closed): (Vec<Question>, Vec<Question>) =
+        agenda.questions.iter().cloned().partition(|q| q.probability(&everything) >= ANSWERABLE);
+    let search = Search { candidates: &all, information: &single, questions: &open, rig, minutes };
+    let chosen = if open.is_empty() { Vec::new() } else { search.run(&data) };
+    let purposes: Vec<String> = (0..chosen.len())
+        .map(|place| search.purpose(place, &chosen, &data).map_or_else(String::new, Question::words))
+        .collect();
+    let runs = in_order(chosen.iter().map(|c| &all[*c]).zip(purposes), rig);
+    let after = |runs: &[PlannedRun]| {
+        let rows = rows_of(runs, rig, "next");
+        if rows.is_empty() { Some(data.clone()) } else { design.of(&rows).map(|more| more + &data) }
+    };
+    let with_runs = after(&runs).ok_or_else(foreign)?;
+    let spent: f64 = runs.iter().map(|run| run.minutes).sum();
+    let repeated = after(&paper_protocol(rig, spent)).ok_or_else(foreign)?;
+    let mut questions: Vec<QuestionOutlook> = open
+        .iter()
+        .map(|q| QuestionOutlook {
+            between: q.between.clone(),
+            resolved_probability: rounded(q.probability(&with_runs)),
+            by_repeating: rounded(q.probability(&repeated)),
+        })
+        .collect();
+    questions.sort_by(|a, b| b.resolved_probability.total_cmp(&a.resolved_probability));
+    let unanswerable = closed.iter().map(|q| unanswerable(q, &everything)).collect();
+    Ok(Proposal { schema: SCHEMA, minutes: (10.0 * spent).round() / 10.0, questions, unanswerable, runs })
+}
+
+/// The model of a calibration with the contacts of the rig, and its noise.
+fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), ModelFileError> {
+    let model = known.model.model(known.name)?;
+    let mut frame = model.frame.clone();
+    for candidate in paper_protocol(rig, f64::INFINITY) {
+        rows_of(std::slice::from_ref(&candidate), rig, "").iter().take(1).for_each(|row| frame.extend(row));
+    }
+    Ok((model.in_frame(frame), known.model.noise()))
+}
+
+/// Information of each candidate by itself: as if every one was mounted anew, which is what can be said before it is
+/// known which of them go together.
+fn of_candidates(
+    design: &Design<'_>,
+    all: &[Candidate],
+    rig: &RigLimits,
+    minutes: f64,
+) -> Option<Vec<DMatrix<f64>>> {
+    // Offsets that wander from run to run differ from one to the next: alone, they are offsets.
+    let mut noise = design.noise;
+    noise.series.constant_n = noise.series.constant_n.hypot(noise.walk_n);
+    noise.walk_n = 0.0;
+    let design = Design { model: design.model, noise, traces: design.traces };
+    let begins_s = |c: &Candidate| if c.late { 0.75 * 60.0 * minutes } else { 0.0 };
+    let rows: Vec<PlateauRow> =
+        all.iter().enumerate().flat_map(|(i, c)| alone(c, &i.to_string(), rig, begins_s(c))).collect();
+    design.by_series(&rows)
+}
+
+/// The runs in the order in which they are made: early ones first, each contact mounted once, its loads ascending and then
+/// descending; with the time of each.
+fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &RigLimits) -> Vec<PlannedRun> {
+    let contacts = rig.contacts();
+    let place = |run: &PlannedRun| {
+        contacts.iter().position(|(substrate, pins)| *substrate == run.substrate && *pins == run.pins)
+    };
+    let mut ordered: Vec<(&Candidate, String)> = chosen.collect();
+    ordered.sort_by(|(a, _), (b, _)| {
+        let down = |c: &Candidate| c.run.sweep == Sweep::Down;
+        let rising = a.run.load_mass_g.total_cmp(&b.run.load_mass_g);
+        let by_load = if down(a) { rising.reverse() } else { rising };
+        let pace = |c: &Candidate| (c.run.speed_pct, c.run.dwell_s);
+        a.late
+            .cmp(&b.late)
+            .then(place(&a.run).cmp(&place(&b.run)))
+            .then(down(a).cmp(&down(b)))
+            .then(by_load)
+            .then(pace(a).partial_cmp(&pace(b)).unwrap_or(std::cmp::Ordering::Equal))
+    });
+    let mut runs: Vec<PlannedRun> = Vec::new();
+    let mut before: Option<&Candidate> = None;
+    for (candidate, asks) in ordered {
+        let is_mounted = before.is_some_and(|b| b.shares_mount(candidate));
+        let mount = runs.last().map_or(0, |run| run.mount) + usize::from(!is_mounted);
+        let is_loaded = is_mounted && before.is_some_and(|b| b.run.load_mass_g == candidate.run.load_mass_g);
+        let minutes = candidate.run.recording_minutes(rig)
+            + if is_loaded { 0.0 } else { rig.minutes_per_load_change }
+            + if is_mounted { 0.0 } else { rig.minutes_per_mount_change };
+        runs.push(PlannedRun { mount, minutes, asks, ..candidate.run.clone() });
+        before = Some(candidate);
+    }
+    runs
+}
+
+fn unanswerable(question: &Question, everything: &DMatrix<f64>) -> Unanswerable {
+    let [of, or] = &question.between;
+    let most = 100.0 * question.probability(everything);
+    let why = if or == NONE {
+        format!(
+            "every run that this rig can make, all together, would show {of} with a probability of {most:.0} %"
+        )
+    } else {
+        format!(
+            "every run that this rig can make, all together, would tell {of} from {or} with a probability of {most:.0} %"
+        )
+    };
+    Unanswerable { between: question.between.clone(), why }
+}
+
+fn rounded(probability: f64) -> f64 {
+    (1e3 * probability).round() / 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate;
+    use crate::test_session::session;
+
+    fn known(seed: u64) -> (crate::Calibration, ModelFile, Vec<PlateauRow>) {
+        let rows = session(seed);
+        let found = calibrate(&rows, Levels::default()).unwrap();
+        let s = &found.selection;
+        let file = ModelFile::new(&s.augmented, &found.data, s.noise);
+        (found, file, rows)
+    }
+
+    #[test]
+    fn what_is_invisible_is_asked_for_within_the_time_and_more_time_tells_more() {
+        let (found, model, rows) = known(1);
+        let known = Known { report: &found.report, model: &model, rows: &rows, name: "d" };
+        let rig = RigLimits::default();
+        let proposal = |minutes| propose(known, &rig, minutes, Levels::default()).unwrap();
+        let (short, long) = (proposal(9.0), proposal(60.0));
+        for (proposal, minutes) in [(&short, 9.0), (&long, 60.0)] {
+            assert!(proposal.minutes <= minutes + 1e-9 && !proposal.runs.is_empty(), "{proposal:?}");
+            assert!(proposal.runs.iter().all(|run| !run.asks.is_empty()));
+        }
+        let sum = |p: &Proposal| p.questions.iter().map(|q| q.resolved_probability).sum::<f64>();
+        assert!(sum(&long) >= sum(&short), "{:?} {:?}", short.questions, long.questions);
+        let repeated: f64 = long.questions.iter().map(|q| q.by_repeating).sum();
+        assert!(sum(&long) > repeated, "{:?}", long.questions);
+        assert_eq!(propose(known, &rig, 60.0, Levels::default()).unwrap(), long);
+        let nothing = propose(known, &rig, 1.0, Levels::default()).unwrap_err().to_string();
+        assert!(nothing.contains("give more --minutes"), "{nothing}");
+    }
+}

@@ -1,0 +1,211 @@
+//! Questions that a calibration leaves open, and how probably given information answers them.
+
+use nalgebra::DMatrix;
+use statrs::distribution::{ContinuousCDF, Normal};
+
+use super::information::{Trace, covariance_given, visible_squares};
+use crate::effects::{Covariate, Effect, Side, effect_named};
+use crate::inference::{Levels, Model, Term};
+use crate::report::Report;
+
+/// What an answer says no to.
+pub(super) const NONE: &str = "none";
+
+/// Gain, in squares of the noise, by which an effect is seen and told from none: four standard deviations, as for what
+/// counts as visible at all.
+const SEEN: f64 = 16.0;
+/// How much less an effect counts that nobody suspects.
+const UNSUSPECTED: f64 = 0.3;
+/// Largest size of a rival, in units of the size at which a fit of it starts: beyond it, no rig is that wrong.
+const LARGEST_SHARE: f64 = 30.0;
+
+/// Two explanations between which the data could not decide.
+#[derive(Clone, Debug)]
+pub(super) struct Question {
+    /// Ids: the one believed or suspected, and the other or `none`.
+    pub(super) between: [String; 2],
+    /// Each way to ask it: if one is true, by how much does the other fit worse.
+    ways: Vec<Way>,
+    /// Squares by which the wrong one must fit worse.
+    pub(super) needed: f64,
+    /// How much an answer is worth.
+    pub(super) weight: f64,
+}
+
+/// One of the two is true, at a size; the other is fitted.
+#[derive(Clone, Debug)]
+struct Way {
+    /// Column of what is true.
+    truth: usize,
+    /// Its size, in units of the column.
+    size: f64,
+    /// Columns that are fitted.
+    nuisance: Vec<usize>,
+}
+
+impl Question {
+    /// Squares by which the wrong explanation is expected to fit worse, whichever is wrong.
+    pub(super) fn squares(&self, information: &DMatrix<f64>) -> f64 {
+        let of = |way: &Way| way.size * way.size * visible_squares(information, way.truth, &way.nuisance);
+        self.ways.iter().map(of).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Probability that data with this information answer it: the difference of squares of two models scatters about its
+    /// expectation `d^2` with a standard deviation of `2 d`.
+    pub(super) fn probability(&self, information: &DMatrix<f64>) -> f64 {
+        let squares = self.squares(information);
+        if !(squares > 1e-12 && squares.is_finite()) {
+            return 0.0;
+        }
+        let normal = Normal::standard();
+        if self.between[1] == NONE {
+            normal.cdf(squares.sqrt() - self.needed.sqrt())
+        } else {
+            normal.cdf((squares - self.needed) / (2.0 * squares.sqrt()))
+        }
+    }
+
+    /// Words for a run sheet.
+    pub(super) fn words(&self) -> String {
+        match self.between[1].as_str() {
+            NONE => format!("{} or none", self.between[0]),
+            other => format!("{} or {other}", self.between[0]),
+        }
+    }
+}
+
+/// The questions of a report, with the traces that they are about and the effects in them.
+#[derive(Debug, Default)]
+pub(super) struct Agenda {
+    pub(super) questions: Vec<Question>,
+    pub(super) traces: Vec<Trace>,
+    pub(super) effects: Vec<&'static dyn Effect>,
+}
+
+impl Agenda {
+    /// Column of an effect that the model does not have, at the size at which its fit starts.
+    fn absent(&mut self, effect: &'static dyn Effect, model: &Model) -> Option<(usize, f64)> {
+        let values = effect.starts(&model.frame).into_iter().next()?;
+        let size = values.first().copied().unwrap_or(1.0);
+        let known = self
+            .traces
+            .iter()
+            .position(|t| matches!(t, Trace::Absent { effect: e, .. } if e.id() == effect.id()));
+        let at = known.unwrap_or_else(|| {
+            self.traces.push(Trace::Absent { effect, values });
+            self.effects.push(effect);
+            self.traces.len() - 1
+        });
+        Some((model.values().len() + at, size))
+    }
+
+    /// Everything that a report leaves open. `known` gives the information of the data so far, once the columns stand.
+    pub(super) fn of(
+        report: &Report,
+        model: &Model,
+        levels: Levels,
+        known: impl Fn(&[Trace]) -> DMatrix<f64>,
+    ) -> Self {
+        let mut agenda = Self::default();
+        let own: Vec<usize> = (0..model.values().len()).collect();
+        let mut pairs = Vec::new();
+        for found in &report.effects {
+            let Some(term) =
+                model.terms.iter().position(|t| matches!(t, Term::Named(e) if e.id() == found.id))
+            else {
+                continue;
+            };
+            if found.rivals.is_empty() {
+                continue;
+            }
+            agenda.traces.push(Trace::Found { term });
+            let column = own.len() + agenda.traces.len() - 1;
+            if let Term::Named(effect) = &model.terms[term] {
+                agenda.effects.push(*effect);
+            }
+            for rival in &found.rivals {
+                if let Some(effect) = effect_named(&rival.id)
+                    && let Some((other, _)) = agenda.absent(effect, model)
+                {
+                    pairs.push((found, term, column, other));
+                }
+            }
+        }
+        for limit in report.limits.iter().filter(|limit| !limit.excluded) {
+            let Some(effect) = effect_named(&limit.id) else { continue };
+            let Some((column, start)) = agenda.absent(effect, model) else { continue };
+            let size = if effect.parameters().is_empty() { 1.0 } else { limit.typical / start };
+            agenda.ask_whether(effect, column, size, &own, 1.0);
+        }
+        for invisible in &report.invisible {
+            let Some(effect) = effect_named(&invisible.id) else { continue };
+            // What stays in the rig does not change the curve of a part.
+            let asked = agenda.questions.iter().any(|q| q.between[0] == invisible.id);
+            if effect.description().side == Side::Switch && !asked {
+                let Some((column, _)) = agenda.absent(effect, model) else { continue };
+                agenda.ask_whether(effect, column, 1.0, &own, UNSUSPECTED);
+            }
+        }
+        if pairs.is_empty() {
+            return agenda;
+        }
+        let information = known(&agenda.traces);
+        for (found, term, column, other) in pairs {
+            let at = model.term_offset(term);
+            let constants: Vec<usize> = (at..at + model.terms[term].constants()).collect();
+            let base: Vec<usize> = own.iter().copied().filter(|i| !constants.contains(i)).collect();
+            // The size of the rival that comes nearest to what was found.
+            let share = covariance_given(&information, other, column, &base)
+                / covariance_given(&information, other, other, &base).max(1e-12);
+            let with_other: Vec<usize> = base.iter().copied().chain([other]).collect();
+            let sure = surely(found);
+            let ways = vec![
+                Way { truth: column, size: sure, nuisance: with_other },
+                Way {
+                    truth: other,
+                    size: sure * share.clamp(-LARGEST_SHARE, LARGEST_SHARE),
+                    nuisance: own.clone(),
+                },
+            ];
+            let Trace::Absent { effect, .. } = &agenda.traces[other - own.len()] else { continue };
+            agenda.questions.push(Question {
+                between: [found.id.clone(), effect.id().to_owned()],
+                ways,
+                needed: levels.rival,
+                weight: 1.0,
+            });
+        }
+        agenda
+    }
+
+    fn ask_whether(
+        &mut self,
+        effect: &'static dyn Effect,
+        column: usize,
+        size: f64,
+        own: &[usize],
+        weight: f64,
+    ) {
+        self.questions.push(Question {
+            between: [effect.id().to_owned(), NONE.to_owned()],
+            ways: vec![Way { truth: column, size, nuisance: own.to_vec() }],
+            needed: SEEN,
+            weight,
+        });
+    }
+
+    /// Whether an answer may lie along this covariate.
+    pub(super) fn asks_along(&self, covariate: Covariate) -> bool {
+        self.effects.iter().any(|effect| effect.description().covariate == covariate)
+    }
+}
+
+/// Share of an effect's estimated size that is there with a probability of five in six: a plan must not stand on a size
+/// that was overestimated.
+fn surely(found: &crate::report::EffectReport) -> f64 {
+    let size = found.parameters.values().find(|p| p.value.abs() > 0.0);
+    size.map_or(1.0, |p| {
+        let sd = (p.ci95[1] - p.ci95[0]).abs() / (2.0 * 1.96);
+        (1.0 - sd / p.value.abs()).clamp(0.5, 1.0)
+    })
+}

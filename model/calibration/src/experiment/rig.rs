@@ -1,0 +1,219 @@
+//! `rig.toml`: what a rig can do, and what its time costs.
+
+use pinswitch_friction::{Substrate, published};
+use serde::{Deserialize, Serialize};
+
+use crate::toml_text::{place_of, toml_error};
+
+/// The limits of a rig and the minutes of its work. Every field that a file leaves out is that of the paper's rig.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RigLimits {
+    /// Weights at hand, in grams.
+    pub loads_g: Vec<f64>,
+    /// Lowest and highest speed of the actuator, in percent.
+    pub speeds_pct: [f64; 2],
+    /// Shortest and longest pause before a reading, in seconds.
+    pub dwells_s: [f64; 2],
+    /// Layouts at hand, as lists of occupied grooves.
+    pub layouts: Vec<Vec<usize>>,
+    /// Whether silicone without pins can be measured.
+    pub silicone: bool,
+    /// Whether the layouts can be measured on the rigid proxy.
+    pub proxy: bool,
+    /// Length of the stroke, in millimetres.
+    pub stroke_mm: f64,
+    /// Time of one repetition beside its dwell, in seconds.
+    pub seconds_per_repetition: f64,
+    /// Time for another weight, in minutes.
+    pub minutes_per_load_change: f64,
+    /// Time for another layout or substrate, in minutes.
+    pub minutes_per_mount_change: f64,
+    /// Largest force that the load cell may read, in newtons.
+    #[serde(rename = "cell_limit_n")]
+    pub cell_limit_n: f64,
+}
+
+impl Default for RigLimits {
+    /// The paper's rig. The minutes and the limit of the cell are assumed.
+    fn default() -> Self {
+        Self {
+            loads_g: published::WEIGHTS_G.to_vec(),
+            speeds_pct: [40.0, 70.0],
+            dwells_s: [0.3, 30.0],
+            layouts: published::LAYOUTS.iter().map(|l| l.grooves.to_vec()).collect(),
+            silicone: true,
+            proxy: true,
+            stroke_mm: published::STROKE_MM,
+            seconds_per_repetition: 1.5,
+            minutes_per_load_change: 1.5,
+            minutes_per_mount_change: 6.0,
+            cell_limit_n: 100.0,
+        }
+    }
+}
+
+/// Why a file describes no rig.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RigError {
+    /// The text is no such TOML.
+    #[error("{file}: {problem}; `pinswitch init rig` writes one to start from")]
+    Malformed {
+        /// File name as given, with the line.
+        file: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A value that no rig has.
+    #[error("{file}: {field} = {value} is outside {bound}; `pinswitch init rig` shows each field")]
+    Bound {
+        /// File name as given, with the line.
+        file: String,
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        value: String,
+        /// What may stand there.
+        bound: &'static str,
+    },
+}
+
+/// Most weights, and most layouts, of a rig: the search grows with both.
+const MOST: usize = 40;
+
+impl RigLimits {
+    /// Reads a rig. `file` is the name used in errors.
+    ///
+    /// # Errors
+    /// [`RigError`] at the first field that cannot be used.
+    pub fn parse(text: &str, file: &str) -> Result<Self, RigError> {
+        let rig: Self = toml::from_str(text).map_err(|e| {
+            let (file, problem) = toml_error(file, text, &e);
+            RigError::Malformed { file, problem }
+        })?;
+        rig.flaw().map_or(Ok(rig), |(field, value, bound)| {
+            Err(RigError::Bound { file: place_of(file, text, field), field, value, bound })
+        })
+    }
+
+    /// The first value that no rig has.
+    fn flaw(&self) -> Option<(&'static str, String, &'static str)> {
+        let inside = |x: f64, low: f64, high: f64| x >= low && x <= high;
+        let pair = |[low, high]: [f64; 2], least: f64, most: f64| {
+            inside(low, least, most) && inside(high, low, most)
+        };
+        let loads = &self.loads_g;
+        if loads.is_empty() || loads.len() > MOST || loads.iter().any(|g| !inside(*g, 0.0, 1e6)) {
+            return Some(("loads_g", format!("{loads:?}"), "1 to 40 weights of 0 to 1000000 g"));
+        }
+        if !pair(self.speeds_pct, 0.1, 1000.0) {
+            return Some((
+                "speeds_pct",
+                format!("{:?}", self.speeds_pct),
+                "[lowest, highest] within 0.1 to 1000 %",
+            ));
+        }
+        if !pair(self.dwells_s, 0.01, 3600.0) {
+            return Some((
+                "dwells_s",
+                format!("{:?}", self.dwells_s),
+                "[shortest, longest] within 0.01 to 3600 s",
+            ));
+        }
+        let is_layout = |grooves: &Vec<usize>| {
+            !grooves.is_empty()
+                && grooves.is_sorted_by(|a, b| a < b)
+                && grooves.iter().all(|g| (1..=published::GROOVES).contains(g))
+        };
+        if self.layouts.len() > MOST || !self.layouts.iter().all(is_layout) {
+            return Some((
+                "layouts",
+                format!("{:?}", self.layouts),
+                "up to 40 lists of grooves 1..15, ascending",
+            ));
+        }
+        if !self.silicone && self.layouts.is_empty() {
+            return Some((
+                "silicone",
+                "false".to_owned(),
+                "true, or at least one layout: something must be measured",
+            ));
+        }
+        let single = [
+            ("stroke_mm", self.stroke_mm, 1.0, 1e4, "1 to 10000 mm"),
+            ("seconds_per_repetition", self.seconds_per_repetition, 0.01, 600.0, "0.01 to 600 s"),
+            ("minutes_per_load_change", self.minutes_per_load_change, 0.0, 600.0, "0 to 600 min"),
+            ("minutes_per_mount_change", self.minutes_per_mount_change, 0.0, 600.0, "0 to 600 min"),
+            ("cell_limit_n", self.cell_limit_n, 0.1, 1e6, "0.1 to 1000000 N"),
+        ];
+        let wrong = single.into_iter().find(|(_, x, low, high, _)| !inside(*x, *low, *high));
+        wrong.map(|(field, x, _, _, bound)| (field, x.to_string(), bound))
+    }
+
+    /// What can be mounted: silicone alone, each layout on the proxy, each layout on silicone.
+    pub(super) fn contacts(&self) -> Vec<(Substrate, Vec<usize>)> {
+        let mut all = Vec::new();
+        if self.silicone {
+            all.push((Substrate::Silicone, Vec::new()));
+        }
+        if self.proxy {
+            all.extend(self.layouts.iter().map(|pins| (Substrate::Abs, pins.clone())));
+        }
+        all.extend(self.layouts.iter().map(|pins| (Substrate::Silicone, pins.clone())));
+        all
+    }
+
+    /// Speeds to choose from: both ends, and the middle.
+    pub(super) fn speeds(&self) -> Vec<f64> {
+        distinct([self.speeds_pct[0], self.speeds_pct[0].midpoint(self.speeds_pct[1]), self.speeds_pct[1]])
+    }
+
+    /// Pauses to choose from: the paper's where the rig has it, and up to ten seconds of what it can do otherwise. A
+    /// longer pause costs more than it tells.
+    pub(super) fn dwells(&self) -> Vec<f64> {
+        let [low, high] = self.dwells_s;
+        distinct([1.0, published::DWELL_S, 10.0].map(|s: f64| s.clamp(low, high)))
+    }
+}
+
+fn distinct(values: [f64; 3]) -> Vec<f64> {
+    let mut all = values.to_vec();
+    all.dedup();
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rig_says_what_it_cannot_be() {
+        assert_eq!(RigLimits::parse("", "rig.toml").unwrap(), RigLimits::default());
+        for (text, words) in [
+            ("loads_g = []", "rig.toml:1: loads_g = [] is outside 1 to 40 weights"),
+            ("silicone = true\nspeeds_pct = [70, 40]", "rig.toml:2: speeds_pct"),
+            ("dwells_s = [0.0, 3.0]", "dwells_s"),
+            ("layouts = [[16]]", "grooves 1..15"),
+            ("layouts = [[8, 5]]", "ascending"),
+            ("layouts = []\nsilicone = false", "rig.toml:2: silicone"),
+            ("stroke_mm = nan", "stroke_mm = NaN"),
+            ("cell_limit_n = 0", "cell_limit_n"),
+            ("colour = 3", "rig.toml:1: unknown field `colour`"),
+        ] {
+            let error = RigLimits::parse(text, "rig.toml").unwrap_err().to_string();
+            assert!(error.contains(words) && error.contains("init rig"), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_paper_s_rig_has_seven_contacts_and_three_speeds() {
+        let rig = RigLimits::default();
+        assert_eq!(
+            (rig.contacts().len(), rig.speeds(), rig.dwells()),
+            (7, vec![40.0, 55.0, 70.0], vec![1.0, 3.0, 10.0])
+        );
+        let fixed = RigLimits { speeds_pct: [50.0, 50.0], dwells_s: [3.0, 3.0], ..rig };
+        assert_eq!((fixed.speeds(), fixed.dwells()), (vec![50.0], vec![3.0]));
+    }
+}

@@ -1,0 +1,304 @@
+//! `next-runs.csv`: series to record, in order, and the rows that they will give.
+
+use pinswitch_friction::{Direction, Substrate, published};
+
+use super::rig::RigLimits;
+use crate::table::{Labels, PlateauRow, Sweep, substrate_word};
+
+/// One series to record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedRun {
+    /// What the tendon lies on.
+    pub substrate: Substrate,
+    /// Occupied grooves, ascending.
+    pub pins: Vec<usize>,
+    /// Order of the loads that it stands in.
+    pub sweep: Sweep,
+    /// The weight, in grams.
+    pub load_mass_g: f64,
+    /// Speed, in percent.
+    pub speed_pct: f64,
+    /// Pause before a reading, in seconds.
+    pub dwell_s: f64,
+    /// Repetitions, eccentric and concentric.
+    pub repetitions: [u32; 2],
+    /// How often the switch was mounted before, from 1.
+    pub mount: usize,
+    /// Time that it takes, changes before it included, in minutes.
+    pub minutes: f64,
+    /// What it is recorded for.
+    pub asks: String,
+}
+
+impl PlannedRun {
+    /// Time of its repetitions alone, in minutes.
+    pub(super) fn recording_minutes(&self, rig: &RigLimits) -> f64 {
+        f64::from(self.repetitions[0] + self.repetitions[1]) * (rig.seconds_per_repetition + self.dwell_s)
+            / 60.0
+    }
+
+    /// Whether the same contact is mounted.
+    pub(super) fn is_mounted_as(&self, other: &Self) -> bool {
+        self.substrate == other.substrate && self.pins == other.pins
+    }
+}
+
+/// The columns of `next-runs.csv`.
+const COLUMNS: [&str; 12] = [
+    "series",
+    "substrate",
+    "pins",
+    "sweep",
+    "load_mass_g",
+    "speed_pct",
+    "dwell_s",
+    "repetitions_eccentric",
+    "repetitions_concentric",
+    "mount",
+    "minutes",
+    "asks",
+];
+
+/// Why a text lists no runs.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunsError {
+    /// A column is not there.
+    #[error("{file}: column '{column}' is missing; use the file as `experiment` wrote it")]
+    MissingColumn {
+        /// File name as given.
+        file: String,
+        /// The column.
+        column: &'static str,
+    },
+    /// A cell that no run has.
+    #[error("{file}:{line}: {column} = '{value}' is outside {bound}")]
+    Cell {
+        /// File name as given.
+        file: String,
+        /// Its line.
+        line: u64,
+        /// Its column.
+        column: &'static str,
+        /// What stands there, shortened.
+        value: String,
+        /// What may stand there.
+        bound: &'static str,
+    },
+    /// The text is no CSV, or has too few or too many lines.
+    #[error("{file}: {problem}; use the file as `experiment` wrote it")]
+    Malformed {
+        /// File name as given.
+        file: String,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+/// Most series of a plan, and most repetitions of one: a slip, rather than a plan, beyond it.
+const MOST_RUNS: usize = 10_000;
+const MOST_REPETITIONS: u32 = 1000;
+
+/// The runs as CSV.
+pub fn write_runs(runs: &[PlannedRun]) -> String {
+    let mut text = COLUMNS.join(",") + "\n";
+    for (i, run) in runs.iter().enumerate() {
+        let pins: Vec<String> = run.pins.iter().map(usize::to_string).collect();
+        let cells = [
+            (i + 1).to_string(),
+            run.substrate.as_str().to_owned(),
+            pins.join(";"),
+            run.sweep.as_str().to_owned(),
+            run.load_mass_g.to_string(),
+            run.speed_pct.to_string(),
+            run.dwell_s.to_string(),
+            run.repetitions[0].to_string(),
+            run.repetitions[1].to_string(),
+            run.mount.to_string(),
+            format!("{:.1}", run.minutes),
+            run.asks.clone(),
+        ];
+        text += &(cells.join(",") + "\n");
+    }
+    text
+}
+
+/// Reads runs. `file` is the name used in errors.
+///
+/// # Errors
+/// [`RunsError`] at the first cell that no run has.
+pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, RunsError> {
+    let malformed = |problem: String| RunsError::Malformed { file: file.to_owned(), problem };
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| malformed(e.to_string()))?.clone();
+    let mut at = [0; COLUMNS.len()];
+    for (place, column) in at.iter_mut().zip(COLUMNS) {
+        let found = header.iter().position(|name| name.trim_start_matches('\u{feff}') == column);
+        *place = found.ok_or_else(|| RunsError::MissingColumn { file: file.to_owned(), column })?;
+    }
+    let mut runs = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|e| malformed(e.to_string()))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let cell = |column: usize| record.get(at[column]).unwrap_or_default();
+        let refuse = |column: usize, bound: &'static str| RunsError::Cell {
+            file: file.to_owned(),
+            line,
+            column: COLUMNS[column],
+            value: cell(column).chars().take(60).collect(),
+            bound,
+        };
+        let number = |column: usize, low: f64, high: f64, bound: &'static str| {
+            let value: Option<f64> = cell(column).parse().ok();
+            value.filter(|x| (low..=high).contains(x)).ok_or_else(|| refuse(column, bound))
+        };
+        let count = |column: usize| {
+            let value: Option<u32> = cell(column).parse().ok();
+            value.filter(|n| *n <= MOST_REPETITIONS).ok_or_else(|| refuse(column, "0 to 1000"))
+        };
+        let pins: Option<Vec<usize>> =
+            cell(2).split(';').filter(|p| !p.is_empty()).map(|p| p.trim().parse().ok()).collect();
+        let is_layout = |p: &Vec<usize>| {
+            p.is_sorted_by(|a, b| a < b) && p.iter().all(|g| (1..=published::GROOVES).contains(g))
+        };
+        let run = PlannedRun {
+            substrate: match cell(1) {
+                "silicone" => Substrate::Silicone,
+                "abs" => Substrate::Abs,
+                _ => return Err(refuse(1, "silicone or abs")),
+            },
+            pins: pins
+                .filter(is_layout)
+                .ok_or_else(|| refuse(2, "grooves 1..15, ascending, with ; between"))?,
+            sweep: match cell(3) {
+                "up" => Sweep::Up,
+                "down" => Sweep::Down,
+                _ => return Err(refuse(3, "up or down")),
+            },
+            load_mass_g: number(4, 0.0, 1e6, "0 to 1000000 g")?,
+            speed_pct: number(5, 0.1, 1e3, "0.1 to 1000 %")?,
+            dwell_s: number(6, 0.01, 3600.0, "0.01 to 3600 s")?,
+            repetitions: [count(7)?, count(8)?],
+            mount: cell(9).parse().ok().filter(|n| *n <= MOST_RUNS).ok_or_else(|| refuse(9, "1 to 10000"))?,
+            minutes: number(10, 0.0, 1e6, "0 to 1000000")?,
+            asks: cell(11).to_owned(),
+        };
+        if run.substrate == Substrate::Abs && run.pins.is_empty() {
+            return Err(refuse(2, "at least one groove on abs"));
+        }
+        if run.repetitions == [0, 0] {
+            return Err(refuse(7, "1 to 1000, or some concentric ones"));
+        }
+        runs.push(run);
+        if runs.len() > MOST_RUNS {
+            return Err(malformed(format!("more than {MOST_RUNS} runs")));
+        }
+    }
+    if runs.is_empty() { Err(malformed("no run".to_owned())) } else { Ok(runs) }
+}
+
+/// The rows that runs give one after the other, with zero forces. `session` names them all.
+pub fn rows_of(runs: &[PlannedRun], rig: &RigLimits, session: &str) -> Vec<PlateauRow> {
+    let (mut rows, mut time_s) = (Vec::new(), 0.0);
+    for (i, run) in runs.iter().enumerate() {
+        time_s += 60.0 * (run.minutes - run.recording_minutes(rig)).max(0.0);
+        append(run, &(i + 1).to_string(), session, rig, &mut time_s, &mut rows);
+    }
+    rows
+}
+
+/// Appends the rows of one run that begins at `time_s`: all eccentric, then all concentric.
+pub(super) fn append(
+    run: &PlannedRun,
+    series: &str,
+    session: &str,
+    rig: &RigLimits,
+    time_s: &mut f64,
+    rows: &mut Vec<PlateauRow>,
+) {
+    for (direction, count) in
+        [(Direction::Eccentric, run.repetitions[0]), (Direction::Concentric, run.repetitions[1])]
+    {
+        for repetition in 1..=count {
+            *time_s += rig.seconds_per_repetition + run.dwell_s;
+            let share = (f64::from(repetition) - 0.5) / f64::from(count);
+            let position = if direction == Direction::Eccentric { share } else { 1.0 - share };
+            rows.push(PlateauRow {
+                series: series.to_owned(),
+                substrate: Some(run.substrate),
+                pins: run.pins.clone(),
+                sweep: run.sweep,
+                load_mass_g: run.load_mass_g,
+                load_n: published::load_n(run.load_mass_g),
+                speed_pct: run.speed_pct,
+                dwell_s: run.dwell_s,
+                direction,
+                repetition,
+                position_mm: rig.stroke_mm * position,
+                time_s: *time_s,
+                force_n: 0.0,
+                wrap_angle_deg: published::WRAP_ANGLE_DEG,
+                labels: Labels {
+                    session: session.to_owned(),
+                    mount: run.mount.to_string(),
+                    ..Labels::default()
+                },
+            });
+        }
+    }
+}
+
+/// A contact in words: `silicone`, `abs 5;8;11`.
+pub fn contact_words(run: &PlannedRun) -> String {
+    let pins: Vec<String> = run.pins.iter().map(usize::to_string).collect();
+    format!("{} {}", substrate_word(Some(run.substrate)), pins.join(";")).trim_end().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(load_mass_g: f64) -> PlannedRun {
+        PlannedRun {
+            substrate: Substrate::Silicone,
+            pins: vec![5, 8, 11],
+            sweep: Sweep::Down,
+            load_mass_g,
+            speed_pct: 40.0,
+            dwell_s: 3.0,
+            repetitions: [4, 5],
+            mount: 2,
+            minutes: 3.7,
+            asks: "rate_dependence or fixture_compliance".to_owned(),
+        }
+    }
+
+    #[test]
+    fn runs_survive_the_round_trip_and_give_their_rows() {
+        let runs = vec![run(251.2), run(5002.5)];
+        let text = write_runs(&runs);
+        assert_eq!(read_runs(&text, "next-runs.csv").unwrap(), runs);
+        let rows = rows_of(&runs, &RigLimits::default(), "next");
+        assert_eq!(rows.len(), 18);
+        assert!(rows.is_sorted_by(|a, b| a.time_s < b.time_s));
+        assert_eq!((rows[9].series.as_str(), rows[9].labels.mount.as_str()), ("2", "2"));
+    }
+
+    #[test]
+    fn cells_that_no_run_has_are_named() {
+        let good = write_runs(&[run(251.2)]);
+        for (from, to, words) in [
+            ("silicone", "glass", "2: substrate = 'glass'"),
+            ("5;8;11", "5;16", "pins"),
+            ("251.2", "nan", "load_mass_g"),
+            (",4,5,", ",0,0,", "repetitions_eccentric"),
+            (",4,5,", ",4,5000,", "repetitions_concentric = '5000' is outside 0 to 1000"),
+            ("dwell_s", "dwell", "column 'dwell_s' is missing"),
+            ("down", "sideways", "up or down"),
+        ] {
+            let error = read_runs(&good.replacen(from, to, 1), "r.csv").unwrap_err().to_string();
+            assert!(error.starts_with("r.csv") && error.contains(words), "{error}");
+        }
+        assert!(read_runs(&good[..good.find('\n').unwrap() + 1], "r.csv").is_err());
+    }
+}

@@ -1,0 +1,112 @@
+//! Which runs to make in the time there is: those that gain most per minute, one after the other, then each exchanged for
+//! a better one (a greedy batch with exchange, as Fedorov's).
+
+use nalgebra::DMatrix;
+
+use super::candidates::Candidate;
+use super::question::Question;
+use super::rig::RigLimits;
+
+/// Squares beyond which an answer is as good as certain, in units of those needed.
+const ENOUGH: f64 = 3.0;
+/// Rounds of exchanges.
+const ROUNDS: usize = 2;
+
+/// What information is worth: for each question the logarithm of the squares expected, so that none is answered at the
+/// cost of all others.
+fn worth(questions: &[Question], information: &DMatrix<f64>) -> f64 {
+    questions
+        .iter()
+        .map(|q| q.weight * (1.0 + (q.squares(information) / q.needed).clamp(0.0, ENOUGH)).ln())
+        .sum()
+}
+
+/// Candidates with the information of each, and what there is to ask.
+#[derive(Debug)]
+pub(super) struct Search<'a> {
+    pub(super) candidates: &'a [Candidate],
+    pub(super) information: &'a [DMatrix<f64>],
+    pub(super) questions: &'a [Question],
+    pub(super) rig: &'a RigLimits,
+    pub(super) minutes: f64,
+}
+
+impl Search<'_> {
+    /// Places of the candidates to run.
+    pub(super) fn run(&self, known: &DMatrix<f64>) -> Vec<usize> {
+        let (mut chosen, mut total) = (Vec::new(), known.clone());
+        while let Some(next) = self.best(&chosen, &total) {
+            total += &self.information[next];
+            chosen.push(next);
+        }
+        for _ in 0..ROUNDS {
+            let mut is_better = false;
+            for place in 0..chosen.len() {
+                let old = chosen.remove(place);
+                let without = &total - &self.information[old];
+                let before = worth(self.questions, &total);
+                let new = self.best(&chosen, &without).unwrap_or(old);
+                let with = &without + &self.information[new];
+                let kept = if worth(self.questions, &with) > before + 1e-6 { new } else { old };
+                is_better |= kept != old;
+                total = &without + &self.information[kept];
+                chosen.insert(place, kept);
+            }
+            if !is_better {
+                break;
+            }
+        }
+        // An exchange may have left time over.
+        while let Some(next) = self.best(&chosen, &total) {
+            total += &self.information[next];
+            chosen.push(next);
+        }
+        chosen
+    }
+
+    /// Minutes of a choice: recording, changes of load, and one mounting for each contact and time.
+    pub(super) fn minutes_of(&self, chosen: &[usize]) -> f64 {
+        let mut minutes = 0.0;
+        for (i, c) in chosen.iter().enumerate() {
+            let candidate = &self.candidates[*c];
+            let is_mounted = chosen[..i].iter().any(|b| self.candidates[*b].shares_mount(candidate));
+            minutes += candidate.minutes(self.rig);
+            minutes += if is_mounted { 0.0 } else { self.rig.minutes_per_mount_change };
+        }
+        minutes
+    }
+
+    /// The candidate that gains most per minute, of those for which there is time; `None` if none gains anything.
+    fn best(&self, chosen: &[usize], total: &DMatrix<f64>) -> Option<usize> {
+        let before = worth(self.questions, total);
+        let left = self.minutes - self.minutes_of(chosen);
+        let mut best = None;
+        for (i, candidate) in self.candidates.iter().enumerate() {
+            if chosen.contains(&i) {
+                continue;
+            }
+            let is_mounted = chosen.iter().any(|c| self.candidates[*c].shares_mount(candidate));
+            let mounting = if is_mounted { 0.0 } else { self.rig.minutes_per_mount_change };
+            let minutes = candidate.minutes(self.rig) + mounting;
+            if minutes > left {
+                continue;
+            }
+            let gain = (worth(self.questions, &(total + &self.information[i])) - before) / minutes.max(0.1);
+            if gain > 1e-6 && best.is_none_or(|(most, _)| gain > most) {
+                best = Some((gain, i));
+            }
+        }
+        best.map(|(_, i)| i)
+    }
+
+    /// The question that a chosen run does most for: the one that suffers most without it.
+    pub(super) fn purpose(&self, place: usize, chosen: &[usize], known: &DMatrix<f64>) -> Option<&Question> {
+        let all = chosen.iter().fold(known.clone(), |sum, c| sum + &self.information[*c]);
+        let without = &all - &self.information[chosen[place]];
+        let loss = |q: &Question| {
+            let of = |information| (1.0 + q.squares(information) / q.needed).ln();
+            of(&all) - of(&without)
+        };
+        self.questions.iter().max_by(|a, b| loss(a).total_cmp(&loss(b)))
+    }
+}

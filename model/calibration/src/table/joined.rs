@@ -1,0 +1,82 @@
+//! Tables of several sessions as one.
+
+use super::columns::LABELS;
+use super::plateau_table::PlateauTable;
+use super::table_error::TableError;
+
+/// The column that names the session.
+const SESSION: &str = LABELS[0];
+
+impl PlateauTable {
+    /// One table of several, each with its name: the rows of a table without a column `session` are a session of that name.
+    /// Columns that a table lacks are empty in its rows.
+    ///
+    /// # Errors
+    /// [`TableError::Session`] if two tables hold rows of one session: their times and series would be mixed up.
+    pub fn joined(tables: Vec<(Self, String)>) -> Result<Self, TableError> {
+        let mut sessions: Vec<(String, String)> = Vec::new();
+        let mut all = Self { rows: Vec::new(), header: Vec::new(), cells: Vec::new() };
+        for (mut table, file) in tables {
+            if !table.header.iter().any(|name| name == SESSION) {
+                table.header.push(SESSION.to_owned());
+                table.cells.iter_mut().for_each(|cells| cells.push(file.clone()));
+                table.rows.iter_mut().for_each(|row| row.labels.session.clone_from(&file));
+            }
+            let own: std::collections::BTreeSet<&String> =
+                table.rows.iter().map(|r| &r.labels.session).collect();
+            for session in own {
+                if let Some((_, other)) = sessions.iter().find(|(known, _)| known == session) {
+                    let (session, other) = (session.clone(), other.clone());
+                    return Err(TableError::Session { file, other, session });
+                }
+            }
+            let own: std::collections::BTreeSet<String> =
+                table.rows.iter().map(|r| r.labels.session.clone()).collect();
+            sessions.extend(own.into_iter().map(|session| (session, file.clone())));
+            for name in &table.header {
+                if !all.header.contains(name) {
+                    all.header.push(name.clone());
+                    all.cells.iter_mut().for_each(|cells| cells.push(String::new()));
+                }
+            }
+            let places: Vec<Option<usize>> =
+                all.header.iter().map(|name| table.header.iter().position(|own| own == name)).collect();
+            all.cells.extend(table.cells.iter().map(|cells| {
+                let cell =
+                    |place: &Option<usize>| place.and_then(|i| cells.get(i)).cloned().unwrap_or_default();
+                places.iter().map(cell).collect()
+            }));
+            all.rows.extend(table.rows);
+        }
+        Ok(all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADER: &str = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N";
+
+    fn table(header: &str, cells: &str) -> PlateauTable {
+        let text = format!("{header}\n1,silicone,,up,0,10,50,3,eccentric,1,12.7,4.5,9.6{cells}\n");
+        PlateauTable::read(text.as_bytes(), "t.csv").unwrap()
+    }
+
+    #[test]
+    fn each_file_is_a_session_unless_it_says_so() {
+        let first = table(&format!("{HEADER},room"), ",cold");
+        let second = table(&format!("{HEADER},session,mount"), ",tuesday,2");
+        let all =
+            PlateauTable::joined(vec![(first.clone(), "a.csv".into()), (second, "b.csv".into())]).unwrap();
+        let sessions: Vec<_> = all.rows.iter().map(|r| r.labels.session.as_str()).collect();
+        assert_eq!(sessions, ["a.csv", "tuesday"]);
+        let text = all.with_columns(&[], &[], 1);
+        let lines: Vec<_> = text.lines().collect();
+        assert_eq!(lines[0], format!("{HEADER},room,session,mount"));
+        assert!(lines[1].ends_with(",9.6,cold,a.csv,") && lines[2].ends_with(",9.6,,tuesday,2"), "{text}");
+        let twice = PlateauTable::joined(vec![(first.clone(), "a.csv".into()), (first, "a.csv".into())]);
+        let error = twice.unwrap_err().to_string();
+        assert!(error.contains("a.csv") && error.contains("session"), "{error}");
+    }
+}

@@ -3,7 +3,7 @@
 use pinswitch_friction::Substrate;
 
 use crate::aliasing::aliasing;
-use crate::effects::CATALOGUE;
+use crate::effects::Vocabulary;
 use crate::held_out::held_out;
 use crate::inference::{
     CandidateEffect, Fit, FoundEffect, Levels, MOST_ROWS, Model, Noise, Observations, Rival, Selection, Term,
@@ -33,6 +33,18 @@ pub enum CalibrationError {
         /// Rows that could.
         needed: usize,
     },
+    /// An effect of one's own has no value on the table.
+    #[error(
+        "effect '{id}' has no number at its start values in row {row} ({told}); guard its formula with max or min"
+    )]
+    NoValue {
+        /// Its id.
+        id: String,
+        /// Row of the table, from 1.
+        row: usize,
+        /// Where that row lies.
+        told: String,
+    },
 }
 
 /// A report with the fits behind it.
@@ -49,7 +61,7 @@ pub struct Calibration {
 /// Rows beyond the baseline's constants without which any misfit would be many times a noise that nobody knows.
 const ROWS_FOR_NOISE: usize = 8;
 
-/// Calibrates a table.
+/// Calibrates a table, with the built-in effects.
 ///
 /// ```
 /// use pinswitch_calibration::inference::Levels;
@@ -80,14 +92,27 @@ const ROWS_FOR_NOISE: usize = 8;
 /// # Errors
 /// [`CalibrationError::TooFewRows`] if the rows cannot fix the baseline.
 pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, CalibrationError> {
+    calibrate_among(rows, &Vocabulary::built_in(), levels)
+}
+
+/// Calibrates a table, with the effects of a vocabulary.
+///
+/// # Errors
+/// [`CalibrationError`] if the rows cannot fix the baseline, or if an effect of one's own has no value on them.
+pub fn calibrate_among(
+    rows: &[PlateauRow],
+    vocabulary: &Vocabulary,
+    levels: Levels,
+) -> Result<Calibration, CalibrationError> {
     let frame = Frame::new(rows);
-    let start = Model::baseline(frame.clone());
+    let start = Model::baseline(frame.clone()).among(vocabulary);
     let needed = start.values().len() + ROWS_FOR_NOISE;
     let too_few = CalibrationError::TooFewRows { found: rows.len(), needed };
     let mut whole = Observations::new(&frame, rows).ok_or_else(|| too_few.clone())?;
     if rows.len() < needed {
         return Err(too_few);
     }
+    check_own_effects(&start, &whole, rows)?;
     let mut data = if whole.points.len() > MOST_ROWS {
         let rough = fit(&start, &Weighed::new(&whole, Noise::constant(0.1, 0.03)));
         let sd = whole.weigh_outliers(&rough.residual_n);
@@ -115,6 +140,28 @@ pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, Cal
     }
     let data = whole;
     Ok(Calibration { report, selection, data })
+}
+
+/// Every effect of one's own has a number on every row, wherever its fit may start.
+fn check_own_effects(
+    baseline: &Model,
+    data: &Observations,
+    rows: &[PlateauRow],
+) -> Result<(), CalibrationError> {
+    let vocabulary = &baseline.vocabulary;
+    for effect in vocabulary.own().filter_map(|own| vocabulary.named(&own.definition().id)) {
+        for start in effect.starts(&baseline.frame) {
+            let predicted = baseline.with_term(Term::Named(effect), &start).predict(&data.points);
+            if let Some(row) = predicted.iter().position(|n| !n.is_finite()) {
+                let PlateauRow { load_n, speed_pct, dwell_s, repetition, time_s, .. } = &rows[row];
+                let told = format!(
+                    "load_n {load_n}, speed_pct {speed_pct}, dwell_s {dwell_s}, repetition {repetition}, time_s {time_s}"
+                );
+                return Err(CalibrationError::NoValue { id: effect.id().to_owned(), row: row + 1, told });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A constant with its interval, which ends at the bounds of a shape.
@@ -286,6 +333,9 @@ fn limits(selection: &Selection) -> Vec<LimitReport> {
             low: limit.interval[0],
             high: limit.interval[1],
             typical: limit.typical,
+            unit: limit.effect.parameters().first().map_or("1", |p| p.unit).to_owned(),
+            one_sided: limit.effect.description().one_sided,
+            experiment: limit.effect.description().experiment.to_owned(),
             excluded: limit.is_excluded(),
         })
         .collect()
@@ -345,7 +395,8 @@ fn candidates(selection: &Selection, data: &Observations, levels: Levels) -> Vec
         .candidates
         .iter()
         .map(|candidate| {
-            let p_value = family_p_value(candidate.gain, CATALOGUE.len(), degrees);
+            let p_value =
+                family_p_value(candidate.gain, selection.baseline.model.vocabulary.count(), degrees);
             CandidateReport {
                 id: candidate.effect.id().to_owned(),
                 gain: candidate.gain.max(0.0),
@@ -388,7 +439,7 @@ fn named_report(
         covariate: told.covariate.as_str().to_owned(),
         side: Some(told.side.as_str().to_owned()),
         formula: found.effect.cited_formula(),
-        p_value: family_p_value(found.gain, CATALOGUE.len(), degrees),
+        p_value: family_p_value(found.gain, selection.baseline.model.vocabulary.count(), degrees),
         parameters: told
             .parameters
             .iter()
@@ -492,6 +543,7 @@ fn bad_series(rows: &[PlateauRow], selection: &Selection, weighed: &Weighed<'_>)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::CATALOGUE;
     use crate::test_session::session;
 
     fn fates(levels: Levels) -> Vec<Fate> {

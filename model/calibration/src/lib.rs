@@ -46,7 +46,7 @@ mod test_session;
 mod toml_text;
 
 pub use aliasing::{Aliasing, aliasing};
-pub use calibrate::{Calibration, CalibrationError, calibrate};
+pub use calibrate::{Calibration, CalibrationError, calibrate, calibrate_among};
 pub use extrapolation::calibrate_below;
 pub use held_out::{HeldOut, held_out};
 pub use layouts_left_out::layouts_left_out;

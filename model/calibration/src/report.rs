@@ -209,6 +209,15 @@ pub struct LimitReport {
     pub high: f64,
     /// Size that changes friction, or the reading, by 5 % somewhere in the table.
     pub typical: f64,
+    /// Unit of the size.
+    #[serde(default)]
+    pub unit: String,
+    /// Whether the size cannot be negative.
+    #[serde(default)]
+    pub one_sided: bool,
+    /// The experiment that would settle it.
+    #[serde(default)]
+    pub experiment: String,
     /// Whether every size left is smaller than the typical one.
     pub excluded: bool,
 }

@@ -4,7 +4,6 @@ use super::fit::{Fit, fit, jacobian};
 use super::forward::{Model, Term};
 use super::observations::Observations;
 use super::weighed::Weighed;
-use crate::effects::acting_order;
 
 /// The refitted paper's model from several starts: a stuck fit is indistinguishable from missing physics.
 pub(super) fn fit_baseline(model: &Model, weighed: &Weighed<'_>) -> Fit {
@@ -43,7 +42,7 @@ pub(super) fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
         }
         return columns;
     }
-    for effect in acting_order() {
+    for effect in fitted.model.vocabulary.acting_order() {
         for start in effect.starts(&fitted.model.frame) {
             let changed = fitted.model.with_term(Term::Named(*effect), &start).predict(&data.points);
             columns.push(changed.iter().zip(&predicted).map(|(c, p)| c - p).collect());

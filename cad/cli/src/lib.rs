@@ -69,6 +69,7 @@ mod failure;
 mod finger_text;
 mod input;
 mod law;
+mod own_effects;
 mod predict_rows;
 mod range;
 mod source;
@@ -121,6 +122,7 @@ commands! {
     Init: init,
     Segment: segment,
     Calibrate: calibrate,
+    Effects: effects,
     Simulate: simulate,
     Power: power,
     Completions: completions,

@@ -21,7 +21,7 @@ pub use description::{Description, PaperProtocol, Parameter, Side, Stage, StudyR
 pub(crate) use own::effects_of_model;
 pub use own::{
     DefinitionError, EffectDefinition, OwnEffect, OwnEffectError, OwnParameter, formula_variables,
-    own_effect_blocks, own_effects_text,
+    own_effect_blocks, own_effects_text, read_own_effects,
 };
 pub use structure::{Channel, Shape, Structure};
 pub use vocabulary::Vocabulary;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::own::{DefinitionError, LeakedEffect, OwnEffect, OwnEffectError, duplicate, effects_of_file};
+use super::own::{DefinitionError, LeakedEffect, OwnEffect, OwnEffectError, duplicate, read_own_effects};
 use super::{CATALOGUE, Effect};
 
 /// A list of effects, in the order of the catalogue and in that in which they act. A clone shares it.
@@ -66,7 +66,7 @@ impl Vocabulary {
     /// # Errors
     /// [`OwnEffectError`] with line and column.
     pub fn read(&self, text: &str, file: &str) -> Result<Self, OwnEffectError> {
-        Ok(self.joined(effects_of_file(text, file, self)?))
+        Ok(self.joined(read_own_effects(text, file, self)?))
     }
 
     /// The same with more effects of one's own. They stay in memory as long as the program runs.

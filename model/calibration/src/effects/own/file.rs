@@ -71,8 +71,12 @@ impl Source<'_> {
     }
 }
 
-/// The effects of a file, in addition to those of a vocabulary.
-pub(crate) fn effects_of_file(
+/// The effects of a file, in addition to those of a vocabulary, which [`Vocabulary::with`] makes them part of. `file` is the
+/// name used in errors.
+///
+/// # Errors
+/// [`OwnEffectError`] at the first thing that is wrong.
+pub fn read_own_effects(
     text: &str,
     file: &str,
     vocabulary: &Vocabulary,

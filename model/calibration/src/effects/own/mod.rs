@@ -7,6 +7,8 @@ mod definition;
 mod expression;
 mod file;
 mod probe;
+#[cfg(test)]
+mod tests;
 mod token;
 mod unit;
 mod unit_check;
@@ -14,8 +16,8 @@ mod variable;
 mod writer;
 
 pub use definition::{DefinitionError, EffectDefinition, OwnParameter};
-pub use file::OwnEffectError;
-pub(crate) use file::{effects_of_file, effects_of_model};
+pub use file::{OwnEffectError, read_own_effects};
+pub(crate) use file::effects_of_model;
 pub use writer::{own_effect_blocks, own_effects_text};
 
 use expression::Node;

@@ -11,6 +11,7 @@ use crate::inference::{
     select,
 };
 use crate::layouts_left_out::layouts_left_out;
+use crate::own_values::has_values;
 use crate::promise::{Promise, promise};
 use crate::report::{
     BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Fate, Invisible, LimitReport,
@@ -112,7 +113,7 @@ pub fn calibrate_among(
     if rows.len() < needed {
         return Err(too_few);
     }
-    check_own_effects(&start, &whole, rows)?;
+    has_values(&start, &whole, rows)?;
     let mut data = if whole.points.len() > MOST_ROWS {
         let rough = fit(&start, &Weighed::new(&whole, Noise::constant(0.1, 0.03)));
         let sd = whole.weigh_outliers(&rough.residual_n);
@@ -140,28 +141,6 @@ pub fn calibrate_among(
     }
     let data = whole;
     Ok(Calibration { report, selection, data })
-}
-
-/// Every effect of one's own has a number on every row, wherever its fit may start.
-fn check_own_effects(
-    baseline: &Model,
-    data: &Observations,
-    rows: &[PlateauRow],
-) -> Result<(), CalibrationError> {
-    let vocabulary = &baseline.vocabulary;
-    for effect in vocabulary.own().filter_map(|own| vocabulary.named(&own.definition().id)) {
-        for start in effect.starts(&baseline.frame) {
-            let predicted = baseline.with_term(Term::Named(effect), &start).predict(&data.points);
-            if let Some(row) = predicted.iter().position(|n| !n.is_finite()) {
-                let PlateauRow { load_n, speed_pct, dwell_s, repetition, time_s, .. } = &rows[row];
-                let told = format!(
-                    "load_n {load_n}, speed_pct {speed_pct}, dwell_s {dwell_s}, repetition {repetition}, time_s {time_s}"
-                );
-                return Err(CalibrationError::NoValue { id: effect.id().to_owned(), row: row + 1, told });
-            }
-        }
-    }
-    Ok(())
 }
 
 /// A constant with its interval, which ends at the bounds of a shape.

@@ -35,6 +35,7 @@ mod layouts_left_out;
 mod median;
 mod model_check;
 mod model_file;
+mod own_values;
 mod part_curve;
 mod promise;
 mod published_maxima;

@@ -129,7 +129,7 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 /// assert!((with / model.predict(&points)[0] - (1.0 + 0.02 * 10f64.ln())).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub trait Effect: Debug + Send + Sync {
+pub trait Effect: Debug + Sync {
     /// What is known and said of it.
     fn description(&self) -> &'static Description;
 

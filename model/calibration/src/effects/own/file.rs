@@ -8,13 +8,13 @@ use toml::de::{DeTable, DeValue};
 
 use super::OwnEffect;
 use super::definition::{DefinitionError, EffectDefinition, OwnParameter, Part};
-use super::expression::unknown;
+use super::parser::unknown;
 use crate::effects::{ActsOn, Combine, Covariate, Side, Vocabulary};
 
 /// Name and version of the format.
 pub(super) const SCHEMA: &str = "pinswitch.effects/1";
 /// Most effects of a file.
-const MAX_EFFECTS: usize = 64;
+const MAX_EFFECTS: usize = 32;
 /// Most bytes of a file.
 const MAX_BYTES: usize = 1 << 20;
 

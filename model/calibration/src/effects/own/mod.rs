@@ -6,6 +6,7 @@
 mod definition;
 mod expression;
 mod file;
+mod parser;
 mod probe;
 #[cfg(test)]
 mod tests;
@@ -16,8 +17,8 @@ mod variable;
 mod writer;
 
 pub use definition::{DefinitionError, EffectDefinition, OwnParameter};
-pub use file::{OwnEffectError, read_own_effects};
 pub(crate) use file::effects_of_model;
+pub use file::{OwnEffectError, read_own_effects};
 pub use writer::{own_effect_blocks, own_effects_text};
 
 use expression::Node;

@@ -27,7 +27,7 @@ use super::{CATALOGUE, Effect};
 /// let vocabulary = Vocabulary::built_in().read(text, "mine.toml")?;
 /// assert_eq!(vocabulary.count(), 22);
 /// let error = vocabulary.read(&text.replace("speed_pct", "sped_pct"), "mine.toml").unwrap_err();
-/// assert_eq!(error.to_string(), "mine.toml:9:25: unknown variable 'sped_pct'; did you mean speed_pct?");
+/// assert_eq!(error.to_string(), "mine.toml:9:24: unknown variable 'sped_pct'; did you mean speed_pct?");
 /// # Ok::<(), pinswitch_calibration::effects::OwnEffectError>(())
 /// ```
 #[derive(Clone, Debug)]

@@ -239,7 +239,9 @@ impl EffectDefinition {
                     format!("no number at its start values {}; guard it with max or min", probe.told());
                 return Err(formula(text));
             }
-            if let Some(left) = gone.iter().map(|k| node.value(k, &moment)).find(|v| !(v.abs() < 1e-9)) {
+            if let Some(left) =
+                gone.iter().map(|k| node.value(k, &moment)).find(|v| v.is_nan() || v.abs() >= 1e-9)
+            {
                 let text = format!(
                     "with all sizes zero it must be zero, and is {left:.4} {}; mark every constant that makes it vanish as a \
                      size, or subtract what is left",

@@ -6,12 +6,12 @@
 //! `cargo run --release --example custom_effect`
 
 use pinswitch_calibration::effects::{
-    Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
 use pinswitch_calibration::inference::{
     Model, Noise, Observations, Term, Weighed, fit, interval_half_widths,
 };
-use pinswitch_calibration::table::{Frame, Point};
+use pinswitch_calibration::table::{Condition, Frame, Point};
 use pinswitch_simulation::{Plan, simulate};
 
 #[derive(Debug)]
@@ -23,6 +23,7 @@ static CREEP: Description = Description {
     covariate: Covariate::Dwell,
     stage: Stage::CellScale,
     formula: "reading (1 + k ln(dwell / 3 s))",
+    written: Written::factor(ActsOn::Reading, "k*ln(dwell_s/3)"),
     parameters: &[Parameter::free("k", "1")],
     one_sided: true,
     bends: true,
@@ -42,7 +43,7 @@ impl Effect for Creep {
         vec![vec![0.02]]
     }
 
-    fn on_reading(&self, k: &[f64], point: &Point, reading_n: f64) -> f64 {
+    fn on_reading(&self, k: &[f64], point: &Point, _: &Condition, reading_n: f64) -> f64 {
         reading_n * (1.0 + k[0] * point.log_dwell)
     }
 }
@@ -53,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let frame = Frame::new(&rows);
     let mut data = Observations::new(&frame, &rows).ok_or("a condition is new")?;
     for (force_n, point) in data.force_n.iter_mut().zip(&data.points) {
-        *force_n = Creep.on_reading(&[TRUE_SIZE], point, *force_n);
+        *force_n = Creep.on_reading(&[TRUE_SIZE], point, &frame.conditions[point.condition], *force_n);
     }
 
     let weighed = Weighed::new(&data, Noise::constant(0.05, 0.1));

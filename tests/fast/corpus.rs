@@ -58,6 +58,10 @@ fn what_ships_with_the_program_is_accepted_by_its_reader() {
         let reading = judge("ask", &std::fs::read(&path).unwrap());
         assert!(reading.is_ok(), "{}: {reading:?}", path.display());
     }
+    for name in ["effects", "plan", "run", "rig"] {
+        let bytes = std::fs::read(repository(&format!("templates/rig/{name}.toml"))).unwrap();
+        assert_eq!(judge(name, &bytes), Ok(Reading::Accepted), "{name}");
+    }
     let sweep = std::fs::read(repository("templates/batch/sweep.toml")).unwrap();
     assert_eq!(judge("sweep", &sweep), Ok(Reading::Accepted));
 }

@@ -13,6 +13,8 @@ use pinswitch_batch::{
     VariantOutcome, Variants, merge, mesh_file, partial_folder, read_rows, run,
 };
 use pinswitch_calibration::ModelFile;
+use pinswitch_calibration::effects::{OwnEffect, Vocabulary, own_effects_text, read_own_effects};
+use pinswitch_calibration::experiment::RigLimits;
 use pinswitch_calibration::segmentation::{Log, RunPlan, segment};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_friction::Substrate;
@@ -44,7 +46,7 @@ pub struct Reader {
 }
 
 /// All of them.
-pub const READERS: [Reader; 13] = [
+pub const READERS: [Reader; 15] = [
     Reader { name: "configuration", judge: configuration },
     Reader { name: "preset", judge: preset },
     Reader { name: "ask", judge: ask },
@@ -54,6 +56,8 @@ pub const READERS: [Reader; 13] = [
     Reader { name: "conditions", judge: conditions },
     Reader { name: "model", judge: model },
     Reader { name: "plan", judge: plan },
+    Reader { name: "rig", judge: rig },
+    Reader { name: "effects", judge: effects },
     Reader { name: "sweep", judge: sweep },
     Reader { name: "stl", judge: stl },
     Reader { name: "shard_table", judge: shard_table },
@@ -271,6 +275,29 @@ fn plan(bytes: &[u8]) -> Result<Reading, String> {
             require(row.force_n.is_finite() && row.load_n.is_finite(), || format!("a row of {row:?}"))?;
         }
     }
+    Ok(Reading::Accepted)
+}
+
+fn rig(bytes: &[u8]) -> Result<Reading, String> {
+    let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
+    match RigLimits::parse(text, FILE) {
+        Ok(rig) => require(!rig.loads_g.is_empty(), || format!("{rig:?}")).map(|()| Reading::Accepted),
+        Err(e) => refused(&e),
+    }
+}
+
+/// Read without a vocabulary of them, which would stay in memory.
+fn effects(bytes: &[u8]) -> Result<Reading, String> {
+    let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
+    let built_in = Vocabulary::built_in();
+    let effects = match read_own_effects(text, FILE, &built_in) {
+        Ok(effects) => effects,
+        Err(e) => return refused(&e),
+    };
+    let written = own_effects_text(effects.iter().map(OwnEffect::definition));
+    let again = read_own_effects(&written, "written", &built_in)
+        .map_err(|e| format!("what was written is refused: {e}"))?;
+    require(again == effects, || format!("what was written reads otherwise:\n{written:.300}"))?;
     Ok(Reading::Accepted)
 }
 

@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_calibration::{Calibration, ModelFile, calibrate, calibrate_below, explain_published};
+use pinswitch_calibration::{Calibration, ModelFile, calibrate_among, calibrate_below, explain_published};
 
+use super::own_effects::OwnEffects;
 use super::{Failure, print};
 use crate::write::write_set;
 use pinswitch_plot::{UNEXPLAINED, page, plots, published_page, published_plot};
@@ -21,7 +22,9 @@ use waiting::Waiting;
 ///
 /// The verdict is none, inconclusive, attributed, ambiguous or unattributed; the best model is written for `predict` and `generate`.
 #[derive(Args, Debug)]
-#[command(after_help = "Example: pinswitch calibrate plateaus.csv --out calibration")]
+#[command(after_help = "Examples:
+  pinswitch calibrate plateaus.csv --out calibration
+  pinswitch calibrate plateaus.csv --effects mine.toml --out calibration")]
 pub(super) struct Arguments {
     /// The plateau table (CSV, one row per repetition).
     #[arg(required_unless_present = "published")]
@@ -35,6 +38,8 @@ pub(super) struct Arguments {
     /// Fit only loads up to this percentage of the highest one and judge both models on the rest.
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..100))]
     fit_below: Option<u8>,
+    #[command(flatten)]
+    own: OwnEffects,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -42,16 +47,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return published(&arguments.out);
     };
     let name = table.display().to_string();
+    let vocabulary = arguments.own.vocabulary()?;
     let bytes = crate::input::read_file(table)?;
     let table = PlateauTable::read(bytes.as_slice(), &name).map_err(Failure::bad_input)?;
     table.require_baseline(&name).map_err(Failure::bad_input)?;
     let mut table = table;
     let waiting = Waiting::new(table.rows.len());
     let calibration = match arguments.fit_below {
-        None => calibrate(&table.rows, Levels::default()),
+        None => calibrate_among(&table.rows, &vocabulary, Levels::default()),
         Some(percent) => {
             let share = f64::from(percent) / 100.0;
-            let calibration = calibrate_below(&table.rows, share, Levels::default());
+            let calibration = calibrate_below(&table.rows, share, &vocabulary, Levels::default());
             let highest = table.rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
             table.retain(|row| row.load_n <= share * highest);
             calibration

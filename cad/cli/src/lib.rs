@@ -69,6 +69,7 @@ mod failure;
 mod finger_text;
 mod input;
 mod law;
+mod own_effects;
 mod predict_rows;
 mod range;
 mod source;
@@ -122,6 +123,7 @@ commands! {
     Segment: segment,
     Calibrate: calibrate,
     Experiment: experiment,
+    Effects: effects,
     Simulate: simulate,
     Power: power,
     Completions: completions,

@@ -6,6 +6,7 @@ use clap::Args;
 use pinswitch_calibration::inference::Levels;
 use pinswitch_simulation::{Plan, power};
 
+use super::own_effects::OwnEffects;
 use super::{Failure, print, print_json};
 
 /// Tell before any measurement which effects of which size a planned experiment could see and tell apart.
@@ -20,12 +21,15 @@ pub(super) struct Arguments {
     /// Print JSON instead of a table.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    own: OwnEffects,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.plan.display().to_string();
     let text = crate::input::read_text_file(&arguments.plan)?;
-    let plan = Plan::parse(&text, &name).map_err(Failure::bad_input)?;
+    let vocabulary = arguments.own.vocabulary()?;
+    let plan = Plan::parse_among(&text, &name, &vocabulary).map_err(Failure::bad_input)?;
     let all = power(&plan, arguments.runs, Levels::default());
     if arguments.json {
         return print_json(&all);

@@ -8,11 +8,10 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauRow;
-use pinswitch_simulation::{
-    Case, EffectPlan, Group, Plan, RawRun, Study, next_session, run_case, simulate, study_cases,
-};
+use pinswitch_simulation::{Case, Group, Plan, RawRun, Study, next_session, run_case, simulate, study_cases};
 use rayon::prelude::*;
 
+use super::own_effects::OwnEffects;
 use super::{Failure, print};
 use crate::write::write_set;
 use pinswitch_switch::output::OutputFile;
@@ -23,6 +22,7 @@ use pinswitch_switch::output::OutputFile;
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch simulate --effect coating_ploughing=0.02 --out rig
+  pinswitch simulate --effects mine.toml --effect lubricant_dip=0.2 --out rig
   pinswitch simulate plan.toml --out rig
   pinswitch simulate plan.toml --out rig --raw
   pinswitch simulate --study 20
@@ -30,9 +30,12 @@ use pinswitch_switch::output::OutputFile;
 pub(super) struct Arguments {
     /// The plan: layouts, loads, sweeps, speeds, dwells, effects with their sizes, noise, seed. Without one, the paper's rig.
     plan: Option<PathBuf>,
-    /// Put an effect into the rig, beside those of the plan: ID or ID=VALUE,VALUE in the order of its formula.
+    /// Put an effect into the rig, beside those of the plan: ID or ID=VALUE,VALUE, sizes before shapes.
+    /// Of an effect of your own, what is left out is at its start value.
     #[arg(long = "effect", value_name = "ID=VALUES", conflicts_with = "study")]
     effects: Vec<String>,
+    #[command(flatten)]
+    own: OwnEffects,
     /// Without a plan: loads up and down, several speeds and dwells, instead of the paper's protocol.
     #[arg(long, conflicts_with_all = ["plan", "study"])]
     randomised: bool,
@@ -88,15 +91,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The plan with the effects asked for, and its name in errors.
 fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
+    let vocabulary = arguments.own.vocabulary()?;
     let (mut plan, name) = match &arguments.plan {
         Some(path) => {
             let name = path.display().to_string();
             let text = crate::input::read_text_file(path)?;
-            (Plan::parse(&text, &name).map_err(Failure::bad_input)?, name)
+            (Plan::parse_among(&text, &name, &vocabulary).map_err(Failure::bad_input)?, name)
         }
-        None if arguments.randomised => (Plan::randomised(), "--effect".to_owned()),
-        None => (Plan::default(), "--effect".to_owned()),
+        None if arguments.randomised => (Plan::randomised(), "the plan of --randomised".to_owned()),
+        None => (Plan::default(), "the plan of the paper's rig".to_owned()),
     };
+    plan.vocabulary = vocabulary;
     for effect in &arguments.effects {
         let (id, values) = effect.split_once('=').unwrap_or((effect, ""));
         let values: Result<Vec<f64>, _> =
@@ -104,7 +109,7 @@ fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
         let values = values.map_err(|_| {
             Failure::bad_input(format!("--effect {effect}: values are numbers, like coating_ploughing=0.02"))
         })?;
-        plan.effects.push(EffectPlan { id: id.to_owned(), values, form: 0 });
+        plan.add_effect(id, values);
     }
     plan.check(&name).map_err(Failure::bad_input)?;
     Ok((plan, name))

@@ -53,8 +53,14 @@ impl Template {
     }
 }
 
-/// The sweep from which a user starts a batch of their own.
-pub const SWEEP: &str = include_str!("../../../templates/batch/sweep.toml");
+/// Files of other kinds that a user may have to write, by name: each explains itself and is accepted as it stands.
+pub const STARTERS: [(&str, &str); 5] = [
+    ("sweep", include_str!("../../../templates/batch/sweep.toml")),
+    ("effects", include_str!("../../../templates/rig/effects.toml")),
+    ("plan", include_str!("../../../templates/rig/plan.toml")),
+    ("run", include_str!("../../../templates/rig/run.toml")),
+    ("rig", include_str!("../../../templates/rig/rig.toml")),
+];
 
 /// The text of the template called `name`; `reference` shows every parameter.
 pub fn text(name: &str) -> Option<String> {

@@ -3,7 +3,7 @@
 use pinswitch_friction::Substrate;
 
 use crate::aliasing::aliasing;
-use crate::effects::CATALOGUE;
+use crate::effects::Vocabulary;
 use crate::held_out::held_out;
 use crate::inference::{
     CandidateEffect, Fit, FoundEffect, Levels, MOST_ROWS, Model, Noise, Observations, Rival, Selection, Term,
@@ -11,6 +11,7 @@ use crate::inference::{
     select,
 };
 use crate::layouts_left_out::layouts_left_out;
+use crate::own_values::has_values;
 use crate::promise::{Promise, promise};
 use crate::report::{
     BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Fate, Invisible, LimitReport,
@@ -33,6 +34,18 @@ pub enum CalibrationError {
         /// Rows that could.
         needed: usize,
     },
+    /// An effect of one's own has no value on the table.
+    #[error(
+        "effect '{id}' has no number at its start values in row {row} ({told}); guard its formula with max or min"
+    )]
+    NoValue {
+        /// Its id.
+        id: String,
+        /// Row of the table, from 1.
+        row: usize,
+        /// Where that row lies.
+        told: String,
+    },
 }
 
 /// A report with the fits behind it.
@@ -49,7 +62,7 @@ pub struct Calibration {
 /// Rows beyond the baseline's constants without which any misfit would be many times a noise that nobody knows.
 const ROWS_FOR_NOISE: usize = 8;
 
-/// Calibrates a table.
+/// Calibrates a table, with the built-in effects.
 ///
 /// ```
 /// use pinswitch_calibration::inference::Levels;
@@ -80,14 +93,27 @@ const ROWS_FOR_NOISE: usize = 8;
 /// # Errors
 /// [`CalibrationError::TooFewRows`] if the rows cannot fix the baseline.
 pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, CalibrationError> {
+    calibrate_among(rows, &Vocabulary::built_in(), levels)
+}
+
+/// Calibrates a table, with the effects of a vocabulary.
+///
+/// # Errors
+/// [`CalibrationError`] if the rows cannot fix the baseline, or if an effect of one's own has no value on them.
+pub fn calibrate_among(
+    rows: &[PlateauRow],
+    vocabulary: &Vocabulary,
+    levels: Levels,
+) -> Result<Calibration, CalibrationError> {
     let frame = Frame::new(rows);
-    let start = Model::baseline(frame.clone());
+    let start = Model::baseline(frame.clone()).among(vocabulary);
     let needed = start.values().len() + ROWS_FOR_NOISE;
     let too_few = CalibrationError::TooFewRows { found: rows.len(), needed };
     let mut whole = Observations::new(&frame, rows).ok_or_else(|| too_few.clone())?;
     if rows.len() < needed {
         return Err(too_few);
     }
+    has_values(&start, &whole, rows)?;
     let mut data = if whole.points.len() > MOST_ROWS {
         let rough = fit(&start, &Weighed::new(&whole, Noise::constant(0.1, 0.03)));
         let sd = whole.weigh_outliers(&rough.residual_n);
@@ -206,6 +232,7 @@ fn report(
         invisible: invisible(selection),
         never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
         bad_series: bad_series(rows, selection, weighed),
+        sessions: Vec::new(),
         extrapolation: None,
     }
 }
@@ -286,6 +313,9 @@ fn limits(selection: &Selection) -> Vec<LimitReport> {
             low: limit.interval[0],
             high: limit.interval[1],
             typical: limit.typical,
+            unit: limit.effect.parameters().first().map_or("1", |p| p.unit).to_owned(),
+            one_sided: limit.effect.description().one_sided,
+            experiment: limit.effect.description().experiment.to_owned(),
             excluded: limit.is_excluded(),
         })
         .collect()
@@ -345,7 +375,8 @@ fn candidates(selection: &Selection, data: &Observations, levels: Levels) -> Vec
         .candidates
         .iter()
         .map(|candidate| {
-            let p_value = family_p_value(candidate.gain, CATALOGUE.len(), degrees);
+            let p_value =
+                family_p_value(candidate.gain, selection.baseline.model.vocabulary.count(), degrees);
             CandidateReport {
                 id: candidate.effect.id().to_owned(),
                 gain: candidate.gain.max(0.0),
@@ -388,7 +419,7 @@ fn named_report(
         covariate: told.covariate.as_str().to_owned(),
         side: Some(told.side.as_str().to_owned()),
         formula: found.effect.cited_formula(),
-        p_value: family_p_value(found.gain, CATALOGUE.len(), degrees),
+        p_value: family_p_value(found.gain, selection.baseline.model.vocabulary.count(), degrees),
         parameters: told
             .parameters
             .iter()
@@ -492,6 +523,7 @@ fn bad_series(rows: &[PlateauRow], selection: &Selection, weighed: &Weighed<'_>)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::CATALOGUE;
     use crate::test_session::session;
 
     fn fates(levels: Levels) -> Vec<Fate> {

@@ -1,6 +1,7 @@
 //! Fitted at low loads, judged at higher ones.
 
-use crate::calibrate::{BAD_READING_SD, Calibration, CalibrationError, calibrate};
+use crate::calibrate::{BAD_READING_SD, Calibration, CalibrationError, calibrate_among};
+use crate::effects::Vocabulary;
 use crate::inference::{Levels, Model};
 use crate::median::median;
 use crate::report::Extrapolation;
@@ -13,11 +14,12 @@ use crate::table::PlateauRow;
 pub fn calibrate_below(
     rows: &[PlateauRow],
     share: f64,
+    vocabulary: &Vocabulary,
     levels: Levels,
 ) -> Result<Calibration, CalibrationError> {
     let highest = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
     let (seen, rest): (Vec<_>, Vec<_>) = rows.iter().cloned().partition(|r| r.load_n <= share * highest);
-    let mut calibration = calibrate(&seen, levels)?;
+    let mut calibration = calibrate_among(&seen, vocabulary, levels)?;
     let selection = &calibration.selection;
     let misses = |model: &Model| -> Vec<f64> {
         let points = model.frame.points(&rest).unwrap_or_default();

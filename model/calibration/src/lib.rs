@@ -36,6 +36,7 @@ mod layouts_left_out;
 mod median;
 mod model_check;
 mod model_file;
+mod own_values;
 mod part_curve;
 mod promise;
 mod published_maxima;
@@ -47,7 +48,7 @@ mod test_session;
 mod toml_text;
 
 pub use aliasing::{Aliasing, aliasing};
-pub use calibrate::{Calibration, CalibrationError, calibrate};
+pub use calibrate::{Calibration, CalibrationError, calibrate, calibrate_among};
 pub use extrapolation::calibrate_below;
 pub use held_out::{HeldOut, held_out};
 pub use layouts_left_out::layouts_left_out;
@@ -56,6 +57,6 @@ pub use model_file::{ModelFile, ModelFileError};
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
     BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible,
-    LimitReport, ModelReport, NoisePart, Report, RivalReport, Verdict,
+    LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, Verdict,
 };
 pub use toml_text::toml_error;

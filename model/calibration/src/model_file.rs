@@ -4,7 +4,7 @@ use pinswitch_friction::excerpt;
 use serde::{Deserialize, Serialize};
 
 use crate::beyond_range::error_beyond_range;
-use crate::effects::{Structure, effect_named};
+use crate::effects::{Structure, Vocabulary, effects_of_model, own_effect_blocks};
 use crate::inference::{
     Fit, Model, Noise, Observations, Term, Weighed, coordinate_covariance, prediction_sd_n,
 };
@@ -154,6 +154,9 @@ pub struct ModelFile {
     frame: Frame,
     /// Covariance of the constants' coordinates, row by row.
     covariance: Vec<Vec<f64>>,
+    /// The effects that the terms name; those of one's own stand in the file as in a file of theirs.
+    #[serde(skip)]
+    vocabulary: Vocabulary,
 }
 
 impl ModelFile {
@@ -164,6 +167,7 @@ impl ModelFile {
         let weighed = Weighed::new(data, noise);
         let covariance = coordinate_covariance(fitted, &weighed);
         let beyond_range = error_beyond_range(model, &weighed);
+        let used = |id: &str| model.terms.iter().any(|term| term.id() == id);
         Self {
             schema: SCHEMA.to_owned(),
             constants: model
@@ -196,6 +200,7 @@ impl ModelFile {
             covariance: (0..covariance.nrows())
                 .map(|i| covariance.row(i).iter().copied().collect())
                 .collect(),
+            vocabulary: model.vocabulary.retaining(|own| used(&own.definition().id)),
         }
     }
 
@@ -211,13 +216,19 @@ impl ModelFile {
         let placed = |flaw: Flaw| ModelFileError::of(&place_of(file, text, &flaw.field))(flaw);
         let table: toml::Table = toml::from_str(text).map_err(malformed)?;
         check_finite("", &toml::Value::Table(table)).map_err(placed)?;
-        let parsed: Self = toml::from_str(text).map_err(malformed)?;
+        let mut parsed: Self = toml::from_str(text).map_err(malformed)?;
         if parsed.schema != SCHEMA {
             return Err(ModelFileError::Schema {
                 file: place_of(file, text, "schema"),
                 found: parsed.schema,
             });
         }
+        let unusable = |problem: String| ModelFileError::Malformed { file: file.to_owned(), problem };
+        let own = effects_of_model(text, file).map_err(|e| ModelFileError::Malformed {
+            file: format!("{file}:{}:{}", e.line, e.column),
+            problem: e.problem,
+        })?;
+        parsed.vocabulary = Vocabulary::built_in().with(own).map_err(|e| unusable(e.to_string()))?;
         let constants = parsed.model(file).map_err(|e| e.placed(file, text))?.values().len();
         check_covariance(&parsed.covariance, constants).map_err(placed)?;
         Ok(parsed)
@@ -228,7 +239,9 @@ impl ModelFile {
     /// # Errors
     /// [`ModelFileError::Malformed`] if a value cannot be written as TOML.
     pub fn to_text(&self) -> Result<String, ModelFileError> {
+        let own = own_effect_blocks(self.vocabulary.own().map(|own| own.definition()));
         toml::to_string(self)
+            .map(|text| text + &own)
             .map_err(|e| ModelFileError::Malformed { file: "model.toml".to_owned(), problem: e.to_string() })
     }
 
@@ -242,14 +255,13 @@ impl ModelFile {
             .and_then(|()| check_noise(&self.noise))
             .and_then(|()| check_beyond_range(self.beyond_range))
             .map_err(&flawed)?;
-        let mut model = Model::baseline(self.frame.clone());
+        let mut model = Model::baseline(self.frame.clone()).among(&self.vocabulary);
         for entry in &self.terms {
             let term =
                 match &entry.structure {
                     Some(structure) => Term::Structure(structure.clone()),
-                    None => Term::Named(effect_named(&entry.id).ok_or_else(|| ModelFileError::Effect {
-                        file: file.to_owned(),
-                        id: entry.id.clone(),
+                    None => Term::Named(self.vocabulary.named(&entry.id).ok_or_else(|| {
+                        ModelFileError::Effect { file: file.to_owned(), id: entry.id.clone() }
                     })?),
                 };
             let zeros = vec![0.0; term.constants()];
@@ -295,7 +307,8 @@ impl ModelFile {
         Ok((predicted, sd))
     }
 
-    pub(crate) fn noise(&self) -> Noise {
+    /// The noise of the table that was fitted.
+    pub fn noise(&self) -> Noise {
         self.noise
     }
 

@@ -5,7 +5,21 @@ use pinswitch_friction::{Direction, FrictionCurve, Law, Substrate, Trust, publis
 use crate::inference::prediction_sd_n;
 use crate::model_check::check_friction;
 use crate::model_file::{ModelFile, ModelFileError};
-use crate::table::{Labels, PlateauRow, Sweep};
+use crate::table::{Frame, Labels, PlateauRow, Point, Sweep};
+
+/// Repetitions after which whatever settles has settled.
+const SETTLED: u32 = 1000;
+
+/// The rows of a part as points without a history: each as if it had been pulled at its load all the while.
+fn settled_points(frame: &Frame, rows: &[PlateauRow]) -> Vec<Point> {
+    let mut points = frame.points(rows).unwrap_or_default();
+    for point in &mut points {
+        point.through = f64::from(SETTLED);
+        point.previous_load_n = point.load_n;
+        point.begins_session = false;
+    }
+    points
+}
 
 impl ModelFile {
     /// Curve of pins in these grooves, numbered from 1, on `substrate` at ascending `loads_n`, for a slow first pull at
@@ -30,7 +44,7 @@ impl ModelFile {
         let measured = frame.condition_of(&rows[0]).is_some();
         frame.extend(&rows[0]);
         let model = known.in_frame(frame);
-        let points = model.frame.points(&rows).unwrap_or_default();
+        let points = settled_points(&model.frame, &rows);
         let tension = model.predict_part(&points);
         // Half the gap of two independent readings without their noise; the model's own uncertainty only.
         let silent = crate::inference::Noise::constant(0.0, 0.0);
@@ -112,7 +126,7 @@ impl ModelFile {
         let mut frame = known.frame.clone();
         frame.extend(&rows[0]);
         let model = known.in_frame(frame);
-        let points = model.frame.points(&rows).unwrap_or_default();
+        let points = settled_points(&model.frame, &rows);
         let tension = model.predict_part(&points);
         let n = loads_n.len();
         let friction_n = (0..n).map(|i| 0.5 * (tension[n + i] - tension[i])).collect();
@@ -130,7 +144,7 @@ impl ModelFile {
             speed_pct: self.reference_speed_pct(),
             dwell_s: published::DWELL_S,
             direction,
-            repetition: 1000,
+            repetition: SETTLED,
             position_mm: 0.0,
             time_s: 0.0,
             force_n: 0.0,

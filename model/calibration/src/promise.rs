@@ -19,7 +19,8 @@ pub(crate) struct Promise {
 
 /// The promise for a table; `None` if a part of its series cannot fix the baseline.
 pub(crate) fn promise(whole: &Selection, data: &Observations, levels: Levels) -> Option<Promise> {
-    let start = Model::baseline(whole.baseline.model.frame.clone());
+    let known = &whole.baseline.model;
+    let start = Model::baseline(known.frame.clone()).among(&known.vocabulary);
     let parts = per_part(|left_out| part(left_out, &start, whole, data, levels));
     let (mut baseline, mut augmented, mut rows) = (0.0, 0.0, 0.0);
     for (b, a, n) in parts.into_iter().flatten() {

@@ -209,6 +209,15 @@ pub struct LimitReport {
     pub high: f64,
     /// Size that changes friction, or the reading, by 5 % somewhere in the table.
     pub typical: f64,
+    /// Unit of the size.
+    #[serde(default)]
+    pub unit: String,
+    /// Whether the size cannot be negative.
+    #[serde(default)]
+    pub one_sided: bool,
+    /// The experiment that would settle it.
+    #[serde(default)]
+    pub experiment: String,
     /// Whether every size left is smaller than the typical one.
     pub excluded: bool,
 }
@@ -262,9 +271,66 @@ pub struct Report {
     pub never_visible: Vec<String>,
     /// Series to look at: a mislabelled weight, a bad run.
     pub bad_series: Vec<BadSeries>,
+    /// What was known after each of several tables, in their order; empty if there was one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sessions: Vec<SessionReport>,
     /// Errors on loads above those fitted, if some were kept back.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolation: Option<Extrapolation>,
+}
+
+/// What was known after one of several tables, and those before it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SessionReport {
+    /// The table that came last.
+    pub table: String,
+    /// Rows up to here.
+    pub rows: usize,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// What was found, each with its rivals.
+    pub effects: Vec<Vec<String>>,
+    /// Effects of consequence that were not excluded.
+    pub not_excluded: Vec<String>,
+    /// Error to expect on a new session, in newtons.
+    #[serde(rename = "promise_N", default, skip_serializing_if = "Option::is_none")]
+    pub promise_n: Option<f64>,
+}
+
+impl SessionReport {
+    /// What a report says after `table`.
+    pub fn after(table: String, report: &Report) -> Self {
+        let ids = |effect: &EffectReport| {
+            std::iter::once(effect.id.clone()).chain(effect.rivals.iter().map(|r| r.id.clone())).collect()
+        };
+        Self {
+            table,
+            rows: report.data.rows,
+            verdict: report.verdict,
+            effects: report.effects.iter().map(ids).collect(),
+            not_excluded: report.limits.iter().filter(|l| !l.excluded).map(|l| l.id.clone()).collect(),
+            promise_n: report.promise_n,
+        }
+    }
+
+    /// In words: the verdict, and what it is about.
+    pub fn words(&self) -> String {
+        let found: Vec<String> = self.effects.iter().map(|ids| ids.join(" or ")).collect();
+        let word = match self.verdict {
+            Verdict::None => "none",
+            Verdict::Inconclusive => "inconclusive",
+            Verdict::Attributed => "attributed",
+            Verdict::Ambiguous => "ambiguous",
+            Verdict::Unattributed => "unattributed",
+        };
+        match (found.is_empty(), self.verdict) {
+            (false, _) => format!("{word}: {}", found.join(", ")),
+            (true, Verdict::Inconclusive) => {
+                format!("{word}: not excluded are {}", self.not_excluded.join(", "))
+            }
+            (true, _) => word.to_owned(),
+        }
+    }
 }
 
 /// Errors on the rows with higher loads than those fitted.

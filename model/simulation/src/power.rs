@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_calibration::effects::CATALOGUE;
 use pinswitch_calibration::inference::{Levels, Model, Observations, select};
 use pinswitch_calibration::table::Frame;
 use serde::Serialize;
@@ -46,7 +45,7 @@ pub struct Power {
 /// ```
 pub fn power(plan: &Plan, runs: u64, levels: Levels) -> Vec<Power> {
     let mut all = Vec::new();
-    for effect in CATALOGUE {
+    for effect in plan.vocabulary.effects() {
         let range = effect.description().study;
         let sizes = range.size.map_or(vec![None], |(least, most)| vec![Some(least), Some(most)]);
         for size in sizes {
@@ -73,7 +72,7 @@ fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64, levels: Level
         let rows = simulate(&planned).rows;
         let frame = Frame::new(&rows);
         let Some(mut data) = Observations::new(&frame, &rows) else { continue };
-        let found = select(&Model::baseline(frame), &mut data, levels);
+        let found = select(&Model::baseline(frame).among(&plan.vocabulary), &mut data, levels);
         power.runs += 1;
         let (mut alone, mut with_rivals) = (false, false);
         for effect in &found.effects {

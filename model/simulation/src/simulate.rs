@@ -69,7 +69,16 @@ impl Simulated {
 /// ```
 pub fn simulate(plan: &Plan) -> Simulated {
     let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
-    let mut rows = protocol::rows(plan, &mut random);
+    let rows = protocol::rows(plan, &mut random);
+    recorded(plan, rows, &mut random)
+}
+
+/// Makes these rows on the rig of a plan, whatever its protocol says: the runs of a proposed experiment.
+pub fn simulate_rows(plan: &Plan, rows: Vec<PlateauRow>) -> Simulated {
+    recorded(plan, rows, &mut ChaCha8Rng::seed_from_u64(plan.seed))
+}
+
+fn recorded(plan: &Plan, mut rows: Vec<PlateauRow>, random: &mut ChaCha8Rng) -> Simulated {
     let marks = SeriesMarks::draw(plan, &rows);
     read(plan, &mut rows, &marks.seated_ideally());
     let mut fresh = Vec::new();
@@ -82,7 +91,7 @@ pub fn simulate(plan: &Plan) -> Simulated {
     if plan.noise.series_scale > 0.0 || plan.noise.mount_scale > 0.0 {
         read(plan, &mut rows, &marks);
     }
-    disturb(plan, &marks, &mut rows, &mut random);
+    disturb(plan, &marks, &mut rows, random);
     Simulated { rows, fresh, marks }
 }
 

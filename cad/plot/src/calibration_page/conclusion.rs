@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use pinswitch_calibration::effects::effect_named;
 use pinswitch_calibration::{EffectReport, Report, Verdict};
 
 use super::super::html::escape;
@@ -61,14 +60,13 @@ fn inconclusive(report: &Report) -> String {
                     To know more, record more.</p><ul>"
         .to_owned();
     for limit in open.iter().take(NAMED) {
-        let experiment = effect_named(&limit.id).map_or("", |e| e.description().experiment);
         let _ = write!(
             html,
             "<li><b>{}</b>: {} is possible ({} changes friction or reading by 5 % somewhere). To settle it: {}.</li>",
             escape(&limit.id),
             possible(limit),
             typical(limit),
-            escape(experiment)
+            escape(&limit.experiment)
         );
     }
     html.push_str("</ul>");

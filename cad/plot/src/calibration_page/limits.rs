@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use pinswitch_calibration::effects::effect_named;
 use pinswitch_calibration::{LimitReport, Report};
 
 use super::super::html::escape;
@@ -30,16 +29,9 @@ fn reach(limit: &LimitReport) -> f64 {
 
 /// The interval, without the side on which the effect cannot be.
 fn ends(limit: &LimitReport) -> [f64; 2] {
-    let one_sided = effect_named(&limit.id).is_some_and(|e| e.description().one_sided);
     let present = limit.parameter == "present";
-    let low = if one_sided || present { limit.low.max(0.0) } else { limit.low };
+    let low = if limit.one_sided || present { limit.low.max(0.0) } else { limit.low };
     [low, if present { limit.high.clamp(0.0, 1.0) } else { limit.high.max(low) }]
-}
-
-/// Unit of the size of an effect.
-fn unit_of(limit: &LimitReport) -> &'static str {
-    let parameters = effect_named(&limit.id).map_or(&[][..], |e| e.parameters());
-    parameters.iter().find(|p| p.name == limit.parameter).map_or("1", |p| p.unit)
 }
 
 /// The sizes that remain possible, in words.
@@ -51,7 +43,7 @@ pub(super) fn possible(limit: &LimitReport) -> String {
             false => format!("up to {} of the effect", with_unit(high, "1")),
         };
     }
-    let unit = unit_of(limit);
+    let unit = limit.unit.as_str();
     let name = escape(&limit.parameter);
     match low {
         0.0 => format!("{name} up to {}", sized(high, unit)),
@@ -64,7 +56,7 @@ pub(super) fn typical(limit: &LimitReport) -> String {
     match limit.parameter.as_str() {
         "present" if limit.typical >= 1.0 => "more than the whole effect".to_owned(),
         "present" => format!("{} of the effect", with_unit(limit.typical, "1")),
-        name => format!("{} = {}", escape(name), sized(limit.typical, unit_of(limit))),
+        name => format!("{} = {}", escape(name), sized(limit.typical, &limit.unit)),
     }
 }
 
@@ -209,6 +201,9 @@ mod tests {
             low,
             high,
             typical: 0.2,
+            unit: "N".to_owned(),
+            one_sided: id == "guide_drag",
+            experiment: "vary it".to_owned(),
             excluded: false,
         }
     }

@@ -1,7 +1,7 @@
 //! `adhesion`: a constant friction force on silicone, there at zero load.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -18,6 +18,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Direction,
     stage: Stage::Drag,
     formula: "T + d c on silicone, T + d c S on a device",
+    written: Written::No("on a device it needs the share of the friction that has passed to the silicone"),
     parameters: &[Parameter::free("c", "N")],
     // It opposes every move.
     one_sided: true,

@@ -1,7 +1,7 @@
 //! `coating_ploughing`: the coating is ploughed by the force at each pin.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -18,6 +18,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::AddedFriction,
     formula: "x_p + kappa sqrt(F) sum theta_i^1.5",
+    written: Written::No("it needs the turn of the tendon at every single pin"),
     parameters: &[Parameter::free("kappa", "N^-0.5")],
     // Ploughing only adds friction.
     one_sided: true,

@@ -1,8 +1,8 @@
 //! `coating_stiffening`: friction of the coating on the pins grows with load.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
-    StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
+    Stage, StudyRange, Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -19,6 +19,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::ScaledFriction,
     formula: "mu_p (1 + k (F/F0)^m), m in 1..2, F0 = 50 N",
+    written: Written::factor(ActsOn::MuPins, "k*(load_n/50)^m"),
     parameters: &[Parameter::free("k", "1"), Parameter::bounded("m", "1", 0.9, 2.1)],
     // The contact grows with load.
     one_sided: true,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Covariate;
+use super::{Covariate, Written};
 
 /// Whether an effect belongs to the printed part or to the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -117,6 +117,8 @@ pub struct Description {
     pub stage: Stage,
     /// Its formula, in the symbols of the effect catalogue.
     pub formula: &'static str,
+    /// Its form as a formula on its own, where the language of formulas can say it.
+    pub written: Written,
     /// Its constants, sizes before shapes.
     pub parameters: &'static [Parameter],
     /// Whether its size can only be positive: what fits with a negative one is something else.

@@ -1,7 +1,8 @@
 //! `direction_asymmetry`: friction differs between eccentric and concentric.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -18,6 +19,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Direction,
     stage: Stage::ScaledFriction,
     formula: "x_c = x (1 + k/2), x_e = x (1 - k/2)",
+    written: Written::factor(ActsOn::Wrap, "k*direction/2"),
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,
     bends: true,

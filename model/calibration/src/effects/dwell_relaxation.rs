@@ -1,7 +1,8 @@
 //! `dwell_relaxation`: friction of the silicone depends on the pause before the reading.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -18,6 +19,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Dwell,
     stage: Stage::ScaledFriction,
     formula: "mu_s (1 + k ln(dwell / 3 s))",
+    written: Written::factor(ActsOn::MuSilicone, "k*ln(dwell_s/3)"),
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,
     bends: true,

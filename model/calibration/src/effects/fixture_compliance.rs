@@ -1,8 +1,8 @@
 //! `fixture_compliance`: the wrap angle grows with load because the mount bends.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
-    StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
+    Stage, StudyRange, Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -19,6 +19,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::ScaledFriction,
     formula: "a (1 + k F/F0), every condition alike",
+    written: Written::factor(ActsOn::Wrap, "k*load_n/50"),
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,
     bends: true,

@@ -1,7 +1,8 @@
 //! `guide_drag`: a constant drag of the guide pulleys, in every condition.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -18,6 +19,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Direction,
     stage: Stage::Drag,
     formula: "T + d c in every condition",
+    written: Written::sum(ActsOn::Tension, "c*direction"),
     parameters: &[Parameter::free("c", "N")],
     // It opposes every move.
     one_sided: true,

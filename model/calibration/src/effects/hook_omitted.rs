@@ -2,7 +2,7 @@
 
 use pinswitch_friction::published;
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange};
+use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange, Written};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
@@ -18,6 +18,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::Load,
     formula: "F + 0.613 N: the hook of 62.53 g; no free constant",
+    written: Written::No("it has no constant"),
     parameters: &[],
     one_sided: false,
     bends: false,

@@ -1,7 +1,9 @@
 //! `load_cell_gain`: the reading has a wrong scale.
 
-use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
-use crate::table::{Frame, Point};
+use super::{
+    ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
+};
+use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
 #[derive(Debug)]
@@ -16,6 +18,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::CellScale,
     formula: "reading (1 + g)",
+    written: Written::factor(ActsOn::Reading, "g"),
     parameters: &[Parameter::free("g", "1")],
     one_sided: false,
     bends: false,
@@ -35,7 +38,7 @@ impl Effect for LoadCellGain {
         vec![vec![0.02]]
     }
 
-    fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {
+    fn on_reading(&self, k: &[f64], _: &Point, _: &Condition, reading_n: f64) -> f64 {
         reading_n * (1.0 + k[0])
     }
 }

@@ -1,9 +1,10 @@
 //! `load_cell_nonlinearity`: the reading bends with its square.
 
 use super::{
-    Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage, StudyRange,
+    ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
+    StudyRange, Written,
 };
-use crate::table::{Frame, Point};
+use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
 #[derive(Debug)]
@@ -18,6 +19,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::CellScale,
     formula: "reading + k (reading/F0)^2",
+    written: Written::sum(ActsOn::Reading, "k*(tension_n/50)^2"),
     parameters: &[Parameter::free("k", "N")],
     one_sided: false,
     bends: true,
@@ -37,7 +39,7 @@ impl Effect for LoadCellNonlinearity {
         vec![vec![0.4]]
     }
 
-    fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {
+    fn on_reading(&self, k: &[f64], _: &Point, _: &Condition, reading_n: f64) -> f64 {
         reading_n + k[0] * (reading_n / REFERENCE_LOAD_N).powi(2)
     }
 }

@@ -1,7 +1,9 @@
 //! `load_cell_offset`: the reading has a constant offset.
 
-use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
-use crate::table::{Frame, Point};
+use super::{
+    ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
+};
+use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
 #[derive(Debug)]
@@ -16,6 +18,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Direction,
     stage: Stage::CellZero,
     formula: "reading + b",
+    written: Written::sum(ActsOn::Reading, "b"),
     parameters: &[Parameter::free("b", "N")],
     one_sided: false,
     bends: false,
@@ -35,7 +38,7 @@ impl Effect for LoadCellOffset {
         vec![vec![0.3]]
     }
 
-    fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {
+    fn on_reading(&self, k: &[f64], _: &Point, _: &Condition, reading_n: f64) -> f64 {
         reading_n + k[0]
     }
 }

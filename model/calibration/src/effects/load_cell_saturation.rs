@@ -1,7 +1,7 @@
 //! `load_cell_saturation`: the reading stops rising above some force.
 
-use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
-use crate::table::{Frame, Point};
+use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written};
+use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
 #[derive(Debug)]
@@ -16,6 +16,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::CellLimit,
     formula: "min(reading, limit)",
+    written: Written::No("a limit has no size at which it is gone"),
     parameters: &[Parameter::free("limit", "N")],
     one_sided: false,
     bends: true,
@@ -36,7 +37,7 @@ impl Effect for LoadCellSaturation {
         (0..14).map(|i| vec![highest * (1.0 - 0.025 * f64::from(i))]).collect()
     }
 
-    fn on_reading(&self, k: &[f64], _: &Point, reading_n: f64) -> f64 {
+    fn on_reading(&self, k: &[f64], _: &Point, _: &Condition, reading_n: f64) -> f64 {
         reading_n.min(k[0])
     }
 }

@@ -4,19 +4,28 @@
 //! study, power) reads it from there. `model/doc/effect-catalogue.md` explains each to a reader.
 
 use std::fmt::Debug;
-use std::sync::LazyLock;
 
 use crate::table::{Condition, Frame, Point};
 
 mod contact_state;
 mod covariate;
 mod description;
+mod own;
 mod structure;
+mod vocabulary;
+mod written;
 
 pub use contact_state::{ContactState, REFERENCE_LOAD_N};
 pub use covariate::Covariate;
 pub use description::{Description, PaperProtocol, Parameter, Side, Stage, StudyRange};
+pub(crate) use own::effects_of_model;
+pub use own::{
+    DefinitionError, EffectDefinition, OwnEffect, OwnEffectError, OwnParameter, formula_variables,
+    own_effect_blocks, own_effects_text, read_own_effects,
+};
 pub use structure::{Channel, Shape, Structure};
+pub use vocabulary::Vocabulary;
+pub use written::{ActsOn, Combine, Written};
 
 /// Declares the files of the effects and the registry of what they hold.
 macro_rules! effects {
@@ -52,18 +61,7 @@ effects! {
     switch_local_tension,
 }
 
-static ACTING: LazyLock<Vec<&'static dyn Effect>> = LazyLock::new(|| {
-    let mut all = CATALOGUE.to_vec();
-    all.sort_by_key(|effect| effect.description().stage);
-    all
-});
-
-/// Every named effect, in the order in which they act: the load first, the end of the load cell's range last.
-pub fn acting_order() -> &'static [&'static dyn Effect] {
-    &ACTING
-}
-
-/// The effect of an id.
+/// The built-in effect of an id; [`Vocabulary::named`] knows those of one's own, too.
 ///
 /// ```
 /// use pinswitch_calibration::effects::{Side, effect_named};
@@ -81,10 +79,10 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 ///
 /// ```
 /// use pinswitch_calibration::effects::{
-///     Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+///     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 /// };
 /// use pinswitch_calibration::inference::{Model, Term};
-/// use pinswitch_calibration::table::{Frame, PlateauTable, Point};
+/// use pinswitch_calibration::table::{Condition, Frame, PlateauTable, Point};
 ///
 /// /// The cell reads too much after a long pause.
 /// #[derive(Debug)]
@@ -96,6 +94,7 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 ///     covariate: Covariate::Dwell,
 ///     stage: Stage::CellScale,
 ///     formula: "reading (1 + k ln(dwell / 3 s))",
+///     written: Written::factor(ActsOn::Reading, "k*ln(dwell_s/3)"),
 ///     parameters: &[Parameter::free("k", "1")],
 ///     one_sided: true,
 ///     bends: true,
@@ -115,7 +114,7 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 ///         vec![vec![0.02]]
 ///     }
 ///
-///     fn on_reading(&self, k: &[f64], point: &Point, reading_n: f64) -> f64 {
+///     fn on_reading(&self, k: &[f64], point: &Point, _: &Condition, reading_n: f64) -> f64 {
 ///         reading_n * (1.0 + k[0] * point.log_dwell)
 ///     }
 /// }
@@ -140,9 +139,20 @@ pub trait Effect: Debug + Sync {
     /// Changes the contact; `k` are the constants.
     fn on_contact(&self, _k: &[f64], _point: &Point, _condition: &Condition, _state: &mut ContactState) {}
 
+    /// Changes the tension in newtons that the contact leaves, before the load cell; `k` are the constants.
+    fn on_tension(&self, _k: &[f64], _point: &Point, _condition: &Condition, tension_n: f64) -> f64 {
+        tension_n
+    }
+
     /// Changes the reading in newtons; `k` are the constants.
-    fn on_reading(&self, _k: &[f64], _point: &Point, reading_n: f64) -> f64 {
+    fn on_reading(&self, _k: &[f64], _point: &Point, _condition: &Condition, reading_n: f64) -> f64 {
         reading_n
+    }
+
+    /// Whether it may change from row to row of a series: with the repetition, the position or the time.
+    fn moves_along_a_series(&self) -> bool {
+        let covariate = self.description().covariate;
+        matches!(covariate, Covariate::Repetition | Covariate::Position | Covariate::Time)
     }
 
     /// Its id.
@@ -212,7 +222,7 @@ mod tests {
             time: 0.7,
             travel: 0.6,
             previous_load_n: 20.0,
-            through: 0.0,
+            ..Point::default()
         };
         for effect in CATALOGUE {
             let read = |k: Option<&[f64]>| {
@@ -233,7 +243,7 @@ mod tests {
                     effect.on_contact(k, &point, &condition, &mut state);
                 }
                 let tension = state.tension_n(&condition, &point);
-                k.map_or(tension, |k| effect.on_reading(k, &point, tension))
+                k.map_or(tension, |k| effect.on_reading(k, &point, &condition, tension))
             };
             let changed = effect.starts(&frame).iter().any(|k| {
                 assert_eq!(k.len(), effect.parameters().len(), "{}", effect.id());

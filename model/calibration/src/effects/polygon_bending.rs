@@ -1,7 +1,8 @@
 //! `polygon_bending`: the sharper the tendon turns at one pin, the more friction there.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -21,6 +22,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Condition,
     stage: Stage::ScaledFriction,
     formula: "mu_p (1 + k (a/n) / (20 deg)) with the mean turn a/n per pin",
+    written: Written::factor(ActsOn::MuPins, "k*turn_per_pin_rad/0.3490658503988659"),
     parameters: &[Parameter::free("k", "1")],
     // Sharper turns bend the fibres more.
     one_sided: true,

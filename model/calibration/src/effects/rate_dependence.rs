@@ -1,7 +1,8 @@
 //! `rate_dependence`: friction depends on the speed of the actuator.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -18,6 +19,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Speed,
     stage: Stage::ScaledFriction,
     formula: "mu (1 + k ln(v/v0)), v0 the geometric mean speed",
+    written: Written::factor(ActsOn::Mu, "k*ln(speed_pct/mean_speed_pct)"),
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,
     bends: true,

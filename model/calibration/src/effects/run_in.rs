@@ -1,7 +1,8 @@
 //! `run_in`: friction of the silicone is higher in the first repetitions of a series.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -18,6 +19,10 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Repetition,
     stage: Stage::ScaledFriction,
     formula: "mu_s (1 + k exp(-(r - 1)/r0)), times c in the concentric half, 1 if it settles anew there",
+    written: Written::factor(
+        ActsOn::MuSilicone,
+        "k*exp(-(repetition - 1)/r0) * ((direction < 0) + c*(direction > 0))",
+    ),
     parameters: &[
         Parameter::free("k", "1"),
         Parameter::bounded("r0", "1", 0.5, 12.0),

@@ -1,7 +1,8 @@
 //! `stroke_position`: the wrap angle changes along the stroke.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -18,6 +19,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Position,
     stage: Stage::ScaledFriction,
     formula: "a (1 + k (s/stroke - 1/2))",
+    written: Written::factor(ActsOn::Wrap, "k*(stroke - 0.5)"),
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,
     bends: true,

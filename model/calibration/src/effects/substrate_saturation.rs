@@ -1,8 +1,8 @@
 //! `substrate_saturation`: the friction of the silicone is bounded, its coefficient falls with load.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
-    StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
+    Stage, StudyRange, Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -19,6 +19,10 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::ScaledFriction,
     formula: "mu_s (F/F0)^(n-1) blended with mu_s/(1 + k F/F0) by the shape h in 0..1",
+    written: Written::factor(
+        ActsOn::MuSilicone,
+        "max(load_n/50, 0.001)^(-k*(1 - h)) / max(1 + k*h*load_n/50, 0.05) - 1",
+    ),
     parameters: &[Parameter::free("k", "1"), Parameter::bounded("h", "1", -0.02, 1.02)],
     // The friction of a soft contact falls behind load.
     one_sided: true,

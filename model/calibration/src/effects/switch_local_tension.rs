@@ -1,6 +1,6 @@
 //! `switch_local_tension`: the switch follows the local tension over the wrap, not the load.
 
-use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange};
+use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange, Written};
 use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
@@ -16,6 +16,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Direction,
     stage: Stage::Switch,
     formula: "S(mean tension over the wrap) instead of S(F); no free constant",
+    written: Written::No("it has no constant, and needs the tension along the wrap"),
     parameters: &[],
     one_sided: false,
     bends: true,

@@ -1,7 +1,8 @@
 //! `switching_hysteresis`: the switching threshold differs between ascending and descending loads.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -18,6 +19,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Sweep,
     stage: Stage::Switch,
     formula: "F_half(down) = F_half(up) - H",
+    written: Written::sum(ActsOn::Threshold, "-H*descending"),
     parameters: &[Parameter::free("H", "N")],
     // The silicone recovers late.
     one_sided: true,

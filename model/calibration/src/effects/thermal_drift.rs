@@ -1,7 +1,9 @@
 //! `thermal_drift`: the reading drifts with time.
 
-use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange};
-use crate::table::{Frame, Point};
+use super::{
+    ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
+};
+use crate::table::{Condition, Frame, Point};
 
 /// See [`DESCRIPTION`].
 #[derive(Debug)]
@@ -16,6 +18,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Time,
     stage: Stage::CellZero,
     formula: "reading + k u, u share of session time",
+    written: Written::sum(ActsOn::Reading, "k*time"),
     parameters: &[Parameter::free("k", "N")],
     one_sided: false,
     bends: true,
@@ -35,7 +38,7 @@ impl Effect for ThermalDrift {
         vec![vec![0.3]]
     }
 
-    fn on_reading(&self, k: &[f64], point: &Point, reading_n: f64) -> f64 {
+    fn on_reading(&self, k: &[f64], point: &Point, _: &Condition, reading_n: f64) -> f64 {
         reading_n + k[0] * point.time
     }
 }

@@ -1,7 +1,8 @@
 //! `wear_drift`: friction drifts with all the travel since the session began.
 
 use super::{
-    ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
+    Written,
 };
 use crate::table::{Condition, Frame, Point};
 
@@ -18,6 +19,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Time,
     stage: Stage::ScaledFriction,
     formula: "mu (1 + k g(u)), u share of all repetitions, g(u) = u or (1 - exp(-u/t))/(1 - exp(-1/t))",
+    written: Written::factor(ActsOn::Mu, "k*(1 - exp(-travel/t)) / (1 - exp(-1/t))"),
     parameters: &[Parameter::free("k", "1"), Parameter::bounded("t", "1", 0.08, 3.0)],
     one_sided: false,
     bends: true,

@@ -18,6 +18,7 @@ use serde::Serialize;
 pub use rig::{RigError, RigLimits};
 pub use runs::{PlannedRun, RunsError, contact_words, read_runs, rows_of, write_runs};
 
+use crate::effects::Vocabulary;
 use crate::inference::{Levels, Model, Noise};
 use crate::model_file::{ModelFile, ModelFileError};
 use crate::report::Report;
@@ -99,6 +100,8 @@ pub struct Known<'a> {
     pub model: &'a ModelFile,
     /// The rows that were fitted.
     pub rows: &'a [PlateauRow],
+    /// Effects that it tried.
+    pub vocabulary: &'a Vocabulary,
     /// Name of the folder, for errors.
     pub name: &'a str,
 }
@@ -164,6 +167,11 @@ pub fn propose(
 /// The model of a calibration with the contacts of the rig, and its noise.
 fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), ModelFileError> {
     let model = known.model.model(known.name)?;
+    // Those in the model came with it.
+    let beside = known.vocabulary.retaining(|own| model.vocabulary.named(&own.definition().id).is_none());
+    let own: Vec<_> = beside.own().cloned().collect();
+    let all = model.vocabulary.with(own).unwrap_or_else(|_| model.vocabulary.clone());
+    let model = model.among(&all);
     let mut frame = model.frame.clone();
     for candidate in paper_protocol(rig, f64::INFINITY) {
         rows_of(std::slice::from_ref(&candidate), rig, "").iter().take(1).for_each(|row| frame.extend(row));
@@ -261,7 +269,9 @@ mod tests {
     #[test]
     fn what_is_invisible_is_asked_for_within_the_time_and_more_time_tells_more() {
         let (found, model, rows) = known(1);
-        let known = Known { report: &found.report, model: &model, rows: &rows, name: "d" };
+        let vocabulary = Vocabulary::built_in();
+        let known =
+            Known { report: &found.report, model: &model, rows: &rows, vocabulary: &vocabulary, name: "d" };
         let rig = RigLimits::default();
         let proposal = |minutes| propose(known, &rig, minutes, Levels::default()).unwrap();
         let (short, long) = (proposal(9.0), proposal(60.0));

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::information::{Trace, covariance_given, visible_squares};
-use crate::effects::{Covariate, Effect, Side, effect_named};
+use crate::effects::{Covariate, Effect, Side};
 use crate::inference::{Levels, Model, Term};
 use crate::report::Report;
 
@@ -124,7 +124,7 @@ impl Agenda {
                 agenda.effects.push(*effect);
             }
             for rival in &found.rivals {
-                if let Some(effect) = effect_named(&rival.id)
+                if let Some(effect) = model.vocabulary.named(&rival.id)
                     && let Some((other, _)) = agenda.absent(effect, model)
                 {
                     pairs.push((found, term, column, other));
@@ -132,13 +132,13 @@ impl Agenda {
             }
         }
         for limit in report.limits.iter().filter(|limit| !limit.excluded) {
-            let Some(effect) = effect_named(&limit.id) else { continue };
+            let Some(effect) = model.vocabulary.named(&limit.id) else { continue };
             let Some((column, start)) = agenda.absent(effect, model) else { continue };
             let size = if effect.parameters().is_empty() { 1.0 } else { limit.typical / start };
             agenda.ask_whether(effect, column, size, &own, 1.0);
         }
         for invisible in &report.invisible {
-            let Some(effect) = effect_named(&invisible.id) else { continue };
+            let Some(effect) = model.vocabulary.named(&invisible.id) else { continue };
             // What stays in the rig does not change the curve of a part.
             let asked = agenda.questions.iter().any(|q| q.between[0] == invisible.id);
             if effect.description().side == Side::Switch && !asked {

@@ -30,12 +30,12 @@ pub struct RigLimits {
     /// Time for another layout or substrate, in minutes.
     pub minutes_per_mount_change: f64,
     /// Largest force that the load cell may read, in newtons.
-    #[serde(rename = "cell_limit_n")]
     pub cell_limit_n: f64,
 }
 
 impl Default for RigLimits {
-    /// The paper's rig. The minutes and the limit of the cell are assumed.
+    /// The paper's rig. The minutes are assumed, and the limit of the cell: half as much again as the paper's largest
+    /// reading.
     fn default() -> Self {
         Self {
             loads_g: published::WEIGHTS_G.to_vec(),
@@ -48,7 +48,7 @@ impl Default for RigLimits {
             seconds_per_repetition: 1.5,
             minutes_per_load_change: 1.5,
             minutes_per_mount_change: 6.0,
-            cell_limit_n: 100.0,
+            cell_limit_n: 75.0,
         }
     }
 }

@@ -4,7 +4,7 @@ use super::fit::{Fit, fit, jacobian};
 use super::forward::{Model, Term};
 use super::observations::Observations;
 use super::weighed::Weighed;
-use crate::effects::acting_order;
+use crate::effects::effect_named;
 
 /// The refitted paper's model from several starts: a stuck fit is indistinguishable from missing physics.
 pub(super) fn fit_baseline(model: &Model, weighed: &Weighed<'_>) -> Fit {
@@ -26,6 +26,9 @@ pub(super) fn fit_baseline(model: &Model, weighed: &Weighed<'_>) -> Fit {
 /// With fewer series and directions than these, only the model's own columns are taken out before noise is estimated.
 const MIN_CELLS: usize = 50;
 
+/// Columns of effects of one's own, as long as each has one: many effects with many starts would leave no noise.
+const OWN_COLUMNS: usize = 48;
+
 /// Series and directions that must be left beside an offset, a drag and a gain.
 const MIN_BESIDE: usize = 11;
 
@@ -43,8 +46,11 @@ pub(super) fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
         }
         return columns;
     }
-    for effect in acting_order() {
-        for start in effect.starts(&fitted.model.frame) {
+    let vocabulary = &fitted.model.vocabulary;
+    let own = vocabulary.own().count().max(1);
+    for effect in vocabulary.acting_order() {
+        let most = if effect_named(effect.id()).is_some() { usize::MAX } else { (OWN_COLUMNS / own).max(1) };
+        for start in effect.starts(&fitted.model.frame).into_iter().take(most) {
             let changed = fitted.model.with_term(Term::Named(*effect), &start).predict(&data.points);
             columns.push(changed.iter().zip(&predicted).map(|(c, p)| c - p).collect());
         }

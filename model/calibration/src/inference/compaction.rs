@@ -37,6 +37,8 @@ impl Observations {
             point.time = along(|p| p.time);
             point.travel = along(|p| p.travel);
             point.through = along(|p| p.through);
+            point.position_mm = along(|p| p.position_mm);
+            point.time_s = along(|p| p.time_s);
             let force_n = mean(&|r| self.force_n[r]);
             compact.force_n[bin] = force_n;
             compact.friction_n[bin] = mean(&|r| self.friction_n[r]);

@@ -90,6 +90,11 @@ impl Slopes {
 /// A step that gains this share of what the linear model promised leaves the model linear enough for another one.
 const STILL_LINEAR: std::ops::RangeInclusive<f64> = 0.8..=1.2;
 
+/// Largest step of a coordinate: logarithms and logits change everything within it.
+const MOST_STEP: f64 = 3.0;
+/// Coordinate beyond which the largest step grows in proportion; those of built-in effects stay below.
+const FAR: f64 = 100.0;
+
 /// Fits all constants of a model, from where they stand.
 pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
     let mut model = start.clone();
@@ -112,7 +117,11 @@ pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
             };
             let promised = 2.0 * step.dot(&g) - (a * &step).dot(&step);
             let mut trial = model.clone();
-            trial.coordinates.iter_mut().zip(step.iter()).for_each(|(c, s)| *c += s.clamp(-3.0, 3.0));
+            for (coordinate, step) in trial.coordinates.iter_mut().zip(step.iter()) {
+                // Sizes of one's own may be thousands of their unit.
+                let most = MOST_STEP * (coordinate.abs() / FAR).max(1.0);
+                *coordinate += step.clamp(-most, most);
+            }
             let (trial_cost, trial_predicted, trial_white) = evaluate(&trial, weighed);
             if promised < 1e-3 && trial_cost >= cost {
                 converged = true;

@@ -2,7 +2,7 @@
 
 use pinswitch_friction::{LayoutLaw, Substrate, published};
 
-use crate::effects::{Channel, ContactState, Covariate, Effect, Shape, Side, Stage, Structure};
+use crate::effects::{Channel, ContactState, Covariate, Effect, Shape, Side, Stage, Structure, Vocabulary};
 use crate::table::{Condition, Frame, Point};
 
 /// Id of a structure that no named effect explains.
@@ -37,7 +37,7 @@ impl Term {
     /// Whether it changes from row to row of a series: with the repetition, the position or the time.
     pub(crate) fn moves_along_a_series(&self) -> bool {
         let covariate = match self {
-            Term::Named(effect) => effect.description().covariate,
+            Term::Named(effect) => return effect.moves_along_a_series(),
             Term::Structure(Structure { form: Shape::Memory { .. }, .. }) => return true,
             Term::Structure(structure) => structure.covariate,
         };
@@ -85,6 +85,8 @@ pub struct Model {
     pub frame: Frame,
     /// Terms on top of the paper's model.
     pub terms: Vec<Term>,
+    /// The effects that may be among them.
+    pub vocabulary: Vocabulary,
     /// Coordinates of all constants: baseline first, then term by term.
     pub(crate) coordinates: Vec<f64>,
     priors: Vec<Prior>,
@@ -123,7 +125,14 @@ impl Model {
             }
         }
         let coordinates = priors.iter().map(|p| p.mean).collect();
-        Self { frame, terms: Vec::new(), coordinates, priors, plain }
+        Self { frame, terms: Vec::new(), vocabulary: Vocabulary::built_in(), coordinates, priors, plain }
+    }
+
+    /// The same model among other effects.
+    #[must_use]
+    pub fn among(mut self, vocabulary: &Vocabulary) -> Self {
+        self.vocabulary = vocabulary.clone();
+        self
     }
 
     /// The same model with a term whose constants have these values.
@@ -268,7 +277,7 @@ impl Model {
     /// The same model in a frame with more conditions; what they need beyond it comes from the layout law.
     #[must_use]
     pub fn in_frame(&self, frame: Frame) -> Self {
-        let mut model = Self::baseline(frame);
+        let mut model = Self::baseline(frame).among(&self.vocabulary);
         let (mut from, mut to) = (2, 2);
         model.coordinates[..2].copy_from_slice(&self.coordinates[..2]);
         // Conditions keep their order, new ones follow: devices first, then plain contacts.
@@ -416,6 +425,13 @@ impl Model {
             }
         }
         let mut reading = state.tension_n(condition, point);
+        // What acts on the tension comes before the load cell, whichever was found first.
+        for (term, at) in self.terms.iter().zip(offsets).filter(|(term, _)| kept(term)) {
+            if let Term::Named(effect) = term {
+                let constants = &values[*at..at + term.constants()];
+                reading = effect.on_tension(constants, point, condition, reading);
+            }
+        }
         // What ends the range of the load cell acts on everything before it.
         let mut limits = Vec::new();
         for (term, at) in self.terms.iter().zip(offsets).filter(|(term, _)| kept(term)) {
@@ -427,15 +443,13 @@ impl Model {
                         limits.retain(|(other, _): &(&&dyn Effect, _)| other.id() != effect.id());
                         limits.push((effect, constants));
                     } else {
-                        reading = effect.on_reading(constants, point, reading);
+                        reading = effect.on_reading(constants, point, condition, reading);
                     }
                 }
                 Term::Structure(structure) => reading = structure.on_reading(values[*at], point, reading),
             }
         }
-        limits
-            .iter()
-            .fold(reading, |reading, (effect, constants)| effect.on_reading(constants, point, reading))
+        limits.iter().fold(reading, |reading, (effect, k)| effect.on_reading(k, point, condition, reading))
     }
 }
 

@@ -8,7 +8,7 @@ use super::observations::Observations;
 use super::projection::{Projection, dot};
 use super::structures::{Group, structures_to_try};
 use super::weighed::Weighed;
-use crate::effects::{Channel, Covariate, Effect, Shape, Structure, acting_order};
+use crate::effects::{Channel, Covariate, Effect, Shape, Structure};
 
 /// What a wave's gain is reduced by, in whitened squares.
 const WAVE_PENALTY: f64 = 15.0;
@@ -134,7 +134,14 @@ impl<'a> Screen<'a> {
         let absent = |effect: &&'static dyn Effect| {
             !model.terms.iter().any(|t| matches!(t, Term::Named(e) if e.id() == effect.id()))
         };
-        acting_order().iter().copied().filter(absent).filter_map(|effect| self.effect(effect)).collect()
+        model
+            .vocabulary
+            .acting_order()
+            .iter()
+            .copied()
+            .filter(absent)
+            .filter_map(|effect| self.effect(effect))
+            .collect()
     }
 
     fn effect(&self, effect: &'static dyn Effect) -> Option<EffectScore> {

@@ -8,7 +8,7 @@ use super::sign_flips::family_probability;
 use super::significance::{degrees_of_freedom, family_p_value, gain_at};
 use super::variance_components::Reliability;
 use super::weighed::Weighed;
-use crate::effects::{CATALOGUE, Effect};
+use crate::effects::Effect;
 
 /// How many candidates of a scan are fitted in full.
 const FITTED: usize = 6;
@@ -19,7 +19,8 @@ pub(super) const VISIBLE_SHARE: f64 = 2e-3;
 pub(super) fn possible(effect: &dyn Effect, fitted: &Fit) -> bool {
     let last = fitted.model.terms.len().saturating_sub(1);
     let size = fitted.model.values().get(fitted.model.term_offset(last)).copied();
-    !effect.description().one_sided || size.is_some_and(|s| s > 0.0)
+    // A formula of one's own may have left the numbers on the way.
+    fitted.cost.is_finite() && (!effect.description().one_sided || size.is_some_and(|s| s > 0.0))
 }
 
 /// A model with one effect more.
@@ -73,14 +74,14 @@ fn is_beyond_chance(
     let own = jacobian(&from.model, data, &predicted);
     let degrees =
         Reliability::new(data, weighed.noise, &own).degrees(data, &score.trace_n, score.strength.powi(2));
-    family_p_value(gain, CATALOGUE.len(), degrees) <= levels.first_p
+    family_p_value(gain, from.model.vocabulary.count(), degrees) <= levels.first_p
 }
 
 /// Adds named effects while each gains enough, then drops and exchanges.
 pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit {
     let mut current = start.clone();
     let degrees = degrees_of_freedom(weighed.data, start.model.coordinates.len());
-    let first = gain_at(levels.first_p, CATALOGUE.len(), degrees);
+    let first = gain_at(levels.first_p, start.model.vocabulary.count(), degrees);
     let scores = Screen::new(start, weighed).effects();
     let strongest = scores.iter().map(|s| s.gain).fold(0.0, f64::max);
     // A weak candidate that a few series carry alone is no effect, whatever the noise model says. With few series

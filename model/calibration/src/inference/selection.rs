@@ -15,7 +15,7 @@ use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
 use super::unnamed::{Context, FoundStructure, with_structure};
 use super::variance_components::{NoiseFactors, Reliability, Scatter, estimate, scatter_size, shared_again};
 use super::weighed::Weighed;
-use crate::effects::{CATALOGUE, Effect, Shape, acting_order};
+use crate::effects::{Effect, Shape};
 
 /// An effect that explains what a named one explains as well.
 #[derive(Clone, Debug)]
@@ -128,7 +128,9 @@ impl Selection {
 
     /// Effects that this data cannot show, in the order in which they act.
     pub fn invisible(&self) -> impl Iterator<Item = &CandidateEffect> {
-        acting_order()
+        let vocabulary = &self.baseline.model.vocabulary;
+        vocabulary
+            .acting_order()
             .iter()
             .filter_map(|e| self.candidates.iter().find(|c| c.effect.id() == e.id()))
             .filter(|c| c.is_invisible())
@@ -195,7 +197,7 @@ impl Explanation {
     /// Minus twice the logarithm of its posterior probability, up to a constant: the evidence, and for each thing
     /// believed how many there were to choose from.
     fn toll(&self, data: &Observations) -> f64 {
-        let choices = 2.0 * (CATALOGUE.len() as f64).ln() * self.names() as f64;
+        let choices = 2.0 * (self.augmented.model.vocabulary.count() as f64).ln() * self.names() as f64;
         let shapes = 2.0 * (self.structures_tried.max(1) as f64).ln() * self.shapes() as f64;
         let scatter: f64 = Scatter::ALL.iter().map(|s| s.cost(self.noise)).sum();
         evidence(&self.augmented, &Weighed::new(data, self.noise)) + choices + shapes + scatter

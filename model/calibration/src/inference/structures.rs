@@ -199,20 +199,7 @@ mod tests {
 
     #[test]
     fn levels_merge_what_is_equal() {
-        let point = |load_n: f64| Point {
-            condition: 0,
-            load_n,
-            sign: 1.0,
-            descending: 0.0,
-            log_speed: 0.0,
-            log_dwell: 0.0,
-            repetition: 1.0,
-            position: 0.0,
-            time: 0.0,
-            travel: 0.0,
-            previous_load_n: load_n,
-            through: 0.0,
-        };
+        let point = |load_n: f64| Point { load_n, ..Point::default() };
         let points = [point(2.0), point(1.0), point(2.0 + 1e-9)];
         assert_eq!(levels(&points, |p| p.load_n, 1e-3), [1.0, 2.0]);
         assert!(follows(&points, |p| p.log_speed, |p| p.load_n, 0.01));

@@ -9,7 +9,7 @@ use super::row::{PlateauRow, Sweep};
 use super::substrate_word::substrate_word;
 
 /// One kind of contact in a table: substrate and pins.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
     /// What the tendon lies on; `None` for `plain`.
     #[serde(rename = "surface", with = "super::substrate_word")]
@@ -29,7 +29,12 @@ pub struct Condition {
 }
 
 impl Condition {
-    fn new(substrate: Option<Substrate>, pins: &[usize], wrap_angle_deg: f64, device: Option<usize>) -> Self {
+    pub(crate) fn new(
+        substrate: Option<Substrate>,
+        pins: &[usize],
+        wrap_angle_deg: f64,
+        device: Option<usize>,
+    ) -> Self {
         let wrap = wrap_rad(substrate, wrap_angle_deg);
         let n = pins.len() as f64;
         let ploughing = Self::ploughing_sum(pins, wrap);
@@ -110,7 +115,7 @@ pub struct Frame {
 }
 
 /// A row in the form in which the friction model reads it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
     /// Index into [`Frame::conditions`].
     pub condition: usize,
@@ -136,6 +141,20 @@ pub struct Point {
     pub previous_load_n: f64,
     /// Repetitions made in the series so far, both directions counted.
     pub through: f64,
+    /// Whether its series is the first of its session.
+    pub begins_session: bool,
+    /// Speed in percent; that of the reference where the table has 0.
+    pub speed_pct: f64,
+    /// Pause before the reading in seconds; the published one where the table has 0.
+    pub dwell_s: f64,
+    /// Position in millimetres.
+    pub position_mm: f64,
+    /// Seconds since the session began.
+    pub time_s: f64,
+    /// The session, numbered from 1 in the order of the table.
+    pub session: f64,
+    /// The number of the mount, or its place in the order of the table, from 1.
+    pub mount: f64,
 }
 
 impl Point {
@@ -217,17 +236,25 @@ impl Frame {
             let (a, b) = (&rows[*a], &rows[*b]);
             a.labels.session.cmp(&b.labels.session).then(a.time_s.total_cmp(&b.time_s))
         });
-        let mut made: BTreeMap<(&str, &str), (f64, f64)> = BTreeMap::new();
+        let mut made: BTreeMap<(&str, &str), (f64, bool, f64)> = BTreeMap::new();
         let mut last: Option<(&str, f64)> = None;
         for i in order {
             let row = &rows[i];
             let session = row.labels.session.as_str();
-            let before = last.filter(|(of, _)| *of == session).map_or(row.load_n, |(_, load)| load);
-            let (previous, through) = made.entry((session, row.series.as_str())).or_insert((before, 0.0));
+            let before = last.filter(|(of, _)| *of == session).map(|(_, load)| load);
+            let begun = (before.unwrap_or(row.load_n), before.is_none(), 0.0);
+            let (previous, first, through) = made.entry((session, row.series.as_str())).or_insert(begun);
             points[i].previous_load_n = *previous;
+            points[i].begins_session = *first;
             points[i].through = *through;
             *through += 1.0;
             last = Some((session, row.load_n));
+        }
+        let (mut sessions, mut mounts) = (Vec::new(), Vec::new());
+        for (point, row) in points.iter_mut().zip(rows) {
+            point.session = place_of(&mut sessions, row.labels.session.as_str());
+            let place = place_of(&mut mounts, row.labels.mount.as_str());
+            point.mount = row.labels.mount.parse().ok().filter(|m: &f64| m.is_finite()).unwrap_or(place);
         }
         Some(points)
     }
@@ -247,8 +274,24 @@ impl Frame {
             travel: interpolate(&self.travel_time_s, &self.travel_share, row.time_s),
             previous_load_n: row.load_n,
             through: 0.0,
+            begins_session: true,
+            speed_pct: if row.speed_pct > 0.0 { row.speed_pct } else { self.reference_speed_pct },
+            dwell_s: if row.dwell_s > 0.0 { row.dwell_s } else { published::DWELL_S },
+            position_mm: row.position_mm,
+            time_s: row.time_s,
+            session: 1.0,
+            mount: 1.0,
         })
     }
+}
+
+/// Place of a name among those seen so far, from 1.
+fn place_of<'a>(seen: &mut Vec<&'a str>, name: &'a str) -> f64 {
+    let place = seen.iter().position(|s| *s == name).unwrap_or_else(|| {
+        seen.push(name);
+        seen.len() - 1
+    });
+    (place + 1) as f64
 }
 
 /// Piecewise linear interpolation with constant ends; `x` ascending.

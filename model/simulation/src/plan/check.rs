@@ -1,6 +1,6 @@
 //! Whether a plan can be run: every field within its bounds.
 
-use pinswitch_calibration::effects::{acting_order, effect_named};
+use pinswitch_calibration::effects::{CATALOGUE, Vocabulary};
 use pinswitch_friction::published;
 
 use super::{EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan};
@@ -52,7 +52,7 @@ impl Plan {
                 bound,
                 remedy,
             })?;
-        self.effects.iter().try_for_each(|effect| check_effect(effect, file))
+        self.effects.iter().try_for_each(|effect| check_effect(effect, &self.vocabulary, file))
     }
 
     /// Rows that the plan makes at most.
@@ -277,9 +277,9 @@ fn check_raw(r: &RawPlan) -> Result<(), Fault> {
     )
 }
 
-/// Whether an effect is in the catalogue, with as many constants as it needs, in a form that the twin has.
-fn check_effect(planned: &EffectPlan, file: &str) -> Result<(), PlanError> {
-    let remedy = match effect_named(&planned.id) {
+/// Whether an effect is in the vocabulary, with as many constants as it needs, in a form that the twin has.
+fn check_effect(planned: &EffectPlan, vocabulary: &Vocabulary, file: &str) -> Result<(), PlanError> {
+    let remedy = match vocabulary.named(&planned.id) {
         Some(effect) if effect.parameters().len() == planned.values.len() => {
             let forms = forms_of(&planned.id);
             if usize::from(planned.form) < forms.len() {
@@ -293,7 +293,10 @@ fn check_effect(planned: &EffectPlan, file: &str) -> Result<(), PlanError> {
             format!("it needs {} value(s): {}", names.len(), names.join(", "))
         }
         None => {
-            format!("known are {}", acting_order().iter().map(|e| e.id()).collect::<Vec<_>>().join(", "))
+            // Those of one's own first: an error shows the beginning and the end of a long list.
+            let own = vocabulary.own().map(|own| own.definition().id.as_str());
+            let built_in = CATALOGUE.iter().map(|effect| effect.id());
+            format!("known are {}", own.chain(built_in).collect::<Vec<_>>().join(", "))
         }
     };
     Err(PlanError::Effect {

@@ -14,6 +14,7 @@ pub use noise::NoisePlan;
 pub use raw::RawPlan;
 
 use crate::disturbance::Disturbance;
+use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::toml_error;
 use pinswitch_friction::{LayoutLaw, published};
 
@@ -128,6 +129,9 @@ pub struct Plan {
     /// Optional columns of the table.
     #[serde(skip_serializing_if = "ColumnsPlan::is_empty")]
     pub columns: ColumnsPlan,
+    /// The effects that may be among those of the plan; a file of a plan does not hold it.
+    #[serde(skip)]
+    pub vocabulary: Vocabulary,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
@@ -156,6 +160,7 @@ impl Default for Plan {
             noise: NoisePlan::default(),
             raw: RawPlan::default(),
             columns: ColumnsPlan::default(),
+            vocabulary: Vocabulary::built_in(),
         }
     }
 }
@@ -178,12 +183,29 @@ impl Plan {
     /// # Errors
     /// [`PlanError`] at the first field that cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, PlanError> {
+        Self::parse_among(text, file, &Vocabulary::built_in())
+    }
+
+    /// Reads a plan whose effects are those of a vocabulary. `file` is the name used in errors.
+    ///
+    /// # Errors
+    /// [`PlanError`] at the first field that cannot be used.
+    pub fn parse_among(text: &str, file: &str, vocabulary: &Vocabulary) -> Result<Self, PlanError> {
         let plan: Self = toml::from_str(text).map_err(|e| {
             let (file, problem) = toml_error(file, text, &e);
             PlanError::Malformed { file, problem }
         })?;
+        let plan = Self { vocabulary: vocabulary.clone(), ..plan };
         plan.check(file)?;
         Ok(plan)
+    }
+
+    /// Puts an effect into the rig. Of one of one's own, constants that are left out are at their start values.
+    pub fn add_effect(&mut self, id: &str, mut values: Vec<f64>) {
+        let own = self.vocabulary.own().find(|own| own.definition().id == id);
+        let starts = own.map_or(&[][..], |own| &own.definition().parameters);
+        values.extend(starts.iter().skip(values.len()).map(|p| p.start));
+        self.effects.push(EffectPlan { id: id.to_owned(), values, form: 0 });
     }
 
     /// The plan's text.

@@ -10,7 +10,6 @@ mod contact;
 use std::collections::BTreeMap;
 
 use contact::TwinContact;
-use pinswitch_calibration::effects::effect_named;
 use pinswitch_calibration::inference::{Model, Term};
 use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_friction::published;
@@ -104,7 +103,7 @@ fn add_lent_traces(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) 
         .effects
         .iter()
         .filter(|e| !has_own_formula(&e.id))
-        .filter_map(|e| Some((effect_named(&e.id)?, e.values.as_slice())))
+        .filter_map(|e| Some((plan.vocabulary.named(&e.id)?, e.values.as_slice())))
         .collect();
     let frame = Frame::new(session);
     let Some(points) = frame.points(session).filter(|_| !lent.is_empty()) else { return };
@@ -176,7 +175,7 @@ mod tests {
     use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
     use crate::effect_forms::FORMS;
     use crate::plan::EffectPlan;
-    use pinswitch_calibration::effects::CATALOGUE;
+    use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 
     /// Two implementations of `model/doc/effect-catalogue.md`, the twin's and the fitter's, agree on form 0 of every
     /// effect.

@@ -1,0 +1,260 @@
+//! Effects of one's own beside the built-in ones, and files of any content.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::effects::{CATALOGUE, Vocabulary, own_effects_text};
+use crate::inference::{Model, Noise, Observations, Term, Weighed, fit};
+use crate::table::PlateauRow;
+use crate::test_session::session_with;
+use crate::{ModelFile, calibrate_among};
+
+/// A file that is right, to be spoilt.
+const GOOD: &str = include_str!("../../../../../templates/rig/effects.toml");
+
+/// The built-in effects as formulas, under ids of their own.
+fn written_out() -> Vec<(&'static dyn Effect, OwnEffect)> {
+    let of = |effect: &'static dyn Effect| {
+        let mut definition = EffectDefinition::of(effect).ok()?;
+        definition.id = format!("own_{}", definition.id);
+        Some((effect, OwnEffect::new(definition).unwrap()))
+    };
+    CATALOGUE.iter().copied().filter_map(of).collect()
+}
+
+/// A session in which the dwell varies, too, with an effect in it.
+fn varied(effect: &'static dyn Effect, values: &[f64]) -> Vec<PlateauRow> {
+    let mut rows = session_with(7, &[]);
+    for (i, row) in rows.iter_mut().enumerate() {
+        let series: usize = row.series.parse().unwrap_or(i / 18);
+        row.dwell_s = [1.0, 3.0, 10.0][series % 3];
+    }
+    let model = Model::baseline(Frame::new(&rows)).with_term(Term::Named(effect), values);
+    let without = Model::baseline(Frame::new(&rows)).predict(&model.frame.points(&rows).unwrap());
+    let with = model.predict(&model.frame.points(&rows).unwrap());
+    rows.iter_mut().zip(with.iter().zip(&without)).for_each(|(row, (a, b))| row.force_n += a - b);
+    rows
+}
+
+#[test]
+fn sixteen_built_in_effects_can_be_written_out() {
+    assert_eq!(written_out().len(), 16);
+}
+
+/// Written out, an effect predicts what the built-in one does, and a fit finds the same constants and residuals.
+#[test]
+fn a_built_in_effect_and_its_written_out_version_are_one() {
+    for (effect, own) in written_out() {
+        let id = own.definition().id.clone();
+        let vocabulary = Vocabulary::built_in().with(vec![own]).unwrap();
+        let written = vocabulary.named(&id).unwrap();
+        let study = effect.description().study;
+        let values = study.values_at(study.largest());
+        let rows = varied(effect, &values);
+        let baseline = Model::baseline(Frame::new(&rows));
+        let data = Observations::new(&baseline.frame, &rows).unwrap();
+        let both = [effect, written].map(|e| baseline.with_term(Term::Named(e), &values));
+        for (a, b) in both[0].predict(&data.points).iter().zip(both[1].predict(&data.points)) {
+            assert!((a - b).abs() < 1e-9 * a.abs().max(1.0), "{id}: {a} and {b}");
+        }
+        let weighed = Weighed::new(&data, Noise::constant(0.05, 0.05));
+        let [a, b] = [effect, written]
+            .map(|e| fit(&baseline.with_term(Term::Named(e), &effect.starts(&baseline.frame)[0]), &weighed));
+        assert!((a.cost / b.cost - 1.0).abs() < 1e-6, "{id}: {} and {}", a.cost, b.cost);
+        for (x, y) in a.model.values().iter().zip(b.model.values()) {
+            assert!((x - y).abs() < 1e-4 * x.abs().max(0.1), "{id}: {x} and {y}");
+        }
+    }
+}
+
+#[test]
+fn what_is_written_reads_back() {
+    let definitions: Vec<EffectDefinition> =
+        written_out().into_iter().map(|(_, own)| own.definition().clone()).collect();
+    let text = own_effects_text(&definitions);
+    let vocabulary = Vocabulary::built_in().read(&text, "mine.toml").unwrap();
+    assert!(vocabulary.own().map(OwnEffect::definition).eq(&definitions));
+    assert!(
+        vocabulary.read(&text, "again.toml").unwrap_err().to_string().starts_with("again.toml:4:6: id 'own_")
+    );
+}
+
+/// A model file carries the formula: it predicts without the file of effects.
+#[test]
+fn a_model_carries_its_effects() {
+    let vocabulary = Vocabulary::built_in().read(GOOD, "mine.toml").unwrap();
+    let dip = vocabulary.named("lubricant_dip").unwrap();
+    let rows = varied(dip, &[0.25, 50.0, 6.0]);
+    let found = calibrate_among(&rows, &vocabulary, crate::inference::Levels::default()).unwrap();
+    assert_eq!(found.report.candidates.len(), 22);
+    let model =
+        Model::baseline(Frame::new(&rows)).among(&vocabulary).with_term(Term::Named(dip), &[0.25, 50.0, 6.0]);
+    let fitted = fit(&model, &Weighed::new(&found.data, Noise::constant(0.05, 0.05)));
+    let text = ModelFile::new(&fitted, &found.data, Noise::constant(0.05, 0.05)).to_text().unwrap();
+    let read = ModelFile::parse(&text, "model.toml").unwrap();
+    assert_eq!(read.to_text().unwrap(), text);
+    let (predicted, _) = read.predict(&rows, "model.toml").unwrap();
+    let expected = fitted.model.predict(&fitted.model.frame.points(&rows).unwrap());
+    assert!(predicted.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-9));
+    let spoilt = text.replace("speed_pct - c", "sped_pct - c");
+    let error = ModelFile::parse(&spoilt, "model.toml").unwrap_err().to_string();
+    assert!(error.contains("did you mean speed_pct?") && error.starts_with("model.toml:"), "{error}");
+}
+
+#[test]
+fn history_is_known() {
+    let text = GOOD.replace("# [[effect]]", "[[effect]]").replace("\n# ", "\n").replace("\n#", "\n");
+    let from = text.find("id = \"load_memory\"").unwrap();
+    let memory = format!("schema = \"pinswitch.effects/1\"\n[[effect]]\n{}", &text[from..]);
+    let vocabulary = Vocabulary::built_in().read(&memory, "mine.toml").unwrap();
+    let effect = vocabulary.named("load_memory").unwrap();
+    assert!(effect.moves_along_a_series());
+    let rows = session_with(1, &[]);
+    let model = Model::baseline(Frame::new(&rows));
+    let points = model.frame.points(&rows).unwrap();
+    let with = model.with_term(Term::Named(effect), &[0.3, 10.0]).predict(&points);
+    let without = model.predict(&points);
+    let changed = |i: usize| (with[i] / without[i]).ln().abs();
+    let second = (0..rows.len()).find(|i| rows[*i].series != rows[0].series).unwrap();
+    assert!(points[second].previous_load_n == rows[0].load_n && !points[second].begins_session);
+    assert!(changed(second) > changed(second + 5) && changed(second + 5) > 0.0);
+}
+
+#[test]
+fn faults_are_placed() {
+    for (from, to, expected) in [
+        ("effects/1", "effects/9", "4:10: schema 'pinswitch.effects/9' is unknown"),
+        ("schema =", "shema =", "4:1: a file of effects: unknown key 'shema'; did you mean schema?"),
+        (
+            "\"lubricant_dip\" ",
+            "\"rate_dependence\" ",
+            "7:6: id 'rate_dependence' is that of a built-in effect",
+        ),
+        ("\"lubricant_dip\" ", "\"Dip\" ", "7:6: id 'Dip' needs a-z first"),
+        ("side = \"switch\" ", "side = \"left\" ", "8:8: side = 'left' is unknown; it is one of switch, rig"),
+        ("acts_on = \"mu\" ", "acts_on = \"moo\" ", "10:11: acts_on = 'moo' is unknown"),
+        ("speed_pct - c", "speedpct - c", "12:24: unknown variable 'speedpct'; did you mean speed_pct?"),
+        ("exp(-((speed_pct - c)/w)^2)", "exq(1)*c*w", "12:17: unknown function 'exq'; did you mean exp?"),
+        ("speed_pct - c", "load_n - c", "12:31: the units N and % meet here"),
+        ("-a * exp", "1 + a * exp", "12:12: with all sizes zero it must be zero, and is 1.0000"),
+        ("\"-a * exp", "\"-a*ln(0*direction)*exp", "12:12: no number at its start values"),
+        ("combine = \"factor\" ", "combine = \"sum\" ", ""),
+        (
+            "acts_on = \"mu\"      ",
+            "acts_on = \"mu\"\ncombined = 1 ",
+            "11:1: an effect: unknown key 'combined'; did you mean combine?",
+        ),
+        (
+            "[\"rate_dependence\"]",
+            "[\"rate_dependance\"]",
+            "14:18: unknown effect 'rate_dependance'; did you mean rate_dependence?",
+        ),
+        ("[\"rate_dependence\"]", "[1]", "14:18: confused_with is no list of ids"),
+        ("start = 52", "start = 20", "20:12: start = 20 of 'c' must lie between low = 35 and high = 75"),
+        ("start = 52", "start = nan", "20:12: start, low and high of 'c' are numbers"),
+        ("start = 0.1", "start = -0.1", "19:12: start = -0.1 of the size 'a'"),
+        ("size = true, ", "", "parameter 'a' has no low and high"),
+        ("size = true, ", "size = true, low = 0, ", "a size has no bounds"),
+        ("unit = \"%\" }\nparameters.w", "unit = \"kg\" }\nparameters.w", "20:12: unit 'kg' is unknown"),
+        ("parameters.w =", "parameters.load_n =", "21:12: parameter 'load_n' has the name of a variable"),
+        (
+            "parameters.w =",
+            "parameters.v = { start = 1, low = 0, high = 2, unit = \"1\" }\nparameters.w =",
+            "21:12: the formula does not use 'v'",
+        ),
+        ("one_sided = true ", "one_sided = 1 ", "13:13: one_sided is no true or false"),
+        ("[[effect]]\nid = \"lub", "[[effect\nid = \"lub", "6:"),
+        ("[[effect]]\nid = \"lub", "[effect]\nid = \"lub", "effect is no list of tables"),
+    ] {
+        assert!(GOOD.contains(from), "{from}");
+        let spoilt = GOOD.replacen(from, to, 1);
+        let read = Vocabulary::built_in().read(&spoilt, "mine.toml").map(|v| v.count());
+        if expected.is_empty() {
+            assert_eq!(read, Ok(22), "{to}");
+            continue;
+        }
+        let error = read.unwrap_err().to_string();
+        assert!(error.starts_with("mine.toml:") && error.contains(expected), "{to}:\n{error}\n{expected}");
+        assert!(error.chars().count() < 600, "{error}");
+    }
+}
+
+/// Words that a formula may hold, and some that it may not.
+fn word() -> impl Strategy<Value = String> {
+    let words = [
+        "load_n",
+        "direction",
+        "time_s",
+        "stroke",
+        "a",
+        "b",
+        "1",
+        "0.5",
+        "50",
+        "1e3",
+        "+",
+        "-",
+        "*",
+        "/",
+        "^",
+        "(",
+        ")",
+        ",",
+        "exp",
+        "ln(",
+        "sqrt(",
+        "abs(",
+        "sin(",
+        "tanh(",
+        "min(",
+        "max(",
+        "<",
+        ">=",
+        "==",
+        "previous_load_n",
+        "x",
+        "\u{b5}",
+    ];
+    prop::sample::select(words.to_vec()).prop_map(str::to_owned)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+
+    /// Any formula is refused, or has a number wherever it is asked first.
+    #[test]
+    fn any_formula_is_a_number_or_refused(words in prop::collection::vec(word(), 1..14), acts in 0usize..8) {
+        let parameter = |name: &str, bounds| OwnParameter { name: name.to_owned(), unit: "1".to_owned(), start: 0.5, bounds };
+        let definition = EffectDefinition {
+            id: "any".to_owned(),
+            side: crate::effects::Side::Rig,
+            covariate: Covariate::Load,
+            acts_on: ActsOn::ALL[acts],
+            combine: crate::effects::Combine::Factor,
+            formula: format!("a*b*({})", words.join(" ")),
+            one_sided: false,
+            confused_with: Vec::new(),
+            experiment: String::new(),
+            parameters: vec![parameter("a", None), parameter("b", Some((0.0, 1.0)))],
+        };
+        match OwnEffect::new(definition) {
+            Err(error) => prop_assert!(error.to_string().chars().count() < 600),
+            Ok(own) => for probe in probe::probes() {
+                let value = own.formula.value(&[0.5, 0.5], &probe.moment());
+                prop_assert!(value.is_finite());
+            },
+        }
+    }
+
+    /// No text makes the reader panic, and none makes a long error.
+    #[test]
+    fn any_text_is_read_or_refused(text in "\\PC{0,60}", at in 0usize..2000) {
+        let at = (0..=at.min(GOOD.len())).rev().find(|i| GOOD.is_char_boundary(*i)).unwrap_or(0);
+        for spoilt in [text.clone(), format!("{}{text}{}", &GOOD[..at], &GOOD[at..])] {
+            if let Err(error) = read_own_effects(&spoilt, "mine.toml", &Vocabulary::built_in()) {
+                prop_assert!(error.to_string().chars().count() < 600, "{}", error);
+                prop_assert!(error.line >= 1 && error.column >= 1);
+            }
+        }
+    }
+}

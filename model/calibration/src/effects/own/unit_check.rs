@@ -1,0 +1,255 @@
+//! Whether the units of a formula fit: sums and comparisons of one unit, functions of none.
+//!
+//! A bare number that is added, compared or divided has the unit that makes the formula right, as in `load_n/50` or
+//! `speed_pct > 50`; a number that multiplies has none. Such a number is an unknown of linear equations between powers
+//! of units, which are solved one by one as they are met (Kennedy, Types for units-of-measure, 2010).
+
+use super::expression::{Fault, Function, Kind, Node, Operator};
+use super::unit::Unit;
+
+/// A unit that may depend on units not yet known: a known one times powers of unknown ones.
+#[derive(Clone, Debug)]
+struct Quantity {
+    known: Unit,
+    unknown: Vec<(usize, f64)>,
+}
+
+/// Powers smaller than this are zero.
+const ZERO: f64 = 1e-9;
+
+impl Quantity {
+    fn known(known: Unit) -> Self {
+        Self { known, unknown: Vec::new() }
+    }
+
+    fn times(&self, other: &Quantity, power: f64) -> Quantity {
+        let mut product = Quantity { known: self.known.times(other.known, power), ..self.clone() };
+        for (unknown, own) in &other.unknown {
+            match product.unknown.iter_mut().find(|(u, _)| u == unknown) {
+                Some((_, sum)) => *sum += power * own,
+                None => product.unknown.push((*unknown, power * own)),
+            }
+        }
+        product.unknown.retain(|(_, power)| power.abs() > ZERO);
+        product
+    }
+}
+
+/// The units of numbers, as far as they are known.
+#[derive(Default)]
+struct Solver {
+    solved: Vec<Option<Quantity>>,
+}
+
+/// Checks a formula whose constants have these units and which must have the unit `needed`.
+///
+/// # Errors
+/// The first place where units do not fit.
+pub(super) fn check_units(formula: &Node, constants: &[Unit], needed: Unit, what: &str) -> Result<(), Fault> {
+    let mut solver = Solver::default();
+    let found = solver.unit_of(formula, constants)?;
+    if solver.equal(&found, &Quantity::known(needed)) {
+        return Ok(());
+    }
+    let found = solver.told(&found);
+    Err(Fault::new(
+        0,
+        format!(
+            "the formula has the unit {found}, {what} needs {needed}; divide by a reference, as load_n/50, or give a \
+             constant another unit"
+        ),
+    ))
+}
+
+impl Solver {
+    /// The quantity with all that is known by now put in. Solutions hold no unknown that is solved itself.
+    fn resolved(&self, quantity: &Quantity) -> Quantity {
+        let mut result = Quantity::known(quantity.known);
+        for (unknown, power) in &quantity.unknown {
+            let one = Quantity { known: Unit::NONE, unknown: vec![(*unknown, 1.0)] };
+            let value = self.solved.get(*unknown).and_then(Option::as_ref).unwrap_or(&one);
+            result = result.times(value, *power);
+        }
+        result
+    }
+
+    fn told(&self, quantity: &Quantity) -> String {
+        self.resolved(quantity).known.to_string()
+    }
+
+    /// Makes two units equal if that is possible.
+    fn equal(&mut self, a: &Quantity, b: &Quantity) -> bool {
+        let apart = self.resolved(&a.times(b, -1.0));
+        let Some((unknown, power)) = apart.unknown.first().copied() else {
+            return apart.known == Unit::NONE;
+        };
+        // known * unknown^power * rest = 1.
+        let rest = Quantity { known: apart.known, unknown: apart.unknown[1..].to_vec() };
+        self.solved[unknown] = Some(Quantity::known(Unit::NONE).times(&rest, -1.0 / power));
+        let again: Vec<_> = self.solved.iter().map(|s| s.as_ref().map(|s| self.resolved(s))).collect();
+        self.solved = again;
+        true
+    }
+
+    /// Unit of an operand that may be a bare number of any unit.
+    fn operand(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
+        let bare = match &node.kind {
+            Kind::Negated(inner) => matches!(inner.kind, Kind::Number(_)),
+            kind => matches!(kind, Kind::Number(_)),
+        };
+        if !bare {
+            return self.unit_of(node, constants);
+        }
+        self.solved.push(None);
+        Ok(Quantity { known: Unit::NONE, unknown: vec![(self.solved.len() - 1, 1.0)] })
+    }
+
+    fn dimensionless(&mut self, found: &Quantity, at: usize, what: &str) -> Result<(), Fault> {
+        if self.equal(found, &Quantity::known(Unit::NONE)) {
+            return Ok(());
+        }
+        let found = self.told(found);
+        Err(Fault::new(
+            at,
+            format!("{what} has the unit {found} and needs none; divide by a reference, as load_n/50"),
+        ))
+    }
+
+    fn unit_of(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
+        match &node.kind {
+            Kind::Number(_) => Ok(Quantity::known(Unit::NONE)),
+            Kind::Variable(variable) => {
+                Unit::parse(variable.unit).map(Quantity::known).map_err(|e| Fault::new(node.at, e))
+            }
+            Kind::Constant(place) => {
+                Ok(Quantity::known(constants.get(*place).copied().unwrap_or(Unit::NONE)))
+            }
+            Kind::Negated(a) => self.unit_of(a, constants),
+            Kind::Call(function, a) => self.call(*function, a, constants),
+            Kind::Binary(operator, a, b) => self.binary(*operator, node.at, a, b, constants),
+        }
+    }
+
+    fn call(&mut self, function: Function, a: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
+        let unit = self.unit_of(a, constants)?;
+        let none = Quantity::known(Unit::NONE);
+        match function {
+            Function::Abs => Ok(unit),
+            Function::Sqrt => Ok(none.times(&unit, 0.5)),
+            Function::Sin | Function::Cos if self.told(&unit) == "rad" => Ok(none),
+            Function::Exp | Function::Ln | Function::Tanh | Function::Sin | Function::Cos => {
+                let name = format!("{function:?}").to_lowercase();
+                self.dimensionless(&unit, a.at, &format!("what {name} is taken of"))?;
+                Ok(none)
+            }
+        }
+    }
+
+    fn binary(
+        &mut self,
+        operator: Operator,
+        at: usize,
+        a: &Node,
+        b: &Node,
+        constants: &[Unit],
+    ) -> Result<Quantity, Fault> {
+        match operator {
+            Operator::Multiply => Ok(self.unit_of(a, constants)?.times(&self.unit_of(b, constants)?, 1.0)),
+            Operator::Divide => Ok(self.operand(a, constants)?.times(&self.operand(b, constants)?, -1.0)),
+            Operator::Power => self.power(a, b, constants),
+            Operator::Add
+            | Operator::Subtract
+            | Operator::Least
+            | Operator::Greatest
+            | Operator::Less
+            | Operator::AtMost
+            | Operator::More
+            | Operator::AtLeast
+            | Operator::Equal
+            | Operator::Unequal => {
+                let (left, right) = (self.operand(a, constants)?, self.operand(b, constants)?);
+                if !self.equal(&left, &right) {
+                    let (left, right) = (self.told(&left), self.told(&right));
+                    return Err(Fault::new(
+                        at,
+                        format!(
+                            "the units {left} and {right} meet here and must be one; divide each by a reference"
+                        ),
+                    ));
+                }
+                let joins = matches!(
+                    operator,
+                    Operator::Add | Operator::Subtract | Operator::Least | Operator::Greatest
+                );
+                Ok(if joins { left } else { Quantity::known(Unit::NONE) })
+            }
+        }
+    }
+
+    /// A power: by a number of anything, else of what has no unit.
+    fn power(&mut self, a: &Node, b: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
+        let base = self.unit_of(a, constants)?;
+        let none = Quantity::known(Unit::NONE);
+        if let Some(power) = b.number().filter(|power| power.is_finite()) {
+            return Ok(none.times(&base, power));
+        }
+        self.dimensionless(&base, a.at, "the base of a power that is no number")?;
+        let exponent = self.unit_of(b, constants)?;
+        self.dimensionless(&exponent, b.at, "an exponent")?;
+        Ok(none)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A formula with constants `k` (1), `f` (N), `p` (N^-0.5), `w` (%).
+    fn check(text: &str, needed: &str) -> Result<(), Fault> {
+        let node = Node::parse(text, &["k", "f", "p", "w"], true)?;
+        let units = ["1", "N", "N^-0.5", "%"].map(|u| Unit::parse(u).unwrap());
+        check_units(&node, &units, Unit::parse(needed).unwrap(), "it")
+    }
+
+    #[test]
+    fn units_that_fit_are_accepted() {
+        for (text, needed) in [
+            ("-k * exp(-((speed_pct - 52)/w)^2)", "1"),
+            ("k*(load_n/50)^k", "1"),
+            ("k*ln(speed_pct/50)", "1"),
+            ("p*sqrt(load_n)", "1"),
+            ("p^2*load_n", "1"),
+            ("f*direction", "N"),
+            ("k*load_n", "N"),
+            ("k*turn_per_pin_rad/0.349", "1"),
+            ("k*sin(turn_per_pin_rad) + k*sin(6.28*stroke)", "1"),
+            ("k*(load_n > 20)*(speed_pct <= 50)", "1"),
+            ("k*max(load_n/50, 0.001)^(-k)", "1"),
+            ("k*(load_n - previous_load_n)/50*exp(-repetitions_so_far/20)", "1"),
+            ("k*exp(-50/load_n)", "1"),
+            ("k*(load_n^2/2500)", "1"),
+            ("k*tanh((load_n - 20)/f)", "1"),
+            ("k*(load_n < f)*-1", "1"),
+        ] {
+            assert_eq!(check(text, needed), Ok(()), "{text}");
+        }
+    }
+
+    #[test]
+    fn units_that_do_not_fit_are_placed() {
+        for (text, needed, at, part) in [
+            ("k*load_n", "1", 0, "has the unit N, it needs 1"),
+            ("f", "1", 0, "has the unit N"),
+            ("k*(load_n + speed_pct)", "N", 10, "the units N and % meet here"),
+            ("k*exp(load_n)", "1", 6, "what exp is taken of has the unit N"),
+            ("k*ln(load_n + 3)", "1", 12, "what ln is taken of"),
+            ("k*(load_n > speed_pct)", "1", 10, "the units N and % meet"),
+            ("k*load_n^k", "1", 2, "the base of a power"),
+            ("k*2^load_n", "1", 4, "an exponent has the unit N"),
+            ("k*(load_n/50 + load_n)", "1", 0, "has the unit N"),
+        ] {
+            let fault = check(text, needed).map(|()| text).unwrap_err();
+            assert!(fault.at == at && fault.problem.contains(part), "{text}: {fault:?}");
+        }
+    }
+}

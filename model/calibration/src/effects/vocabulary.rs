@@ -1,0 +1,120 @@
+//! The effects that a calibration tries: the built-in ones, and those of one's own.
+
+use std::sync::Arc;
+
+use super::own::{DefinitionError, LeakedEffect, OwnEffect, OwnEffectError, duplicate, read_own_effects};
+use super::{CATALOGUE, Effect};
+
+/// A list of effects, in the order of the catalogue and in that in which they act. A clone shares it.
+///
+/// ```
+/// use pinswitch_calibration::effects::Vocabulary;
+///
+/// let text = r#"
+/// schema = "pinswitch.effects/1"
+/// [[effect]]
+/// id = "lubricant_dip"
+/// side = "switch"
+/// covariate = "speed"
+/// acts_on = "mu"
+/// combine = "factor"
+/// formula = "-a * exp(-((speed_pct - c)/w)^2)"
+/// one_sided = true
+/// parameters.a = { size = true, start = 0.1, unit = "1" }
+/// parameters.c = { start = 52, low = 35, high = 75, unit = "%" }
+/// parameters.w = { start = 8, low = 3, high = 30, unit = "%" }
+/// "#;
+/// let vocabulary = Vocabulary::built_in().read(text, "mine.toml")?;
+/// assert_eq!(vocabulary.count(), 22);
+/// let error = vocabulary.read(&text.replace("speed_pct", "sped_pct"), "mine.toml").unwrap_err();
+/// assert_eq!(error.to_string(), "mine.toml:9:24: unknown variable 'sped_pct'; did you mean speed_pct?");
+/// # Ok::<(), pinswitch_calibration::effects::OwnEffectError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Vocabulary {
+    own: Arc<[&'static LeakedEffect]>,
+    acting: Arc<[&'static dyn Effect]>,
+}
+
+impl Default for Vocabulary {
+    fn default() -> Self {
+        Self::built_in()
+    }
+}
+
+impl PartialEq for Vocabulary {
+    fn eq(&self, other: &Self) -> bool {
+        self.own().eq(other.own())
+    }
+}
+
+impl Vocabulary {
+    /// The effects of the catalogue.
+    pub fn built_in() -> Self {
+        Self::of(Vec::new())
+    }
+
+    fn of(own: Vec<&'static LeakedEffect>) -> Self {
+        let mut acting: Vec<&'static dyn Effect> = CATALOGUE.to_vec();
+        acting.extend(own.iter().map(|effect| *effect as &dyn Effect));
+        acting.sort_by_key(|effect| effect.description().stage);
+        Self { own: own.into(), acting: acting.into() }
+    }
+
+    /// The same with those of a file added. `file` is the name used in errors.
+    ///
+    /// # Errors
+    /// [`OwnEffectError`] with line and column.
+    pub fn read(&self, text: &str, file: &str) -> Result<Self, OwnEffectError> {
+        Ok(self.joined(read_own_effects(text, file, self)?))
+    }
+
+    /// The same with more effects of one's own. They stay in memory as long as the program runs.
+    ///
+    /// # Errors
+    /// [`DefinitionError`] if an id is there twice.
+    pub fn with(&self, own: Vec<OwnEffect>) -> Result<Self, DefinitionError> {
+        for (i, effect) in own.iter().enumerate() {
+            let id = &effect.definition().id;
+            if self.named(id).is_some() || own[..i].iter().any(|other| other.definition().id == *id) {
+                return Err(duplicate(id));
+            }
+        }
+        Ok(self.joined(own))
+    }
+
+    fn joined(&self, own: Vec<OwnEffect>) -> Self {
+        Self::of(self.own.iter().copied().chain(own.into_iter().map(OwnEffect::leaked)).collect())
+    }
+
+    /// The same with only those of one's own for which this holds.
+    #[must_use]
+    pub fn retaining(&self, keep: impl Fn(&OwnEffect) -> bool) -> Self {
+        Self::of(self.own.iter().copied().filter(|effect| keep(&effect.own)).collect())
+    }
+
+    /// The effect of an id.
+    pub fn named(&self, id: &str) -> Option<&'static dyn Effect> {
+        self.acting.iter().copied().find(|effect| effect.id() == id)
+    }
+
+    /// All of them in the order of the catalogue, those of one's own behind.
+    pub fn effects(&self) -> impl Iterator<Item = &'static dyn Effect> {
+        CATALOGUE.iter().copied().chain(self.own.iter().map(|effect| *effect as &dyn Effect))
+    }
+
+    /// All of them in the order in which they act: the load first, the end of the load cell's range last.
+    pub fn acting_order(&self) -> &[&'static dyn Effect] {
+        &self.acting
+    }
+
+    /// Those of one's own, in the order in which they were read.
+    pub fn own(&self) -> impl Iterator<Item = &OwnEffect> {
+        self.own.iter().map(|effect| &effect.own)
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.acting.len()
+    }
+}

@@ -1,0 +1,55 @@
+//! Planned runs on the rig of a model on file: what they would give if the model were the truth.
+
+use std::collections::BTreeMap;
+
+use pinswitch_calibration::table::{Frame, PlateauRow};
+use pinswitch_calibration::{ModelFile, ModelFileError};
+use pinswitch_friction::Direction;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+/// Writes readings into rows: those of the model, with its noise drawn anew part by part. Offsets that wandered from series
+/// to series are drawn for each by itself. The same seed gives the same readings.
+///
+/// # Errors
+/// [`ModelFileError`] as in [`ModelFile::model`]. `file` is the name of the model, used in errors.
+pub fn rehearse(
+    model: &ModelFile,
+    file: &str,
+    mut rows: Vec<PlateauRow>,
+    seed: u64,
+) -> Result<Vec<PlateauRow>, ModelFileError> {
+    let (readings_n, _) = model.predict(&rows, file)?;
+    let (known, noise) = (model.model(file)?, model.noise());
+    let mut frame: Frame = known.frame.clone();
+    rows.iter().for_each(|row| frame.extend(row));
+    let known = known.in_frame(frame);
+    let points = known.frame.points(&rows).unwrap_or_default();
+    // Newtons by which a reading changes when the friction exponent grows by one part in one.
+    let friction_n = known.friction_n(&points);
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+    let mut mounts: BTreeMap<(usize, String), f64> = BTreeMap::new();
+    let mut series: BTreeMap<String, [f64; 2]> = BTreeMap::new();
+    let mut cells: BTreeMap<(String, bool), [f64; 2]> = BTreeMap::new();
+    let rho = noise.correlation;
+    for (row, ((reading_n, friction_n), point)) in
+        rows.iter_mut().zip(readings_n.iter().zip(&friction_n).zip(&points))
+    {
+        let mount = *mounts
+            .entry((point.condition, row.labels.mount.clone()))
+            .or_insert_with(|| noise.mount_scale * draw());
+        let [common, scale] =
+            *series.entry(row.series.clone()).or_insert_with(|| [draw(), noise.series_scale * draw()]);
+        let up = row.direction == Direction::Concentric;
+        let cell = cells.entry((row.series.clone(), up)).or_insert_with(|| [draw(), draw()]);
+        cell[1] = rho * cell[1] + (1.0 - rho * rho).max(0.0).sqrt() * draw();
+        row.force_n = reading_n
+            + (mount + scale) * friction_n
+            + common * noise.series_common.at(row.load_n)
+            + cell[0] * noise.series.at(row.load_n)
+            + cell[1] * noise.repetition.at(row.load_n);
+    }
+    Ok(rows)
+}

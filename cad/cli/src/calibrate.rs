@@ -6,9 +6,12 @@ mod waiting;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
-use pinswitch_calibration::{Calibration, ModelFile, calibrate_among, calibrate_below, explain_published};
+use pinswitch_calibration::{
+    Calibration, ModelFile, SessionReport, calibrate_among, calibrate_below, explain_published,
+};
 
 use super::own_effects::OwnEffects;
 use super::{Failure, print};
@@ -26,14 +29,15 @@ use waiting::Waiting;
   pinswitch calibrate plateaus.csv --out calibration
   pinswitch calibrate plateaus.csv --effects mine.toml --out calibration")]
 pub(super) struct Arguments {
-    /// The plateau table (CSV, one row per repetition).
-    #[arg(required_unless_present = "published")]
-    table: Option<PathBuf>,
+    /// The plateau table (CSV, one row per repetition); several are sessions of one rig, each with offsets, drift and
+    /// mounts of its own.
+    #[arg(required_unless_present = "published", value_name = "TABLE")]
+    tables: Vec<PathBuf>,
     /// Folder for report.json, report.html, residuals.csv, baseline.toml, model.toml and the plots.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Calibrate on the seven maxima printed in the paper instead of a table.
-    #[arg(long, conflicts_with_all = ["table", "fit_below"])]
+    #[arg(long, conflicts_with_all = ["tables", "fit_below"])]
     published: bool,
     /// Fit only loads up to this percentage of the highest one and judge both models on the rest.
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..100))]
@@ -43,15 +47,15 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Some(table) = arguments.table.as_ref().filter(|_| !arguments.published) else {
+    if arguments.published {
         return published(&arguments.out);
-    };
-    let name = table.display().to_string();
+    }
     let vocabulary = arguments.own.vocabulary()?;
-    let bytes = crate::input::read_file(table)?;
-    let table = PlateauTable::read(bytes.as_slice(), &name).map_err(Failure::bad_input)?;
-    table.require_baseline(&name).map_err(Failure::bad_input)?;
-    let mut table = table;
+    let (mut table, name) = joined(&arguments.tables)?;
+    let sessions = match arguments.tables.split_last() {
+        Some((_, before)) if !before.is_empty() => before_the_last(before, &vocabulary)?,
+        _ => Vec::new(),
+    };
     let waiting = Waiting::new(table.rows.len());
     let calibration = match arguments.fit_below {
         None => calibrate_among(&table.rows, &vocabulary, Levels::default()),
@@ -66,9 +70,50 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     waiting.end();
     let mut calibration = calibration.map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
     calibration.report.ignored_columns = table.ignored_columns();
+    if !sessions.is_empty() {
+        let last = so_far(&arguments.tables, &calibration);
+        calibration.report.sessions = sessions.into_iter().chain([last]).collect();
+    }
     let files = files(&table, &calibration, &name)?;
     write_set(&arguments.out, &files)?;
     print(summary(&calibration.report).as_bytes())
+}
+
+/// The tables as one, and their names for errors.
+fn joined(paths: &[PathBuf]) -> Result<(PlateauTable, String), Failure> {
+    let mut tables = Vec::new();
+    for path in paths {
+        let name = path.display().to_string();
+        let bytes = crate::input::read_file(path)?;
+        let table = PlateauTable::read(bytes.as_slice(), &name).map_err(Failure::bad_input)?;
+        tables.push((table, name));
+    }
+    let names: Vec<&str> = tables.iter().map(|(_, name)| name.as_str()).collect();
+    let name = names.join(" + ");
+    let table = match tables.len() {
+        1 => tables.remove(0).0,
+        _ => PlateauTable::joined(tables).map_err(Failure::bad_input)?,
+    };
+    table.require_baseline(&name).map_err(Failure::bad_input)?;
+    Ok((table, name))
+}
+
+/// What was known after each table but the last.
+fn before_the_last(paths: &[PathBuf], vocabulary: &Vocabulary) -> Result<Vec<SessionReport>, Failure> {
+    let until = |count: usize| {
+        let paths = &paths[..count];
+        let (table, name) = joined(paths)?;
+        let found = calibrate_among(&table.rows, vocabulary, Levels::default())
+            .map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+        Ok(so_far(paths, &found))
+    };
+    (1..=paths.len()).map(until).collect()
+}
+
+/// What a calibration says after these tables.
+fn so_far(paths: &[PathBuf], calibration: &Calibration) -> SessionReport {
+    let last = paths.last().map_or_else(String::new, |path| path.display().to_string());
+    SessionReport::after(last, &calibration.report)
 }
 
 /// The loop on the paper's own numbers.

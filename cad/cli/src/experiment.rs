@@ -10,6 +10,7 @@ use pinswitch_calibration::{ModelFile, Report};
 use pinswitch_plot::run_sheet;
 use pinswitch_switch::output::OutputFile;
 
+use super::own_effects::OwnEffects;
 use super::{Failure, print, print_json};
 use crate::input::{read_file, read_text_file};
 use crate::write::write_set;
@@ -37,6 +38,8 @@ pub(super) struct Arguments {
     /// Folder for the plan.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    #[command(flatten)]
+    own: OwnEffects,
     /// Print experiment.json instead of a summary.
     #[arg(long)]
     json: bool,
@@ -67,7 +70,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let table = PlateauTable::read(read_file(&path)?.as_slice(), &path.display().to_string())
         .map_err(Failure::bad_input)?;
     let name = folder.display().to_string();
-    let known = Known { report: &report, model: &model, rows: &table.rows, name: &name };
+    let vocabulary = arguments.own.vocabulary()?;
+    let known =
+        Known { report: &report, model: &model, rows: &table.rows, vocabulary: &vocabulary, name: &name };
     let proposal = propose(known, &rig, arguments.minutes, Levels::default()).map_err(|e| match e {
         ExperimentError::NoTime { .. } => Failure::bad_input(format!("--minutes: {e}")),
         other => Failure::bad_input(other),

@@ -1,18 +1,23 @@
 //! `pinswitch simulate PLAN.toml --out DIR` and `pinswitch simulate --study`.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use pinswitch_calibration::ModelFile;
+use pinswitch_calibration::experiment::{RigLimits, read_runs, rows_of};
 use pinswitch_calibration::inference::Levels;
-use pinswitch_calibration::table::PlateauRow;
-use pinswitch_simulation::{Case, Group, Plan, RawRun, Study, next_session, run_case, simulate, study_cases};
+use pinswitch_calibration::table::{PlateauRow, PlateauTable};
+use pinswitch_simulation::{
+    Case, Group, Plan, RawRun, Study, next_session, rehearse, run_case, simulate, simulate_rows, study_cases,
+};
 use rayon::prelude::*;
 
 use super::own_effects::OwnEffects;
 use super::{Failure, print};
+use crate::input::read_text_file;
 use crate::write::write_set;
 use pinswitch_switch::output::OutputFile;
 
@@ -25,6 +30,7 @@ use pinswitch_switch::output::OutputFile;
   pinswitch simulate --effects mine.toml --effect lubricant_dip=0.2 --out rig
   pinswitch simulate plan.toml --out rig
   pinswitch simulate plan.toml --out rig --raw
+  pinswitch simulate --runs next/next-runs.csv --model calibration/model.toml --out rehearsal
   pinswitch simulate --study 20
   pinswitch simulate --study 20 --only nulls --only 'worn spot'")]
 pub(super) struct Arguments {
@@ -48,6 +54,18 @@ pub(super) struct Arguments {
     /// Also write plateaus-next.csv: a later session of the same rig, with noise and order of its own.
     #[arg(long, conflicts_with = "study")]
     next: bool,
+    /// Make the runs of this next-runs.csv, as `experiment` writes it, on the rig of the plan, or of --model.
+    #[arg(long, value_name = "CSV", conflicts_with_all = ["study", "raw", "next"])]
+    runs: Option<PathBuf>,
+    /// With --runs: a model.toml is the rig, with its constants, effects and noise.
+    #[arg(long, value_name = "TOML", requires = "runs", conflicts_with_all = ["plan", "effects", "randomised"])]
+    model: Option<PathBuf>,
+    /// With --runs: the rig that they were planned for, if it is not the paper's.
+    #[arg(long, value_name = "TOML", requires = "runs")]
+    rig: Option<PathBuf>,
+    /// With --runs: seed of the noise [default: 1, or that of the plan].
+    #[arg(long, value_name = "SEED", requires = "runs")]
+    seed: Option<u64>,
     /// Calibrate this many rigs of every kind and print what was said of them.
     #[arg(long, value_name = "SEEDS", conflicts_with_all = ["plan", "out"])]
     study: Option<u64>,
@@ -72,6 +90,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Some(out) = &arguments.out else {
         return Err(Failure::bad_input("simulate needs --out, or --study"));
     };
+    if let Some(runs) = &arguments.runs {
+        return rehearsed(arguments, runs, out);
+    }
     let (plan, name) = plan(arguments)?;
     let text = plan.to_text().map_err(Failure::failed)?;
     let simulated = simulate(&plan);
@@ -87,6 +108,34 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         files.push(file("plateaus-next.csv", next_session(&plan).table(&plan)));
     }
     write_set(out, &files).map_err(Failure::from)
+}
+
+/// The table that planned runs would give, on the rig of a model or of a plan.
+fn rehearsed(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failure> {
+    let name = runs.display().to_string();
+    let runs = read_runs(&read_text_file(runs)?, &name).map_err(Failure::bad_input)?;
+    let rig = match &arguments.rig {
+        None => RigLimits::default(),
+        Some(path) => RigLimits::parse(&read_text_file(path)?, &path.display().to_string())
+            .map_err(Failure::bad_input)?,
+    };
+    let rows = rows_of(&runs, &rig, "");
+    let rows = match &arguments.model {
+        Some(path) => {
+            let name = path.display().to_string();
+            let model = ModelFile::parse(&read_text_file(path)?, &name).map_err(Failure::bad_input)?;
+            rehearse(&model, &name, rows, arguments.seed.unwrap_or(1)).map_err(Failure::bad_input)?
+        }
+        None => {
+            let (mut plan, name) = plan(arguments)?;
+            plan.seed = arguments.seed.unwrap_or(plan.seed);
+            let simulated = simulate_rows(&plan, rows);
+            simulated.check(&name).map_err(Failure::bad_input)?;
+            simulated.rows
+        }
+    };
+    let table = PlateauTable::write(&rows).into_bytes();
+    write_set(out, &[OutputFile { name: "plateaus.csv".to_owned(), bytes: table }]).map_err(Failure::from)
 }
 
 /// The plan with the effects asked for, and its name in errors.

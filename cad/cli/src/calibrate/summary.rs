@@ -7,7 +7,15 @@ const SHOWN: usize = 6;
 
 /// The summary for the terminal.
 pub(super) fn summary(report: &Report) -> String {
-    let mut text = format!("verdict: {}\n", verdict(report));
+    let before = report.sessions.len().saturating_sub(1);
+    let mut text: String = report
+        .sessions
+        .iter()
+        .take(before)
+        .enumerate()
+        .map(|(i, s)| format!("{} {}: {}\n", if i == 0 { "from" } else { "with" }, s.table, s.words()))
+        .collect();
+    text.push_str(&format!("verdict: {}\n", verdict(report)));
     text.push_str(&errors(report));
     text.push_str(&effects(report));
     text.push_str(&noise(report));

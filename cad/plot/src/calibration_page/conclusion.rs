@@ -13,7 +13,31 @@ const NAMED: usize = 4;
 
 /// The box at the top of the page.
 pub(super) fn conclusion(report: &Report) -> String {
-    format!("<div class=\"verdict\">{}{}{}</div>\n", verdict(report), errors(report), adequacy(report))
+    let told =
+        format!("<div class=\"verdict\">{}{}{}</div>\n", verdict(report), errors(report), adequacy(report));
+    format!("{told}{}", story(report))
+}
+
+/// What changed its mind: the verdict after each of several tables.
+fn story(report: &Report) -> String {
+    if report.sessions.is_empty() {
+        return String::new();
+    }
+    let mut html = "<h2>From table to table</h2><table><tr><th>table</th><th>rows so far</th><th>verdict</th><th>error expected \
+                    on a new session</th></tr>"
+        .to_owned();
+    for session in &report.sessions {
+        let _ = write!(
+            html,
+            "<tr><td>{}</td><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td></tr>",
+            escape(&session.table),
+            session.rows,
+            escape(&session.words()),
+            session.promise_n.map_or_else(|| "unknown".to_owned(), newtons)
+        );
+    }
+    html.push_str("</table>\n");
+    html
 }
 
 /// The verdict, with what would settle what it leaves open.

@@ -153,6 +153,28 @@ fn what_stands_in_the_way_is_refused_by_a_dry_run_as_by_the_run() {
 }
 
 #[test]
+fn a_dry_run_says_what_single_variants_would_fail_at() {
+    let folder = with_sweep(SWEEP);
+    let path = folder.path();
+    done(path, &["batch", "sweep.toml", "--out", "b"]);
+    let made = std::fs::read_dir(path.join("b/variants")).unwrap().map(|e| e.unwrap().path()).next().unwrap();
+    let dry = || ended(path, &["batch", "sweep.toml", "--out", "b", "--dry-run"]);
+    assert_eq!(dry().0, Some(0));
+    // What has the name of no variant is in nobody's way.
+    std::fs::write(path.join("b/variants/notes.txt"), "dear").unwrap();
+    assert_eq!(dry().0, Some(0));
+    std::fs::remove_file(made.join("manifest.json")).unwrap();
+    std::fs::create_dir(made.join("manifest.json")).unwrap();
+    let (code, said) = dry();
+    assert!(code == Some(1) && said.contains("manifest.json is in the way"), "{said}");
+    assert_eq!(ended(path, &["batch", "sweep.toml", "--out", "b"]).0, Some(1));
+    std::fs::remove_dir_all(&made).unwrap();
+    std::fs::write(&made, "a file where a folder must be").unwrap();
+    assert_eq!(dry().0, Some(1));
+    assert_eq!(ended(path, &["batch", "sweep.toml", "--out", "b"]).0, Some(1));
+}
+
+#[test]
 fn too_many_rows_are_counted_and_not_read() {
     let folder = with_sweep("[rows]\nfile = \"rows.csv\"\n");
     // Of these rows, all are wrong: had one been read, that would be the error.
@@ -169,7 +191,7 @@ fn too_many_rows_are_counted_and_not_read() {
     let many = format!("[axes]\n\"shell.width_mm\" = [{}]\n", "12.5, ".repeat(200_000));
     std::fs::write(folder.path().join("sweep.toml"), many).unwrap();
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
-    assert!(code == Some(2) && error.contains("put its values into a CSV"), "{error}");
+    assert!(code == Some(2) && error.contains("put the values into a CSV"), "{error}");
 }
 
 #[test]

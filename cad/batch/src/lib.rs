@@ -67,10 +67,11 @@ pub use destination::{Destination, DestinationError, DestinationLock, Folder, re
 pub use estimate::{Estimate, Measured, RefusalGroup, estimate};
 pub use make::VariantOutcome;
 pub use merge::{MergeError, merge};
+pub use obstacles::would_fail;
 pub use products::ProductError;
 pub use run::{Observer, Options, RunError, ShardStamp, admit, partial_folder, run};
 pub use shard::{Shard, ShardError};
-pub use source::{Reach, SweepSource};
+pub use source::{Reach, SweepSource, read_at_most};
 pub use stamp::{Stamp, StampError};
 pub use sweep::{CountedSweep, Sweep};
 pub use table::{Cell, Column, ColumnType, Row, Schema};

@@ -1,12 +1,14 @@
 //! What stands in the way of a batch: a folder where a file must be, or a file where a folder must be. Found before
 //! anything is made, so that a dry run and the run refuse the same.
 
+use std::collections::HashSet;
 use std::io::ErrorKind;
 
 use super::destination::{Destination, DestinationError};
 use super::products::{PRODUCTS, TABLES};
 use super::shard::Shard;
 use super::stamp::STAMP;
+use super::variant::Variants;
 
 /// Refuses a destination with something in the way of what `shard` writes. What is in the way of a single variant lets that
 /// one fail, and no other.
@@ -31,6 +33,48 @@ pub(super) fn refuse_obstacles(destination: &Destination, shard: Shard) -> Resul
         destination.refuse_if(file, true, ErrorKind::IsADirectory)?;
     }
     Ok(())
+}
+
+/// What would let single variants of `shard` fail, and no other: the names of what stands in the place of a variant's
+/// folder, of one of its files, or of a part.
+///
+/// # Errors
+/// [`DestinationError`] if a folder cannot be read.
+pub fn would_fail(
+    destination: &Destination,
+    variants: &Variants,
+    shard: Shard,
+) -> Result<Vec<String>, DestinationError> {
+    let is_ours = |name: &str| {
+        ["manifest.json", "friction.csv", "friction.svg"].contains(&name) || name.ends_with(".stl")
+    };
+    let mut found = Vec::new();
+    let (mut suspects, mut names) = (Vec::new(), HashSet::new());
+    for (id, is_folder) in destination.entries("variants")? {
+        let place = format!("variants/{id}");
+        let inside = if is_folder { destination.entries(&place)? } else { Vec::new() };
+        let wrong = inside.into_iter().filter(|(name, is_folder)| *is_folder && is_ours(name));
+        let wrong: Vec<String> = wrong.map(|(name, _)| format!("{place}/{name}")).collect();
+        if !is_folder || !wrong.is_empty() {
+            names.insert(id.clone());
+            suspects.push((id, if is_folder { wrong } else { vec![place] }));
+        }
+    }
+    if !names.is_empty() {
+        // Of a stray file it is only known now whether it has the name of a variant.
+        let own = shard.range(variants.count()).map(|index| variants.get(index).id);
+        let in_the_way: HashSet<String> = own.filter(|id| names.contains(id)).collect();
+        let all = suspects.into_iter().filter(|(id, _)| in_the_way.contains(id));
+        found.extend(all.flat_map(|(_, places)| places));
+    }
+    for (folder, _) in destination.entries("parts")?.into_iter().filter(|(_, is_folder)| *is_folder) {
+        let place = format!("parts/{folder}");
+        let wrong =
+            destination.entries(&place)?.into_iter().filter(|(name, is_folder)| *is_folder && is_ours(name));
+        found.extend(wrong.map(|(name, _)| format!("{place}/{name}")));
+    }
+    found.sort();
+    Ok(found)
 }
 
 #[cfg(test)]

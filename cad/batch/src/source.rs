@@ -1,6 +1,7 @@
 //! What a sweep is made of, as text: its own file, the configuration under it, its rows. Kept in `batch.json`, so that
 //! a batch can be resumed or merged without the files it was started from.
 
+use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
@@ -13,7 +14,28 @@ use pinswitch_switch::config::{ConfigError, Configuration, Name, Place, read, te
 use pinswitch_switch::templates;
 
 /// Longest sweep: every value of its lists is held in memory, at a hundred times its length.
-const MAX_SWEEP_BYTES: usize = 1 << 20;
+const MAX_SWEEP_BYTES: u64 = 1 << 20;
+/// Longest table of rows, of which the places of the rows are kept.
+const MAX_ROWS_BYTES: u64 = 256 << 20;
+
+/// The bytes of a file that is no longer than `most`; no more than these are read of any.
+///
+/// # Errors
+/// Those of the system, and [`std::io::ErrorKind::FileTooLarge`].
+pub fn read_at_most(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+    let too_large = || {
+        let problem = format!("holds more than {most} bytes");
+        std::io::Error::new(std::io::ErrorKind::FileTooLarge, problem)
+    };
+    let file = std::fs::File::open(path)?;
+    if file.metadata()?.len() > most {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    // A pipe has no length.
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { Err(too_large()) } else { Ok(bytes) }
+}
 
 /// The texts of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -71,17 +93,7 @@ impl SweepSource {
     /// As [`Self::read`].
     pub fn read_within(path: &Path, reach: Reach) -> Result<Self, ConfigError> {
         let file = path.display().to_string();
-        let sweep = text(std::fs::read(path).map_err(|e| unreadable(&file, &e))?, &file)?;
-        if sweep.len() > MAX_SWEEP_BYTES {
-            return Err(ConfigError {
-                field: file,
-                value: Some(format!("{} bytes", sweep.len())),
-                problem: format!("is longer than a sweep may be, {MAX_SWEEP_BYTES} bytes"),
-                remedy: "put its values into a CSV, one variant a line, and name that as rows.file"
-                    .to_owned(),
-                place: None,
-            });
-        }
+        let sweep = text(read_at_most(path, MAX_SWEEP_BYTES).map_err(|e| unreadable(&file, &e))?, &file)?;
         let document: Document<String> = sweep.parse().map_err(|e: toml_edit::TomlError| {
             ConfigError::syntax(Place::new(&file, &sweep, e.span().map_or(0, |s| s.start)), e.message())
         })?;
@@ -106,7 +118,7 @@ impl SweepSource {
             .map(|name| {
                 let path = folder.join(&name);
                 reach.check("rows.file", &name, folder).map_err(at("rows", "file"))?;
-                let bytes = std::fs::read(&path).map_err(|e| {
+                let bytes = read_at_most(&path, MAX_ROWS_BYTES).map_err(|e| {
                     at("rows", "file")(missing("rows.file", &name, &format!("cannot be read: {e}")))
                 })?;
                 Ok((name.clone(), text(bytes, &name)?))
@@ -159,7 +171,7 @@ fn read_text(field: &str, name: &str, folder: &Path, reach: Reach) -> Result<(St
     let path = folder.join(name);
     if path.is_file() {
         reach.check(field, name, folder)?;
-        let text = text(std::fs::read(&path).map_err(|e| unreadable(name, &e))?, name)?;
+        let text = text(read_at_most(&path, MAX_SWEEP_BYTES).map_err(|e| unreadable(name, &e))?, name)?;
         return Ok((text, name.to_owned()));
     }
     templates::text(name)
@@ -185,6 +197,9 @@ fn unreadable(file: &str, error: &std::io::Error) -> ConfigError {
         problem: format!("cannot be read: {error}"),
         remedy: match error.kind() {
             std::io::ErrorKind::IsADirectory => "it is a folder; give a file".to_owned(),
+            std::io::ErrorKind::FileTooLarge => {
+                "put the values into a CSV, one variant a line, and name that as rows.file".to_owned()
+            }
             _ => "give the path of a sweep; see `pinswitch batch --help`".to_owned(),
         },
         place: None,

@@ -36,6 +36,9 @@ pub(super) struct Arguments {
     json: bool,
 }
 
+/// Longest file that is examined: its mesh takes four times that.
+const MAX_STL: u64 = 2 << 30;
+
 /// What is known of one file.
 #[derive(Debug, Serialize)]
 struct Verdict {
@@ -82,6 +85,13 @@ fn verdict(file: &Path, arguments: &Arguments) -> Result<Verdict, String> {
     }
     let opened =
         File::open(file).map_err(|e| format!("cannot read: {e}; give a file that exists and can be read"))?;
+    let length =
+        opened.metadata().map_err(|e| format!("cannot read: {e}; give a file that can be read"))?.len();
+    if length > MAX_STL {
+        return Err(format!(
+            "holds {length} bytes, more than {MAX_STL}, forty million triangles; export it coarser"
+        ));
+    }
     let stl = read_stl(&mut BufReader::new(opened)).map_err(|e| e.to_string())?;
     let expected =
         Expectation { bodies: arguments.bodies, min_wall_mm: arguments.min_wall, ..Expectation::default() };

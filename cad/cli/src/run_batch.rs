@@ -11,7 +11,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::{Failure, print, print_json};
 use pinswitch_batch::{
     CountedSweep, Destination, Estimate, Observer, Options, Reach, RunError, Shard, SweepSource, Tally,
-    VariantOutcome, Variants, admit, estimate, mesh_file, partial_folder, run as run_batch,
+    VariantOutcome, Variants, admit, estimate, mesh_file, partial_folder, run as run_batch, would_fail,
 };
 
 /// More variants than this want --yes.
@@ -89,10 +89,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out.as_deref().unwrap_or_default();
     let open = || Destination::open(out, &partial_folder(arguments.shard)).map_err(Failure::bad_input);
     if arguments.dry_run {
+        let mut failing = Vec::new();
         if arguments.out.is_some() {
-            admit(&variants, &source, &open()?, arguments.shard).map_err(refused)?;
+            let destination = open()?;
+            admit(&variants, &source, &destination, arguments.shard).map_err(refused)?;
+            failing = would_fail(&destination, &variants, arguments.shard).map_err(Failure::failed)?;
         }
-        return dry_run(arguments, &variants);
+        dry_run(arguments, &variants)?;
+        return match failing.first() {
+            None => Ok(()),
+            Some(first) => Err(Failure::failed(format!(
+                "{out}/{first} is in the way, and {} more; variants that need it would fail: move it away, or give another --out",
+                failing.len() - 1
+            ))),
+        };
     }
     let destination = open()?;
     let progress = Progress::new(own.end - own.start)?;

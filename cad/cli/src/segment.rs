@@ -25,6 +25,9 @@ pub(super) struct Arguments {
     /// Where the plateau table goes.
     #[arg(long, value_name = "CSV")]
     out: PathBuf,
+    /// Let the description name logs outside its own folder.
+    #[arg(long)]
+    read_outside: bool,
     /// Leave out the SVG of each log.
     #[arg(long)]
     no_plots: bool,
@@ -40,6 +43,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (mut run, mut files) = (RunSegmentation::new(&plan), Vec::new());
     for series in &plan.series {
         let path = folder.join(&series.file);
+        if !arguments.read_outside && lies_outside(&path, folder) {
+            return Err(Failure::bad_input(format!(
+                "{name}: series.file = {:?} lies outside the folder of the description; copy it beside, or allow it with \
+                 --read-outside",
+                series.file
+            )));
+        }
         let (log, found) =
             run.add(series, &read_log(&path)?, &path.display().to_string()).map_err(Failure::bad_input)?;
         if !arguments.no_plots {
@@ -70,8 +80,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(summary.as_bytes())
 }
 
-/// Most bytes of a log, unpacked: a year at 200 Hz and 25 bytes a line is 160 GB, a day is 430 MB.
-const MAX_LOG: u64 = 1 << 30;
+/// Whether the existing file `path` is neither in `folder` nor below, once links are followed.
+fn lies_outside(path: &Path, folder: &Path) -> bool {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let both = path.canonicalize().ok().zip(folder.canonicalize().ok());
+    both.is_some_and(|(path, folder)| !path.starts_with(folder))
+}
+
+/// Most bytes of a log, unpacked: a day at 200 Hz and 25 bytes a line is 430 MB.
+const MAX_LOG: u64 = 1 << 29;
 
 /// The bytes of a log, unpacked if its name ends in `.gz`.
 fn read_log(path: &Path) -> Result<Vec<u8>, Failure> {

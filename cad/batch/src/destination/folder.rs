@@ -171,6 +171,13 @@ impl Folder {
         Ok(found(std::fs::metadata(self.root.join(name)))?.map(|facts| facts.is_dir()))
     }
 
+    /// What stands directly in `folder`, and whether it is a folder.
+    pub(super) fn entries(&self, folder: &str) -> std::io::Result<Vec<(String, bool)>> {
+        let Some(entries) = found(std::fs::read_dir(self.root.join(folder)))? else { return Ok(Vec::new()) };
+        let named = entries.filter_map(Result::ok);
+        Ok(named.map(|e| (e.file_name().to_string_lossy().into_owned(), e.path().is_dir())).collect())
+    }
+
     pub(super) fn folders(&self, folder: &str) -> std::io::Result<Vec<String>> {
         let Some(entries) = found(std::fs::read_dir(self.root.join(folder)))? else { return Ok(Vec::new()) };
         let folders = entries.filter_map(Result::ok).filter(|e| e.path().is_dir());

@@ -209,6 +209,18 @@ impl Destination {
         }
     }
 
+    /// What stands directly in `folder`, and whether it is a folder; a store has nothing in the way.
+    ///
+    /// # Errors
+    /// [`DestinationError`] if that cannot be determined.
+    pub(super) fn entries(&self, folder: &str) -> Result<Vec<(String, bool)>, DestinationError> {
+        match self {
+            Self::Folder(place) => place.entries(folder).map_err(|e| place.failed(folder, &e)),
+            #[cfg(feature = "cloud")]
+            Self::Store(_) => Ok(Vec::new()),
+        }
+    }
+
     /// Whether nothing is there yet.
     ///
     /// # Errors

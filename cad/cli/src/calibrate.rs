@@ -6,11 +6,11 @@ mod waiting;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pinswitch_calibration::effects::Vocabulary;
-use pinswitch_calibration::inference::Levels;
+use pinswitch_calibration::effects::{Vocabulary, own_effects_text};
+use pinswitch_calibration::inference::{Levels, UNATTRIBUTED};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
-    Calibration, ModelFile, SessionReport, calibrate_among, calibrate_below, explain_published,
+    Calibration, ModelFile, SessionReport, calibrate_among, calibrate_below, draw_form, explain_published,
 };
 
 use super::own_effects::OwnEffects;
@@ -46,6 +46,24 @@ pub(super) struct Arguments {
     own: OwnEffects,
 }
 
+/// What stands above an effect that was drawn.
+const DISCOVERED: &str =
+    "# Drawn by `pinswitch calibrate`, not confirmed: give it a name, and let other data decide on it:
+#   pinswitch calibrate next.csv --effects discovered.toml --out DIR
+";
+
+/// Its file.
+const FORM: &str = "discovered.toml";
+
+/// Removes the form that an earlier calibration drew into the folder: it is none of this one. A file of one's own stays.
+fn forget_form(folder: &Path) {
+    let path = folder.join(FORM);
+    if std::fs::read_to_string(&path).is_ok_and(|text| text.starts_with(DISCOVERED)) {
+        // What cannot be removed is told of by its first line.
+        let _ = std::fs::remove_file(path);
+    }
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.published {
         return published(&arguments.out);
@@ -74,7 +92,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let last = so_far(&arguments.tables, &calibration);
         calibration.report.sessions = sessions.into_iter().chain([last]).collect();
     }
-    let files = files(&table, &calibration, &name)?;
+    let form = draw_form(&calibration);
+    if let Some(form) = &form
+        && let Some(first) = calibration.report.effects.iter_mut().find(|effect| effect.id == UNATTRIBUTED)
+    {
+        first.form = Some(form.report.clone());
+    }
+    let mut files = files(&table, &calibration, &name)?;
+    if let Some(form) = &form {
+        let text = format!("{DISCOVERED}{}", own_effects_text([&form.definition]));
+        files.insert(0, OutputFile { name: FORM.to_owned(), bytes: text.into_bytes() });
+    } else {
+        forget_form(&arguments.out);
+    }
     write_set(&arguments.out, &files)?;
     print(summary(&calibration.report).as_bytes())
 }

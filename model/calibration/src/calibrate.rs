@@ -431,6 +431,7 @@ fn named_report(
         error_before_n: held_out(&without, weighed).both_n(),
         error_after_n: after_n,
         rivals: found.rivals.iter().map(|rival| rival_report(found, rival)).collect(),
+        form: None,
     }
 }
 
@@ -481,6 +482,7 @@ fn unnamed_report(
         error_before_n: held_out(&bare, weighed).both_n(),
         error_after_n: after_n,
         rivals: Vec::new(),
+        form: None,
     })
 }
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::aliasing::Aliasing;
+use crate::forms::FormReport;
 use crate::inference::{Noise, Selection};
 
 /// What the data say about the paper's model.
@@ -121,6 +122,9 @@ pub struct EffectReport {
     pub error_after_n: f64,
     /// What else it could be.
     pub rivals: Vec<RivalReport>,
+    /// Of what has no name: what it looks like.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form: Option<FormReport>,
 }
 
 /// What became of a candidate.

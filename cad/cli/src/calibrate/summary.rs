@@ -1,6 +1,6 @@
 //! What a calibration says on the terminal: a few lines, the rest stands in report.html.
 
-use pinswitch_calibration::{Report, Verdict};
+use pinswitch_calibration::{FormReport, Report, Verdict};
 
 /// Series to check, open effects and columns that the terminal lists.
 const SHOWN: usize = 6;
@@ -87,6 +87,9 @@ fn effects(report: &Report) -> String {
         if effect.id == "unattributed" {
             text.push_str(&format!("    {}\n", effect.formula));
         }
+        if let Some(form) = &effect.form {
+            text.push_str(&drawn(form));
+        }
         for rival in &effect.rivals {
             text.push_str(&format!(
                 "    or {}: {}; to settle it: {}\n",
@@ -95,6 +98,24 @@ fn effects(report: &Report) -> String {
         }
     }
     text
+}
+
+/// What a structure without a name looks like.
+fn drawn(form: &FormReport) -> String {
+    let constants: Vec<String> = form
+        .parameters
+        .iter()
+        .map(|(name, e)| format!("{name} = {:.4} [{:.4}, {:.4}] {}", e.value, e.ci95[0], e.ci95[1], e.unit))
+        .collect();
+    let rivals: Vec<String> = form.rivals.iter().map(|r| format!("{} on {}", r.shape, r.acts_on)).collect();
+    let rivals = if rivals.is_empty() { String::new() } else { format!("; or {}", listed(&rivals)) };
+    format!(
+        "    looks like a {} on {}: {}; {:.0} % of it{rivals}; see discovered.toml\n",
+        form.shape,
+        form.acts_on,
+        constants.join(", "),
+        100.0 * form.explains
+    )
 }
 
 /// The parts of the noise in one line.

@@ -9,7 +9,7 @@ mod style;
 use std::fmt::Write;
 
 use pinswitch_calibration::effects::Covariate;
-use pinswitch_calibration::{Calibration, Estimate, Fate, ModelReport, Report};
+use pinswitch_calibration::{Calibration, Estimate, Fate, FormReport, ModelReport, Report};
 
 use super::Plot;
 use super::html::escape;
@@ -162,6 +162,9 @@ fn found(report: &Report) -> String {
             newtons(effect.error_after_n),
             table(effect.parameters.iter())
         );
+        if let Some(form) = &effect.form {
+            html.push_str(&drawn(form));
+        }
         for rival in &effect.rivals {
             let _ = writeln!(
                 html,
@@ -172,6 +175,35 @@ fn found(report: &Report) -> String {
             );
         }
     }
+    html
+}
+
+/// What a structure without a name looks like, and how that is confirmed or refuted.
+fn drawn(form: &FormReport) -> String {
+    let mut html = format!(
+        "<p>It looks like a <b>{}</b> on {}: <code>{}</code>. That explains {:.0} % of what the smooth correction does; held-out \
+         error with it in place of the correction: {}.</p>{}",
+        escape(&form.shape),
+        escape(&form.acts_on),
+        escape(&form.formula),
+        100.0 * form.explains,
+        newtons(form.heldout_rmse_n),
+        table(form.parameters.iter())
+    );
+    if !form.rivals.is_empty() {
+        let rivals: Vec<String> = form
+            .rivals
+            .iter()
+            .map(|r| format!("{} on {} (worse by {} squares)", r.shape, r.acts_on, number(r.worse_by, 1)))
+            .collect();
+        let _ = write!(html, "<p>Forms that fit as well: {}.</p>", escape(&rivals.join(", ")));
+    }
+    let _ = writeln!(
+        html,
+        "<p>Drawn, not confirmed: <code>pinswitch calibrate next.csv --effects discovered.toml</code> lets other data decide on \
+         {}.</p>",
+        escape(&form.id)
+    );
     html
 }
 

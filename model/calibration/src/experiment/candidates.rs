@@ -26,9 +26,24 @@ impl Candidate {
         self.late == other.late && self.run.is_mounted_as(&other.run)
     }
 
-    /// Minutes of recording and of the change of load before it.
-    pub(super) fn minutes(&self, rig: &RigLimits) -> f64 {
-        self.run.recording_minutes(rig) + rig.minutes_per_load_change
+    /// Whether both are recorded under one mount, one after the other with the same weight.
+    pub(super) fn shares_load(&self, other: &Self) -> bool {
+        self.shares_mount(other)
+            && self.run.sweep == other.run.sweep
+            && self.run.load_mass_g == other.run.load_mass_g
+    }
+
+    /// Minutes of it beside `others`: recording, and what has to be changed for it alone.
+    pub(super) fn minutes<'a>(
+        &self,
+        mut others: impl Iterator<Item = &'a Self> + Clone,
+        rig: &RigLimits,
+    ) -> f64 {
+        let is_loaded = others.clone().any(|other| other.shares_load(self));
+        let is_mounted = is_loaded || others.any(|other| other.shares_mount(self));
+        self.run.recording_minutes(rig)
+            + if is_loaded { 0.0 } else { rig.minutes_per_load_change }
+            + if is_mounted { 0.0 } else { rig.minutes_per_mount_change }
     }
 }
 

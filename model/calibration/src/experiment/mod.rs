@@ -129,8 +129,7 @@ pub fn propose(
     let design = Design { model: &model, noise, traces: &agenda.traces };
     let data = of_rows(&agenda.traces).ok_or_else(foreign)?;
     let all = candidates(&model, rig, &agenda);
-    let shortest =
-        all.iter().map(|c| c.minutes(rig)).fold(f64::INFINITY, f64::min) + rig.minutes_per_mount_change;
+    let shortest = all.iter().map(|c| c.minutes(std::iter::empty(), rig)).fold(f64::INFINITY, f64::min);
     if shortest > minutes {
         return Err(ExperimentError::NoTime { minutes, shortest });
     }

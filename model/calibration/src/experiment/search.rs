@@ -9,6 +9,8 @@ use super::rig::RigLimits;
 
 /// Squares beyond which an answer is as good as certain, in units of those needed.
 const ENOUGH: f64 = 3.0;
+/// Worth per minute below which a run is not worth making.
+const LEAST: f64 = 1e-4;
 /// Rounds of exchanges.
 const ROUNDS: usize = 2;
 
@@ -64,16 +66,10 @@ impl Search<'_> {
         chosen
     }
 
-    /// Minutes of a choice: recording, changes of load, and one mounting for each contact and time.
-    pub(super) fn minutes_of(&self, chosen: &[usize]) -> f64 {
-        let mut minutes = 0.0;
-        for (i, c) in chosen.iter().enumerate() {
-            let candidate = &self.candidates[*c];
-            let is_mounted = chosen[..i].iter().any(|b| self.candidates[*b].shares_mount(candidate));
-            minutes += candidate.minutes(self.rig);
-            minutes += if is_mounted { 0.0 } else { self.rig.minutes_per_mount_change };
-        }
-        minutes
+    /// Minutes of a choice: recording, and each change of load and contact once.
+    fn minutes_of(&self, chosen: &[usize]) -> f64 {
+        let before = |i: usize| chosen[..i].iter().map(|c| &self.candidates[*c]);
+        chosen.iter().enumerate().map(|(i, c)| self.candidates[*c].minutes(before(i), self.rig)).sum()
     }
 
     /// The candidate that gains most per minute, of those for which there is time; `None` if none gains anything.
@@ -82,17 +78,12 @@ impl Search<'_> {
         let left = self.minutes - self.minutes_of(chosen);
         let mut best = None;
         for (i, candidate) in self.candidates.iter().enumerate() {
-            if chosen.contains(&i) {
-                continue;
-            }
-            let is_mounted = chosen.iter().any(|c| self.candidates[*c].shares_mount(candidate));
-            let mounting = if is_mounted { 0.0 } else { self.rig.minutes_per_mount_change };
-            let minutes = candidate.minutes(self.rig) + mounting;
-            if minutes > left {
+            let minutes = candidate.minutes(chosen.iter().map(|c| &self.candidates[*c]), self.rig);
+            if minutes > left || chosen.contains(&i) {
                 continue;
             }
             let gain = (worth(self.questions, &(total + &self.information[i])) - before) / minutes.max(0.1);
-            if gain > 1e-6 && best.is_none_or(|(most, _)| gain > most) {
+            if gain > LEAST && best.is_none_or(|(most, _)| gain > most) {
                 best = Some((gain, i));
             }
         }

@@ -1,0 +1,238 @@
+//! The library of forms: what a structure along one covariate may look like, as formulas of effects of one's own.
+
+use crate::effects::{ActsOn, Combine, Covariate, EffectDefinition, OwnParameter, Side};
+use crate::table::Frame;
+
+/// One form with constants to start from, acting on one thing.
+#[derive(Clone, Debug)]
+pub(super) struct Candidate {
+    /// Its word in reports.
+    pub(super) shape: &'static str,
+    /// What it acts on, in the words of reports: `friction`, `reading`, `drag` or `threshold`.
+    pub(super) acts_on: &'static str,
+    /// The same as an effect.
+    pub(super) definition: EffectDefinition,
+}
+
+/// A form before it acts on anything: a formula of order one with constants other than its size.
+struct Form {
+    shape: &'static str,
+    /// The formula, in which `a` is the size.
+    formula: String,
+    /// Name, unit, start and bounds of each constant beside the size.
+    constants: Vec<(&'static str, &'static str, f64, (f64, f64))>,
+}
+
+impl Form {
+    fn new(
+        shape: &'static str,
+        formula: impl Into<String>,
+        constants: &[(&'static str, &'static str, f64, (f64, f64))],
+    ) -> Self {
+        Self { shape, formula: formula.into(), constants: constants.to_vec() }
+    }
+}
+
+/// Sizes to start from: a twentieth of the friction, a tenth of a newton.
+const START_SHARE: f64 = 0.05;
+const START_N: f64 = 0.1;
+
+/// Every form along a covariate, with several places to start from.
+pub(super) fn library(covariate: Covariate, frame: &Frame) -> Vec<Candidate> {
+    let forms = match covariate {
+        Covariate::Time => along_a_share("time", true),
+        Covariate::Position => along_a_share("stroke", false),
+        Covariate::Repetition => history(),
+        Covariate::Speed => speed(frame),
+        Covariate::Dwell => dwell(),
+        Covariate::Load => load(frame),
+        Covariate::Sweep => vec![Form::new("level", "a*descending", &[])],
+        Covariate::Direction => {
+            vec![Form::new("ramp", "a*direction*load_n/50", &[]), Form::new("level", "a*direction", &[])]
+        }
+        Covariate::Condition => conditions(frame),
+    };
+    let mut all = Vec::new();
+    for form in &forms {
+        for (acts_on, of, combine, side, unit, size) in [
+            ("friction", ActsOn::Mu, Combine::Factor, Side::Switch, "1", START_SHARE),
+            ("reading", ActsOn::Reading, Combine::Sum, Side::Rig, "N", START_N),
+            ("drag", ActsOn::Tension, Combine::Sum, Side::Rig, "N", START_N),
+            ("threshold", ActsOn::Threshold, Combine::Factor, Side::Switch, "1", START_SHARE),
+        ] {
+            if (acts_on == "threshold" && frame.devices() == 0)
+                || (acts_on == "drag" && covariate == Covariate::Direction)
+            {
+                continue;
+            }
+            // A drag is a force against the motion.
+            let formula = if acts_on == "drag" {
+                form.formula.replacen("a*", "a*direction*", 1)
+            } else {
+                form.formula.clone()
+            };
+            let size =
+                OwnParameter { name: "a".to_owned(), unit: unit.to_owned(), start: size, bounds: None };
+            let shapes = form.constants.iter().map(|(name, unit, start, bounds)| OwnParameter {
+                name: (*name).to_owned(),
+                unit: (*unit).to_owned(),
+                start: *start,
+                bounds: Some(*bounds),
+            });
+            all.push(Candidate {
+                shape: form.shape,
+                acts_on,
+                definition: EffectDefinition {
+                    id: format!("form_{}", all.len()),
+                    side,
+                    covariate,
+                    acts_on: of,
+                    combine,
+                    formula,
+                    one_sided: false,
+                    confused_with: Vec::new(),
+                    experiment: String::new(),
+                    parameters: std::iter::once(size).chain(shapes).collect(),
+                },
+            });
+        }
+    }
+    all
+}
+
+/// Along the share of the session or of the stroke, 0 to 1.
+fn along_a_share(x: &str, is_time: bool) -> Vec<Form> {
+    let mut forms = Vec::new();
+    for i in 1..=19 {
+        let c = 0.05 * f64::from(i);
+        // Steep enough to be a step between two series, and still with a slope where it is.
+        let step = format!("a*0.5*(1 + tanh(({x} - c)/0.004))");
+        forms.push(Form::new("step", step, &[("c", "1", c, (0.0, 1.0))]));
+        for w in [0.03, 0.1] {
+            let constants = [("c", "1", c, (-0.2, 1.2)), ("w", "1", w, (0.005, 0.5))];
+            forms.push(Form::new("bump", format!("a*exp(-(({x} - c)/w)^2)"), &constants));
+        }
+    }
+    forms.push(Form::new("ramp", format!("a*({x} - 0.5)"), &[]));
+    forms.push(Form::new("power", format!("a*({x} - 0.5)^2"), &[]));
+    for cycles in [0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0] {
+        for phase in [0.0, 0.8, 1.6, 2.4] {
+            let constants = [("f", "1", cycles, (0.2, 60.0)), ("p", "rad", phase, (-3.3, 6.5))];
+            forms.push(Form::new("sine", format!("a*sin(6.283185307*f*{x} + p)"), &constants));
+        }
+    }
+    if is_time {
+        for t in [0.05, 0.2, 0.6] {
+            forms.push(Form::new("forgetting", "a*exp(-time/t)", &[("t", "1", t, (0.005, 3.0))]));
+        }
+    }
+    forms
+}
+
+fn history() -> Vec<Form> {
+    let mut forms = vec![Form::new("ramp", "a*(repetition - 10)/10", &[])];
+    for r in [1.0, 3.0, 10.0] {
+        forms.push(Form::new("forgetting", "a*exp(-(repetition - 1)/r)", &[("r", "1", r, (0.2, 200.0))]));
+    }
+    forms.extend(memory());
+    forms
+}
+
+/// What is left of the load of the series before.
+fn memory() -> Vec<Form> {
+    let form = |r| {
+        let formula = "a*(previous_load_n - load_n)/50*exp(-repetitions_so_far/r)";
+        Form::new("memory", formula, &[("r", "1", r, (0.5, 500.0))])
+    };
+    [3.0, 10.0, 30.0].map(form).into()
+}
+
+fn speed(frame: &Frame) -> Vec<Form> {
+    let mean = frame.reference_speed_pct;
+    let mut forms = vec![Form::new("power", "a*ln(speed_pct/mean_speed_pct)", &[])];
+    for i in 0..=10 {
+        let c = mean * (0.6 + 0.08 * f64::from(i));
+        let (low, high) = (0.4 * mean, 2.0 * mean);
+        for w in [0.05 * mean, 0.15 * mean] {
+            let constants = [("c", "%", c, (low, high)), ("w", "%", w, (0.01 * mean, mean))];
+            forms.push(Form::new("bump", "a*exp(-((speed_pct - c)/w)^2)", &constants));
+        }
+        let step = format!("a*0.5*(1 + tanh((speed_pct - c)/{:.3}))", 0.01 * mean);
+        forms.push(Form::new("step", step, &[("c", "%", c, (low, high))]));
+    }
+    forms
+}
+
+fn dwell() -> Vec<Form> {
+    let mut forms = vec![Form::new("power", "a*ln(dwell_s/3)", &[])];
+    for t in [0.5, 2.0, 8.0] {
+        forms.push(Form::new("forgetting", "a*exp(-dwell_s/t)", &[("t", "s", t, (0.05, 200.0))]));
+    }
+    for c in [0.6, 2.0, 6.0, 15.0] {
+        let step = Form::new("step", "a*0.5*(1 + tanh(ln(dwell_s/c)/0.1))", &[("c", "s", c, (0.05, 100.0))]);
+        forms.push(step);
+    }
+    forms
+}
+
+fn load(frame: &Frame) -> Vec<Form> {
+    let most = frame.load_range_n.1.max(1e-3);
+    let mut forms = vec![Form::new("ramp", format!("a*load_n/{most:.3}"), &[])];
+    for p in [-0.5, 0.5, 2.0] {
+        forms.push(Form::new("power", format!("a*(load_n/{most:.3})^p"), &[("p", "1", p, (-2.0, 5.0))]));
+    }
+    for i in 1..=9 {
+        let c = 0.1 * f64::from(i) * most;
+        let step = format!("a*0.5*(1 + tanh((load_n - c)/{:.3}))", 0.01 * most);
+        forms.push(Form::new("step", step, &[("c", "N", c, (0.0, 1.1 * most))]));
+        for w in [0.06 * most, 0.2 * most] {
+            let constants = [("c", "N", c, (0.0, 1.2 * most)), ("w", "N", w, (0.01 * most, most))];
+            forms.push(Form::new("bump", "a*exp(-((load_n - c)/w)^2)", &constants));
+        }
+    }
+    forms.extend(memory());
+    forms
+}
+
+/// A level on one kind of contact, or on one condition alone.
+fn conditions(frame: &Frame) -> Vec<Form> {
+    let mut forms = vec![
+        Form::new("level", "a*is_silicone", &[]),
+        Form::new("level", "a*is_device", &[]),
+        Form::new("level", "a*(1 - is_silicone)", &[]),
+    ];
+    for condition in &frame.conditions {
+        let n = condition.pins.len();
+        let silicone =
+            f64::from(u8::from(condition.substrate == Some(pinswitch_friction::Substrate::Silicone)));
+        let turn = condition.turn_rad;
+        // Layouts of equally many pins differ in their turns or in nothing that a formula reads.
+        let of_layout =
+            format!("a*(abs(pin_count - {n}) < 0.5)*(abs(turn_per_pin_rad - {turn:.6}) < 0.0005)");
+        forms.push(Form::new("level", format!("{of_layout}*(abs(is_silicone - {silicone}) < 0.5)"), &[]));
+        if n > 0 {
+            forms.push(Form::new("level", of_layout, &[]));
+        }
+    }
+    forms
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::OwnEffect;
+    use crate::test_session::session;
+
+    #[test]
+    fn every_form_is_an_effect() {
+        let frame = Frame::new(&session(1));
+        for covariate in Covariate::ALL {
+            let all = library(covariate, &frame);
+            assert!(all.len() >= 3, "{covariate:?}");
+            for candidate in all {
+                let checked = OwnEffect::new(candidate.definition.clone());
+                assert!(checked.is_ok(), "{:?}: {}", candidate.definition.formula, checked.unwrap_err());
+            }
+        }
+    }
+}

@@ -3,25 +3,51 @@
 use crate::effects::{ActsOn, Combine, Covariate, EffectDefinition, OwnParameter, Side};
 use crate::table::Frame;
 
-/// One form with constants to start from, acting on one thing.
-#[derive(Clone, Debug)]
-pub(super) struct Candidate {
+/// A form before it acts on anything: a formula of order one with constants other than its size, and places to start them
+/// from.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Form {
     /// Its word in reports.
     pub(super) shape: &'static str,
-    /// What it acts on, in the words of reports: `friction`, `reading`, `drag` or `threshold`.
-    pub(super) acts_on: &'static str,
-    /// The same as an effect.
-    pub(super) definition: EffectDefinition,
-}
-
-/// A form before it acts on anything: a formula of order one with constants other than its size.
-struct Form {
-    shape: &'static str,
     /// The formula, in which `a` is the size.
     formula: String,
     /// Name, unit, start and bounds of each constant beside the size.
     constants: Vec<(&'static str, &'static str, f64, (f64, f64))>,
 }
+
+/// A form that acts on one thing, as an effect.
+#[derive(Clone, Debug)]
+pub(super) struct Candidate {
+    pub(super) form: Form,
+    pub(super) definition: EffectDefinition,
+}
+
+impl Candidate {
+    /// Whether both are one shape on one thing, with other starts.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        self.form.shape == other.form.shape && self.definition.acts_on == other.definition.acts_on
+    }
+}
+
+/// What reports call the thing that a form acts on.
+pub(super) fn acts_on_word(of: ActsOn) -> &'static str {
+    match of {
+        ActsOn::Mu | ActsOn::MuPins | ActsOn::MuSilicone => "friction",
+        ActsOn::Wrap => "wrap",
+        ActsOn::Threshold => "threshold",
+        ActsOn::Load | ActsOn::Tension | ActsOn::Reading => "reading",
+    }
+}
+
+/// What forms are first tried on.
+pub(super) const FIRST: [ActsOn; 2] = [ActsOn::Mu, ActsOn::Reading];
+/// What the best of them are tried on then: on the tension as a force against the motion.
+pub(super) const ALL: [ActsOn; 6] =
+    [ActsOn::Mu, ActsOn::MuPins, ActsOn::MuSilicone, ActsOn::Threshold, ActsOn::Tension, ActsOn::Reading];
+
+/// Sizes to start from: a twentieth of the friction, a tenth of a newton.
+const START_SHARE: f64 = 0.05;
+const START_N: f64 = 0.1;
 
 impl Form {
     fn new(
@@ -31,15 +57,45 @@ impl Form {
     ) -> Self {
         Self { shape, formula: formula.into(), constants: constants.to_vec() }
     }
+
+    /// The form on one thing; `number` makes its id.
+    pub(super) fn on(&self, acts_on: ActsOn, covariate: Covariate, number: usize) -> Candidate {
+        let is_force = matches!(acts_on, ActsOn::Reading | ActsOn::Tension);
+        let (combine, side, unit, start) = if is_force {
+            (Combine::Sum, Side::Rig, "N", START_N)
+        } else {
+            (Combine::Factor, Side::Switch, "1", START_SHARE)
+        };
+        let formula = match acts_on {
+            ActsOn::Tension => self.formula.replacen("a*", "a*direction*", 1),
+            _ => self.formula.clone(),
+        };
+        let size = OwnParameter { name: "a".to_owned(), unit: unit.to_owned(), start, bounds: None };
+        let shapes = self.constants.iter().map(|(name, unit, start, bounds)| OwnParameter {
+            name: (*name).to_owned(),
+            unit: (*unit).to_owned(),
+            start: *start,
+            bounds: Some(*bounds),
+        });
+        let definition = EffectDefinition {
+            id: format!("form_{number}"),
+            side,
+            covariate,
+            acts_on,
+            combine,
+            formula,
+            one_sided: false,
+            confused_with: Vec::new(),
+            experiment: String::new(),
+            parameters: std::iter::once(size).chain(shapes).collect(),
+        };
+        Candidate { form: self.clone(), definition }
+    }
 }
 
-/// Sizes to start from: a twentieth of the friction, a tenth of a newton.
-const START_SHARE: f64 = 0.05;
-const START_N: f64 = 0.1;
-
 /// Every form along a covariate, with several places to start from.
-pub(super) fn library(covariate: Covariate, frame: &Frame) -> Vec<Candidate> {
-    let forms = match covariate {
+pub(super) fn library(covariate: Covariate, frame: &Frame) -> Vec<Form> {
+    match covariate {
         Covariate::Time => along_a_share("time", true),
         Covariate::Position => along_a_share("stroke", false),
         Covariate::Repetition => history(),
@@ -51,53 +107,7 @@ pub(super) fn library(covariate: Covariate, frame: &Frame) -> Vec<Candidate> {
             vec![Form::new("ramp", "a*direction*load_n/50", &[]), Form::new("level", "a*direction", &[])]
         }
         Covariate::Condition => conditions(frame),
-    };
-    let mut all = Vec::new();
-    for form in &forms {
-        for (acts_on, of, combine, side, unit, size) in [
-            ("friction", ActsOn::Mu, Combine::Factor, Side::Switch, "1", START_SHARE),
-            ("reading", ActsOn::Reading, Combine::Sum, Side::Rig, "N", START_N),
-            ("drag", ActsOn::Tension, Combine::Sum, Side::Rig, "N", START_N),
-            ("threshold", ActsOn::Threshold, Combine::Factor, Side::Switch, "1", START_SHARE),
-        ] {
-            if (acts_on == "threshold" && frame.devices() == 0)
-                || (acts_on == "drag" && covariate == Covariate::Direction)
-            {
-                continue;
-            }
-            // A drag is a force against the motion.
-            let formula = if acts_on == "drag" {
-                form.formula.replacen("a*", "a*direction*", 1)
-            } else {
-                form.formula.clone()
-            };
-            let size =
-                OwnParameter { name: "a".to_owned(), unit: unit.to_owned(), start: size, bounds: None };
-            let shapes = form.constants.iter().map(|(name, unit, start, bounds)| OwnParameter {
-                name: (*name).to_owned(),
-                unit: (*unit).to_owned(),
-                start: *start,
-                bounds: Some(*bounds),
-            });
-            all.push(Candidate {
-                shape: form.shape,
-                acts_on,
-                definition: EffectDefinition {
-                    id: format!("form_{}", all.len()),
-                    side,
-                    covariate,
-                    acts_on: of,
-                    combine,
-                    formula,
-                    one_sided: false,
-                    confused_with: Vec::new(),
-                    experiment: String::new(),
-                    parameters: std::iter::once(size).chain(shapes).collect(),
-                },
-            });
-        }
     }
-    all
 }
 
 /// Along the share of the session or of the stroke, 0 to 1.
@@ -109,7 +119,7 @@ fn along_a_share(x: &str, is_time: bool) -> Vec<Form> {
         let step = format!("a*0.5*(1 + tanh(({x} - c)/0.004))");
         forms.push(Form::new("step", step, &[("c", "1", c, (0.0, 1.0))]));
         for w in [0.03, 0.1] {
-            let constants = [("c", "1", c, (-0.2, 1.2)), ("w", "1", w, (0.005, 0.5))];
+            let constants = [("c", "1", c, (-0.2, 1.2)), ("w", "1", w, (0.025, 0.5))];
             forms.push(Form::new("bump", format!("a*exp(-(({x} - c)/w)^2)"), &constants));
         }
     }
@@ -117,7 +127,7 @@ fn along_a_share(x: &str, is_time: bool) -> Vec<Form> {
     forms.push(Form::new("power", format!("a*({x} - 0.5)^2"), &[]));
     for cycles in [0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0] {
         for phase in [0.0, 0.8, 1.6, 2.4] {
-            let constants = [("f", "1", cycles, (0.2, 60.0)), ("p", "rad", phase, (-3.3, 6.5))];
+            let constants = [("f", "1", cycles, (0.2, 60.0)), ("p", "1", phase, (-3.3, 6.5))];
             forms.push(Form::new("sine", format!("a*sin(6.283185307*f*{x} + p)"), &constants));
         }
     }
@@ -227,11 +237,12 @@ mod tests {
     fn every_form_is_an_effect() {
         let frame = Frame::new(&session(1));
         for covariate in Covariate::ALL {
-            let all = library(covariate, &frame);
-            assert!(all.len() >= 3, "{covariate:?}");
-            for candidate in all {
-                let checked = OwnEffect::new(candidate.definition.clone());
-                assert!(checked.is_ok(), "{:?}: {}", candidate.definition.formula, checked.unwrap_err());
+            let forms = library(covariate, &frame);
+            assert!(!forms.is_empty(), "{covariate:?}");
+            for (form, acts_on) in forms.iter().flat_map(|form| ALL.map(|acts_on| (form, acts_on))) {
+                let definition = form.on(acts_on, covariate, 1).definition;
+                let checked = OwnEffect::new(definition.clone());
+                assert!(checked.is_ok(), "{:?}: {}", definition.formula, checked.unwrap_err());
             }
         }
     }

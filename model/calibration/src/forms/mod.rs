@@ -11,14 +11,16 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::calibrate::Calibration;
-use crate::effects::{Covariate, EffectDefinition, OwnEffect, Vocabulary};
+use crate::effects::{ActsOn, Covariate, EffectDefinition, OwnEffect, Vocabulary};
 use crate::held_out::held_out;
-use crate::inference::{Fit, Screen, Term, Weighed, fit, interval_half_widths};
+use crate::inference::{EffectScore, Fit, Model, Screen, Term, Weighed, fit, interval_half_widths};
 use crate::report::Estimate;
-use library::{Candidate, library};
+use library::{ALL, Candidate, FIRST, Form, acts_on_word, library};
 
-/// Starts of each form that are fitted to the end.
+/// Starts of each form that are tried on everything, and fitted to the end.
 const FITTED_STARTS: usize = 2;
+/// Gain at the start, as a share of the largest, from which a form is fitted: a wave may start out of phase.
+const WORTH_A_FIT: f64 = 0.3;
 /// Squares of the noise by which a rival form may fit worse, and the share of what the best one explains.
 const RIVAL: f64 = 9.0;
 const RIVAL_SHARE: f64 = 0.03;
@@ -39,8 +41,10 @@ pub struct FormRival {
 pub struct FormReport {
     /// `level`, `step`, `ramp`, `sine`, `bump`, `dip`, `power`, `forgetting` or `memory`.
     pub shape: String,
-    /// `friction`, `reading`, `drag` or `threshold`.
+    /// `friction`, `reading`, `wrap` or `threshold`.
     pub acts_on: String,
+    /// The same in the words of `discovered.toml`, such as `mu_silicone`.
+    pub channel: String,
     /// Id of the effect in `discovered.toml`.
     pub id: String,
     /// Its formula, in the language of `model/doc/own-effects.md`.
@@ -78,12 +82,16 @@ pub fn draw_form(calibration: &Calibration) -> Option<DrawnForm> {
         bare = bare.without_term(at);
     }
     let without = fit(&bare, &weighed);
-    let candidates = library(covariate, &bare.frame);
-    let own = candidates.iter().filter_map(|c| OwnEffect::new(c.definition.clone()).ok()).collect();
     let known = bare.vocabulary.clone();
-    let with_forms =
-        Fit { model: bare.clone().among(&Vocabulary::built_in().with(own).ok()?), ..without.clone() };
-    let best = best_of_each(&with_forms, &weighed, &candidates);
+    let forms = library(covariate, &bare.frame);
+    let on = |forms: &mut dyn Iterator<Item = &Form>, things: &[ActsOn]| -> Vec<Candidate> {
+        let pairs = forms.flat_map(|form| things.iter().map(move |acts_on| (form, *acts_on)));
+        pairs.enumerate().map(|(i, (form, acts_on))| form.on(acts_on, covariate, i)).collect()
+    };
+    let first = on(&mut forms.iter(), &FIRST);
+    let promising = promising(&ranked(&without, &weighed, &first)?);
+    let second = on(&mut promising.iter(), &ALL);
+    let best = best_of_each(&without, &weighed, &second)?;
     let (first, found) = best.first()?;
     let explained = without.cost - found.cost;
     let rivals = best
@@ -91,7 +99,7 @@ pub fn draw_form(calibration: &Calibration) -> Option<DrawnForm> {
         .skip(1)
         .map(|(c, f)| FormRival {
             shape: shape_of(c, f),
-            acts_on: c.acts_on.to_owned(),
+            acts_on: acts_on_word(c.definition.acts_on).to_owned(),
             worse_by: toll(c, f) - toll(first, found),
         })
         .filter(|rival| rival.worse_by <= RIVAL.max(RIVAL_SHARE * explained))
@@ -114,7 +122,8 @@ pub fn draw_form(calibration: &Calibration) -> Option<DrawnForm> {
     Some(DrawnForm {
         report: FormReport {
             shape,
-            acts_on: first.acts_on.to_owned(),
+            acts_on: acts_on_word(first.definition.acts_on).to_owned(),
+            channel: first.definition.acts_on.as_str().to_owned(),
             id: definition.id.clone(),
             formula: definition.formula.clone(),
             parameters: parameters.collect(),
@@ -126,39 +135,59 @@ pub fn draw_form(calibration: &Calibration) -> Option<DrawnForm> {
     })
 }
 
+/// Candidates by what they would gain, with the model that has them all for its vocabulary.
+struct Ranked<'a> {
+    model: Model,
+    scores: Vec<(&'a Candidate, EffectScore)>,
+}
+
+fn ranked<'a>(start: &Fit, weighed: &Weighed<'_>, candidates: &'a [Candidate]) -> Option<Ranked<'a>> {
+    let own = candidates.iter().filter_map(|c| OwnEffect::new(c.definition.clone()).ok()).collect();
+    let model = start.model.clone().among(&Vocabulary::built_in().with(own).ok()?);
+    let fitted = Fit { model, ..start.clone() };
+    let mut scores: Vec<_> = Screen::new(&fitted, weighed)
+        .effects()
+        .into_iter()
+        .filter(|score| score.strength > 1e-6)
+        .filter_map(|score| {
+            candidates.iter().find(|c| c.definition.id == score.effect.id()).map(|c| (c, score))
+        })
+        .collect();
+    scores.sort_by(|(_, a), (_, b)| b.gain.total_cmp(&a.gain));
+    Some(Ranked { model: fitted.model, scores })
+}
+
+/// The best starts of each shape.
+fn promising(ranked: &Ranked<'_>) -> Vec<Form> {
+    let mut best: Vec<Form> = Vec::new();
+    for (candidate, _) in &ranked.scores {
+        let of_shape = best.iter().filter(|form| form.shape == candidate.form.shape).count();
+        if of_shape < FITTED_STARTS && !best.contains(&candidate.form) {
+            best.push(candidate.form.clone());
+        }
+    }
+    best
+}
+
 /// The best fit of each shape on each thing, the one with the least toll first.
 fn best_of_each<'a>(
     start: &Fit,
     weighed: &Weighed<'_>,
     candidates: &'a [Candidate],
-) -> Vec<(&'a Candidate, Fit)> {
-    let mut scores = Screen::new(start, weighed).effects();
-    scores.retain(|score| score.effect.id().starts_with("form_") && score.strength > 1e-6);
-    scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let mut best: Vec<(&Candidate, Fit, usize)> = Vec::new();
-    for score in scores {
-        let Some(candidate) = candidates.iter().find(|c| c.definition.id == score.effect.id()) else {
-            continue;
-        };
-        let is_same = |c: &Candidate| c.shape == candidate.shape && c.acts_on == candidate.acts_on;
-        let known = best.iter().position(|(c, _, _)| is_same(c));
-        if known.is_some_and(|at| best[at].2 >= FITTED_STARTS) {
-            continue;
-        }
-        let fitted = fit(&start.model.with_term(Term::Named(score.effect), &score.start), weighed);
-        match known {
-            Some(at) => {
-                best[at].2 += 1;
-                if fitted.cost < best[at].1.cost {
-                    (best[at].0, best[at].1) = (candidate, fitted);
-                }
-            }
-            None => best.push((candidate, fitted, 1)),
+) -> Option<Vec<(&'a Candidate, Fit)>> {
+    let Ranked { model, scores } = ranked(start, weighed, candidates)?;
+    let most = scores.first().map_or(0.0, |(_, score)| score.gain);
+    let mut best: Vec<(&Candidate, Fit)> = Vec::new();
+    for (candidate, score) in scores.into_iter().filter(|(_, score)| score.gain >= WORTH_A_FIT * most) {
+        let fitted = fit(&model.with_term(Term::Named(score.effect), &score.start), weighed);
+        match best.iter().position(|(c, _)| c.is_like(candidate)) {
+            Some(at) if fitted.cost < best[at].1.cost => best[at] = (candidate, fitted),
+            Some(_) => {}
+            None => best.push((candidate, fitted)),
         }
     }
-    let mut best: Vec<(&Candidate, Fit)> = best.into_iter().map(|(c, f, _)| (c, f)).collect();
     best.sort_by(|(a, x), (b, y)| toll(a, x).total_cmp(&toll(b, y)));
-    best
+    Some(best)
 }
 
 /// Squares that are left, and what each constant costs: as the information criterion of Schwarz for some dozen series.
@@ -170,8 +199,8 @@ fn toll(candidate: &Candidate, fitted: &Fit) -> f64 {
 /// A bump whose size is negative is a dip.
 fn shape_of(candidate: &Candidate, fitted: &Fit) -> String {
     let at = fitted.model.term_offset(fitted.model.terms.len() - 1);
-    let is_dip = candidate.shape == "bump" && fitted.model.values().get(at).is_some_and(|a| *a < 0.0);
-    (if is_dip { "dip" } else { candidate.shape }).to_owned()
+    let is_dip = candidate.form.shape == "bump" && fitted.model.values().get(at).is_some_and(|a| *a < 0.0);
+    (if is_dip { "dip" } else { candidate.form.shape }).to_owned()
 }
 
 /// The definition with the constants that were found, under an id that no effect has.

@@ -35,7 +35,7 @@ pub use levels::Levels;
 pub use limits::{ALIKE, CONSEQUENCE, SizeLimit};
 pub use noise::{Noise, Spread};
 pub use observations::Observations;
-pub(crate) use screening::Screen;
+pub(crate) use screening::{EffectScore, Screen};
 pub use selection::{CandidateEffect, FoundEffect, Rival, Selection, select};
 pub use significance::{degrees_of_freedom, family_p_value};
 pub use unnamed::FoundStructure;

@@ -24,6 +24,7 @@ mod golden;
 mod implausible_tables;
 mod input_files;
 mod inverse;
+mod next_experiment;
 mod own_effects;
 mod pictures;
 mod readme;

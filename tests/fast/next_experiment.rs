@@ -1,0 +1,118 @@
+//! The loop as a whole: a first table that cannot tell, the runs that are proposed, a second table, the verdict. And forms that are drawn
+//! from one session and decided on by another.
+
+use std::path::Path;
+
+use crate::harness::{done, ended, printed};
+use serde_json::Value;
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+/// The worked example of `model/doc/next-experiment.md`.
+#[test]
+fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let truth = ["--effect", "rate_dependence=0.2"];
+    done(path, &[&["-q", "simulate"], &truth[..], &["--out", "first"]].concat());
+    done(path, &["-q", "calibrate", "first/plateaus.csv", "--out", "calibration"]);
+    assert_ne!(json(&path.join("calibration/report.json"))["verdict"], "attributed");
+    done(path, &["-q", "experiment", "calibration", "--minutes", "60", "--out", "next"]);
+    let plan = json(&path.join("next/experiment.json"));
+    assert!(plan["minutes"].as_f64().unwrap() <= 60.0, "{plan}");
+    let questions = plan["questions"].as_array().unwrap();
+    let asked = questions.iter().find(|q| q["between"][0] == "rate_dependence").unwrap();
+    assert!(asked["resolved_probability"].as_f64() > Some(0.8), "{asked}");
+    assert!(asked["by_repeating"].as_f64() < Some(0.2), "{asked}");
+    let sheet = std::fs::read_to_string(path.join("next/run-sheet.html")).unwrap();
+    assert!(sheet.contains("mount 1: ") && sheet.contains("rate_dependence or none"));
+    // The same model makes the same plan, and the runs can be rehearsed on it.
+    done(path, &["-q", "experiment", "calibration", "--minutes", "60", "--out", "again"]);
+    let bytes = |name: &str| std::fs::read(path.join(name)).unwrap();
+    assert_eq!(bytes("next/next-runs.csv"), bytes("again/next-runs.csv"));
+    let runs = ["--runs", "next/next-runs.csv"];
+    done(
+        path,
+        &[&["-q", "simulate"], &runs[..], &["--model", "calibration/model.toml", "--out", "rehearsal"]]
+            .concat(),
+    );
+    // The rig that has the effect makes them.
+    done(path, &[&["-q", "simulate"], &runs[..], &truth, &["--seed", "5", "--out", "second"]].concat());
+    let said =
+        printed(path, &["-q", "calibrate", "first/plateaus.csv", "second/plateaus.csv", "--out", "joined"]);
+    assert!(said.starts_with("from first/plateaus.csv: inconclusive"), "{said}");
+    let report = json(&path.join("joined/report.json"));
+    assert_eq!(
+        (&report["verdict"], &report["effects"][0]["id"]),
+        (&"attributed".into(), &"rate_dependence".into())
+    );
+    let size = &report["effects"][0]["parameters"]["k"];
+    let [low, high] = [0, 1].map(|i| size["ci95"][i].as_f64().unwrap());
+    assert!(low < 0.2 && 0.2 < high && high - low < 0.1, "{size}");
+    let sessions = report["sessions"].as_array().unwrap();
+    assert_eq!((sessions.len(), &sessions[1]["verdict"]), (2, &"attributed".into()));
+}
+
+#[test]
+fn what_a_plan_cannot_be_made_of_is_one_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    std::fs::create_dir(path.join("empty")).unwrap();
+    std::fs::create_dir(path.join("other")).unwrap();
+    std::fs::write(path.join("other/report.json"), "{}").unwrap();
+    std::fs::write(path.join("rig.toml"), "loads_g = []").unwrap();
+    std::fs::write(path.join("runs.csv"), "series,substrate\n1,glass\n").unwrap();
+    for (arguments, words) in [
+        ("experiment empty --out next", "empty/report.json: cannot read"),
+        ("experiment other --out next", "other/report.json: missing field"),
+        ("experiment other --rig rig.toml --out next", "rig.toml:1: loads_g = [] is outside"),
+        ("experiment other --minutes 0 --out next", "minutes"),
+        ("experiment other --minutes nan --out next", "minutes"),
+        ("simulate --runs runs.csv --out x", "runs.csv: column 'pins' is missing"),
+    ] {
+        let arguments: Vec<_> = ["-q"].into_iter().chain(arguments.split(' ')).collect();
+        let (code, said) = ended(path, &arguments);
+        assert!(code == Some(2) && said.contains(words) && said.len() < 600, "{arguments:?}: {said}");
+        assert!(!path.join("next").exists() && !path.join("x").exists(), "{arguments:?}");
+    }
+}
+
+/// A plan of the randomised protocol with something that no effect is.
+fn rig(disturbance: &str) -> String {
+    format!(
+        "seed = 7\nprotocol = \"randomised\"\nspeeds_pct = [40.0, 50.0, 60.0, 70.0]\ndwells_s = [1.0, 3.0, 10.0]\n\
+         repetitions = [8, 10]\nrepetitions_spread = 0\n[[disturbances]]\n{disturbance}\n"
+    )
+}
+
+#[test]
+fn a_form_drawn_from_one_session_is_confirmed_by_another_and_refuted_by_one_without_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let step = "size = 0.15\ntarget = \"friction\"\nkind.step = { at = 0.45, over = 0.0 }";
+    std::fs::write(path.join("step.toml"), rig(step)).unwrap();
+    done(path, &["-q", "simulate", "step.toml", "--next", "--out", "step"]);
+    let said = printed(path, &["-q", "calibrate", "step/plateaus.csv", "--out", "first"]);
+    assert!(said.contains("looks like a step on friction"), "{said}");
+    let form = json(&path.join("first/report.json"))["effects"][0]["form"].clone();
+    assert_eq!((&form["shape"], &form["acts_on"]), (&"step".into(), &"friction".into()), "{form}");
+    let id = form["id"].as_str().unwrap();
+    let discovered = ["--effects", "first/discovered.toml"];
+    let confirmed =
+        [&["-q", "calibrate", "step/plateaus-next.csv"], &discovered[..], &["--out", "second"]].concat();
+    let said = printed(path, &confirmed);
+    assert!(said.starts_with("verdict: attributed") && said.contains(id), "{said}");
+    let size = json(&path.join("second/report.json"))["effects"][0]["parameters"]["a"].clone();
+    assert!((size["value"].as_f64().unwrap() - 0.15).abs() < 0.04, "{size}");
+    // On a rig without it nothing of the kind is named, and a size like that is excluded or said to be open.
+    std::fs::write(path.join("none.toml"), rig("").replace("[[disturbances]]", "")).unwrap();
+    done(path, &["-q", "simulate", "none.toml", "--out", "none"]);
+    done(path, &[&["-q", "calibrate", "none/plateaus.csv"], &discovered[..], &["--out", "third"]].concat());
+    let report = json(&path.join("third/report.json"));
+    assert!(report["effects"].as_array().unwrap().iter().all(|e| e["id"] != id), "{}", report["effects"]);
+    // A folder is not left with the form of an earlier calibration.
+    done(path, &["-q", "calibrate", "none/plateaus.csv", "--out", "first"]);
+    assert!(!path.join("first/discovered.toml").exists());
+}

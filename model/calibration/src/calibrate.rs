@@ -242,14 +242,14 @@ fn noise_parts(selection: &Selection, data: &Observations) -> Vec<NoisePart> {
         part(
             "series_and_direction",
             "an offset that the rows of one series and direction share",
-            noise.series.at(TOLD_AT_N),
+            noise.white() * noise.series.at(TOLD_AT_N),
             "N",
             bounds.cell,
         ),
         part(
             "series",
             "an offset that both directions of a series share",
-            noise.series_common.at(TOLD_AT_N),
+            noise.white() * noise.series_common.at(TOLD_AT_N),
             "N",
             bounds.common,
         ),
@@ -261,7 +261,7 @@ fn noise_parts(selection: &Selection, data: &Observations) -> Vec<NoisePart> {
             bounds.scale,
         ),
         part("mount", "friction, or wrap, from mount to mount", noise.mount_scale, "1", bounds.mount),
-        part("walk", "an offset that wanders from series to series", noise.walk_n, "N", None),
+        part("walk", "an offset that wanders from series to series", noise.wandering_n(TOLD_AT_N), "N", None),
         part(
             "group",
             "an offset from session to session and operator to operator",

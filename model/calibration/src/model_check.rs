@@ -92,7 +92,9 @@ pub(crate) fn check_noise(noise: &Noise) -> Result<(), Flaw> {
     for (name, size) in [
         ("series_scale", noise.series_scale),
         ("mount_scale", noise.mount_scale),
-        ("walk_N", noise.walk_n),
+        ("walk.white", noise.walk.white),
+        ("walk.common", noise.walk.common),
+        ("walk.direction", noise.walk.direction),
         ("group_offset_N", noise.group_offset_n),
         ("specimen_scale", noise.specimen_scale),
     ] {
@@ -104,6 +106,7 @@ pub(crate) fn check_noise(noise: &Noise) -> Result<(), Flaw> {
         within(&format!("noise.{name}.constant_n"), spread.constant_n, 0.0, MAX_CONSTANT)?;
         within(&format!("noise.{name}.per_load"), spread.per_load, 0.0, MAX_CONSTANT)?;
     }
+    within("noise.walk.correlation", noise.walk.correlation, 0.0, 1.0)?;
     within("noise.correlation", noise.correlation, -1.0, 1.0)
 }
 

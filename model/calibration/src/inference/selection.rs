@@ -13,7 +13,7 @@ use super::projection::dot;
 use super::screening::{EffectScore, Screen};
 use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
 use super::unnamed::{Context, FoundStructure, with_structure};
-use super::variance_components::{NoiseFactors, Reliability, Scatter, estimate, scatter_size, shared_again};
+use super::variance_components::{NoiseFactors, Reliability, Scatter, estimate, shared_again};
 use super::weighed::Weighed;
 use crate::effects::{CATALOGUE, Effect, Shape, acting_order};
 
@@ -197,7 +197,7 @@ impl Explanation {
     fn toll(&self, data: &Observations) -> f64 {
         let choices = 2.0 * (CATALOGUE.len() as f64).ln() * self.names() as f64;
         let shapes = 2.0 * (self.structures_tried.max(1) as f64).ln() * self.shapes() as f64;
-        let scatter: f64 = Scatter::ALL.iter().map(|s| s.cost(self.noise)).sum();
+        let scatter: f64 = Scatter::ALL.iter().map(|s| s.cost(self.noise, data)).sum();
         evidence(&self.augmented, &Weighed::new(data, self.noise)) + choices + shapes + scatter
     }
 }
@@ -240,7 +240,7 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
     if !found.model.terms.is_empty() {
         let before = noise;
         noise = estimate(data, &found.residual_n, &explainable(&found, data), noise);
-        noise = Scatter::ALL.iter().fold(noise, |n, scatter| scatter.in_noise(n, scatter.of(before)));
+        noise = Scatter::ALL.iter().fold(noise, |n, scatter| scatter.taken_from(before, n));
         weighed = Weighed::new(data, noise);
         baseline = fit(&baseline.model, &weighed);
         found = search(&baseline, &weighed, levels);
@@ -315,33 +315,36 @@ fn sharper_noise(found: &Fit, data: &Observations, noise: Noise) -> Option<Noise
 /// Whether scatter from mount to mount, or offsets that wander from series to series, explain a table as well as what
 /// was believed without them. Their groups are few, so that no variance is known well: they compete as explanations.
 fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Explanation {
-    let size_of = |scatter: Scatter, fitted: &Fit, noise| {
+    let beside = |scatter: Scatter, fitted: &Fit, noise| {
         let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
         let own = jacobian(&fitted.model, data, &predicted);
-        scatter_size(scatter, data, &fitted.residual_n, &own, noise)
+        scatter.estimated(data, &fitted.residual_n, &own, noise)
     };
     // What is believed is kept, and the scatter beside it estimated.
     let with_scatter = |explanation: Explanation| {
-        let noise = Scatter::ALL.iter().fold(explanation.noise, |noise, scatter| {
-            let without = scatter.in_noise(noise, 0.0);
-            scatter.in_noise(without, size_of(*scatter, &explanation.augmented, without))
-        });
+        let noise = Scatter::ALL
+            .iter()
+            .fold(explanation.noise, |noise, scatter| beside(*scatter, &explanation.augmented, noise));
         if noise == explanation.noise {
             return explanation;
         }
         let weighed = Weighed::new(data, noise);
         let baseline = fit(&explanation.baseline.model, &weighed);
         let augmented = fit(&explanation.augmented.model, &weighed);
-        Explanation { baseline, augmented, noise, ..explanation }
+        let with = Explanation { baseline, augmented, noise, ..explanation.clone() };
+        if with.toll(data) < explanation.toll(data) { with } else { explanation }
     };
     if free.augmented.model.terms.is_empty() {
         return with_scatter(free);
     }
-    let sizes = Scatter::ALL.map(|scatter| (scatter, size_of(scatter, &free.baseline, free.noise)));
+    let bare = |noise| Scatter::ALL.iter().fold(noise, |n, scatter| scatter.left_out(n));
+    let alone = Scatter::ALL.map(|scatter| beside(scatter, &free.baseline, bare(free.noise)));
     let mut best = with_scatter(free);
-    for (scatter, size) in sizes.into_iter().filter(|(_, size)| *size > 0.0) {
-        let bare = Scatter::ALL.iter().fold(best.noise, |n, other| other.in_noise(n, 0.0));
-        let noise = scatter.in_noise(bare, size);
+    for found in alone {
+        let noise = Scatter::ALL.iter().fold(best.noise, |n, scatter| scatter.taken_from(found, n));
+        if noise == bare(noise) {
+            continue;
+        }
         // The search is only worth its time if believing less than now comes near.
         let toll = best.toll(data);
         if !best.with_less().any(|less| less.at(data, noise).toll(data) < toll + WORTH_A_SEARCH) {

@@ -10,7 +10,7 @@ use super::limits::{SizeLimit, classes, limits};
 use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
-use super::screening::{EffectScore, Screen};
+use super::screening::{EffectScore, Screen, StructureScore};
 use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
 use super::unnamed::{Context, FoundStructure, with_structure};
 use super::variance_components::{NoiseFactors, Reliability, Scatter, estimate, shared_again};
@@ -246,16 +246,17 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
         found = search(&baseline, &weighed, levels);
     }
     // A shape that some series follow looks like scatter of the series as long as it is not in the model.
-    if let Some(sharper) = sharper_noise(&found, data, noise) {
+    let (sharper, mut left) = sharper_noise(&found, data, noise);
+    if let Some(sharper) = sharper {
         noise = sharper;
         weighed = Weighed::new(data, noise);
         baseline = fit(&baseline.model, &weighed);
         found = fit(&found.model, &weighed);
+        left = Screen::new(&found, &weighed).structures();
     }
     let explained = bendable_gain(&baseline, &found, &weighed);
     let open = Screen::new(&found, &weighed);
     let guarded = Screen::guarded(&found, &weighed);
-    let mut left = open.structures();
     let beyond = left.first().is_some_and(|s| s.gain > levels.beyond_form * explained);
     if !found.model.named_effects().is_empty() && !beyond {
         left = guarded.structures();
@@ -281,8 +282,8 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
 const MIN_EVIDENCE: f64 = 6.0;
 
 /// The noise beside the best shape of each covariate, if one of them makes the table more probable than the noise does
-/// without it.
-fn sharper_noise(found: &Fit, data: &Observations, noise: Noise) -> Option<Noise> {
+/// without it; and the scores of all shapes.
+fn sharper_noise(found: &Fit, data: &Observations, noise: Noise) -> (Option<Noise>, Vec<StructureScore>) {
     let weighed = Weighed::new(data, noise);
     let screen = Screen::new(found, &weighed);
     let shapes = screen.structures();
@@ -309,7 +310,7 @@ fn sharper_noise(found: &Fit, data: &Observations, noise: Noise) -> Option<Noise
             best = (toll, Some(sharper));
         }
     }
-    best.1
+    (best.1, shapes)
 }
 
 /// Whether scatter from mount to mount, or offsets that wander from series to series, explain a table as well as what

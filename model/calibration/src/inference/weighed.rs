@@ -213,7 +213,11 @@ mod tests {
         let n = rows.len();
         data.weights = (0..n).map(|i| if i % 9 == 3 { 0.2 } else { 1.0 }).collect();
         data.roots = data.weights.iter().map(|w| w.sqrt()).collect();
-        data.friction_n = (0..n).map(|i| data.points[i].sign * (1.0 + 0.1 * i as f64)).collect();
+        // A walk takes the friction of a cell for one number: its rows have one load.
+        let number = |r: usize| {
+            if walk.is_any() { data.cells.iter().position(|c| c.contains(&r)).unwrap_or(0) } else { r }
+        };
+        data.friction_n = (0..n).map(|i| data.points[i].sign * (1.0 + 0.1 * number(i) as f64)).collect();
         let noise = Noise {
             correlation: 0.6,
             series_common: Spread { constant_n: 0.05, per_load: 0.0 },

@@ -87,18 +87,18 @@ impl Walk {
             }
         }
         let mut known = [[0.0; STATES]; STATES];
-        (0..STATES).for_each(|i| known[i][i] = 1.0);
+        known.iter_mut().enumerate().for_each(|(i, row)| row[i] = 1.0);
         let mut steps = Vec::with_capacity(data.cells.len());
         for turn in &data.turns {
             let memory = noise.walk.correlation.powi(turn.since);
             for (place, cell) in turn.cells.iter().enumerate() {
                 let memory = (place == 0).then_some(memory);
                 if let Some(memory) = memory {
-                    for i in 0..STATES {
-                        for j in 0..STATES {
+                    for (i, row) in known.iter_mut().enumerate() {
+                        for (j, value) in row.iter_mut().enumerate() {
                             let both = if i < REMEMBERED && j < REMEMBERED { memory * memory } else { 0.0 };
-                            let own = if i != j { 0.0 } else { 1.0 - both };
-                            known[i][j] = both * known[i][j] + own;
+                            let own = if i == j { 1.0 - both } else { 0.0 };
+                            *value = both * *value + own;
                         }
                     }
                 }
@@ -107,10 +107,8 @@ impl Walk {
                 let shared: State = std::array::from_fn(|i| along(&known[i], &reach));
                 let variance = along(&shared, &reach) + 1.0;
                 let gain = shared.map(|s| s / variance);
-                for i in 0..STATES {
-                    for j in 0..STATES {
-                        known[i][j] -= gain[i] * shared[j];
-                    }
+                for (row, gain) in known.iter_mut().zip(&gain) {
+                    row.iter_mut().zip(&shared).for_each(|(value, shared)| *value -= gain * shared);
                 }
                 steps.push(Step { cell: *cell, memory, reach, gain, variance });
             }

@@ -17,6 +17,9 @@ const WHITE: [f64; 4] = [0.05, 0.5, 0.75, 1.0];
 /// ... and for the one that does. What wanders slowly hides behind the levels of the conditions, so that the offsets
 /// were found too small without it.
 const WALKING: [f64; 8] = [0.0, 0.5, 0.75, 1.0, 1.4, 2.0, 3.0, 4.5];
+/// One of a walk's constants.
+type Constant = fn(&mut Wandering) -> &mut f64;
+
 /// Times that each constant is tried in turn.
 const SWEEPS: usize = 3;
 /// Standard deviation in newtons of what wanders that is usual, and the largest that is called so.
@@ -60,7 +63,7 @@ pub(super) fn wandering(
     let mut best = (f64::INFINITY, Wandering { correlation: 0.83, white: 0.5, common: 1.0, direction: 1.0 });
     for _ in 0..SWEEPS {
         let before = best.0;
-        let tries: [(&[f64], fn(&mut Wandering) -> &mut f64); 4] = [
+        let tries: [(&[f64], Constant); 4] = [
             (&WALKING, |w| &mut w.common),
             (&WALKING, |w| &mut w.direction),
             (&WHITE, |w| &mut w.white),

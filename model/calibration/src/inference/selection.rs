@@ -357,7 +357,35 @@ fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Ex
             best = other;
         }
     }
+    // Names were preferred to shapes before it was known that they need scatter beside them.
+    if best.names() > 0 && best.noise != bare(best.noise) {
+        let shape = shape_alone(&best, data, levels).map(with_scatter);
+        best = shape.filter(|shape| shape.toll(data) < best.toll(data)).unwrap_or(best);
+    }
     best
+}
+
+/// The best shape alone, with the noise that is beside it and without scatter: what stands against names that need
+/// scatter beside them.
+fn shape_alone(named: &Explanation, data: &Observations, levels: Levels) -> Option<Explanation> {
+    let bare = Scatter::ALL.iter().fold(named.noise, |n, scatter| scatter.left_out(n));
+    let baseline = fit(&named.baseline.model, &Weighed::new(data, bare));
+    let (sharper, shapes) = sharper_noise(&baseline, data, bare);
+    let noise = sharper?;
+    let weighed = Weighed::new(data, noise);
+    let baseline = fit(&baseline.model, &weighed);
+    let left = Screen::new(&baseline, &weighed).structures();
+    let context = Context { weighed: &weighed, levels, explained: 0.0 };
+    let (augmented, structure) = context.with_unnamed(&baseline, baseline.clone(), &left, 0.0);
+    Some(Explanation {
+        baseline,
+        augmented,
+        structure: Some(structure?),
+        structure_gain: left.first().map_or(0.0, |s| s.gain),
+        structures_tried: shapes.len(),
+        noise,
+        isolated: None,
+    })
 }
 
 /// A model without the names whose sizes may as well be zero.

@@ -87,6 +87,27 @@ pub(crate) fn check_beyond_range(beyond_range: f64) -> Result<(), Flaw> {
     within("beyond_range", beyond_range, 0.0, MAX_CONSTANT)
 }
 
+/// Earlier files have a walk of one size in newtons. For a prediction it is an offset of the series like any other, and
+/// becomes one. Whether there was one.
+pub(crate) fn walk_to_offset(file: &mut toml::Table) -> Result<bool, Flaw> {
+    let noise = file.get_mut("noise").and_then(toml::Value::as_table_mut);
+    let Some((walk, noise)) = noise.and_then(|noise| Some((noise.remove("walk_N")?, noise))) else {
+        return Ok(false);
+    };
+    let size_n = walk.as_float().ok_or_else(|| Flaw::new("noise.walk_N", &walk, "newtons, as 0.1"))?;
+    within("noise.walk_N", size_n, 0.0, MAX_CONSTANT)?;
+    let none = || {
+        toml::Table::from_iter(
+            [("constant_n", 0.0.into()), ("per_load", 0.0.into())].map(|(k, v)| (k.to_owned(), v)),
+        )
+    };
+    let offset = noise.entry("series_common").or_insert_with(|| none().into());
+    if let Some(toml::Value::Float(constant_n)) = offset.get_mut("constant_n") {
+        *constant_n = constant_n.hypot(size_n);
+    }
+    Ok(true)
+}
+
 /// The noise is one: no negative spread, no correlation beyond one.
 pub(crate) fn check_noise(noise: &Noise) -> Result<(), Flaw> {
     for (name, size) in [

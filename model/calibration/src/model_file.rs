@@ -10,6 +10,7 @@ use crate::inference::{
 };
 use crate::model_check::{
     Flaw, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
+    walk_to_offset,
 };
 use crate::table::{Frame, PlateauRow};
 use crate::toml_text::{place_of, toml_error};
@@ -209,9 +210,12 @@ impl ModelFile {
             ModelFileError::Malformed { file, problem }
         };
         let placed = |flaw: Flaw| ModelFileError::of(&place_of(file, text, &flaw.field))(flaw);
-        let table: toml::Table = toml::from_str(text).map_err(malformed)?;
-        check_finite("", &toml::Value::Table(table)).map_err(placed)?;
-        let parsed: Self = toml::from_str(text).map_err(malformed)?;
+        let mut table: toml::Table = toml::from_str(text).map_err(malformed)?;
+        check_finite("", &toml::Value::Table(table.clone())).map_err(placed)?;
+        let is_earlier = walk_to_offset(&mut table).map_err(placed)?;
+        // Text has the lines of what is wrong in it.
+        let parsed: Self =
+            if is_earlier { table.try_into() } else { toml::from_str(text) }.map_err(malformed)?;
         if parsed.schema != SCHEMA {
             return Err(ModelFileError::Schema {
                 file: place_of(file, text, "schema"),
@@ -316,5 +320,49 @@ impl ModelFile {
                 (out, inside)
             },
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inference::Levels;
+    use crate::test_session::session;
+
+    fn text() -> String {
+        let found = crate::calibrate(&session(3), Levels::default()).unwrap();
+        ModelFile::new(&found.selection.augmented, &found.data, found.selection.noise).to_text().unwrap()
+    }
+
+    fn sd_n(text: &str) -> f64 {
+        ModelFile::parse(text, "model.toml").unwrap().predict(&session(3)[..1], "model.toml").unwrap().1[0]
+    }
+
+    #[test]
+    fn a_walk_of_an_earlier_file_is_an_offset_of_the_series() {
+        let text = text();
+        let (before, walk) = text.split_once("[noise.walk]\n").unwrap();
+        let after = walk.split_once("\n\n").map_or("", |(_, after)| after);
+        let earlier =
+            |walk: &str| format!("{before}\n{after}").replace("[noise]\n", &format!("[noise]\n{walk}\n"));
+        assert_eq!(sd_n(&earlier("walk_N = 0.0")), sd_n(&text));
+        assert!((sd_n(&earlier("walk_N = 0.2")) / sd_n(&text).hypot(0.2) - 1.0).abs() < 1e-9);
+        for walk in ["walk_N = -0.2", "walk_N = \"much\""] {
+            let error = ModelFile::parse(&earlier(walk), "model.toml").unwrap_err().to_string();
+            assert!(error.contains("noise.walk_N = ") && error.contains("out of bounds"), "{error}");
+        }
+    }
+
+    #[test]
+    fn noise_that_is_unknown_is_refused_by_its_name() {
+        let text = text();
+        for table in ["[noise]\n", "[noise.walk]\n", "[noise.series]\n"] {
+            let wrong = text.replace(table, &format!("{table}mount_scael = 0.01\n"));
+            let error = ModelFile::parse(&wrong, "model.toml").unwrap_err().to_string();
+            assert!(
+                error.starts_with("model.toml:") && error.contains("unknown field `mount_scael`"),
+                "{error}"
+            );
+        }
     }
 }

@@ -10,6 +10,7 @@ use crate::median::median;
 
 /// A variance that grows with the square of the load: `constant^2 + (per_load F)^2`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Spread {
     /// Standard deviation at zero load, in newtons.
     pub constant_n: f64,
@@ -66,6 +67,7 @@ impl Spread {
 
 /// The noise of a table. What is zero was not found in it, or not looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Noise {
     /// Of one repetition.
     pub repetition: Spread,

@@ -13,6 +13,7 @@ use super::weighed::Weighed;
 /// How much of the offsets of series wanders. Sizes are shares of the offsets' standard deviations as they are found
 /// without a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Wandering {
     /// Correlation with the series before; 0 where nothing wanders.
     pub correlation: f64,

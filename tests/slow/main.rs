@@ -7,6 +7,7 @@ mod harness;
 #[path = "../harness/readers.rs"]
 mod readers;
 
+mod attributed;
 mod batch_kill;
 mod bounds;
 mod campaign;

@@ -257,26 +257,32 @@ fn noise_parts(selection: &Selection, data: &Observations) -> Vec<NoisePart> {
         ci95: factor.map(|f| [size / f, size * f]),
         unit: unit.to_owned(),
     };
-    let repetitions = (data.points.len() as f64 - data.cells.len() as f64).max(1.0);
+    // Of one repetition in each direction nobody can tell what another one would have read.
+    let repeated: usize = data.cells.iter().map(|cell| cell.len().saturating_sub(1)).sum();
+    let repetitions = data.counts.iter().sum::<f64>() - data.cells.len() as f64;
     let mut parts = vec![
         part(
             "repetition",
-            "one reading, from repetition to repetition",
-            noise.repetition.at(TOLD_AT_N),
+            if repeated > 0 {
+                "one reading, from repetition to repetition"
+            } else {
+                "one reading: unknown, since no series has a second repetition; it counts as an offset of the series"
+            },
+            if repeated > 0 { noise.repetition.at(TOLD_AT_N) } else { 0.0 },
             "N",
-            Some((1.96 / (2.0 * repetitions).sqrt()).exp()),
+            (repeated > 0).then(|| (1.96 / (2.0 * repetitions.max(1.0)).sqrt()).exp()),
         ),
         part(
             "series_and_direction",
             "an offset that the rows of one series and direction share",
-            noise.series.at(TOLD_AT_N),
+            noise.white() * noise.series.at(TOLD_AT_N),
             "N",
             bounds.cell,
         ),
         part(
             "series",
             "an offset that both directions of a series share",
-            noise.series_common.at(TOLD_AT_N),
+            noise.white() * noise.series_common.at(TOLD_AT_N),
             "N",
             bounds.common,
         ),
@@ -288,7 +294,7 @@ fn noise_parts(selection: &Selection, data: &Observations) -> Vec<NoisePart> {
             bounds.scale,
         ),
         part("mount", "friction, or wrap, from mount to mount", noise.mount_scale, "1", bounds.mount),
-        part("walk", "an offset that wanders from series to series", noise.walk_n, "N", None),
+        part("walk", "an offset that wanders from series to series", noise.wandering_n(TOLD_AT_N), "N", None),
         part(
             "group",
             "an offset from session to session and operator to operator",
@@ -299,7 +305,7 @@ fn noise_parts(selection: &Selection, data: &Observations) -> Vec<NoisePart> {
         part("specimen", "friction from specimen to specimen", noise.specimen_scale, "1", None),
     ];
     // A scatter of friction under a twentieth of a per cent changes nothing that is told.
-    parts.retain(|p| p.size > if p.unit == "1" { 5e-4 } else { 0.0 });
+    parts.retain(|p| p.part == "repetition" || p.size > if p.unit == "1" { 5e-4 } else { 0.0 });
     parts
 }
 
@@ -443,7 +449,11 @@ fn rival_report(found: &FoundEffect, rival: &Rival) -> RivalReport {
             "after the refit its trace is the same to a cosine of {:.3}; in place of {} it fits worse by only {:.1} whitened squares",
             rival.cosine, told.id, rival.worse_by
         ),
-        experiment: format!("{}; {}", told.experiment, other.experiment),
+        experiment: if told.experiment == other.experiment {
+            told.experiment.to_owned()
+        } else {
+            format!("{}; {}", told.experiment, other.experiment)
+        },
     }
 }
 

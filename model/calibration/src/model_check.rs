@@ -89,12 +89,35 @@ pub(crate) fn check_beyond_range(beyond_range: f64) -> Result<(), Flaw> {
     within("beyond_range", beyond_range, 0.0, MAX_CONSTANT)
 }
 
+/// Earlier files have a walk of one size in newtons. For a prediction it is an offset of the series like any other, and
+/// becomes one. Whether there was one.
+pub(crate) fn walk_to_offset(file: &mut toml::Table) -> Result<bool, Flaw> {
+    let noise = file.get_mut("noise").and_then(toml::Value::as_table_mut);
+    let Some((walk, noise)) = noise.and_then(|noise| Some((noise.remove("walk_N")?, noise))) else {
+        return Ok(false);
+    };
+    let size_n = walk.as_float().ok_or_else(|| Flaw::new("noise.walk_N", &walk, "newtons, as 0.1"))?;
+    within("noise.walk_N", size_n, 0.0, MAX_CONSTANT)?;
+    let none = || {
+        toml::Table::from_iter(
+            [("constant_n", 0.0.into()), ("per_load", 0.0.into())].map(|(k, v)| (k.to_owned(), v)),
+        )
+    };
+    let offset = noise.entry("series_common").or_insert_with(|| none().into());
+    if let Some(toml::Value::Float(constant_n)) = offset.get_mut("constant_n") {
+        *constant_n = constant_n.hypot(size_n);
+    }
+    Ok(true)
+}
+
 /// The noise is one: no negative spread, no correlation beyond one.
 pub(crate) fn check_noise(noise: &Noise) -> Result<(), Flaw> {
     for (name, size) in [
         ("series_scale", noise.series_scale),
         ("mount_scale", noise.mount_scale),
-        ("walk_N", noise.walk_n),
+        ("walk.white", noise.walk.white),
+        ("walk.common", noise.walk.common),
+        ("walk.direction", noise.walk.direction),
         ("group_offset_N", noise.group_offset_n),
         ("specimen_scale", noise.specimen_scale),
     ] {
@@ -106,6 +129,7 @@ pub(crate) fn check_noise(noise: &Noise) -> Result<(), Flaw> {
         within(&format!("noise.{name}.constant_n"), spread.constant_n, 0.0, MAX_CONSTANT)?;
         within(&format!("noise.{name}.per_load"), spread.per_load, 0.0, MAX_CONSTANT)?;
     }
+    within("noise.walk.correlation", noise.walk.correlation, 0.0, 1.0)?;
     within("noise.correlation", noise.correlation, -1.0, 1.0)
 }
 

@@ -4,12 +4,13 @@ use pinswitch_friction::excerpt;
 use serde::{Deserialize, Serialize};
 
 use crate::beyond_range::error_beyond_range;
-use crate::effects::{Structure, Vocabulary, effects_of_model, own_effect_blocks};
+use crate::effects::{Side, Structure, Vocabulary, effects_of_model, own_effect_blocks};
 use crate::inference::{
     Fit, Model, Noise, Observations, Term, Weighed, coordinate_covariance, prediction_sd_n,
 };
 use crate::model_check::{
     Flaw, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
+    walk_to_offset,
 };
 use crate::table::{Frame, PlateauRow};
 use crate::toml_text::{place_of, toml_error};
@@ -214,9 +215,12 @@ impl ModelFile {
             ModelFileError::Malformed { file, problem }
         };
         let placed = |flaw: Flaw| ModelFileError::of(&place_of(file, text, &flaw.field))(flaw);
-        let table: toml::Table = toml::from_str(text).map_err(malformed)?;
-        check_finite("", &toml::Value::Table(table)).map_err(placed)?;
-        let mut parsed: Self = toml::from_str(text).map_err(malformed)?;
+        let mut table: toml::Table = toml::from_str(text).map_err(malformed)?;
+        check_finite("", &toml::Value::Table(table.clone())).map_err(placed)?;
+        let is_earlier = walk_to_offset(&mut table).map_err(placed)?;
+        // Text has the lines of what is wrong in it.
+        let mut parsed: Self =
+            if is_earlier { table.try_into() } else { toml::from_str(text) }.map_err(malformed)?;
         if parsed.schema != SCHEMA {
             return Err(ModelFileError::Schema {
                 file: place_of(file, text, "schema"),
@@ -320,18 +324,56 @@ impl ModelFile {
         self.frame.reference_speed_pct
     }
 
-    /// Ids of the terms that stay out of the curve of a printed part, and of those that stay in.
+    /// Ids of the terms that stay out of the curve of a printed part, and of those that stay in. The side is that of the
+    /// effect; what stands in the file is for a reader. Structure without a name has none, and stays out.
     pub fn sides(&self) -> (Vec<&str>, Vec<&str>) {
-        self.terms.iter().map(|t| (t.id.as_str(), t.side.as_deref() == Some("switch"))).fold(
-            (Vec::new(), Vec::new()),
-            |(mut out, mut inside), (id, stays)| {
-                if stays {
-                    inside.push(id)
-                } else {
-                    out.push(id)
-                }
-                (out, inside)
-            },
-        )
+        let stays =
+            |id: &str| self.vocabulary.named(id).is_some_and(|e| e.description().side == Side::Switch);
+        let (inside, outside) = self.terms.iter().map(|t| t.id.as_str()).partition(|id| stays(id));
+        (outside, inside)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inference::Levels;
+    use crate::test_session::session;
+
+    fn text() -> String {
+        let found = crate::calibrate(&session(3), Levels::default()).unwrap();
+        ModelFile::new(&found.selection.augmented, &found.data, found.selection.noise).to_text().unwrap()
+    }
+
+    fn sd_n(text: &str) -> f64 {
+        ModelFile::parse(text, "model.toml").unwrap().predict(&session(3)[..1], "model.toml").unwrap().1[0]
+    }
+
+    #[test]
+    fn a_walk_of_an_earlier_file_is_an_offset_of_the_series() {
+        let text = text();
+        let (before, walk) = text.split_once("[noise.walk]\n").unwrap();
+        let after = walk.split_once("\n\n").map_or("", |(_, after)| after);
+        let earlier =
+            |walk: &str| format!("{before}\n{after}").replace("[noise]\n", &format!("[noise]\n{walk}\n"));
+        assert_eq!(sd_n(&earlier("walk_N = 0.0")), sd_n(&text));
+        assert!((sd_n(&earlier("walk_N = 0.2")) / sd_n(&text).hypot(0.2) - 1.0).abs() < 1e-9);
+        for walk in ["walk_N = -0.2", "walk_N = \"much\""] {
+            let error = ModelFile::parse(&earlier(walk), "model.toml").unwrap_err().to_string();
+            assert!(error.contains("noise.walk_N = ") && error.contains("out of bounds"), "{error}");
+        }
+    }
+
+    #[test]
+    fn noise_that_is_unknown_is_refused_by_its_name() {
+        let text = text();
+        for table in ["[noise]\n", "[noise.walk]\n", "[noise.series]\n"] {
+            let wrong = text.replace(table, &format!("{table}mount_scael = 0.01\n"));
+            let error = ModelFile::parse(&wrong, "model.toml").unwrap_err().to_string();
+            assert!(
+                error.starts_with("model.toml:") && error.contains("unknown field `mount_scael`"),
+                "{error}"
+            );
+        }
     }
 }

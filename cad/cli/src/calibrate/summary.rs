@@ -125,6 +125,9 @@ fn noise(report: &Report) -> String {
         .iter()
         .map(|part| {
             let name = part.part.replace('_', " ");
+            if part.size == 0.0 {
+                return format!("{name} unknown");
+            }
             match part.unit.as_str() {
                 "1" => format!("{name} {:.1} %", 100.0 * part.size),
                 unit => format!("{name} {:.3} {unit}", part.size),

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use pinswitch_calibration::effects::effect_named;
 use pinswitch_calibration::{LimitReport, Report};
 
 use super::super::html::escape;
@@ -76,7 +77,11 @@ pub(super) fn limits(report: &Report) -> String {
              would change friction or reading by 5 % somewhere in the table. An effect is excluded if only smaller sizes are left.</p>\n",
         );
         let all = sorted(report);
-        html.push_str(&strips(&all));
+        // A limit of the cell is no interval about zero, and has no place on the strips.
+        let about_zero = |l: &LimitReport| {
+            effect_named(&l.id).is_none_or(|e| e.description().scales || e.parameters().is_empty())
+        };
+        html.push_str(&strips(&all.iter().copied().filter(|l| about_zero(l)).collect::<Vec<_>>()));
         html.push_str(&table(&all));
     }
     html.push_str(&together(report));

@@ -22,7 +22,7 @@ pub(super) fn noise(report: &Report) -> String {
             html,
             "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td><td>{}</td></tr>",
             escape(&part.part.replace('_', " ")),
-            with_unit(part.size, &part.unit),
+            if part.size > 0.0 { with_unit(part.size, &part.unit) } else { "not known".to_owned() },
             interval(part),
             escape(&part.what),
             remedy(&part.part)

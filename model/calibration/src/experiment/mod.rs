@@ -19,7 +19,7 @@ pub use rig::{RigError, RigLimits};
 pub use runs::{PlannedRun, RunsError, contact_words, read_runs, rows_of, write_runs};
 
 use crate::effects::Vocabulary;
-use crate::inference::{Levels, Model, Noise};
+use crate::inference::{Levels, Model, Noise, Wandering};
 use crate::model_file::{ModelFile, ModelFileError};
 use crate::report::Report;
 use crate::table::{PlateauRow, Sweep};
@@ -188,8 +188,7 @@ fn of_candidates(
 ) -> Option<Vec<DMatrix<f64>>> {
     // Offsets that wander from run to run differ from one to the next: alone, they are offsets.
     let mut noise = design.noise;
-    noise.series.constant_n = noise.series.constant_n.hypot(noise.walk_n);
-    noise.walk_n = 0.0;
+    noise.walk = Wandering::default();
     let design = Design { model: design.model, noise, traces: design.traces };
     let begins_s = |c: &Candidate| if c.late { 0.75 * 60.0 * minutes } else { 0.0 };
     let rows: Vec<PlateauRow> =

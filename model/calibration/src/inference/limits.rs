@@ -1,8 +1,8 @@
 //! What the data exclude: for each effect that was not found the sizes that remain possible, and effects that this
 //! design cannot tell apart.
 
-use super::fit::Fit;
-use super::projection::dot;
+use super::fit::{Fit, jacobian};
+use super::projection::{Projection, dot};
 use super::screening::{EffectScore, Screen};
 use super::significance::gain_at;
 use super::variance_components::Reliability;
@@ -20,7 +20,8 @@ pub struct SizeLimit {
     /// The effect.
     pub effect: &'static dyn Effect,
     /// Ends of the 95 % interval of its size, in the unit of its first constant; of an effect without constants, in
-    /// shares of the effect.
+    /// shares of the effect. An effect that cannot be negative has none below zero; a limit of the cell ends at the
+    /// highest one that was tried.
     pub interval: [f64; 2],
     /// Size at which it changes friction, or the reading, by [`CONSEQUENCE`] somewhere in the table.
     pub typical: f64,
@@ -30,9 +31,17 @@ impl SizeLimit {
     /// Whether nothing of consequence can hide: every size left is smaller than the typical one.
     pub fn is_excluded(&self) -> bool {
         let [low, high] = self.interval;
-        let low = if self.effect.description().one_sided { low.max(0.0) } else { low };
-        low > -self.typical && high < self.typical
+        if self.effect.description().scales || self.effect.parameters().is_empty() {
+            low > -self.typical && high < self.typical
+        } else {
+            low > self.typical
+        }
     }
+}
+
+/// The part of an interval that an effect's physics allows.
+fn allowed(effect: &dyn Effect, [low, high]: [f64; 2]) -> [f64; 2] {
+    if effect.description().one_sided { [low.max(0.0), high.max(0.0)] } else { [low, high] }
 }
 
 /// Limits of the effects that a model does not have, of those that pass `visible`.
@@ -54,18 +63,57 @@ pub(super) fn limits(
                 (true, _) => 1.0,
                 (false, true) => score.size,
                 // A limit of the cell's range does not grow from zero: what it excludes is no interval about zero.
-                (false, false) => return None,
+                (false, false) => return range_limit(score.effect, fitted, weighed, &predicted),
             };
             let degrees = reliability.degrees(weighed.data, &score.trace_n, score.strength.powi(2));
             let half = gain_at(0.05, 1, degrees).sqrt() * size.abs() / score.strength;
             let middle = size * score.share;
             Some(SizeLimit {
                 effect: score.effect,
-                interval: [middle - half, middle + half],
+                interval: allowed(score.effect, [middle - half, middle + half]),
                 typical: size.abs() * CONSEQUENCE / largest_share(score, &predicted, weighed).max(1e-12),
             })
         })
         .collect()
+}
+
+/// Steps between the limits of a cell that are tried, as a factor.
+const RANGE_STEP: f64 = 0.98;
+
+/// The lowest limit of the cell that the data do not exclude: a limit below the highest readings cuts them off, which
+/// residuals would show. Tried from the highest reading that the model predicts downwards.
+fn range_limit(
+    effect: &'static dyn Effect,
+    fitted: &Fit,
+    weighed: &Weighed<'_>,
+    predicted: &[f64],
+) -> Option<SizeLimit> {
+    let highest = predicted.iter().copied().fold(0.0, f64::max);
+    if highest <= 0.0 {
+        return None;
+    }
+    // What the model's own constants could take over of a cut is no evidence against it.
+    let mut own = Projection::new(predicted.len());
+    for mut column in jacobian(&fitted.model, weighed.data, predicted) {
+        weighed.whiten(&mut column);
+        own.absorb(column);
+    }
+    let squares = |mut residual: Vec<f64>| {
+        weighed.whiten(&mut residual);
+        own.remove(&mut residual);
+        dot(&residual, &residual)
+    };
+    let as_it_is = squares(fitted.residual_n.clone());
+    let chance = gain_at(0.05, 1, 1e6);
+    let beyond_chance = |limit: f64| {
+        let cut = predicted.iter().map(|reading| (reading - limit).max(0.0));
+        squares(fitted.residual_n.iter().zip(cut).map(|(r, cut)| r + cut).collect()) - as_it_is > chance
+    };
+    let mut low = highest;
+    while low > 0.3 * highest && !beyond_chance(low * RANGE_STEP) {
+        low *= RANGE_STEP;
+    }
+    Some(SizeLimit { effect, interval: [low, highest], typical: highest * (1.0 - CONSEQUENCE) })
 }
 
 /// Largest share of the friction (of the reading, for what acts on it or against the motion) that a trace changes.

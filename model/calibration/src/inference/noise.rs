@@ -5,10 +5,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::observations::Observations;
+use super::walk::Wandering;
 use crate::median::median;
 
 /// A variance that grows with the square of the load: `constant^2 + (per_load F)^2`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Spread {
     /// Standard deviation at zero load, in newtons.
     pub constant_n: f64,
@@ -65,6 +67,7 @@ impl Spread {
 
 /// The noise of a table. What is zero was not found in it, or not looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Noise {
     /// Of one repetition.
     pub repetition: Spread,
@@ -82,9 +85,9 @@ pub struct Noise {
     /// Of the friction exponent, or the wrap, from mount to mount, relative.
     #[serde(default)]
     pub mount_scale: f64,
-    /// Of an offset of the reading that wanders from series to series, in each direction by itself, in newtons.
-    #[serde(rename = "walk_N", default)]
-    pub walk_n: f64,
+    /// How much of the offsets of series wanders from one to the next.
+    #[serde(default)]
+    pub walk: Wandering,
     /// Of the reading from operator to operator and from session to session, in newtons.
     #[serde(rename = "group_offset_N", default)]
     pub group_offset_n: f64,
@@ -104,10 +107,23 @@ impl Noise {
             series_common: same(0.0),
             series_scale: 0.0,
             mount_scale: 0.0,
-            walk_n: 0.0,
+            walk: Wandering::default(),
             group_offset_n: 0.0,
             specimen_scale: 0.0,
         }
+    }
+
+    /// Share of the offsets' standard deviations that does not wander.
+    pub(crate) fn white(self) -> f64 {
+        if self.walk.is_any() { self.walk.white } else { 1.0 }
+    }
+
+    /// Standard deviation in newtons of what wanders of an offset.
+    pub fn wandering_n(self, load_n: f64) -> f64 {
+        if !self.walk.is_any() {
+            return 0.0;
+        }
+        (self.walk.common * self.series_common.at(load_n)).hypot(self.walk.direction * self.series.at(load_n))
     }
 
     /// Standard deviation in newtons of one reading about the model, where friction changes by `friction_n` newtons
@@ -116,9 +132,9 @@ impl Noise {
         let scale = self.series_scale.hypot(self.mount_scale).hypot(self.specimen_scale);
         self.repetition
             .at(load_n)
-            .hypot(self.series.at(load_n))
-            .hypot(self.series_common.at(load_n))
-            .hypot(self.walk_n)
+            .hypot(self.white() * self.series.at(load_n))
+            .hypot(self.white() * self.series_common.at(load_n))
+            .hypot(self.wandering_n(load_n))
             .hypot(self.group_offset_n)
             .hypot(scale * friction_n)
     }
@@ -171,8 +187,8 @@ impl Part {
     pub(crate) fn direction_n(self, noise: Noise, data: &Observations, row: usize) -> f64 {
         let load_n = data.points[row].load_n;
         match self {
-            Part::Cell => noise.series.at(load_n),
-            Part::SeriesOffset => noise.series_common.at(load_n),
+            Part::Cell => noise.white() * noise.series.at(load_n),
+            Part::SeriesOffset => noise.white() * noise.series_common.at(load_n),
             Part::SeriesScale => noise.series_scale * data.friction_n[row],
             Part::Mount => noise.mount_scale * data.friction_n[row],
             Part::Operator | Part::Session => noise.group_offset_n,

@@ -37,8 +37,8 @@ pub struct Observations {
     pub series_rows: Vec<Vec<usize>>,
     /// Rows of each mount: of each condition where the table does not say.
     pub mounts: Vec<Vec<usize>>,
-    /// Cells of each direction in the order of time: their offsets may wander.
-    pub walks: Vec<Vec<usize>>,
+    /// The series in the order of time: their offsets may wander.
+    pub turns: Vec<Turn>,
     /// Rows of each operator; empty with fewer than two.
     pub operators: Vec<Vec<usize>>,
     /// Rows of each session; empty with fewer than two.
@@ -47,6 +47,15 @@ pub struct Observations {
     pub specimens: Vec<Vec<usize>>,
     /// Series that are wrong as a whole and decide nothing.
     excluded: Vec<usize>,
+}
+
+/// A series in the order of time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turn {
+    /// Its cells, in the order in which they begin.
+    pub cells: Vec<usize>,
+    /// Series since the one before it: more than one where some are left out.
+    pub since: i32,
 }
 
 /// The means of the series and directions of a table, as a table of their own.
@@ -121,7 +130,7 @@ impl Observations {
         let force_n = rows.iter().map(|r| r.force_n).collect();
         let cell_load_n = loads(&cells, &points);
         let ones = vec![1.0; rows.len()];
-        let walks = walks(&cells, &points);
+        let turns = turns(&cells, &points, &series_of);
         Some(Self {
             points,
             force_n,
@@ -136,7 +145,7 @@ impl Observations {
             friction_n: vec![0.0; rows.len()],
             series_rows: collected(&series_of, series),
             series_of,
-            walks,
+            turns,
             mounts,
             operators: several(|l| &l.operator),
             sessions: several(|l| &l.session),
@@ -170,12 +179,13 @@ impl Observations {
                 .collect()
         };
         let cells = among(&self.cells);
-        let walks = walks(&cells, &kept.iter().map(|i| self.points[*i]).collect::<Vec<_>>());
+        let series_of: Vec<usize> = kept.iter().map(|i| new_series[self.series_of[*i]]).collect();
+        let turns = turns(&cells, &points, &series_of);
         Self {
             cell_load_n: loads(&cells, &points),
             points,
             force_n: kept.iter().map(|i| self.force_n[*i]).collect(),
-            series_of: kept.iter().map(|i| new_series[self.series_of[*i]]).collect(),
+            series_of,
             series,
             cells,
             weights: kept.iter().map(|i| self.weights[*i]).collect(),
@@ -186,7 +196,7 @@ impl Observations {
             friction_n: kept.iter().map(|i| self.friction_n[*i]).collect(),
             series_rows: among(&self.series_rows),
             mounts: among(&self.mounts),
-            walks,
+            turns,
             operators: among(&self.operators),
             sessions: among(&self.sessions),
             specimens: among(&self.specimens),
@@ -311,19 +321,35 @@ impl Observations {
     }
 }
 
-/// Cells of each direction in the order in which they begin.
-fn walks(cells: &[Vec<usize>], points: &[Point]) -> Vec<Vec<usize>> {
-    let begin = |cell: usize| cells[cell].iter().map(|r| points[*r].time).fold(f64::INFINITY, f64::min);
-    [-1.0, 1.0]
-        .iter()
-        .map(|sign| {
-            let mut walk: Vec<usize> = (0..cells.len())
-                .filter(|c| cells[*c].first().is_some_and(|r| points[*r].sign == *sign))
-                .collect();
-            walk.sort_by(|a, b| begin(*a).total_cmp(&begin(*b)));
-            walk
+/// Series after which a chain has forgotten.
+const FORGOTTEN: f64 = 30.0;
+
+/// The series in the order in which they begin. Time tells how many are missing between two that follow each other.
+fn turns(cells: &[Vec<usize>], points: &[Point], series_of: &[usize]) -> Vec<Turn> {
+    let begin = |cell: &usize| cells[*cell].iter().map(|r| points[*r].time).fold(f64::INFINITY, f64::min);
+    let mut of_series: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
+    for (index, cell) in cells.iter().enumerate() {
+        if let Some(row) = cell.first() {
+            of_series.entry(series_of[*row]).or_default().push(index);
+        }
+    }
+    let mut turns: Vec<(f64, Turn)> = of_series
+        .into_values()
+        .map(|mut cells| {
+            cells.sort_by(|a, b| begin(a).total_cmp(&begin(b)));
+            (cells.first().map_or(0.0, begin), Turn { cells, since: 1 })
         })
-        .collect()
+        .collect();
+    turns.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut gaps: Vec<f64> = turns.windows(2).map(|w| w[1].0 - w[0].0).collect();
+    let usual = median(&mut gaps);
+    for i in 1..turns.len() {
+        let gap = (turns[i].0 - turns[i - 1].0) / usual;
+        if usual > 0.0 && gap.is_finite() {
+            turns[i].1.since = gap.round().clamp(1.0, FORGOTTEN) as i32;
+        }
+    }
+    turns.into_iter().map(|(_, turn)| turn).collect()
 }
 
 /// Rows of each group.

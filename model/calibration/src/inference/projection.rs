@@ -37,7 +37,16 @@ impl Projection {
 
     /// Removes from a column what the basis explains.
     pub(crate) fn remove(&self, column: &mut [f64]) {
-        for axis in &self.basis {
+        // Four directions at a time: the column is read and written once for all of them.
+        let mut groups = self.basis.chunks_exact(4);
+        for group in &mut groups {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|i| &group[i][..column.len()]);
+            let [i, j, k, l] = dots([a, b, c, d], column);
+            for (row, v) in column.iter_mut().enumerate() {
+                *v -= i * a[row] + j * b[row] + (k * c[row] + l * d[row]);
+            }
+        }
+        for axis in groups.remainder() {
             let share = dot(axis, column);
             if share != 0.0 {
                 column.iter_mut().zip(axis).for_each(|(v, a)| *v -= share * a);
@@ -55,6 +64,26 @@ impl Projection {
     pub(crate) fn rank(&self) -> usize {
         self.basis.len()
     }
+}
+
+/// Inner products of four columns with one.
+fn dots(axes: [&[f64]; 4], column: &[f64]) -> [f64; 4] {
+    let mut sums = [[0.0; 4]; 4];
+    let [a, b, c, d] = axes.map(|axis| axis.chunks_exact(4));
+    let whole = column.chunks_exact(4);
+    let rest = whole.remainder();
+    for ((((x, a), b), c), d) in whole.zip(a).zip(b).zip(c).zip(d) {
+        for lane in 0..4 {
+            sums[0][lane] += a[lane] * x[lane];
+            sums[1][lane] += b[lane] * x[lane];
+            sums[2][lane] += c[lane] * x[lane];
+            sums[3][lane] += d[lane] * x[lane];
+        }
+    }
+    let done = column.len() - rest.len();
+    std::array::from_fn(|i| {
+        sums[i].iter().sum::<f64>() + axes[i][done..].iter().zip(rest).map(|(a, x)| a * x).sum::<f64>()
+    })
 }
 
 /// Inner product, in four sums that do not wait for each other.

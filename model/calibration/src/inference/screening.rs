@@ -262,6 +262,9 @@ impl<'a> Screen<'a> {
         } else {
             (1..=WINDOW_ENDS).map(|i| i * order.len() / WINDOW_ENDS).collect()
         };
+        if self.weighed.noise.walk.is_any() {
+            return self.best_window_beside_a_walk(channel, along, &begins, &order, &ends);
+        }
         let basis = self.basis.basis();
         // Of each series: score, squared length, and the share of each direction of the basis.
         let mut sums = vec![vec![0.0; 2 + basis.len()]; self.data().series];
@@ -294,8 +297,7 @@ impl<'a> Screen<'a> {
             }
         }
         let (gain, size, from, to) = best?;
-        let form = Shape::TimeWindow { from: begins[order[from]] - 1e-9, to: begins[order[to]] - 1e-9 };
-        let group = vec![Structure { covariate: Covariate::Time, channel, form }];
+        let group = vec![window(channel, begins[order[from]], begins[order[to]])];
         let flipped = self.flipped_series();
         let mut by_series = vec![0.0; flipped];
         let (mut visible, mut scale) = (0.0, 1.0);
@@ -308,6 +310,51 @@ impl<'a> Screen<'a> {
         }
         by_series.iter_mut().for_each(|v| *v *= scale);
         Some(StructureScore { group, sizes: vec![size], gain, by_series })
+    }
+
+    /// The same where offsets wander, so that whitening carries a series into those after it: sums over steps that begin
+    /// at each end.
+    fn best_window_beside_a_walk(
+        &self,
+        channel: Channel,
+        along: &[f64],
+        begins: &[f64],
+        order: &[usize],
+        ends: &[usize],
+    ) -> Option<StructureScore> {
+        let data = self.data();
+        let step = |from: usize| {
+            let mut white = vec![0.0; along.len()];
+            for row in order[from..].iter().flat_map(|series| &data.series_rows[*series]) {
+                white[*row] = along[*row];
+            }
+            self.visible(white)
+        };
+        let ends: Vec<usize> = ends.iter().copied().filter(|end| *end < order.len()).collect();
+        let steps: Vec<(Vec<f64>, f64)> = ends.iter().map(|end| step(*end)).collect();
+        let score: Vec<f64> = steps.iter().map(|(column, _)| dot(column, &self.residual)).collect();
+        let length2: Vec<f64> = steps.iter().map(|(column, _)| dot(column, column)).collect();
+        let mut best: Option<(f64, f64, usize, usize)> = None;
+        for (i, (a, share)) in steps.iter().enumerate() {
+            for (j, (b, _)) in steps.iter().enumerate().skip(i + 1) {
+                let visible = length2[i] - 2.0 * dot(a, b) + length2[j];
+                if ends[j] - ends[i] < 2 || *share < 0.02 || visible < 1e-9 {
+                    continue;
+                }
+                let along = score[i] - score[j];
+                let gain = along * along / visible - WINDOW_PENALTY;
+                if best.is_none_or(|b| gain > b.0) {
+                    best = Some((gain, along / visible, i, j));
+                }
+            }
+        }
+        let (gain, size, i, j) = best?;
+        let column: Vec<f64> = steps[i].0.iter().zip(&steps[j].0).map(|(a, b)| a - b).collect();
+        let found = self.group(
+            vec![window(channel, begins[order[ends[i]]], begins[order[ends[j]]])],
+            std::slice::from_ref(&column),
+        )?;
+        Some(StructureScore { sizes: vec![size], gain, ..found })
     }
 
     /// Gain of free offsets of each series, one per direction, for the series that are not excluded.
@@ -354,6 +401,12 @@ impl<'a> Screen<'a> {
         by_series.iter_mut().for_each(|v| *v *= scale);
         Some(StructureScore { group, sizes, gain, by_series })
     }
+}
+
+/// A stretch of series, by the times at which its first one begins and the one after its last.
+fn window(channel: Channel, from: f64, to: f64) -> Structure {
+    let form = Shape::TimeWindow { from: from - 1e-9, to: to - 1e-9 };
+    Structure { covariate: Covariate::Time, channel, form }
 }
 
 /// Gain and sizes of one or two columns; `None` for none, or for one without length.

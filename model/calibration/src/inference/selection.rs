@@ -10,10 +10,10 @@ use super::limits::{SizeLimit, classes, limits};
 use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
-use super::screening::{EffectScore, Screen};
+use super::screening::{EffectScore, Screen, StructureScore};
 use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
 use super::unnamed::{Context, FoundStructure, with_structure};
-use super::variance_components::{NoiseFactors, Reliability, Scatter, estimate, scatter_size, shared_again};
+use super::variance_components::{NoiseFactors, Reliability, Scatter, estimate, shared_again};
 use super::weighed::Weighed;
 use crate::effects::{Effect, Shape};
 
@@ -199,7 +199,7 @@ impl Explanation {
     fn toll(&self, data: &Observations) -> f64 {
         let choices = 2.0 * (self.augmented.model.vocabulary.count() as f64).ln() * self.names() as f64;
         let shapes = 2.0 * (self.structures_tried.max(1) as f64).ln() * self.shapes() as f64;
-        let scatter: f64 = Scatter::ALL.iter().map(|s| s.cost(self.noise)).sum();
+        let scatter: f64 = Scatter::ALL.iter().map(|s| s.cost(self.noise, data)).sum();
         evidence(&self.augmented, &Weighed::new(data, self.noise)) + choices + shapes + scatter
     }
 }
@@ -242,22 +242,23 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
     if !found.model.terms.is_empty() {
         let before = noise;
         noise = estimate(data, &found.residual_n, &explainable(&found, data), noise);
-        noise = Scatter::ALL.iter().fold(noise, |n, scatter| scatter.in_noise(n, scatter.of(before)));
+        noise = Scatter::ALL.iter().fold(noise, |n, scatter| scatter.taken_from(before, n));
         weighed = Weighed::new(data, noise);
         baseline = fit(&baseline.model, &weighed);
         found = search(&baseline, &weighed, levels);
     }
     // A shape that some series follow looks like scatter of the series as long as it is not in the model.
-    if let Some(sharper) = sharper_noise(&found, data, noise) {
+    let (sharper, mut left) = sharper_noise(&found, data, noise);
+    if let Some(sharper) = sharper {
         noise = sharper;
         weighed = Weighed::new(data, noise);
         baseline = fit(&baseline.model, &weighed);
         found = fit(&found.model, &weighed);
+        left = Screen::new(&found, &weighed).structures();
     }
     let explained = bendable_gain(&baseline, &found, &weighed);
     let open = Screen::new(&found, &weighed);
     let guarded = Screen::guarded(&found, &weighed);
-    let mut left = open.structures();
     let beyond = left.first().is_some_and(|s| s.gain > levels.beyond_form * explained);
     if !found.model.named_effects().is_empty() && !beyond {
         left = guarded.structures();
@@ -283,8 +284,8 @@ fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> 
 const MIN_EVIDENCE: f64 = 6.0;
 
 /// The noise beside the best shape of each covariate, if one of them makes the table more probable than the noise does
-/// without it.
-fn sharper_noise(found: &Fit, data: &Observations, noise: Noise) -> Option<Noise> {
+/// without it; and the scores of all shapes.
+fn sharper_noise(found: &Fit, data: &Observations, noise: Noise) -> (Option<Noise>, Vec<StructureScore>) {
     let weighed = Weighed::new(data, noise);
     let screen = Screen::new(found, &weighed);
     let shapes = screen.structures();
@@ -311,39 +312,42 @@ fn sharper_noise(found: &Fit, data: &Observations, noise: Noise) -> Option<Noise
             best = (toll, Some(sharper));
         }
     }
-    best.1
+    (best.1, shapes)
 }
 
 /// Whether scatter from mount to mount, or offsets that wander from series to series, explain a table as well as what
 /// was believed without them. Their groups are few, so that no variance is known well: they compete as explanations.
 fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Explanation {
-    let size_of = |scatter: Scatter, fitted: &Fit, noise| {
+    let beside = |scatter: Scatter, fitted: &Fit, noise| {
         let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
         let own = jacobian(&fitted.model, data, &predicted);
-        scatter_size(scatter, data, &fitted.residual_n, &own, noise)
+        scatter.estimated(data, &fitted.residual_n, &own, noise)
     };
     // What is believed is kept, and the scatter beside it estimated.
     let with_scatter = |explanation: Explanation| {
-        let noise = Scatter::ALL.iter().fold(explanation.noise, |noise, scatter| {
-            let without = scatter.in_noise(noise, 0.0);
-            scatter.in_noise(without, size_of(*scatter, &explanation.augmented, without))
-        });
+        let noise = Scatter::ALL
+            .iter()
+            .fold(explanation.noise, |noise, scatter| beside(*scatter, &explanation.augmented, noise));
         if noise == explanation.noise {
             return explanation;
         }
         let weighed = Weighed::new(data, noise);
         let baseline = fit(&explanation.baseline.model, &weighed);
         let augmented = fit(&explanation.augmented.model, &weighed);
-        Explanation { baseline, augmented, noise, ..explanation }
+        let with = Explanation { baseline, augmented, noise, ..explanation.clone() };
+        if with.toll(data) < explanation.toll(data) { with } else { explanation }
     };
     if free.augmented.model.terms.is_empty() {
         return with_scatter(free);
     }
-    let sizes = Scatter::ALL.map(|scatter| (scatter, size_of(scatter, &free.baseline, free.noise)));
+    let bare = |noise| Scatter::ALL.iter().fold(noise, |n, scatter| scatter.left_out(n));
+    let alone = Scatter::ALL.map(|scatter| beside(scatter, &free.baseline, bare(free.noise)));
     let mut best = with_scatter(free);
-    for (scatter, size) in sizes.into_iter().filter(|(_, size)| *size > 0.0) {
-        let bare = Scatter::ALL.iter().fold(best.noise, |n, other| other.in_noise(n, 0.0));
-        let noise = scatter.in_noise(bare, size);
+    for found in alone {
+        let noise = Scatter::ALL.iter().fold(best.noise, |n, scatter| scatter.taken_from(found, n));
+        if noise == bare(noise) {
+            continue;
+        }
         // The search is only worth its time if believing less than now comes near.
         let toll = best.toll(data);
         if !best.with_less().any(|less| less.at(data, noise).toll(data) < toll + WORTH_A_SEARCH) {
@@ -355,7 +359,35 @@ fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Ex
             best = other;
         }
     }
+    // Names were preferred to shapes before it was known that they need scatter beside them.
+    if best.names() > 0 && best.noise != bare(best.noise) {
+        let shape = shape_alone(&best, data, levels).map(with_scatter);
+        best = shape.filter(|shape| shape.toll(data) < best.toll(data)).unwrap_or(best);
+    }
     best
+}
+
+/// The best shape alone, with the noise that is beside it and without scatter: what stands against names that need
+/// scatter beside them.
+fn shape_alone(named: &Explanation, data: &Observations, levels: Levels) -> Option<Explanation> {
+    let bare = Scatter::ALL.iter().fold(named.noise, |n, scatter| scatter.left_out(n));
+    let baseline = fit(&named.baseline.model, &Weighed::new(data, bare));
+    let (sharper, shapes) = sharper_noise(&baseline, data, bare);
+    let noise = sharper?;
+    let weighed = Weighed::new(data, noise);
+    let baseline = fit(&baseline.model, &weighed);
+    let left = Screen::new(&baseline, &weighed).structures();
+    let context = Context { weighed: &weighed, levels, explained: 0.0 };
+    let (augmented, structure) = context.with_unnamed(&baseline, baseline.clone(), &left, 0.0);
+    Some(Explanation {
+        baseline,
+        augmented,
+        structure: Some(structure?),
+        structure_gain: left.first().map_or(0.0, |s| s.gain),
+        structures_tried: shapes.len(),
+        noise,
+        isolated: None,
+    })
 }
 
 /// A model without the names whose sizes may as well be zero.

@@ -12,6 +12,8 @@ use super::correlation;
 use super::noise::{Noise, Spread};
 use super::observations::Observations;
 use super::projection::{Projection, dot};
+use super::walk::Wandering;
+use super::wandering::{walk_cost, wandering};
 use super::weighed::Weighed;
 
 /// Rounds of the update: parts far from their start need some tens.
@@ -45,10 +47,9 @@ pub(super) fn estimate(
         noise.repetition = inside(data, residual_n, explainable, noise).0;
     }
     let noise = between(data, residual_n, explainable, noise).unwrap_or(noise);
-    [Scatter::Groups, Scatter::Specimens].iter().fold(noise, |noise, labelled| {
-        let without = labelled.in_noise(noise, 0.0);
-        labelled.in_noise(without, scatter_size(*labelled, data, residual_n, &[], without))
-    })
+    [Scatter::Groups, Scatter::Specimens]
+        .iter()
+        .fold(noise, |noise, labelled| labelled.estimated(data, residual_n, &[], noise))
 }
 
 /// The same with the repetition noise and the scatter that competes with effects as they are: what series share, beside
@@ -60,7 +61,7 @@ pub(super) fn shared_again(
     noise: Noise,
 ) -> Noise {
     let found = between(data, residual_n, explainable, noise).unwrap_or(noise);
-    Noise { mount_scale: noise.mount_scale, walk_n: noise.walk_n, ..found }
+    Noise { mount_scale: noise.mount_scale, walk: noise.walk, ..found }
 }
 
 /// The repetition noise, with the whitened residuals that it was read from.
@@ -201,7 +202,7 @@ fn with_sizes(noise: Noise, sizes: [f64; 5]) -> Noise {
 
 /// What rows of a series share; `None` with too few series to tell.
 fn between(data: &Observations, residual_n: &[f64], explainable: &[Vec<f64>], noise: Noise) -> Option<Noise> {
-    let noise = Noise { mount_scale: 0.0, walk_n: 0.0, ..noise };
+    let noise = Noise { mount_scale: 0.0, walk: Wandering::default(), ..noise };
     let means = data.cell_means(noise);
     let residual = means.mean_of(data, residual_n);
     let mut columns: Vec<Vec<f64>> = explainable.iter().map(|c| means.mean_of(data, c)).collect();
@@ -300,23 +301,44 @@ impl Scatter {
     /// Those that compete with effects. The others are known by the table's own labels.
     pub(super) const ALL: [Scatter; 2] = [Scatter::Mounts, Scatter::Walk];
 
-    /// The noise with this scatter.
-    pub(super) fn in_noise(self, noise: Noise, size: f64) -> Noise {
+    /// The noise with this scatter as it is in another one.
+    pub(super) fn taken_from(self, other: Noise, noise: Noise) -> Noise {
         match self {
-            Scatter::Mounts => Noise { mount_scale: size, ..noise },
-            Scatter::Walk => Noise { walk_n: size, ..noise },
-            Scatter::Groups => Noise { group_offset_n: size, ..noise },
-            Scatter::Specimens => Noise { specimen_scale: size, ..noise },
+            Scatter::Mounts => Noise { mount_scale: other.mount_scale, ..noise },
+            Scatter::Walk => Noise { walk: other.walk, ..noise },
+            Scatter::Groups => Noise { group_offset_n: other.group_offset_n, ..noise },
+            Scatter::Specimens => Noise { specimen_scale: other.specimen_scale, ..noise },
         }
     }
 
-    /// Its size in a noise.
-    pub(super) fn of(self, noise: Noise) -> f64 {
+    /// The noise without this scatter.
+    pub(super) fn left_out(self, noise: Noise) -> Noise {
+        self.taken_from(Noise::constant(0.0, 0.0), noise)
+    }
+
+    /// The noise with this scatter as residuals in newtons show it beside what `own` columns can take over. Everything
+    /// else of the noise stays.
+    pub(super) fn estimated(
+        self,
+        data: &Observations,
+        residual_n: &[f64],
+        own: &[Vec<f64>],
+        noise: Noise,
+    ) -> Noise {
+        let without = self.left_out(noise);
+        if self == Scatter::Walk {
+            return Noise { walk: wandering(data, residual_n, own, without), ..without };
+        }
+        self.in_noise(without, scatter_size(self, data, residual_n, own, without))
+    }
+
+    /// Those but the walk have one size.
+    fn in_noise(self, noise: Noise, size: f64) -> Noise {
         match self {
-            Scatter::Mounts => noise.mount_scale,
-            Scatter::Walk => noise.walk_n,
-            Scatter::Groups => noise.group_offset_n,
-            Scatter::Specimens => noise.specimen_scale,
+            Scatter::Mounts => Noise { mount_scale: size, ..noise },
+            Scatter::Walk => noise,
+            Scatter::Groups => Noise { group_offset_n: size, ..noise },
+            Scatter::Specimens => Noise { specimen_scale: size, ..noise },
         }
     }
 
@@ -350,30 +372,33 @@ impl Scatter {
     fn scale(self) -> [f64; 4] {
         match self {
             Scatter::Mounts => [LEAST_SCALE, 0.02, 0.045, MOST_MOUNT_SCALE],
-            Scatter::Walk => [2e-3, 0.05, 0.15, 0.3],
+            Scatter::Walk => [0.0; 4],
             Scatter::Groups => [2e-3, 0.2, 0.5, 10.0],
             Scatter::Specimens => [LEAST_SCALE, 0.05, 0.1, 1.0],
         }
     }
 
-    /// Minus twice the logarithm of how probable a size is before any data, a half-normal law, up to a constant.
-    pub(super) fn cost(self, noise: Noise) -> f64 {
-        (self.of(noise) / self.scale()[2]).powi(2)
+    /// Minus twice the logarithm of how probable this scatter is before any data, a half-normal law of its size, up to a
+    /// constant.
+    pub(super) fn cost(self, noise: Noise, data: &Observations) -> f64 {
+        let size = match self {
+            Scatter::Mounts => noise.mount_scale,
+            Scatter::Walk => return walk_cost(noise, data),
+            Scatter::Groups => noise.group_offset_n,
+            Scatter::Specimens => noise.specimen_scale,
+        };
+        (size / self.scale()[2]).powi(2)
     }
 }
 
-/// The scatter that residuals in newtons show beside what `own` columns can take over. Everything else of the noise
-/// stays.
-pub(super) fn scatter_size(
+/// The size of a scatter by restricted maximum likelihood.
+fn scatter_size(
     scatter: Scatter,
     data: &Observations,
     residual_n: &[f64],
     own: &[Vec<f64>],
     noise: Noise,
 ) -> f64 {
-    if scatter == Scatter::Walk {
-        return walk_size(data, residual_n, own, noise);
-    }
     let [least, start, _, most] = scatter.scale();
     let none = (0..data.points.len()).all(|r| scatter.direction_n(data, r) == 0.0);
     if scatter.groups(data).len() < scatter.least_groups() || none {
@@ -419,50 +444,6 @@ pub(super) fn scatter_size(
         }
     }
     theta.sqrt().min(most)
-}
-
-/// Sizes of a wandering offset that are tried, in newtons.
-const WALKS_N: [f64; 9] = [0.01, 0.02, 0.03, 0.045, 0.065, 0.09, 0.13, 0.19, 0.28];
-/// Cells without which a walk cannot be told from offsets.
-const LEAST_WALK: usize = 24;
-
-/// The size of a wandering offset with the largest restricted likelihood, or zero.
-fn walk_size(data: &Observations, residual_n: &[f64], own: &[Vec<f64>], noise: Noise) -> f64 {
-    if data.cells.len() < LEAST_WALK {
-        return 0.0;
-    }
-    let means = data.cell_means(noise);
-    let residual = means.mean_of(data, residual_n);
-    let columns: Vec<Vec<f64>> = own.iter().map(|c| means.mean_of(data, c)).collect();
-    let cost = |walk_n: f64| {
-        let noise = Noise { walk_n, ..noise };
-        let weighed = Weighed::new(&means.observations, noise);
-        let mut projection = Projection::new(residual.len());
-        let mut log_det = weighed.shared_log_det();
-        for column in &columns {
-            let mut white = column.clone();
-            weighed.whiten(&mut white);
-            // The determinant of the projection's own columns: what they lose of their length to those before.
-            let mut rest = white.clone();
-            projection.remove(&mut rest);
-            let length2 = dot(&rest, &rest);
-            if projection.absorb(white) && length2 > 0.0 {
-                log_det += length2.ln();
-            }
-        }
-        let mut white = residual.clone();
-        weighed.whiten(&mut white);
-        projection.remove(&mut white);
-        dot(&white, &white) + log_det + Scatter::Walk.cost(noise)
-    };
-    let mut best = (cost(0.0), 0.0);
-    for walk_n in WALKS_N {
-        let cost = cost(walk_n);
-        if cost < best.0 {
-            best = (cost, walk_n);
-        }
-    }
-    best.1
 }
 
 /// How well the noise itself is known, to tell how many degrees of freedom stand behind a size
@@ -515,8 +496,13 @@ impl Reliability {
     pub(crate) fn new(data: &Observations, noise: Noise, own: &[Vec<f64>]) -> Self {
         let means = data.cell_means(noise);
         let own: Vec<Vec<f64>> = own.iter().map(|c| means.mean_of(data, c)).collect();
-        let local =
-            Noise { mount_scale: 0.0, walk_n: 0.0, group_offset_n: 0.0, specimen_scale: 0.0, ..noise };
+        let local = Noise {
+            mount_scale: 0.0,
+            walk: Wandering::default(),
+            group_offset_n: 0.0,
+            specimen_scale: 0.0,
+            ..noise
+        };
         let zeros = vec![0.0; means.observations.points.len()];
         let blocks = blocks(&means.observations, local, &zeros, &own);
         let theta = sizes(noise);

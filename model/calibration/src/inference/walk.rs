@@ -1,19 +1,53 @@
-//! Offsets that wander from series to series: a chain of first order over the cells of each direction, whitened by a
-//! Kalman filter, whose cost is linear in the cells.
+//! Offsets that wander from series to series: each series' offset, and each direction's, is a chain of first order,
+//! whitened by a Kalman filter over the series in the order of time. Its cost is linear in the series.
+//!
+//! What a series has of its own besides, a white offset and its friction scale, is a state without memory in the same
+//! filter: taken out afterwards, it would be taken out of the series after it, too.
 
+use serde::{Deserialize, Serialize};
+
+use super::noise::Noise;
 use super::observations::Observations;
 use super::weighed::Weighed;
 
-/// Correlation of the wandering offset from one series to the next.
-const CORRELATION: f64 = 0.75;
+/// How much of the offsets of series wanders. Sizes are shares of the offsets' standard deviations as they are found
+/// without a walk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wandering {
+    /// Correlation with the series before; 0 where nothing wanders.
+    pub correlation: f64,
+    /// Of the part that does not wander.
+    pub white: f64,
+    /// Of the offset that both directions share.
+    pub common: f64,
+    /// Of the offset of each direction.
+    pub direction: f64,
+}
 
-/// One step of the filter.
+impl Wandering {
+    /// Whether anything does.
+    pub(crate) fn is_any(&self) -> bool {
+        self.correlation > 0.0 && (self.common > 0.0 || self.direction > 0.0)
+    }
+}
+
+/// States of the filter: the offset of the series and of each direction, which are remembered, and the white offset and
+/// the friction scale of the series, which are not.
+const STATES: usize = 5;
+const REMEMBERED: usize = 3;
+
+type State = [f64; STATES];
+
+/// One cell in the filter.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     cell: usize,
-    /// Standard deviation of the offset in the whitened scale of its cell.
-    offset: f64,
-    gain: f64,
+    /// What is left of the remembered states since the cell before; `None` within a series.
+    memory: Option<f64>,
+    /// What one standard deviation of each state does along the cell's direction.
+    reach: State,
+    gain: State,
     /// Variance of the innovation.
     variance: f64,
 }
@@ -21,43 +55,66 @@ struct Step {
 /// The filter of a table.
 #[derive(Clone, Debug)]
 pub(super) struct Walk {
-    chains: Vec<Vec<Step>>,
+    steps: Vec<Step>,
     /// Direction of each row's cell, of unit length in each cell.
     axis: Vec<f64>,
+}
+
+fn along(state: &State, reach: &State) -> f64 {
+    state.iter().zip(reach).map(|(s, r)| s * r).sum()
+}
+
+/// The states that are remembered, and nothing of the others.
+fn remembered(state: &State, memory: f64) -> State {
+    std::array::from_fn(|i| if i < REMEMBERED { memory * state[i] } else { 0.0 })
 }
 
 impl Walk {
     /// For cells that are whitened, each by itself.
     pub(super) fn new(weighed: &Weighed<'_>) -> Self {
-        let data = weighed.data;
-        let mut axis = vec![weighed.noise.walk_n; data.points.len()];
+        let (data, noise) = (weighed.data, weighed.noise);
+        let mut axis = vec![1.0; data.points.len()];
         weighed.whiten(&mut axis);
-        let lengths: Vec<f64> = data
-            .cells
-            .iter()
-            .map(|cell| cell.iter().map(|r| axis[*r] * axis[*r]).sum::<f64>().sqrt())
-            .collect();
-        for (cell, length) in data.cells.iter().zip(&lengths).filter(|(_, length)| **length > 0.0) {
-            cell.iter().for_each(|r| axis[*r] /= length);
+        let mut scale = data.friction_n.clone();
+        weighed.whiten(&mut scale);
+        let mut length = vec![0.0; data.cells.len()];
+        let mut friction = vec![0.0; data.cells.len()];
+        for (index, cell) in data.cells.iter().enumerate() {
+            let length2: f64 = cell.iter().map(|r| axis[*r] * axis[*r]).sum();
+            if length2 > 1e-24 {
+                length[index] = length2.sqrt();
+                cell.iter().for_each(|r| axis[*r] /= length[index]);
+                friction[index] = cell.iter().map(|r| axis[*r] * scale[*r]).sum();
+            }
         }
-        let chains = data
-            .walks
-            .iter()
-            .map(|walk| {
-                let mut known = 1.0;
-                walk.iter()
-                    .map(|cell| {
-                        let offset = lengths[*cell];
-                        let before = CORRELATION * CORRELATION * known + 1.0 - CORRELATION * CORRELATION;
-                        let variance = offset * offset * before + 1.0;
-                        let gain = before * offset / variance;
-                        known = (1.0 - gain * offset) * before;
-                        Step { cell: *cell, offset, gain, variance }
-                    })
-                    .collect()
-            })
-            .collect();
-        Self { chains, axis }
+        let mut known = [[0.0; STATES]; STATES];
+        known.iter_mut().enumerate().for_each(|(i, row)| row[i] = 1.0);
+        let mut steps = Vec::with_capacity(data.cells.len());
+        for turn in &data.turns {
+            let memory = noise.walk.correlation.powi(turn.since);
+            for (place, cell) in turn.cells.iter().enumerate() {
+                let memory = (place == 0).then_some(memory);
+                if let Some(memory) = memory {
+                    for (i, row) in known.iter_mut().enumerate() {
+                        for (j, value) in row.iter_mut().enumerate() {
+                            let both = if i < REMEMBERED && j < REMEMBERED { memory * memory } else { 0.0 };
+                            let own = if i == j { 1.0 - both } else { 0.0 };
+                            *value = both * *value + own;
+                        }
+                    }
+                }
+                let sign = data.cells[*cell].first().map_or(1.0, |r| data.points[*r].sign);
+                let reach = reach(noise, data.cell_load_n[*cell], sign, length[*cell], friction[*cell]);
+                let shared: State = std::array::from_fn(|i| along(&known[i], &reach));
+                let variance = along(&shared, &reach) + 1.0;
+                let gain = shared.map(|s| s / variance);
+                for (row, gain) in known.iter_mut().zip(&gain) {
+                    row.iter_mut().zip(&shared).for_each(|(value, shared)| *value -= gain * shared);
+                }
+                steps.push(Step { cell: *cell, memory, reach, gain, variance });
+            }
+        }
+        Self { steps, axis }
     }
 
     fn along(&self, cell: &[usize], values: &[f64]) -> f64 {
@@ -66,37 +123,46 @@ impl Walk {
 
     /// Replaces what lies along each cell's direction by its innovation.
     pub(super) fn whiten(&self, data: &Observations, values: &mut [f64]) {
-        for chain in &self.chains {
-            let mut state = 0.0;
-            for step in chain {
-                let cell = &data.cells[step.cell];
-                let along = self.along(cell, values);
-                let before = CORRELATION * state;
-                let innovation = along - step.offset * before;
-                state = before + step.gain * innovation;
-                let change = innovation / step.variance.sqrt() - along;
-                cell.iter().for_each(|r| values[*r] += change * self.axis[*r]);
+        let mut state = [0.0; STATES];
+        for step in &self.steps {
+            if let Some(memory) = step.memory {
+                state = remembered(&state, memory);
             }
+            let cell = &data.cells[step.cell];
+            let value = self.along(cell, values);
+            let innovation = value - along(&state, &step.reach);
+            state.iter_mut().zip(&step.gain).for_each(|(s, g)| *s += g * innovation);
+            let change = innovation / step.variance.sqrt() - value;
+            cell.iter().for_each(|r| values[*r] += change * self.axis[*r]);
         }
     }
 
     /// The adjoint of [`Walk::whiten`].
     pub(super) fn whiten_transposed(&self, data: &Observations, values: &mut [f64]) {
-        for chain in &self.chains {
-            let mut state = 0.0;
-            for step in chain.iter().rev() {
-                let cell = &data.cells[step.cell];
-                let along = self.along(cell, values);
-                let innovation = along / step.variance.sqrt() + step.gain * state;
-                state = CORRELATION * (state - step.offset * innovation);
-                let change = innovation - along;
-                cell.iter().for_each(|r| values[*r] += change * self.axis[*r]);
+        let mut state = [0.0; STATES];
+        for step in self.steps.iter().rev() {
+            let cell = &data.cells[step.cell];
+            let value = self.along(cell, values);
+            let innovation = value / step.variance.sqrt() + along(&state, &step.gain);
+            state.iter_mut().zip(&step.reach).for_each(|(s, r)| *s -= r * innovation);
+            if let Some(memory) = step.memory {
+                state = remembered(&state, memory);
             }
+            let change = innovation - value;
+            cell.iter().for_each(|r| values[*r] += change * self.axis[*r]);
         }
     }
 
     /// `ln det` of what it whitens.
     pub(super) fn log_det(&self) -> f64 {
-        self.chains.iter().flatten().map(|step| step.variance.ln()).sum()
+        self.steps.iter().map(|step| step.variance.ln()).sum()
     }
+}
+
+/// What one standard deviation of each state does along a cell's direction, whose length is that of one newton.
+fn reach(noise: Noise, load_n: f64, sign: f64, length: f64, friction: f64) -> State {
+    let common = length * noise.series_common.at(load_n);
+    let direction = length * noise.walk.direction * noise.series.at(load_n);
+    let (down, up) = if sign < 0.0 { (direction, 0.0) } else { (0.0, direction) };
+    [noise.walk.common * common, down, up, noise.walk.white * common, noise.series_scale * friction]
 }

@@ -54,6 +54,51 @@ impl Shared {
     }
 }
 
+/// What one group of series shares where offsets wander: whitening has carried it into the series after them.
+#[derive(Clone, Debug)]
+struct Carried {
+    /// Rows with their places on a direction of unit length.
+    axis: Vec<(usize, f64)>,
+    /// Share of that direction which whitening takes out.
+    removed: f64,
+}
+
+/// Share of a direction's largest place below which a place is none.
+const FORGOTTEN: f64 = 1e-8;
+
+impl Carried {
+    /// That of rows which `whiten` has prepared, if it reaches any.
+    fn new(
+        part: Part,
+        rows: &[usize],
+        noise: Noise,
+        data: &Observations,
+        whiten: impl Fn(&mut [f64]),
+    ) -> Option<Self> {
+        let mut axis = vec![0.0; data.points.len()];
+        rows.iter().for_each(|row| axis[*row] = part.direction_n(noise, data, *row));
+        whiten(&mut axis);
+        let largest = axis.iter().fold(0.0f64, |most, a| most.max(a.abs()));
+        let length2: f64 = axis.iter().map(|a| a * a).sum();
+        if length2 <= 1e-24 {
+            return None;
+        }
+        let length = length2.sqrt();
+        let axis = axis.into_iter().enumerate().filter(|(_, a)| a.abs() > FORGOTTEN * largest);
+        Some(Self {
+            axis: axis.map(|(row, a)| (row, a / length)).collect(),
+            removed: 1.0 - (1.0 + length2).sqrt().recip(),
+        })
+    }
+
+    /// A symmetric step: it is its own adjoint.
+    fn whiten(&self, values: &mut [f64]) {
+        let sum: f64 = self.axis.iter().map(|(row, a)| a * values[*row]).sum();
+        let shift = self.removed * sum;
+        self.axis.iter().for_each(|(row, a)| values[*row] -= shift * a);
+    }
+}
+
 /// Observations with their noise.
 #[derive(Clone, Debug)]
 pub struct Weighed<'a> {
@@ -67,6 +112,7 @@ pub struct Weighed<'a> {
     /// Offsets wander from cell to cell: they are whitened while each cell still stands for itself.
     walk: Option<Walk>,
     shared: Vec<Shared>,
+    carried: Vec<Carried>,
 }
 
 impl<'a> Weighed<'a> {
@@ -78,14 +124,26 @@ impl<'a> Weighed<'a> {
             .zip(&data.roots)
             .map(|(p, root)| root / noise.repetition.at(p.load_n).max(1e-12))
             .collect();
-        let mut weighed = Self { data, noise, scale, cells: None, walk: None, shared: Vec::new() };
+        let mut weighed =
+            Self { data, noise, scale, cells: None, walk: None, shared: Vec::new(), carried: Vec::new() };
         weighed.cells = Shared::new(Part::Cell, noise, data, |v| weighed.whiten(v));
-        if noise.walk_n > 0.0 {
+        if noise.walk.is_any() {
             weighed.walk = Some(Walk::new(&weighed));
         }
         for part in Part::WIDER {
-            let shared = Shared::new(part, noise, data, |v| weighed.whiten(v));
-            weighed.shared.extend(shared);
+            if weighed.walk.is_none() {
+                let shared = Shared::new(part, noise, data, |v| weighed.whiten(v));
+                weighed.shared.extend(shared);
+                continue;
+            }
+            // What a series has of its own stands in the filter of a walk.
+            if matches!(part, Part::SeriesOffset | Part::SeriesScale) {
+                continue;
+            }
+            for rows in part.groups(data) {
+                let carried = Carried::new(part, rows, noise, data, |v| weighed.whiten(v));
+                weighed.carried.extend(carried);
+            }
         }
         weighed
     }
@@ -105,10 +163,12 @@ impl<'a> Weighed<'a> {
         self.cells.iter().for_each(|cells| cells.whiten(self.data, values));
         self.walk.iter().for_each(|walk| walk.whiten(self.data, values));
         self.shared.iter().for_each(|shared| shared.whiten(self.data, values));
+        self.carried.iter().for_each(|carried| carried.whiten(values));
     }
 
     /// `V^-1/2' v` of values that have no neighbours in a chain, as means of series have none.
     pub(crate) fn whiten_transposed(&self, mut values: Vec<f64>) -> Vec<f64> {
+        self.carried.iter().rev().for_each(|carried| carried.whiten(&mut values));
         self.shared.iter().rev().for_each(|shared| shared.whiten(self.data, &mut values));
         self.walk.iter().for_each(|walk| walk.whiten_transposed(self.data, &mut values));
         self.cells.iter().for_each(|cells| cells.whiten(self.data, &mut values));
@@ -125,63 +185,69 @@ impl<'a> Weighed<'a> {
             .flat_map(|s| &s.removed)
             .map(|removed| -2.0 * (1.0 - removed).ln())
             .sum();
-        shared + self.walk.as_ref().map_or(0.0, Walk::log_det)
+        let carried: f64 = self.carried.iter().map(|c| -2.0 * (1.0 - c.removed).ln()).sum();
+        shared + carried + self.walk.as_ref().map_or(0.0, Walk::log_det)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inference::Spread;
+    use crate::inference::{Spread, Wandering};
     use crate::table::Frame;
     use crate::test_session::session;
 
     #[test]
     fn whitening_undoes_the_covariance() {
-        whitens(0.0, 1e-9);
-        // What series share is taken where a series stands, and not out of the series after it, into which a walk
-        // carries some of it.
-        whitens(0.04, 0.01);
+        whitens(Wandering::default(), 0.05, 1e-9);
+        let walk = Wandering { correlation: 0.8, white: 0.5, common: 1.5, direction: 0.7 };
+        whitens(walk, 0.0, 1e-9);
+        whitens(walk, 0.05, 1e-6);
     }
 
     /// `V^-1/2 V V^-1/2' = 1` to a bound, for a covariance with every part.
-    fn whitens(walk_n: f64, bound: f64) {
+    fn whitens(walk: Wandering, mount_scale: f64, bound: f64) {
         let rows: Vec<_> = session(1).into_iter().take(54).collect();
         let frame = Frame::new(&rows);
         let mut data = Observations::new(&frame, &rows).unwrap();
         let n = rows.len();
         data.weights = (0..n).map(|i| if i % 9 == 3 { 0.2 } else { 1.0 }).collect();
         data.roots = data.weights.iter().map(|w| w.sqrt()).collect();
-        data.friction_n = (0..n).map(|i| data.points[i].sign * (1.0 + 0.1 * i as f64)).collect();
+        // A walk takes the friction of a cell for one number: its rows have one load.
+        let number = |r: usize| {
+            if walk.is_any() { data.cells.iter().position(|c| c.contains(&r)).unwrap_or(0) } else { r }
+        };
+        data.friction_n = (0..n).map(|i| data.points[i].sign * (1.0 + 0.1 * number(i) as f64)).collect();
         let noise = Noise {
             correlation: 0.6,
             series_common: Spread { constant_n: 0.05, per_load: 0.0 },
             series_scale: 0.03,
-            mount_scale: 0.05,
-            walk_n,
+            mount_scale,
+            walk,
             ..Noise::constant(0.1, 0.3)
         };
+        let white2 = noise.white().powi(2);
         let mut v = nalgebra::DMatrix::zeros(n, n);
         for i in 0..n {
             for j in 0..n {
                 let same = |groups: &[Vec<usize>]| groups.iter().any(|g| g.contains(&i) && g.contains(&j));
                 if same(&data.cells) {
                     let gap = data.points[i].repetition - data.points[j].repetition;
-                    v[(i, j)] += 0.01 * 0.6f64.powf(gap.abs()) / (data.roots[i] * data.roots[j]) + 0.09;
+                    v[(i, j)] +=
+                        0.01 * 0.6f64.powf(gap.abs()) / (data.roots[i] * data.roots[j]) + 0.09 * white2;
                 }
-                let cell_of = |r: usize| data.cells.iter().position(|c| c.contains(&r)).unwrap();
-                for walk in &data.walks {
-                    let place = |r: usize| walk.iter().position(|c| *c == cell_of(r));
-                    if let (Some(a), Some(b)) = (place(i), place(j)) {
-                        v[(i, j)] += walk_n * walk_n * 0.75f64.powi(a.abs_diff(b) as i32);
-                    }
+                let apart = f64::from((data.series_of[i] as i32 - data.series_of[j] as i32).abs());
+                if walk.is_any() {
+                    let direction = if data.points[i].sign == data.points[j].sign { 0.09 } else { 0.0 };
+                    v[(i, j)] += walk.correlation.powf(apart)
+                        * (walk.common.powi(2) * 0.0025 + walk.direction.powi(2) * direction);
                 }
                 let friction = data.friction_n[i] * data.friction_n[j];
                 if same(&data.series_rows) {
-                    v[(i, j)] += 0.0025 + 0.0009 * friction;
+                    v[(i, j)] += 0.0025 * white2 + 0.0009 * friction;
                 }
                 if same(&data.mounts) {
-                    v[(i, j)] += 0.0025 * friction;
+                    v[(i, j)] += mount_scale * mount_scale * friction;
                 }
             }
         }

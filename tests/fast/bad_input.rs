@@ -15,19 +15,28 @@ const REFUSED: [(&str, &[&str]); 28] = [
     ("[segment]\ngrooves = 40", &["my.toml:2: segment.grooves = 40", "overlap", "lower it to"]),
     (
         "[segment]\nend_margin_mm = 0\n[print]\nelephant_foot_mm = 0.3",
-        &["my.toml:2: segment.end_margin_mm = 0", "raise it by"],
+        &["my.toml:4: print.elephant_foot_mm = 0.3", "raise segment.end_margin_mm to"],
     ),
-    ("[shell]\nouter_radius_mm = 14", &["support.slot_clearance_mm = 0.2", "between neighbouring slots"]),
+    (
+        "[shell]\nouter_radius_mm = 14",
+        &["my.toml:2: shell.outer_radius_mm = 14", "between neighbouring slots", "raise it to"],
+    ),
     ("[shell]\nwall_mm = 1.2", &["my.toml:2: shell.wall_mm = 1.2", "under the grooves", "raise it to 1.400"]),
     ("[shell]\nwall_mm = 19.5", &["shell.wall_mm = 19.5", "lower it to 19.000"]),
     ("[layout]\npins = [5, 5]", &["my.toml:2: layout.pins = [5, 5]", "two pins in groove 5"]),
     ("[layout]\npins = [5, 16]", &["layout.pins = [5, 16]", "grooves 1 to 15"]),
     ("[layout]\npins = [0]", &["layout.pins = [0]", "groove 0"]),
-    ("[pins]\ndiameter_mm = 1.2", &["pins.diameter_mm = 1.2", "wider than its groove", "0.990"]),
+    (
+        "[pins]\ndiameter_mm = 1.2",
+        &["pins.diameter_mm = 1.2", "wider than their groove", "lower it to 0.990"],
+    ),
     ("[silicone]\nthickness_mm = 0.8", &["silicone.thickness_mm = 0.8", "raise it to 1.000"]),
-    ("[support]\nrise_mm = 0.5", &["support.rise_mm = 0.5", "leave the plate", "raise it by"]),
+    ("[support]\nrise_mm = 0.5", &["support.rise_mm = 0.5", "leave the plate", "raise it to"]),
     ("[support]\ntravel_margin_mm = 1.5", &["support.travel_margin_mm = 1.5", "into the shell"]),
-    ("[support]\nslot_floor_mm = 2.9", &["support.slot_floor_mm = 2.9", "through slots"]),
+    (
+        "[support]\nslot_floor_mm = 2.9",
+        &["support.slot_floor_mm = 2.9", "lower it to", "set support.slot_kind = \"through\""],
+    ),
     ("[support]\nplate_mm = 1.5", &["support.plate_mm = 1.5", "holds the pins by"]),
     (
         "[tendon]\nrope_diameter_mm = 6.0\n[shell]\nwidth_mm = 6.0",
@@ -91,6 +100,11 @@ fn arguments_and_places_that_cannot_be_used() {
     assert!(code == Some(2) && error.contains("nearest template is \"three-double\""), "{error}");
     let (code, error) = ended(folder.path(), &["generate", "three-double", "--set", "shell.width_mm=1"]);
     assert!(code == Some(2) && error.contains("--set: shell.width_mm = 1"), "{error}");
+    let (code, error) = ended(folder.path(), &["generate", "three-double", "--set", "layout.pins=[99]"]);
+    let said = "error: --set layout.pins=[99]: layout.pins = [99] puts a pin in groove 99";
+    assert!(code == Some(2) && error.contains(said), "{error}");
+    let (code, error) = ended(folder.path(), &["generate", "three-double", "--set", "silicone=3"]);
+    assert!(code == Some(2) && error.contains("--set silicone.thickness_mm=3"), "{error}");
     let (code, error) = ended(folder.path(), &["generate", "three-double", "--tolerance", "1"]);
     assert!(code == Some(2) && error.contains("--tolerance: mesh.chord_tolerance_mm"), "{error}");
     let (code, _) = ended(folder.path(), &["generate"]);

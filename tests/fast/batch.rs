@@ -25,7 +25,10 @@ fn a_batch_leaves_parts_table_plots_and_page() {
     for row in &rows {
         let of = b.join("variants").join(&row["id"]);
         if row["status"] == "refused" {
-            assert!(row["reason"].contains("segment.grooves = 60 overlap") && !of.exists(), "{row:?}");
+            assert!(
+                row["reason"].contains("segment.grooves = 60 makes grooves overlap") && !of.exists(),
+                "{row:?}"
+            );
             continue;
         }
         assert_eq!((row["status"].as_str(), row["reason"].as_str()), ("made", ""));

@@ -58,7 +58,7 @@ fn sweeps_that_make_no_sense_are_refused() {
                 "{}[sample]\ncount = 2\n[sample.axes]\n\"shell.width_mm\" = [12]\n",
                 axes("\"shell.width_mm\" = [12]")
             ),
-            "shell.width_mm varies twice",
+            "sweep.toml:1: shell.width_mm varies twice",
         ),
         (
             format!("{}[[constraints]]\nrequire = \"shell.width > 3\"\n", axes("\"shell.width_mm\" = [12]")),

@@ -63,7 +63,9 @@ pub use constraint::Constraint;
 pub use content::{MeshMaker, mesh_file};
 #[cfg(feature = "cloud")]
 pub use destination::Store;
-pub use destination::{Destination, DestinationError, DestinationLock, Folder, remedy, temporary_file};
+pub use destination::{
+    Destination, DestinationError, DestinationLock, Folder, is_dead_link, remedy_at, temporary_file,
+};
 pub use estimate::{Estimate, Measured, RefusalGroup, estimate};
 pub use make::VariantOutcome;
 pub use merge::{MergeError, merge};

@@ -45,7 +45,9 @@ pub enum StampError {
         place: String,
     },
     /// It holds no batch.
-    #[error("{place} holds no batch: there is no {STAMP}")]
+    #[error(
+        "{place} holds no batch: there is no {STAMP}; give a folder or bucket that `pinswitch batch` has written to"
+    )]
     Missing {
         /// The destination.
         place: String,

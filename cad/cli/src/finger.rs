@@ -25,6 +25,8 @@ use pinswitch_switch::output::OutputFile;
 const PUBLISHED: [&str; 4] = ["six-single", "three-double", "three-single", "silicone-only"];
 /// The light load over the joint, as a share of the heavy one.
 const LIGHT: f64 = 0.1;
+/// Heaviest load, N: that of friction.load_max_n.
+const MAX_LOAD_N: f64 = 1000.0;
 /// Most flexions of a curve over the joint, a degree apart.
 const MAX_FLEXIONS: u32 = 181;
 
@@ -65,7 +67,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
     wrap_per_flexion: f64,
     /// Load over the joint in newtons [default: the heaviest of each curve]; a tenth of it is the light one.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     load: Option<f64>,
     /// Folder for finger.svg, finger.csv and finger.json.
     #[arg(long, short, value_name = "DIR")]
@@ -114,9 +116,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path =
         JointPath::new(arguments.wrap_at_straight, arguments.wrap_per_flexion).map_err(Failure::bad_input)?;
     let joints_deg = flexions(arguments.joint, &path)?;
-    if let Some(load) = arguments.load.filter(|load| !(*load > 0.0 && load.is_finite())) {
+    if let Some(load) = arguments.load.filter(|load| !(*load > 0.0 && *load <= MAX_LOAD_N)) {
         return Err(Failure::bad_input(format!(
-            "--load = {load} is outside 0 < load; give the load on the tendon in newtons"
+            "--load = {load:?} is outside 0 < load <= {MAX_LOAD_N}; give the load on the tendon in newtons"
         )));
     }
     let names: Vec<&str> = if arguments.configs.is_empty() {

@@ -34,6 +34,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => read_text(name)?.0,
     };
     let Some(path) = &arguments.out else { return print(text.as_bytes()) };
+    if path.is_dir() {
+        let file = path.join(format!("{}.toml", arguments.name));
+        return Err(Failure::bad_input(format!(
+            "{}: is a folder; give the name of a file, such as {}",
+            path.display(),
+            file.display()
+        )));
+    }
     if path.exists() && !arguments.force {
         return Err(Failure::bad_input(format!("{}: exists; give --force to overwrite it", path.display())));
     }

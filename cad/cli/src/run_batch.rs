@@ -16,6 +16,8 @@ use pinswitch_batch::{
 
 /// More variants than this want --yes.
 const MAX_WITHOUT_YES: u64 = 10_000;
+/// Most threads: more processors than a machine has, and less than a system refuses, or spends its memory on.
+const MAX_THREADS: i64 = 256;
 /// Interval of progress lines where there is no terminal.
 const PROGRESS_INTERVAL: Duration = Duration::from_secs(10);
 
@@ -49,9 +51,15 @@ pub(super) struct Arguments {
     /// Make only block K of N; `pinswitch merge` joins them.
     #[arg(long, value_name = "K/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
-    /// Threads [default: one per processor; 16 for a bucket, which upload at once].
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
-    threads: usize,
+    /// Threads, up to 256 [default: one per processor; 16 for a bucket, which upload at once].
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        hide_default_value = true,
+        value_parser = clap::value_parser!(u16).range(0..=MAX_THREADS)
+    )]
+    threads: u16,
     /// Stop at the first variant that fails.
     #[arg(long)]
     fail_fast: bool,
@@ -108,7 +116,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let progress = Progress::new(own.end - own.start)?;
     let options = Options {
         shard: arguments.shard,
-        threads: arguments.threads,
+        threads: usize::from(arguments.threads),
         fail_fast: arguments.fail_fast,
         mesh_maker: mesh_file,
     };
@@ -211,8 +219,8 @@ impl Observer for Progress {
 }
 
 fn dry_run(arguments: &Arguments, variants: &Variants) -> Result<(), Failure> {
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build().map_err(Failure::failed)?;
+    let threads = usize::from(arguments.threads);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::failed)?;
     let threads = pool.current_num_threads();
     let estimate =
         pool.install(|| estimate(variants, arguments.shard, threads, mesh_file)).map_err(Failure::failed)?;
@@ -264,5 +272,30 @@ fn size(bytes: f64) -> String {
         b if b < 1e6 => format!("{:.0} kB", b / 1e3),
         b if b < 1e9 => format!("{:.1} MB", b / 1e6),
         b => format!("{:.1} GB", b / 1e9),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Program {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    #[test]
+    fn threads_are_as_many_as_a_machine_can_have() {
+        let threads = |count: &str| {
+            let line = ["batch", "sweep.toml", "--dry-run", "--threads", count];
+            Program::try_parse_from(line).map(|p| p.arguments.threads).map_err(|e| e.to_string())
+        };
+        assert_eq!((threads("0"), threads("256")), (Ok(0), Ok(256)));
+        for beyond in ["257", "100000000"] {
+            assert!(threads(beyond).unwrap_err().contains("0..=256"), "{beyond}");
+        }
     }
 }

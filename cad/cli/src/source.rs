@@ -5,7 +5,10 @@ use std::path::{Component, Path, PathBuf};
 use clap::Args;
 
 use super::Failure;
-use pinswitch_switch::config::{Configuration, Name, Places, assign, read, read_over};
+use pinswitch_friction::excerpt;
+use pinswitch_switch::config::{
+    ConfigError, Configuration, Name, Place, Places, assign, read, read_over, text,
+};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::templates;
@@ -51,9 +54,34 @@ impl Source {
         self.design_and_origin().map(|(design, _)| design)
     }
 
-    /// An error of what was read, with the name of its file.
-    pub(super) fn placed(&self, error: &impl std::fmt::Display) -> Failure {
-        Failure::bad_input(format!("{}: {error}", self.config))
+    /// As [`Self::design`], from these bytes of its file: they are what the design shows, whatever happens to the file.
+    ///
+    /// # Errors
+    /// As [`Self::design`].
+    pub(super) fn design_from(&self, bytes: Vec<u8>) -> Result<Design, Failure> {
+        let text = text(bytes, &self.config).map_err(Failure::bad_input)?;
+        self.design_of_text(&text, &self.config)
+    }
+
+    /// An error of what was read, with the option that gave the value, or the name of its file.
+    pub(super) fn placed(&self, error: &ConfigError) -> Failure {
+        Failure::bad_input(self.with_place(error.clone(), &Places::default(), &self.config))
+    }
+
+    /// The error with the option that gave its field, the field's place in the file, or at least the file.
+    fn with_place(&self, error: ConfigError, places: &Places, file: &str) -> String {
+        let gives = |assignment: &&String| {
+            assignment.split_once('=').is_some_and(|(path, _)| path.trim() == error.field)
+        };
+        // The last one wins, over the file too.
+        if let Some(assignment) = self.assignments.iter().rfind(gives) {
+            let option = format!("--set {}", excerpt(assignment, 60));
+            return error.at(Place { file: option, line: None }).to_string();
+        }
+        match places.of(&error.field) {
+            Some(place) => error.at(place.clone()).to_string(),
+            None => format!("{file}: {error}"),
+        }
     }
 
     /// As [`Self::design`], with where the configuration comes from.
@@ -62,14 +90,18 @@ impl Source {
     /// As [`Self::design`].
     pub(super) fn design_and_origin(&self) -> Result<(Design, Origin), Failure> {
         let (text, file) = read_text(&self.config)?;
-        let origin = Origin::of(&file, &text);
+        let design = self.design_of_text(&text, &file)?;
+        Ok((design, Origin::of(&file, &text)))
+    }
+
+    fn design_of_text(&self, text: &str, file: &str) -> Result<Design, Failure> {
         let base = self.preset.as_ref().map_or(Ok(Configuration::default()), |preset| {
             let (text, file) = read_text(preset)?;
             read(&text, &file).map(|(base, _)| base).map_err(Failure::bad_input)
         })?;
-        let (mut configuration, places) = read_over(base, &text, &file).map_err(Failure::bad_input)?;
+        let (mut configuration, places) = read_over(base, text, file).map_err(Failure::bad_input)?;
         if !places.sets("switch.name") {
-            configuration.switch.name = Name::cleaned(&stem(&file));
+            configuration.switch.name = Name::cleaned(&stem(file));
         }
         for assignment in &self.assignments {
             assign(&mut configuration, assignment).map_err(Failure::bad_input)?;
@@ -78,16 +110,7 @@ impl Source {
             assign(&mut configuration, &format!("mesh.chord_tolerance_mm={mm:?}"))
                 .map_err(|e| Failure::bad_input(e.to_string().replacen("--set", "--tolerance", 1)))?;
         }
-        let design = Design::new(configuration).map_err(|e| Failure::bad_input(placed(e, &places, &file)))?;
-        Ok((design, origin))
-    }
-}
-
-/// The error with the place of its field in the file, or at least the file.
-fn placed(error: pinswitch_switch::config::ConfigError, places: &Places, file: &str) -> String {
-    match places.of(&error.field) {
-        Some(place) => error.at(place.clone()).to_string(),
-        None => format!("{file}: {error}"),
+        Design::new(configuration).map_err(|e| Failure::bad_input(self.with_place(e, &places, file)))
     }
 }
 
@@ -166,6 +189,26 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_value_of_an_option_is_refused_at_the_option() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("u.toml");
+        std::fs::write(&file, "[layout]\npins = [5]\n").unwrap();
+        let of = |assignments: &[&str]| {
+            let mut source = Source::named(&file.to_string_lossy());
+            source.assignments = assignments.iter().map(|a| (*a).to_owned()).collect();
+            source.design().unwrap_err().message().to_owned()
+        };
+        let said = of(&["layout.pins=[5, 98]", "layout.pins=[99]"]);
+        assert!(
+            said.starts_with("--set layout.pins=[99]: layout.pins = [99] puts a pin in groove 99"),
+            "{said}"
+        );
+        // What the option did not give still has its line.
+        let said = of(&["segment.grooves=4"]);
+        assert!(said.contains("u.toml:2: layout.pins = [5] puts"), "{said}");
+    }
+
+    #[test]
     fn every_file_has_its_own_name_and_no_templates() {
         let from =
             |file: &str, folder: &str| from_folder(Path::new(file), Path::new(folder)).display().to_string();
@@ -174,7 +217,7 @@ mod tests {
         assert_eq!(from("/x.toml", "/a/b"), "../../x.toml");
         let text = templates::text("three-double").unwrap();
         for own in ["three-double", "templates/three-double.toml"] {
-            assert_eq!(Origin::of(own, text).entry(Path::new(".")), SourceEntry::new("three-double"));
+            assert_eq!(Origin::of(own, &text).entry(Path::new(".")), SourceEntry::new("three-double"));
         }
     }
 }

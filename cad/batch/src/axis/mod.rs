@@ -111,7 +111,7 @@ pub(super) fn axes(source: &SweepSource, sweep: &dyn TableLike) -> Result<Vec<Sw
             axes.extend((table.read)(source, item)?);
         }
     }
-    no_field_twice(&axes)?;
+    no_field_twice(&axes).map_err(|e| e.at(source.place(None)))?;
     if axes.is_empty() {
         let problem = format!("is empty: no {}", table_names("or"));
         return Err(config_error("sweep", None, &problem, "name at least one field with its values")

@@ -47,15 +47,21 @@ impl Rows {
     fn new(text: &str, file: &str) -> Result<Self, ConfigError> {
         let mut reader = reader(text, true);
         let broken = |e: csv::Error| {
-            let at = e.position().map_or(0, Position::byte);
-            ConfigError::syntax(place(file, text, usize::try_from(at).unwrap_or_default()), &e.to_string())
+            let at = usize::try_from(e.position().map_or(0, Position::byte)).unwrap_or_default();
+            unreadable(&e).at(place(file, text, at))
         };
         let header = reader.headers().map_err(broken)?.clone();
         let at_header = || place(file, text, 0);
-        let fields = header
+        let fields: Vec<ParameterRef> = header
             .iter()
             .map(|name| super::field(name).map_err(|e| e.at(at_header())))
             .collect::<Result<_, _>>()?;
+        let twice =
+            fields.iter().enumerate().find(|(i, f)| fields[..*i].iter().any(|g| g.path() == f.path()));
+        if let Some((_, field)) = twice {
+            let remedy = "name it in one column, and take the other out";
+            return Err(config_error(&field.path(), None, "is named by two columns", remedy).at(at_header()));
+        }
         let (mut record, mut starts) = (csv::ByteRecord::new(), Vec::new());
         loop {
             let start = usize::try_from(reader.position().byte()).unwrap_or(usize::MAX);
@@ -78,7 +84,7 @@ impl Rows {
         let at = || place(&self.file, &self.text, start);
         reader(self.text.get(start..).unwrap_or_default(), false)
             .read_record(&mut record)
-            .map_err(|e| ConfigError::syntax(at(), &e.to_string()))?;
+            .map_err(|e| unreadable(&e).at(at()))?;
         let cells = self.fields.iter().zip(record.iter());
         cells
             .map(|(field, cell)| {
@@ -91,6 +97,19 @@ impl Rows {
 
     fn check(&self) -> Result<(), ConfigError> {
         (0..self.starts.len()).try_for_each(|index| self.row(index).map(drop))
+    }
+}
+
+/// The error of a row that is no CSV of the header's width.
+fn unreadable(error: &csv::Error) -> ConfigError {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => config_error(
+            "row",
+            None,
+            &format!("has {len} cells, and the header names {expected_len} columns"),
+            "give one cell for each column, with quotes around a cell that has a comma, such as \"[5, 8]\"",
+        ),
+        _ => config_error("row", None, &format!("is no CSV: {error}"), "save the rows as CSV in UTF-8"),
     }
 }
 
@@ -130,9 +149,13 @@ mod tests {
             ("shell.with_mm\n3\n", "a.csv:1: shell.with_mm is no known field"),
             ("shell.width_mm\n12\n-3\n", "a.csv:3: shell.width_mm = -3 is not accepted"),
             ("shell.width_mm\n12\n# a\n\n-3\n", "a.csv:5: shell.width_mm = -3 is not accepted"),
-            ("shell.width_mm,shell.wall_mm\n12\n", "a.csv:2: syntax"),
-            ("shell.width_mm,shell.wall_mm\n# a\n12\n", "a.csv:3: syntax"),
+            (
+                "shell.width_mm,shell.wall_mm\n12\n",
+                "a.csv:2: row has 1 cells, and the header names 2 columns; give one cell",
+            ),
+            ("shell.width_mm,shell.wall_mm\n# a\n12\n", "a.csv:3: row has 1 cells"),
             ("shell.width_mm\n", "a.csv:1: rows holds no row"),
+            ("shell.width_mm,shell.width_mm\n12,13\n", "a.csv:1: shell.width_mm is named by two columns"),
         ] {
             let error = axis(text, "a.csv").and_then(|level| level.check()).unwrap_err().to_string();
             assert!(error.starts_with(expected), "{error}");

@@ -73,8 +73,18 @@ pub fn temporary_file() -> tempfile::Builder<'static, 'static> {
     tempfile::Builder::new()
 }
 
-/// What to do about a file or folder that cannot be written.
-pub fn remedy(error: &std::io::Error) -> &'static str {
+/// Whether `path` is, or lies in, a link that leads nowhere or to itself: the system says only that something is there.
+pub fn is_dead_link(path: &Path) -> bool {
+    let is_link = |path: &Path| std::fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink());
+    path.ancestors().any(|path| is_link(path) && std::fs::metadata(path).is_err())
+}
+
+/// What to do about the file or folder at `path`, which cannot be written.
+pub fn remedy_at(path: &Path, error: &std::io::Error) -> &'static str {
+    if is_dead_link(path) { "remove it, or give another --out" } else { remedy(error) }
+}
+
+pub(crate) fn remedy(error: &std::io::Error) -> &'static str {
     match error.kind() {
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
             "a file stands where a folder must be: move it away, or give another --out"
@@ -102,8 +112,13 @@ impl Folder {
         let is_fatal =
             matches!(error.kind(), PermissionDenied | QuotaExceeded | ReadOnlyFilesystem | StorageFull);
         let place = if name.is_empty() { self.root.clone() } else { self.root.join(name) };
-        let problem = format!("cannot use it: {error}");
-        DestinationError { place: place.display().to_string(), problem, remedy: remedy(error), is_fatal }
+        let problem = if is_dead_link(&place) {
+            "cannot use it: a link that leads nowhere stands there".to_owned()
+        } else {
+            format!("cannot use it: {error}")
+        };
+        let remedy = remedy_at(&place, error);
+        DestinationError { place: place.display().to_string(), problem, remedy, is_fatal }
     }
 
     pub(super) fn get(&self, name: &str) -> std::io::Result<Option<Vec<u8>>> {

@@ -12,7 +12,8 @@ use std::sync::Arc;
 #[cfg(feature = "cloud")]
 use object_store::{ObjectStore, path::Path as StorePath};
 
-pub use folder::{DestinationLock, Folder, remedy, temporary_file};
+pub(crate) use folder::remedy;
+pub use folder::{DestinationLock, Folder, is_dead_link, remedy_at, temporary_file};
 #[cfg(feature = "cloud")]
 pub use store::Store;
 

@@ -103,8 +103,26 @@ impl AskFlags {
                 "nothing is asked; give --threshold, --max-friction, --friction, --low-friction, --stiffness or --ask FILE",
             ));
         }
-        ask.check().map_err(Failure::bad_input)?;
+        ask.check().map_err(|e| Failure::bad_input(self.in_options(e.0)))?;
         Ok(ask)
+    }
+
+    /// The message about a field that an option gave, with the option's name.
+    fn in_options(&self, message: String) -> String {
+        let options = [
+            ("load range", "--load-range", self.load_range.is_some()),
+            ("limits.pins", "--pins", self.pins.is_some()),
+            ("limits.outer_radius_mm", "--outer-radius", self.outer_radius.is_some()),
+            ("limits.outer_width_mm", "--outer-width", self.outer_width.is_some()),
+            ("materials.pin_diameter_mm", "--pin-diameters", !self.pin_diameters.is_empty()),
+            ("materials.hardness_shore_a", "--hardnesses", !self.hardnesses.is_empty()),
+            ("vary.", "--vary ", self.vary.is_some()),
+        ];
+        let given = options.iter().filter(|(.., is_given)| *is_given);
+        given
+            .filter_map(|(field, option, _)| Some(format!("{option}{}", message.strip_prefix(field)?)))
+            .next()
+            .unwrap_or(message)
     }
 
     fn add_targets(&self, ask: &mut Ask) -> Result<(), Failure> {

@@ -11,33 +11,36 @@ use super::{Arguments, build};
 /// How often the file is polled.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// How long a file stays the same before it counts as saved: an editor that truncates and writes is done by then.
-const QUIET: Duration = Duration::from_millis(120);
-/// How long an empty file may be one that is being saved.
-const EMPTY_QUIET: Duration = Duration::from_secs(2);
+const QUIET: Duration = Duration::from_millis(300);
+/// How long a file that looks cut short may be one that is being saved.
+const CUT_SHORT_QUIET: Duration = Duration::from_secs(2);
 
 /// The bytes of a file, and since when they are the same.
 #[derive(Debug)]
 struct Watched {
-    shown: Option<Vec<u8>>,
-    seen: Option<Vec<u8>>,
+    shown: Vec<u8>,
+    seen: Vec<u8>,
     since: Instant,
 }
 
 impl Watched {
     /// A file with these bytes, which are shown.
-    fn new(shown: Option<Vec<u8>>, now: Instant) -> Self {
+    fn new(shown: Vec<u8>, now: Instant) -> Self {
         Self { seen: shown.clone(), shown, since: now }
     }
 
     /// Takes what is read at `now`; whether it is whole, quiet and new.
     fn is_settled(&mut self, read: Option<Vec<u8>>, now: Instant) -> bool {
         // A file that is missing for a moment is one that an editor is saving.
-        let Some(read) = read else { return false };
-        if self.seen.as_ref() != Some(&read) {
-            (self.seen, self.since) = (Some(read), now);
+        let Some(read) = read else {
+            self.since = now;
+            return false;
+        };
+        if self.seen != read {
+            (self.seen, self.since) = (read, now);
             return false;
         }
-        let quiet = if read.trim_ascii().is_empty() { EMPTY_QUIET } else { QUIET };
+        let quiet = if looks_cut_short(&self.seen, &self.shown) { CUT_SHORT_QUIET } else { QUIET };
         if self.shown == self.seen || now.duration_since(self.since) < quiet {
             return false;
         }
@@ -46,26 +49,42 @@ impl Watched {
     }
 }
 
-/// Rebuilds whenever the file has changed and settled; ends with the program.
-pub(super) fn follow(states: &watch::Sender<State>, arguments: &Arguments, file: &Path) {
-    let mut watched = Watched::new(std::fs::read(file).ok(), Instant::now());
+/// Whether `read` may be the first part of a file that is being written in the place of `shown`. A person may mean it
+/// too, and then waits a little.
+fn looks_cut_short(read: &[u8], shown: &[u8]) -> bool {
+    let is_part = read.len() < shown.len() && shown.starts_with(read);
+    let lacks_end = shown.ends_with(b"\n") && !read.ends_with(b"\n");
+    read.trim_ascii().is_empty() || is_part || lacks_end || ends_within(read, shown)
+}
+
+/// Whether the last line of `read` has others after it in `shown`, or heads a table without a value.
+fn ends_within(read: &[u8], shown: &[u8]) -> bool {
+    let last = |text: &[u8]| text.trim_ascii().rsplit(|b| *b == b'\n').next().map(<[u8]>::to_vec);
+    let line = last(read);
+    let is_header = line.as_ref().is_some_and(|line| line.trim_ascii().starts_with(b"["));
+    let is_inside = shown.split(|b| *b == b'\n').any(|other| line.as_deref() == Some(other));
+    line != last(shown) && (is_header || is_inside)
+}
+
+/// Rebuilds whenever the file has changed and settled; ends with the program. `shown` is what its page was built from.
+pub(super) fn follow(states: &watch::Sender<State>, arguments: &Arguments, file: &Path, shown: Vec<u8>) {
+    let mut watched = Watched::new(shown, Instant::now());
     loop {
         std::thread::sleep(POLL_INTERVAL);
         if !watched.is_settled(std::fs::read(file).ok(), Instant::now()) {
             continue;
         }
         let next = states.borrow().version + 1;
-        let built = match &watched.shown {
+        let built = if watched.shown.trim_ascii().is_empty() {
             // Valid as a configuration, since everything has a default; but nobody means that.
-            Some(bytes) if bytes.trim_ascii().is_empty() => {
-                Err(format!("{}: the file is empty; the last good state stays", file.display()))
-            }
-            _ => build(arguments, next).map_err(|failure| failure.message().to_owned()),
+            Err(format!("{}: the file is empty; the last good state stays", file.display()))
+        } else {
+            // From the bytes that are known to be whole: another save may be under way.
+            let design = arguments.source.design_from(watched.shown.clone());
+            design
+                .and_then(|design| build(arguments, design, next))
+                .map_err(|failure| failure.message().to_owned())
         };
-        // Written to while it was read: what was built may be half of it.
-        if std::fs::read(file).ok() != watched.shown {
-            continue;
-        }
         states.send_modify(|state| {
             state.version = next;
             match built {
@@ -86,29 +105,52 @@ pub(super) fn follow(states: &watch::Sender<State>, arguments: &Arguments, file:
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_file_is_read_when_it_is_whole_and_quiet() {
+    /// Whether a file is settled after each of these readings, at these milliseconds.
+    fn settled(shown: &str, readings: &[(u64, Option<&str>)]) -> Vec<bool> {
         let begun = Instant::now();
+        let mut watched = Watched::new(shown.as_bytes().to_vec(), begun);
+        let read = |text: &Option<&str>| text.map(|text| text.as_bytes().to_vec());
         let at = |ms: u64| begun + Duration::from_millis(ms);
-        let bytes = |text: &str| Some(text.as_bytes().to_vec());
-        let mut watched = Watched::new(bytes("a = 1"), begun);
-        // Truncated, missing, half written, and whole.
-        for (ms, read) in
-            [(10, bytes("")), (200, bytes("")), (300, None), (310, bytes("a")), (330, bytes("a = 2"))]
-        {
-            assert!(!watched.is_settled(read, at(ms)), "{ms}");
-        }
-        assert!(!watched.is_settled(bytes("a = 2"), at(440)));
-        assert!(watched.is_settled(bytes("a = 2"), at(460)));
-        assert!(!watched.is_settled(bytes("a = 2"), at(900)));
+        readings.iter().map(|(ms, text)| watched.is_settled(read(text), at(*ms))).collect()
     }
 
     #[test]
-    fn a_file_that_stays_empty_is_said_to_be() {
-        let begun = Instant::now();
-        let mut watched = Watched::new(Some(b"a = 1".to_vec()), begun);
-        assert!(!watched.is_settled(Some(Vec::new()), begun));
-        assert!(!watched.is_settled(Some(Vec::new()), begun + Duration::from_secs(1)));
-        assert!(watched.is_settled(Some(Vec::new()), begun + Duration::from_secs(3)));
+    fn a_file_is_read_when_it_is_whole_and_quiet() {
+        let new = Some("a = 2\n");
+        // Truncated, missing, half written, and whole.
+        let readings = [(10, Some("")), (900, Some("")), (950, None), (960, Some("a")), (980, new)];
+        assert_eq!(settled("a = 1\n", &readings), [false; 5]);
+        assert_eq!(
+            settled("a = 1\n", &[(0, new), (280, new), (310, new), (900, new)]),
+            [false, false, true, false]
+        );
+    }
+
+    #[test]
+    fn a_file_that_stays_cut_short_is_waited_for_and_then_shown() {
+        let shown = "[shell]\nwidth_mm = 14\n[layout]\npins = [5]\n";
+        for half in [
+            "",
+            // Up to a header, with what came before changed or not, with the end of the line or not.
+            "[shell]\nwidth_mm = 14\n[layout]",
+            "[shell]\nwidth_mm = 12\n[layout]",
+            "[shell]\nwidth_mm = 12\n[layout]\n",
+            "[shell]\nwidth_mm = 14\n",
+            "[shell]\nwidth_mm = 12\n[pins]\n",
+            "[shell]\nwidth_mm = 14\n[layout]\npins = [5, 8]",
+        ] {
+            let half = Some(half);
+            assert_eq!(
+                settled(shown, &[(0, half), (700, half), (1900, half), (2100, half)]),
+                [false, false, false, true]
+            );
+        }
+    }
+
+    #[test]
+    fn what_was_saved_after_the_page_was_built_is_shown() {
+        let saved = Some("a = 2\n");
+        // The first reading already has other bytes than the page.
+        assert_eq!(settled("a = 1\n", &[(0, saved), (400, saved)]), [false, true]);
     }
 }

@@ -15,6 +15,7 @@ use super::law::LawChoice;
 use super::source::Source;
 use super::{Failure, print};
 use pinswitch_switch::built::Built;
+use pinswitch_switch::design::Design;
 use pinswitch_switch::formats::named;
 use pinswitch_switch::formats::page::{PageData, page_html};
 use pinswitch_switch::set::Set;
@@ -38,7 +39,16 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (page, data) = build(arguments, 1)?;
+    // What is followed is what the page was built from: a save between two readings would never be shown.
+    let followed = match arguments.source.file() {
+        Some(file) => Some((crate::input::read_file(&file)?, file)),
+        None => None,
+    };
+    let design = match &followed {
+        Some((bytes, _)) => arguments.source.design_from(bytes.clone()),
+        None => arguments.source.design(),
+    };
+    let (page, data) = build(arguments, design?, 1)?;
     let (sender, states) =
         watch::channel(State { version: 1, data: data.into(), page: page.into(), trouble: None });
     // Kept to the end, also where there is no file to follow: pages that wait are not sent away.
@@ -56,19 +66,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, arguments.port)).await.map_err(busy)?;
         let address: SocketAddr = listener.local_addr().map_err(Failure::failed)?;
         print(format!("http://{address}\n").as_bytes())?;
-        if let Some(file) = arguments.source.file() {
+        if let Some((bytes, file)) = followed {
             log::info!("following {}; end with Ctrl-C", file.display());
             let (sender, arguments) = (Arc::clone(&sender), arguments.clone());
-            std::thread::spawn(move || follow::follow(&sender, &arguments, &file));
+            std::thread::spawn(move || follow::follow(&sender, &arguments, &file, bytes));
         }
         server::serve(listener, address, states).await;
         Ok(())
     })
 }
 
-/// The page and its data.
-fn build(arguments: &Arguments, version: u64) -> Result<(String, String), Failure> {
-    let design = arguments.source.design()?;
+/// The page of a design and its data.
+fn build(arguments: &Arguments, design: Design, version: u64) -> Result<(String, String), Failure> {
     let prediction = arguments.law.prediction(&design)?;
     let built = Built::new(design).map_err(Failure::bad_input)?;
     let formats = named(&["stl"]).map_err(Failure::failed)?;

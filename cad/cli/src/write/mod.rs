@@ -10,7 +10,7 @@ mod steps;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use pinswitch_batch::{remedy, temporary_file};
+use pinswitch_batch::{is_dead_link, remedy_at, temporary_file};
 use pinswitch_switch::output::OutputFile;
 
 use folder_lock::{FolderLock, Waiting};
@@ -26,7 +26,7 @@ const OURS: &str = ".pinswitch-";
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The system does not let us.
-    #[error("{}: cannot write: {}; {}", path.display(), reason(source), remedy(source))]
+    #[error("{}: cannot write: {}; {}", path.display(), reason(path, source), remedy_at(path, source))]
     System {
         /// The file or folder.
         path: PathBuf,
@@ -54,8 +54,10 @@ impl From<WriteError> for Failure {
 }
 
 /// What is in the way; what the system says of it ("File exists") would not tell.
-fn reason(error: &std::io::Error) -> String {
+fn reason(path: &Path, error: &std::io::Error) -> String {
     match error.kind() {
+        _ if is_dead_link(path) => "a link that leads nowhere stands there".to_owned(),
+        ErrorKind::NotFound => "the folder for it is not there".to_owned(),
         ErrorKind::AlreadyExists => "something stands there already".to_owned(),
         _ => error.to_string(),
     }
@@ -105,6 +107,7 @@ pub fn write_set(folder: &Path, files: &[OutputFile]) -> Result<(), WriteError> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pinswitch_switch::documents::SourceEntry;
 
     #[test]
     fn a_failed_set_leaves_nothing() {
@@ -120,6 +123,26 @@ mod tests {
         write_set(folder.path(), &[file("a"), file("b")]).unwrap();
         assert_eq!(std::fs::read_to_string(folder.path().join("a")).unwrap(), "new");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_stands_in_the_way_is_named_as_what_it_is() {
+        let place = tempfile::tempdir().unwrap();
+        let at = |name: &str| place.path().join(name);
+        for (link, target) in [("dangling", "nowhere"), ("looping", "looping")] {
+            std::os::unix::fs::symlink(at(target), at(link)).unwrap();
+            for out in [at(link), at(link).join("set")] {
+                let said = write_set(&out, &[OutputFile::new("a", "new")]).unwrap_err().to_string();
+                assert!(said.contains("a link that leads nowhere") && said.contains("remove it"), "{said}");
+            }
+        }
+        let said = write_file(&at("no/such.png"), b"new").unwrap_err().to_string();
+        assert!(said.contains("the folder for it is not there; make its folder"), "{said}");
+        std::fs::create_dir_all(at("s/manifest.json")).unwrap();
+        let said = SetFolder::lock(&at("s")).unwrap().check_source(&SourceEntry::new("x")).unwrap_err();
+        let said = said.to_string();
+        assert!(said.contains("manifest.json: cannot write") && said.contains("a folder stands"), "{said}");
     }
 
     #[test]

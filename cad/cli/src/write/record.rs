@@ -10,6 +10,7 @@ use pinswitch_switch::set::MANIFEST;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::WriteError;
 use super::folder_lock::JOURNAL;
 
 /// Every file that is ours, with the SHA-256 of each content that we gave it, and what they were made from.
@@ -38,9 +39,13 @@ impl Record {
     ///
     /// # Errors
     /// If one of them is there and cannot be read.
-    pub(super) fn read(folder: &Path) -> std::io::Result<Self> {
+    pub(super) fn read(folder: &Path) -> Result<Self, WriteError> {
         let mut record = Self::default();
-        if let Some(bytes) = read_if_there(&folder.join(MANIFEST))?
+        let read = |name: &str| {
+            let path = folder.join(name);
+            read_if_there(&path).map_err(WriteError::at(&path))
+        };
+        if let Some(bytes) = read(MANIFEST)?
             && let Ok(listing) = serde_json::from_slice::<Listing>(&bytes)
             && listing.schema.starts_with("pinswitch.set/")
         {
@@ -48,7 +53,7 @@ impl Record {
             record.add(MANIFEST, sha256(&bytes));
             listing.files.into_iter().for_each(|file| record.add(&file.file, file.sha256));
         }
-        if let Some(bytes) = read_if_there(&folder.join(JOURNAL))?
+        if let Some(bytes) = read(JOURNAL)?
             && let Ok(killed) = serde_json::from_slice::<Self>(&bytes)
         {
             // The run that was killed came after the one that left the manifest.

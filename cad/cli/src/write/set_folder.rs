@@ -141,7 +141,7 @@ impl SetFolder {
     }
 
     fn record(&self) -> Result<Record, WriteError> {
-        Record::read(&self.folder).map_err(WriteError::at(&self.folder))
+        Record::read(&self.folder)
     }
 
     /// Writes the files into the folder for files without names; returns the steps that give them their names.

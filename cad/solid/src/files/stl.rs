@@ -12,8 +12,16 @@ use crate::mesh::Mesh;
 #[non_exhaustive]
 pub enum StlError {
     /// The file cannot be read as STL, binary or ASCII.
-    #[error("not a readable STL: {}", beginning(.0))]
+    #[error("not a readable STL: {}; export the part again", beginning(.0))]
     Unreadable(#[from] std::io::Error),
+    /// A line of an ASCII STL is not what stands there.
+    #[error("line {line}: {problem}; export the part again")]
+    Line {
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong there.
+        problem: String,
+    },
     /// The file holds fewer or more bytes than its triangle count says.
     #[error(
         "the header announces {announced} triangles, which take {expected} bytes; the file has {found}: it was cut short, \
@@ -37,7 +45,7 @@ pub enum StlError {
     #[error("the file has {0} bytes, and no STL has less than {HEADER}; export the part again")]
     TooShort(u64),
     /// The file is an STL without a single triangle.
-    #[error("the STL holds no triangle")]
+    #[error("the STL holds no triangle; export the part again, with something in it")]
     Empty,
 }
 
@@ -189,7 +197,7 @@ mod tests {
         assert!(matches!(read(&bytes[..150]), Err(StlError::Length { announced: 4, .. })));
         assert!(matches!(read(b""), Err(StlError::NoBytes)));
         assert!(matches!(read(&[1, 0, 2]), Err(StlError::TooShort(3))));
-        assert!(matches!(read(b"solid x\nfacet normal 0 0 z\n"), Err(StlError::Unreadable(_))));
+        assert!(matches!(read(b"solid x\nfacet normal 0 0 z\n"), Err(StlError::Line { line: 2, .. })));
         assert!(matches!(read(b"solid x\nendsolid x\n"), Err(StlError::Empty)));
         let long = read(format!("solid x\n{}\n", "facet ".repeat(10_000)).as_bytes()).unwrap_err();
         assert!(long.to_string().len() < 300, "{long}");

@@ -8,6 +8,7 @@ mod read;
 mod target;
 mod tolerance;
 
+use phrase::short;
 use pinswitch_friction::excerpt;
 use serde::{Deserialize, Serialize};
 
@@ -147,16 +148,19 @@ impl Ask {
             && !(low >= 0.0 && low < high && high <= 1000.0)
         {
             return fail(format!(
-                "load range {low}..{high} N is no range within 0 to 1000 N; give the lightest load first"
+                "load range {}..{} N is no range within 0 to 1000 N; give the lightest load first",
+                short(low),
+                short(high)
             ));
         }
         self.check_limits()?;
         self.check_parameters()?;
         let spreads = self.tolerances.sd();
         match Tolerances::FIELDS.iter().zip(spreads).find(|(_, sd)| !(*sd >= 0.0 && *sd <= 20.0)) {
-            Some((field, sd)) => {
-                fail(format!("tolerances.{field} = {sd} is no standard deviation; give one from 0 to 20"))
-            }
+            Some((field, sd)) => fail(format!(
+                "tolerances.{field} = {} is no standard deviation; give one from 0 to 20",
+                short(sd)
+            )),
             None => Ok(()),
         }
     }
@@ -209,19 +213,22 @@ impl Ask {
         for (field, value) in lengths {
             if let Some(value) = value.filter(|v| !(*v > 0.0 && v.is_finite())) {
                 return Err(AskError(format!(
-                    "limits.{field} = {value} is not above 0 mm; give a length above 0"
+                    "limits.{field} = {} is not above 0 mm; give a length above 0",
+                    short(value)
                 )));
             }
             if let Some(value) = value.filter(|v| !(LEAST_SIZE_MM..=MOST_SIZE_MM).contains(v)) {
                 return Err(AskError(format!(
-                    "limits.{field} = {value} is outside {LEAST_SIZE_MM} to {MOST_SIZE_MM} mm, the sizes that a switch can \
-                     be asked for; give a length within"
+                    "limits.{field} = {} is outside {LEAST_SIZE_MM} to {MOST_SIZE_MM} mm, the sizes that a switch can \
+                     be asked for; give a length within",
+                    short(value)
                 )));
             }
         }
         match self.limits.pins {
             Some((fewest, most)) if fewest == 0 || fewest > most => Err(AskError(format!(
-                "limits.pins = {fewest}..{most}: a switch has at least 1 pin, and the smaller number stands first"
+                "limits.pins = {fewest}..{most}: a switch has at least 1 pin, and the smaller number stands first; give such as 1..{}",
+                most.max(1)
             ))),
             _ => Ok(()),
         }
@@ -234,7 +241,8 @@ impl Ask {
                 Ok(())
             } else {
                 Err(AskError(format!(
-                    "{field} = {value} is outside {least} to {most}, the range of {}; give a value within",
+                    "{field} = {} is outside {least} to {most}, the range of {}; give a value within",
+                    short(value),
                     parameter.field()
                 )))
             }
@@ -246,7 +254,8 @@ impl Ask {
             if v.from > v.to {
                 return Err(AskError(format!(
                     "vary.{name} = {}..{} runs backwards; give the smaller value first",
-                    v.from, v.to
+                    short(v.from),
+                    short(v.to)
                 )));
             }
             if self.vary.parameters[..i].iter().any(|other| other.parameter == v.parameter) {
@@ -272,7 +281,8 @@ impl Ask {
             if !((0.1..=6.0).contains(&tendon.rope_diameter_mm) && (0.0..=2.0).contains(&tendon.coating_mm)) {
                 return Err(AskError(format!(
                     "materials.tendon: a rope of {} mm with {} mm of coating; give 0.1 to 6 mm and 0 to 2 mm",
-                    tendon.rope_diameter_mm, tendon.coating_mm
+                    short(tendon.rope_diameter_mm),
+                    short(tendon.coating_mm)
                 )));
             }
         }
@@ -283,6 +293,16 @@ impl Ask {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn huge_numbers_are_shown_short() {
+        for wish in [Wish::AtMost(1e300), Wish::About { value: 1e300, within: 0.1 }] {
+            for quantity in [Quantity::Threshold, Quantity::Friction { load_n: 1e300 }] {
+                let said = ask(vec![Target { quantity, wish }]).check().unwrap_err().to_string();
+                assert!(said.contains("1e300") && said.len() < 160, "{said}");
+            }
+        }
+    }
 
     fn ask(targets: Vec<Target>) -> Ask {
         Ask { targets, ..Ask::default() }

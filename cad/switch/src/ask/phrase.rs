@@ -38,7 +38,11 @@ pub fn parse_wish(text: &str, within: f64) -> Result<(Wish, Option<f64>), String
         ["between", low, "and", high] => {
             let (low, high) = (number(low)?, number(high)?);
             if low > high {
-                return Err(format!("{low} to {high} runs backwards; give the smaller number first"));
+                return Err(format!(
+                    "{} to {} runs backwards; give the smaller number first",
+                    short(low),
+                    short(high)
+                ));
             }
             Wish::Between(low, high)
         }
@@ -63,12 +67,18 @@ pub fn share_of(word: &str) -> Result<f64, String> {
         .ok_or_else(|| format!("{word:?} is no share; give one above 0 and below 1, such as 0.1 or 10%"))
 }
 
+/// The number as a message shows it: 1e300 would take hundreds of digits.
+pub(super) fn short(value: f64) -> String {
+    let is_plain = value == 0.0 || !value.is_finite() || (1e-6..1e9).contains(&value.abs());
+    if is_plain { value.to_string() } else { format!("{value:e}") }
+}
+
 /// The number, if it is above zero and finite.
 pub(super) fn positive(value: f64) -> Result<f64, String> {
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
-        Err(format!("{value} is not above 0; give a number above 0"))
+        Err(format!("{} is not above 0, or not finite; give a number above 0", short(value)))
     }
 }
 

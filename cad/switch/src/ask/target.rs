@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::phrase::short;
+
 /// What a target is about.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "quantity", rename_all = "snake_case")]
@@ -55,7 +57,7 @@ impl std::fmt::Display for Quantity {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Threshold => f.write_str("threshold"),
-            Self::Friction { load_n } => write!(f, "friction at {load_n} N"),
+            Self::Friction { load_n } => write!(f, "friction at {} N", short(*load_n)),
             Self::LowLoadFriction => f.write_str("friction at the lightest load"),
             Self::MaxFriction => f.write_str("friction at the heaviest load"),
             Self::Stiffness => f.write_str("stiffness of switching"),
@@ -130,12 +132,12 @@ impl Wish {
 impl std::fmt::Display for Wish {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::AtMost(high) => write!(f, "at most {high}"),
-            Self::AtLeast(low) => write!(f, "at least {low}"),
-            Self::Between(low, high) => write!(f, "between {low} and {high}"),
+            Self::AtMost(high) => write!(f, "at most {}", short(*high)),
+            Self::AtLeast(low) => write!(f, "at least {}", short(*low)),
+            Self::Between(low, high) => write!(f, "between {} and {}", short(*low), short(*high)),
             // Rounded, since 0.1 of a percentage is not exact.
             Self::About { value, within } => {
-                write!(f, "about {value} (within {} %)", (within * 1e5).round() / 1e3)
+                write!(f, "about {} (within {} %)", short(*value), (within * 1e5).round() / 1e3)
             }
         }
     }
@@ -175,7 +177,8 @@ impl Target {
         {
             let (least, most) = LOADS_N;
             return Err(format!(
-                "'{self}': a load of {load_n} N is outside {least} to {most} N; give a load within"
+                "'{self}': a load of {} N is outside {least} to {most} N; give a load within",
+                short(load_n)
             ));
         }
         let values = match self.wish {
@@ -185,7 +188,7 @@ impl Target {
         let (least, most) = self.quantity.range();
         match values.into_iter().find(|v| outside(*v, (least, most))) {
             Some(value) => {
-                Err(format!("'{self}': {value} is outside {least} to {most}; give a value within"))
+                Err(format!("'{self}': {} is outside {least} to {most}; give a value within", short(value)))
             }
             None => Ok(()),
         }

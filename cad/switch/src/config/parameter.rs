@@ -35,6 +35,8 @@ pub struct Parameter<C> {
     pub origin: Origin,
     /// Accepted values, in words or as `low..=high`.
     pub range: fn() -> String,
+    /// Least and greatest value of a number; `None` for words and lists.
+    pub ends: fn() -> Option<[f64; 2]>,
     /// What it is and why it has this default.
     pub reason: &'static str,
     /// The value in a configuration.
@@ -74,6 +76,10 @@ pub trait ParameterValue: Sized {
     fn write(&self) -> Value;
     /// The bounds in words.
     fn describe(bounds: &Self::Bounds) -> String;
+    /// The bounds of a number.
+    fn ends(_bounds: &Self::Bounds) -> Option<[f64; 2]> {
+        None
+    }
 }
 
 type Range<T> = std::ops::RangeInclusive<T>;
@@ -98,6 +104,10 @@ impl ParameterValue for f64 {
     fn describe(bounds: &Self::Bounds) -> String {
         format!("{} to {}", bounds.start(), bounds.end())
     }
+
+    fn ends(bounds: &Self::Bounds) -> Option<[f64; 2]> {
+        Some([*bounds.start(), *bounds.end()])
+    }
 }
 
 impl ParameterValue for usize {
@@ -116,6 +126,11 @@ impl ParameterValue for usize {
 
     fn describe(bounds: &Self::Bounds) -> String {
         format!("{} to {}", bounds.start(), bounds.end())
+    }
+
+    #[allow(clippy::cast_precision_loss)]
+    fn ends(bounds: &Self::Bounds) -> Option<[f64; 2]> {
+        Some([*bounds.start() as f64, *bounds.end() as f64])
     }
 }
 
@@ -264,6 +279,7 @@ macro_rules! configuration {
                     key: stringify!($field),
                     origin: $crate::config::parameter::Origin::$origin,
                     range: || <$Type as $crate::config::parameter::ParameterValue>::describe(&$bounds),
+                    ends: || <$Type as $crate::config::parameter::ParameterValue>::ends(&$bounds),
                     reason: $reason,
                     get: |c| $crate::config::parameter::ParameterValue::write(&c.$table.$field),
                     set: |c, value| {

@@ -63,7 +63,8 @@ pub fn assign(configuration: &mut Configuration, assignment: &str) -> Result<(),
     let (path, value) = assignment.split_once('=').ok_or_else(|| {
         ConfigError::syntax(place.clone(), &format!("{assignment:?} is no assignment; write table.key=value"))
     })?;
-    let (table, key) = path.trim().split_once('.').unwrap_or(("", path.trim()));
+    let (table, key) =
+        path.trim().split_once('.').ok_or_else(|| no_field(path.trim(), value.trim(), place.clone()))?;
     if !sections().contains(&table) {
         return Err(unknown(table, &sections(), "table", place));
     }
@@ -71,6 +72,25 @@ pub fn assign(configuration: &mut Configuration, assignment: &str) -> Result<(),
     // A bare word is taken as text, so that --set support.slots=occupied works without quotes in quotes.
     let value = value.trim().parse::<Value>().unwrap_or_else(|_| Value::from(value.trim()));
     set(configuration, parameter, &value).map_err(|e| e.at(place))
+}
+
+/// The error of an assignment to a name without a table, or to a table.
+fn no_field(name: &str, value: &str, place: Place) -> ConfigError {
+    let of = |is_meant: &dyn Fn(&Parameter<Configuration>) -> bool| {
+        Configuration::PARAMETERS.iter().find(|p| is_meant(p)).map(Parameter::path)
+    };
+    let remedy = match (of(&|p| p.section == name), of(&|p| p.key == name)) {
+        (Some(path), _) => format!("it is a table: set one of its values, as in --set {path}={value}"),
+        (None, Some(path)) => format!("write it with its table, as in --set {path}={value}"),
+        (None, None) => format!("write TABLE.KEY=VALUE; tables are {}", sections().join(", ")),
+    };
+    ConfigError {
+        field: if name.is_empty() { "the name before '='".to_owned() } else { name.to_owned() },
+        value: None,
+        problem: if name.is_empty() { "is missing" } else { "is no field" }.to_owned(),
+        remedy,
+        place: Some(place),
+    }
 }
 
 impl Configuration {

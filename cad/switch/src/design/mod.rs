@@ -73,6 +73,13 @@ impl Design {
     }
 }
 
+/// Whether [`Design::new`] accepts `configuration`: for a search, which asks often and shows no error.
+pub(crate) fn is_accepted(configuration: Configuration) -> bool {
+    let dimensions = Dimensions::new(configuration);
+    let tolerance = ChordTolerance::new(dimensions.configuration().mesh.chord_tolerance_mm);
+    rules::are_kept(&dimensions) && tolerance.is_ok() && contact(&dimensions).is_ok()
+}
+
 /// What the tendon touches by `configuration`, whether it can be built or not: a search looks past the rules, and asks them
 /// for what it keeps.
 pub(crate) fn contact_of(configuration: Configuration) -> Result<Contact, ConfigError> {

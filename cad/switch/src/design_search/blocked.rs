@@ -202,7 +202,7 @@ fn best_move(
         }
         let miss = trial.shortfall(&moved)?;
         // What no printer makes is no advice.
-        let printable = crate::design::Design::new(moved.clone()).is_ok();
+        let printable = crate::design::is_accepted(moved.clone());
         printable.then_some((to, miss, moved))
     });
     // Of those that meet it, the one that changes least; otherwise the one that comes nearest.

@@ -6,7 +6,7 @@ use super::belief::{Belief, Believed, ModelError, Part};
 use super::curve::Curve;
 use crate::ask::{Ask, Quantity, SOURCES, Target};
 use crate::config::Configuration;
-use crate::design::{Design, Dimensions, contact_of};
+use crate::design::{Design, Dimensions, contact_of, is_accepted};
 use crate::prediction::evenly;
 
 /// Loads between the ends, evenly in their logarithm.
@@ -199,6 +199,16 @@ impl<'a> Trial<'a> {
         let bed = self.ask.tolerances.made(part.contact.bed(), hardness_shore_a, made);
         let made = Part { pins: part.pins.clone(), contact: part.contact.clone().with_bed(bed) };
         self.belief.curve(&made, &self.loads_n, &vec![0.0; self.belief.constants()])
+    }
+
+    /// Whether a configuration can be printed and keeps to all limits, without the error of [`Self::broken_limit`], whose
+    /// remedies take longer to find than a step of a search may.
+    pub(super) fn keeps_limits(&self, configuration: &Configuration) -> bool {
+        let mut on_silicone = configuration.clone();
+        on_silicone.layout.substrate = Substrate::Silicone;
+        is_accepted(on_silicone)
+            && (self.has_soft_sizes
+                || self.sizes(configuration).into_iter().all(|(_, size, most)| size <= most + 1e-9))
     }
 
     /// Which limit of the part a configuration breaks; `None` if it can be printed and keeps to all.

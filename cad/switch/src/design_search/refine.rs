@@ -57,7 +57,7 @@ impl CostFunction for Cost<'_> {
 /// The cost at a place; `None` if it cannot be predicted, printed, or breaks a limit.
 pub(super) fn cost(trial: &Trial<'_>, space: &Space, place: &Place, aim: Aim) -> Option<f64> {
     let configuration = space.configuration(place.material, &place.pins, &place.at);
-    if trial.broken_limit(&configuration).is_some() {
+    if !trial.keeps_limits(&configuration) {
         return None;
     }
     let cost = match aim {

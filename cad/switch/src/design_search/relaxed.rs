@@ -21,8 +21,7 @@ pub(super) fn nearest(asked: &Trial<'_>, base: &Configuration) -> Option<(Config
         let trial = asked.with_soft_sizes(ask);
         let space = Space::new(base, ask);
         let mut places = enumerate(&trial, &space, &Silent).places;
-        places
-            .retain(|(_, p)| trial.broken_limit(&space.configuration(p.material, &p.pins, &p.at)).is_none());
+        places.retain(|(_, p)| trial.keeps_limits(&space.configuration(p.material, &p.pins, &p.at)));
         let steps = GUESSED_STEPS * (space.varied.len() as u64 + 1);
         let (_, nearest) = map_each(starts(&space, &places, STARTS), |start| {
             let there = refined(&trial, &space, &start, Aim::Nearest, steps);

@@ -12,6 +12,12 @@ pub enum LogError {
         /// The absent column.
         column: &'static str,
     },
+    /// The text is UTF-16, as spreadsheets save it.
+    #[error("{file}: is UTF-16 text; save it as CSV in UTF-8")]
+    Utf16 {
+        /// File name as given.
+        file: String,
+    },
     /// Too few usable samples.
     #[error("{file}: {found} usable samples; a log has one per 5 ms, at least {needed}")]
     TooShort {
@@ -49,6 +55,11 @@ impl Log {
     /// # Errors
     /// [`LogError`] if a column is absent or hardly any sample is usable.
     pub fn parse(text: &[u8], file: &str) -> Result<Self, LogError> {
+        // With its mark, or known by the empty half of every Latin letter.
+        let has_mark = text.starts_with(b"\xff\xfe") || text.starts_with(b"\xfe\xff");
+        if has_mark || matches!(text, [0, 1..=127, 0, 1..=127, ..] | [1..=127, 0, 1..=127, 0, ..]) {
+            return Err(LogError::Utf16 { file: file.to_owned() });
+        }
         let mut lines = text.split(|b| *b == b'\n');
         let header = lines.next().unwrap_or_default();
         let header = String::from_utf8_lossy(header);
@@ -107,6 +118,17 @@ mod tests {
         let log = Log::parse(text.as_bytes(), "a.csv").unwrap();
         assert_eq!((log.time_s.len(), log.unusable), (120, 3));
         assert_eq!(log.force_n[0], 1.5);
+    }
+
+    #[test]
+    fn utf16_is_called_by_its_name() {
+        let little: Vec<u8> = "time_s,force_N\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = "\u{feff}time_s\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
+        let marked = [b"\xff\xfe".to_vec(), little.clone()].concat();
+        for text in [little, big, marked] {
+            let said = Log::parse(&text, "a.csv").unwrap_err().to_string();
+            assert_eq!(said, "a.csv: is UTF-16 text; save it as CSV in UTF-8");
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use pinswitch_friction::{Substrate, excerpt, published};
 use serde::Deserialize;
+use toml::de::DeTable;
 
 use crate::table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG, Sweep};
 use crate::toml_text::toml_error;
@@ -19,9 +20,12 @@ pub enum RunPlanError {
         problem: String,
     },
     /// A value is out of bounds.
-    #[error("{file}: {field} = {} is outside {bound}", excerpt(value, 120))]
+    #[error(
+        "{file}: {field} = {} is outside {bound}; give a value within, as model/doc/file-formats.md shows",
+        excerpt(value, 120)
+    )]
     Bound {
-        /// File name as given.
+        /// File name as given, with the line.
         file: String,
         /// Field.
         field: String,
@@ -94,7 +98,8 @@ impl RunPlan {
             RunPlanError::Malformed { file, problem }
         })?;
         let refuse = |field: String, value: String, bound| {
-            Err(RunPlanError::Bound { file: file.to_owned(), field, value, bound })
+            let line = line_of(text, &field).map_or_else(String::new, |line| format!(":{line}"));
+            Err(RunPlanError::Bound { file: format!("{file}{line}"), field, value, bound })
         };
         let r = &plan.rig;
         for (field, value) in [
@@ -142,6 +147,24 @@ impl RunPlan {
     }
 }
 
+/// The line of a field as errors name it, `rig.on_s` or `series 2: pins`, from 1.
+fn line_of(text: &str, field: &str) -> Option<usize> {
+    let document = DeTable::parse(text).ok()?;
+    let document = document.get_ref();
+    let value = match field.split_once(": ") {
+        Some((series, key)) => {
+            let number: usize = series.strip_prefix("series ")?.parse().ok()?;
+            let all = document.get("series")?.get_ref().as_array()?;
+            all.get(number.checked_sub(1)?)?.get_ref().as_table()?.get(key)?
+        }
+        None => match field.split_once('.') {
+            Some((table, key)) => document.get(table)?.get_ref().as_table()?.get(key)?,
+            None => document.get(field)?,
+        },
+    };
+    Some(1 + text.get(..value.span().start)?.matches('\n').count())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -158,9 +181,10 @@ mod tests {
     #[test]
     fn unusable_values_are_named() {
         for (from, to, expected) in [
+            ("rate_hz=200.0", "rate_hz=nan", "run.toml:3: rig.sample_rate_hz = NaN is outside 0 < value"),
             ("on_s=0.5", "on_s=-1.0", "rig.on_s"),
             ("deg=63.89", "deg=0.0", "rig.wrap_angle_deg = 0 is outside 1..720"),
-            ("load_mass_g=251.2", "load_mass_g=-2.0", "series 1: load_mass_g"),
+            ("load_mass_g=251.2", "load_mass_g=-2.0", "run.toml:12: series 1: load_mass_g"),
             ("\"silicone\"", "\"abs\"", "series 1: pins"),
             ("pins=[]", "pins=[99]", "grooves 1..15"),
             ("pins=[]", "pins=[5, 5]", "once each"),

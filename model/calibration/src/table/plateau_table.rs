@@ -80,7 +80,10 @@ impl PlateauTable {
             line: error.position().map(|p| line_at(&text, p.byte())),
             problem: match error.kind() {
                 csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-                    format!("{len} cells, the header has {expected_len}")
+                    format!(
+                        "{len} cells, the header has {expected_len}; give a cell for every column, an empty one where \
+                         there is no value, and quotes around a cell with a comma"
+                    )
                 }
                 csv::ErrorKind::Utf8 { .. } => "is not UTF-8 text; save the table as UTF-8 CSV".to_owned(),
                 _ => error.to_string(),

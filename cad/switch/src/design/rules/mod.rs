@@ -6,11 +6,14 @@
 mod mould;
 mod pins;
 mod print;
+mod remedy;
 mod shell;
 mod support;
 
 use super::Dimensions;
 use crate::config::{ConfigError, Configuration};
+
+pub use remedy::{Change, Remedy};
 
 /// What chamfers on both sides leave of a wall on the bed.
 const MIN_FOOT_MM: f64 = 0.05;
@@ -38,7 +41,7 @@ pub enum Assessment {
         /// What is wrong, with the bound.
         problem: String,
         /// What to change.
-        remedy: String,
+        remedy: Remedy,
     },
 }
 
@@ -102,19 +105,15 @@ pub(super) fn check(dimensions: &Dimensions) -> Result<(), ConfigError> {
     let inspection = Inspection { dimensions, widest_bridge_mm: None };
     let broken =
         rules().filter(|r| r.severity == Severity::Error).find_map(|rule| match (rule.assess)(&inspection) {
-            Assessment::Broken { problem, remedy } => Some((rule.field, problem, remedy)),
+            Assessment::Broken { problem, remedy } => Some((rule, problem, remedy)),
             _ => None,
         });
-    match broken {
-        None => Ok(()),
-        Some((field, problem, remedy)) => Err(ConfigError {
-            field: field.to_owned(),
-            value: dimensions.configuration().shown(field),
-            problem,
-            remedy,
-            place: None,
-        }),
-    }
+    broken.map_or(Ok(()), |(rule, problem, remedy)| Err(remedy::error(rule, dimensions, problem, remedy)))
+}
+
+/// Whether every rule is kept that refuses a configuration: for a search, which asks often and needs no remedy.
+pub(super) fn are_kept(dimensions: &Dimensions) -> bool {
+    rules().filter(|r| r.severity == Severity::Error).all(|rule| remedy::keeps(rule, dimensions))
 }
 
 /// What is not ideal, each with the parameter to change.
@@ -123,7 +122,9 @@ pub(super) fn warnings(dimensions: &Dimensions) -> Vec<String> {
     rules()
         .filter(|r| r.severity == Severity::Warning)
         .filter_map(|rule| match (rule.assess)(&inspection) {
-            Assessment::Broken { problem, remedy } => Some(format!("{problem}: {remedy}")),
+            Assessment::Broken { problem, remedy: Remedy::Words(words) } => {
+                Some(format!("{problem}: {words}"))
+            }
             _ => None,
         })
         .collect()
@@ -138,30 +139,29 @@ pub fn checklist(dimensions: &Dimensions, widest_bridge_mm: f64) -> Vec<Check> {
             Assessment::NotApplicable => None,
             Assessment::Kept(statement) => Some(Check { is_kept: true, statement, remedy: String::new() }),
             Assessment::Broken { problem, remedy } => {
+                let Remedy::Words(remedy) = remedy else { return None };
                 Some(Check { is_kept: false, statement: problem, remedy })
             }
         })
         .collect()
 }
 
-/// A rule that `is_kept`, or is broken for this reason.
-fn require(is_kept: bool, reason: impl FnOnce() -> (String, String)) -> Assessment {
+/// A rule that `is_kept`, or is broken with this problem, which some of these changes may mend.
+fn require(is_kept: bool, reason: impl FnOnce() -> (String, &'static [Change])) -> Assessment {
+    if is_kept {
+        return Assessment::Kept(String::new());
+    }
+    let (problem, changes) = reason();
+    Assessment::Broken { problem, remedy: Remedy::Changes(changes) }
+}
+
+/// A rule that `is_kept`, or is broken with this problem and this remedy in words.
+fn advise(is_kept: bool, reason: impl FnOnce() -> (String, String)) -> Assessment {
     if is_kept {
         return Assessment::Kept(String::new());
     }
     let (problem, remedy) = reason();
-    Assessment::Broken { problem, remedy }
-}
-
-/// The largest value below `value_mm` that fits, rounded down to what a message shows; 0 if none does.
-fn largest(value_mm: f64, fits: impl Fn(f64) -> bool) -> f64 {
-    const SHOWN_MM: f64 = 1e-3;
-    let (mut low, mut high) = (0.0, value_mm);
-    while high - low > SHOWN_MM / 4.0 {
-        let middle = (low + high) / 2.0;
-        if fits(middle) { low = middle } else { high = middle }
-    }
-    (low / SHOWN_MM).floor() * SHOWN_MM
+    Assessment::Broken { problem, remedy: Remedy::Words(remedy) }
 }
 
 /// The least thickness of a wall that may be as thin as `lines` times the thinnest accepted one: chamfers on both of

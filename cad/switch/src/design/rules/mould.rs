@@ -1,7 +1,8 @@
 //! Rules for the ends of sectors, the mould, and the loads.
 
+use super::Change::{self, Ease, Lower, Raise, Set};
 use super::shell::MIN_INNER_RADIUS_MM;
-use super::{Assessment, Inspection, Rule, Severity, largest, least_wall_mm, require};
+use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
 use crate::config::MouldKind;
 use crate::parts::{keys, tray};
 use pinswitch_friction::Substrate;
@@ -59,37 +60,49 @@ impl Ends {
         }
     }
 
-    fn assess_shift(&self, remedies: &str) -> Assessment {
+    fn assess_shift(&self, changes: &'static [Change]) -> Assessment {
         let most = LARGEST_SHIFT * self.inner_mm;
         require(self.shift_mm <= most, || {
             (
                 format!(
-                    "shifts the ends by {:.3} mm, at an inner radius of {:.3} mm",
-                    self.shift_mm, self.inner_mm
+                    "shifts the ends by {:.3} mm at an inner radius of {:.3} mm, where {:.3} mm is the most",
+                    self.shift_mm,
+                    self.inner_mm,
+                    most.max(0.0)
                 ),
-                format!("lower it by {:.3}{remedies}", self.shift_mm - most),
+                changes,
             )
         })
     }
 
-    fn assess_gap(&self, half_span_rad: f64, remedies: &str) -> Assessment {
+    fn assess_gap(&self, half_span_rad: f64, changes: &'static [Change]) -> Assessment {
         let half_rad = half_span_rad + (self.shift_mm / self.inner_mm).asin();
         let most_rad = std::f64::consts::PI - (MIN_GAP_MM / 2.0 / self.inner_mm).min(1.0).asin();
         require(half_rad <= most_rad, || {
-            (
-                format!("lets the ends meet behind the axis; {MIN_GAP_MM} mm must stay between them"),
-                format!("lower it by {:.1}{remedies}", 2.0 * (half_rad - most_rad).to_degrees()),
-            )
+            (format!("lets the ends meet behind the axis; {MIN_GAP_MM} mm must stay between them"), changes)
         })
     }
 }
 
 fn ends_in_sector(i: &Inspection<'_>) -> Assessment {
-    Ends::of_sector(i).assess_shift(" or lower shell.wall_mm")
+    Ends::of_sector(i).assess_shift(&[
+        Lower("segment.end_margin_mm"),
+        Lower("shell.wall_mm"),
+        Raise("shell.outer_radius_mm"),
+    ])
 }
 
 fn ends_apart(i: &Inspection<'_>) -> Assessment {
-    Ends::of_sector(i).assess_gap(i.half_span_rad(), " or raise shell.outer_radius_mm")
+    Ends::of_sector(i).assess_gap(
+        i.half_span_rad(),
+        &[
+            Lower("segment.span_deg"),
+            Raise("shell.outer_radius_mm"),
+            Lower("segment.end_margin_mm"),
+            Lower("shell.wall_mm"),
+            Lower("layout.wrap_angle_deg"),
+        ],
+    )
 }
 
 fn room_in_tray(i: &Inspection<'_>) -> Assessment {
@@ -99,20 +112,42 @@ fn room_in_tray(i: &Inspection<'_>) -> Assessment {
     require(ends.inner_mm >= MIN_INNER_RADIUS_MM, || {
         (
             "leaves no room inside the inner wall of the mould".to_owned(),
-            format!("lower it by {:.3}", MIN_INNER_RADIUS_MM - ends.inner_mm),
+            &[
+                Lower("mould.wall_mm"),
+                Raise("shell.outer_radius_mm"),
+                Ease("mould.draft_deg"),
+                Ease("mould.overfill_mm"),
+                Set("mould.kind", "\"none\""),
+            ],
         )
     })
 }
 
 fn mould_ends_in_sector(i: &Inspection<'_>) -> Assessment {
     Ends::of_mould(i).map_or(Assessment::NotApplicable, |ends| {
-        ends.assess_shift(", lower shell.wall_mm, or set mould.kind = \"none\"")
+        ends.assess_shift(&[
+            Lower("mould.wall_mm"),
+            Lower("segment.end_margin_mm"),
+            Lower("shell.wall_mm"),
+            Raise("shell.outer_radius_mm"),
+            Set("mould.kind", "\"none\""),
+        ])
     })
 }
 
 fn mould_ends_apart(i: &Inspection<'_>) -> Assessment {
     Ends::of_mould(i).map_or(Assessment::NotApplicable, |ends| {
-        ends.assess_gap(i.half_span_rad(), ", raise shell.outer_radius_mm, or set mould.kind = \"none\"")
+        ends.assess_gap(
+            i.half_span_rad(),
+            &[
+                Lower("segment.span_deg"),
+                Raise("shell.outer_radius_mm"),
+                Lower("mould.wall_mm"),
+                Lower("segment.end_margin_mm"),
+                Lower("shell.wall_mm"),
+                Set("mould.kind", "\"none\""),
+            ],
+        )
     })
 }
 
@@ -128,7 +163,7 @@ fn draft_without_basin(i: &Inspection<'_>) -> Assessment {
     if !has_tray(i) {
         return Assessment::NotApplicable;
     }
-    require(m.draft_deg == 0.0 || m.overfill_mm > 0.0, || {
+    advise(m.draft_deg == 0.0 || m.overfill_mm > 0.0, || {
         (
             format!(
                 "mould.draft_deg = {} leans no wall: without a basin every wall of the tray shapes the layer",
@@ -151,10 +186,16 @@ fn keys_apart(i: &Inspection<'_>) -> Assessment {
     }
     let diameter = i.configuration().mould.key_diameter_mm;
     require(keys_fit(i, diameter), || {
-        let most = largest(diameter, |mm| keys_fit(i, mm));
         (
             "leaves no wall between the keys of the mould, or at its ends".to_owned(),
-            format!("lower it to {most:.3}, raise segment.span_deg, or set mould.kind = \"one-piece\""),
+            &[
+                Lower("mould.key_diameter_mm"),
+                Raise("segment.span_deg"),
+                Set("mould.kind", "\"one-piece\""),
+                Ease("mould.clearance_mm"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
@@ -182,17 +223,20 @@ fn keys_in_ring(i: &Inspection<'_>) -> Assessment {
     let ring = i.layer_width_mm() / (1.0 - c.mould.shrinkage_pct / 100.0);
     let most = (ring - keys::HOLE_END_MM).min(keys::highest_mm(c.mould.key_diameter_mm));
     require(c.mould.key_height_mm <= most, || {
-        let remedy = if most >= keys::LOWEST_MM {
-            format!("lower it to {:.3}", (most * 1e3).floor() / 1e3)
-        } else {
-            "raise shell.width_mm or mould.key_diameter_mm".to_owned()
-        };
         (
             format!(
-                "does not fit: in a ring of {ring:.3} mm, keys of {} mm may be {most:.3} mm high",
-                c.mould.key_diameter_mm
+                "leaves no room for keys {} mm high: in a ring of {ring:.3} mm, keys of {} mm may be {:.3} mm high",
+                c.mould.key_height_mm,
+                c.mould.key_diameter_mm,
+                most.max(0.0)
             ),
-            format!("{remedy}, or set mould.kind = \"one-piece\""),
+            &[
+                Lower("mould.key_height_mm"),
+                Raise("shell.width_mm"),
+                Raise("mould.key_diameter_mm"),
+                Set("mould.kind", "\"one-piece\""),
+                Ease("silicone.side_clearance_mm"),
+            ],
         )
     })
 }
@@ -201,8 +245,11 @@ fn load_range(i: &Inspection<'_>) -> Assessment {
     let f = &i.configuration().friction;
     require(f.load_min_n < f.load_max_n, || {
         (
-            format!("is not below friction.load_max_n = {}", f.load_max_n),
-            "lower it or raise friction.load_max_n".to_owned(),
+            format!(
+                "leaves no range of loads: friction.load_min_n = {} is not below friction.load_max_n = {}",
+                f.load_min_n, f.load_max_n
+            ),
+            &[Lower("friction.load_min_n"), Raise("friction.load_max_n")],
         )
     })
 }

@@ -1,6 +1,7 @@
 //! Rules for pins, layer and tendon.
 
-use super::{Assessment, Inspection, Rule, Severity, require};
+use super::Change::{Ease, Lower, Raise, Say};
+use super::{Assessment, Inspection, Rule, Severity, advise, require};
 
 /// Gap that the tendon needs on both sides of it.
 const TENDON_GAP_MM: f64 = 0.5;
@@ -29,11 +30,11 @@ fn pins_in_grooves(i: &Inspection<'_>) -> Assessment {
     require(outside.is_none(), || {
         (
             format!(
-                "has groove {}; the segment has grooves 1 to {}",
+                "puts a pin in groove {}; the segment has grooves 1 to {}",
                 outside.copied().unwrap_or_default(),
                 c.segment.grooves
             ),
-            "move the pin or raise segment.grooves".to_owned(),
+            &[Say("move the pin"), Raise("segment.grooves")],
         )
     })
 }
@@ -44,7 +45,7 @@ fn one_pin_per_groove(i: &Inspection<'_>) -> Assessment {
     require(twice.is_none(), || {
         (
             format!("puts two pins in groove {}", twice.copied().unwrap_or_default()),
-            "name every groove once".to_owned(),
+            &[Say("name every groove once")],
         )
     })
 }
@@ -54,8 +55,11 @@ fn pin_fits_groove(i: &Inspection<'_>) -> Assessment {
     let most = 2.0 * c.segment.groove_radius_mm - c.pins.tolerance_mm;
     require(c.pins.diameter_mm <= most, || {
         (
-            format!("is wider than its groove: {most:.3} mm is the most with the pin's tolerance"),
-            "use thinner pins or raise segment.groove_radius_mm".to_owned(),
+            format!(
+                "makes pins of {} mm wider than their groove: {most:.3} mm is the most with the pin's tolerance",
+                c.pins.diameter_mm
+            ),
+            &[Lower("pins.diameter_mm"), Raise("segment.groove_radius_mm"), Ease("pins.tolerance_mm")],
         )
     })
 }
@@ -66,7 +70,7 @@ fn layer_thickness(i: &Inspection<'_>) -> Assessment {
     require(c.silicone.thickness_mm >= least, || {
         (
             format!("leaves less than {MIN_LAYER_MM} mm of silicone under its grooves"),
-            format!("raise it to {least:.3} or lower segment.groove_radius_mm"),
+            &[Raise("silicone.thickness_mm"), Lower("segment.groove_radius_mm")],
         )
     })
 }
@@ -78,7 +82,12 @@ fn layer_width(i: &Inspection<'_>) -> Assessment {
     require(width >= least, || {
         (
             format!("leaves a layer of {width:.3} mm; the lips and the mould need {least:.3} mm"),
-            "raise it or lower silicone.side_clearance_mm or support.lip_depth_mm".to_owned(),
+            &[
+                Raise("shell.width_mm"),
+                Lower("silicone.side_clearance_mm"),
+                Lower("support.lip_depth_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
@@ -87,8 +96,11 @@ fn wrap_within_segment(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     require(c.layout.wrap_angle_deg <= c.segment.span_deg, || {
         (
-            format!("is beyond the segment of {} deg", c.segment.span_deg),
-            "lower it or raise segment.span_deg".to_owned(),
+            format!(
+                "takes the wrap of {} deg beyond the segment of {} deg",
+                c.layout.wrap_angle_deg, c.segment.span_deg
+            ),
+            &[Lower("layout.wrap_angle_deg"), Raise("segment.span_deg")],
         )
     })
 }
@@ -101,28 +113,41 @@ fn tendon_in_channel(i: &Inspection<'_>) -> Assessment {
     require(tendon <= most, || {
         (
             format!(
-                "makes a tendon of {tendon:.3} mm, wider than the channel of {channel:.3} mm takes ({most:.3} mm)"
+                "gives the coated tendon, of {tendon:.3} mm, too little room: the channel of {channel:.3} mm takes \
+                 {most:.3} mm"
             ),
-            "use a thinner tendon, raise shell.width_mm or lower support.lip_depth_mm".to_owned(),
+            &[
+                Lower("tendon.rope_diameter_mm"),
+                Lower("tendon.coating_mm"),
+                Raise("shell.width_mm"),
+                Lower("support.lip_depth_mm"),
+            ],
         )
     })
 }
 
 fn tendon_bend(i: &Inspection<'_>) -> Assessment {
     let most = 2.0 * i.contact_radius_mm() / MIN_BEND_RATIO;
-    require(i.tendon_diameter_mm() <= most, || {
+    let tendon = i.tendon_diameter_mm();
+    require(tendon <= most, || {
         (
             format!(
-                "makes a tendon that the pulley bends too sharply: {most:.3} mm is the most at this radius"
+                "bends the coated tendon, of {tendon:.3} mm, too sharply: {most:.3} mm with the coating is the most \
+                 at this radius"
             ),
-            "use a thinner tendon or raise shell.outer_radius_mm".to_owned(),
+            &[
+                Lower("tendon.rope_diameter_mm"),
+                Lower("tendon.coating_mm"),
+                Raise("shell.outer_radius_mm"),
+                Raise("silicone.thickness_mm"),
+            ],
         )
     })
 }
 
 fn early_wear(i: &Inspection<'_>) -> Assessment {
     let ratio = i.bend_ratio();
-    require(ratio >= GOOD_BEND_RATIO, || {
+    advise(ratio >= GOOD_BEND_RATIO, || {
         (
             format!("pulley over tendon diameter is {ratio:.1}; ropes last from {GOOD_BEND_RATIO} on"),
             "raise shell.outer_radius_mm".to_owned(),

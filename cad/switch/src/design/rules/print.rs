@@ -1,6 +1,7 @@
 //! Rules of the printer: what it can make, what it makes well, and what a person should look at.
 
-use super::{Assessment, Inspection, Rule, Severity, require};
+use super::Change::{Ease, Lower, Raise};
+use super::{Assessment, Inspection, Remedy, Rule, Severity, advise, require};
 
 /// Least chamfer of a bottom edge.
 const MIN_CHAMFER_MM: f64 = 0.02;
@@ -32,7 +33,7 @@ fn check(is_kept: bool, statement: String, remedy: &str) -> Assessment {
     if is_kept {
         Assessment::Kept(statement)
     } else {
-        Assessment::Broken { problem: statement, remedy: remedy.to_owned() }
+        Assessment::Broken { problem: statement, remedy: Remedy::Words(remedy.to_owned()) }
     }
 }
 
@@ -41,8 +42,8 @@ fn chamfer_prints(i: &Inspection<'_>) -> Assessment {
     let chamfer = i.configuration().print.elephant_foot_mm;
     require(chamfer == 0.0 || chamfer >= MIN_CHAMFER_MM, || {
         (
-            format!("is too small to print; the least is {MIN_CHAMFER_MM} mm"),
-            format!("raise it to {MIN_CHAMFER_MM}, or set 0 to leave the chamfer out"),
+            format!("is too small to print; the least is {MIN_CHAMFER_MM} mm, or 0 for no chamfer"),
+            &[Raise("print.elephant_foot_mm"), Lower("print.elephant_foot_mm")],
         )
     })
 }
@@ -55,15 +56,25 @@ fn parts_on_bed(i: &Inspection<'_>) -> Assessment {
     let width = 2.0 * reach * half.sin() + 2.0 * (c.segment.end_margin_mm + c.mould.wall_mm);
     require(2.0 * reach <= c.print.bed_mm || width <= c.print.bed_mm, || {
         (
-            format!("is smaller than the parts, which are {width:.1} mm wide"),
-            "use a larger printer or lower shell.outer_radius_mm or segment.span_deg".to_owned(),
+            format!(
+                "makes parts that are {:.1} mm wide, on a bed of {} mm",
+                width.min(2.0 * reach),
+                c.print.bed_mm
+            ),
+            &[
+                Raise("print.bed_mm"),
+                Lower("shell.outer_radius_mm"),
+                Lower("segment.span_deg"),
+                Ease("segment.end_margin_mm"),
+                Ease("mould.wall_mm"),
+            ],
         )
     })
 }
 
 fn label_stroke(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
-    require(!c.label.engrave || c.label.stroke_mm >= c.print.line_mm, || {
+    advise(!c.label.engrave || c.label.stroke_mm >= c.print.line_mm, || {
         (
             format!(
                 "label.stroke_mm = {} is under one printed line ({} mm)",
@@ -76,7 +87,7 @@ fn label_stroke(i: &Inspection<'_>) -> Assessment {
 
 fn layers_per_groove(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
-    require(4.0 * c.print.layer_mm <= 2.0 * c.segment.groove_radius_mm, || {
+    advise(4.0 * c.print.layer_mm <= 2.0 * c.segment.groove_radius_mm, || {
         (
             format!("the grooves are narrower than four layers of print.layer_mm = {}", c.print.layer_mm),
             "use thinner layers".to_owned(),

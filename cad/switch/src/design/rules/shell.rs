@@ -1,6 +1,7 @@
 //! Rules for the grooved sector of the shell.
 
-use super::{Assessment, Inspection, Rule, Severity, least_wall_mm, require};
+use super::Change::{Ease, Lower, Raise};
+use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
 
 /// Least radius inside the shell: below it there is no room for a core.
 pub(super) const MIN_INNER_RADIUS_MM: f64 = 1.0;
@@ -16,11 +17,13 @@ pub(super) const RULES: &[Rule] = &[
 
 fn inner_radius(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
-    let most = c.shell.outer_radius_mm - MIN_INNER_RADIUS_MM;
-    require(c.shell.wall_mm <= most, || {
+    let inside = i.inner_radius_mm();
+    require(c.shell.wall_mm <= c.shell.outer_radius_mm - MIN_INNER_RADIUS_MM, || {
         (
-            format!("leaves less than {MIN_INNER_RADIUS_MM} mm of radius inside the shell"),
-            format!("lower it to {most:.3} or raise shell.outer_radius_mm"),
+            format!(
+                "leaves {inside:.3} mm of radius inside the shell; {MIN_INNER_RADIUS_MM} mm is the least"
+            ),
+            &[Lower("shell.wall_mm"), Raise("shell.outer_radius_mm")],
         )
     })
 }
@@ -31,7 +34,7 @@ fn wall_under_grooves(i: &Inspection<'_>) -> Assessment {
     require(c.shell.wall_mm >= least, || {
         (
             format!("leaves less than two walls of {} mm under the grooves", c.print.least_wall_mm),
-            format!("raise it to {least:.3} or lower segment.groove_radius_mm"),
+            &[Raise("shell.wall_mm"), Lower("segment.groove_radius_mm"), Ease("print.least_wall_mm")],
         )
     })
 }
@@ -47,23 +50,19 @@ fn land(i: &Inspection<'_>) -> Assessment {
     require(chord >= needed, || {
         (
             format!(
-                "overlap: neighbours are {chord:.3} mm apart on the shell, a groove with its land takes {needed:.3} mm"
+                "makes grooves overlap: neighbours are {chord:.3} mm apart on the shell, a groove with its land takes \
+                 {needed:.3} mm"
             ),
-            format!(
-                "lower it to {}, raise shell.outer_radius_mm, or lower segment.groove_radius_mm",
-                max_grooves(i, needed)
-            ),
+            &[
+                Lower("segment.grooves"),
+                Raise("shell.outer_radius_mm"),
+                Lower("segment.groove_radius_mm"),
+                Raise("segment.span_deg"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
-}
-
-fn max_grooves(i: &Inspection<'_>, needed_mm: f64) -> usize {
-    let c = i.configuration();
-    let span = c.segment.span_deg.to_radians();
-    (1..c.segment.grooves)
-        .rev()
-        .find(|n| 2.0 * c.shell.outer_radius_mm * (span / *n as f64 / 2.0).sin() >= needed_mm)
-        .unwrap_or(1)
 }
 
 /// The wall between the last groove and the end of the sector is half a land, plus the margin.
@@ -75,7 +74,13 @@ fn end_walls(i: &Inspection<'_>) -> Assessment {
     require(left >= least, || {
         (
             format!("leaves {left:.3} mm of wall beyond the outermost groove; {least:.3} mm is the least"),
-            format!("raise it by {:.3} or lower segment.groove_radius_mm", least - left),
+            &[
+                Raise("segment.end_margin_mm"),
+                Lower("segment.groove_radius_mm"),
+                Lower("segment.grooves"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
@@ -83,7 +88,7 @@ fn end_walls(i: &Inspection<'_>) -> Assessment {
 fn thin_land(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     let (land, two_lines) = (i.land_mm(), 2.0 * c.print.line_mm);
-    require(c.segment.grooves < 2 || land >= two_lines, || {
+    advise(c.segment.grooves < 2 || land >= two_lines, || {
         (
             format!("the land between grooves is {land:.2} mm, under two printed lines ({two_lines:.2} mm)"),
             "raise shell.outer_radius_mm or lower segment.grooves".to_owned(),
@@ -93,7 +98,7 @@ fn thin_land(i: &Inspection<'_>) -> Assessment {
 
 fn thin_end_walls(i: &Inspection<'_>) -> Assessment {
     let (end, two_lines) = (i.end_wall_mm(), 2.0 * i.configuration().print.line_mm);
-    require(end >= two_lines, || {
+    advise(end >= two_lines, || {
         (
             format!("the end walls are {end:.2} mm, under two printed lines ({two_lines:.2} mm)"),
             format!("raise segment.end_margin_mm by {:.2}", two_lines - end),

@@ -1,6 +1,7 @@
 //! Rules for the side supports, their slots and the fasteners.
 
-use super::{Assessment, Inspection, Rule, Severity, largest, least_wall_mm, require};
+use super::Change::{Ease, Lower, Raise, Set};
+use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
 use crate::config::SlotKind;
 
 /// Wall left around a fastener hole (cad/doc/print-limits.md).
@@ -30,7 +31,12 @@ fn slots_in_plate(i: &Inspection<'_>) -> Assessment {
             format!(
                 "lets the slots leave the plate: {outer_edge:.3} mm is left outside them, {wall:.3} mm is the least"
             ),
-            format!("raise it by {:.3}", wall - outer_edge),
+            &[
+                Raise("support.rise_mm"),
+                Lower("support.slot_clearance_mm"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
@@ -42,7 +48,16 @@ fn land_between_slots(i: &Inspection<'_>) -> Assessment {
     require(i.configuration().segment.grooves < 2 || land >= wall, || {
         (
             format!("leaves {land:.3} mm between neighbouring slots; {wall:.3} mm is the least"),
-            "lower it, use fewer grooves, or raise shell.outer_radius_mm".to_owned(),
+            &[
+                Lower("support.slot_clearance_mm"),
+                Lower("segment.grooves"),
+                Raise("shell.outer_radius_mm"),
+                Raise("segment.span_deg"),
+                Ease("support.travel_margin_mm"),
+                Ease("pins.diameter_mm"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
@@ -56,7 +71,16 @@ fn wall_beyond_slots(i: &Inspection<'_>) -> Assessment {
     require(end >= least, || {
         (
             format!("leaves {end:.3} mm beyond the outermost slot; {least:.3} mm is the least"),
-            format!("raise it by {:.3}", least - end),
+            &[
+                Raise("segment.end_margin_mm"),
+                Lower("segment.grooves"),
+                Raise("shell.outer_radius_mm"),
+                Ease("support.slot_clearance_mm"),
+                Ease("support.travel_margin_mm"),
+                Ease("pins.diameter_mm"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
@@ -65,10 +89,14 @@ fn wall_beyond_slots(i: &Inspection<'_>) -> Assessment {
 fn corners_in_plate(i: &Inspection<'_>) -> Assessment {
     let radius = i.configuration().support.corner_radius_mm;
     require(corner_fits(i, radius), || {
-        let most = largest(radius, |mm| corner_fits(i, mm));
         (
             "cuts into the outermost slot or hole, or takes the whole end of the plate".to_owned(),
-            format!("lower it to {most:.3}, or raise segment.end_margin_mm"),
+            &[
+                Lower("support.corner_radius_mm"),
+                Raise("segment.end_margin_mm"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
@@ -109,7 +137,13 @@ fn blind_slot_depth(i: &Inspection<'_>) -> Assessment {
     require(c.support.slot_kind != SlotKind::Blind || depth >= least_wall_mm(c, 1.0), || {
         (
             format!("leaves a slot of {depth:.3} mm in a plate of {} mm", c.support.plate_mm),
-            "lower it, raise support.plate_mm, or use through slots".to_owned(),
+            &[
+                Lower("support.slot_floor_mm"),
+                Raise("support.plate_mm"),
+                Set("support.slot_kind", "\"through\""),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
@@ -121,7 +155,7 @@ fn slot_travel(i: &Inspection<'_>) -> Assessment {
     require(left >= 0.0, || {
         (
             format!("lets a sunk pin reach {:.3} mm into the shell", -left),
-            "lower it, use thinner pins, or raise silicone.thickness_mm".to_owned(),
+            &[Lower("support.travel_margin_mm"), Lower("pins.diameter_mm"), Raise("silicone.thickness_mm")],
         )
     })
 }
@@ -135,7 +169,12 @@ fn pin_engagement(i: &Inspection<'_>) -> Assessment {
             format!(
                 "holds the pins by {engagement:.3} mm at each end; one diameter, {least:.3} mm, is the least"
             ),
-            "raise it or lower support.slot_floor_mm or pins.end_play_mm".to_owned(),
+            &[
+                Raise("support.plate_mm"),
+                Lower("support.slot_floor_mm"),
+                Lower("pins.end_play_mm"),
+                Lower("pins.diameter_mm"),
+            ],
         )
     })
 }
@@ -158,8 +197,20 @@ fn holes_in_wall(i: &Inspection<'_>) -> Assessment {
     let most = radial.min(under_slots);
     require(c.fasteners.hole_diameter_mm <= most, || {
         (
-            format!("does not fit in the wall: {most:.3} mm is the most with {edge} mm around it"),
-            "use a smaller screw, raise shell.wall_mm, or set fasteners.count = 0".to_owned(),
+            format!(
+                "leaves no room in the wall for holes of {} mm: {} with {edge} mm around them",
+                c.fasteners.hole_diameter_mm,
+                if most > 0.0 { format!("{most:.3} mm is the most") } else { "none fits".to_owned() }
+            ),
+            &[
+                Lower("fasteners.hole_diameter_mm"),
+                Raise("shell.wall_mm"),
+                Set("fasteners.count", "0"),
+                Ease("segment.groove_radius_mm"),
+                Ease("support.travel_margin_mm"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
@@ -173,7 +224,14 @@ fn holes_in_sector(i: &Inspection<'_>) -> Assessment {
     require(c.fasteners.end_distance_mm + c.segment.end_margin_mm >= needed, || {
         (
             "lets the outermost hole leave the sector".to_owned(),
-            format!("raise it to {:.3}", needed - c.segment.end_margin_mm),
+            &[
+                Raise("fasteners.end_distance_mm"),
+                Raise("segment.end_margin_mm"),
+                Lower("fasteners.hole_diameter_mm"),
+                Set("fasteners.count", "0"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
@@ -192,15 +250,26 @@ fn holes_apart(i: &Inspection<'_>) -> Assessment {
         && i.fastener_radius_mm() * i.half_span_rad().min(1.5).sin() < needed / 2.0 + edge;
     require(!crowded && !single, || {
         (
-            format!("holes of {diameter} mm do not fit on an arc of {} deg", c.segment.span_deg),
-            "lower it, lower fasteners.end_distance_mm, or set it to 0".to_owned(),
+            format!(
+                "leaves no room between the screw holes: {} of {diameter} mm do not fit on an arc of {} deg",
+                c.fasteners.count, c.segment.span_deg
+            ),
+            &[
+                Lower("fasteners.count"),
+                Lower("fasteners.end_distance_mm"),
+                Lower("fasteners.hole_diameter_mm"),
+                Raise("segment.span_deg"),
+                Raise("shell.outer_radius_mm"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
         )
     })
 }
 
 fn wide_clearance(i: &Inspection<'_>) -> Assessment {
     let clearance = i.configuration().support.slot_clearance_mm;
-    require(clearance <= WIDE_CLEARANCE_MM, || {
+    advise(clearance <= WIDE_CLEARANCE_MM, || {
         (
             format!("support.slot_clearance_mm = {clearance} lets the pins walk"),
             "print the coupon and lower it".to_owned(),

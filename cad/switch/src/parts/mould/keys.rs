@@ -19,8 +19,6 @@ const WALL_MM: f64 = 1.0;
 const LEAST_HEAD_MM: f64 = 0.1;
 /// What the ring must be higher than a key.
 pub(crate) const HOLE_END_MM: f64 = HEAD_PLAY_MM + WALL_MM;
-/// The lowest key that can be configured, mm.
-pub(crate) const LOWEST_MM: f64 = 0.5;
 
 /// Radial thickness of the ring that keys of this diameter need.
 pub(crate) fn ring_wall_mm(m: &MouldTable, key_diameter_mm: f64) -> f64 {

@@ -97,6 +97,15 @@ fn report(folder: &Path) -> Result<Report, Failure> {
     })
 }
 
+/// A probability in percent: nothing is certain.
+fn percent(probability: f64) -> String {
+    match probability {
+        p if p > 0.99 => ">99".to_owned(),
+        p if p < 0.01 => "<1".to_owned(),
+        p => format!("{:.0}", 100.0 * p),
+    }
+}
+
 fn summary(proposal: &Proposal, out: &Path) -> String {
     let mut text = String::new();
     if proposal.questions.is_empty() && proposal.unanswerable.is_empty() {
@@ -104,11 +113,11 @@ fn summary(proposal: &Proposal, out: &Path) -> String {
     }
     for q in &proposal.questions {
         text.push_str(&format!(
-            "{:>3.0} % to settle {} or {}; by the paper's protocol repeated: {:.0} %\n",
-            100.0 * q.resolved_probability,
+            "{:>4} % to settle {} or {}; by the paper's protocol repeated: {} %\n",
+            percent(q.resolved_probability),
             q.between[0],
             q.between[1],
-            100.0 * q.by_repeating
+            percent(q.by_repeating)
         ));
     }
     for u in &proposal.unanswerable {

@@ -47,7 +47,12 @@ const NOTES: &str = "<h2>To write down</h2>
 runs.</p>\n";
 
 fn questions(proposal: &Proposal) -> String {
-    let percent = |p: f64| format!("{:.0} %", 100.0 * p);
+    // Nothing is certain.
+    let percent = |p: f64| match p {
+        p if p > 0.99 => "&gt; 99 %".to_owned(),
+        p if p < 0.01 => "&lt; 1 %".to_owned(),
+        p => format!("{:.0} %", 100.0 * p),
+    };
     let mut html = String::new();
     if !proposal.questions.is_empty() {
         html.push_str(

@@ -34,6 +34,7 @@ pub fn run_sheet(source: &str, proposal: &Proposal) -> String {
 
 const STYLE: &str = "<style>
 td.done { width: 2.2em } td.done::before { content: '\\2610' } .mount td { background: #8881; font-weight: 600 }
+.runs td:not(:last-child) { white-space: nowrap }
 @media print { table { font-size: 9pt } tr { break-inside: avoid } h1 { margin-top: 0 } }
 </style>\n";
 
@@ -82,8 +83,8 @@ fn questions(proposal: &Proposal) -> String {
 }
 
 fn runs(runs: &[PlannedRun]) -> String {
-    let mut html = "<h2>The runs</h2><table><tr><th></th><th>run</th><th>weight</th><th>load</th><th>speed</th><th>dwell</th>\
-                    <th>repetitions</th><th>loads go</th><th>ends at</th><th>asks</th></tr>\n"
+    let mut html = "<h2>The runs</h2><div class=\"wide\"><table class=\"runs\"><tr><th></th><th>run</th><th>weight</th><th>load</th><th>speed</th><th>dwell</th>\
+                    <th>repetitions ecc. + conc.</th><th>loads go</th><th>ends at</th><th>asks</th></tr>\n"
         .to_owned();
     let (mut mount, mut minutes) = (0, 0.0);
     for (i, run) in runs.iter().enumerate() {
@@ -98,8 +99,8 @@ fn runs(runs: &[PlannedRun]) -> String {
         minutes += run.minutes;
         let _ = writeln!(
             html,
-            "<tr><td class=\"done\"></td><td>{}</td><td>{} g</td><td>{:.2} N</td><td>{} %</td><td>{} s</td><td>{} ecc., {} \
-             conc.</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+            "<tr><td class=\"done\"></td><td>{}</td><td>{} g</td><td>{:.2} N</td><td>{} %</td><td>{} s</td><td>{} + {}\
+             </td><td>{}</td><td>{}</td><td>{}</td></tr>",
             i + 1,
             run.load_mass_g,
             published::load_n(run.load_mass_g),
@@ -112,7 +113,7 @@ fn runs(runs: &[PlannedRun]) -> String {
             escape(&run.asks)
         );
     }
-    html.push_str("</table>\n");
+    html.push_str("</table></div>\n");
     html
 }
 

@@ -45,8 +45,8 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// Most minutes: two weeks.
-const MAX_MINUTES: f64 = 20_000.0;
+/// Most minutes: a week of eight hours a day.
+const MAX_MINUTES: f64 = 2_400.0;
 
 fn minutes(text: &str) -> Result<f64, String> {
     let value: Option<f64> = text.parse().ok();

@@ -63,8 +63,8 @@ pub(super) struct Arguments {
     /// With --runs: the rig that they were planned for, if it is not the paper's.
     #[arg(long, value_name = "TOML", requires = "runs")]
     rig: Option<PathBuf>,
-    /// With --runs: seed of the noise [default: 1, or that of the plan].
-    #[arg(long, value_name = "SEED", requires = "runs")]
+    /// Seed of the noise [default: 1, or that of the plan].
+    #[arg(long, value_name = "SEED", conflicts_with = "study", value_parser = clap::value_parser!(u64).range(..=MAX_SEED))]
     seed: Option<u64>,
     /// Calibrate this many rigs of every kind and print what was said of them.
     #[arg(long, value_name = "SEEDS", conflicts_with_all = ["plan", "out"])]
@@ -80,6 +80,8 @@ pub(super) struct Arguments {
     only: Vec<String>,
 }
 
+/// Largest seed that a plan can hold: TOML has integers with a sign.
+const MAX_SEED: u64 = i64::MAX as u64;
 /// Seeds from one kind of rig of a study to the next.
 const SEEDS_PER_CASE: u64 = 1000;
 
@@ -127,8 +129,7 @@ fn rehearsed(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failu
             rehearse(&model, &name, rows, arguments.seed.unwrap_or(1)).map_err(Failure::bad_input)?
         }
         None => {
-            let (mut plan, name) = plan(arguments)?;
-            plan.seed = arguments.seed.unwrap_or(plan.seed);
+            let (plan, name) = plan(arguments)?;
             let simulated = simulate_rows(&plan, rows);
             simulated.check(&name).map_err(Failure::bad_input)?;
             simulated.rows
@@ -151,6 +152,7 @@ fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
         None => (Plan::default(), "the plan of the paper's rig".to_owned()),
     };
     plan.vocabulary = vocabulary;
+    plan.seed = arguments.seed.unwrap_or(plan.seed);
     for effect in &arguments.effects {
         let (id, values) = effect.split_once('=').unwrap_or((effect, ""));
         let values: Result<Vec<f64>, _> =

@@ -13,6 +13,11 @@ use crate::table::{PlateauRow, Sweep};
 /// Repetitions to choose from, eccentric and concentric.
 const REPETITIONS: [[u32; 2]; 2] = [[4, 4], [10, 10]];
 
+/// Pairs of contact and load beyond which only some of the loads are chosen from: five times the paper's.
+const MOST_PLACES: usize = 400;
+/// How many they are then.
+const FEW_LOADS: usize = 6;
+
 /// A run, and whether it comes in the second half of the session.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
@@ -52,9 +57,14 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
     let sweeps: &[Sweep] =
         if agenda.asks_along(Covariate::Sweep) { &[Sweep::Up, Sweep::Down] } else { &[Sweep::Up] };
     let times: &[bool] = if agenda.asks_along(Covariate::Time) { &[false, true] } else { &[false] };
+    let loads_g = if rig.contacts().len() * rig.loads_g.len() > MOST_PLACES {
+        spread(&rig.loads_g, FEW_LOADS)
+    } else {
+        rig.loads_g.clone()
+    };
     let mut all = Vec::new();
     for (substrate, pins) in rig.contacts() {
-        for load_mass_g in &rig.loads_g {
+        for load_mass_g in &loads_g {
             for speed_pct in rig.speeds() {
                 for dwell_s in rig.dwells() {
                     for repetitions in REPETITIONS {
@@ -85,6 +95,18 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
     let forces = model.frame.points(&rows).map(|points| model.predict(&points)).unwrap_or_default();
     let fits: Vec<bool> = forces.iter().map(|force| force * 1.1 <= rig.cell_limit_n).collect();
     all.into_iter().zip(fits).filter(|(_, fits)| *fits).map(|(candidate, _)| candidate).collect()
+}
+
+/// `most` of the values, evenly spread by rank, the least and the greatest among them.
+fn spread(values: &[f64], most: usize) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    let last = sorted.len().saturating_sub(1);
+    let steps = most.min(sorted.len()).saturating_sub(1).max(1);
+    let mut kept: Vec<f64> = (0..=steps).filter_map(|i| sorted.get(i * last / steps).copied()).collect();
+    kept.dedup();
+    kept
 }
 
 /// The rows of a candidate in a session of its own that began `begins_s` seconds before it.
@@ -124,4 +146,19 @@ pub(super) fn paper_protocol(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
         }
     }
     runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_many_loads_the_ends_and_some_between_are_chosen_from() {
+        let many: Vec<f64> = (0..40).rev().map(|i| 50.0 + 100.0 * f64::from(i)).collect();
+        let few = spread(&many, FEW_LOADS);
+        assert_eq!(few.len(), FEW_LOADS);
+        assert_eq!((few[0], few[FEW_LOADS - 1]), (50.0, 3950.0));
+        assert!(few.is_sorted());
+        assert_eq!(spread(&[7.0, 7.0], FEW_LOADS), [7.0]);
+    }
 }

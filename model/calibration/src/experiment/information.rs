@@ -1,6 +1,6 @@
 //! Fisher information of rows, recorded or planned, about the constants of a model and the sizes of effects beside it.
 
-use nalgebra::DMatrix;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::effects::Effect;
 use crate::inference::{Model, Noise, Observations, Term, Weighed, jacobian};
@@ -99,23 +99,48 @@ fn gram(columns: &[Vec<f64>], rows: &[usize]) -> DMatrix<f64> {
     products
 }
 
-/// Squared length, in standard deviations, of column `signal` once the columns `nuisance` have taken over what they can.
-pub(super) fn visible_squares(information: &DMatrix<f64>, signal: usize, nuisance: &[usize]) -> f64 {
-    covariance_given(information, signal, signal, nuisance).max(0.0)
+/// Information with the columns `nuisance` taken out of all others: what these can take over is not visible.
+#[derive(Debug)]
+pub(super) struct Projected<'a> {
+    information: &'a DMatrix<f64>,
+    nuisance: &'a [usize],
+    /// Columns are of very different length: each is scaled to one.
+    scale: Vec<f64>,
+    factor: Option<Cholesky<f64, Dyn>>,
 }
 
-/// Product of two columns once the columns `nuisance` are taken out of both.
-pub(super) fn covariance_given(information: &DMatrix<f64>, a: usize, b: usize, nuisance: &[usize]) -> f64 {
-    let n = nuisance.len();
-    // Columns of very different length: each is scaled to one.
-    let scale: Vec<f64> = nuisance.iter().map(|i| information[(*i, *i)].max(1e-300).sqrt().recip()).collect();
-    let mut inner =
-        DMatrix::from_fn(n, n, |i, j| information[(nuisance[i], nuisance[j])] * scale[i] * scale[j]);
-    // A column that others make up is taken out with them.
-    (0..n).for_each(|i| inner[(i, i)] += 1e-10);
-    let Some(factor) = inner.cholesky() else { return 0.0 };
-    let side = |c: usize| nalgebra::DVector::from_fn(n, |i, _| information[(nuisance[i], c)] * scale[i]);
-    information[(a, b)] - side(a).dot(&factor.solve(&side(b)))
+impl<'a> Projected<'a> {
+    pub(super) fn new(information: &'a DMatrix<f64>, nuisance: &'a [usize]) -> Self {
+        let n = nuisance.len();
+        let scale: Vec<f64> =
+            nuisance.iter().map(|i| information[(*i, *i)].max(1e-300).sqrt().recip()).collect();
+        let mut inner =
+            DMatrix::from_fn(n, n, |i, j| information[(nuisance[i], nuisance[j])] * scale[i] * scale[j]);
+        // A column that others make up is taken out with them.
+        (0..n).for_each(|i| inner[(i, i)] += 1e-10);
+        Self { information, nuisance, scale, factor: inner.cholesky() }
+    }
+
+    /// Whether these are the columns that were taken out.
+    pub(super) fn is_without(&self, nuisance: &[usize]) -> bool {
+        self.nuisance == nuisance
+    }
+
+    /// Product of what is left of two columns.
+    pub(super) fn covariance(&self, a: usize, b: usize) -> f64 {
+        let Some(factor) = &self.factor else { return 0.0 };
+        let side = |c: usize| {
+            DVector::from_fn(self.nuisance.len(), |i, _| {
+                self.information[(self.nuisance[i], c)] * self.scale[i]
+            })
+        };
+        self.information[(a, b)] - side(a).dot(&factor.solve(&side(b)))
+    }
+
+    /// Squared length, in standard deviations, of what is left of a column.
+    pub(super) fn squares(&self, signal: usize) -> f64 {
+        self.covariance(signal, signal).max(0.0)
+    }
 }
 
 #[cfg(test)]
@@ -127,9 +152,9 @@ mod tests {
         // Columns x, y and x + y + e over four rows.
         let columns = [vec![1.0, 0.0, 0.0, 0.0], vec![0.0, 2.0, 0.0, 0.0], vec![1.0, 2.0, 0.0, 0.5]];
         let information = gram(&columns, &[0, 1, 2, 3]);
-        assert!((visible_squares(&information, 2, &[]) - 5.25).abs() < 1e-12);
-        assert!((visible_squares(&information, 2, &[0, 1]) - 0.25).abs() < 1e-6);
-        assert!((covariance_given(&information, 0, 2, &[1]) - 1.0).abs() < 1e-6);
-        assert!(visible_squares(&information, 0, &[1, 0]) < 1e-6);
+        assert!((Projected::new(&information, &[]).squares(2) - 5.25).abs() < 1e-12);
+        assert!((Projected::new(&information, &[0, 1]).squares(2) - 0.25).abs() < 1e-6);
+        assert!((Projected::new(&information, &[1]).covariance(0, 2) - 1.0).abs() < 1e-6);
+        assert!(Projected::new(&information, &[1, 0]).squares(0) < 1e-6);
     }
 }

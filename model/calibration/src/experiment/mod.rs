@@ -11,6 +11,7 @@ mod question;
 mod rig;
 mod runs;
 mod search;
+mod shortlist;
 
 use nalgebra::DMatrix;
 use serde::Serialize;
@@ -19,14 +20,15 @@ pub use rig::{RigError, RigLimits};
 pub use runs::{PlannedRun, RunsError, contact_words, read_runs, rows_of, write_runs};
 
 use crate::effects::Vocabulary;
-use crate::inference::{Levels, Model, Noise, Wandering};
+use crate::inference::{Levels, Model, Noise};
 use crate::model_file::{ModelFile, ModelFileError};
 use crate::report::Report;
 use crate::table::{PlateauRow, Sweep};
-use candidates::{Candidate, alone, candidates, paper_protocol};
+use candidates::{Candidate, candidates, paper_protocol};
 use information::{Design, Trace};
 use question::{Agenda, NONE, Question};
 use search::Search;
+use shortlist::Shortlist;
 
 /// Name and version of `experiment.json`.
 const SCHEMA: &str = "pinswitch.experiment/1";
@@ -133,8 +135,8 @@ pub fn propose(
     if shortest > minutes {
         return Err(ExperimentError::NoTime { minutes, shortest });
     }
-    let single = of_candidates(&design, &all, rig, minutes).ok_or_else(foreign)?;
-    let everything = single.iter().fold(data.clone(), |sum, i| sum + i);
+    let Shortlist { candidates: all, information: single, everything } =
+        Shortlist::of(all, &design, &data, &agenda.questions, rig, minutes).ok_or_else(foreign)?;
     let (open, closed): (Vec<Question>, Vec<Question>) =
         agenda.questions.iter().cloned().partition(|q| q.probability(&everything) >= ANSWERABLE);
     let search = Search { candidates: &all, information: &single, questions: &open, rig, minutes };
@@ -176,24 +178,6 @@ fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), ModelFi
         rows_of(std::slice::from_ref(&candidate), rig, "").iter().take(1).for_each(|row| frame.extend(row));
     }
     Ok((model.in_frame(frame), known.model.noise()))
-}
-
-/// Information of each candidate by itself: as if every one was mounted anew, which is what can be said before it is
-/// known which of them go together.
-fn of_candidates(
-    design: &Design<'_>,
-    all: &[Candidate],
-    rig: &RigLimits,
-    minutes: f64,
-) -> Option<Vec<DMatrix<f64>>> {
-    // Offsets that wander from run to run differ from one to the next: alone, they are offsets.
-    let mut noise = design.noise;
-    noise.walk = Wandering::default();
-    let design = Design { model: design.model, noise, traces: design.traces };
-    let begins_s = |c: &Candidate| if c.late { 0.75 * 60.0 * minutes } else { 0.0 };
-    let rows: Vec<PlateauRow> =
-        all.iter().enumerate().flat_map(|(i, c)| alone(c, &i.to_string(), rig, begins_s(c))).collect();
-    design.by_series(&rows)
 }
 
 /// The runs in the order in which they are made: early ones first, each contact mounted once, its loads ascending and then

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use super::information::{Trace, covariance_given, visible_squares};
+use super::information::{Projected, Trace};
 use crate::effects::{Covariate, Effect, Side};
 use crate::inference::{Levels, Model, Term};
 use crate::report::Report;
@@ -46,7 +46,12 @@ struct Way {
 impl Question {
     /// Squares by which the wrong explanation is expected to fit worse, whichever is wrong.
     pub(super) fn squares(&self, information: &DMatrix<f64>) -> f64 {
-        let of = |way: &Way| way.size * way.size * visible_squares(information, way.truth, &way.nuisance);
+        self.squares_of(&mut Projections::of(information))
+    }
+
+    /// The same of information of which other questions were asked.
+    pub(super) fn squares_of<'a>(&'a self, projections: &mut Projections<'a>) -> f64 {
+        let of = |way: &'a Way| way.size * way.size * projections.without(&way.nuisance).squares(way.truth);
         self.ways.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 
@@ -71,6 +76,27 @@ impl Question {
             NONE => format!("{} or none", self.between[0]),
             other => format!("{} or {other}", self.between[0]),
         }
+    }
+}
+
+/// Information without the columns that questions fit, each set of them taken out once: most questions fit the same.
+#[derive(Debug)]
+pub(super) struct Projections<'a> {
+    information: &'a DMatrix<f64>,
+    made: Vec<Projected<'a>>,
+}
+
+impl<'a> Projections<'a> {
+    pub(super) fn of(information: &'a DMatrix<f64>) -> Self {
+        Self { information, made: Vec::new() }
+    }
+
+    fn without(&mut self, nuisance: &'a [usize]) -> &Projected<'a> {
+        let at = self.made.iter().position(|p| p.is_without(nuisance)).unwrap_or_else(|| {
+            self.made.push(Projected::new(self.information, nuisance));
+            self.made.len() - 1
+        });
+        &self.made[at]
     }
 }
 
@@ -155,8 +181,8 @@ impl Agenda {
             let constants: Vec<usize> = (at..at + model.terms[term].constants()).collect();
             let base: Vec<usize> = own.iter().copied().filter(|i| !constants.contains(i)).collect();
             // The size of the rival that comes nearest to what was found.
-            let share = covariance_given(&information, other, column, &base)
-                / covariance_given(&information, other, other, &base).max(1e-12);
+            let left = Projected::new(&information, &base);
+            let share = left.covariance(other, column) / left.covariance(other, other).max(1e-12);
             let with_other: Vec<usize> = base.iter().copied().chain([other]).collect();
             let sure = surely(found);
             let ways = vec![

@@ -4,7 +4,7 @@
 use nalgebra::DMatrix;
 
 use super::candidates::Candidate;
-use super::question::Question;
+use super::question::{Projections, Question};
 use super::rig::RigLimits;
 
 /// Squares beyond which an answer is as good as certain, in units of those needed.
@@ -13,13 +13,18 @@ const ENOUGH: f64 = 3.0;
 const LEAST: f64 = 1e-4;
 /// Rounds of exchanges.
 const ROUNDS: usize = 2;
+/// Runs up to which they are exchanged: of a longer plan, one run decides little.
+const FEW_RUNS: usize = 100;
+/// Most runs of a plan: a week of work.
+const MOST_RUNS: usize = 400;
 
 /// What information is worth: for each question the logarithm of the squares expected, so that none is answered at the
 /// cost of all others.
 fn worth(questions: &[Question], information: &DMatrix<f64>) -> f64 {
+    let mut projections = Projections::of(information);
     questions
         .iter()
-        .map(|q| q.weight * (1.0 + (q.squares(information) / q.needed).clamp(0.0, ENOUGH)).ln())
+        .map(|q| q.weight * (1.0 + (q.squares_of(&mut projections) / q.needed).clamp(0.0, ENOUGH)).ln())
         .sum()
 }
 
@@ -41,7 +46,8 @@ impl Search<'_> {
             total += &self.information[next];
             chosen.push(next);
         }
-        for _ in 0..ROUNDS {
+        let rounds = if chosen.len() > FEW_RUNS { 0 } else { ROUNDS };
+        for _ in 0..rounds {
             let mut is_better = false;
             for place in 0..chosen.len() {
                 let old = chosen.remove(place);
@@ -76,6 +82,9 @@ impl Search<'_> {
     fn best(&self, chosen: &[usize], total: &DMatrix<f64>) -> Option<usize> {
         let before = worth(self.questions, total);
         let left = self.minutes - self.minutes_of(chosen);
+        if chosen.len() >= MOST_RUNS {
+            return None;
+        }
         let mut best = None;
         for (i, candidate) in self.candidates.iter().enumerate() {
             let minutes = candidate.minutes(chosen.iter().map(|c| &self.candidates[*c]), self.rig);

@@ -23,15 +23,26 @@ addEventListener('load', () => setTimeout(() => {
   const home = shell();
   set('explode', 1);
   seen.apart = shell() !== home;
+  // Pulled apart, all of it is in the picture.
+  seen.framed = assembly.group.children.every((node) => {
+    const { min, max } = new THREE.Box3().setFromObject(node);
+    return [0, 1, 2, 3, 4, 5, 6, 7].every((i) => {
+      const corner = new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z).project(assembly.camera);
+      return Math.abs(corner.x) <= 1 && Math.abs(corner.y) <= 1;
+    });
+  });
   const eye = assembly.camera.position.x;
   set('turn', 120); set('tilt', -20);
   seen.turned = assembly.camera.position.x !== eye;
   const section = document.getElementById('section');
   section.checked = true; section.dispatchEvent(new Event('input'));
   seen.cut = assembly.bodies.every((n) => n.userData.materials.every((m) => m.clippingPlanes.length === 1));
+  seen.capped = assembly.bodies.every((n) => n.userData.cover.visible && n.userData.counted.every((c) => c.visible));
   const box = document.querySelector('#bodies input');
   box.click();
-  seen.hidden = !assembly.bodies[0].visible;
+  seen.hidden = !assembly.bodies[0].visible && !assembly.bodies[0].userData.cover.visible;
+  const offered = [...document.querySelectorAll('#files a[download], #files button')].map((e) => e.textContent);
+  seen.files = current.manifest.files.every((f) => f.file === 'report.html' || offered.some((text) => text.endsWith(f.file)));
   seen.canvas = document.querySelectorAll('canvas').length === 2;
   seen.rows = document.querySelectorAll('#table tbody tr').length === 101;
   seen.saves = document.querySelectorAll('#files button').length === 10;
@@ -72,7 +83,7 @@ fn the_page_works_in_a_browser() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    pinswitch(folder.path(), &["generate", "three-double", "--format", "page", "--out", "set"]);
+    pinswitch(folder.path(), &["generate", "three-double", "--out", "set"]);
     let page = std::fs::read_to_string(folder.path().join("set/report.html")).unwrap();
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
     // As it is saved, under its own policy: its scripts fill the table, and one that is put in does not run.

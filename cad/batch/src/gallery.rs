@@ -57,6 +57,38 @@ pub(super) struct GalleryEntry {
     /// Friction at evenly spaced loads between them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub curve_n: Vec<f64>,
+    /// Its segment.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub glyph: Option<Glyph>,
+}
+
+/// The segment as it is drawn small, seen along the pulley's axis.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Glyph {
+    /// Outer radius of the shell.
+    radius_mm: f64,
+    /// Its radial thickness.
+    wall_mm: f64,
+    /// Thickness of the silicone, or of the rigid proxy in its place.
+    layer_mm: f64,
+    /// Angle over all grooves.
+    span_deg: f64,
+    /// Where the pins lie, from the middle.
+    pins_deg: Vec<f64>,
+}
+
+impl Glyph {
+    fn of(design: &Design) -> Self {
+        let c = design.configuration();
+        let pins_deg = design.pin_angles_rad().into_iter().map(|a| rounded(a.to_degrees())).collect();
+        Self {
+            radius_mm: c.shell.outer_radius_mm,
+            wall_mm: c.shell.wall_mm,
+            layer_mm: rounded(design.contact_radius_mm() - c.shell.outer_radius_mm),
+            span_deg: c.segment.span_deg,
+            pins_deg,
+        }
+    }
 }
 
 /// A curve as it is shown.
@@ -104,7 +136,9 @@ impl Gallery {
         let text = |name: &str| cell(name).text().map(str::to_owned);
         let number = |name: &str| cell(name).number().map(rounded);
         let made = cell("status").text() == Some("made");
-        let curve = made.then(|| self.curve(variants, index)).flatten();
+        // From the configuration: cheaper than to keep or read what was made of it.
+        let design = made.then(|| Design::new(variants.get(index).configuration).ok()).flatten();
+        let curve = design.as_ref().map(|design| self.curve(design));
         let settings = self.fields.iter().map(|name| match cell(name) {
             Cell::Text(words) => SettingValue::Words(words.clone()),
             other => {
@@ -126,14 +160,13 @@ impl Gallery {
             printed_g: number("printed_mass_g"),
             loads_n: curve.as_ref().map(|curve| curve.loads_n),
             curve_n: curve.map(|curve| curve.friction_n).unwrap_or_default(),
+            glyph: design.as_ref().map(Glyph::of),
         });
     }
 
-    /// The curve of a variant, from its configuration: cheaper than to keep or read it.
-    fn curve(&mut self, variants: &Variants, index: u64) -> Option<ShownCurve> {
-        let design = Design::new(variants.get(index).configuration).ok()?;
-        let known = self.curves.entry(ForecastKey::of(&design));
-        Some(known.or_insert_with(|| shown_curve(&design)).clone())
+    fn curve(&mut self, design: &Design) -> ShownCurve {
+        let known = self.curves.entry(ForecastKey::of(design));
+        known.or_insert_with(|| shown_curve(design)).clone()
     }
 
     /// The variants with a curve.

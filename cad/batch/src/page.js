@@ -12,7 +12,8 @@ const numeric = data.fields.map((_, i) => data.variants.every(v => typeof v.sett
 
 // Columns: what varies, and what it does.
 const columns = [
-  { name: "variant", get: v => v.id, words: true },
+  { name: "layout", get: v => v.glyph ? v.glyph.pins_deg.length : undefined, picture: v => glyph(v), words: true },
+  { name: "variant", get: v => v.id, words: true, title: true },
   { name: "label", get: v => v.label, words: true },
   ...data.fields.map((name, i) => ({ name: name.split(".").pop(), full: name, get: v => v.settings[i], words: !numeric[i],
     show: v => numeric[i] ? +v.settings[i].toPrecision(6) : v.settings[i] })),
@@ -22,7 +23,9 @@ const columns = [
   { name: "threshold (N)", get: v => v.threshold_n, show: v => v.threshold_n === undefined ? "" : v.threshold_n.toFixed(2) },
   { name: "trust", get: v => v.trust, words: true },
   { name: "printed (g)", get: v => v.printed_g, show: v => v.printed_g === undefined ? "" : v.printed_g.toFixed(2) },
-  { name: "curve", get: v => v.friction_n ? v.friction_n[0] : undefined, curve: true },
+  { name: "curve", get: v => v.friction_n ? v.friction_n[0] : undefined, words: true,
+    picture: v => v.status === "made" ? svg(110, 34, `<path class="spark" d="${path(v, 110, 34)}"/>`) : undefined },
+  { name: "files", get: v => v.status, links: true, words: true },
 ];
 const top_n = Math.max(...data.variants.flatMap(v => v.curve_n || [0]), 0.1);
 const heaviest = Math.max(...data.variants.map(v => v.loads_n ? v.loads_n[1] : 0), 0.1);
@@ -43,6 +46,22 @@ const svg = (width, height, inner) => {
   return holder.firstChild;
 };
 
+// The segment seen along the pulley's axis, to scale: shell, layer, and the pins in their grooves.
+const glyph = v => {
+  const g = v.glyph;
+  if (!g) return undefined;
+  const [half, out, inner] = [g.span_deg * Math.PI / 360, g.radius_mm, g.radius_mm - g.wall_mm];
+  const scale = 60 / (2 * Math.max(...data.variants.map(w => w.glyph ? (w.glyph.radius_mm + w.glyph.layer_mm) * Math.sin(w.glyph.span_deg * Math.PI / 360) : 0)));
+  const at = (r, a) => (34 + scale * r * Math.sin(a)).toFixed(2) + " " + (4 + scale * (out + g.layer_mm - r * Math.cos(a))).toFixed(2);
+  const ring = (low, high, kind) => `<path class="${kind}" d="M${at(high, -half)}A${scale * high} ${scale * high} 0 0 1 ${at(high, half)}L${at(low, half)}` +
+    `A${scale * low} ${scale * low} 0 0 0 ${at(low, -half)}Z"/>`;
+  const pins = g.pins_deg.map(degrees => {
+    const [x, y] = at(out + g.layer_mm, degrees * Math.PI / 180).split(" ");
+    return `<circle class="pin" cx="${x}" cy="${y}" r="1.7"/>`;
+  });
+  return svg(68, 34, ring(inner, out, "shell") + (g.layer_mm ? ring(out, out + g.layer_mm, "silicone") : "") + pins.join(""));
+};
+
 // Filters.
 const filters = document.getElementById("filters");
 const field = (title, ...inputs) => { const label = make("label", title); const span = make("span"); span.append(...inputs); label.append(span); filters.append(label); };
@@ -53,7 +72,7 @@ field("find", search);
 field("status", status);
 const limits = [];
 columns.forEach(column => {
-  if (column.curve || column.name === "variant" || column.name === "label" || column.name === "band (N)") return;
+  if (column.picture || column.links || column.name === "variant" || column.name === "label" || column.name === "band (N)") return;
   if (column.words) {
     const select = make("select");
     select.append(make("option", "all"));
@@ -107,9 +126,13 @@ function draw() {
   body.replaceChildren(...rows.slice(0, shown).map(v => {
     const row = make("tr", undefined, { class: v.status + (v === chosen ? " chosen" : "") });
     columns.forEach(column => {
-      const cell = make("td", undefined, column.words ? { class: "words" } : {});
-      if (column.curve) {
-        if (v.status === "made") cell.append(svg(110, 34, `<path class="spark" d="${path(v, 110, 34)}"/>`));
+      const kinds = [column.words && "words", column.title && "title", (column.title || column.links) && "whole"].filter(Boolean).join(" ");
+      const cell = make("td", undefined, { class: kinds, ...(column.title || column.picture ? {} : { "data-name": column.name }) });
+      if (column.picture) {
+        const picture = column.picture(v);
+        if (picture) cell.append(picture);
+      } else if (column.links) {
+        if (v.status === "made") cell.append(...links(v));
       } else {
         const value = column.show ? column.show(v) : column.get(v);
         cell.textContent = value === undefined ? "" : value;
@@ -118,8 +141,8 @@ function draw() {
     });
     if (v.status !== "made") {
       // The reason takes the place of what there is not.
-      while (row.children.length > 2 + data.fields.length) row.lastChild.remove();
-      row.append(make("td", v.status + ": " + (v.reason || ""), { class: "words", colspan: columns.length - row.children.length }));
+      while (row.children.length > 3 + data.fields.length) row.lastChild.remove();
+      row.append(make("td", v.status + ": " + (v.reason || ""), { class: "words whole", colspan: columns.length - row.children.length }));
     }
     row.addEventListener("click", () => { chosen = v; draw(); });
     return row;
@@ -130,6 +153,12 @@ function draw() {
 }
 document.getElementById("more").addEventListener("click", () => { shown += PAGE; draw(); });
 
+// What a variant's folder holds.
+function links(v) {
+  const of = (text, file) => make("a", text, { href: "variants/" + v.id + "/" + file });
+  return [of("folder", ""), of("manifest", "manifest.json"), of("curve", "friction.csv")];
+}
+
 // The chosen variant before all that match.
 function detail(rows) {
   const place = document.getElementById("detail");
@@ -137,9 +166,7 @@ function detail(rows) {
   if (!chosen) return;
   const title = make("p");
   if (chosen.status === "made") {
-    title.append(make("a", chosen.id, { href: "variants/" + chosen.id + "/" }), " ",
-      make("a", "manifest", { href: "variants/" + chosen.id + "/manifest.json" }), " ",
-      make("a", "curve", { href: "variants/" + chosen.id + "/friction.csv" }));
+    title.append(make("strong", chosen.id), " ", ...links(chosen));
   } else {
     title.append(chosen.id + ": " + chosen.status + ", " + (chosen.reason || ""));
   }
@@ -148,6 +175,6 @@ function detail(rows) {
   const axes = `<text x="515" y="146" font-size="11" text-anchor="end">${heaviest.toFixed(0)} N load</text>` +
     `<text x="3" y="11" font-size="11">${top_n.toFixed(1)} N friction</text>`;
   place.replaceChildren(title, svg(520, 150,
-    `<rect width="520" height="150" fill="#fafafa" stroke="#ccc"/>${others}<path class="spark" d="${path(chosen, 520, 150)}"/>${axes}`));
+    `<rect width="520" height="150"/>${others}<path class="spark" d="${path(chosen, 520, 150)}"/>${axes}`));
 }
 draw();

@@ -1,13 +1,16 @@
 //! The friction curve as a figure: curve and band, the limits of both materials, and what the paper measured.
 
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use pinswitch_friction::{
     Contact, FrictionCurve, Law, Trust, capstan_friction_n, published, published_points,
 };
 
 use super::scale::{drawn_size, fine, shown_at_size};
+
+/// A piece of a dashed line in the legend.
+type DashedSample = DashedPathElement<std::vec::IntoIter<(i32, i32)>, u32>;
 
 /// Width and height of the figure in pixels.
 const SIZE: (u32, u32) = (760, 480);
@@ -16,6 +19,9 @@ const PINS: RGBColor = RGBColor(90, 90, 90);
 const SILICONE: RGBColor = RGBColor(178, 74, 0);
 /// Lines of other laws, in the order of [`Law::predictive`], again from the first.
 const OTHERS: [RGBColor; 3] = [RGBColor(0, 120, 90), RGBColor(140, 60, 150), RGBColor(190, 20, 60)];
+/// Pixels of dash and gap of a limit line, and of a published onset.
+const LIMIT_DASHES: [u8; 2] = [6, 4];
+const ONSET_DASHES: [u8; 2] = [2, 3];
 /// Points of a limit line.
 const LIMIT_POINTS: u32 = 60;
 
@@ -102,16 +108,9 @@ fn draw(
             (load, limit(mu, load))
         });
         chart
-            .draw_series(DashedLineSeries::new(
-                line,
-                fine::<u32>(6),
-                fine::<u32>(4),
-                colour.stroke_width(fine(1)),
-            ))?
+            .draw_series(dashed(line.collect(), LIMIT_DASHES, colour))?
             .label(label)
-            .legend(move |(x, y)| {
-                PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(1)))
-            });
+            .legend(move |at| dashed_sample(at, LIMIT_DASHES, colour));
     }
 
     for other in others {
@@ -141,20 +140,11 @@ fn draw(
     }
     for onset in points.iter().filter(|p| p.friction_n.is_none()) {
         let load = onset.load_n;
-        // The line ends at its words, below the legend.
-        let end = 0.36 * top;
-        let text = TextStyle::from(("sans-serif", fine::<i32>(13))).pos(Pos::new(HPos::Left, VPos::Top));
-        chart.draw_series(DashedLineSeries::new(
-            [(load, 0.0), (load, end)],
-            fine::<u32>(2),
-            fine::<u32>(3),
-            BLACK.stroke_width(fine(1)),
-        ))?;
-        chart.draw_series(std::iter::once(Text::new(
-            format!(" published onset {load:.2} N"),
-            (load, end),
-            text,
-        )))?;
+        let line = vec![(load, 0.0), (load, top)];
+        chart
+            .draw_series(dashed(line, ONSET_DASHES, BLACK))?
+            .label(format!("published onset, {load:.2} N"))
+            .legend(|at| dashed_sample(at, ONSET_DASHES, BLACK));
     }
     chart
         .configure_series_labels()
@@ -167,6 +157,25 @@ fn draw(
         .draw()?;
     root.present()?;
     Ok(())
+}
+
+fn dashed(
+    line: Vec<(f64, f64)>,
+    [dash, gap]: [u8; 2],
+    colour: RGBColor,
+) -> DashedLineSeries<std::vec::IntoIter<(f64, f64)>, u32> {
+    DashedLineSeries::new(line, fine::<u32>(dash), fine::<u32>(gap), colour.stroke_width(fine(1)))
+}
+
+/// The same dashes for the legend.
+fn dashed_sample((x, y): (i32, i32), [dash, gap]: [u8; 2], colour: RGBColor) -> DashedSample {
+    let ends = vec![(x, y), (x + fine::<i32>(22), y)];
+    DashedPathElement::new(
+        ends.into_iter(),
+        fine::<u32>(dash),
+        fine::<u32>(gap),
+        colour.stroke_width(fine(1)),
+    )
 }
 
 fn trust_label(trust: Trust) -> &'static str {

@@ -12,6 +12,8 @@ const make = (tag, text, attributes = {}) => {
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
   return element;
 };
+// All pins are shown or hidden together.
+const groupOf = (name) => (/^pin-\d+$/.test(name) ? 'pins' : name);
 const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 const dark = () => matchMedia('(prefers-color-scheme: dark)').matches;
 
@@ -25,10 +27,35 @@ function at(xs, ys, x) {
 
 // ---- the assembly -------------------------------------------------------------------------------------------------
 
+// Constants of three.js that its build for this page leaves out.
+const FRONT = 0, BACK = 1, ALWAYS = 519, NOT_EQUAL = 517, INCREMENT = 34055, DECREMENT = 34056;
+// Room around what is shown, as a share of it.
+const ROOM = 1.06;
+
+// Counts, where a body is cut, the faces seen from inside less those from outside: what is left over is cut material.
+function counting(geometry, side, operation, plane) {
+  const material = new THREE.MeshStandardMaterial({ side, clippingPlanes: [plane], depthWrite: false, depthTest: false, colorWrite: false,
+    stencilWrite: true, stencilFunc: ALWAYS, stencilFail: operation, stencilZFail: operation, stencilZPass: operation });
+  return new THREE.Mesh(geometry, material);
+}
+
+// The cut face: a square in the plane, drawn where material was counted, before the next body is.
+function cap(colour) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
+  geometry.setAttribute('normal', new THREE.BufferAttribute(new Float32Array([0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]), 3));
+  geometry.setIndex(new THREE.BufferAttribute(new Uint32Array([0, 1, 2, 0, 2, 3]), 1));
+  const material = new THREE.MeshStandardMaterial({ color: colour.clone().multiplyScalar(0.72), side: THREE.DoubleSide, roughness: 0.9,
+    stencilWrite: true, stencilRef: 0, stencilFunc: NOT_EQUAL });
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.onAfterRender = (renderer) => renderer.clearStencil();
+  return mesh;
+}
+
 class Assembly {
   constructor(host) {
     this.host = host;
-    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, stencil: true });
     this.renderer.localClippingEnabled = true;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     host.replaceChildren(this.renderer.domElement);
@@ -42,14 +69,16 @@ class Assembly {
     this.controls.addEventListener('change', () => this.draw());
     this.plane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0);
     this.group = new THREE.Group();
-    this.scene.add(this.group);
+    this.covers = new THREE.Group();
+    this.scene.add(this.group, this.covers);
     new ResizeObserver(() => this.resize()).observe(host);
   }
 
   load(data, hidden) {
     this.group.clear();
+    this.covers.clear();
     this.data = data;
-    this.bodies = data.bodies.map((body) => {
+    this.bodies = data.bodies.map((body, order) => {
       const source = data.meshes[body.mesh];
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(bytesOf(source.positions).buffer), 3));
@@ -64,19 +93,25 @@ class Assembly {
       const mesh = new THREE.Mesh(faceted, material);
       const edges = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 25),
         new THREE.LineBasicMaterial({ color: 0x1a2530, transparent: true, opacity: 0.45 }));
+      // Two bodies are not counted together: each is counted, covered and forgotten before the next.
+      const counted = [counting(faceted, BACK, INCREMENT, this.plane), counting(faceted, FRONT, DECREMENT, this.plane)];
+      counted.forEach((count) => { count.renderOrder = 2 * order + 1; });
+      const cover = cap(material.color);
+      cover.renderOrder = 2 * order + 2;
+      mesh.renderOrder = edges.renderOrder = 2 * data.bodies.length + 3;
       const node = new THREE.Group();
-      node.add(mesh, edges);
-      node.userData = { body, materials: [material, edges.material], home: new THREE.Matrix4().fromArray(body.matrix) };
+      node.add(mesh, edges, ...counted);
+      node.userData = { body, cover, counted, materials: [material, edges.material], home: new THREE.Matrix4().fromArray(body.matrix) };
+      this.covers.add(cover);
       node.matrixAutoUpdate = false;
       node.matrix.copy(node.userData.home);
-      node.visible = !hidden.has(body.name);
+      node.visible = !hidden.has(groupOf(body.name));
       this.group.add(node);
       return node;
     });
     this.tendon = undefined;
     this.group.updateMatrixWorld(true);
     const box = new THREE.Box3().setFromObject(this.group);
-    this.middle = box.getCenter(new THREE.Vector3());
     this.reach = box.getSize(new THREE.Vector3()).length();
     this.low = box.min.z;
     this.high = box.max.z;
@@ -84,15 +119,41 @@ class Assembly {
 
   aim(turn, tilt) {
     const [a, b] = [turn, tilt].map((degrees) => degrees * Math.PI / 180);
-    const distance = this.reach * 2.05;
-    this.camera.position.set(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b)).multiplyScalar(distance).add(this.middle);
-    this.controls.target.copy(this.middle);
+    this.towards = new THREE.Vector3(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b));
+    this.frame();
+  }
+
+  // Moves the camera along its way so that all that is shown fills the picture.
+  frame() {
+    if (!this.bodies || !this.towards) return;
+    const all = new THREE.Box3();
+    const boxes = this.group.children.filter((node) => node.visible).map((node) => new THREE.Box3().setFromObject(node));
+    boxes.forEach((box) => all.union(box));
+    if (all.isEmpty()) return;
+    const middle = all.getCenter(new THREE.Vector3());
+    const right = new THREE.Vector3(0, 1, 0).cross(this.towards).normalize();
+    const up = this.towards.clone().cross(right);
+    const height = Math.tan(this.camera.fov * Math.PI / 360);
+    let distance = 0;
+    for (const { min, max } of boxes) {
+      for (let i = 0; i < 8; i += 1) {
+        const corner = new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z).sub(middle);
+        const aside = Math.max(Math.abs(corner.dot(right)) / (height * this.camera.aspect), Math.abs(corner.dot(up)) / height);
+        distance = Math.max(distance, corner.dot(this.towards) + aside * ROOM);
+      }
+    }
+    this.camera.far = 10 * distance + 10 * this.reach;
+    this.camera.updateProjectionMatrix();
+    this.camera.position.copy(this.towards).multiplyScalar(distance).add(middle);
+    this.controls.target.copy(middle);
     this.controls.update();
     this.draw();
   }
 
   // Pins sink and the tendon follows; everything moves along its way out by `apart`.
   pose(load, apart) {
+    const moved = this.apart !== apart;
+    this.apart = apart;
     for (const node of this.bodies) {
       const { body, home } = node.userData;
       const way = new THREE.Vector3(...body.explode_offset).multiplyScalar(apart);
@@ -104,6 +165,8 @@ class Assembly {
       node.matrixWorldNeedsUpdate = true;
     }
     this.lay(load, apart);
+    this.group.updateMatrixWorld(true);
+    if (moved) this.frame();
     this.draw();
   }
 
@@ -125,15 +188,29 @@ class Assembly {
   }
 
   cut(on, share) {
-    this.plane.constant = this.low + (this.high - this.low) * share;
+    // A hair beside the faces that lie at a share: a face in the plane would flicker.
+    const z = this.low + (this.high - this.low) * share + 1.3e-3;
+    this.plane.constant = z;
     const planes = on ? [this.plane] : [];
-    for (const node of this.bodies) node.userData.materials.forEach((m) => { m.clippingPlanes = planes; m.needsUpdate = true; });
+    for (const node of this.bodies) {
+      const { materials, counted, cover } = node.userData;
+      materials.forEach((m) => { m.clippingPlanes = planes; m.needsUpdate = true; });
+      counted.forEach((count) => { count.visible = on; });
+      cover.visible = on && node.visible;
+      cover.position.set(0, 0, z);
+      cover.scale.setScalar(4 * this.reach);
+    }
+    this.isCut = on;
     this.draw();
   }
 
   show(name, visible) {
     if (name === 'tendon') { this.tendonHidden = !visible; if (this.tendon) this.tendon.visible = visible; }
-    for (const node of this.bodies) if (node.userData.body.name === name) node.visible = visible;
+    for (const node of this.bodies) {
+      if (groupOf(node.userData.body.name) !== name) continue;
+      node.visible = visible;
+      node.userData.cover.visible = visible && this.isCut;
+    }
     this.draw();
   }
 
@@ -142,6 +219,7 @@ class Assembly {
     this.renderer.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / Math.max(clientHeight, 1);
     this.camera.updateProjectionMatrix();
+    this.frame();
     this.draw();
   }
 
@@ -164,20 +242,24 @@ function drawChart(data) {
   const loads = [...new Set([...curve.load_n, ...published.map((p) => p.load_n)])].sort((a, b) => a - b);
   const inside = (xs, ys) => loads.map((x) => (x < xs[0] - 1e-9 || x > xs[xs.length - 1] + 1e-9 ? null : at(xs, ys, x)));
   const series = [
-    { label: 'load (N)', value: (_, v) => v?.toFixed(2) ?? '' },
+    { label: 'load (N)' },
     { label: `${curve.law}`, stroke: COLOURS.main, width: 3 },
     { label: 'band, low', stroke: 'transparent' },
-    { label: 'band, high', stroke: 'transparent' },
+    { label: `band (${curve.trust})`, stroke: 'transparent' },
     ...others.map((other, i) => ({ label: other.law, stroke: OTHER_COLOURS[i % OTHER_COLOURS.length], width: 1.2, dash: [6, 4] })),
-    { label: 'measured', stroke: COLOURS.measured, paths: () => null, points: { show: true, size: 10, fill: COLOURS.measured } },
-  ].map((s) => ({ spanGaps: true, points: { show: false }, value: (_, v) => v?.toFixed(3) ?? '', ...s }));
+    { label: 'measured', stroke: COLOURS.measured, paths: () => null, points: { show: true, size: 13, width: 2, stroke: dark() ? '#14181d' : '#fff', fill: COLOURS.measured } },
+  ].map((s) => ({ spanGaps: true, points: { show: false }, ...s }));
+  if (!published.length) { series.pop(); }
   const columns = [loads, inside(curve.load_n, curve.friction_n), inside(curve.load_n, curve.band_low_n), inside(curve.load_n, curve.band_high_n),
     ...others.map((other) => inside(other.load_n, other.friction_n)),
-    loads.map((x) => published.find((p) => p.load_n === x)?.friction_n ?? null)];
+    ...(published.length ? [loads.map((x) => published.find((p) => p.load_n === x)?.friction_n ?? null)] : [])];
+  const markers = { width: 2, fill: (_, i) => (i === 3 ? COLOURS.band : series[i].label === 'measured' ? COLOURS.measured : 'transparent'),
+    stroke: (_, i) => (i === 3 ? COLOURS.band : series[i].label === 'measured' ? COLOURS.measured : series[i].stroke) };
   const axis = (label) => ({ label, stroke: ink, grid: { stroke: grid }, ticks: { stroke: grid } });
   byId('chart').replaceChildren();
   chart = new uPlot({
     width: byId('chart').clientWidth || 900, height: 360, scales: { x: { time: false } }, series, bands: [{ series: [3, 2], fill: COLOURS.band }],
+    legend: { live: false, markers }, cursor: { points: { show: false } },
     axes: [axis('load F (N)'), axis('friction D (N)')],
     hooks: { draw: [(u) => {
       const [x, y] = [u.valToPos(shownLoad, 'x', true), u.valToPos(at(curve.load_n, curve.friction_n, shownLoad), 'y', true)];
@@ -185,8 +267,13 @@ function drawChart(data) {
       u.ctx.arc(x, y, 7 * devicePixelRatio, 0, 2 * Math.PI);
       u.ctx.fillStyle = COLOURS.main;
       u.ctx.fill();
+      u.ctx.lineWidth = 2 * devicePixelRatio;
+      u.ctx.strokeStyle = dark() ? '#14181d' : '#fff';
+      u.ctx.stroke();
     }] },
   }, columns, byId('chart'));
+  // The lower edge of the band needs no name of its own.
+  [...chart.root.querySelectorAll('.u-series')].find((row) => row.textContent.includes('band, low'))?.remove();
 }
 
 // ---- tables and downloads -----------------------------------------------------------------------------------------
@@ -250,13 +337,23 @@ function fillTables(data) {
   const files = data.meshes.filter((m) => m.file).map((m) => [m.file, () => download(m.file, stl(m), 'model/stl')]);
   files.push(['manifest.json', () => download('manifest.json', JSON.stringify(manifest, null, 2), 'application/json')]);
   files.push(['friction.csv', () => download('friction.csv', data.friction_csv, 'text/csv')]);
-  byId('files').replaceChildren(...files.map(([name, save]) => {
+  const held = new Set(files.map(([name]) => name));
+  const saves = files.map(([name, save]) => {
     const item = make('li');
     const button = make('button', `Save ${name}`, { type: 'button' });
     button.addEventListener('click', save);
     item.append(button);
     return item;
-  }));
+  });
+  // What is not in this page lies beside it; a live preview has written nothing yet.
+  const beside = data.live ? [] : manifest.files.map((f) => f.file).filter((name) => !held.has(name) && name !== 'report.html');
+  const links = beside.map((name) => {
+    const item = make('li');
+    item.append(make('a', name, { href: encodeURI(name), download: name }));
+    return item;
+  });
+  byId('files').replaceChildren(...saves, ...links);
+  byId('beside').hidden = !links.length;
 }
 
 // ---- the whole ----------------------------------------------------------------------------------------------------
@@ -266,7 +363,7 @@ let current;
 const hidden = new Set();
 
 function fillBodies(data) {
-  const names = data.bodies.map((b) => b.name).concat(data.contact.angle_rad.length ? ['tendon'] : []);
+  const names = [...new Set(data.bodies.map((b) => groupOf(b.name)))].concat(data.contact.angle_rad.length ? ['tendon'] : []);
   const rows = names.map((name) => {
     const label = make('label', undefined, { class: 'row' });
     const box = make('input', undefined, { type: 'checkbox' });

@@ -12,6 +12,10 @@ mod vertex_join;
 
 pub use dxf::dxf;
 pub use plate::lay_out;
+#[cfg(feature = "brep")]
+pub use step::{ReadSolid, StepFile, StepReadError, read_step};
 pub use step::{StepPart, step_assembly, step_part};
 pub use stl::{StlError, StlFile, read_stl, stl_bytes};
-pub use three_mf::{Object, Package, ThreeMfError, three_mf};
+pub use three_mf::{
+    Object, Package, PackagedMesh, ThreeMf, ThreeMfError, ThreeMfReadError, read_three_mf, three_mf,
+};

@@ -135,20 +135,19 @@ impl<'a> Surface<'a> {
         };
         low <= inner_low
             && inner_high <= high
-            && inner.first_corner().is_some_and(|corner| self.winding(corner).abs() > 0.5)
+            && inner.first_corner().is_some_and(|corner| winding(self.facets(), corner).abs() > 0.5)
     }
+}
 
-    /// Winding number of a closed surface about `point`: its solid angle over a full sphere (van Oosterom & Strackee).
-    fn winding(&self, point: Point3) -> f64 {
-        let half_angles: f64 = self
-            .facets()
-            .map(|corners| {
-                let [a, b, c] = corners.map(|p| p - point);
-                let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
-                let down = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
-                a.dot(&b.cross(&c)).atan2(down)
-            })
-            .sum();
-        half_angles / TAU
-    }
+/// Winding number of a closed surface about `point`: its solid angle over a full sphere (van Oosterom & Strackee).
+pub(super) fn winding(facets: impl Iterator<Item = [Point3; 3]>, point: Point3) -> f64 {
+    let half_angles: f64 = facets
+        .map(|corners| {
+            let [a, b, c] = corners.map(|p| p - point);
+            let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+            let down = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+            a.dot(&b.cross(&c)).atan2(down)
+        })
+        .sum();
+    half_angles / TAU
 }

@@ -8,6 +8,7 @@ mod facet_tree;
 mod facets;
 mod fans;
 mod intersections;
+mod overlap;
 mod plane;
 mod stars;
 mod tally;
@@ -15,6 +16,8 @@ mod triangle_pair;
 mod walls;
 
 use serde::Serialize;
+
+pub use overlap::shared_place;
 
 use crate::mesh::{Mesh, Point3, mean};
 use crate::parallel;

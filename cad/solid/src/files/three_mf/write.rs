@@ -1,4 +1,4 @@
-//! 3MF (core specification 1.4): every printed part as a named object on one plate, in one deterministic package.
+//! Writes a package: every printed part as a named object on one plate, byte for byte the same every time.
 
 use std::fmt::Write as _;
 use std::io::{Cursor, Write as _};
@@ -6,7 +6,8 @@ use std::io::{Cursor, Write as _};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::plate::lay_out;
+use super::{CORE, MODEL_TYPE, OWN};
+use crate::files::plate::lay_out;
 use crate::mesh::Mesh;
 
 /// A printed part.
@@ -38,11 +39,7 @@ pub struct Package {
 #[error("3MF: {0}")]
 pub struct ThreeMfError(#[from] zip::result::ZipError);
 
-const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
-/// Namespace of our own metadata.
-const OWN: &str = "urn:pinswitch:configuration:1";
 const RELATIONSHIPS: &str = "http://schemas.openxmlformats.org/package/2006/relationships";
-const MODEL_TYPE: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 const THUMBNAIL_TYPE: &str =
     "http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail";
 /// Relationship of an attachment that means nothing to a printer.

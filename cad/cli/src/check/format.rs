@@ -1,0 +1,158 @@
+//! Kinds of files that can be checked: how each is recognised, read and examined.
+
+use std::io::{BufRead, Read, Seek};
+
+use pinswitch_solid::files::{read_stl, read_three_mf};
+use pinswitch_solid::validity::{Examination, Expectation, Fault, examine};
+
+use super::verdict::PartVerdict;
+
+/// A kind of file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    Stl,
+    ThreeMf,
+    Step,
+}
+
+/// What the file as a whole is wrong about, and its parts.
+type Parts = (Vec<Fault>, Vec<PartVerdict>);
+
+impl Format {
+    /// By how a file begins. What is none of the others may be an STL, or is refused as one.
+    pub(super) fn of(head: &[u8]) -> Self {
+        let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
+        if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
+            Self::ThreeMf
+        } else if text.starts_with(b"ISO-10303-21") {
+            Self::Step
+        } else {
+            Self::Stl
+        }
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Stl => "stl",
+            Self::ThreeMf => "3mf",
+            Self::Step => "step",
+        }
+    }
+
+    /// Longest file that is examined, in bytes: a mesh takes several times that.
+    pub(super) fn longest(self) -> u64 {
+        match self {
+            Self::Stl => 2 << 30,
+            Self::ThreeMf => 512 << 20,
+            Self::Step => 256 << 20,
+        }
+    }
+}
+
+/// Examines an STL.
+pub(super) fn stl(reader: &mut (impl BufRead + Seek), expected: &Expectation) -> Result<Examination, String> {
+    let stl = read_stl(reader).map_err(|e| e.to_string())?;
+    let mut examination = examine(&stl.mesh, expected);
+    if stl.contrary_normals > 0 {
+        examination.faults.push(Fault {
+            check: "contrary normals",
+            count: stl.contrary_normals,
+            at_mm: None,
+            detail: format!("{} stored normals contradict the order of the corners", stl.contrary_normals),
+        });
+    }
+    Ok(examination)
+}
+
+/// Examines each solid object of a 3MF.
+pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<Parts, String> {
+    let mut bytes = Vec::new();
+    reader.read_to_end(&mut bytes).map_err(|e| format!("cannot read: {e}; give a file that can be read"))?;
+    let package = read_three_mf(&bytes).map_err(|e| e.to_string())?;
+    drop(bytes);
+    let each = Expectation { bodies: None, ..*expected };
+    let parts: Vec<PartVerdict> = package
+        .meshes
+        .iter()
+        .filter(|object| object.is_solid)
+        .map(|object| PartVerdict::new(object.name.clone(), examine(&object.mesh, &each)))
+        .collect();
+    let mut faults = package.faults;
+    if parts.is_empty() && faults.is_empty() {
+        faults.push(Fault {
+            check: "empty",
+            count: 0,
+            at_mm: None,
+            detail: "no object is a solid with a mesh".to_owned(),
+        });
+    }
+    Ok((faults, parts))
+}
+
+/// Solids of a STEP lie this many chord tolerances inside one another before they share space.
+#[cfg(feature = "brep")]
+const SHARED_TOLERANCES: f64 = 5.0;
+
+/// Examines each solid of a STEP, and whether those of an assembly share space.
+#[cfg(feature = "brep")]
+pub(super) fn step(
+    mut reader: impl Read,
+    expected: &Expectation,
+    tolerance_mm: f64,
+) -> Result<Parts, String> {
+    use pinswitch_solid::files::read_step;
+    use pinswitch_solid::mesh::Mesh;
+    use pinswitch_solid::profile::ChordTolerance;
+    use pinswitch_solid::validity::shared_place;
+
+    let mut bytes = Vec::new();
+    reader.read_to_end(&mut bytes).map_err(|e| format!("cannot read: {e}; give a file that can be read"))?;
+    let tolerance = ChordTolerance::new(tolerance_mm).map_err(|e| e.to_string())?;
+    // By the standard it is ASCII; names may be in whatever the program spoke.
+    let read = read_step(&String::from_utf8_lossy(&bytes), tolerance).map_err(|e| e.to_string())?;
+    let each = Expectation { bodies: None, ..*expected };
+    let mut parts = Vec::new();
+    let mut placed: Vec<(&str, Mesh)> = Vec::new();
+    for solid in &read.solids {
+        let mut examination = examine(&solid.mesh, &each);
+        if solid.untriangulated > 0 {
+            examination.faults.push(Fault {
+                check: "face",
+                count: solid.untriangulated,
+                at_mm: None,
+                detail: format!(
+                    "{} faces cannot be triangulated: their edges do not close on them",
+                    solid.untriangulated
+                ),
+            });
+        }
+        parts.push(PartVerdict::new(solid.name.clone(), examination));
+        for place in &solid.placements {
+            let positions = solid.mesh.positions.iter().map(|p| place.transform_point(p)).collect();
+            placed.push((&solid.name, Mesh::new(positions, solid.mesh.triangles.clone())));
+        }
+    }
+    let mut faults = read.faults;
+    // Only of closed solids can be told what lies inside.
+    if parts.iter().all(|part| part.valid) {
+        for (i, (name, mesh)) in placed.iter().enumerate() {
+            for (other, beside) in &placed[..i] {
+                if let Some(at) = shared_place(mesh, beside, SHARED_TOLERANCES * tolerance_mm) {
+                    faults.push(Fault {
+                        check: "overlap",
+                        count: 1,
+                        at_mm: Some(at),
+                        detail: format!("{other} and {name} share space"),
+                    });
+                }
+            }
+        }
+    }
+    Ok((faults, parts))
+}
+
+/// STEP is read through truck, which this build was made without.
+#[cfg(not(feature = "brep"))]
+pub(super) fn step(_: impl Read, _: &Expectation, _: f64) -> Result<Parts, String> {
+    Err("a STEP file, and this build reads none; build with --features brep".to_owned())
+}

@@ -1,0 +1,135 @@
+//! Reads STEP through truck: each solid's boundary representation, triangulated, in its place in the assembly.
+
+mod entities;
+mod placement;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use truck_meshalgo::prelude::{
+    Faces, MeshedShape, OptimizingFilter, PolygonMesh, RobustMeshableShape, StandardAttributes,
+};
+use truck_stepio::r#in::Table;
+
+use crate::mesh::{Mesh, Point3};
+use crate::profile::ChordTolerance;
+use crate::validity::Fault;
+use entities::Entities;
+use placement::{Isometry, Placements};
+
+/// A solid of a STEP file.
+#[derive(Clone, Debug)]
+pub struct ReadSolid {
+    /// Its name, or that of its product, or the number of its shell.
+    pub name: String,
+    /// Its boundary, triangulated, in its own frame; millimetres.
+    pub mesh: Mesh,
+    /// Where it stands: once for each time that it is used.
+    pub placements: Vec<Isometry>,
+    /// Faces that could not be triangulated.
+    pub untriangulated: usize,
+}
+
+/// What a STEP file holds.
+#[derive(Clone, Debug, Default)]
+pub struct StepFile {
+    /// Its solids, in the order of their numbers.
+    pub solids: Vec<ReadSolid>,
+    /// Where it contradicts itself.
+    pub faults: Vec<Fault>,
+}
+
+/// Why a file is no STEP that could be judged.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StepReadError {
+    /// It breaks the exchange structure (ISO 10303-21).
+    #[error("it is no whole STEP file: {0}; export it again")]
+    Malformed(String),
+    /// No boundary representation in it.
+    #[error("it holds no solid with faces; export solids as AP203, AP214 or AP242 boundary representations")]
+    NoSolid,
+    /// Its lengths cannot be told.
+    #[error("{0}; export it in millimetres")]
+    Unit(String),
+    /// It uses surfaces or curves that are not read.
+    #[error(
+        "{faces} of {of} faces of #{shell} are of kinds that are not read here, so that it cannot be judged; export planes, cylinders, cones, spheres, tori or B-splines"
+    )]
+    Unread {
+        /// The shell.
+        shell: u64,
+        /// Faces that are lost.
+        faces: usize,
+        /// All of its faces.
+        of: usize,
+    },
+    /// Truck gave up.
+    #[error("its surfaces cannot be followed; export it again, or by another program")]
+    Truck,
+}
+
+/// Reads a STEP file; curved faces are followed within `tolerance`.
+///
+/// # Errors
+/// [`StepReadError`] if there is no solid that could be judged.
+pub fn read_step(text: &str, tolerance: ChordTolerance) -> Result<StepFile, StepReadError> {
+    let entities = Entities::parse(text)?;
+    let unit_mm = entities.unit_mm()?;
+    let dangling = entities.dangling();
+    let mut found = StepFile::default();
+    if let Some(first) = dangling.first() {
+        found.faults.push(Fault {
+            check: "reference",
+            count: dangling.len(),
+            at_mm: None,
+            detail: format!("#{first} is referred to, and is not in the file"),
+        });
+    }
+    // A library for well-formed files may give up on others; nothing of it outlives the attempt.
+    let table = catch_unwind(|| Table::from_data_section(entities.section()));
+    let table = table.map_err(|_| StepReadError::Truck)?;
+    let mut shells: Vec<_> = table.shell.iter().collect();
+    shells.sort_by_key(|(id, _)| **id);
+    let placements = Placements::of(&entities, unit_mm);
+    for (id, holder) in shells {
+        let of = holder.cfs_faces.len();
+        let meshed = catch_unwind(AssertUnwindSafe(|| {
+            let shell = table.to_compressed_shell(holder).ok()?;
+            let meshed = shell.robust_triangulation(tolerance.mm() / unit_mm);
+            let untriangulated = meshed.faces.iter().filter(|face| face.surface.is_none()).count();
+            Some((shell.faces.len(), untriangulated, welded(&meshed.to_polygon(), unit_mm)))
+        }));
+        let (read, untriangulated, mesh) =
+            meshed.map_err(|_| StepReadError::Truck)?.ok_or(StepReadError::Truck)?;
+        if read < of && dangling.is_empty() {
+            return Err(StepReadError::Unread { shell: *id, faces: of - read, of });
+        }
+        let solid = entities.solid_of(*id);
+        let name = entities.name_of(*id).unwrap_or_else(|| format!("solid #{}", solid.unwrap_or(*id)));
+        let placements = solid.map_or_else(|| vec![Isometry::identity()], |solid| placements.of_solid(solid));
+        found.solids.push(ReadSolid { name, mesh, placements, untriangulated });
+    }
+    if found.solids.is_empty() {
+        return Err(StepReadError::NoSolid);
+    }
+    Ok(found)
+}
+
+/// Distance below which corners are one, in the file's unit: truck's own.
+const WELD: f64 = 1e-6;
+
+/// The triangles by position alone, in millimetres.
+fn welded(polygon: &PolygonMesh, unit_mm: f64) -> Mesh {
+    // Positions only: truck's cleaning also merges uv and normals, which is quadratic here (cad/doc/meshes.md).
+    let triangles: Vec<[usize; 3]> = polygon.faces().triangle_iter().map(|t| t.map(|v| v.pos)).collect();
+    let attributes =
+        StandardAttributes { positions: polygon.positions().clone(), ..StandardAttributes::default() };
+    let mut clean = PolygonMesh::new(attributes, Faces::from_iter(triangles));
+    clean.put_together_same_attrs(WELD).remove_degenerate_faces().remove_unused_attrs();
+    let positions = clean.positions().iter().map(|p| Point3::new(p.x, p.y, p.z) * unit_mm).collect();
+    let index = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);
+    Mesh::new(positions, clean.faces().triangle_iter().map(|t| t.map(|v| index(v.pos))).collect())
+}
+
+#[cfg(test)]
+mod tests;

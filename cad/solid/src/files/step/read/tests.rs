@@ -1,0 +1,77 @@
+//! Our own files read back, and what a STEP file may be wrong about.
+
+use super::*;
+use crate::files::{StepPart, step_assembly, step_part};
+use crate::pose::Pose;
+use crate::profile::{Contour, Point2};
+use crate::solid::Solid;
+use crate::validity::{Expectation, examine};
+
+fn fine() -> ChordTolerance {
+    ChordTolerance::new(0.005).unwrap()
+}
+
+/// A plate with a hole.
+fn plate() -> Solid {
+    let corner = |x, y| Point2::new(x, y);
+    let outline =
+        Contour::polygon(vec![corner(0.0, 0.0), corner(20.0, 0.0), corner(20.0, 10.0), corner(0.0, 10.0)]);
+    let hole = Contour::circle(Point2::new(8.0, 5.0), 3.0).reversed();
+    Solid::prism(&outline, &[hole], 0.0, 5.0, 0.0).unwrap()
+}
+
+fn text() -> String {
+    step_part(StepPart { name: "plate", solid: &plate() })
+}
+
+#[test]
+fn what_is_written_is_read_with_its_name_place_and_volume() {
+    let solid = plate();
+    let found = read_step(&text(), fine()).unwrap();
+    assert!(found.faults.is_empty() && found.solids.len() == 1, "{found:?}");
+    let read = &found.solids[0];
+    assert_eq!((read.name.as_str(), read.untriangulated), ("plate", 0));
+    assert!(examine(&read.mesh, &Expectation::default()).is_valid());
+    let exact = solid.volume_mm3();
+    assert!((read.mesh.volume_mm3() / exact - 1.0).abs() < 2e-3, "{} {exact}", read.mesh.volume_mm3());
+
+    let part = StepPart { name: "plate", solid: &solid };
+    let two = [(part, Pose::upright(0.0)), (part, Pose::upright(7.0))];
+    let found = read_step(&step_assembly("two", &two), fine()).unwrap();
+    let mut heights: Vec<f64> =
+        found.solids.iter().flat_map(|s| &s.placements).map(|placed| placed[(2, 3)]).collect();
+    heights.sort_by(f64::total_cmp);
+    assert_eq!(heights, [0.0, 7.0]);
+}
+
+#[test]
+fn units_are_heard() {
+    let volume = |text: &str| read_step(text, fine()).unwrap().solids[0].mesh.volume_mm3();
+    let (text, milli) = (text(), ".MILLI.,.METRE.");
+    assert!(text.contains(milli));
+    let of_mm = volume(&text);
+    let centi = volume(&text.replace(milli, ".CENTI.,.METRE."));
+    assert!((centi / of_mm - 1e3).abs() < 5.0, "{centi} {of_mm}");
+    let refused = |text: &str| read_step(text, fine()).unwrap_err().to_string();
+    assert!(refused(&text.replace(milli, ".YOCTO.,.METRE.")).contains("is not known here"));
+    assert!(refused(&text.replace("GLOBAL_UNIT_ASSIGNED_CONTEXT", "NOTHING")).contains("no unit of length"));
+}
+
+#[test]
+fn what_is_broken_is_named() {
+    let text = text();
+    let refused = |text: &str| read_step(text, fine()).unwrap_err().to_string();
+    for cut in [10, text.len() / 2, text.len() - 20] {
+        assert!(refused(&text[..cut]).contains("no whole STEP file"), "{cut}");
+    }
+    assert!(refused(&text.replace("HEADER;", "")).contains("no whole STEP file"));
+    assert!(refused(&text.replace("FILE_SCHEMA", "FILE_SCHEMA_")).contains("names no schema"));
+    assert!(refused(&text.replace("CYLINDRICAL_SURFACE", "SURFACE_OF_NOTHING")).contains("not read here"));
+    // A face that is not there.
+    let shell = text.find("CLOSED_SHELL('',(#").unwrap() + "CLOSED_SHELL('',(#".len();
+    let end = shell + text[shell..].find(',').unwrap();
+    let dangling = format!("{}99999{}", &text[..shell], &text[end..]);
+    let found = read_step(&dangling, fine()).unwrap();
+    assert_eq!(found.faults[0].check, "reference");
+    assert!(!examine(&found.solids[0].mesh, &Expectation::default()).is_valid());
+}

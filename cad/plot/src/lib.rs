@@ -20,6 +20,7 @@
 mod calibration;
 mod calibration_page;
 mod contact;
+pub mod drawing;
 mod finger;
 mod friction;
 mod front;

@@ -1,0 +1,375 @@
+//! The sheet of one part: front view, view from above, section, details, and every dimension once.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::body::{Body, Side};
+use super::dimensions::{self, Wanted};
+use super::elevation::{Stroke, elevation};
+use super::features::{Features, features, is_lettering};
+use super::layout::{Layout, Sizes, choices};
+use super::plan::{Place, Trace, draw, plan, within};
+use super::section::Face;
+use super::words;
+use crate::design::Design;
+use crate::parts::Part;
+use pinswitch_plot::drawing::{
+    Callout, Draft, Extent, Layer, Leader, Linear, Paper, Point, Projection, Shape, Sheet, Text, TitleBlock,
+};
+use pinswitch_solid::pose::Pose;
+use pinswitch_solid::profile::{Point2, polar};
+
+/// Scales of details, the largest first.
+const DETAIL_SCALES: [f64; 6] = [20.0, 10.0, 5.0, 2.0, 1.0, 0.5];
+/// Between hatching lines, mm on paper.
+pub(super) const HATCH_MM: f64 = 1.8;
+/// The axis is shown where it lies no further from the part, mm on paper.
+const AXIS_NEAR_MM: f64 = 26.0;
+
+/// What is drawn on a sheet.
+pub(super) struct Subject<'a> {
+    pub(super) design: &'a Design,
+    pub(super) part: &'a Part,
+    pub(super) title: TitleBlock,
+    pub(super) asked: Paper,
+    features: Features,
+    low: nalgebra::Point3<f64>,
+    high: nalgebra::Point3<f64>,
+}
+
+/// A part of the front view that is drawn larger.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Detail {
+    pub(super) middle: Point2,
+    pub(super) radius_mm: f64,
+    pub(super) turn_rad: f64,
+    pub(super) is_slot: bool,
+}
+
+/// The sheet of `part`; nothing for a part without extent.
+pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked: Paper) -> Option<Sheet> {
+    let (low, high) = part.solid.bounds()?;
+    let chamfer_mm = design.configuration().print.elephant_foot_mm;
+    let features = features(&part.solid, chamfer_mm, design.half_span_rad());
+    let subject = Subject { design, part, title, asked, features, low, high };
+    let all = choices(asked);
+    for (paper, scale) in &all {
+        if let Some((sheet, left)) = subject.attempt(*paper, *scale, &[])
+            && left.is_empty()
+        {
+            return Some(sheet);
+        }
+    }
+    // What finds no room anywhere is written among the notes of the first sheet that holds the views.
+    all.iter().find_map(|(paper, scale)| {
+        let (_, left) = subject.attempt(*paper, *scale, &[])?;
+        subject.attempt(*paper, *scale, &left).map(|(sheet, _)| sheet)
+    })
+}
+
+impl Subject<'_> {
+    /// The sheet in this size, and what found no room on it. `written` stands among the notes.
+    fn attempt(&self, paper: Paper, scale: f64, written: &[Wanted]) -> Option<(Sheet, Vec<Wanted>)> {
+        let title = TitleBlock { scale: Sheet::scale_text(scale), ..self.title.clone() };
+        let projection = title.projection;
+        let mut draft = Draft::new(paper, &title);
+        let details = self.details(scale);
+        let reach = if paper == Paper::A4 { 20.0 } else { 27.0 };
+        let sizes = Sizes {
+            front: self.front_extent(scale),
+            depth_mm: (self.high.z - self.low.z) * scale,
+            detail_mm: reach,
+            details: details.len(),
+            table_mm: 0.0,
+        };
+        let layout = Layout::on(&draft, &sizes, projection)?;
+        let side = if projection == Projection::First { Side::Left } else { Side::Right };
+        let cut_x = self.cut_x(side);
+        let place = Place::straight(layout.front, scale);
+        let chamfer = self.design.configuration().print.elephant_foot_mm;
+        let lines = plan(&self.part.solid, false, chamfer);
+        let view = draft.view("FRONT", layout.front, scale);
+        draw(&mut draft, &lines, &place, view);
+        self.view_from_above(&mut draft, &layout, scale);
+        let section = self.section(&mut draft, &layout, scale, side, cut_x);
+        let on_front = sizes.front;
+        let front = Extent { low: on_front.low + layout.front, high: on_front.high + layout.front };
+        self.centre_lines(&mut draft, &place, front, cut_x);
+        let top = self.mark_top(scale, front);
+        section_mark(&mut draft, place.at(Point2::new(cut_x, 0.0)).x, [front.low.y - 2.0, top], layout.section_sense);
+        let mut failed = !draft.place_title("section title", "A\u{2013}A", 3.5, section);
+        let mut notes = words::notes(self.design, self.part, &self.features, self.has_lettering());
+        notes.extend(written.iter().map(|w| format!("{}: {}", w.key, w.lines.join(", "))));
+        let room = draft.sheet().title_block.low.x - paper.frame().low.x - 6.0;
+        draft.notes(&notes, room);
+        let mut placed = Vec::new();
+        for (i, (detail, middle)) in details.iter().zip(&layout.details).enumerate() {
+            let letter = char::from(b'B' + i as u8).to_string();
+            placed.push(self.detail(&mut draft, detail, *middle, reach, &lines, &letter)?);
+        }
+        let is_written = |key: &str| written.iter().any(|w| w.key == key);
+        let mut left = Vec::new();
+        let mut try_all = |draft: &mut Draft, all: Vec<Wanted>| {
+            for wanted in all {
+                if !is_written(&wanted.key) && !wanted.place(draft) {
+                    left.push(wanted);
+                }
+            }
+        };
+        let outermost = self.features.axis_arcs.first().map_or(0.0, |a| a[0].radius_mm);
+        try_all(&mut draft, self.heights(&layout, scale, section));
+        try_all(&mut draft, dimensions::angles(&self.features, self.design.half_span_rad(), &place, outermost));
+        for (detail, place) in details.iter().zip(&placed) {
+            try_all(&mut draft, dimensions::of_detail(self.design, self.part, &self.features, detail, place, reach));
+        }
+        for (i, (detail, _)) in details.iter().zip(&placed).enumerate() {
+            let letter = char::from(b'B' + i as u8).to_string();
+            let (at, radius) = (place.at(detail.middle), detail.radius_mm * scale);
+            let group = draft.group();
+            draft.put(Layer::Thin, Shape::Circle { centre: at, radius_mm: radius }, None, group);
+            let mark = Callout {
+                key: format!("mark of detail {letter}"),
+                lines: vec![letter],
+                leaders: Leader::around(at, radius),
+                is_balloon: false,
+            };
+            failed |= !mark.place(&mut draft);
+        }
+        if self.features.axis_arcs.is_empty() {
+            try_all(&mut draft, dimensions::rectangular(&self.features, &place, front, (self.low, self.high)));
+        }
+        try_all(&mut draft, dimensions::callouts(self.design, self.part, &self.features, &place, &details));
+        (!failed).then(|| (draft.finished(self.part.name.clone(), scale), left))
+    }
+
+    /// The front view on paper about the part's origin, with the axis if it is near.
+    fn front_extent(&self, scale: f64) -> Extent {
+        let mut extent = Extent {
+            low: Point::new(self.low.x, self.low.y) * scale,
+            high: Point::new(self.high.x, self.high.y) * scale,
+        };
+        let is_about_axis = !self.features.axis_arcs.is_empty();
+        if is_about_axis && extent.low.y > -3.0 && extent.low.y < AXIS_NEAR_MM {
+            extent.low.y = -3.0;
+        }
+        extent
+    }
+
+    fn has_lettering(&self) -> bool {
+        self.part.solid.rings().any(|(contour, _)| is_lettering(contour))
+    }
+
+    /// Where the section is cut: through what has most to show, as near to the middle as it lies.
+    fn cut_x(&self, side: Side) -> f64 {
+        let f = &self.features;
+        let bottom = self.low.z;
+        let pegs = f.rounds.iter().filter(|r| !r.is_hole && r.levels[0].0 > bottom + 1e-9);
+        let blind = f.rounds.iter().filter(|r| r.is_blind);
+        let holes = f.rounds.iter().filter(|r| r.is_hole && !r.is_blind);
+        let xs = |points: Vec<Point2>| points.into_iter().map(|p| p.x).collect::<Vec<f64>>();
+        let slots = |is_blind: bool| {
+            let of_kind = f.slots.iter().filter(move |s| s.is_blind == is_blind);
+            xs(of_kind.flat_map(|s| s.places.iter().map(|p| p.0)).collect())
+        };
+        let ranked = [
+            xs(pegs.flat_map(|r| r.centres.clone()).collect()),
+            xs(blind.flat_map(|r| r.centres.clone()).collect()),
+            slots(true),
+            xs(holes.flat_map(|r| r.centres.clone()).collect()),
+            slots(false),
+            if f.arc_slots.is_empty() { Vec::new() } else { vec![0.0] },
+            xs(f.roundings.iter().filter(|r| r.is_half_round).flat_map(|r| r.arcs.iter().map(|a| a.centre)).collect()),
+        ];
+        let sense = if side == Side::Left { 1.0 } else { -1.0 };
+        let middle = if f.axis_arcs.is_empty() { f64::midpoint(self.low.x, self.high.x) } else { 0.0 };
+        let nearest = |all: &Vec<f64>| {
+            // Of two that are as near, the one that leaves more to be seen behind it.
+            let key = |x: f64| (x - middle).abs() + 1e-6 * sense * (x - middle);
+            all.iter().copied().min_by(|a, b| key(*a).total_cmp(&key(*b)))
+        };
+        ranked.iter().find_map(nearest).unwrap_or(middle)
+    }
+
+    /// Grooves and slots that are drawn larger.
+    fn details(&self, scale: f64) -> Vec<Detail> {
+        let is_axial = !self.features.axis_arcs.is_empty();
+        let mut all = Vec::new();
+        let nearest = |points: &[Point2]| {
+            points.iter().copied().min_by(|a, b| words::angle_rad(*a).abs().total_cmp(&words::angle_rad(*b).abs()))
+        };
+        let turn = |p: Point2| if is_axial { words::angle_rad(p) } else { 0.0 };
+        for rounding in self.features.roundings.iter().filter(|r| r.is_half_round) {
+            let centres: Vec<Point2> = rounding.arcs.iter().map(|a| a.centre).collect();
+            if let Some(middle) = nearest(&centres) {
+                let radius_mm = 2.4 * rounding.radius_mm;
+                all.push(Detail { middle, radius_mm, turn_rad: turn(middle), is_slot: false });
+            }
+        }
+        for slot in self.features.slots.iter().filter(|_| is_axial) {
+            let centres: Vec<Point2> = slot.places.iter().map(|p| p.0).collect();
+            let Some(outer) = nearest(&centres) else { continue };
+            let half = f64::midpoint(slot.travel_mm(), slot.width_mm);
+            let angle = words::angle_rad(outer);
+            let middle = polar(outer.coords.norm() - slot.travel_mm() / 2.0, angle);
+            all.push(Detail { middle, radius_mm: 1.6 * half, turn_rad: turn(outer), is_slot: true });
+        }
+        // A detail that would not be larger than the view itself is none.
+        all.retain(|d| d.radius_mm * scale < 40.0);
+        all
+    }
+
+    fn view_from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
+        let origin = Point::new(layout.front.x, layout.above_mm);
+        let view = draft.view("ABOVE", origin, scale);
+        let body = Body::seen(&self.part.solid, Pose::upright(-self.low.z), Side::Above);
+        let seen = elevation(&[body], None);
+        // Above, z grows toward the eye of the front view: down on paper.
+        let at = |p: [f64; 2]| origin + Point::new(p[0], -p[1]) * scale;
+        let group = draft.group();
+        for (layer, strokes) in [(Layer::Visible, &seen.visible), (Layer::Hidden, &seen.hidden)] {
+            put_strokes(draft, layer, strokes, at, view, group);
+        }
+    }
+
+    /// The section with its hatching; returns what it covers.
+    fn section(&self, draft: &mut Draft, layout: &Layout, scale: f64, side: Side, cut_x: f64) -> Extent {
+        let origin = Point::new(layout.section_mm, layout.front.y);
+        let view = draft.view("SECTION_A", origin, scale);
+        let sense = layout.section_sense;
+        let at = |p: [f64; 2]| origin + Point::new(sense * p[1], p[0]) * scale;
+        let body = Body::seen(&self.part.solid, Pose::upright(-self.low.z), side);
+        let cut = if side == Side::Left { -cut_x } else { cut_x };
+        let face = Face::of(&body, cut);
+        let seen = elevation(&[body], Some(cut));
+        let group = draft.group();
+        put_strokes(draft, Layer::Visible, &super::elevation::joined(&[face.outline(), seen.visible.clone()].concat(), &[]), at, view, group);
+        put_strokes(draft, Layer::Hatch, &face.hatch(HATCH_MM / scale, true), at, view, group);
+        let ends = seen.visible.iter().flatten().copied().chain(face.outline().into_iter().flatten());
+        ends.map(|p| Extent::between(at(p), at(p))).reduce(Extent::joined).unwrap_or(Extent::between(origin, origin))
+    }
+
+    /// Where the mark of the section begins above the front view: beyond the angles that are written there.
+    fn mark_top(&self, scale: f64, front: Extent) -> f64 {
+        let f = &self.features;
+        let patterns = usize::from(!f.ends.is_empty())
+            + f.roundings.iter().filter(|r| r.is_half_round && r.arcs.len() > 2).count()
+            + f.slots.iter().filter(|s| s.places.len() > 2).count();
+        let angles = if f.axis_arcs.is_empty() || patterns == 0 { 0.0 } else { 7.0 + 6.0 * patterns as f64 };
+        let _ = scale;
+        front.high.y + 2.0 + angles
+    }
+
+    /// The plane of symmetry, the axis, pitch circles and middles of holes.
+    fn centre_lines(&self, draft: &mut Draft, place: &Place, front: Extent, cut_x: f64) {
+        let group = draft.group();
+        let f = &self.features;
+        let mut line = |from: Point, to: Point| draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
+        let axis = place.at(Point2::origin());
+        if !f.axis_arcs.is_empty() {
+            if cut_x.abs() > 1e-6 {
+                line(Point::new(axis.x, front.low.y - 2.0), Point::new(axis.x, front.high.y + 3.0));
+            }
+            if axis.y > front.low.y - 1.0 {
+                let half = if front.low.y < axis.y - 4.0 { front.width() / 2.0 + 3.0 } else { 8.0 };
+                line(axis - Point::new(half, 0.0), axis + Point::new(half, 0.0));
+            }
+        }
+        for round in &f.rounds {
+            for centre in &round.centres {
+                let radius = round.levels.iter().map(|l| l.1).fold(0.0, f64::max) * place.scale;
+                let (at, reach) = (place.at(*centre), radius + 1.5);
+                let is_on_axis = centre.coords.norm() < 1e-6;
+                let along = if is_on_axis { Point::new(0.0, 1.0) } else { (at - axis).unit() };
+                line(at - along * reach, at + along * reach);
+                line(at - along.left() * reach, at + along.left() * reach);
+            }
+        }
+    }
+
+    /// The heights of the part's own faces over its bottom, measured in the section.
+    fn heights(&self, layout: &Layout, scale: f64, section: Extent) -> Vec<Wanted> {
+        let foot = section.low.y;
+        let x = |z: f64| layout.section_mm + layout.section_sense * z * scale;
+        let all = &self.features.heights_mm;
+        all.iter()
+            .map(|z| {
+                let key = if Some(z) == all.last() { "overall height".to_owned() } else { format!("height {}", words::number(*z)) };
+                Wanted::linear(Linear {
+                    key,
+                    text: words::number(*z),
+                    from: Point::new(x(0.0), foot),
+                    to: Point::new(x(*z), foot),
+                    upright: false,
+                    edge_mm: foot,
+                    outward: -1.0,
+                })
+            })
+            .collect()
+    }
+
+    /// Draws a detail; returns where it lies.
+    fn detail(
+        &self,
+        draft: &mut Draft,
+        detail: &Detail,
+        middle: Point,
+        reach_mm: f64,
+        lines: &[(Layer, Trace)],
+        letter: &str,
+    ) -> Option<Place> {
+        let scale = DETAIL_SCALES.into_iter().find(|s| detail.radius_mm * s <= reach_mm)?;
+        let place = Place { origin: middle, scale, about: detail.middle, turn_rad: detail.turn_rad };
+        let kept: Vec<(Layer, Trace)> = lines
+            .iter()
+            .flat_map(|(layer, t)| within(t, detail.middle, detail.radius_mm).into_iter().map(|t| (*layer, t)))
+            .collect();
+        let view = draft.view(format!("DETAIL_{letter}"), middle, scale);
+        draw(draft, &kept, &place, view);
+        let group = draft.group();
+        let radius_mm = detail.radius_mm * scale;
+        draft.put(Layer::Thin, Shape::Circle { centre: middle, radius_mm }, None, group);
+        let reach = radius_mm + 2.0;
+        for half in [Point::new(reach, 0.0), Point::new(0.0, reach)] {
+            let shift = if detail.is_slot && half.y == 0.0 { None } else { Some(Point::default()) };
+            if let Some(shift) = shift {
+                let (from, to) = (middle - half + shift, middle + half + shift);
+                draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
+            }
+        }
+        let corner = Point::new(radius_mm, radius_mm);
+        let around = Extent { low: middle - corner, high: middle + corner };
+        let title = format!("{letter} ({})", Sheet::scale_text(scale));
+        draft.place_title(&format!("title of detail {letter}"), &title, 3.5, around).then_some(place)
+    }
+}
+
+/// Draws strokes of a view from a side.
+pub(super) fn put_strokes(
+    draft: &mut Draft,
+    layer: Layer,
+    strokes: &[Stroke],
+    at: impl Fn([f64; 2]) -> Point,
+    view: usize,
+    group: usize,
+) {
+    for [from, to] in strokes {
+        draft.put(layer, Shape::Line { from: at(*from), to: at(*to) }, Some(view), group);
+    }
+}
+
+/// The plane of the section at `x`: a chain line through the view, thick beyond it, with arrows along the line of sight.
+pub(super) fn section_mark(draft: &mut Draft, x: f64, [low, high]: [f64; 2], sense: f64) {
+    let group = draft.group();
+    let line = |from: f64, to: f64| Shape::Line { from: Point::new(x, from), to: Point::new(x, to) };
+    draft.put(Layer::Centre, line(low, high), None, group);
+    for (from, to) in [(low, low - 5.0), (high, high + 5.0)] {
+        draft.put(Layer::Frame, line(from, to), None, group);
+        let foot = Point::new(x, f64::midpoint(from, to));
+        let direction = Point::towards(if sense > 0.0 { 0.0 } else { 2.0 * FRAC_PI_2 });
+        let tip = foot + direction * 6.0;
+        draft.put(Layer::Dimension, Shape::Line { from: foot, to: tip }, None, group);
+        draft.put(Layer::Dimension, Shape::Arrow { tip, direction }, None, group);
+        let at = foot + Point::new(if sense > 0.0 { -4.0 } else { 1.6 }, -1.75);
+        let letter = Text { at, height_mm: 3.5, content: "A".to_owned(), upright: false };
+        draft.put(Layer::Text, Shape::Text(letter), None, group);
+    }
+}

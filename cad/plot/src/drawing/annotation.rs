@@ -19,6 +19,8 @@ const EXTENSION_MM: f64 = 1.5;
 const FIRST_TIER_MM: f64 = 7.0;
 /// From one dimension line to the next, mm.
 const TIER_MM: f64 = 6.0;
+/// From one arc of an angle to the next, mm: level texts stick out of their arc.
+const ARC_TIER_MM: f64 = 8.0;
 /// How many dimension lines are tried.
 const TIERS: u32 = 14;
 
@@ -144,7 +146,7 @@ impl Angular {
         let width = text_width_mm(&self.text, TEXT_MM);
         let mut all = Vec::new();
         for tier in 0..TIERS {
-            let radius = self.edge_mm + FIRST_TIER_MM + TIER_MM * f64::from(tier);
+            let radius = self.edge_mm + FIRST_TIER_MM + ARC_TIER_MM * f64::from(tier);
             let on = |angle: f64, r: f64| self.centre + Point::towards(angle) * r;
             let mut common = vec![(
                 Layer::Dimension,
@@ -184,7 +186,7 @@ impl Angular {
                 let mut shapes = common.clone();
                 let at = middle - Point::new(width / 2.0, TEXT_MM / 2.0);
                 shapes.push((Layer::Text, text(at, &self.text, false)));
-                all.push((TIER_MM * f64::from(tier) + 6.0 * (share - 0.5).abs() + (r - radius - 2.0).max(0.0), shapes));
+                all.push((ARC_TIER_MM * f64::from(tier) + 6.0 * (share - 0.5).abs() + (r - radius - 2.0).max(0.0), shapes));
             }
         }
         all
@@ -297,15 +299,23 @@ fn baselines(y: f64) -> impl Iterator<Item = f64> {
 }
 
 impl Draft {
-    /// Writes `content`, with capitals of `height_mm`, as near below or beside `around` as there is room: the title of a
-    /// view.
-    pub fn place_title(&mut self, key: &str, content: &str, height_mm: f64, around: super::Extent) -> bool {
+    /// Writes `content`, with capitals of `height_mm`, as near above or below `around` as there is room: the title of a
+    /// view. Whether there was room.
+    pub fn place_title(
+        &mut self,
+        key: &str,
+        content: &str,
+        height_mm: f64,
+        around: super::Extent,
+        is_above: bool,
+    ) -> bool {
         let width = text_width_mm(content, height_mm);
         let middle = around.middle();
         let mut all = Vec::new();
         for step in 0..40 {
             let away = 3.0 + f64::from(step);
-            for (cost, y) in [(0.0, around.low.y - away - height_mm), (3.0, around.high.y + away)] {
+            let (below, above) = if is_above { (8.0, 0.0) } else { (0.0, 8.0) };
+            for (cost, y) in [(below, around.low.y - away - height_mm), (above, around.high.y + away)] {
                 for shift in [0.0, -10.0, 10.0, -20.0, 20.0, -35.0, 35.0] {
                     let at = Point::new(middle.x - width / 2.0 + shift, y);
                     let shape =

@@ -1,10 +1,10 @@
 //! The sheet of the assembly: assembled, from above, cut open, with balloons and the list of its parts.
 
 use super::body::{Body, Side};
-use super::elevation::{elevation, joined};
+use super::elevation::{Elevation, elevation, joined, legible};
 use super::features::is_lettering;
-use super::layout::{Layout, Sizes, choices};
-use super::part_sheet::{HATCH_MM, put_strokes, section_mark};
+use super::layout::{Layout, Sizes, choices_of_assembly};
+use super::part_sheet::{CROWDED_MM, HATCH_MM, put_strokes, section_mark};
 use super::parts_list::{Item, items};
 use super::plan::{Place, Trace, draw, plan};
 use super::section::Face;
@@ -27,6 +27,11 @@ struct Assembly<'a> {
     title: TitleBlock,
     /// Lowest and highest z.
     z_mm: (f64, f64),
+    above: Elevation,
+    /// Where the section is cut, the face of each body there, and what is seen behind it.
+    cut_x: f64,
+    faces: Vec<Face>,
+    behind: Elevation,
 }
 
 /// The sheet of the assembly.
@@ -39,8 +44,36 @@ pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, asked: Paper) -> 
         Some((height(low.z).min(height(high.z)), height(low.z).max(height(high.z))))
     });
     let z_mm = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-    let assembly = Assembly { design: built.design(), items: items(built), bodies, title, z_mm };
-    choices(asked).into_iter().find_map(|(paper, scale)| assembly.attempt(paper, scale))
+    let design = built.design();
+    let side = if title.projection == Projection::First { Side::Left } else { Side::Right };
+    let cut_x = cut_x(design);
+    let cut = if side == Side::Left { -cut_x } else { cut_x };
+    let from_side = seen(&bodies, z_mm.0, side);
+    let assembly = Assembly {
+        design,
+        items: items(built),
+        above: elevation(&seen(&bodies, z_mm.0, Side::Above), None),
+        cut_x,
+        faces: from_side.iter().map(|body| Face::of(body, cut)).collect(),
+        behind: elevation(&from_side, Some(cut)),
+        bodies,
+        title,
+        z_mm,
+    };
+    choices_of_assembly(asked).into_iter().find_map(|(paper, scale)| assembly.attempt(paper, scale))
+}
+
+/// Through the pin that lies nearest to the middle.
+fn cut_x(design: &Design) -> f64 {
+    let radius = design.contact_radius_mm();
+    let xs = design.pin_angles_rad().into_iter().map(|a| polar(radius, a).x);
+    xs.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
+}
+
+/// The bodies from a side, the lowest at z = 0.
+fn seen(bodies: &[(&Part, Pose)], lowest_mm: f64, side: Side) -> Vec<Body> {
+    let place = |pose: &Pose| Pose { z_mm: pose.z_mm - lowest_mm, ..*pose };
+    bodies.iter().map(|(part, pose)| Body::seen(&part.solid, place(pose), side)).collect()
 }
 
 impl Assembly<'_> {
@@ -59,16 +92,15 @@ impl Assembly<'_> {
         let layout = Layout::on(&draft, &sizes, projection)?;
         let block = draft.sheet().title_block;
         table.draw(&mut draft, Point::new(block.high.x, block.high.y));
-        let side = if projection == Projection::First { Side::Left } else { Side::Right };
-        let cut_x = self.cut_x();
+        let cut_x = self.cut_x;
         let place = Place::straight(layout.front, scale);
         self.front(&mut draft, &place);
         self.from_above(&mut draft, &layout, scale);
-        let (section, inside) = self.section(&mut draft, &layout, scale, side, cut_x);
+        let (section, inside) = self.section(&mut draft, &layout, scale);
         let front = Extent { low: sizes.front.low + layout.front, high: sizes.front.high + layout.front };
         let mark = [front.low.y - 2.0, front.high.y + 2.0];
         section_mark(&mut draft, place.at(Point2::new(cut_x, 0.0)).x, mark, layout.section_sense);
-        if !draft.place_title("section title", "A\u{2013}A", 3.5, section) {
+        if !draft.place_title("section title", "A-A", 3.5, section, true) {
             return None;
         }
         let is_placed = self.overall(&mut draft, section)
@@ -90,13 +122,6 @@ impl Assembly<'_> {
             ));
         }
         if extent.low.y > 0.0 && extent.low.y < 26.0 { extent.joined(Extent::between(axis, axis)) } else { extent }
-    }
-
-    /// Through the pin that lies nearest to the middle.
-    fn cut_x(&self) -> f64 {
-        let radius = self.design.contact_radius_mm();
-        let xs = self.design.pin_angles_rad().into_iter().map(|a| polar(radius, a).x);
-        xs.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
     }
 
     /// What lies on top, what it hides of shell, layer and pins, and the tendon.
@@ -144,21 +169,13 @@ impl Assembly<'_> {
         vec![Trace::Arc(Arc { centre: Point2::origin(), radius_mm, start_rad: FRAC_PI_2 - wrap / 2.0, sweep_rad: wrap })]
     }
 
-    fn seen(&self, side: Side) -> Vec<Body> {
-        let shift = -self.z_mm.0;
-        self.bodies
-            .iter()
-            .map(|(part, pose)| Body::seen(&part.solid, Pose { z_mm: pose.z_mm + shift, ..*pose }, side))
-            .collect()
-    }
-
     fn from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
         let origin = Point::new(layout.front.x, layout.above_mm);
         let view = draft.view("ABOVE", origin, scale);
-        let seen = elevation(&self.seen(Side::Above), None);
+        let visible = legible(&self.above.visible, &[], CROWDED_MM / scale);
         let at = |p: [f64; 2]| origin + Point::new(p[0], -p[1]) * scale;
         let group = draft.group();
-        put_strokes(draft, Layer::Visible, &seen.visible, at, view, group);
+        put_strokes(draft, Layer::Visible, &visible, at, view, group);
     }
 
     /// The section: each body hatched its own way, pins not at all. Returns what it covers, and a place in each body.
@@ -167,21 +184,16 @@ impl Assembly<'_> {
         draft: &mut Draft,
         layout: &Layout,
         scale: f64,
-        side: Side,
-        cut_x: f64,
     ) -> (Extent, Vec<(String, Point)>) {
         let origin = Point::new(layout.section_mm, layout.front.y);
         let view = draft.view("SECTION_A", origin, scale);
         let at = |p: [f64; 2]| origin + Point::new(layout.section_sense * p[1], p[0]) * scale;
-        let cut = if side == Side::Left { -cut_x } else { cut_x };
-        let bodies = self.seen(side);
-        let seen = elevation(&bodies, Some(cut));
         let group = draft.group();
-        let mut outlines = seen.visible;
+        let mut outlines: Vec<_> = self.faces.iter().flat_map(Face::outline).collect();
+        let behind = legible(&self.behind.visible, &outlines, CROWDED_MM / scale);
+        outlines.extend(behind);
         let mut inside = Vec::new();
-        for (i, ((part, _), body)) in self.bodies.iter().zip(&bodies).enumerate() {
-            let face = Face::of(body, cut);
-            outlines.extend(face.outline());
+        for (i, ((part, _), face)) in self.bodies.iter().zip(&self.faces).enumerate() {
             if let Some(place) = face.inside() {
                 inside.push((part.name.clone(), at(place)));
             }

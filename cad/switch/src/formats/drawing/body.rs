@@ -80,37 +80,6 @@ impl Curve {
         all
     }
 
-    /// The coordinates along the other axis at which the curve crosses `value` along `axis`.
-    pub(super) fn crossings(&self, axis: usize, value: f64, found: &mut Vec<f64>) {
-        let other = 1 - axis;
-        match *self {
-            Self::Line(a, b) => {
-                // Half open, so that a corner counts once.
-                if (a[axis] <= value) != (b[axis] <= value) {
-                    let share = (value - a[axis]) / (b[axis] - a[axis]);
-                    found.push(a[other] + (b[other] - a[other]) * share);
-                }
-            }
-            Self::Arc(c, r, start, sweep) => {
-                if (value - c[axis]).abs() > r {
-                    return;
-                }
-                let mut shares = self.turns(axis);
-                shares.insert(0, 0.0);
-                shares.push(1.0);
-                for pair in shares.windows(2) {
-                    let (p, q) = (self.at(pair[0]), self.at(pair[1]));
-                    if (p[axis] <= value) != (q[axis] <= value) {
-                        let middle = start + sweep * f64::midpoint(pair[0], pair[1]);
-                        let side = if axis == 0 { middle.sin() } else { middle.cos() };
-                        let reach = (r * r - (value - c[axis]).powi(2)).max(0.0).sqrt();
-                        found.push(c[other] + reach * side.signum());
-                    }
-                }
-            }
-        }
-    }
-
     /// The curve between this one and `other`, which has the same form.
     fn between(&self, other: &Self, share: f64) -> Self {
         let mix = |a: f64, b: f64| a + (b - a) * share;
@@ -125,9 +94,65 @@ impl Curve {
     }
 }
 
+/// A piece of a curve that does not turn back along an axis: where it begins and ends, and how it gets there.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    low: f64,
+    high: f64,
+    /// Of a line: the other coordinate at `low`, and its slope. Of an arc: centre, radius and side.
+    path: Path,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Path {
+    Line(f64, f64),
+    Arc([f64; 2], f64, f64),
+}
+
+impl Run {
+    fn all(curves: &[Curve], axis: usize) -> Vec<Self> {
+        let other = 1 - axis;
+        let mut runs = Vec::new();
+        for curve in curves {
+            let mut shares = curve.turns(axis);
+            shares.insert(0, 0.0);
+            shares.push(1.0);
+            for pair in shares.windows(2) {
+                let (p, q) = (curve.at(pair[0]), curve.at(pair[1]));
+                let (a, b) = if p[axis] <= q[axis] { (p, q) } else { (q, p) };
+                if b[axis] - a[axis] <= 0.0 {
+                    continue;
+                }
+                let path = match curve {
+                    Curve::Line(..) => Path::Line(a[other], (b[other] - a[other]) / (b[axis] - a[axis])),
+                    Curve::Arc(c, r, start, sweep) => {
+                        let middle = start + sweep * f64::midpoint(pair[0], pair[1]);
+                        let side = if axis == 0 { middle.sin() } else { middle.cos() };
+                        Path::Arc([c[axis], c[other]], *r, side.signum())
+                    }
+                };
+                runs.push(Self { low: a[axis], high: b[axis], path });
+            }
+        }
+        runs
+    }
+
+    /// The other coordinate where the run passes `value`, its lower end excepted: a corner counts once.
+    fn crossing(&self, value: f64) -> Option<f64> {
+        (self.low < value && value <= self.high).then(|| match self.path {
+            Path::Line(at, slope) => at + slope * (value - self.low),
+            Path::Arc([c, other], r, side) => {
+                other + side * (r * r - (value - c) * (value - c)).max(0.0).sqrt()
+            }
+        })
+    }
+}
+
 /// A wall between two closed runs of curves.
 #[derive(Clone, Debug)]
 pub(super) struct Wall {
+    /// What an upright wall is at every height, along both axes; nothing for a slanted one.
+    runs: Option<[Vec<Run>; 2]>,
     pub(super) lower: Vec<Curve>,
     pub(super) upper: Vec<Curve>,
     pub(super) from_mm: f64,
@@ -160,16 +185,15 @@ impl Body {
             .filter(|(lower, _)| !is_lettering(rings[*lower].0))
             .map(|(lower, upper)| {
                 let curves = |i: usize| seen_contour(rings[i].0, pose.flipped, side);
-                let wall = Wall {
-                    lower: curves(lower),
-                    upper: curves(upper),
-                    from_mm: height(rings[lower].1),
-                    to_mm: height(rings[upper].1),
-                };
-                if pose.flipped {
-                    Wall { lower: wall.upper, upper: wall.lower, from_mm: wall.to_mm, to_mm: wall.from_mm }
-                } else {
-                    wall
+                let (first, last) = if pose.flipped { (upper, lower) } else { (lower, upper) };
+                let is_upright = rings[lower].0 == rings[upper].0;
+                let foot = curves(first);
+                Wall {
+                    runs: is_upright.then(|| [Run::all(&foot, 0), Run::all(&foot, 1)]),
+                    lower: foot,
+                    upper: curves(last),
+                    from_mm: height(rings[first].1),
+                    to_mm: height(rings[last].1),
                 }
             })
             .collect();
@@ -183,8 +207,12 @@ impl Body {
     /// Where the body begins and ends along `w`, over the line at `u` and `z`: ascending, in pairs.
     pub(super) fn crossings(&self, axis: usize, value: f64, z: f64, found: &mut Vec<f64>) {
         for wall in self.walls.iter().filter(|w| w.from_mm < z && z < w.to_mm) {
-            for curve in wall.curves_at(z) {
-                curve.crossings(axis, value, found);
+            match &wall.runs {
+                Some(runs) => found.extend(runs[axis].iter().filter_map(|r| r.crossing(value))),
+                None => {
+                    let curves: Vec<Curve> = wall.curves_at(z).collect();
+                    found.extend(Run::all(&curves, axis).iter().filter_map(|r| r.crossing(value)));
+                }
             }
         }
     }

@@ -109,7 +109,6 @@ pub(super) fn of_detail(
     f: &Features,
     detail: &Detail,
     place: &Place,
-    reach_mm: f64,
 ) -> Vec<Wanted> {
     let mut all = Vec::new();
     if !detail.is_slot {
@@ -130,7 +129,6 @@ pub(super) fn of_detail(
     let (half, travel) = (slot.width_mm / 2.0 * place.scale, slot.travel_mm() * place.scale);
     let outer = place.origin + Point::new(0.0, travel / 2.0);
     let radius = detail.radius_mm * place.scale;
-    let _ = reach_mm;
     all.push(Wanted::linear(Linear {
         key: numbered("slot width", i),
         text: words::slot_width(slot),
@@ -217,7 +215,13 @@ pub(super) fn callouts(
                 start_rad: FRAC_PI_2 - from,
                 sweep_rad: from - to,
             };
-            on_arc(&arc(pieces.outer_mm), place, &[0.4, 0.6], 0.0)
+            // The outer edge may be pointed at aslant, so as to pass what is written there.
+            on_arc(&arc(pieces.outer_mm), place, &[0.4, 0.6], 8.0).into_iter().flat_map(|leader| {
+                [-0.7, -0.3, 0.0, 0.3, 0.7].map(|turn: f64| {
+                    let angle = leader.direction.angle_rad() + turn;
+                    Leader { direction: Point::towards(angle), cost_mm: 8.0 - leader.cost_mm, ..leader }
+                })
+            }).collect::<Vec<_>>()
         });
         all.push(Wanted::callout(numbered("lip", i), words::pieces(pieces, &slots), leaders.collect()));
     }
@@ -259,10 +263,12 @@ fn slots_and_roundings(
     for (i, slot) in f.slots.iter().enumerate().filter(|_| !has_slot_detail) {
         let leaders = slot.places.iter().flat_map(|(a, b)| {
             let middle = place.at(nalgebra::center(a, b));
-            [1.0, -1.0].map(|side| Leader {
-                tip: middle + Point::new(side * slot.width_mm / 2.0 * place.scale, 0.0),
-                direction: Point::new(side * 0.5, -1.0).unit(),
-                cost_mm: 0.0,
+            [1.0, -1.0].into_iter().flat_map(move |side| {
+                [-1.0, 1.0, -0.4, 0.4].map(|rise| Leader {
+                    tip: middle + Point::new(side * slot.width_mm / 2.0 * place.scale, 0.0),
+                    direction: Point::new(side * 0.5, rise).unit(),
+                    cost_mm: 0.0,
+                })
             })
         });
         let mut lines = vec![format!("{} \u{d7} {}", words::slot_width(slot), words::number(slot.travel_mm()))];

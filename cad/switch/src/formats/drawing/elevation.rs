@@ -10,7 +10,7 @@ const BESIDE_MM: f64 = 2e-5;
 /// By how much material may lie nearer than an edge without hiding it, mm: a slope seen beside its own edge.
 const NEARER_MM: f64 = 4e-3;
 /// Longest piece of an edge that is judged by one look, as a share of the view.
-const PIECE_SHARE: f64 = 1.0 / 120.0;
+const PIECE_SHARE: f64 = 1.0 / 60.0;
 
 /// A straight line of a view: both ends as `[u, z]`.
 pub(super) type Stroke = [[f64; 2]; 2];
@@ -227,6 +227,31 @@ pub(super) fn joined(strokes: &[Stroke], over: &[Stroke]) -> Vec<Stroke> {
     result
 }
 
+/// `strokes` without those that lie nearer than `apart_mm` beside a longer one, or one of `kept`, over most of their length:
+/// a black patch tells nobody anything.
+pub(super) fn legible(strokes: &[Stroke], kept: &[Stroke], apart_mm: f64) -> Vec<Stroke> {
+    let length = |s: &Stroke| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1]);
+    let mut longest: Vec<&Stroke> = strokes.iter().collect();
+    longest.sort_by(|a, b| length(b).total_cmp(&length(a)));
+    let mut all: Vec<Stroke> = Vec::new();
+    for stroke in longest {
+        let Some([c, s]) = direction_of(stroke) else { continue };
+        let split = |p: [f64; 2]| (p[0] * c + p[1] * s, p[1] * c - p[0] * s);
+        let ((a, off), (b, _)) = (split(stroke[0]), split(stroke[1]));
+        let (low, high) = (a.min(b), a.max(b));
+        let is_crowded = all.iter().chain(kept).any(|other| {
+            let ((p, near), (q, far)) = (split(other[0]), split(other[1]));
+            let is_parallel = (near - far).abs() < 1e-4;
+            let shared = high.min(p.max(q)) - low.max(p.min(q));
+            is_parallel && (near - off).abs() < apart_mm && shared > 0.8 * (high - low)
+        });
+        if !is_crowded {
+            all.push(*stroke);
+        }
+    }
+    all
+}
+
 fn direction_of(stroke: &Stroke) -> Option<[f64; 2]> {
     let d = [stroke[1][0] - stroke[0][0], stroke[1][1] - stroke[0][1]];
     let length = d[0].hypot(d[1]);
@@ -305,6 +330,16 @@ mod tests {
         // Cut between the two, only the far one is there.
         let behind = elevation(&both, Some(3.0));
         assert!((length(&behind.visible) - 36.0).abs() < 1e-3 && behind.hidden.is_empty());
+    }
+
+    #[test]
+    fn lines_that_crowd_are_thinned() {
+        let upright = |u: f64, high: f64| [[u, 0.0], [u, high]];
+        let strokes = [upright(0.0, 5.0), upright(0.3, 5.0), upright(0.6, 5.0), upright(1.1, 5.0), upright(0.3, 20.0)];
+        assert_eq!(legible(&strokes, &[], 0.5), [upright(0.3, 20.0), upright(1.1, 5.0)]);
+        assert_eq!(legible(&strokes[..1], &[upright(0.2, 9.0)], 0.5), Vec::<Stroke>::new());
+        // What crosses does not crowd.
+        assert_eq!(legible(&[upright(0.0, 5.0), [[-1.0, 2.0], [1.0, 2.0]]], &[], 0.5).len(), 2);
     }
 
     #[test]

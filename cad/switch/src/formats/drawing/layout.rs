@@ -9,7 +9,7 @@ const LEAST_ON_A4: f64 = 1.0;
 /// Left of the front view: room for what is written there, mm.
 const LEFT_MM: f64 = 38.0;
 /// Above the front view: room for angles and the mark of the section, mm.
-const ABOVE_MM: f64 = 34.0;
+const ABOVE_MM: f64 = 36.0;
 /// Between the front view and the view below or above it, mm.
 const BETWEEN_MM: f64 = 17.0;
 /// Between the front view and the section, mm.
@@ -28,6 +28,12 @@ pub(super) fn choices(asked: Paper) -> Vec<(Paper, f64)> {
     // A4 was too small for the largest scales: on A3 they are no aim.
     let on_a3 = SCALES.iter().filter(|s| **s <= least_on_a3).map(|s| (Paper::A3, *s));
     on_a4.chain(on_a3).collect()
+}
+
+/// The same for the assembly, which needs more room beside its list of parts, and less exactness: a larger scale comes first.
+pub(super) fn choices_of_assembly(asked: Paper) -> Vec<(Paper, f64)> {
+    let on_a4 = [(Paper::A4, 5.0), (Paper::A4, 2.0)].into_iter().filter(|_| asked == Paper::A4);
+    on_a4.chain(SCALES.iter().map(|s| (Paper::A3, *s))).collect()
 }
 
 /// What is to be laid out: sizes on paper, mm.

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::body::{Body, Side};
 use super::dimensions::{self, Wanted};
-use super::elevation::{Stroke, elevation};
+use super::elevation::{Elevation, Stroke, elevation, joined, legible};
 use super::features::{Features, features, is_lettering};
 use super::layout::{Layout, Sizes, choices};
 use super::plan::{Place, Trace, draw, plan, within};
@@ -22,6 +22,8 @@ use pinswitch_solid::profile::{Point2, polar};
 const DETAIL_SCALES: [f64; 6] = [20.0, 10.0, 5.0, 2.0, 1.0, 0.5];
 /// Between hatching lines, mm on paper.
 pub(super) const HATCH_MM: f64 = 1.8;
+/// Parallel lines of a view from a side are no nearer to each other than this, mm on paper.
+pub(super) const CROWDED_MM: f64 = 0.8;
 /// The axis is shown where it lies no further from the part, mm on paper.
 const AXIS_NEAR_MM: f64 = 26.0;
 
@@ -30,8 +32,13 @@ pub(super) struct Subject<'a> {
     pub(super) design: &'a Design,
     pub(super) part: &'a Part,
     pub(super) title: TitleBlock,
-    pub(super) asked: Paper,
     features: Features,
+    /// What is seen from above.
+    above: Elevation,
+    /// Where the section is cut, its face, and what is seen behind it.
+    cut_x: f64,
+    face: Face,
+    behind: Elevation,
     low: nalgebra::Point3<f64>,
     high: nalgebra::Point3<f64>,
 }
@@ -50,7 +57,15 @@ pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked:
     let (low, high) = part.solid.bounds()?;
     let chamfer_mm = design.configuration().print.elephant_foot_mm;
     let features = features(&part.solid, chamfer_mm, design.half_span_rad());
-    let subject = Subject { design, part, title, asked, features, low, high };
+    let side = if title.projection == Projection::First { Side::Left } else { Side::Right };
+    let cut_x = cut_x(&features, side, (low, high));
+    let cut = if side == Side::Left { -cut_x } else { cut_x };
+    let seen = |side| Body::seen(&part.solid, Pose::upright(-low.z), side);
+    let above = elevation(&[seen(Side::Above)], None);
+    let body = seen(side);
+    let face = Face::of(&body, cut);
+    let behind = elevation(&[body], Some(cut));
+    let subject = Subject { design, part, title, features, above, cut_x, face, behind, low, high };
     let all = choices(asked);
     for (paper, scale) in &all {
         if let Some((sheet, left)) = subject.attempt(*paper, *scale, &[])
@@ -82,21 +97,20 @@ impl Subject<'_> {
             table_mm: 0.0,
         };
         let layout = Layout::on(&draft, &sizes, projection)?;
-        let side = if projection == Projection::First { Side::Left } else { Side::Right };
-        let cut_x = self.cut_x(side);
+        let cut_x = self.cut_x;
         let place = Place::straight(layout.front, scale);
         let chamfer = self.design.configuration().print.elephant_foot_mm;
         let lines = plan(&self.part.solid, false, chamfer);
         let view = draft.view("FRONT", layout.front, scale);
         draw(&mut draft, &lines, &place, view);
         self.view_from_above(&mut draft, &layout, scale);
-        let section = self.section(&mut draft, &layout, scale, side, cut_x);
+        let section = self.section(&mut draft, &layout, scale);
         let on_front = sizes.front;
         let front = Extent { low: on_front.low + layout.front, high: on_front.high + layout.front };
         self.centre_lines(&mut draft, &place, front, cut_x);
-        let top = self.mark_top(scale, front);
+        let top = self.mark_top(front);
         section_mark(&mut draft, place.at(Point2::new(cut_x, 0.0)).x, [front.low.y - 2.0, top], layout.section_sense);
-        let mut failed = !draft.place_title("section title", "A\u{2013}A", 3.5, section);
+        let mut failed = !draft.place_title("section title", "A-A", 3.5, section, true);
         let mut notes = words::notes(self.design, self.part, &self.features, self.has_lettering());
         notes.extend(written.iter().map(|w| format!("{}: {}", w.key, w.lines.join(", "))));
         let room = draft.sheet().title_block.low.x - paper.frame().low.x - 6.0;
@@ -119,7 +133,7 @@ impl Subject<'_> {
         try_all(&mut draft, self.heights(&layout, scale, section));
         try_all(&mut draft, dimensions::angles(&self.features, self.design.half_span_rad(), &place, outermost));
         for (detail, place) in details.iter().zip(&placed) {
-            try_all(&mut draft, dimensions::of_detail(self.design, self.part, &self.features, detail, place, reach));
+            try_all(&mut draft, dimensions::of_detail(self.design, self.part, &self.features, detail, place));
         }
         for (i, (detail, _)) in details.iter().zip(&placed).enumerate() {
             let letter = char::from(b'B' + i as u8).to_string();
@@ -158,37 +172,6 @@ impl Subject<'_> {
         self.part.solid.rings().any(|(contour, _)| is_lettering(contour))
     }
 
-    /// Where the section is cut: through what has most to show, as near to the middle as it lies.
-    fn cut_x(&self, side: Side) -> f64 {
-        let f = &self.features;
-        let bottom = self.low.z;
-        let pegs = f.rounds.iter().filter(|r| !r.is_hole && r.levels[0].0 > bottom + 1e-9);
-        let blind = f.rounds.iter().filter(|r| r.is_blind);
-        let holes = f.rounds.iter().filter(|r| r.is_hole && !r.is_blind);
-        let xs = |points: Vec<Point2>| points.into_iter().map(|p| p.x).collect::<Vec<f64>>();
-        let slots = |is_blind: bool| {
-            let of_kind = f.slots.iter().filter(move |s| s.is_blind == is_blind);
-            xs(of_kind.flat_map(|s| s.places.iter().map(|p| p.0)).collect())
-        };
-        let ranked = [
-            xs(pegs.flat_map(|r| r.centres.clone()).collect()),
-            xs(blind.flat_map(|r| r.centres.clone()).collect()),
-            slots(true),
-            xs(holes.flat_map(|r| r.centres.clone()).collect()),
-            slots(false),
-            if f.arc_slots.is_empty() { Vec::new() } else { vec![0.0] },
-            xs(f.roundings.iter().filter(|r| r.is_half_round).flat_map(|r| r.arcs.iter().map(|a| a.centre)).collect()),
-        ];
-        let sense = if side == Side::Left { 1.0 } else { -1.0 };
-        let middle = if f.axis_arcs.is_empty() { f64::midpoint(self.low.x, self.high.x) } else { 0.0 };
-        let nearest = |all: &Vec<f64>| {
-            // Of two that are as near, the one that leaves more to be seen behind it.
-            let key = |x: f64| (x - middle).abs() + 1e-6 * sense * (x - middle);
-            all.iter().copied().min_by(|a, b| key(*a).total_cmp(&key(*b)))
-        };
-        ranked.iter().find_map(nearest).unwrap_or(middle)
-    }
-
     /// Grooves and slots that are drawn larger.
     fn details(&self, scale: f64) -> Vec<Detail> {
         let is_axial = !self.features.axis_arcs.is_empty();
@@ -220,41 +203,40 @@ impl Subject<'_> {
     fn view_from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
         let origin = Point::new(layout.front.x, layout.above_mm);
         let view = draft.view("ABOVE", origin, scale);
-        let body = Body::seen(&self.part.solid, Pose::upright(-self.low.z), Side::Above);
-        let seen = elevation(&[body], None);
+        let apart = CROWDED_MM / scale;
+        let visible = legible(&self.above.visible, &[], apart);
+        let hidden = legible(&self.above.hidden, &self.above.visible, apart);
         // Above, z grows toward the eye of the front view: down on paper.
         let at = |p: [f64; 2]| origin + Point::new(p[0], -p[1]) * scale;
         let group = draft.group();
-        for (layer, strokes) in [(Layer::Visible, &seen.visible), (Layer::Hidden, &seen.hidden)] {
+        for (layer, strokes) in [(Layer::Visible, &visible), (Layer::Hidden, &hidden)] {
             put_strokes(draft, layer, strokes, at, view, group);
         }
     }
 
     /// The section with its hatching; returns what it covers.
-    fn section(&self, draft: &mut Draft, layout: &Layout, scale: f64, side: Side, cut_x: f64) -> Extent {
+    fn section(&self, draft: &mut Draft, layout: &Layout, scale: f64) -> Extent {
         let origin = Point::new(layout.section_mm, layout.front.y);
         let view = draft.view("SECTION_A", origin, scale);
         let sense = layout.section_sense;
         let at = |p: [f64; 2]| origin + Point::new(sense * p[1], p[0]) * scale;
-        let body = Body::seen(&self.part.solid, Pose::upright(-self.low.z), side);
-        let cut = if side == Side::Left { -cut_x } else { cut_x };
-        let face = Face::of(&body, cut);
-        let seen = elevation(&[body], Some(cut));
         let group = draft.group();
-        put_strokes(draft, Layer::Visible, &super::elevation::joined(&[face.outline(), seen.visible.clone()].concat(), &[]), at, view, group);
-        put_strokes(draft, Layer::Hatch, &face.hatch(HATCH_MM / scale, true), at, view, group);
-        let ends = seen.visible.iter().flatten().copied().chain(face.outline().into_iter().flatten());
-        ends.map(|p| Extent::between(at(p), at(p))).reduce(Extent::joined).unwrap_or(Extent::between(origin, origin))
+        let outline = self.face.outline();
+        let behind = legible(&self.behind.visible, &outline, CROWDED_MM / scale);
+        let visible = joined(&[outline, behind].concat(), &[]);
+        put_strokes(draft, Layer::Visible, &visible, at, view, group);
+        put_strokes(draft, Layer::Hatch, &self.face.hatch(HATCH_MM / scale, true), at, view, group);
+        let ends = visible.iter().flatten().map(|p| Extent::between(at(*p), at(*p)));
+        ends.reduce(Extent::joined).unwrap_or(Extent::between(origin, origin))
     }
 
     /// Where the mark of the section begins above the front view: beyond the angles that are written there.
-    fn mark_top(&self, scale: f64, front: Extent) -> f64 {
+    fn mark_top(&self, front: Extent) -> f64 {
         let f = &self.features;
         let patterns = usize::from(!f.ends.is_empty())
             + f.roundings.iter().filter(|r| r.is_half_round && r.arcs.len() > 2).count()
             + f.slots.iter().filter(|s| s.places.len() > 2).count();
-        let angles = if f.axis_arcs.is_empty() || patterns == 0 { 0.0 } else { 7.0 + 6.0 * patterns as f64 };
-        let _ = scale;
+        let angles = if f.axis_arcs.is_empty() || patterns == 0 { 0.0 } else { 7.0 + 8.0 * patterns as f64 };
         front.high.y + 2.0 + angles
     }
 
@@ -338,8 +320,42 @@ impl Subject<'_> {
         let corner = Point::new(radius_mm, radius_mm);
         let around = Extent { low: middle - corner, high: middle + corner };
         let title = format!("{letter} ({})", Sheet::scale_text(scale));
-        draft.place_title(&format!("title of detail {letter}"), &title, 3.5, around).then_some(place)
+        draft.place_title(&format!("title of detail {letter}"), &title, 3.5, around, false).then_some(place)
     }
+}
+
+/// Where the section is cut: through what has most to show, as near to the middle as it lies.
+fn cut_x(
+    f: &Features,
+    side: Side,
+    (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>),
+) -> f64 {
+    let bottom = low.z;
+    let pegs = f.rounds.iter().filter(|r| !r.is_hole && r.levels[0].0 > bottom + 1e-9);
+    let blind = f.rounds.iter().filter(|r| r.is_blind);
+    let holes = f.rounds.iter().filter(|r| r.is_hole && !r.is_blind);
+    let xs = |points: Vec<Point2>| points.into_iter().map(|p| p.x).collect::<Vec<f64>>();
+    let slots = |is_blind: bool| {
+        let of_kind = f.slots.iter().filter(move |s| s.is_blind == is_blind);
+        xs(of_kind.flat_map(|s| s.places.iter().map(|p| p.0)).collect())
+    };
+    let ranked = [
+        xs(pegs.flat_map(|r| r.centres.clone()).collect()),
+        xs(blind.flat_map(|r| r.centres.clone()).collect()),
+        slots(true),
+        xs(holes.flat_map(|r| r.centres.clone()).collect()),
+        slots(false),
+        if f.arc_slots.is_empty() { Vec::new() } else { vec![0.0] },
+        xs(f.roundings.iter().filter(|r| r.is_half_round).flat_map(|r| r.arcs.iter().map(|a| a.centre)).collect()),
+    ];
+    let sense = if side == Side::Left { 1.0 } else { -1.0 };
+    let middle = if f.axis_arcs.is_empty() { f64::midpoint(low.x, high.x) } else { 0.0 };
+    let nearest = |all: &Vec<f64>| {
+        // Of two that are as near, the one that leaves more to be seen behind it.
+        let key = |x: f64| (x - middle).abs() + 1e-6 * sense * (x - middle);
+        all.iter().copied().min_by(|a, b| key(*a).total_cmp(&key(*b)))
+    };
+    ranked.iter().find_map(nearest).unwrap_or(middle)
 }
 
 /// Draws strokes of a view from a side.

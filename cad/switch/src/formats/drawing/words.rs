@@ -191,7 +191,7 @@ pub(super) fn pieces(pieces: &Pieces, slots: &[f64]) -> Vec<String> {
 /// What ends are called that do not lie in a plane through the axis.
 pub(super) fn ends(shift_mm: f64, half_span_rad: f64) -> Vec<String> {
     vec![
-        format!("end face parallel to the plane"),
+        "end face parallel to the plane".to_owned(),
         format!("at \u{b1}{}, {} outside it", degrees(half_span_rad), number(shift_mm)),
     ]
 }

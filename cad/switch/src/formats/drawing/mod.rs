@@ -115,3 +115,6 @@ fn single_pin(built: &Built) -> Option<Part> {
     let solid = Solid::prism(&outline, &[], 0.0, built.design().pin_length_mm(), 0.0).ok()?;
     Some(Part { name: "pin".to_owned(), solid, pose: None, ..pin.clone() })
 }
+
+#[cfg(test)]
+mod tests;

@@ -53,6 +53,8 @@ pub struct Linear {
     pub edge_mm: f64,
     /// +1 if dimension lines move up or right from there, -1 down or left.
     pub outward: f64,
+    /// What a text beside its dimension line must stand clear of, along the line: where others have their extension lines.
+    pub clear_of: [f64; 2],
 }
 
 impl Linear {
@@ -104,8 +106,9 @@ impl Linear {
             }
             // Beside the line, which then reaches under the text.
             for after in [true, false] {
-                let start = if after { b + 3.5 } else { a - 3.5 - width };
-                let (from, to) = if after { (b, b + 3.5 + width) } else { (a - 3.5 - width, a) };
+                let [low, high] = self.clear_of;
+                let start = if after { b.max(high) + 3.5 } else { a.min(low) - 3.5 - width };
+                let (from, to) = if after { (b, start + width) } else { (start, a) };
                 let mut shapes = common.clone();
                 shapes.push(line(at(from, height), at(to, height)));
                 shapes.push((Layer::Text, text(at(start, height + above), &self.text, self.upright)));
@@ -228,7 +231,12 @@ pub struct Callout {
     pub leaders: Vec<Leader>,
     /// Whether the text is the number of a balloon, in a circle.
     pub is_balloon: bool,
+    /// Where it had better not be written.
+    pub avoid: Vec<super::Extent>,
 }
+
+/// How much further a leader goes rather than end where it had better not, mm.
+const AVOID_MM: f64 = 40.0;
 
 /// Radius of a balloon, mm.
 const BALLOON_MM: f64 = 4.0;
@@ -249,7 +257,9 @@ impl Callout {
         for leader in &self.leaders {
             for reach in REACHES_MM {
                 let elbow = leader.tip + leader.direction * reach;
-                let cost = leader.cost_mm + reach;
+                let around = super::Extent::between(elbow, elbow).grown(BALLOON_MM);
+                let is_bad = self.avoid.iter().any(|a| a.meets(around));
+                let cost = leader.cost_mm + reach + if is_bad { AVOID_MM } else { 0.0 };
                 if self.is_balloon {
                     all.push((cost, self.balloon(leader, elbow)));
                     continue;

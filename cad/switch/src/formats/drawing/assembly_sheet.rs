@@ -2,7 +2,7 @@
 
 use super::body::{Body, Side};
 use super::elevation::{Elevation, elevation, joined, legible};
-use super::features::is_lettering;
+use super::features::lettering;
 use super::layout::{Layout, Sizes, choices_of_assembly};
 use super::part_sheet::{CROWDED_MM, HATCH_MM, put_strokes, section_mark};
 use super::parts_list::{Item, items};
@@ -104,7 +104,7 @@ impl Assembly<'_> {
             return None;
         }
         let is_placed = self.overall(&mut draft, section)
-            && self.items.iter().all(|item| self.balloon(&mut draft, item, &place, &inside));
+            && self.items.iter().all(|item| self.balloon(&mut draft, item, &place, &inside, &[front, section]));
         is_placed.then(|| draft.finished("assembly", scale))
     }
 
@@ -220,6 +220,7 @@ impl Assembly<'_> {
             upright: false,
             edge_mm: section.low.y,
             outward: -1.0,
+            clear_of: [section.low.x, section.high.x],
         };
         linear.place(draft)
     }
@@ -238,7 +239,14 @@ impl Assembly<'_> {
     }
 
     /// The balloon of an item that can be seen; whether there was room.
-    fn balloon(&self, draft: &mut Draft, item: &Item, place: &Place, inside: &[(String, Point)]) -> bool {
+    fn balloon(
+        &self,
+        draft: &mut Draft,
+        item: &Item,
+        place: &Place,
+        inside: &[(String, Point)],
+        views: &[Extent],
+    ) -> bool {
         let fan = |tip: Point| {
             (0..24).map(move |i| Leader {
                 tip,
@@ -278,6 +286,7 @@ impl Assembly<'_> {
             lines: vec![item.number.to_string()],
             leaders,
             is_balloon: true,
+            avoid: views.to_vec(),
         };
         balloon.place(draft)
     }
@@ -287,7 +296,8 @@ impl Assembly<'_> {
         let of_name = self.bodies.iter().filter(|(part, _)| part.name == name);
         of_name
             .flat_map(|(part, pose)| {
-                let outline = part.solid.rings().map(|(c, _)| c).find(|c| !is_lettering(c));
+                let letters = lettering(&part.solid);
+                let outline = part.solid.rings().zip(letters).find(|(_, is)| !is).map(|((c, _), _)| c);
                 let corners = outline.map_or_else(Vec::new, |c: &Contour| c.corners().to_vec());
                 let sign = if pose.flipped { -1.0 } else { 1.0 };
                 corners.into_iter().map(move |p| place.at(Point2::new(sign * p.x, p.y)))

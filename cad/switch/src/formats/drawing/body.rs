@@ -8,7 +8,11 @@ use pinswitch_solid::profile::{Contour, Edge};
 use pinswitch_solid::solid::Solid;
 use std::f64::consts::{PI, TAU};
 
-use super::features::is_lettering;
+use super::features::lettering;
+
+/// Ends of curves are rounded to this, mm: neighbours meet in one number, so that what passes their corner crosses one of
+/// them, and not none or both.
+const GRID_MM: f64 = 1e-9;
 
 /// From where a part is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +122,8 @@ impl Run {
             shares.insert(0, 0.0);
             shares.push(1.0);
             for pair in shares.windows(2) {
-                let (p, q) = (curve.at(pair[0]), curve.at(pair[1]));
+                let snapped = |share: f64| curve.at(share).map(|x| (x / GRID_MM).round() * GRID_MM);
+                let (p, q) = (snapped(pair[0]), snapped(pair[1]));
                 let (a, b) = if p[axis] <= q[axis] { (p, q) } else { (q, p) };
                 if b[axis] - a[axis] <= 0.0 {
                     continue;
@@ -179,10 +184,11 @@ impl Body {
     /// `solid` in its place, seen from `side`. Engraved letters are left out: they are no shape of the part.
     pub(super) fn seen(solid: &Solid, pose: Pose, side: Side) -> Self {
         let rings: Vec<(&Contour, f64)> = solid.rings().collect();
+        let letters = lettering(solid);
         let height = |z: f64| if pose.flipped { pose.z_mm - z } else { pose.z_mm + z };
         let mut walls: Vec<Wall> = solid
             .walls()
-            .filter(|(lower, _)| !is_lettering(rings[*lower].0))
+            .filter(|(lower, _)| !letters[*lower])
             .map(|(lower, upper)| {
                 let curves = |i: usize| seen_contour(rings[i].0, pose.flipped, side);
                 let (first, last) = if pose.flipped { (upper, lower) } else { (lower, upper) };

@@ -39,7 +39,7 @@ impl Wanted {
 
     fn callout(key: impl Into<String>, lines: Vec<String>, leaders: Vec<Leader>) -> Self {
         let key = key.into();
-        let callout = Callout { key: key.clone(), lines: lines.clone(), leaders, is_balloon: false };
+        let callout = Callout { key: key.clone(), lines: lines.clone(), leaders, is_balloon: false, avoid: Vec::new() };
         Self { key, lines, form: Form::Callout(callout) }
     }
 
@@ -137,6 +137,7 @@ pub(super) fn of_detail(
         upright: false,
         edge_mm: place.origin.y + radius - 3.0,
         outward: 1.0,
+        clear_of: [place.origin.x - half, place.origin.x + half],
     }));
     all.push(Wanted::linear(Linear {
         key: numbered("slot travel", i),
@@ -146,6 +147,7 @@ pub(super) fn of_detail(
         upright: true,
         edge_mm: place.origin.x - radius + 3.0,
         outward: -1.0,
+        clear_of: [outer.y - travel, outer.y],
     }));
     let sides = [1.0, -1.0].into_iter().flat_map(|side| {
         (-2..=2).flat_map(move |step| {
@@ -333,7 +335,9 @@ pub(super) fn rectangular(
         };
         let outward = if is_far { 1.0 } else { -1.0 };
         let (from, to) = (place.at(from), place.at(to));
-        all.push(Wanted::linear(Linear { key, text, from, to, upright, edge_mm, outward }));
+        let clear_of = if upright { [from.y, to.y] } else { [from.x, to.x] };
+        let clear_of = [clear_of[0].min(clear_of[1]), clear_of[0].max(clear_of[1])];
+        all.push(Wanted::linear(Linear { key, text, from, to, upright, edge_mm, outward, clear_of }));
     };
     let corner = Point2::new(low.x, low.y);
     let mut rows: Vec<(&str, Vec<Point2>)> = Vec::new();

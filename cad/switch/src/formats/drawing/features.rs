@@ -13,9 +13,22 @@ const SAME_MM: f64 = 1e-6;
 /// Half-round grooves and ribs turn by more than this, corners by less.
 const HALF_ROUND_RAD: f64 = 2.2;
 
-/// Whether a contour is the outline of an engraved letter.
-pub(super) fn is_lettering(contour: &Contour) -> bool {
-    contour.edges().len() > MOST_CORNERS && contour.edges().iter().all(|e| matches!(e, Edge::Line))
+/// Which rings of a solid are outlines of engraved letters, or of islands in them.
+pub(super) fn lettering(solid: &Solid) -> Vec<bool> {
+    let rings: Vec<&Contour> = solid.rings().map(|(contour, _)| contour).collect();
+    let is_straight = |c: &Contour| c.edges().iter().all(|e| matches!(e, Edge::Line));
+    let is_letter = |c: &Contour| c.edges().len() > MOST_CORNERS && is_straight(c);
+    let letters: Vec<_> = rings.iter().filter(|c| is_letter(c)).map(|c| c.bounds()).collect();
+    rings
+        .iter()
+        .map(|contour| {
+            let (low, high) = contour.bounds();
+            let lies_in = |(a, b): &(Point2, Point2)| {
+                a.x < low.x && a.y < low.y && high.x < b.x && high.y < b.y
+            };
+            is_letter(contour) || (is_straight(contour) && letters.iter().any(lies_in))
+        })
+        .collect()
 }
 
 /// Whether two lengths or angles are the same.
@@ -107,6 +120,7 @@ pub(super) struct Features {
 struct Chain<'a> {
     rings: Vec<(&'a Contour, f64)>,
     is_blind: bool,
+    is_lettering: bool,
 }
 
 /// The features of `solid`, whose bottom edges have a chamfer of `chamfer_mm` and whose ends are parallel to the planes at
@@ -119,7 +133,7 @@ pub(super) fn features(solid: &Solid, chamfer_mm: f64, half_span_rad: f64) -> Fe
     for chain in chains(solid, chamfer_mm) {
         let (first, last) = (chain.rings[0], chain.rings[chain.rings.len() - 1]);
         let is_hole = first.0.area_mm2() < 0.0;
-        if is_lettering(first.0) {
+        if chain.is_lettering {
             continue;
         }
         if let Some((centre, _)) = circle(first.0) {
@@ -160,6 +174,7 @@ pub(super) fn features(solid: &Solid, chamfer_mm: f64, half_span_rad: f64) -> Fe
 fn chains(solid: &Solid, chamfer_mm: f64) -> Vec<Chain<'_>> {
     let rings: Vec<(&Contour, f64)> = solid.rings().collect();
     let walls: Vec<(usize, usize)> = solid.walls().collect();
+    let letters = lettering(solid);
     let floors: Vec<usize> = solid.caps().filter_map(|(_, members)| members.first().copied()).collect();
     let starts = walls.iter().filter(|(low, _)| !walls.iter().any(|(_, high)| high == low));
     starts
@@ -176,7 +191,7 @@ fn chains(solid: &Solid, chamfer_mm: f64) -> Vec<Chain<'_>> {
             if is_chamfer {
                 chain.remove(0);
             }
-            Chain { rings: chain, is_blind }
+            Chain { rings: chain, is_blind, is_lettering: letters[*low] }
         })
         .collect()
 }

@@ -4,8 +4,6 @@ use pinswitch_plot::drawing::{Draft, Extent, Paper, Point, Projection};
 
 /// Scales of views (ISO 5455), the largest first.
 const SCALES: [f64; 9] = [5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01];
-/// The least scale for which A4 is kept.
-const LEAST_ON_A4: f64 = 1.0;
 /// Left of the front view: room for what is written there, mm.
 const LEFT_MM: f64 = 38.0;
 /// Above the front view: room for angles and the mark of the section, mm.
@@ -21,13 +19,15 @@ const BELOW_MM: f64 = 8.0;
 /// Around a detail, for its dimensions and its title, mm: to the sides, and above and below.
 const AROUND_DETAIL_MM: (f64, f64) = (32.0, 26.0);
 
-/// Sheets and scales in the order in which they are tried: the asked size as long as its scale is no reduction, then A3.
+/// Sheets and scales in the order in which they are tried. A part that does not fit A4 at twice its size gets A3 for that,
+/// and then A4 before it is reduced.
 pub(super) fn choices(asked: Paper) -> Vec<(Paper, f64)> {
-    let on_a4 = SCALES.iter().filter(|s| asked == Paper::A4 && **s >= LEAST_ON_A4).map(|s| (Paper::A4, *s));
-    let least_on_a3 = if asked == Paper::A4 { LEAST_ON_A4 } else { f64::INFINITY };
-    // A4 was too small for the largest scales: on A3 they are no aim.
-    let on_a3 = SCALES.iter().filter(|s| **s <= least_on_a3).map(|s| (Paper::A3, *s));
-    on_a4.chain(on_a3).collect()
+    let on_a3 = SCALES.iter().map(|s| (Paper::A3, *s));
+    if asked == Paper::A3 {
+        return on_a3.collect();
+    }
+    let first = [(Paper::A4, 5.0), (Paper::A4, 2.0), (Paper::A3, 2.0), (Paper::A4, 1.0)];
+    first.into_iter().chain(on_a3.filter(|(_, s)| *s <= 1.0)).collect()
 }
 
 /// The same for the assembly, which needs more room beside its list of parts, and less exactness: a larger scale comes first.

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::body::{Body, Side};
 use super::dimensions::{self, Wanted};
 use super::elevation::{Elevation, Stroke, elevation, joined, legible};
-use super::features::{Features, features, is_lettering};
+use super::features::{Features, features, lettering};
 use super::layout::{Layout, Sizes, choices};
 use super::plan::{Place, Trace, draw, plan, within};
 use super::section::Face;
@@ -145,6 +145,7 @@ impl Subject<'_> {
                 lines: vec![letter],
                 leaders: Leader::around(at, radius),
                 is_balloon: false,
+                avoid: Vec::new(),
             };
             failed |= !mark.place(&mut draft);
         }
@@ -169,7 +170,7 @@ impl Subject<'_> {
     }
 
     fn has_lettering(&self) -> bool {
-        self.part.solid.rings().any(|(contour, _)| is_lettering(contour))
+        lettering(&self.part.solid).contains(&true)
     }
 
     /// Grooves and slots that are drawn larger.
@@ -283,6 +284,7 @@ impl Subject<'_> {
                     upright: false,
                     edge_mm: foot,
                     outward: -1.0,
+                    clear_of: [section.low.x, section.high.x],
                 })
             })
             .collect()

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::features::{circle, is_lettering, same};
+use super::features::{circle, lettering, same};
 use pinswitch_plot::drawing::{Draft, Layer, Point, Shape};
 use pinswitch_solid::profile::{Arc, Contour, Edge, Point2, Vector2};
 use pinswitch_solid::solid::{Facing, Solid};
@@ -73,11 +73,12 @@ pub(super) fn plan(solid: &Solid, from_below: bool, chamfer_mm: f64) -> Vec<(Lay
         })
         .map(|(low, _)| low)
         .collect();
+    let letters = lettering(solid);
     let mut lines = Vec::new();
     let mut drawn: Vec<&Contour> = Vec::new();
     for is_seen in [true, false] {
         for (i, (contour, _)) in rings.iter().enumerate() {
-            let is_lettering = is_lettering(contour);
+            let is_lettering = letters[i];
             let skips = is_seen != towards.contains(&i)
                 || drawn.contains(contour)
                 || (!is_seen && (feet.contains(&i) || is_lettering));

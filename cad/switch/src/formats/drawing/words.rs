@@ -8,6 +8,9 @@ use crate::design::Design;
 use crate::parts::{Material, Part, Role};
 use pinswitch_solid::profile::Point2;
 
+/// So many angles stand in one line of a list.
+const ANGLES_IN_LINE: usize = 5;
+
 /// A length or an angle with up to three digits behind the point.
 pub(super) fn number(value: f64) -> String {
     let text = format!("{value:.3}");
@@ -47,26 +50,26 @@ fn on_radius(places: &[Point2]) -> Vec<String> {
     }
     let mut angles: Vec<f64> = places.iter().map(|p| angle_rad(*p)).collect();
     angles.sort_by(f64::total_cmp);
-    let at = match angles[..] {
-        [a, b] if same(a, -b) => format!("\u{b1}{}", degrees(b)),
+    let mut at: Vec<String> = match angles[..] {
+        [a, b] if same(a, -b) => vec![format!("\u{b1}{}", degrees(b))],
         _ => match even_step(&angles) {
             Some((first, step)) => {
-                let steps = angles.len() - 1;
-                format!("{} + {steps} \u{d7} {}", degrees(first), degrees(step))
+                vec![format!("{} + {} \u{d7} {}", degrees(first), angles.len() - 1, degrees(step))]
             }
-            None => angles.iter().map(|a| degrees(*a)).collect::<Vec<_>>().join(", "),
+            None => angles.iter().map(|a| degrees(*a)).collect(),
         },
     };
-    let mut lines = vec![format!("on R{} at {at}", number(radius))];
-    // A long list of angles continues below.
-    while let Some(last) = lines.last().filter(|l| l.len() > 48 && l.contains(", ")).cloned() {
-        let cut = last[..48.min(last.len())].rfind(", ").map_or(last.len(), |i| i + 1);
-        if cut >= last.len() {
-            break;
+    let mut lines = vec![format!("on R{} at {}", number(radius), at.remove(0))];
+    for (i, angle) in at.into_iter().enumerate() {
+        // A long list of angles continues below.
+        match lines.last_mut() {
+            Some(line) if i % ANGLES_IN_LINE != ANGLES_IN_LINE - 2 => *line += &format!(", {angle}"),
+            Some(line) => {
+                *line += ",";
+                lines.push(angle);
+            }
+            None => {}
         }
-        lines.pop();
-        lines.push(last[..cut].to_owned());
-        lines.push(last[cut + 1..].to_owned());
     }
     lines
 }
@@ -83,6 +86,10 @@ pub(super) fn round(design: &Design, part: &Part, round: &Round) -> Vec<String> 
     let mut lines = match (round.is_hole, same(first.1, last.1)) {
         (true, true) if is_clearance => {
             vec![format!("{n}\u{d8}{low} H13 through, for {}", screw(design))]
+        }
+        // The outer ring of a 608 bearing measures 22 mm.
+        (true, true) if round.is_blind && part.name == "guide-pulley" => {
+            vec![format!("\u{d8}{low} +0.1/0, {depth} deep, for bearing 608")]
         }
         (true, true) if round.is_blind => vec![format!("{n}\u{d8}{low}, {depth} deep")],
         (true, true) => vec![format!("{n}\u{d8}{low} through")],
@@ -136,9 +143,10 @@ pub(super) fn slot(design: &Design, part: &Part, slot: &Slot) -> Vec<String> {
 /// What a slot along an arc is called.
 pub(super) fn arc_slot(slot: &ArcSlot) -> Vec<String> {
     let (low, high) = (number(slot.widths_mm.0), number(slot.widths_mm.1));
-    let width = if low == high { low } else { format!("{low}, {high} at the top") };
+    let width =
+        if low == high { format!("{low} wide") } else { format!("{low} wide, {high} at the top") };
     vec![
-        format!("slot along R{}, {width} wide", number(slot.radius_mm)),
+        format!("slot along R{}, {width}", number(slot.radius_mm)),
         format!("centres of its ends at \u{b1}{}", degrees(slot.half_rad)),
     ]
 }

@@ -165,11 +165,11 @@ impl Angular {
             let inside = sweep * radius > 2.0 * ARROW_MM + 1.0;
             for (angle, sense) in [(self.from_rad, -1.0), (self.to_rad, 1.0)] {
                 let sense = if inside { sense } else { -sense };
-                common.push(line(on(angle, self.begins_mm + EXTENSION_GAP_MM), on(angle, radius + EXTENSION_MM)));
-                common.push(arrow(
-                    on(angle, radius),
-                    Point::towards(angle + sense * (FRAC_PI_2 - turn)),
+                common.push(line(
+                    on(angle, self.begins_mm + EXTENSION_GAP_MM),
+                    on(angle, radius + EXTENSION_MM),
                 ));
+                common.push(arrow(on(angle, radius), Point::towards(angle + sense * (FRAC_PI_2 - turn))));
             }
             for share in [0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75, 0.15, 0.85] {
                 let angle = self.from_rad + sweep * share;
@@ -189,7 +189,10 @@ impl Angular {
                 let mut shapes = common.clone();
                 let at = middle - Point::new(width / 2.0, TEXT_MM / 2.0);
                 shapes.push((Layer::Text, text(at, &self.text, false)));
-                all.push((ARC_TIER_MM * f64::from(tier) + 6.0 * (share - 0.5).abs() + (r - radius - 2.0).max(0.0), shapes));
+                all.push((
+                    ARC_TIER_MM * f64::from(tier) + 6.0 * (share - 0.5).abs() + (r - radius - 2.0).max(0.0),
+                    shapes,
+                ));
             }
         }
         all
@@ -242,8 +245,8 @@ const AVOID_MM: f64 = 40.0;
 const BALLOON_MM: f64 = 4.0;
 /// Lengths of leader that are tried, mm.
 const REACHES_MM: [f64; 20] = [
-    4.0, 6.0, 8.0, 10.0, 12.0, 14.5, 17.0, 20.0, 23.0, 26.0, 30.0, 34.0, 38.0, 43.0, 48.0, 54.0, 60.0, 68.0, 78.0,
-    90.0,
+    4.0, 6.0, 8.0, 10.0, 12.0, 14.5, 17.0, 20.0, 23.0, 26.0, 30.0, 34.0, 38.0, 43.0, 48.0, 54.0, 60.0, 68.0,
+    78.0, 90.0,
 ];
 
 impl Callout {

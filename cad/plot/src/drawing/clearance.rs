@@ -52,7 +52,8 @@ pub fn collisions(sheet: &Sheet) -> Vec<Collision> {
                 });
             }
         }
-        let crossed = pieces.any(*extent, |p| p.group != *group && extent.is_crossed_by(p.ends[0], p.ends[1]));
+        let crossed =
+            pieces.any(*extent, |p| p.group != *group && extent.is_crossed_by(p.ends[0], p.ends[1]));
         if crossed {
             found.push(Collision { what: text.content.clone(), with: "a line".to_owned(), at: *extent });
         }
@@ -91,7 +92,12 @@ mod tests {
     use super::*;
 
     fn text(x: f64, y: f64, content: &str) -> Shape {
-        Shape::Text(Text { at: Point::new(x, y), height_mm: 2.5, content: content.to_owned(), upright: false })
+        Shape::Text(Text {
+            at: Point::new(x, y),
+            height_mm: 2.5,
+            content: content.to_owned(),
+            upright: false,
+        })
     }
 
     fn line(a: [f64; 2], b: [f64; 2]) -> Shape {
@@ -121,7 +127,8 @@ mod tests {
         assert_eq!(found(&[(0, text(250.0, 20.0, "R20"))]), ["R20 on the title block"]);
         assert_eq!(found(&[(0, line([250.0, 100.0], [250.0, 5.0]))]), ["a line on the frame"]);
         assert_eq!(found(&[(0, line([250.0, 100.0], [250.0, 20.0]))]), ["a line on the title block"]);
-        let arc = Shape::Arc { centre: Point::new(101.0, 141.0), radius_mm: 10.0, start_rad: 1.0, sweep_rad: 1.0 };
+        let arc =
+            Shape::Arc { centre: Point::new(101.0, 141.0), radius_mm: 10.0, start_rad: 1.0, sweep_rad: 1.0 };
         assert_eq!(found(&[(0, at), (1, arc)]), ["R20 on a line"]);
     }
 }

@@ -1,7 +1,7 @@
 //! A sheet in the making: what is written on it finds room where nothing else lies.
 
 use super::frame::{TITLE_HEIGHT_MM, TITLE_WIDTH_MM};
-use super::geometry::{Extent, Point, lines_cross};
+use super::geometry::{Extent, Point, lines_cover, lines_cross};
 use super::index::{Index, Piece};
 use super::sheet::{Annotation, Entity, Layer, Paper, Shape, Sheet, View};
 
@@ -13,6 +13,9 @@ const TEXT_GAP_MM: f64 = 0.9;
 const CROSSING_MM: f64 = 9.0;
 /// How much further rather than cross an edge, mm.
 const EDGE_CROSSING_MM: f64 = 2.5;
+
+/// How much further rather than lie on another line, mm.
+const COVERING_MM: f64 = 30.0;
 
 /// A way to write an annotation: how far it is from the best, mm, and its shapes.
 pub(super) type Candidate = (f64, Vec<(Layer, Shape)>);
@@ -32,8 +35,7 @@ impl Draft {
     pub fn bare(paper: Paper) -> Self {
         let frame = paper.frame();
         let corner = Point::new(frame.high.x, frame.low.y);
-        let title_block =
-            Extent::between(corner, corner + Point::new(-TITLE_WIDTH_MM, TITLE_HEIGHT_MM));
+        let title_block = Extent::between(corner, corner + Point::new(-TITLE_WIDTH_MM, TITLE_HEIGHT_MM));
         let sheet = Sheet {
             name: String::new(),
             paper,
@@ -115,9 +117,9 @@ impl Draft {
                 let wide = extent.grown(LINE_GAP_MM);
                 let is_out = !room.holds(extent) || extent.grown(1.0).meets(self.sheet.title_block);
                 if is_out
-                    || self.texts.any(extent.grown(TEXT_GAP_MM), |(other, _)| {
-                        extent.grown(TEXT_GAP_MM).meets(*other)
-                    })
+                    || self
+                        .texts
+                        .any(extent.grown(TEXT_GAP_MM), |(other, _)| extent.grown(TEXT_GAP_MM).meets(*other))
                     || self.pieces.any(wide, |p| wide.is_crossed_by(p.ends[0], p.ends[1]))
                 {
                     return None;
@@ -137,9 +139,17 @@ impl Draft {
                 {
                     return None;
                 }
+                // A long line lies in several cells of the index, and counts once.
+                let mut counted: Vec<[Point; 2]> = Vec::new();
                 self.pieces.any(extent, |p| {
-                    if lines_cross(p.ends, [a, b]) {
-                        cost += if p.is_annotation { CROSSING_MM } else { EDGE_CROSSING_MM };
+                    if !counted.contains(&p.ends) {
+                        if lines_cross(p.ends, [a, b]) {
+                            counted.push(p.ends);
+                            cost += if p.is_annotation { CROSSING_MM } else { EDGE_CROSSING_MM };
+                        } else if lines_cover([a, b], p.ends) {
+                            counted.push(p.ends);
+                            cost += COVERING_MM;
+                        }
                     }
                     false
                 });

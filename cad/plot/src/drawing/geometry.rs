@@ -166,16 +166,43 @@ pub(super) fn lines_cross([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     apart(side(a, b, c), side(a, b, d)) && apart(side(c, d, a), side(c, d, b))
 }
 
+/// Whether two straight lines lie on each other over more than a millimetre, so that one cannot be told from the other.
+pub(super) fn lines_cover([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
+    let along = (b - a).unit();
+    let off = |p: Point| ((p - a).x * along.y - (p - a).y * along.x).abs();
+    let far = |p: Point| (p - a).x * along.x + (p - a).y * along.y;
+    let shared = (b - a).length().min(far(c).max(far(d))) - far(c).min(far(d)).max(0.0);
+    off(c) < BESIDE_MM && off(d) < BESIDE_MM && shared > 1.0
+}
+
+/// Lines nearer than this look like one, mm.
+const BESIDE_MM: f64 = 0.5;
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
+    fn lines_cover_each_other_only_along_their_length() {
+        let at = |x: f64, y: f64| Point::new(x, y);
+        let line = [at(0.0, 0.0), at(10.0, 0.0)];
+        assert!(lines_cover(line, [at(20.0, 0.1), at(5.0, 0.0)]));
+        assert!(!lines_cover(line, [at(20.0, 0.0), at(9.5, 0.0)]));
+        assert!(
+            !lines_cover(line, [at(5.0, -3.0), at(5.0, 3.0)])
+                && !lines_cover(line, [at(0.0, 2.0), at(10.0, 2.0)])
+        );
+        assert!(
+            lines_cross(line, [at(5.0, -3.0), at(5.0, 3.0)])
+                && !lines_cross(line, [at(5.0, 0.0), at(5.0, 3.0)])
+        );
+    }
+
+    #[test]
     fn a_line_crosses_a_box_only_through_its_inside() {
         let square = Extent::between(Point::new(0.0, 0.0), Point::new(2.0, 2.0));
-        let crossed = |a: [f64; 2], b: [f64; 2]| {
-            square.is_crossed_by(Point::new(a[0], a[1]), Point::new(b[0], b[1]))
-        };
+        let crossed =
+            |a: [f64; 2], b: [f64; 2]| square.is_crossed_by(Point::new(a[0], a[1]), Point::new(b[0], b[1]));
         assert!(crossed([-1.0, 1.0], [3.0, 1.0]) && crossed([0.5, 0.5], [1.0, 1.0]));
         assert!(crossed([-1.0, -0.5], [3.0, 2.5]));
         // Along an edge, past a corner, and short of it.

@@ -42,7 +42,12 @@ impl Table {
                 draft.rectangle(Layer::Thin, cell, lines);
                 let (content, height_mm) = fitted(content, TEXT_MM, 1.6, width_mm - 2.0);
                 let at = Point::new(left + 1.0, low + (ROW_MM - TEXT_MM) / 2.0);
-                draft.put(Layer::Text, Shape::Text(Text { at, height_mm, content, upright: false }), None, group);
+                draft.put(
+                    Layer::Text,
+                    Shape::Text(Text { at, height_mm, content, upright: false }),
+                    None,
+                    group,
+                );
                 left += width_mm;
             }
             draft.annotate(Annotation { group, key: self.key.clone(), text: row.join("\t") });

@@ -172,7 +172,7 @@ configuration! {
         /// The drawing.
         drawing: DrawingTable {
             projection: Projection = Projection::First, (), Chosen, "first angle as in Europe and Asia, third as in North America";
-            paper: Paper = Paper::A4, (), Chosen, "size of the sheets; a part that would have to be drawn smaller than it is on a4 gets a3";
+            paper: Paper = Paper::A4, (), Chosen, "size of the sheets; what finds no room on a4 gets a3";
             date: String = String::new(), 20, Chosen, "for the title block; empty: no date, and the same bytes every day";
         }
         /// The predicted curve.

@@ -36,8 +36,7 @@ struct Assembly<'a> {
 
 /// The sheet of the assembly.
 pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, asked: Paper) -> Option<Sheet> {
-    let bodies: Vec<(&Part, Pose)> =
-        built.assembly().filter_map(|b| Some((&b.part, b.part.pose?))).collect();
+    let bodies: Vec<(&Part, Pose)> = built.assembly().filter_map(|b| Some((&b.part, b.part.pose?))).collect();
     let ends = bodies.iter().filter_map(|(part, pose)| {
         let (low, high) = part.solid.bounds()?;
         let height = |z: f64| if pose.flipped { pose.z_mm - z } else { pose.z_mm + z };
@@ -104,7 +103,10 @@ impl Assembly<'_> {
             return None;
         }
         let is_placed = self.overall(&mut draft, section)
-            && self.items.iter().all(|item| self.balloon(&mut draft, item, &place, &inside, &[front, section]));
+            && self
+                .items
+                .iter()
+                .all(|item| self.balloon(&mut draft, item, &place, &inside, &[front, section]));
         is_placed.then(|| draft.finished("assembly", scale))
     }
 
@@ -116,12 +118,14 @@ impl Assembly<'_> {
             let Some((low, high)) = part.solid.bounds() else { continue };
             // A body may be turned half round: both sides count.
             let far = low.x.abs().max(high.x.abs());
-            extent = extent.joined(Extent::between(
-                Point::new(-far, low.y) * scale,
-                Point::new(far, high.y) * scale,
-            ));
+            extent = extent
+                .joined(Extent::between(Point::new(-far, low.y) * scale, Point::new(far, high.y) * scale));
         }
-        if extent.low.y > 0.0 && extent.low.y < 26.0 { extent.joined(Extent::between(axis, axis)) } else { extent }
+        if extent.low.y > 0.0 && extent.low.y < 26.0 {
+            extent.joined(Extent::between(axis, axis))
+        } else {
+            extent
+        }
     }
 
     /// What lies on top, what it hides of shell, layer and pins, and the tendon.
@@ -164,9 +168,16 @@ impl Assembly<'_> {
     /// The tendon over the pins: its middle line over the wrap.
     fn tendon(&self) -> Vec<Trace> {
         let c = self.design.configuration();
-        let radius_mm = self.design.contact_radius_mm() + c.pins.diameter_mm / 2.0 + self.design.tendon_diameter_mm() / 2.0;
+        let radius_mm = self.design.contact_radius_mm()
+            + c.pins.diameter_mm / 2.0
+            + self.design.tendon_diameter_mm() / 2.0;
         let wrap = c.layout.wrap_angle_deg.to_radians();
-        vec![Trace::Arc(Arc { centre: Point2::origin(), radius_mm, start_rad: FRAC_PI_2 - wrap / 2.0, sweep_rad: wrap })]
+        vec![Trace::Arc(Arc {
+            centre: Point2::origin(),
+            radius_mm,
+            start_rad: FRAC_PI_2 - wrap / 2.0,
+            sweep_rad: wrap,
+        })]
     }
 
     fn from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
@@ -179,12 +190,7 @@ impl Assembly<'_> {
     }
 
     /// The section: each body hatched its own way, pins not at all. Returns what it covers, and a place in each body.
-    fn section(
-        &self,
-        draft: &mut Draft,
-        layout: &Layout,
-        scale: f64,
-    ) -> (Extent, Vec<(String, Point)>) {
+    fn section(&self, draft: &mut Draft, layout: &Layout, scale: f64) -> (Extent, Vec<(String, Point)>) {
         let origin = Point::new(layout.section_mm, layout.front.y);
         let view = draft.view("SECTION_A", origin, scale);
         let at = |p: [f64; 2]| origin + Point::new(layout.section_sense * p[1], p[0]) * scale;
@@ -226,7 +232,8 @@ impl Assembly<'_> {
     }
 
     fn table(&self) -> Table {
-        let columns = [("Item", 12.0), ("Qty", 12.0), ("Designation", 82.0), ("Part number", 44.0), ("Material", 30.0)];
+        let columns =
+            [("Item", 12.0), ("Qty", 12.0), ("Designation", 82.0), ("Part number", 44.0), ("Material", 30.0)];
         let rows = self.items.iter().map(|i| {
             let item = i.number.to_string();
             vec![item, i.quantity.clone(), i.designation.clone(), i.part_number.clone(), i.material.clone()]
@@ -310,10 +317,13 @@ impl Assembly<'_> {
 fn is_same(a: &Trace, b: &Trace) -> bool {
     let near = |p: Point2, q: Point2| (p - q).norm() < 1e-6;
     match (a, b) {
-        (Trace::Line(a, b), Trace::Line(c, d)) => (near(*a, *c) && near(*b, *d)) || (near(*a, *d) && near(*b, *c)),
+        (Trace::Line(a, b), Trace::Line(c, d)) => {
+            (near(*a, *c) && near(*b, *d)) || (near(*a, *d) && near(*b, *c))
+        }
         (Trace::Circle(a, r), Trace::Circle(b, s)) => near(*a, *b) && (r - s).abs() < 1e-6,
         (Trace::Arc(a), Trace::Arc(b)) => {
-            near(a.point_at(0.5, a.radius_mm), b.point_at(0.5, b.radius_mm)) && (a.radius_mm - b.radius_mm).abs() < 1e-6
+            near(a.point_at(0.5, a.radius_mm), b.point_at(0.5, b.radius_mm))
+                && (a.radius_mm - b.radius_mm).abs() < 1e-6
         }
         _ => false,
     }

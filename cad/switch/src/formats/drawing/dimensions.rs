@@ -39,7 +39,8 @@ impl Wanted {
 
     fn callout(key: impl Into<String>, lines: Vec<String>, leaders: Vec<Leader>) -> Self {
         let key = key.into();
-        let callout = Callout { key: key.clone(), lines: lines.clone(), leaders, is_balloon: false, avoid: Vec::new() };
+        let callout =
+            Callout { key: key.clone(), lines: lines.clone(), leaders, is_balloon: false, avoid: Vec::new() };
         Self { key, lines, form: Form::Callout(callout) }
     }
 
@@ -118,13 +119,18 @@ pub(super) fn of_detail(
                 continue;
             };
             let lines = words::rounding(rounding, !f.axis_arcs.is_empty());
-            all.push(Wanted::callout(numbered("groove", i), lines, on_arc(arc, place, &[0.25, 0.4, 0.5, 0.6, 0.75], 4.0)));
+            all.push(Wanted::callout(
+                numbered("groove", i),
+                lines,
+                on_arc(arc, place, &[0.25, 0.4, 0.5, 0.6, 0.75], 4.0),
+            ));
         }
         return all;
     }
-    let of_detail = f.slots.iter().enumerate().find(|(_, s)| {
-        s.places.iter().any(|(a, b)| (nalgebra::center(a, b) - detail.middle).norm() < 1e-6)
-    });
+    let of_detail =
+        f.slots.iter().enumerate().find(|(_, s)| {
+            s.places.iter().any(|(a, b)| (nalgebra::center(a, b) - detail.middle).norm() < 1e-6)
+        });
     let Some((i, slot)) = of_detail else { return all };
     let (half, travel) = (slot.width_mm / 2.0 * place.scale, slot.travel_mm() * place.scale);
     let outer = place.origin + Point::new(0.0, travel / 2.0);
@@ -170,8 +176,11 @@ fn on_arc(arc: &Arc, place: &Place, shares: &[f64], other_mm: f64) -> Vec<Leader
         .flat_map(|share| {
             let tip = place.at(arc.point_at(*share, arc.radius_mm));
             let inward = (place.at(arc.centre) - tip).unit();
-            [(inward, 0.0), (inward * -1.0, other_mm)]
-                .map(|(direction, cost_mm)| Leader { tip, direction, cost_mm })
+            [(inward, 0.0), (inward * -1.0, other_mm)].map(|(direction, cost_mm)| Leader {
+                tip,
+                direction,
+                cost_mm,
+            })
         })
         .collect()
 }
@@ -198,7 +207,11 @@ pub(super) fn callouts(
             for radius in radii {
                 let leaders = Leader::around(place.at(round.centres[0]), radius * place.scale);
                 let text = format!("\u{d8}{}", words::number(2.0 * radius));
-                all.push(Wanted::callout(format!("diameter {}", words::number(2.0 * radius)), vec![text], leaders));
+                all.push(Wanted::callout(
+                    format!("diameter {}", words::number(2.0 * radius)),
+                    vec![text],
+                    leaders,
+                ));
             }
             continue;
         }
@@ -218,12 +231,15 @@ pub(super) fn callouts(
                 sweep_rad: from - to,
             };
             // The outer edge may be pointed at aslant, so as to pass what is written there.
-            on_arc(&arc(pieces.outer_mm), place, &[0.4, 0.6], 8.0).into_iter().flat_map(|leader| {
-                [-0.7, -0.3, 0.0, 0.3, 0.7].map(|turn: f64| {
-                    let angle = leader.direction.angle_rad() + turn;
-                    Leader { direction: Point::towards(angle), cost_mm: 8.0 - leader.cost_mm, ..leader }
+            on_arc(&arc(pieces.outer_mm), place, &[0.4, 0.6], 8.0)
+                .into_iter()
+                .flat_map(|leader| {
+                    [-0.7, -0.3, 0.0, 0.3, 0.7].map(|turn: f64| {
+                        let angle = leader.direction.angle_rad() + turn;
+                        Leader { direction: Point::towards(angle), cost_mm: 8.0 - leader.cost_mm, ..leader }
+                    })
                 })
-            }).collect::<Vec<_>>()
+                .collect::<Vec<_>>()
         });
         all.push(Wanted::callout(numbered("lip", i), words::pieces(pieces, &slots), leaders.collect()));
     }
@@ -273,7 +289,8 @@ fn slots_and_roundings(
                 })
             })
         });
-        let mut lines = vec![format!("{} \u{d7} {}", words::slot_width(slot), words::number(slot.travel_mm()))];
+        let mut lines =
+            vec![format!("{} \u{d7} {}", words::slot_width(slot), words::number(slot.travel_mm()))];
         if is_axial {
             lines.extend(words::slot(design, part, slot));
         }
@@ -301,7 +318,11 @@ fn slots_and_roundings(
 fn radii(f: &Features, place: &Place, all: &mut Vec<Wanted>) {
     for (i, arcs) in f.axis_arcs.iter().enumerate() {
         let radius = arcs[0].radius_mm;
-        let shares: &[f64] = if arcs.len() > 4 { &[0.5] } else { &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9] };
+        let shares: &[f64] = if arcs.len() > 4 {
+            &[0.5]
+        } else {
+            &[0.06, 0.12, 0.18, 0.24, 0.3, 0.36, 0.43, 0.57, 0.64, 0.7, 0.76, 0.82, 0.88, 0.94]
+        };
         let is_inner = i + 1 == f.axis_arcs.len();
         let mut leaders: Vec<Leader> = arcs.iter().flat_map(|a| on_arc(a, place, shares, 0.0)).collect();
         for leader in &mut leaders {
@@ -322,7 +343,10 @@ pub(super) fn rectangular(
     (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>),
 ) -> Vec<Wanted> {
     let mut all = Vec::new();
-    if f.rounds.iter().any(|r| !r.is_hole && r.centres.len() == 1 && f.slots.is_empty() && f.roundings.is_empty()) {
+    if f.rounds
+        .iter()
+        .any(|r| !r.is_hole && r.centres.len() == 1 && f.slots.is_empty() && f.roundings.is_empty())
+    {
         // A round part: its diameter says it all.
         return all;
     }
@@ -344,7 +368,8 @@ pub(super) fn rectangular(
     let slots: Vec<Point2> =
         f.slots.iter().flat_map(|s| s.places.iter().map(|(a, b)| nalgebra::center(a, b))).collect();
     rows.push(("slots", slots));
-    let grooves = f.roundings.iter().filter(|r| r.is_half_round).flat_map(|r| r.arcs.iter().map(|a| a.centre));
+    let grooves =
+        f.roundings.iter().filter(|r| r.is_half_round).flat_map(|r| r.arcs.iter().map(|a| a.centre));
     rows.push(("grooves", grooves.collect()));
     rows.push(("holes", f.rounds.iter().flat_map(|r| r.centres.clone()).collect()));
     for (word, mut points) in rows {
@@ -352,30 +377,62 @@ pub(super) fn rectangular(
         let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { continue };
         let is_far = word == "grooves";
         let first_key = format!("first of the {word}");
-        linear(first_key, words::number(first.x - corner.x), corner_at(corner, first.y), first, false, is_far);
+        linear(
+            first_key,
+            words::number(first.x - corner.x),
+            corner_at(corner, first.y),
+            first,
+            false,
+            is_far,
+        );
         if points.len() > 1 {
             let step = points[1].x - first.x;
             let steps = points.len() - 1;
             let is_even = points.windows(2).all(|w| same(w[1].x - w[0].x, step));
             if is_even {
-                let text = format!(
-                    "{steps} \u{d7} {} = {}",
-                    words::number(step),
-                    words::number(last.x - first.x)
-                );
+                let text =
+                    format!("{steps} \u{d7} {} = {}", words::number(step), words::number(last.x - first.x));
                 linear(format!("pitch of the {word}"), text, first, last, false, is_far);
             } else {
                 for (i, p) in points.iter().enumerate().skip(1) {
-                    linear(format!("{word} {}", i + 1), words::number(p.x - corner.x), corner_at(corner, p.y), *p, false, is_far);
+                    linear(
+                        format!("{word} {}", i + 1),
+                        words::number(p.x - corner.x),
+                        corner_at(corner, p.y),
+                        *p,
+                        false,
+                        is_far,
+                    );
                 }
             }
         }
         if !same(first.y, high.y) {
-            linear(format!("level of the {word}"), words::number(first.y - corner.y), Point2::new(low.x, low.y), first, true, false);
+            linear(
+                format!("level of the {word}"),
+                words::number(first.y - corner.y),
+                Point2::new(low.x, low.y),
+                first,
+                true,
+                false,
+            );
         }
     }
-    linear("length".to_owned(), words::number(high.x - low.x), corner, Point2::new(high.x, low.y), false, false);
-    linear("width".to_owned(), words::number(high.y - low.y), Point2::new(high.x, low.y), Point2::new(high.x, high.y), true, true);
+    linear(
+        "length".to_owned(),
+        words::number(high.x - low.x),
+        corner,
+        Point2::new(high.x, low.y),
+        false,
+        false,
+    );
+    linear(
+        "width".to_owned(),
+        words::number(high.y - low.y),
+        Point2::new(high.x, low.y),
+        Point2::new(high.x, high.y),
+        true,
+        true,
+    );
     all
 }
 

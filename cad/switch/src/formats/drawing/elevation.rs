@@ -135,9 +135,11 @@ fn sight(bodies: &[Body], cut_mm: Option<f64>, [u, z, w]: [f64; 3]) -> Sight {
         return Sight::Gone;
     }
     let is_clear = |du: f64, dz: f64| {
-        nearest(bodies, cut_mm, u + du * BESIDE_MM, z + dz * BESIDE_MM).is_none_or(|near| near <= w + NEARER_MM)
+        nearest(bodies, cut_mm, u + du * BESIDE_MM, z + dz * BESIDE_MM)
+            .is_none_or(|near| near <= w + NEARER_MM)
     };
-    let seen = [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)].into_iter().any(|(du, dz)| is_clear(du, dz));
+    let seen =
+        [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)].into_iter().any(|(du, dz)| is_clear(du, dz));
     if seen { Sight::Visible } else { Sight::Hidden }
 }
 
@@ -335,7 +337,8 @@ mod tests {
     #[test]
     fn lines_that_crowd_are_thinned() {
         let upright = |u: f64, high: f64| [[u, 0.0], [u, high]];
-        let strokes = [upright(0.0, 5.0), upright(0.3, 5.0), upright(0.6, 5.0), upright(1.1, 5.0), upright(0.3, 20.0)];
+        let strokes =
+            [upright(0.0, 5.0), upright(0.3, 5.0), upright(0.6, 5.0), upright(1.1, 5.0), upright(0.3, 20.0)];
         assert_eq!(legible(&strokes, &[], 0.5), [upright(0.3, 20.0), upright(1.1, 5.0)]);
         assert_eq!(legible(&strokes[..1], &[upright(0.2, 9.0)], 0.5), Vec::<Stroke>::new());
         // What crosses does not crowd.

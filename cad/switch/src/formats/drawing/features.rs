@@ -23,9 +23,8 @@ pub(super) fn lettering(solid: &Solid) -> Vec<bool> {
         .iter()
         .map(|contour| {
             let (low, high) = contour.bounds();
-            let lies_in = |(a, b): &(Point2, Point2)| {
-                a.x < low.x && a.y < low.y && high.x < b.x && high.y < b.y
-            };
+            let lies_in =
+                |(a, b): &(Point2, Point2)| a.x < low.x && a.y < low.y && high.x < b.x && high.y < b.y;
             is_letter(contour) || (is_straight(contour) && letters.iter().any(lies_in))
         })
         .collect()
@@ -186,8 +185,7 @@ fn chains(solid: &Solid, chamfer_mm: f64) -> Vec<Chain<'_>> {
             let is_hole = rings[*low].0.area_mm2() < 0.0;
             let is_blind = is_hole && numbers.iter().any(|i| floors.contains(i));
             let mut chain: Vec<_> = numbers.iter().map(|i| rings[*i]).collect();
-            let is_chamfer =
-                chamfer_mm > 0.0 && chain.len() > 2 && same(chain[1].1 - chain[0].1, chamfer_mm);
+            let is_chamfer = chamfer_mm > 0.0 && chain.len() > 2 && same(chain[1].1 - chain[0].1, chamfer_mm);
             if is_chamfer {
                 chain.remove(0);
             }
@@ -248,7 +246,8 @@ fn piece(contour: &Contour) -> Option<(f64, f64, f64, f64)> {
         .filter(|p| (p.coords.norm() - inner).abs() < SAME_MM)
         .map(|p| p.x.atan2(p.y))
         .collect();
-    let (from, to) = angles.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+    let (from, to) =
+        angles.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
     Some((inner, outer, from, to))
 }
 
@@ -319,7 +318,12 @@ impl Features {
             Some(r) if r.arcs.iter().any(|a| (a.centre - arc.centre).norm() < SAME_MM) => {}
             Some(r) => r.arcs.push(arc),
             None => {
-                self.roundings.push(Rounding { radius_mm: arc.radius_mm, arcs: vec![arc], is_half_round, is_rib });
+                self.roundings.push(Rounding {
+                    radius_mm: arc.radius_mm,
+                    arcs: vec![arc],
+                    is_half_round,
+                    is_rib,
+                });
             }
         }
     }

@@ -71,14 +71,13 @@ impl Layout {
         let frame = draft.sheet().paper.frame();
         let floor = draft.sheet().title_block.high.y + 3.0 + sizes.table_mm;
         let (width, height) = (sizes.front.width(), sizes.front.height());
-        let detail_column =
-            if sizes.details == 0 { 0.0 } else { 2.0 * sizes.detail_mm + AROUND_DETAIL_MM.0 };
+        let detail_column = if sizes.details == 0 { 0.0 } else { 2.0 * sizes.detail_mm + AROUND_DETAIL_MM.0 };
         let wanted = LEFT_MM + width + BESIDE_MM + sizes.depth_mm + RIGHT_MM + detail_column;
         let spare_x = frame.width() - wanted;
         let stack = ABOVE_MM + height + BETWEEN_MM + sizes.depth_mm + BELOW_MM;
         let spare_y = frame.high.y - floor - stack;
-        let details_fit = sizes.details as f64 * (2.0 * sizes.detail_mm + AROUND_DETAIL_MM.1)
-            <= frame.high.y - floor;
+        let details_fit =
+            sizes.details as f64 * (2.0 * sizes.detail_mm + AROUND_DETAIL_MM.1) <= frame.high.y - floor;
         if spare_x < 0.0 || spare_y < 0.0 || !details_fit {
             return None;
         }

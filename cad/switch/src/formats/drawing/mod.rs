@@ -21,9 +21,7 @@ use crate::parts::{Part, Role};
 use crate::prediction::Prediction;
 use part_sheet::part_sheet;
 use parts_list::{designation, part_number};
-use pinswitch_plot::drawing::{
-    Paper, Projection, Sheet, TitleBlock, drawing_dxf, drawing_pdf, drawing_svg,
-};
+use pinswitch_plot::drawing::{Paper, Projection, Sheet, TitleBlock, drawing_dxf, drawing_pdf, drawing_svg};
 use pinswitch_solid::profile::{Contour, Point2};
 use pinswitch_solid::solid::Solid;
 

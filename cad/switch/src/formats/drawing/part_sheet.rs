@@ -11,7 +11,7 @@ use super::plan::{Place, Trace, draw, plan, within};
 use super::section::Face;
 use super::words;
 use crate::design::Design;
-use crate::parts::Part;
+use crate::parts::{Part, Role};
 use pinswitch_plot::drawing::{
     Callout, Draft, Extent, Layer, Leader, Linear, Paper, Point, Projection, Shape, Sheet, Text, TitleBlock,
 };
@@ -109,8 +109,12 @@ impl Subject<'_> {
         let front = Extent { low: on_front.low + layout.front, high: on_front.high + layout.front };
         self.centre_lines(&mut draft, &place, front, cut_x);
         let top = self.mark_top(front);
-        section_mark(&mut draft, place.at(Point2::new(cut_x, 0.0)).x, [front.low.y - 2.0, top], layout.section_sense);
-        let mut failed = !draft.place_title("section title", "A-A", 3.5, section, true);
+        let mut failed = false;
+        if self.is_cut() {
+            let x = place.at(Point2::new(cut_x, 0.0)).x;
+            section_mark(&mut draft, x, [front.low.y - 2.0, top], layout.section_sense);
+            failed = !draft.place_title("section title", "A-A", 3.5, section, true);
+        }
         let mut notes = words::notes(self.design, self.part, &self.features, self.has_lettering());
         notes.extend(written.iter().map(|w| format!("{}: {}", w.key, w.lines.join(", "))));
         let room = draft.sheet().title_block.low.x - paper.frame().low.x - 6.0;
@@ -131,7 +135,10 @@ impl Subject<'_> {
         };
         let outermost = self.features.axis_arcs.first().map_or(0.0, |a| a[0].radius_mm);
         try_all(&mut draft, self.heights(&layout, scale, section));
-        try_all(&mut draft, dimensions::angles(&self.features, self.design.half_span_rad(), &place, outermost));
+        try_all(
+            &mut draft,
+            dimensions::angles(&self.features, self.design.half_span_rad(), &place, outermost),
+        );
         for (detail, place) in details.iter().zip(&placed) {
             try_all(&mut draft, dimensions::of_detail(self.design, self.part, &self.features, detail, place));
         }
@@ -150,7 +157,10 @@ impl Subject<'_> {
             failed |= !mark.place(&mut draft);
         }
         if self.features.axis_arcs.is_empty() {
-            try_all(&mut draft, dimensions::rectangular(&self.features, &place, front, (self.low, self.high)));
+            try_all(
+                &mut draft,
+                dimensions::rectangular(&self.features, &place, front, (self.low, self.high)),
+            );
         }
         try_all(&mut draft, dimensions::callouts(self.design, self.part, &self.features, &place, &details));
         (!failed).then(|| (draft.finished(self.part.name.clone(), scale), left))
@@ -169,6 +179,11 @@ impl Subject<'_> {
         extent
     }
 
+    /// A plain pin is not cut lengthwise (ISO 128-44): its section is a view.
+    fn is_cut(&self) -> bool {
+        !matches!(self.part.role, Role::Pin { .. })
+    }
+
     fn has_lettering(&self) -> bool {
         lettering(&self.part.solid).contains(&true)
     }
@@ -178,7 +193,10 @@ impl Subject<'_> {
         let is_axial = !self.features.axis_arcs.is_empty();
         let mut all = Vec::new();
         let nearest = |points: &[Point2]| {
-            points.iter().copied().min_by(|a, b| words::angle_rad(*a).abs().total_cmp(&words::angle_rad(*b).abs()))
+            points
+                .iter()
+                .copied()
+                .min_by(|a, b| words::angle_rad(*a).abs().total_cmp(&words::angle_rad(*b).abs()))
         };
         let turn = |p: Point2| if is_axial { words::angle_rad(p) } else { 0.0 };
         for rounding in self.features.roundings.iter().filter(|r| r.is_half_round) {
@@ -215,7 +233,7 @@ impl Subject<'_> {
         }
     }
 
-    /// The section with its hatching; returns what it covers.
+    /// The section with its hatching, of a pin the view from the side; returns what it covers.
     fn section(&self, draft: &mut Draft, layout: &Layout, scale: f64) -> Extent {
         let origin = Point::new(layout.section_mm, layout.front.y);
         let view = draft.view("SECTION_A", origin, scale);
@@ -226,7 +244,9 @@ impl Subject<'_> {
         let behind = legible(&self.behind.visible, &outline, CROWDED_MM / scale);
         let visible = joined(&[outline, behind].concat(), &[]);
         put_strokes(draft, Layer::Visible, &visible, at, view, group);
-        put_strokes(draft, Layer::Hatch, &self.face.hatch(HATCH_MM / scale, true), at, view, group);
+        if self.is_cut() {
+            put_strokes(draft, Layer::Hatch, &self.face.hatch(HATCH_MM / scale, true), at, view, group);
+        }
         let ends = visible.iter().flatten().map(|p| Extent::between(at(*p), at(*p)));
         ends.reduce(Extent::joined).unwrap_or(Extent::between(origin, origin))
     }
@@ -245,7 +265,8 @@ impl Subject<'_> {
     fn centre_lines(&self, draft: &mut Draft, place: &Place, front: Extent, cut_x: f64) {
         let group = draft.group();
         let f = &self.features;
-        let mut line = |from: Point, to: Point| draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
+        let mut line =
+            |from: Point, to: Point| draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
         let axis = place.at(Point2::origin());
         if !f.axis_arcs.is_empty() {
             if cut_x.abs() > 1e-6 {
@@ -275,7 +296,11 @@ impl Subject<'_> {
         let all = &self.features.heights_mm;
         all.iter()
             .map(|z| {
-                let key = if Some(z) == all.last() { "overall height".to_owned() } else { format!("height {}", words::number(*z)) };
+                let key = if Some(z) == all.last() {
+                    "overall height".to_owned()
+                } else {
+                    format!("height {}", words::number(*z))
+                };
                 Wanted::linear(Linear {
                     key,
                     text: words::number(*z),
@@ -304,7 +329,9 @@ impl Subject<'_> {
         let place = Place { origin: middle, scale, about: detail.middle, turn_rad: detail.turn_rad };
         let kept: Vec<(Layer, Trace)> = lines
             .iter()
-            .flat_map(|(layer, t)| within(t, detail.middle, detail.radius_mm).into_iter().map(|t| (*layer, t)))
+            .flat_map(|(layer, t)| {
+                within(t, detail.middle, detail.radius_mm).into_iter().map(|t| (*layer, t))
+            })
             .collect();
         let view = draft.view(format!("DETAIL_{letter}"), middle, scale);
         draw(draft, &kept, &place, view);
@@ -327,11 +354,7 @@ impl Subject<'_> {
 }
 
 /// Where the section is cut: through what has most to show, as near to the middle as it lies.
-fn cut_x(
-    f: &Features,
-    side: Side,
-    (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>),
-) -> f64 {
+fn cut_x(f: &Features, side: Side, (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>)) -> f64 {
     let bottom = low.z;
     let pegs = f.rounds.iter().filter(|r| !r.is_hole && r.levels[0].0 > bottom + 1e-9);
     let blind = f.rounds.iter().filter(|r| r.is_blind);
@@ -348,7 +371,11 @@ fn cut_x(
         xs(holes.flat_map(|r| r.centres.clone()).collect()),
         slots(false),
         if f.arc_slots.is_empty() { Vec::new() } else { vec![0.0] },
-        xs(f.roundings.iter().filter(|r| r.is_half_round).flat_map(|r| r.arcs.iter().map(|a| a.centre)).collect()),
+        xs(f.roundings
+            .iter()
+            .filter(|r| r.is_half_round)
+            .flat_map(|r| r.arcs.iter().map(|a| a.centre))
+            .collect()),
     ];
     let sense = if side == Side::Left { 1.0 } else { -1.0 };
     let middle = if f.axis_arcs.is_empty() { f64::midpoint(low.x, high.x) } else { 0.0 };

@@ -44,7 +44,8 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
         add("1".to_owned(), designation(name), part_number(built, name), material(part), name);
     }
     if let Some(pin) = assembled.iter().find(|p| matches!(p.role, Role::Pin { .. })) {
-        let spares = if bill.pins.spares > 0 { format!(", and {} spare", bill.pins.spares) } else { String::new() };
+        let spares =
+            if bill.pins.spares > 0 { format!(", and {} spare", bill.pins.spares) } else { String::new() };
         let words = format!(
             "Pin \u{d8}{} \u{b1}{} \u{d7} {}{spares}",
             number(bill.pins.diameter_mm),

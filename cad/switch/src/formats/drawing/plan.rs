@@ -167,9 +167,7 @@ fn arc_within(arc: &Arc, centre: Point2, radius_mm: f64) -> Vec<Arc> {
     shares
         .windows(2)
         .filter(|s| s[1] - s[0] > 1e-9)
-        .filter(|s| {
-            (arc.point_at(f64::midpoint(s[0], s[1]), arc.radius_mm) - centre).norm() < radius_mm
-        })
+        .filter(|s| (arc.point_at(f64::midpoint(s[0], s[1]), arc.radius_mm) - centre).norm() < radius_mm)
         .map(|s| Arc {
             start_rad: arc.start_rad + arc.sweep_rad * s[0],
             sweep_rad: arc.sweep_rad * (s[1] - s[0]),

@@ -122,8 +122,7 @@ pub(super) fn slot_width(slot: &Slot) -> String {
 /// What slots are called.
 pub(super) fn slot(design: &Design, part: &Part, slot: &Slot) -> Vec<String> {
     let n = times(slot.places.len());
-    let depth =
-        if slot.is_blind { format!("{} deep", number(slot.depth_mm)) } else { "through".to_owned() };
+    let depth = if slot.is_blind { format!("{} deep", number(slot.depth_mm)) } else { "through".to_owned() };
     let mut lines = if matches!(part.role, Role::Support { .. }) {
         vec![format!("{n}slot, {depth}"), format!("for pin {}", pin(design))]
     } else {
@@ -143,8 +142,7 @@ pub(super) fn slot(design: &Design, part: &Part, slot: &Slot) -> Vec<String> {
 /// What a slot along an arc is called.
 pub(super) fn arc_slot(slot: &ArcSlot) -> Vec<String> {
     let (low, high) = (number(slot.widths_mm.0), number(slot.widths_mm.1));
-    let width =
-        if low == high { format!("{low} wide") } else { format!("{low} wide, {high} at the top") };
+    let width = if low == high { format!("{low} wide") } else { format!("{low} wide, {high} at the top") };
     vec![
         format!("slot along R{}, {width}", number(slot.radius_mm)),
         format!("centres of its ends at \u{b1}{}", degrees(slot.half_rad)),
@@ -159,6 +157,9 @@ pub(super) fn rounding(rounding: &Rounding, is_axial: bool) -> Vec<String> {
         (false, _) => "",
     };
     let mut lines = vec![format!("{}{word}R{}", times(rounding.arcs.len()), number(rounding.radius_mm))];
+    if rounding.is_half_round && !is_axial {
+        lines.push("centres on the edge".to_owned());
+    }
     if rounding.is_half_round && is_axial {
         let centres: Vec<Point2> = rounding.arcs.iter().map(|a| a.centre).collect();
         let angles: Vec<f64> = centres.iter().map(|p| angle_rad(*p)).collect();
@@ -238,6 +239,9 @@ pub(super) fn notes(design: &Design, part: &Part, features: &Features, has_lette
     }
     if part.name == "mould-tray" && c.mould.overfill_mm > 0.0 && c.mould.draft_deg > 0.0 {
         notes.push(format!("Walls of the basin: draft {}\u{b0}", number(c.mould.draft_deg)));
+    }
+    if features.axis_arcs.is_empty() && !features.slots.is_empty() {
+        notes.push("Slots: width \u{d7} distance of the centres of their ends, through".to_owned());
     }
     if !features.axis_arcs.is_empty() {
         notes.push("R without a centre mark: about the pulley's axis".to_owned());

@@ -69,7 +69,12 @@ fn read(text: &str) -> BTreeMap<String, Vec<Entity>> {
 /// A value of the manifest: a derived dimension, or what was set.
 fn listed(manifest: &Value, name: &str) -> f64 {
     let of = |list: &str, key: &str| {
-        manifest[list].as_array().unwrap().iter().find(|e| e[key] == name).map(|e| e["value"].as_f64().unwrap())
+        manifest[list]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|e| e[key] == name)
+            .map(|e| e["value"].as_f64().unwrap())
     };
     of("derived", "name").or_else(|| of("settings", "field")).unwrap()
 }
@@ -91,7 +96,8 @@ fn mean_step(sorted: &[f64]) -> f64 {
 
 /// Where lines of a view lie along x, each value once.
 fn levels(view: &[Entity]) -> Vec<f64> {
-    let upright = view.iter().filter(|e| e.is("LINE", "VISIBLE") && (e.number(10) - e.number(11)).abs() < 1e-6);
+    let upright =
+        view.iter().filter(|e| e.is("LINE", "VISIBLE") && (e.number(10) - e.number(11)).abs() < 1e-6);
     let mut all: Vec<f64> = upright.map(|e| e.number(10).abs()).collect();
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
@@ -112,16 +118,32 @@ fn shell(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value) {
     near(mean_step(&angles(&centres)), listed(manifest, "groove_pitch"), "groove pitch");
     for groove in grooves {
         near(groove.number(40), listed(manifest, "segment.groove_radius_mm"), "groove radius");
-        near(groove.centre().0.hypot(groove.centre().1), listed(manifest, "shell.outer_radius_mm"), "groove centres");
+        near(
+            groove.centre().0.hypot(groove.centre().1),
+            listed(manifest, "shell.outer_radius_mm"),
+            "groove centres",
+        );
     }
     let radii: Vec<f64> = arcs.iter().filter(about_axis).map(|e| e.number(40)).collect();
-    near(radii.iter().copied().fold(0.0, f64::max), listed(manifest, "shell.outer_radius_mm"), "outer radius");
-    near(radii.iter().copied().fold(f64::INFINITY, f64::min), listed(manifest, "inner_radius"), "inner radius");
+    near(
+        radii.iter().copied().fold(0.0, f64::max),
+        listed(manifest, "shell.outer_radius_mm"),
+        "outer radius",
+    );
+    near(
+        radii.iter().copied().fold(f64::INFINITY, f64::min),
+        listed(manifest, "inner_radius"),
+        "inner radius",
+    );
     let holes: Vec<&Entity> = front.iter().filter(|e| e.is("CIRCLE", "VISIBLE")).collect();
     near(holes.len() as f64, listed(manifest, "fasteners.count"), "number of holes");
     for hole in holes {
         near(2.0 * hole.number(40), listed(manifest, "fasteners.hole_diameter_mm"), "hole");
-        near(hole.centre().0.hypot(hole.centre().1), listed(manifest, "fastener_radius"), "radius of the holes");
+        near(
+            hole.centre().0.hypot(hole.centre().1),
+            listed(manifest, "fastener_radius"),
+            "radius of the holes",
+        );
     }
     let section = levels(&blocks["SHELL_SECTION_A"]);
     near(section[section.len() - 1] - section[0], listed(manifest, "shell.width_mm"), "width");
@@ -144,7 +166,11 @@ fn support(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value, name: &str)
     near(mean_step(&angles(&outer)), listed(manifest, "groove_pitch"), "angle between slots");
     ends.iter().for_each(|e| near(e.number(40), half, "half of the slot's width"));
     let outline = front.iter().filter(|e| e.is("ARC", "VISIBLE") && radius(e) < 1e-6);
-    near(outline.map(|e| e.number(40)).fold(0.0, f64::max), listed(manifest, "support_radius"), "outer radius");
+    near(
+        outline.map(|e| e.number(40)).fold(0.0, f64::max),
+        listed(manifest, "support_radius"),
+        "outer radius",
+    );
     let section = levels(&blocks[&format!("{name}_SECTION_A")]);
     let plate = listed(manifest, "support.plate_mm");
     contains(&section, plate, "plate");

@@ -51,7 +51,8 @@ fn random(seed: u64) -> String {
     let holes = between(0.0, 5.0).floor();
     let mut word = |words: &[&'static str]| words[between(0.0, words.len() as f64) as usize];
     let (slots, kind) = (word(&["all", "occupied"]), word(&["blind", "through"]));
-    let (mould, paper, projection) = (word(&["split", "one-piece"]), word(&["a4", "a3"]), word(&["first", "third"]));
+    let (mould, paper, projection) =
+        (word(&["split", "one-piece"]), word(&["a4", "a3"]), word(&["first", "third"]));
     format!(
         "[shell]\nouter_radius_mm = {radius:?}\nwall_mm = {wall:?}\nwidth_mm = {width:?}\n\
          [segment]\nspan_deg = {span:?}\ngrooves = {grooves}\ngroove_radius_mm = {groove:?}\nend_margin_mm = {margin:?}\n\
@@ -118,13 +119,19 @@ fn promised(built: &Built, part: &str) -> Vec<(String, String)> {
         let diameter = number(c.fasteners.hole_diameter_mm);
         add(
             "hole 1".to_owned(),
-            format!("{n}\u{d8}{diameter} H13 through, for {}", crate::documents::bill_of_materials(d).fasteners.unwrap().thread),
+            format!(
+                "{n}\u{d8}{diameter} H13 through, for {}",
+                crate::documents::bill_of_materials(d).fasteners.unwrap().thread
+            ),
         );
         add("hole 1".to_owned(), format!("on R{}", number(d.fastener_radius_mm())));
     }
     if is_grooved {
-        let (inner, outer) =
-            if part == "shell" { (d.inner_radius_mm(), d.shell_radius_mm()) } else { (d.shell_radius_mm(), d.contact_radius_mm()) };
+        let (inner, outer) = if part == "shell" {
+            (d.inner_radius_mm(), d.shell_radius_mm())
+        } else {
+            (d.shell_radius_mm(), d.contact_radius_mm())
+        };
         let (key, text) = radius(inner);
         add(key, text);
         let (key, text) = radius(outer);
@@ -146,7 +153,10 @@ fn promised(built: &Built, part: &str) -> Vec<(String, String)> {
         add(key, text);
     }
     if part == "pin" {
-        add("round 1".to_owned(), format!("\u{d8}{} \u{b1}{}", number(c.pins.diameter_mm), number(c.pins.tolerance_mm)));
+        add(
+            "round 1".to_owned(),
+            format!("\u{d8}{} \u{b1}{}", number(c.pins.diameter_mm), number(c.pins.tolerance_mm)),
+        );
         add("overall height".to_owned(), number(d.pin_length_mm()));
     }
     if part == "mould-tray" {

@@ -236,6 +236,8 @@ pub struct Callout {
     pub is_balloon: bool,
     /// Where it had better not be written.
     pub avoid: Vec<super::Extent>,
+    /// Middle and radius of a circle around what it points at: the mark of a detail.
+    pub around: Option<(Point, f64)>,
 }
 
 /// How much further a leader goes rather than end where it had better not, mm.
@@ -282,6 +284,9 @@ impl Callout {
         let shelf = elbow + Point::new(2.0 * side, 0.0);
         let mut shapes =
             vec![arrow(leader.tip, leader.direction * -1.0), line(leader.tip, elbow), line(elbow, shelf)];
+        if let Some((centre, radius_mm)) = self.around {
+            shapes.push((Layer::Thin, Shape::Circle { centre, radius_mm }));
+        }
         let widest = self.lines.iter().map(|l| text_width_mm(l, TEXT_MM)).fold(0.0, f64::max);
         let x = if side > 0.0 { shelf.x + 0.8 } else { shelf.x - 0.8 - widest };
         for (content, y) in self.lines.iter().zip(baselines(shelf.y)) {

@@ -94,7 +94,7 @@ impl Assembly<'_> {
         let cut_x = self.cut_x;
         let place = Place::straight(layout.front, scale);
         self.front(&mut draft, &place);
-        self.from_above(&mut draft, &layout, scale);
+        self.view_from_above(&mut draft, &layout, scale);
         let (section, inside) = self.section(&mut draft, &layout, scale);
         let front = Extent { low: sizes.front.low + layout.front, high: sizes.front.high + layout.front };
         let mark = [front.low.y - 2.0, front.high.y + 2.0];
@@ -180,7 +180,7 @@ impl Assembly<'_> {
         })]
     }
 
-    fn from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
+    fn view_from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
         let origin = Point::new(layout.front.x, layout.above_mm);
         let view = draft.view("ABOVE", origin, scale);
         let visible = legible(&self.above.visible, &[], CROWDED_MM / scale);
@@ -294,6 +294,7 @@ impl Assembly<'_> {
             leaders,
             is_balloon: true,
             avoid: views.to_vec(),
+            around: None,
         };
         balloon.place(draft)
     }

@@ -2,8 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::features::{Features, same};
-use super::part_sheet::Detail;
+use super::cut::Detail;
+use super::features::{Features, Slot, same};
 use super::plan::Place;
 use super::words;
 use crate::design::Design;
@@ -39,8 +39,14 @@ impl Wanted {
 
     fn callout(key: impl Into<String>, lines: Vec<String>, leaders: Vec<Leader>) -> Self {
         let key = key.into();
-        let callout =
-            Callout { key: key.clone(), lines: lines.clone(), leaders, is_balloon: false, avoid: Vec::new() };
+        let callout = Callout {
+            key: key.clone(),
+            lines: lines.clone(),
+            leaders,
+            is_balloon: false,
+            avoid: Vec::new(),
+            around: None,
+        };
         Self { key, lines, form: Form::Callout(callout) }
     }
 
@@ -169,6 +175,16 @@ pub(super) fn of_detail(
     all
 }
 
+/// The circle around what a detail shows, with its letter.
+pub(super) fn mark_of_detail(at: Point, radius_mm: f64, letter: &str) -> Wanted {
+    let leaders = Leader::around(at, radius_mm);
+    let mut mark = Wanted::callout(format!("mark of detail {letter}"), vec![letter.to_owned()], leaders);
+    if let Form::Callout(callout) = &mut mark.form {
+        callout.around = Some((at, radius_mm));
+    }
+    mark
+}
+
 /// Leaders that end on an arc, along its radius: from the side of its centre, or from outside for `other_mm` more.
 fn on_arc(arc: &Arc, place: &Place, shares: &[f64], other_mm: f64) -> Vec<Leader> {
     shares
@@ -277,8 +293,11 @@ fn slots_and_roundings(
     all: &mut Vec<Wanted>,
 ) {
     let is_axial = !f.axis_arcs.is_empty();
-    let has_slot_detail = details.iter().any(|d| d.is_slot);
-    for (i, slot) in f.slots.iter().enumerate().filter(|_| !has_slot_detail) {
+    let is_enlarged = |slot: &Slot| {
+        let middles = slot.places.iter().map(|(a, b)| nalgebra::center(a, b));
+        middles.into_iter().any(|m| details.iter().any(|d| d.is_slot && (d.middle - m).norm() < 1e-6))
+    };
+    for (i, slot) in f.slots.iter().enumerate().filter(|(_, slot)| !is_enlarged(slot)) {
         let leaders = slot.places.iter().flat_map(|(a, b)| {
             let middle = place.at(nalgebra::center(a, b));
             [1.0, -1.0].into_iter().flat_map(move |side| {

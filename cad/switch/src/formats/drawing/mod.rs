@@ -2,6 +2,7 @@
 
 mod assembly_sheet;
 mod body;
+mod cut;
 mod dimensions;
 mod elevation;
 mod features;

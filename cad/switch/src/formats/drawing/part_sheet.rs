@@ -3,6 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::body::{Body, Side};
+use super::cut::{Detail, cut_x, enlarged};
 use super::dimensions::{self, Wanted};
 use super::elevation::{Elevation, Stroke, elevation, joined, legible};
 use super::features::{Features, features, lettering};
@@ -13,10 +14,10 @@ use super::words;
 use crate::design::Design;
 use crate::parts::{Part, Role};
 use pinswitch_plot::drawing::{
-    Callout, Draft, Extent, Layer, Leader, Linear, Paper, Point, Projection, Shape, Sheet, Text, TitleBlock,
+    Draft, Extent, Layer, Linear, Paper, Point, Projection, Shape, Sheet, Text, TitleBlock,
 };
 use pinswitch_solid::pose::Pose;
-use pinswitch_solid::profile::{Point2, polar};
+use pinswitch_solid::profile::Point2;
 
 /// Scales of details, the largest first.
 const DETAIL_SCALES: [f64; 6] = [20.0, 10.0, 5.0, 2.0, 1.0, 0.5];
@@ -43,13 +44,14 @@ pub(super) struct Subject<'a> {
     high: nalgebra::Point3<f64>,
 }
 
-/// A part of the front view that is drawn larger.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Detail {
-    pub(super) middle: Point2,
-    pub(super) radius_mm: f64,
-    pub(super) turn_rad: f64,
-    pub(super) is_slot: bool,
+/// The views of a sheet, drawn.
+struct Views {
+    layout: Layout,
+    place: Place,
+    front: Extent,
+    section: Extent,
+    /// What is drawn larger, where, and its letter.
+    details: Vec<(Detail, Place, String)>,
 }
 
 /// The sheet of `part`; nothing for a part without extent.
@@ -85,9 +87,22 @@ impl Subject<'_> {
     /// The sheet in this size, and what found no room on it. `written` stands among the notes.
     fn attempt(&self, paper: Paper, scale: f64, written: &[Wanted]) -> Option<(Sheet, Vec<Wanted>)> {
         let title = TitleBlock { scale: Sheet::scale_text(scale), ..self.title.clone() };
-        let projection = title.projection;
         let mut draft = Draft::new(paper, &title);
-        let details = self.details(scale);
+        let views = self.views(&mut draft, scale, written)?;
+        let mut left = Vec::new();
+        for wanted in self.wanted(&views) {
+            let is_written = written.iter().any(|w| w.key == wanted.key);
+            if !is_written && !wanted.place(&mut draft) {
+                left.push(wanted);
+            }
+        }
+        Some((draft.finished(self.part.name.clone(), scale), left))
+    }
+
+    /// Draws all views with their titles and marks, and the notes; nothing if they do not fit.
+    fn views(&self, draft: &mut Draft, scale: f64, written: &[Wanted]) -> Option<Views> {
+        let paper = draft.sheet().paper;
+        let details = enlarged(&self.features, scale);
         let reach = if paper == Paper::A4 { 20.0 } else { 27.0 };
         let sizes = Sizes {
             front: self.front_extent(scale),
@@ -96,74 +111,55 @@ impl Subject<'_> {
             details: details.len(),
             table_mm: 0.0,
         };
-        let layout = Layout::on(&draft, &sizes, projection)?;
-        let cut_x = self.cut_x;
+        let layout = Layout::on(draft, &sizes, self.title.projection)?;
         let place = Place::straight(layout.front, scale);
-        let chamfer = self.design.configuration().print.elephant_foot_mm;
-        let lines = plan(&self.part.solid, false, chamfer);
+        let lines = plan(&self.part.solid, false, self.design.configuration().print.elephant_foot_mm);
         let view = draft.view("FRONT", layout.front, scale);
-        draw(&mut draft, &lines, &place, view);
-        self.view_from_above(&mut draft, &layout, scale);
-        let section = self.section(&mut draft, &layout, scale);
-        let on_front = sizes.front;
-        let front = Extent { low: on_front.low + layout.front, high: on_front.high + layout.front };
-        self.centre_lines(&mut draft, &place, front, cut_x);
-        let top = self.mark_top(front);
-        let mut failed = false;
+        draw(draft, &lines, &place, view);
+        self.view_from_above(draft, &layout, scale);
+        let section = self.section(draft, &layout, scale);
+        let front = Extent { low: sizes.front.low + layout.front, high: sizes.front.high + layout.front };
+        self.centre_lines(draft, &place, front);
         if self.is_cut() {
-            let x = place.at(Point2::new(cut_x, 0.0)).x;
-            section_mark(&mut draft, x, [front.low.y - 2.0, top], layout.section_sense);
-            failed = !draft.place_title("section title", "A-A", 3.5, section, true);
+            let x = place.at(Point2::new(self.cut_x, 0.0)).x;
+            section_mark(draft, x, [front.low.y - 2.0, self.mark_top(front)], layout.section_sense);
+            if !draft.place_title("section title", "A-A", 3.5, section, true) {
+                return None;
+            }
         }
         let mut notes = words::notes(self.design, self.part, &self.features, self.has_lettering());
         notes.extend(written.iter().map(|w| format!("{}: {}", w.key, w.lines.join(", "))));
         let room = draft.sheet().title_block.low.x - paper.frame().low.x - 6.0;
         draft.notes(&notes, room);
         let mut placed = Vec::new();
-        for (i, (detail, middle)) in details.iter().zip(&layout.details).enumerate() {
-            let letter = char::from(b'B' + i as u8).to_string();
-            placed.push(self.detail(&mut draft, detail, *middle, reach, &lines, &letter)?);
+        for ((detail, middle), letter) in details.into_iter().zip(&layout.details).zip('B'..) {
+            let letter = letter.to_string();
+            let larger = draw_detail(draft, &detail, *middle, reach, &lines, &letter)?;
+            placed.push((detail, larger, letter));
         }
-        let is_written = |key: &str| written.iter().any(|w| w.key == key);
-        let mut left = Vec::new();
-        let mut try_all = |draft: &mut Draft, all: Vec<Wanted>| {
-            for wanted in all {
-                if !is_written(&wanted.key) && !wanted.place(draft) {
-                    left.push(wanted);
-                }
-            }
-        };
-        let outermost = self.features.axis_arcs.first().map_or(0.0, |a| a[0].radius_mm);
-        try_all(&mut draft, self.heights(&layout, scale, section));
-        try_all(
-            &mut draft,
-            dimensions::angles(&self.features, self.design.half_span_rad(), &place, outermost),
-        );
-        for (detail, place) in details.iter().zip(&placed) {
-            try_all(&mut draft, dimensions::of_detail(self.design, self.part, &self.features, detail, place));
+        let views = Views { layout, place, front, section, details: placed };
+        Some(views)
+    }
+
+    /// Every dimension, in the order in which they look for room.
+    fn wanted(&self, views: &Views) -> Vec<Wanted> {
+        let f = &self.features;
+        let outermost = f.axis_arcs.first().map_or(0.0, |a| a[0].radius_mm);
+        let mut all = self.heights(&views.layout, views.place.scale, views.section);
+        all.extend(dimensions::angles(f, self.design.half_span_rad(), &views.place, outermost));
+        for (detail, place, _) in &views.details {
+            all.extend(dimensions::of_detail(self.design, self.part, f, detail, place));
         }
-        for (i, (detail, _)) in details.iter().zip(&placed).enumerate() {
-            let letter = char::from(b'B' + i as u8).to_string();
-            let (at, radius) = (place.at(detail.middle), detail.radius_mm * scale);
-            let group = draft.group();
-            draft.put(Layer::Thin, Shape::Circle { centre: at, radius_mm: radius }, None, group);
-            let mark = Callout {
-                key: format!("mark of detail {letter}"),
-                lines: vec![letter],
-                leaders: Leader::around(at, radius),
-                is_balloon: false,
-                avoid: Vec::new(),
-            };
-            failed |= !mark.place(&mut draft);
+        for (detail, _, letter) in &views.details {
+            let radius = detail.radius_mm * views.place.scale;
+            all.push(dimensions::mark_of_detail(views.place.at(detail.middle), radius, letter));
         }
-        if self.features.axis_arcs.is_empty() {
-            try_all(
-                &mut draft,
-                dimensions::rectangular(&self.features, &place, front, (self.low, self.high)),
-            );
+        if f.axis_arcs.is_empty() {
+            all.extend(dimensions::rectangular(f, &views.place, views.front, (self.low, self.high)));
         }
-        try_all(&mut draft, dimensions::callouts(self.design, self.part, &self.features, &place, &details));
-        (!failed).then(|| (draft.finished(self.part.name.clone(), scale), left))
+        let details: Vec<Detail> = views.details.iter().map(|d| d.0).collect();
+        all.extend(dimensions::callouts(self.design, self.part, f, &views.place, &details));
+        all
     }
 
     /// The front view on paper about the part's origin, with the axis if it is near.
@@ -186,37 +182,6 @@ impl Subject<'_> {
 
     fn has_lettering(&self) -> bool {
         lettering(&self.part.solid).contains(&true)
-    }
-
-    /// Grooves and slots that are drawn larger.
-    fn details(&self, scale: f64) -> Vec<Detail> {
-        let is_axial = !self.features.axis_arcs.is_empty();
-        let mut all = Vec::new();
-        let nearest = |points: &[Point2]| {
-            points
-                .iter()
-                .copied()
-                .min_by(|a, b| words::angle_rad(*a).abs().total_cmp(&words::angle_rad(*b).abs()))
-        };
-        let turn = |p: Point2| if is_axial { words::angle_rad(p) } else { 0.0 };
-        for rounding in self.features.roundings.iter().filter(|r| r.is_half_round) {
-            let centres: Vec<Point2> = rounding.arcs.iter().map(|a| a.centre).collect();
-            if let Some(middle) = nearest(&centres) {
-                let radius_mm = 2.4 * rounding.radius_mm;
-                all.push(Detail { middle, radius_mm, turn_rad: turn(middle), is_slot: false });
-            }
-        }
-        for slot in self.features.slots.iter().filter(|_| is_axial) {
-            let centres: Vec<Point2> = slot.places.iter().map(|p| p.0).collect();
-            let Some(outer) = nearest(&centres) else { continue };
-            let half = f64::midpoint(slot.travel_mm(), slot.width_mm);
-            let angle = words::angle_rad(outer);
-            let middle = polar(outer.coords.norm() - slot.travel_mm() / 2.0, angle);
-            all.push(Detail { middle, radius_mm: 1.6 * half, turn_rad: turn(outer), is_slot: true });
-        }
-        // A detail that would not be larger than the view itself is none.
-        all.retain(|d| d.radius_mm * scale < 40.0);
-        all
     }
 
     fn view_from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
@@ -262,14 +227,14 @@ impl Subject<'_> {
     }
 
     /// The plane of symmetry, the axis, pitch circles and middles of holes.
-    fn centre_lines(&self, draft: &mut Draft, place: &Place, front: Extent, cut_x: f64) {
+    fn centre_lines(&self, draft: &mut Draft, place: &Place, front: Extent) {
         let group = draft.group();
         let f = &self.features;
         let mut line =
             |from: Point, to: Point| draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
         let axis = place.at(Point2::origin());
         if !f.axis_arcs.is_empty() {
-            if cut_x.abs() > 1e-6 {
+            if self.cut_x.abs() > 1e-6 || !self.is_cut() {
                 line(Point::new(axis.x, front.low.y - 2.0), Point::new(axis.x, front.high.y + 3.0));
             }
             if axis.y > front.low.y - 1.0 {
@@ -314,77 +279,40 @@ impl Subject<'_> {
             })
             .collect()
     }
-
-    /// Draws a detail; returns where it lies.
-    fn detail(
-        &self,
-        draft: &mut Draft,
-        detail: &Detail,
-        middle: Point,
-        reach_mm: f64,
-        lines: &[(Layer, Trace)],
-        letter: &str,
-    ) -> Option<Place> {
-        let scale = DETAIL_SCALES.into_iter().find(|s| detail.radius_mm * s <= reach_mm)?;
-        let place = Place { origin: middle, scale, about: detail.middle, turn_rad: detail.turn_rad };
-        let kept: Vec<(Layer, Trace)> = lines
-            .iter()
-            .flat_map(|(layer, t)| {
-                within(t, detail.middle, detail.radius_mm).into_iter().map(|t| (*layer, t))
-            })
-            .collect();
-        let view = draft.view(format!("DETAIL_{letter}"), middle, scale);
-        draw(draft, &kept, &place, view);
-        let group = draft.group();
-        let radius_mm = detail.radius_mm * scale;
-        draft.put(Layer::Thin, Shape::Circle { centre: middle, radius_mm }, None, group);
-        let reach = radius_mm + 2.0;
-        for half in [Point::new(reach, 0.0), Point::new(0.0, reach)] {
-            let shift = if detail.is_slot && half.y == 0.0 { None } else { Some(Point::default()) };
-            if let Some(shift) = shift {
-                let (from, to) = (middle - half + shift, middle + half + shift);
-                draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
-            }
-        }
-        let corner = Point::new(radius_mm, radius_mm);
-        let around = Extent { low: middle - corner, high: middle + corner };
-        let title = format!("{letter} ({})", Sheet::scale_text(scale));
-        draft.place_title(&format!("title of detail {letter}"), &title, 3.5, around, false).then_some(place)
-    }
 }
 
-/// Where the section is cut: through what has most to show, as near to the middle as it lies.
-fn cut_x(f: &Features, side: Side, (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>)) -> f64 {
-    let bottom = low.z;
-    let pegs = f.rounds.iter().filter(|r| !r.is_hole && r.levels[0].0 > bottom + 1e-9);
-    let blind = f.rounds.iter().filter(|r| r.is_blind);
-    let holes = f.rounds.iter().filter(|r| r.is_hole && !r.is_blind);
-    let xs = |points: Vec<Point2>| points.into_iter().map(|p| p.x).collect::<Vec<f64>>();
-    let slots = |is_blind: bool| {
-        let of_kind = f.slots.iter().filter(move |s| s.is_blind == is_blind);
-        xs(of_kind.flat_map(|s| s.places.iter().map(|p| p.0)).collect())
-    };
-    let ranked = [
-        xs(pegs.flat_map(|r| r.centres.clone()).collect()),
-        xs(blind.flat_map(|r| r.centres.clone()).collect()),
-        slots(true),
-        xs(holes.flat_map(|r| r.centres.clone()).collect()),
-        slots(false),
-        if f.arc_slots.is_empty() { Vec::new() } else { vec![0.0] },
-        xs(f.roundings
-            .iter()
-            .filter(|r| r.is_half_round)
-            .flat_map(|r| r.arcs.iter().map(|a| a.centre))
-            .collect()),
-    ];
-    let sense = if side == Side::Left { 1.0 } else { -1.0 };
-    let middle = if f.axis_arcs.is_empty() { f64::midpoint(low.x, high.x) } else { 0.0 };
-    let nearest = |all: &Vec<f64>| {
-        // Of two that are as near, the one that leaves more to be seen behind it.
-        let key = |x: f64| (x - middle).abs() + 1e-6 * sense * (x - middle);
-        all.iter().copied().min_by(|a, b| key(*a).total_cmp(&key(*b)))
-    };
-    ranked.iter().find_map(nearest).unwrap_or(middle)
+/// Draws a detail; returns where it lies.
+fn draw_detail(
+    draft: &mut Draft,
+    detail: &Detail,
+    middle: Point,
+    reach_mm: f64,
+    lines: &[(Layer, Trace)],
+    letter: &str,
+) -> Option<Place> {
+    let scale = DETAIL_SCALES.into_iter().find(|s| detail.radius_mm * s <= reach_mm)?;
+    let place = Place { origin: middle, scale, about: detail.middle, turn_rad: detail.turn_rad };
+    let kept: Vec<(Layer, Trace)> = lines
+        .iter()
+        .flat_map(|(layer, t)| within(t, detail.middle, detail.radius_mm).into_iter().map(|t| (*layer, t)))
+        .collect();
+    let view = draft.view(format!("DETAIL_{letter}"), middle, scale);
+    draw(draft, &kept, &place, view);
+    let group = draft.group();
+    let radius_mm = detail.radius_mm * scale;
+    draft.put(Layer::Thin, Shape::Circle { centre: middle, radius_mm }, None, group);
+    let reach = radius_mm + 2.0;
+    for half in [Point::new(reach, 0.0), Point::new(0.0, reach)] {
+        let shift = if detail.is_slot && half.y == 0.0 { None } else { Some(Point::default()) };
+        if let Some(shift) = shift {
+            let (from, to) = (middle - half + shift, middle + half + shift);
+            draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
+        }
+    }
+    let corner = Point::new(radius_mm, radius_mm);
+    let around = Extent { low: middle - corner, high: middle + corner };
+    let title = format!("{letter} ({})", Sheet::scale_text(scale));
+    draft.place_title(&format!("title of detail {letter}"), &title, 3.5, around, false).then_some(place)
 }
 
 /// Draws strokes of a view from a side.

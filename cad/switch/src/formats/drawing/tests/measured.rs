@@ -38,7 +38,7 @@ impl Entity {
 /// Blocks by name, and the entities of model space under the empty name.
 fn read(text: &str) -> BTreeMap<String, Vec<Entity>> {
     let lines: Vec<&str> = text.lines().collect();
-    assert!(lines.len() % 2 == 0, "codes and values come in pairs");
+    assert!(lines.len().is_multiple_of(2), "codes and values come in pairs");
     let mut entities: Vec<Entity> = Vec::new();
     for pair in lines.chunks_exact(2) {
         let code: u32 = pair[0].trim().parse().unwrap();
@@ -155,7 +155,7 @@ fn support(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value, name: &str)
     // Round ends of slots: half circles.
     let ends: Vec<&Entity> =
         front.iter().filter(|e| e.is("ARC", "VISIBLE") && (e.sweep() - 180.0).abs() < 1e-6).collect();
-    assert!(!ends.is_empty() && ends.len() % 2 == 0);
+    assert!(!ends.is_empty() && ends.len().is_multiple_of(2));
     let radius = |e: &&Entity| e.centre().0.hypot(e.centre().1);
     let outermost = ends.iter().map(radius).fold(0.0, f64::max);
     let innermost = ends.iter().map(radius).fold(f64::INFINITY, f64::min);

@@ -10,7 +10,7 @@ const LINE_GAP_MM: f64 = 0.6;
 /// What a new text keeps from other texts, mm.
 const TEXT_GAP_MM: f64 = 0.9;
 /// How much further a leader goes rather than cross a line of another dimension, mm.
-const CROSSING_MM: f64 = 9.0;
+const CROSSING_MM: f64 = 7.0;
 /// How much further rather than cross an edge, mm.
 const EDGE_CROSSING_MM: f64 = 2.5;
 

@@ -176,7 +176,7 @@ pub(super) fn lines_cover([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
 }
 
 /// Lines nearer than this look like one, mm.
-const BESIDE_MM: f64 = 0.5;
+const BESIDE_MM: f64 = 0.8;
 
 #[cfg(test)]
 mod tests {

@@ -347,7 +347,7 @@ fn radii(f: &Features, place: &Place, all: &mut Vec<Wanted>) {
         for leader in &mut leaders {
             let outward = (leader.tip - place.origin).unit();
             let is_outward = outward.x * leader.direction.x + outward.y * leader.direction.y > 0.0;
-            leader.cost_mm = if is_outward == is_inner { 8.0 } else { 0.0 };
+            leader.cost_mm = if is_outward == is_inner { 18.0 } else { 0.0 };
         }
         let key = format!("radius {}", words::number(radius));
         all.push(Wanted::callout(key, vec![format!("R{}", words::number(radius))], leaders));

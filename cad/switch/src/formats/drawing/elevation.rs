@@ -233,8 +233,20 @@ pub(super) fn joined(strokes: &[Stroke], over: &[Stroke]) -> Vec<Stroke> {
 /// a black patch tells nobody anything.
 pub(super) fn legible(strokes: &[Stroke], kept: &[Stroke], apart_mm: f64) -> Vec<Stroke> {
     let length = |s: &Stroke| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1]);
+    let reach = |axis: usize| {
+        let ends = strokes.iter().flatten().map(|p| p[axis]);
+        ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
+    };
+    let reaches = [reach(0), reach(1)];
+    // What bounds the view stays in any case.
+    let is_bound = |s: &Stroke| {
+        (0..2).any(|axis| {
+            let at = |x: f64| s.iter().all(|p| (p[axis] - x).abs() < 1e-4);
+            at(reaches[axis].0) || at(reaches[axis].1)
+        })
+    };
     let mut longest: Vec<&Stroke> = strokes.iter().collect();
-    longest.sort_by(|a, b| length(b).total_cmp(&length(a)));
+    longest.sort_by(|a, b| is_bound(b).cmp(&is_bound(a)).then(length(b).total_cmp(&length(a))));
     let mut all: Vec<Stroke> = Vec::new();
     for stroke in longest {
         let Some([c, s]) = direction_of(stroke) else { continue };
@@ -338,8 +350,8 @@ mod tests {
     fn lines_that_crowd_are_thinned() {
         let upright = |u: f64, high: f64| [[u, 0.0], [u, high]];
         let strokes =
-            [upright(0.0, 5.0), upright(0.3, 5.0), upright(0.6, 5.0), upright(1.1, 5.0), upright(0.3, 20.0)];
-        assert_eq!(legible(&strokes, &[], 0.5), [upright(0.3, 20.0), upright(1.1, 5.0)]);
+            [upright(0.0, 5.0), upright(0.3, 5.0), upright(0.8, 20.0), upright(0.9, 5.0), upright(1.6, 5.0)];
+        assert_eq!(legible(&strokes, &[], 0.5), [upright(0.0, 5.0), upright(1.6, 5.0), upright(0.8, 20.0)]);
         assert_eq!(legible(&strokes[..1], &[upright(0.2, 9.0)], 0.5), Vec::<Stroke>::new());
         // What crosses does not crowd.
         assert_eq!(legible(&[upright(0.0, 5.0), [[-1.0, 2.0], [1.0, 2.0]]], &[], 0.5).len(), 2);

@@ -1,5 +1,5 @@
-//! What dimensions say: numbers, tolerances and fits. Where each comes from stands in cad/doc/print-limits.md,
-//! "Tolerances on drawings".
+//! What dimensions say: numbers, tolerances and fits. Where each comes from stands in cad/doc/drawing.md, "Tolerances
+//! on drawings".
 
 use std::f64::consts::PI;
 

@@ -123,7 +123,9 @@ mod tests {
         assert_eq!(found(&[(0, at.clone()), (1, through.clone())]), ["R20 on a line"]);
         // Its own dimension line may touch it.
         assert!(found(&[(0, at.clone()), (0, through)]).is_empty());
-        assert_eq!(found(&[(0, text(15.0, 150.0, "R20"))]), ["R20 on the frame"]);
+        assert_eq!(found(&[(0, text(5.0, 150.0, "R20"))]), ["R20 on the frame"]);
+        // On the frame itself it also touches its line.
+        assert_eq!(found(&[(0, text(18.0, 150.0, "R20"))]), ["R20 on the frame", "R20 on a line"]);
         assert_eq!(found(&[(0, text(250.0, 20.0, "R20"))]), ["R20 on the title block"]);
         assert_eq!(found(&[(0, line([250.0, 100.0], [250.0, 5.0]))]), ["a line on the frame"]);
         assert_eq!(found(&[(0, line([250.0, 100.0], [250.0, 20.0]))]), ["a line on the title block"]);

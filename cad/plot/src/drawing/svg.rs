@@ -9,7 +9,7 @@ use crate::html::escape;
 /// Between two sheets, mm.
 const GAP_MM: f64 = 8.0;
 
-/// All sheets, one under another, in millimetres; `#NAME` behind the address of the file shows one of them alone.
+/// All sheets, one under another, in millimetres; with `#NAME` behind the address of the file a browser begins with that one.
 #[must_use]
 pub fn drawing_svg(sheets: &[Sheet], title: &str) -> String {
     let width = sheets.iter().map(|s| s.paper.size_mm().0).fold(0.0, f64::max);
@@ -30,7 +30,11 @@ pub fn drawing_svg(sheets: &[Sheet], title: &str) -> String {
     );
     for (sheet, top) in sheets.iter().zip(&tops) {
         let (w, h) = sheet.paper.size_mm();
-        let _ = writeln!(text, "<view id=\"{}\" viewBox=\"0 {top} {w} {h}\"/>", escape(&sheet.name));
+        let _ = writeln!(
+            text,
+            "<view id=\"{}\" preserveAspectRatio=\"xMinYMin meet\" viewBox=\"0 {top} {w} {h}\"/>",
+            escape(&sheet.name)
+        );
     }
     for (sheet, top) in sheets.iter().zip(&tops) {
         let (w, h) = sheet.paper.size_mm();

@@ -25,6 +25,8 @@ fn readme_s_first_command_makes_a_complete_checked_set() {
         "manifest.json",
         "assembly.3mf",
         "drawing.svg",
+        "drawing.pdf",
+        "drawing.dxf",
         "PRINTING.md",
         "assembly.png",
         "plate.png",
@@ -32,7 +34,7 @@ fn readme_s_first_command_makes_a_complete_checked_set() {
     ] {
         assert!(written.contains_key(name), "{name} is missing");
     }
-    assert_eq!(written.len(), 17, "{:?}", written.keys());
+    assert_eq!(written.len(), 19, "{:?}", written.keys());
 
     let manifest: Value = serde_json::from_slice(&written["manifest.json"]).unwrap();
     let listed = manifest["files"].as_array().unwrap();

@@ -26,6 +26,8 @@ fn all_formats_repeat_byte_for_byte_and_are_listed() {
         "shell.step",
         "shell.dxf",
         "drawing.svg",
+        "drawing.pdf",
+        "drawing.dxf",
         "PRINTING.md",
         "report.html",
     ] {

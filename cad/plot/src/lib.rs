@@ -1,7 +1,7 @@
-//! Figures of friction curves, layouts and calibrations, and the page of a calibration.
+//! Figures of friction curves, layouts and calibrations, the page of a calibration, and technical drawings on paper.
 //!
-//! It knows the friction model and what a calibration found; it knows no geometry, and does no input or output: figures
-//! and pages are returned as text.
+//! It knows the friction model, what a calibration found, and paper; it knows no solids, and does no input or output: figures,
+//! pages and drawings are returned as text or bytes.
 //!
 //! ```
 //! use pinswitch_friction::{Contact, PinPattern, Substrate, other_laws, predict, published};
@@ -20,6 +20,7 @@
 mod calibration;
 mod calibration_page;
 mod contact;
+pub mod drawing;
 mod finger;
 mod friction;
 mod front;

@@ -38,6 +38,26 @@ choice! {
     }
 }
 
+choice! {
+    /// How the views of a drawing are arranged.
+    Projection {
+        /// What is seen from above lies below.
+        First = "first",
+        /// What is seen from above lies above.
+        Third = "third",
+    }
+}
+
+choice! {
+    /// Smallest paper of a drawing.
+    Paper {
+        /// 297 x 210 mm.
+        A4 = "a4",
+        /// 420 x 297 mm.
+        A3 = "a3",
+    }
+}
+
 configuration! {
     /// A configuration whose every value lies in its range; [`crate::design::Design`] is one that can also be built.
     Configuration {
@@ -148,6 +168,12 @@ configuration! {
         /// The mesh.
         mesh: MeshTable {
             chord_tolerance_mm: f64 = 0.01, 1e-4..=0.1, Chosen, "largest distance between mesh and true curve, absolute";
+        }
+        /// The drawing.
+        drawing: DrawingTable {
+            projection: Projection = Projection::First, (), Chosen, "first angle as in Europe and Asia, third as in North America";
+            paper: Paper = Paper::A4, (), Chosen, "size of the sheets; what finds no room on a4 gets a3";
+            date: String = String::new(), 20, Chosen, "for the title block; empty: no date, and the same bytes every day";
         }
         /// The predicted curve.
         friction: FrictionTable {

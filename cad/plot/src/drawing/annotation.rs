@@ -1,0 +1,360 @@
+//! Dimensions and notes: each knows many ways in which it could be written, and takes one that touches nothing.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use super::draft::{Candidate, Draft};
+use super::font::text_width_mm;
+use super::geometry::Point;
+use super::sheet::{ARROW_MM, Layer, Shape, Text};
+
+/// Height of dimensions, mm (ISO 3098).
+pub(super) const TEXT_MM: f64 = 2.5;
+/// From one line of a note to the next, mm.
+const LINE_MM: f64 = 4.2;
+/// From an edge to its extension line, mm.
+const EXTENSION_GAP_MM: f64 = 0.8;
+/// How far an extension line goes beyond the dimension line, mm.
+const EXTENSION_MM: f64 = 1.5;
+/// From a view to its first dimension line, mm.
+const FIRST_TIER_MM: f64 = 7.0;
+/// From one dimension line to the next, mm.
+const TIER_MM: f64 = 6.0;
+/// From one arc of an angle to the next, mm: level texts stick out of their arc.
+const ARC_TIER_MM: f64 = 8.0;
+/// How many dimension lines are tried.
+const TIERS: u32 = 14;
+
+fn text(at: Point, content: &str, upright: bool) -> Shape {
+    Shape::Text(Text { at, height_mm: TEXT_MM, content: content.to_owned(), upright })
+}
+
+fn line(from: Point, to: Point) -> (Layer, Shape) {
+    (Layer::Dimension, Shape::Line { from, to })
+}
+
+fn arrow(tip: Point, direction: Point) -> (Layer, Shape) {
+    (Layer::Dimension, Shape::Arrow { tip, direction })
+}
+
+/// The distance of two points, along x or along y.
+#[derive(Clone, Debug)]
+pub struct Linear {
+    /// What it is of.
+    pub key: String,
+    /// What it says.
+    pub text: String,
+    /// One end, on paper.
+    pub from: Point,
+    /// The other end.
+    pub to: Point,
+    /// Whether it measures along y.
+    pub upright: bool,
+    /// Where the first dimension line may lie: x of an upright one, else y.
+    pub edge_mm: f64,
+    /// +1 if dimension lines move up or right from there, -1 down or left.
+    pub outward: f64,
+    /// What a text beside its dimension line must stand clear of, along the line: where others have their extension lines.
+    pub clear_of: [f64; 2],
+}
+
+impl Linear {
+    /// Draws it; whether there was room.
+    pub fn place(&self, draft: &mut Draft) -> bool {
+        draft.place(&self.key, self.candidates())
+    }
+
+    fn candidates(&self) -> Vec<Candidate> {
+        // Worked out as if horizontal: `along` and `level` swap for an upright dimension, whose text is read from the right.
+        let along = |p: Point| if self.upright { p.y } else { p.x };
+        let level = |p: Point| if self.upright { p.x } else { p.y };
+        let at = |along: f64, level: f64| {
+            if self.upright { Point::new(level, along) } else { Point::new(along, level) }
+        };
+        let (first, last) =
+            if along(self.from) <= along(self.to) { (self.from, self.to) } else { (self.to, self.from) };
+        let (a, b) = (along(first), along(last));
+        let width = text_width_mm(&self.text, TEXT_MM);
+        // A text stands above its line: for an upright one that is to the left.
+        let above = if self.upright { -0.8 } else { 0.8 };
+        let mut all = Vec::new();
+        for tier in 0..TIERS {
+            let height = self.edge_mm + self.outward * (FIRST_TIER_MM + TIER_MM * f64::from(tier));
+            let base = TIER_MM * f64::from(tier);
+            let mut common = Vec::new();
+            for end in [first, last] {
+                let from = level(end) + (height - level(end)).signum() * EXTENSION_GAP_MM;
+                common.push(line(at(along(end), from), at(along(end), height + self.outward * EXTENSION_MM)));
+            }
+            let fits_arrows = b - a > 2.0 * ARROW_MM + 1.0;
+            let step = at(1.0, 0.0);
+            if fits_arrows {
+                common.push(arrow(at(a, height), step * -1.0));
+                common.push(arrow(at(b, height), step));
+                common.push(line(at(a, height), at(b, height)));
+            } else {
+                common.push(arrow(at(a, height), step));
+                common.push(arrow(at(b, height), step * -1.0));
+                common.push(line(at(a - 5.0, height), at(b + 5.0, height)));
+            }
+            if fits_arrows && b - a > width + 1.0 {
+                for shift in [0.0, -0.25, 0.25] {
+                    let start = f64::midpoint(a, b) - width / 2.0 + shift * (b - a - width);
+                    let mut shapes = common.clone();
+                    shapes.push((Layer::Text, text(at(start, height + above), &self.text, self.upright)));
+                    all.push((base + shift.abs(), shapes));
+                }
+            }
+            // Beside the line, which then reaches under the text.
+            for after in [true, false] {
+                let [low, high] = self.clear_of;
+                let start = if after { b.max(high) + 3.5 } else { a.min(low) - 3.5 - width };
+                let (from, to) = if after { (b, start + width) } else { (start, a) };
+                let mut shapes = common.clone();
+                shapes.push(line(at(from, height), at(to, height)));
+                shapes.push((Layer::Text, text(at(start, height + above), &self.text, self.upright)));
+                all.push((base + if after { 5.0 } else { 5.5 }, shapes));
+            }
+        }
+        all
+    }
+}
+
+/// An angle about a centre.
+#[derive(Clone, Debug)]
+pub struct Angular {
+    /// What it is of.
+    pub key: String,
+    /// What it says.
+    pub text: String,
+    /// Centre of the angle, on paper.
+    pub centre: Point,
+    /// First side, radians counter-clockwise from +x.
+    pub from_rad: f64,
+    /// Last side, greater than the first.
+    pub to_rad: f64,
+    /// From the centre to where the extension lines begin, mm on paper.
+    pub begins_mm: f64,
+    /// From the centre to what the dimension line must pass, mm on paper.
+    pub edge_mm: f64,
+}
+
+impl Angular {
+    /// Draws it; whether there was room.
+    pub fn place(&self, draft: &mut Draft) -> bool {
+        draft.place(&self.key, self.candidates())
+    }
+
+    fn candidates(&self) -> Vec<Candidate> {
+        let sweep = self.to_rad - self.from_rad;
+        let width = text_width_mm(&self.text, TEXT_MM);
+        let mut all = Vec::new();
+        for tier in 0..TIERS {
+            let radius = self.edge_mm + FIRST_TIER_MM + ARC_TIER_MM * f64::from(tier);
+            let on = |angle: f64, r: f64| self.centre + Point::towards(angle) * r;
+            let mut common = vec![(
+                Layer::Dimension,
+                Shape::Arc {
+                    centre: self.centre,
+                    radius_mm: radius,
+                    start_rad: self.from_rad,
+                    sweep_rad: sweep,
+                },
+            )];
+            // The head is straight: it points along the chord of its own length.
+            let turn = (ARROW_MM / 2.0 / radius).min(1.0);
+            let inside = sweep * radius > 2.0 * ARROW_MM + 1.0;
+            for (angle, sense) in [(self.from_rad, -1.0), (self.to_rad, 1.0)] {
+                let sense = if inside { sense } else { -sense };
+                common.push(line(
+                    on(angle, self.begins_mm + EXTENSION_GAP_MM),
+                    on(angle, radius + EXTENSION_MM),
+                ));
+                common.push(arrow(on(angle, radius), Point::towards(angle + sense * (FRAC_PI_2 - turn))));
+            }
+            for share in [0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75, 0.15, 0.85] {
+                let angle = self.from_rad + sweep * share;
+                // The nearest place outside the arc where a level text does not touch it.
+                let outward = Point::towards(angle);
+                let clear = (0..60).map(|i| radius + 0.5 + 0.5 * f64::from(i)).find(|r| {
+                    let middle = on(angle, *r);
+                    let half = Point::new(width / 2.0 + 0.7, TEXT_MM / 2.0 + 0.7);
+                    let nearest = Point::new(
+                        (self.centre.x - middle.x).clamp(-half.x, half.x),
+                        (self.centre.y - middle.y).clamp(-half.y, half.y),
+                    );
+                    (middle + nearest - self.centre).length() > radius
+                });
+                let Some(r) = clear else { continue };
+                let middle = self.centre + outward * r;
+                let mut shapes = common.clone();
+                let at = middle - Point::new(width / 2.0, TEXT_MM / 2.0);
+                shapes.push((Layer::Text, text(at, &self.text, false)));
+                all.push((
+                    ARC_TIER_MM * f64::from(tier) + 6.0 * (share - 0.5).abs() + (r - radius - 2.0).max(0.0),
+                    shapes,
+                ));
+            }
+        }
+        all
+    }
+}
+
+/// Where a leader may end: on what, and from which side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leader {
+    /// Its end, on paper.
+    pub tip: Point,
+    /// Away from what it points at: a unit vector.
+    pub direction: Point,
+    /// How much worse it is than the best, mm.
+    pub cost_mm: f64,
+}
+
+impl Leader {
+    /// Leaders that point at a circle from all sides, from outside.
+    #[must_use]
+    pub fn around(centre: Point, radius_mm: f64) -> Vec<Self> {
+        (0..24)
+            .map(|i| {
+                let direction = Point::towards(TAU * (f64::from(i) + 0.5) / 24.0);
+                Self { tip: centre + direction * radius_mm, direction, cost_mm: 0.0 }
+            })
+            .collect()
+    }
+}
+
+/// Some lines of text at the end of a leader.
+#[derive(Clone, Debug)]
+pub struct Callout {
+    /// What it is of.
+    pub key: String,
+    /// What it says, line by line.
+    pub lines: Vec<String>,
+    /// Where its leader may end.
+    pub leaders: Vec<Leader>,
+    /// Whether the text is the number of a balloon, in a circle.
+    pub is_balloon: bool,
+    /// Where it had better not be written.
+    pub avoid: Vec<super::Extent>,
+    /// Middle and radius of a circle around what it points at: the mark of a detail.
+    pub around: Option<(Point, f64)>,
+}
+
+/// How much further a leader goes rather than end where it had better not, mm.
+const AVOID_MM: f64 = 40.0;
+
+/// Radius of a balloon, mm.
+const BALLOON_MM: f64 = 4.0;
+/// Lengths of leader that are tried, mm.
+const REACHES_MM: [f64; 20] = [
+    4.0, 6.0, 8.0, 10.0, 12.0, 14.5, 17.0, 20.0, 23.0, 26.0, 30.0, 34.0, 38.0, 43.0, 48.0, 54.0, 60.0, 68.0,
+    78.0, 90.0,
+];
+
+impl Callout {
+    /// Draws it; whether there was room.
+    pub fn place(&self, draft: &mut Draft) -> bool {
+        draft.place(&self.key, self.candidates())
+    }
+
+    fn candidates(&self) -> Vec<Candidate> {
+        let mut all = Vec::new();
+        for leader in &self.leaders {
+            for reach in REACHES_MM {
+                let elbow = leader.tip + leader.direction * reach;
+                let around = super::Extent::between(elbow, elbow).grown(BALLOON_MM);
+                let is_bad = self.avoid.iter().any(|a| a.meets(around));
+                let cost = leader.cost_mm + reach + if is_bad { AVOID_MM } else { 0.0 };
+                if self.is_balloon {
+                    all.push((cost, self.balloon(leader, elbow)));
+                    continue;
+                }
+                // The shelf goes on to the side to which the leader leans; an upright leader may choose.
+                for side in [1.0, -1.0] {
+                    if leader.direction.x * side >= -0.15 {
+                        all.push((cost, self.note(leader, elbow, side)));
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    fn note(&self, leader: &Leader, elbow: Point, side: f64) -> Vec<(Layer, Shape)> {
+        let shelf = elbow + Point::new(2.0 * side, 0.0);
+        let mut shapes =
+            vec![arrow(leader.tip, leader.direction * -1.0), line(leader.tip, elbow), line(elbow, shelf)];
+        if let Some((centre, radius_mm)) = self.around {
+            shapes.push((Layer::Thin, Shape::Circle { centre, radius_mm }));
+        }
+        let widest = self.lines.iter().map(|l| text_width_mm(l, TEXT_MM)).fold(0.0, f64::max);
+        let x = if side > 0.0 { shelf.x + 0.8 } else { shelf.x - 0.8 - widest };
+        for (content, y) in self.lines.iter().zip(baselines(shelf.y)) {
+            let width = text_width_mm(content, TEXT_MM);
+            // Lines of a note to the left end at its shelf.
+            let x = if side > 0.0 { x } else { shelf.x - 0.8 - width };
+            shapes.push((Layer::Text, text(Point::new(x, y), content, false)));
+        }
+        shapes
+    }
+
+    fn balloon(&self, leader: &Leader, elbow: Point) -> Vec<(Layer, Shape)> {
+        let number = self.lines.join(" ");
+        let centre = elbow + leader.direction * BALLOON_MM;
+        let at = centre - Point::new(text_width_mm(&number, TEXT_MM) / 2.0, TEXT_MM / 2.0);
+        vec![
+            arrow(leader.tip, leader.direction * -1.0),
+            line(leader.tip, elbow),
+            (Layer::Dimension, Shape::Circle { centre, radius_mm: BALLOON_MM }),
+            (Layer::Text, text(at, &number, false)),
+        ]
+    }
+}
+
+/// Where the lines of a note stand whose first is level with `y`.
+fn baselines(y: f64) -> impl Iterator<Item = f64> {
+    (0..).map(move |i| y - TEXT_MM / 2.0 - LINE_MM * f64::from(i))
+}
+
+impl Draft {
+    /// Writes `content`, with capitals of `height_mm`, as near above or below `around` as there is room: the title of a
+    /// view. Whether there was room.
+    pub fn place_title(
+        &mut self,
+        key: &str,
+        content: &str,
+        height_mm: f64,
+        around: super::Extent,
+        is_above: bool,
+    ) -> bool {
+        let width = text_width_mm(content, height_mm);
+        let middle = around.middle();
+        let mut all = Vec::new();
+        for step in 0..40 {
+            let away = 3.0 + f64::from(step);
+            let (below, above) = if is_above { (8.0, 0.0) } else { (0.0, 8.0) };
+            for (cost, y) in [(below, around.low.y - away - height_mm), (above, around.high.y + away)] {
+                for shift in [0.0, -10.0, 10.0, -20.0, 20.0, -35.0, 35.0] {
+                    let at = Point::new(middle.x - width / 2.0 + shift, y);
+                    let shape =
+                        Shape::Text(Text { at, height_mm, content: content.to_owned(), upright: false });
+                    all.push((cost + away + shift.abs() / 2.0, vec![(Layer::Text, shape)]));
+                }
+            }
+        }
+        self.place(key, all)
+    }
+
+    /// Writes `lines` upward from the sheet's lower left corner, no wider than `width_mm`: general notes.
+    pub fn notes(&mut self, lines: &[String], width_mm: f64) {
+        let frame = self.sheet().paper.frame();
+        let group = self.group();
+        let number = lines.len();
+        for (i, content) in lines.iter().enumerate() {
+            let (content, height_mm) = super::fitted(content, TEXT_MM, 1.8, width_mm);
+            let y = frame.low.y + 3.0 + LINE_MM * (number - 1 - i) as f64;
+            let at = Point::new(frame.low.x + 3.0, y);
+            self.put(Layer::Text, Shape::Text(Text { at, height_mm, content, upright: false }), None, group);
+        }
+    }
+}

@@ -1,0 +1,331 @@
+//! The sheet of the assembly: assembled, from above, cut open, with balloons and the list of its parts.
+
+use super::body::{Body, Side};
+use super::elevation::{Elevation, elevation, joined, legible};
+use super::features::lettering;
+use super::layout::{Layout, Sizes, choices_of_assembly};
+use super::part_sheet::{CROWDED_MM, HATCH_MM, put_strokes, section_mark};
+use super::parts_list::{Item, items};
+use super::plan::{Place, Trace, draw, plan};
+use super::section::Face;
+use super::words;
+use crate::built::Built;
+use crate::design::Design;
+use crate::parts::{Part, Role};
+use pinswitch_plot::drawing::{
+    Callout, Draft, Extent, Layer, Leader, Linear, Paper, Point, Projection, Shape, Sheet, Table, TitleBlock,
+};
+use pinswitch_solid::pose::Pose;
+use pinswitch_solid::profile::{Arc, Contour, Point2, polar};
+use std::f64::consts::FRAC_PI_2;
+
+/// The assembly, ready to be drawn.
+struct Assembly<'a> {
+    design: &'a Design,
+    bodies: Vec<(&'a Part, Pose)>,
+    items: Vec<Item>,
+    title: TitleBlock,
+    /// Lowest and highest z.
+    z_mm: (f64, f64),
+    above: Elevation,
+    /// Where the section is cut, the face of each body there, and what is seen behind it.
+    cut_x: f64,
+    faces: Vec<Face>,
+    behind: Elevation,
+}
+
+/// The sheet of the assembly.
+pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, asked: Paper) -> Option<Sheet> {
+    let bodies: Vec<(&Part, Pose)> = built.assembly().filter_map(|b| Some((&b.part, b.part.pose?))).collect();
+    let ends = bodies.iter().filter_map(|(part, pose)| {
+        let (low, high) = part.solid.bounds()?;
+        let height = |z: f64| if pose.flipped { pose.z_mm - z } else { pose.z_mm + z };
+        Some((height(low.z).min(height(high.z)), height(low.z).max(height(high.z))))
+    });
+    let z_mm = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+    let design = built.design();
+    let side = if title.projection == Projection::First { Side::Left } else { Side::Right };
+    let cut_x = cut_x(design);
+    let cut = if side == Side::Left { -cut_x } else { cut_x };
+    let from_side = seen(&bodies, z_mm.0, side);
+    let assembly = Assembly {
+        design,
+        items: items(built),
+        above: elevation(&seen(&bodies, z_mm.0, Side::Above), None),
+        cut_x,
+        faces: from_side.iter().map(|body| Face::of(body, cut)).collect(),
+        behind: elevation(&from_side, Some(cut)),
+        bodies,
+        title,
+        z_mm,
+    };
+    choices_of_assembly(asked).into_iter().find_map(|(paper, scale)| assembly.attempt(paper, scale))
+}
+
+/// Through the pin that lies nearest to the middle.
+fn cut_x(design: &Design) -> f64 {
+    let radius = design.contact_radius_mm();
+    let xs = design.pin_angles_rad().into_iter().map(|a| polar(radius, a).x);
+    xs.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
+}
+
+/// The bodies from a side, the lowest at z = 0.
+fn seen(bodies: &[(&Part, Pose)], lowest_mm: f64, side: Side) -> Vec<Body> {
+    let place = |pose: &Pose| Pose { z_mm: pose.z_mm - lowest_mm, ..*pose };
+    bodies.iter().map(|(part, pose)| Body::seen(&part.solid, place(pose), side)).collect()
+}
+
+impl Assembly<'_> {
+    fn attempt(&self, paper: Paper, scale: f64) -> Option<Sheet> {
+        let title = TitleBlock { scale: Sheet::scale_text(scale), ..self.title.clone() };
+        let projection = title.projection;
+        let mut draft = Draft::new(paper, &title);
+        let table = self.table();
+        let sizes = Sizes {
+            front: self.front_extent(scale),
+            depth_mm: (self.z_mm.1 - self.z_mm.0) * scale,
+            detail_mm: 0.0,
+            details: 0,
+            table_mm: table.height_mm() + 3.0,
+        };
+        let layout = Layout::on(&draft, &sizes, projection)?;
+        let block = draft.sheet().title_block;
+        table.draw(&mut draft, Point::new(block.high.x, block.high.y));
+        let cut_x = self.cut_x;
+        let place = Place::straight(layout.front, scale);
+        self.front(&mut draft, &place);
+        self.view_from_above(&mut draft, &layout, scale);
+        let (section, inside) = self.section(&mut draft, &layout, scale);
+        let front = Extent { low: sizes.front.low + layout.front, high: sizes.front.high + layout.front };
+        let mark = [front.low.y - 2.0, front.high.y + 2.0];
+        section_mark(&mut draft, place.at(Point2::new(cut_x, 0.0)).x, mark, layout.section_sense);
+        if !draft.place_title("section title", "A-A", 3.5, section, true) {
+            return None;
+        }
+        let is_placed = self.overall(&mut draft, section)
+            && self
+                .items
+                .iter()
+                .all(|item| self.balloon(&mut draft, item, &place, &inside, &[front, section]));
+        is_placed.then(|| draft.finished("assembly", scale))
+    }
+
+    fn front_extent(&self, scale: f64) -> Extent {
+        let reach = self.design.contact_radius_mm() + self.design.tendon_diameter_mm();
+        let axis = Point::new(0.0, 0.0);
+        let mut extent = Extent::between(Point::new(0.0, reach * scale), Point::new(0.0, reach * scale));
+        for (part, _) in &self.bodies {
+            let Some((low, high)) = part.solid.bounds() else { continue };
+            // A body may be turned half round: both sides count.
+            let far = low.x.abs().max(high.x.abs());
+            extent = extent
+                .joined(Extent::between(Point::new(-far, low.y) * scale, Point::new(far, high.y) * scale));
+        }
+        if extent.low.y > 0.0 && extent.low.y < 26.0 {
+            extent.joined(Extent::between(axis, axis))
+        } else {
+            extent
+        }
+    }
+
+    /// What lies on top, what it hides of shell, layer and pins, and the tendon.
+    fn front(&self, draft: &mut Draft, place: &Place) {
+        let top = |(part, pose): &(&Part, Pose)| {
+            let high = part.solid.bounds().map_or((0.0, 0.0), |(low, high)| (low.z, high.z));
+            if pose.flipped { pose.z_mm - high.0 } else { pose.z_mm + high.1 }
+        };
+        let Some(nearest) = self.bodies.iter().max_by(|a, b| top(a).total_cmp(&top(b))) else { return };
+        let view = draft.view("FRONT", place.origin, place.scale);
+        let chamfer = self.design.configuration().print.elephant_foot_mm;
+        let mut lines: Vec<(Layer, Trace)> = plan(&nearest.0.solid, nearest.1.flipped, chamfer)
+            .into_iter()
+            .filter(|(layer, _)| *layer != Layer::Hidden)
+            .collect();
+        for (part, pose) in &self.bodies {
+            if part.name == nearest.0.name || matches!(part.role, Role::Support { .. }) {
+                continue;
+            }
+            let of_part = plan(&part.solid, pose.flipped, chamfer).into_iter();
+            let hidden = of_part.filter(|(layer, trace)| {
+                *layer == Layer::Visible && !lines.iter().any(|(_, other)| is_same(other, trace))
+            });
+            let hidden: Vec<_> = hidden.map(|(_, trace)| (Layer::Hidden, trace)).collect();
+            lines.extend(hidden);
+        }
+        draw(draft, &lines, place, view);
+        let group = draft.group();
+        for trace in self.tendon() {
+            draft.put(Layer::Phantom, place.shape(&trace), None, group);
+        }
+        let axis = place.at(Point2::origin());
+        let frame = draft.sheet().paper.frame();
+        if axis.y > frame.low.y + 40.0 && lines.len() > 1 {
+            let half = Point::new(6.0, 0.0);
+            draft.put(Layer::Centre, Shape::Line { from: axis - half, to: axis + half }, None, group);
+        }
+    }
+
+    /// The tendon over the pins: its middle line over the wrap.
+    fn tendon(&self) -> Vec<Trace> {
+        let c = self.design.configuration();
+        let radius_mm = self.design.contact_radius_mm()
+            + c.pins.diameter_mm / 2.0
+            + self.design.tendon_diameter_mm() / 2.0;
+        let wrap = c.layout.wrap_angle_deg.to_radians();
+        vec![Trace::Arc(Arc {
+            centre: Point2::origin(),
+            radius_mm,
+            start_rad: FRAC_PI_2 - wrap / 2.0,
+            sweep_rad: wrap,
+        })]
+    }
+
+    fn view_from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
+        let origin = Point::new(layout.front.x, layout.above_mm);
+        let view = draft.view("ABOVE", origin, scale);
+        let visible = legible(&self.above.visible, &[], CROWDED_MM / scale);
+        let at = |p: [f64; 2]| origin + Point::new(p[0], -p[1]) * scale;
+        let group = draft.group();
+        put_strokes(draft, Layer::Visible, &visible, at, view, group);
+    }
+
+    /// The section: each body hatched its own way, pins not at all. Returns what it covers, and a place in each body.
+    fn section(&self, draft: &mut Draft, layout: &Layout, scale: f64) -> (Extent, Vec<(String, Point)>) {
+        let origin = Point::new(layout.section_mm, layout.front.y);
+        let view = draft.view("SECTION_A", origin, scale);
+        let at = |p: [f64; 2]| origin + Point::new(layout.section_sense * p[1], p[0]) * scale;
+        let group = draft.group();
+        let mut outlines: Vec<_> = self.faces.iter().flat_map(Face::outline).collect();
+        let behind = legible(&self.behind.visible, &outlines, CROWDED_MM / scale);
+        outlines.extend(behind);
+        let mut inside = Vec::new();
+        for (i, ((part, _), face)) in self.bodies.iter().zip(&self.faces).enumerate() {
+            if let Some(place) = face.inside() {
+                inside.push((part.name.clone(), at(place)));
+            }
+            if face.is_empty() || matches!(part.role, Role::Pin { .. }) {
+                continue;
+            }
+            let apart = HATCH_MM / scale * if part.role == Role::Layer { 0.55 } else { 1.0 };
+            put_strokes(draft, Layer::Hatch, &face.hatch(apart, i % 2 == 0), at, view, group);
+        }
+        let outlines = joined(&outlines, &[]);
+        put_strokes(draft, Layer::Visible, &outlines, at, view, group);
+        let corners = outlines.iter().flatten().map(|p| Extent::between(at(*p), at(*p)));
+        (corners.reduce(Extent::joined).unwrap_or(Extent::between(origin, origin)), inside)
+    }
+
+    /// Width over both supports.
+    fn overall(&self, draft: &mut Draft, section: Extent) -> bool {
+        let corner = Point::new(section.high.x, section.low.y);
+        let linear = Linear {
+            key: "overall width".to_owned(),
+            text: words::number(self.z_mm.1 - self.z_mm.0),
+            from: section.low,
+            to: corner,
+            upright: false,
+            edge_mm: section.low.y,
+            outward: -1.0,
+            clear_of: [section.low.x, section.high.x],
+        };
+        linear.place(draft)
+    }
+
+    fn table(&self) -> Table {
+        let columns =
+            [("Item", 12.0), ("Qty", 12.0), ("Designation", 82.0), ("Part number", 44.0), ("Material", 30.0)];
+        let rows = self.items.iter().map(|i| {
+            let item = i.number.to_string();
+            vec![item, i.quantity.clone(), i.designation.clone(), i.part_number.clone(), i.material.clone()]
+        });
+        Table {
+            key: "bill of materials".to_owned(),
+            columns: columns.map(|(word, width)| (word.to_owned(), width)).to_vec(),
+            rows: rows.collect(),
+        }
+    }
+
+    /// The balloon of an item that can be seen; whether there was room.
+    fn balloon(
+        &self,
+        draft: &mut Draft,
+        item: &Item,
+        place: &Place,
+        inside: &[(String, Point)],
+        views: &[Extent],
+    ) -> bool {
+        let fan = |tip: Point| {
+            (0..24).map(move |i| Leader {
+                tip,
+                direction: Point::towards(std::f64::consts::TAU * (f64::from(i) + 0.5) / 24.0),
+                cost_mm: 0.0,
+            })
+        };
+        let leaders: Vec<Leader> = match item.shown.as_str() {
+            "" => return true,
+            "screw" => self
+                .design
+                .fastener_angles_rad()
+                .into_iter()
+                .flat_map(|a| {
+                    let radius = self.design.configuration().fasteners.hole_diameter_mm / 2.0;
+                    Leader::around(place.at(polar(self.design.fastener_radius_mm(), a)), radius * place.scale)
+                })
+                .collect(),
+            "tendon" => self
+                .tendon()
+                .iter()
+                .filter_map(|t| if let Trace::Arc(arc) = t { Some(arc) } else { None })
+                .flat_map(|arc| {
+                    [0.02, 0.2, 0.35, 0.65, 0.8, 0.98].map(|share| {
+                        let tip = place.at(arc.point_at(share, arc.radius_mm));
+                        Leader { tip, direction: (tip - place.origin).unit(), cost_mm: 0.0 }
+                    })
+                })
+                .collect(),
+            name => match inside.iter().find(|(n, _)| n == name) {
+                Some((_, tip)) => fan(*tip).collect(),
+                None => self.on_front(name, place).into_iter().flat_map(fan).collect(),
+            },
+        };
+        let balloon = Callout {
+            key: format!("balloon {}", item.number),
+            lines: vec![item.number.to_string()],
+            leaders,
+            is_balloon: true,
+            avoid: views.to_vec(),
+            around: None,
+        };
+        balloon.place(draft)
+    }
+
+    /// Corners of a body that the section does not cut, in the front view.
+    fn on_front(&self, name: &str, place: &Place) -> Vec<Point> {
+        let of_name = self.bodies.iter().filter(|(part, _)| part.name == name);
+        of_name
+            .flat_map(|(part, pose)| {
+                let letters = lettering(&part.solid);
+                let outline = part.solid.rings().zip(letters).find(|(_, is)| !is).map(|((c, _), _)| c);
+                let corners = outline.map_or_else(Vec::new, |c: &Contour| c.corners().to_vec());
+                let sign = if pose.flipped { -1.0 } else { 1.0 };
+                corners.into_iter().map(move |p| place.at(Point2::new(sign * p.x, p.y)))
+            })
+            .collect()
+    }
+}
+
+/// Whether two lines of a view are one.
+fn is_same(a: &Trace, b: &Trace) -> bool {
+    let near = |p: Point2, q: Point2| (p - q).norm() < 1e-6;
+    match (a, b) {
+        (Trace::Line(a, b), Trace::Line(c, d)) => {
+            (near(*a, *c) && near(*b, *d)) || (near(*a, *d) && near(*b, *c))
+        }
+        (Trace::Circle(a, r), Trace::Circle(b, s)) => near(*a, *b) && (r - s).abs() < 1e-6,
+        (Trace::Arc(a), Trace::Arc(b)) => {
+            near(a.point_at(0.5, a.radius_mm), b.point_at(0.5, b.radius_mm))
+                && (a.radius_mm - b.radius_mm).abs() < 1e-6
+        }
+        _ => false,
+    }
+}

@@ -1,0 +1,275 @@
+//! A solid seen from a side: its walls as curves in the coordinates of a view.
+//!
+//! In a view from a side, `u` runs across the paper, `z` is the height along the pulley's axis, and `w` points at whoever
+//! looks.
+
+use pinswitch_solid::pose::Pose;
+use pinswitch_solid::profile::{Contour, Edge};
+use pinswitch_solid::solid::Solid;
+use std::f64::consts::{PI, TAU};
+
+use super::features::lettering;
+
+/// Ends of curves are rounded to this, mm: neighbours meet in one number, so that what passes their corner crosses one of
+/// them, and not none or both.
+const GRID_MM: f64 = 1e-9;
+
+/// From where a part is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// From +y, x to the right.
+    Above,
+    /// From -x, y to the right of the paper's left edge: `u` is y.
+    Left,
+    /// From +x, `u` is y.
+    Right,
+}
+
+impl Side {
+    /// `u` and `w` of a point of the plan.
+    pub(super) const fn seen(self, x: f64, y: f64) -> [f64; 2] {
+        match self {
+            Self::Above => [x, y],
+            Self::Left => [y, -x],
+            Self::Right => [y, x],
+        }
+    }
+}
+
+/// A line or an arc in the plane of `u` and `w`.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Curve {
+    /// From its first end to its last.
+    Line([f64; 2], [f64; 2]),
+    /// Centre, radius, first angle and sweep.
+    Arc([f64; 2], f64, f64, f64),
+}
+
+impl Curve {
+    /// The point at a share of the way.
+    pub(super) fn at(&self, share: f64) -> [f64; 2] {
+        match *self {
+            Self::Line(a, b) => [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share],
+            Self::Arc(c, r, start, sweep) => {
+                let angle = start + sweep * share;
+                [c[0] + r * angle.cos(), c[1] + r * angle.sin()]
+            }
+        }
+    }
+
+    /// Unit tangent at a share of the way.
+    pub(super) fn tangent(&self, share: f64) -> [f64; 2] {
+        match *self {
+            Self::Line(a, b) => {
+                let d = [b[0] - a[0], b[1] - a[1]];
+                let length = d[0].hypot(d[1]).max(f64::MIN_POSITIVE);
+                [d[0] / length, d[1] / length]
+            }
+            Self::Arc(_, _, start, sweep) => {
+                let angle = start + sweep * share;
+                [-angle.sin() * sweep.signum(), angle.cos() * sweep.signum()]
+            }
+        }
+    }
+
+    /// Shares of the way, in order, at which the curve turns back in direction `axis` (0: u, 1: w), ends excepted.
+    pub(super) fn turns(&self, axis: usize) -> Vec<f64> {
+        let Self::Arc(_, _, start, sweep) = *self else { return Vec::new() };
+        let quarter = if axis == 0 { 0.0 } else { PI / 2.0 };
+        let mut all: Vec<f64> = (-4..=4)
+            .map(|k| (quarter + f64::from(k) * PI - start) / sweep)
+            .filter(|share| (1e-9..=1.0 - 1e-9).contains(share))
+            .collect();
+        all.sort_by(f64::total_cmp);
+        all
+    }
+
+    /// The curve between this one and `other`, which has the same form.
+    fn between(&self, other: &Self, share: f64) -> Self {
+        let mix = |a: f64, b: f64| a + (b - a) * share;
+        let mixed = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
+        match (*self, *other) {
+            (Self::Arc(c, r, start, sweep), Self::Arc(d, s, other_start, other_sweep)) => {
+                let near = start + (other_start - start + PI).rem_euclid(TAU) - PI;
+                Self::Arc(mixed(c, d), mix(r, s), mix(start, near), mix(sweep, other_sweep))
+            }
+            _ => Self::Line(mixed(self.at(0.0), other.at(0.0)), mixed(self.at(1.0), other.at(1.0))),
+        }
+    }
+}
+
+/// A piece of a curve that does not turn back along an axis: where it begins and ends, and how it gets there.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    low: f64,
+    high: f64,
+    /// Of a line: the other coordinate at `low`, and its slope. Of an arc: centre, radius and side.
+    path: Path,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Path {
+    Line(f64, f64),
+    Arc([f64; 2], f64, f64),
+}
+
+impl Run {
+    fn all(curves: &[Curve], axis: usize) -> Vec<Self> {
+        let other = 1 - axis;
+        let mut runs = Vec::new();
+        for curve in curves {
+            let mut shares = curve.turns(axis);
+            shares.insert(0, 0.0);
+            shares.push(1.0);
+            for pair in shares.windows(2) {
+                let snapped = |share: f64| curve.at(share).map(|x| (x / GRID_MM).round() * GRID_MM);
+                let (p, q) = (snapped(pair[0]), snapped(pair[1]));
+                let (a, b) = if p[axis] <= q[axis] { (p, q) } else { (q, p) };
+                if b[axis] - a[axis] <= 0.0 {
+                    continue;
+                }
+                let path = match curve {
+                    Curve::Line(..) => Path::Line(a[other], (b[other] - a[other]) / (b[axis] - a[axis])),
+                    Curve::Arc(c, r, start, sweep) => {
+                        let middle = start + sweep * f64::midpoint(pair[0], pair[1]);
+                        let side = if axis == 0 { middle.sin() } else { middle.cos() };
+                        Path::Arc([c[axis], c[other]], *r, side.signum())
+                    }
+                };
+                runs.push(Self { low: a[axis], high: b[axis], path });
+            }
+        }
+        runs
+    }
+
+    /// The other coordinate where the run passes `value`, its lower end excepted: a corner counts once.
+    fn crossing(&self, value: f64) -> Option<f64> {
+        (self.low < value && value <= self.high).then(|| match self.path {
+            Path::Line(at, slope) => at + slope * (value - self.low),
+            Path::Arc([c, other], r, side) => {
+                other + side * (r * r - (value - c) * (value - c)).max(0.0).sqrt()
+            }
+        })
+    }
+}
+
+/// A wall between two closed runs of curves.
+#[derive(Clone, Debug)]
+pub(super) struct Wall {
+    /// What an upright wall is at every height, along both axes; nothing for a slanted one.
+    runs: Option<[Vec<Run>; 2]>,
+    pub(super) lower: Vec<Curve>,
+    pub(super) upper: Vec<Curve>,
+    pub(super) from_mm: f64,
+    pub(super) to_mm: f64,
+}
+
+impl Wall {
+    /// The curves at height `z`, which lies within the wall.
+    pub(super) fn curves_at(&self, z: f64) -> impl Iterator<Item = Curve> {
+        let share = (z - self.from_mm) / (self.to_mm - self.from_mm);
+        self.lower.iter().zip(&self.upper).map(move |(a, b)| a.between(b, share))
+    }
+}
+
+/// A body as it is seen from one side.
+#[derive(Clone, Debug)]
+pub(super) struct Body {
+    pub(super) walls: Vec<Wall>,
+    /// Heights at which something begins or ends, ascending.
+    pub(super) levels_mm: Vec<f64>,
+}
+
+impl Body {
+    /// `solid` in its place, seen from `side`. Engraved letters are left out: they are no shape of the part.
+    pub(super) fn seen(solid: &Solid, pose: Pose, side: Side) -> Self {
+        let rings: Vec<(&Contour, f64)> = solid.rings().collect();
+        let letters = lettering(solid);
+        let height = |z: f64| if pose.flipped { pose.z_mm - z } else { pose.z_mm + z };
+        let mut walls: Vec<Wall> = solid
+            .walls()
+            .filter(|(lower, _)| !letters[*lower])
+            .map(|(lower, upper)| {
+                let curves = |i: usize| seen_contour(rings[i].0, pose.flipped, side);
+                let (first, last) = if pose.flipped { (upper, lower) } else { (lower, upper) };
+                let is_upright = rings[lower].0 == rings[upper].0;
+                let foot = curves(first);
+                Wall {
+                    runs: is_upright.then(|| [Run::all(&foot, 0), Run::all(&foot, 1)]),
+                    lower: foot,
+                    upper: curves(last),
+                    from_mm: height(rings[first].1),
+                    to_mm: height(rings[last].1),
+                }
+            })
+            .collect();
+        walls.retain(|w| w.to_mm > w.from_mm);
+        let mut levels_mm: Vec<f64> = walls.iter().flat_map(|w| [w.from_mm, w.to_mm]).collect();
+        levels_mm.sort_by(f64::total_cmp);
+        levels_mm.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+        Self { walls, levels_mm }
+    }
+
+    /// Where the body begins and ends along `w`, over the line at `u` and `z`: ascending, in pairs.
+    pub(super) fn crossings(&self, axis: usize, value: f64, z: f64, found: &mut Vec<f64>) {
+        for wall in self.walls.iter().filter(|w| w.from_mm < z && z < w.to_mm) {
+            match &wall.runs {
+                Some(runs) => found.extend(runs[axis].iter().filter_map(|r| r.crossing(value))),
+                None => {
+                    let curves: Vec<Curve> = wall.curves_at(z).collect();
+                    found.extend(Run::all(&curves, axis).iter().filter_map(|r| r.crossing(value)));
+                }
+            }
+        }
+    }
+}
+
+fn seen_contour(contour: &Contour, flipped: bool, side: Side) -> Vec<Curve> {
+    let turn = |x: f64, y: f64| side.seen(if flipped { -x } else { x }, y);
+    contour
+        .edges()
+        .iter()
+        .enumerate()
+        .map(|(i, edge)| {
+            let (from, to) = contour.ends(i);
+            match edge {
+                Edge::Line => Curve::Line(turn(from.x, from.y), turn(to.x, to.y)),
+                Edge::Arc(arc) => {
+                    let centre = turn(arc.centre.x, arc.centre.y);
+                    let start = turn(from.x, from.y);
+                    let angle = (start[1] - centre[1]).atan2(start[0] - centre[0]);
+                    // A view keeps the sense of arcs unless it mirrors the plan.
+                    let mirrors = flipped != (side == Side::Right);
+                    let sweep = if mirrors { -arc.sweep_rad } else { arc.sweep_rad };
+                    Curve::Arc(centre, arc.radius_mm, angle, sweep)
+                }
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pinswitch_solid::profile::Point2;
+
+    #[test]
+    fn a_body_is_crossed_where_it_begins_and_ends_from_every_side() {
+        let disc = Contour::circle(Point2::new(3.0, 1.0), 2.0);
+        let hole = Contour::circle(Point2::new(3.0, 1.0), 1.0).reversed();
+        let washer = Solid::prism(&disc, &[hole], 0.0, 5.0, 0.0).unwrap();
+        let across = |side: Side, flipped: bool, u: f64| {
+            let body = Body::seen(&washer, Pose { flipped, z_mm: if flipped { 5.0 } else { 0.0 } }, side);
+            let mut found = Vec::new();
+            body.crossings(0, u, 2.5, &mut found);
+            found.sort_by(f64::total_cmp);
+            found.into_iter().map(|w| (w * 1e6).round() / 1e6).collect::<Vec<_>>()
+        };
+        assert_eq!(across(Side::Above, false, 3.0), [-1.0, 0.0, 2.0, 3.0]);
+        assert_eq!(across(Side::Left, false, 1.0), [-5.0, -4.0, -2.0, -1.0]);
+        assert_eq!(across(Side::Right, false, 1.0), [1.0, 2.0, 4.0, 5.0]);
+        assert_eq!(across(Side::Right, true, 1.0), [-5.0, -4.0, -2.0, -1.0]);
+        assert_eq!(across(Side::Above, true, -3.0), [-1.0, 0.0, 2.0, 3.0]);
+        assert!(across(Side::Above, false, 6.0).is_empty());
+    }
+}

@@ -1,0 +1,460 @@
+//! The dimensions of a part, each once: what is written where is decided here, and room for it found by the sheet.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::cut::Detail;
+use super::features::{Features, Slot, same};
+use super::plan::Place;
+use super::words;
+use crate::design::Design;
+use crate::parts::Part;
+use pinswitch_plot::drawing::{Angular, Callout, Draft, Extent, Leader, Linear, Point};
+use pinswitch_solid::profile::{Arc, Point2};
+
+/// A dimension that is to be written.
+#[derive(Clone, Debug)]
+pub(super) struct Wanted {
+    /// What it is of: unique on a sheet.
+    pub(super) key: String,
+    /// What it says.
+    pub(super) lines: Vec<String>,
+    form: Form,
+}
+
+#[derive(Clone, Debug)]
+enum Form {
+    Linear(Linear),
+    Angular(Angular),
+    Callout(Callout),
+}
+
+impl Wanted {
+    pub(super) fn linear(linear: Linear) -> Self {
+        Self { key: linear.key.clone(), lines: vec![linear.text.clone()], form: Form::Linear(linear) }
+    }
+
+    fn angular(angular: Angular) -> Self {
+        Self { key: angular.key.clone(), lines: vec![angular.text.clone()], form: Form::Angular(angular) }
+    }
+
+    fn callout(key: impl Into<String>, lines: Vec<String>, leaders: Vec<Leader>) -> Self {
+        let key = key.into();
+        let callout = Callout {
+            key: key.clone(),
+            lines: lines.clone(),
+            leaders,
+            is_balloon: false,
+            avoid: Vec::new(),
+            around: None,
+        };
+        Self { key, lines, form: Form::Callout(callout) }
+    }
+
+    /// Writes it; whether there was room.
+    pub(super) fn place(&self, draft: &mut Draft) -> bool {
+        match &self.form {
+            Form::Linear(l) => l.place(draft),
+            Form::Angular(a) => a.place(draft),
+            Form::Callout(c) => c.place(draft),
+        }
+    }
+}
+
+/// Pitch of grooves and of slots, and the span of the ends.
+pub(super) fn angles(f: &Features, half_span_rad: f64, place: &Place, outermost_mm: f64) -> Vec<Wanted> {
+    let centre = place.at(Point2::origin());
+    let mut all = Vec::new();
+    let mut angle = |key: &str, text: String, from: f64, to: f64, begins_mm: f64| {
+        // Angles of the part run from +y toward +x, those of paper from +x toward +y.
+        all.push(Wanted::angular(Angular {
+            key: key.to_owned(),
+            text,
+            centre,
+            from_rad: FRAC_PI_2 - to,
+            to_rad: FRAC_PI_2 - from,
+            begins_mm: begins_mm * place.scale,
+            edge_mm: outermost_mm * place.scale,
+        }));
+    };
+    let mut pitch = |key: &str, points: &[Point2], reach_mm: f64| {
+        let places: Vec<f64> = points.iter().map(|p| words::angle_rad(*p)).collect();
+        if let Some((first, step)) = words::even_step(&places) {
+            let steps = (places.len() - 1) as f64;
+            let total = step * steps;
+            let text = format!("{steps} \u{d7} {} = {}", words::degrees(step), words::degrees(total));
+            angle(key, text, first, first + total, reach_mm);
+        }
+    };
+    if outermost_mm > 0.0 {
+        for (i, rounding) in f.roundings.iter().filter(|r| r.is_half_round).enumerate() {
+            let centres: Vec<Point2> = rounding.arcs.iter().map(|a| a.centre).collect();
+            let reach = centres.first().map_or(0.0, |p| p.coords.norm());
+            pitch(&numbered("groove pitch", i), &centres, reach);
+        }
+        for (i, slot) in f.slots.iter().enumerate() {
+            let centres: Vec<Point2> = slot.places.iter().map(|p| p.0).collect();
+            let reach = centres.first().map_or(0.0, |p| p.coords.norm()) + slot.width_mm / 2.0;
+            pitch(&numbered("slot pitch", i), &centres, reach);
+        }
+        if !f.ends.is_empty() {
+            let text = words::degrees(2.0 * half_span_rad);
+            angle("span", text, -half_span_rad, half_span_rad, outermost_mm);
+        }
+    }
+    all
+}
+
+/// `key`, or `key 2` for the second of its kind.
+fn numbered(key: &str, index: usize) -> String {
+    if index == 0 { key.to_owned() } else { format!("{key} {}", index + 1) }
+}
+
+/// What is dimensioned in a detail.
+pub(super) fn of_detail(
+    design: &Design,
+    part: &Part,
+    f: &Features,
+    detail: &Detail,
+    place: &Place,
+) -> Vec<Wanted> {
+    let mut all = Vec::new();
+    if !detail.is_slot {
+        let of_kind = f.roundings.iter().filter(|r| r.is_half_round).enumerate();
+        for (i, rounding) in of_kind {
+            let Some(arc) = rounding.arcs.iter().find(|a| (a.centre - detail.middle).norm() < 1e-6) else {
+                continue;
+            };
+            let lines = words::rounding(rounding, !f.axis_arcs.is_empty());
+            all.push(Wanted::callout(
+                numbered("groove", i),
+                lines,
+                on_arc(arc, place, &[0.25, 0.4, 0.5, 0.6, 0.75], 4.0),
+            ));
+        }
+        return all;
+    }
+    let of_detail =
+        f.slots.iter().enumerate().find(|(_, s)| {
+            s.places.iter().any(|(a, b)| (nalgebra::center(a, b) - detail.middle).norm() < 1e-6)
+        });
+    let Some((i, slot)) = of_detail else { return all };
+    let (half, travel) = (slot.width_mm / 2.0 * place.scale, slot.travel_mm() * place.scale);
+    let outer = place.origin + Point::new(0.0, travel / 2.0);
+    let radius = detail.radius_mm * place.scale;
+    all.push(Wanted::linear(Linear {
+        key: numbered("slot width", i),
+        text: words::slot_width(slot),
+        from: outer - Point::new(half, 0.0),
+        to: outer + Point::new(half, 0.0),
+        upright: false,
+        edge_mm: place.origin.y + radius - 3.0,
+        outward: 1.0,
+        clear_of: [place.origin.x - half, place.origin.x + half],
+    }));
+    all.push(Wanted::linear(Linear {
+        key: numbered("slot travel", i),
+        text: words::number(slot.travel_mm()),
+        from: outer,
+        to: outer - Point::new(0.0, travel),
+        upright: true,
+        edge_mm: place.origin.x - radius + 3.0,
+        outward: -1.0,
+        clear_of: [outer.y - travel, outer.y],
+    }));
+    let sides = [1.0, -1.0].into_iter().flat_map(|side| {
+        (-2..=2).flat_map(move |step| {
+            let tip = place.origin + Point::new(side * half, f64::from(step) * travel / 5.0);
+            [-0.7, -0.35, 0.0, 0.35].map(|rise| Leader {
+                tip,
+                direction: Point::new(side, rise).unit(),
+                cost_mm: if side > 0.0 { 0.0 } else { 4.0 },
+            })
+        })
+    });
+    all.push(Wanted::callout(numbered("slot", i), words::slot(design, part, slot), sides.collect()));
+    all
+}
+
+/// The circle around what a detail shows, with its letter.
+pub(super) fn mark_of_detail(at: Point, radius_mm: f64, letter: &str) -> Wanted {
+    let leaders = Leader::around(at, radius_mm);
+    let mut mark = Wanted::callout(format!("mark of detail {letter}"), vec![letter.to_owned()], leaders);
+    if let Form::Callout(callout) = &mut mark.form {
+        callout.around = Some((at, radius_mm));
+    }
+    mark
+}
+
+/// Leaders that end on an arc, along its radius: from the side of its centre, or from outside for `other_mm` more.
+fn on_arc(arc: &Arc, place: &Place, shares: &[f64], other_mm: f64) -> Vec<Leader> {
+    shares
+        .iter()
+        .flat_map(|share| {
+            let tip = place.at(arc.point_at(*share, arc.radius_mm));
+            let inward = (place.at(arc.centre) - tip).unit();
+            [(inward, 0.0), (inward * -1.0, other_mm)].map(|(direction, cost_mm)| Leader {
+                tip,
+                direction,
+                cost_mm,
+            })
+        })
+        .collect()
+}
+
+/// Everything that a leader points at in the front view: radii, holes, pegs, corners, lips, ends.
+pub(super) fn callouts(
+    design: &Design,
+    part: &Part,
+    f: &Features,
+    place: &Place,
+    details: &[Detail],
+) -> Vec<Wanted> {
+    let mut all = Vec::new();
+    let is_axial = !f.axis_arcs.is_empty();
+    for (i, round) in f.rounds.iter().enumerate() {
+        let is_hole = round.is_hole;
+        let mut radii: Vec<f64> = round.levels.iter().map(|l| l.1).collect();
+        radii.dedup_by(|a, b| same(*a, *b));
+        let word = if is_hole { "hole" } else { "round" };
+        // A rim of several diameters has a callout for each; a hole or peg is told in one.
+        if !is_hole && radii.len() > 2 {
+            radii.sort_by(f64::total_cmp);
+            radii.dedup_by(|a, b| same(*a, *b));
+            for radius in radii {
+                let leaders = Leader::around(place.at(round.centres[0]), radius * place.scale);
+                let text = format!("\u{d8}{}", words::number(2.0 * radius));
+                all.push(Wanted::callout(
+                    format!("diameter {}", words::number(2.0 * radius)),
+                    vec![text],
+                    leaders,
+                ));
+            }
+            continue;
+        }
+        let radius = round.levels[0].1 * place.scale;
+        let leaders = round.centres.iter().flat_map(|c| Leader::around(place.at(*c), radius)).collect();
+        all.push(Wanted::callout(format!("{word} {}", i + 1), words::round(design, part, round), leaders));
+    }
+    slots_and_roundings(design, part, f, place, details, &mut all);
+    for (i, pieces) in f.pieces.iter().enumerate() {
+        let slots: Vec<f64> =
+            f.slots.iter().flat_map(|s| s.places.iter().map(|p| words::angle_rad(p.0))).collect();
+        let leaders = pieces.spans_rad.iter().flat_map(|(from, to)| {
+            let arc = |radius: f64| Arc {
+                centre: Point2::origin(),
+                radius_mm: radius,
+                start_rad: FRAC_PI_2 - from,
+                sweep_rad: from - to,
+            };
+            // The outer edge may be pointed at aslant, so as to pass what is written there.
+            on_arc(&arc(pieces.outer_mm), place, &[0.4, 0.6], 8.0)
+                .into_iter()
+                .flat_map(|leader| {
+                    [-0.7, -0.3, 0.0, 0.3, 0.7].map(|turn: f64| {
+                        let angle = leader.direction.angle_rad() + turn;
+                        Leader { direction: Point::towards(angle), cost_mm: 8.0 - leader.cost_mm, ..leader }
+                    })
+                })
+                .collect::<Vec<_>>()
+        });
+        all.push(Wanted::callout(numbered("lip", i), words::pieces(pieces, &slots), leaders.collect()));
+    }
+    for (i, slot) in f.arc_slots.iter().enumerate() {
+        let leaders = on_arc(&slot.edge, place, &[0.2, 0.4, 0.6, 0.8], 0.0);
+        all.push(Wanted::callout(numbered("arc slot", i), words::arc_slot(slot), leaders));
+    }
+    for ends in f.ends.iter().filter(|e| !same(e.shift_mm, 0.0)) {
+        let leaders = ends.lines.iter().flat_map(|(a, b)| {
+            [0.3, 0.5, 0.7].into_iter().flat_map(move |share| {
+                let tip = place.at(a + (b - a) * share);
+                let outward = Point::new(if tip.x > place.origin.x { 1.0 } else { -1.0 }, 0.0);
+                [-0.5, 0.0, 0.5].map(|rise| Leader {
+                    tip,
+                    direction: (outward + Point::new(0.0, rise)).unit(),
+                    cost_mm: 0.0,
+                })
+            })
+        });
+        let key = format!("end {}", words::number(ends.shift_mm));
+        all.push(Wanted::callout(key, words::ends(ends.shift_mm, design.half_span_rad()), leaders.collect()));
+    }
+    if is_axial {
+        radii(f, place, &mut all);
+    }
+    all
+}
+
+fn slots_and_roundings(
+    design: &Design,
+    part: &Part,
+    f: &Features,
+    place: &Place,
+    details: &[Detail],
+    all: &mut Vec<Wanted>,
+) {
+    let is_axial = !f.axis_arcs.is_empty();
+    let is_enlarged = |slot: &Slot| {
+        let middles = slot.places.iter().map(|(a, b)| nalgebra::center(a, b));
+        middles.into_iter().any(|m| details.iter().any(|d| d.is_slot && (d.middle - m).norm() < 1e-6))
+    };
+    for (i, slot) in f.slots.iter().enumerate().filter(|(_, slot)| !is_enlarged(slot)) {
+        let leaders = slot.places.iter().flat_map(|(a, b)| {
+            let middle = place.at(nalgebra::center(a, b));
+            [1.0, -1.0].into_iter().flat_map(move |side| {
+                [-1.0, 1.0, -0.4, 0.4].map(|rise| Leader {
+                    tip: middle + Point::new(side * slot.width_mm / 2.0 * place.scale, 0.0),
+                    direction: Point::new(side * 0.5, rise).unit(),
+                    cost_mm: 0.0,
+                })
+            })
+        });
+        let mut lines =
+            vec![format!("{} \u{d7} {}", words::slot_width(slot), words::number(slot.travel_mm()))];
+        if is_axial {
+            lines.extend(words::slot(design, part, slot));
+        }
+        all.push(Wanted::callout(numbered("slot", i), lines, leaders.collect()));
+    }
+    let mut half_rounds = 0;
+    for rounding in &f.roundings {
+        let is_drawn_larger = rounding.is_half_round
+            && details.iter().any(|d| rounding.arcs.iter().any(|a| (a.centre - d.middle).norm() < 1e-6));
+        half_rounds += usize::from(rounding.is_half_round);
+        if is_drawn_larger {
+            continue;
+        }
+        let key = if rounding.is_half_round {
+            numbered("groove", half_rounds - 1)
+        } else {
+            format!("corner {}", words::number(rounding.radius_mm))
+        };
+        let leaders = rounding.arcs.iter().flat_map(|a| on_arc(a, place, &[0.3, 0.5, 0.7], 0.0)).collect();
+        all.push(Wanted::callout(key, words::rounding(rounding, is_axial), leaders));
+    }
+}
+
+/// Radii about the axis, the outermost from outside and the innermost from inside.
+fn radii(f: &Features, place: &Place, all: &mut Vec<Wanted>) {
+    for (i, arcs) in f.axis_arcs.iter().enumerate() {
+        let radius = arcs[0].radius_mm;
+        let shares: &[f64] = if arcs.len() > 4 {
+            &[0.5]
+        } else {
+            &[0.06, 0.12, 0.18, 0.24, 0.3, 0.36, 0.43, 0.57, 0.64, 0.7, 0.76, 0.82, 0.88, 0.94]
+        };
+        let is_inner = i + 1 == f.axis_arcs.len();
+        let mut leaders: Vec<Leader> = arcs.iter().flat_map(|a| on_arc(a, place, shares, 0.0)).collect();
+        for leader in &mut leaders {
+            let outward = (leader.tip - place.origin).unit();
+            let is_outward = outward.x * leader.direction.x + outward.y * leader.direction.y > 0.0;
+            leader.cost_mm = if is_outward == is_inner { 18.0 } else { 0.0 };
+        }
+        let key = format!("radius {}", words::number(radius));
+        all.push(Wanted::callout(key, vec![format!("R{}", words::number(radius))], leaders));
+    }
+}
+
+/// Sizes and places of a part that has no axis: along its two sides.
+pub(super) fn rectangular(
+    f: &Features,
+    place: &Place,
+    front: Extent,
+    (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>),
+) -> Vec<Wanted> {
+    let mut all = Vec::new();
+    if f.rounds
+        .iter()
+        .any(|r| !r.is_hole && r.centres.len() == 1 && f.slots.is_empty() && f.roundings.is_empty())
+    {
+        // A round part: its diameter says it all.
+        return all;
+    }
+    let mut linear = |key: String, text: String, from: Point2, to: Point2, upright: bool, is_far: bool| {
+        let edge_mm = match (upright, is_far) {
+            (true, true) => front.high.x,
+            (true, false) => front.low.x,
+            (false, true) => front.high.y,
+            (false, false) => front.low.y,
+        };
+        let outward = if is_far { 1.0 } else { -1.0 };
+        let (from, to) = (place.at(from), place.at(to));
+        let clear_of = if upright { [from.y, to.y] } else { [from.x, to.x] };
+        let clear_of = [clear_of[0].min(clear_of[1]), clear_of[0].max(clear_of[1])];
+        all.push(Wanted::linear(Linear { key, text, from, to, upright, edge_mm, outward, clear_of }));
+    };
+    let corner = Point2::new(low.x, low.y);
+    let mut rows: Vec<(&str, Vec<Point2>)> = Vec::new();
+    let slots: Vec<Point2> =
+        f.slots.iter().flat_map(|s| s.places.iter().map(|(a, b)| nalgebra::center(a, b))).collect();
+    rows.push(("slots", slots));
+    let grooves =
+        f.roundings.iter().filter(|r| r.is_half_round).flat_map(|r| r.arcs.iter().map(|a| a.centre));
+    rows.push(("grooves", grooves.collect()));
+    rows.push(("holes", f.rounds.iter().flat_map(|r| r.centres.clone()).collect()));
+    for (word, mut points) in rows {
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { continue };
+        let is_far = word == "grooves";
+        let first_key = format!("first of the {word}");
+        linear(
+            first_key,
+            words::number(first.x - corner.x),
+            corner_at(corner, first.y),
+            first,
+            false,
+            is_far,
+        );
+        if points.len() > 1 {
+            let step = points[1].x - first.x;
+            let steps = points.len() - 1;
+            let is_even = points.windows(2).all(|w| same(w[1].x - w[0].x, step));
+            if is_even {
+                let text =
+                    format!("{steps} \u{d7} {} = {}", words::number(step), words::number(last.x - first.x));
+                linear(format!("pitch of the {word}"), text, first, last, false, is_far);
+            } else {
+                for (i, p) in points.iter().enumerate().skip(1) {
+                    linear(
+                        format!("{word} {}", i + 1),
+                        words::number(p.x - corner.x),
+                        corner_at(corner, p.y),
+                        *p,
+                        false,
+                        is_far,
+                    );
+                }
+            }
+        }
+        if !same(first.y, high.y) {
+            linear(
+                format!("level of the {word}"),
+                words::number(first.y - corner.y),
+                Point2::new(low.x, low.y),
+                first,
+                true,
+                false,
+            );
+        }
+    }
+    linear(
+        "length".to_owned(),
+        words::number(high.x - low.x),
+        corner,
+        Point2::new(high.x, low.y),
+        false,
+        false,
+    );
+    linear(
+        "width".to_owned(),
+        words::number(high.y - low.y),
+        Point2::new(high.x, low.y),
+        Point2::new(high.x, high.y),
+        true,
+        true,
+    );
+    all
+}
+
+fn corner_at(corner: Point2, y: f64) -> Point2 {
+    Point2::new(corner.x, y)
+}

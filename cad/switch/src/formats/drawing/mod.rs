@@ -1,0 +1,119 @@
+//! The drawing: one sheet of the assembly and one per part, as SVG, PDF and DXF (cad/doc/drawing.md).
+
+mod assembly_sheet;
+mod body;
+mod cut;
+mod dimensions;
+mod elevation;
+mod features;
+mod layout;
+mod part_sheet;
+mod parts_list;
+mod plan;
+mod section;
+mod words;
+
+use super::{Format, Inclusion};
+use crate::built::Built;
+use crate::config::{self, Configuration};
+use crate::documents::Manifest;
+use crate::output::{OutputFile, SetError};
+use crate::parts::{Part, Role};
+use crate::prediction::Prediction;
+use part_sheet::part_sheet;
+use parts_list::{designation, part_number};
+use pinswitch_plot::drawing::{Paper, Projection, Sheet, TitleBlock, drawing_dxf, drawing_pdf, drawing_svg};
+use pinswitch_solid::profile::{Contour, Point2};
+use pinswitch_solid::solid::Solid;
+
+pub(super) const FORMAT: Format = Format {
+    name: "drawing",
+    about: "drawing.svg, .pdf and .dxf: dimensioned sheets of the assembly and of every part",
+    inclusion: Inclusion::Default,
+    make,
+};
+
+fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
+    let sheets = sheets(built);
+    let title = format!("{}, made by {}", manifest.name, manifest.generator);
+    Ok(vec![
+        OutputFile::new("drawing.svg", drawing_svg(&sheets, &title)),
+        OutputFile::new("drawing.pdf", drawing_pdf(&sheets, &title)),
+        OutputFile::new("drawing.dxf", drawing_dxf(&sheets)),
+    ])
+}
+
+/// All sheets of a set: the assembly, the printed parts, then layer and pin.
+///
+/// ```
+/// use pinswitch_switch::{built::Built, config::Configuration, design::Design, formats::drawing::sheets};
+///
+/// let sheets = sheets(&Built::new(Design::new(Configuration::default())?)?);
+/// assert_eq!(sheets[0].name, "assembly");
+/// assert!(sheets.iter().all(|s| pinswitch_plot::drawing::collisions(s).is_empty()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[must_use]
+pub fn sheets(built: &Built) -> Vec<Sheet> {
+    let c = built.design().configuration();
+    let asked = match c.drawing.paper {
+        config::Paper::A4 => Paper::A4,
+        config::Paper::A3 => Paper::A3,
+    };
+    let pin = single_pin(built);
+    let printed = built.printed().iter().map(|p| p.part());
+    let layer = built.reference().iter().map(|b| &b.part).filter(|p| p.role == Role::Layer);
+    let parts: Vec<&Part> = printed.chain(layer).chain(&pin).collect();
+    let of = parts.len() + 1;
+    let mut all = Vec::with_capacity(of);
+    let title = |number: usize, name: &str, material: String, tolerance: &str| {
+        title_block(built, c, (number, of), name, material, tolerance)
+    };
+    let first = title(1, "assembly", "see list".to_owned(), "see parts");
+    all.extend(assembly_sheet::assembly_sheet(built, first, asked));
+    for (i, part) in parts.iter().enumerate() {
+        let material = part.material();
+        let words = words::material(built.design(), material);
+        let block = title(i + 2, &part.name, words, words::general_tolerance(material));
+        all.extend(part_sheet(built.design(), part, block, asked));
+    }
+    all
+}
+
+fn title_block(
+    built: &Built,
+    c: &Configuration,
+    sheet: (usize, usize),
+    name: &str,
+    material: String,
+    tolerance: &str,
+) -> TitleBlock {
+    TitleBlock {
+        name: c.switch.name.to_string(),
+        layout: built.design().label(),
+        title: designation(name),
+        part_number: part_number(built, name),
+        material,
+        general_tolerance: tolerance.to_owned(),
+        scale: String::new(),
+        projection: match c.drawing.projection {
+            config::Projection::First => Projection::First,
+            config::Projection::Third => Projection::Third,
+        },
+        date: (!c.drawing.date.is_empty()).then(|| c.drawing.date.clone()),
+        sheet,
+        generator: concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned(),
+    }
+}
+
+/// One pin by itself, about its own axis: all are alike.
+fn single_pin(built: &Built) -> Option<Part> {
+    let pin = &built.reference().iter().find(|b| matches!(b.part.role, Role::Pin { .. }))?.part;
+    let radius_mm = built.design().configuration().pins.diameter_mm / 2.0;
+    let outline = Contour::circle(Point2::origin(), radius_mm);
+    let solid = Solid::prism(&outline, &[], 0.0, built.design().pin_length_mm(), 0.0).ok()?;
+    Some(Part { name: "pin".to_owned(), solid, pose: None, ..pin.clone() })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,348 @@
+//! The sheet of one part: front view, view from above, section, details, and every dimension once.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::body::{Body, Side};
+use super::cut::{Detail, cut_x, enlarged};
+use super::dimensions::{self, Wanted};
+use super::elevation::{Elevation, Stroke, elevation, joined, legible};
+use super::features::{Features, features, lettering};
+use super::layout::{Layout, Sizes, choices};
+use super::plan::{Place, Trace, draw, plan, within};
+use super::section::Face;
+use super::words;
+use crate::design::Design;
+use crate::parts::{Part, Role};
+use pinswitch_plot::drawing::{
+    Draft, Extent, Layer, Linear, Paper, Point, Projection, Shape, Sheet, Text, TitleBlock,
+};
+use pinswitch_solid::pose::Pose;
+use pinswitch_solid::profile::Point2;
+
+/// Scales of details, the largest first.
+const DETAIL_SCALES: [f64; 6] = [20.0, 10.0, 5.0, 2.0, 1.0, 0.5];
+/// Between hatching lines, mm on paper.
+pub(super) const HATCH_MM: f64 = 1.8;
+/// Parallel lines of a view from a side are no nearer to each other than this, mm on paper.
+pub(super) const CROWDED_MM: f64 = 0.8;
+/// The axis is shown where it lies no further from the part, mm on paper.
+const AXIS_NEAR_MM: f64 = 26.0;
+
+/// What is drawn on a sheet.
+pub(super) struct Subject<'a> {
+    pub(super) design: &'a Design,
+    pub(super) part: &'a Part,
+    pub(super) title: TitleBlock,
+    features: Features,
+    /// What is seen from above.
+    above: Elevation,
+    /// Where the section is cut, its face, and what is seen behind it.
+    cut_x: f64,
+    face: Face,
+    behind: Elevation,
+    low: nalgebra::Point3<f64>,
+    high: nalgebra::Point3<f64>,
+}
+
+/// The views of a sheet, drawn.
+struct Views {
+    layout: Layout,
+    place: Place,
+    front: Extent,
+    section: Extent,
+    /// What is drawn larger, where, and its letter.
+    details: Vec<(Detail, Place, String)>,
+}
+
+/// The sheet of `part`; nothing for a part without extent.
+pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked: Paper) -> Option<Sheet> {
+    let (low, high) = part.solid.bounds()?;
+    let chamfer_mm = design.configuration().print.elephant_foot_mm;
+    let features = features(&part.solid, chamfer_mm, design.half_span_rad());
+    let side = if title.projection == Projection::First { Side::Left } else { Side::Right };
+    let cut_x = cut_x(&features, side, (low, high));
+    let cut = if side == Side::Left { -cut_x } else { cut_x };
+    let seen = |side| Body::seen(&part.solid, Pose::upright(-low.z), side);
+    let above = elevation(&[seen(Side::Above)], None);
+    let body = seen(side);
+    let face = Face::of(&body, cut);
+    let behind = elevation(&[body], Some(cut));
+    let subject = Subject { design, part, title, features, above, cut_x, face, behind, low, high };
+    let all = choices(asked);
+    for (paper, scale) in &all {
+        if let Some((sheet, left)) = subject.attempt(*paper, *scale, &[])
+            && left.is_empty()
+        {
+            return Some(sheet);
+        }
+    }
+    // What finds no room anywhere is written among the notes of the first sheet that holds the views.
+    all.iter().find_map(|(paper, scale)| {
+        let (_, left) = subject.attempt(*paper, *scale, &[])?;
+        subject.attempt(*paper, *scale, &left).map(|(sheet, _)| sheet)
+    })
+}
+
+impl Subject<'_> {
+    /// The sheet in this size, and what found no room on it. `written` stands among the notes.
+    fn attempt(&self, paper: Paper, scale: f64, written: &[Wanted]) -> Option<(Sheet, Vec<Wanted>)> {
+        let title = TitleBlock { scale: Sheet::scale_text(scale), ..self.title.clone() };
+        let mut draft = Draft::new(paper, &title);
+        let views = self.views(&mut draft, scale, written)?;
+        let mut left = Vec::new();
+        for wanted in self.wanted(&views) {
+            let is_written = written.iter().any(|w| w.key == wanted.key);
+            if !is_written && !wanted.place(&mut draft) {
+                left.push(wanted);
+            }
+        }
+        Some((draft.finished(self.part.name.clone(), scale), left))
+    }
+
+    /// Draws all views with their titles and marks, and the notes; nothing if they do not fit.
+    fn views(&self, draft: &mut Draft, scale: f64, written: &[Wanted]) -> Option<Views> {
+        let paper = draft.sheet().paper;
+        let details = enlarged(&self.features, scale);
+        let reach = if paper == Paper::A4 { 20.0 } else { 27.0 };
+        let sizes = Sizes {
+            front: self.front_extent(scale),
+            depth_mm: (self.high.z - self.low.z) * scale,
+            detail_mm: reach,
+            details: details.len(),
+            table_mm: 0.0,
+        };
+        let layout = Layout::on(draft, &sizes, self.title.projection)?;
+        let place = Place::straight(layout.front, scale);
+        let lines = plan(&self.part.solid, false, self.design.configuration().print.elephant_foot_mm);
+        let view = draft.view("FRONT", layout.front, scale);
+        draw(draft, &lines, &place, view);
+        self.view_from_above(draft, &layout, scale);
+        let section = self.section(draft, &layout, scale);
+        let front = Extent { low: sizes.front.low + layout.front, high: sizes.front.high + layout.front };
+        self.centre_lines(draft, &place, front);
+        if self.is_cut() {
+            let x = place.at(Point2::new(self.cut_x, 0.0)).x;
+            section_mark(draft, x, [front.low.y - 2.0, self.mark_top(front)], layout.section_sense);
+            if !draft.place_title("section title", "A-A", 3.5, section, true) {
+                return None;
+            }
+        }
+        let mut notes = words::notes(self.design, self.part, &self.features, self.has_lettering());
+        notes.extend(written.iter().map(|w| format!("{}: {}", w.key, w.lines.join(", "))));
+        let room = draft.sheet().title_block.low.x - paper.frame().low.x - 6.0;
+        draft.notes(&notes, room);
+        let mut placed = Vec::new();
+        for ((detail, middle), letter) in details.into_iter().zip(&layout.details).zip('B'..) {
+            let letter = letter.to_string();
+            let larger = draw_detail(draft, &detail, *middle, reach, &lines, &letter)?;
+            placed.push((detail, larger, letter));
+        }
+        let views = Views { layout, place, front, section, details: placed };
+        Some(views)
+    }
+
+    /// Every dimension, in the order in which they look for room.
+    fn wanted(&self, views: &Views) -> Vec<Wanted> {
+        let f = &self.features;
+        let outermost = f.axis_arcs.first().map_or(0.0, |a| a[0].radius_mm);
+        let mut all = self.heights(&views.layout, views.place.scale, views.section);
+        all.extend(dimensions::angles(f, self.design.half_span_rad(), &views.place, outermost));
+        for (detail, place, _) in &views.details {
+            all.extend(dimensions::of_detail(self.design, self.part, f, detail, place));
+        }
+        for (detail, _, letter) in &views.details {
+            let radius = detail.radius_mm * views.place.scale;
+            all.push(dimensions::mark_of_detail(views.place.at(detail.middle), radius, letter));
+        }
+        if f.axis_arcs.is_empty() {
+            all.extend(dimensions::rectangular(f, &views.place, views.front, (self.low, self.high)));
+        }
+        let details: Vec<Detail> = views.details.iter().map(|d| d.0).collect();
+        all.extend(dimensions::callouts(self.design, self.part, f, &views.place, &details));
+        all
+    }
+
+    /// The front view on paper about the part's origin, with the axis if it is near.
+    fn front_extent(&self, scale: f64) -> Extent {
+        let mut extent = Extent {
+            low: Point::new(self.low.x, self.low.y) * scale,
+            high: Point::new(self.high.x, self.high.y) * scale,
+        };
+        let is_about_axis = !self.features.axis_arcs.is_empty();
+        if is_about_axis && extent.low.y > -3.0 && extent.low.y < AXIS_NEAR_MM {
+            extent.low.y = -3.0;
+        }
+        extent
+    }
+
+    /// A plain pin is not cut lengthwise (ISO 128-44): its section is a view.
+    fn is_cut(&self) -> bool {
+        !matches!(self.part.role, Role::Pin { .. })
+    }
+
+    fn has_lettering(&self) -> bool {
+        lettering(&self.part.solid).contains(&true)
+    }
+
+    fn view_from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
+        let origin = Point::new(layout.front.x, layout.above_mm);
+        let view = draft.view("ABOVE", origin, scale);
+        let apart = CROWDED_MM / scale;
+        let visible = legible(&self.above.visible, &[], apart);
+        let hidden = legible(&self.above.hidden, &self.above.visible, apart);
+        // Above, z grows toward the eye of the front view: down on paper.
+        let at = |p: [f64; 2]| origin + Point::new(p[0], -p[1]) * scale;
+        let group = draft.group();
+        for (layer, strokes) in [(Layer::Visible, &visible), (Layer::Hidden, &hidden)] {
+            put_strokes(draft, layer, strokes, at, view, group);
+        }
+    }
+
+    /// The section with its hatching, of a pin the view from the side; returns what it covers.
+    fn section(&self, draft: &mut Draft, layout: &Layout, scale: f64) -> Extent {
+        let origin = Point::new(layout.section_mm, layout.front.y);
+        let view = draft.view("SECTION_A", origin, scale);
+        let sense = layout.section_sense;
+        let at = |p: [f64; 2]| origin + Point::new(sense * p[1], p[0]) * scale;
+        let group = draft.group();
+        let outline = self.face.outline();
+        let behind = legible(&self.behind.visible, &outline, CROWDED_MM / scale);
+        let visible = joined(&[outline, behind].concat(), &[]);
+        put_strokes(draft, Layer::Visible, &visible, at, view, group);
+        if self.is_cut() {
+            put_strokes(draft, Layer::Hatch, &self.face.hatch(HATCH_MM / scale, true), at, view, group);
+        }
+        let ends = visible.iter().flatten().map(|p| Extent::between(at(*p), at(*p)));
+        ends.reduce(Extent::joined).unwrap_or(Extent::between(origin, origin))
+    }
+
+    /// Where the mark of the section begins above the front view: beyond the angles that are written there.
+    fn mark_top(&self, front: Extent) -> f64 {
+        let f = &self.features;
+        let patterns = usize::from(!f.ends.is_empty())
+            + f.roundings.iter().filter(|r| r.is_half_round && r.arcs.len() > 2).count()
+            + f.slots.iter().filter(|s| s.places.len() > 2).count();
+        let angles = if f.axis_arcs.is_empty() || patterns == 0 { 0.0 } else { 7.0 + 8.0 * patterns as f64 };
+        front.high.y + 2.0 + angles
+    }
+
+    /// The plane of symmetry, the axis, pitch circles and middles of holes.
+    fn centre_lines(&self, draft: &mut Draft, place: &Place, front: Extent) {
+        let group = draft.group();
+        let f = &self.features;
+        let mut line =
+            |from: Point, to: Point| draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
+        let axis = place.at(Point2::origin());
+        if !f.axis_arcs.is_empty() {
+            if self.cut_x.abs() > 1e-6 || !self.is_cut() {
+                line(Point::new(axis.x, front.low.y - 2.0), Point::new(axis.x, front.high.y + 3.0));
+            }
+            if axis.y > front.low.y - 1.0 {
+                let half = if front.low.y < axis.y - 4.0 { front.width() / 2.0 + 3.0 } else { 8.0 };
+                line(axis - Point::new(half, 0.0), axis + Point::new(half, 0.0));
+            }
+        }
+        for round in &f.rounds {
+            for centre in &round.centres {
+                let radius = round.levels.iter().map(|l| l.1).fold(0.0, f64::max) * place.scale;
+                let (at, reach) = (place.at(*centre), radius + 1.5);
+                let is_on_axis = centre.coords.norm() < 1e-6;
+                let along = if is_on_axis { Point::new(0.0, 1.0) } else { (at - axis).unit() };
+                line(at - along * reach, at + along * reach);
+                line(at - along.left() * reach, at + along.left() * reach);
+            }
+        }
+    }
+
+    /// The heights of the part's own faces over its bottom, measured in the section.
+    fn heights(&self, layout: &Layout, scale: f64, section: Extent) -> Vec<Wanted> {
+        let foot = section.low.y;
+        let x = |z: f64| layout.section_mm + layout.section_sense * z * scale;
+        let all = &self.features.heights_mm;
+        all.iter()
+            .map(|z| {
+                let key = if Some(z) == all.last() {
+                    "overall height".to_owned()
+                } else {
+                    format!("height {}", words::number(*z))
+                };
+                Wanted::linear(Linear {
+                    key,
+                    text: words::number(*z),
+                    from: Point::new(x(0.0), foot),
+                    to: Point::new(x(*z), foot),
+                    upright: false,
+                    edge_mm: foot,
+                    outward: -1.0,
+                    clear_of: [section.low.x, section.high.x],
+                })
+            })
+            .collect()
+    }
+}
+
+/// Draws a detail; returns where it lies.
+fn draw_detail(
+    draft: &mut Draft,
+    detail: &Detail,
+    middle: Point,
+    reach_mm: f64,
+    lines: &[(Layer, Trace)],
+    letter: &str,
+) -> Option<Place> {
+    let scale = DETAIL_SCALES.into_iter().find(|s| detail.radius_mm * s <= reach_mm)?;
+    let place = Place { origin: middle, scale, about: detail.middle, turn_rad: detail.turn_rad };
+    let kept: Vec<(Layer, Trace)> = lines
+        .iter()
+        .flat_map(|(layer, t)| within(t, detail.middle, detail.radius_mm).into_iter().map(|t| (*layer, t)))
+        .collect();
+    let view = draft.view(format!("DETAIL_{letter}"), middle, scale);
+    draw(draft, &kept, &place, view);
+    let group = draft.group();
+    let radius_mm = detail.radius_mm * scale;
+    draft.put(Layer::Thin, Shape::Circle { centre: middle, radius_mm }, None, group);
+    let reach = radius_mm + 2.0;
+    for half in [Point::new(reach, 0.0), Point::new(0.0, reach)] {
+        let shift = if detail.is_slot && half.y == 0.0 { None } else { Some(Point::default()) };
+        if let Some(shift) = shift {
+            let (from, to) = (middle - half + shift, middle + half + shift);
+            draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
+        }
+    }
+    let corner = Point::new(radius_mm, radius_mm);
+    let around = Extent { low: middle - corner, high: middle + corner };
+    let title = format!("{letter} ({})", Sheet::scale_text(scale));
+    draft.place_title(&format!("title of detail {letter}"), &title, 3.5, around, false).then_some(place)
+}
+
+/// Draws strokes of a view from a side.
+pub(super) fn put_strokes(
+    draft: &mut Draft,
+    layer: Layer,
+    strokes: &[Stroke],
+    at: impl Fn([f64; 2]) -> Point,
+    view: usize,
+    group: usize,
+) {
+    for [from, to] in strokes {
+        draft.put(layer, Shape::Line { from: at(*from), to: at(*to) }, Some(view), group);
+    }
+}
+
+/// The plane of the section at `x`: a chain line through the view, thick beyond it, with arrows along the line of sight.
+pub(super) fn section_mark(draft: &mut Draft, x: f64, [low, high]: [f64; 2], sense: f64) {
+    let group = draft.group();
+    let line = |from: f64, to: f64| Shape::Line { from: Point::new(x, from), to: Point::new(x, to) };
+    draft.put(Layer::Centre, line(low, high), None, group);
+    for (from, to) in [(low, low - 5.0), (high, high + 5.0)] {
+        draft.put(Layer::Frame, line(from, to), None, group);
+        let foot = Point::new(x, f64::midpoint(from, to));
+        let direction = Point::towards(if sense > 0.0 { 0.0 } else { 2.0 * FRAC_PI_2 });
+        let tip = foot + direction * 6.0;
+        draft.put(Layer::Dimension, Shape::Line { from: foot, to: tip }, None, group);
+        draft.put(Layer::Dimension, Shape::Arrow { tip, direction }, None, group);
+        let at = foot + Point::new(if sense > 0.0 { -4.0 } else { 1.6 }, -1.75);
+        let letter = Text { at, height_mm: 3.5, content: "A".to_owned(), upright: false };
+        draft.put(Layer::Text, Shape::Text(letter), None, group);
+    }
+}

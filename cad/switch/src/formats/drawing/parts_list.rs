@@ -1,0 +1,93 @@
+//! The list of parts: what the assembly is made of, what is bought, and the tools that are printed with it.
+
+use super::words::{self, number};
+use crate::built::Built;
+use crate::documents::bill_of_materials;
+use crate::parts::{Part, Role};
+
+/// A row of the list.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Item {
+    pub(super) number: usize,
+    pub(super) quantity: String,
+    pub(super) designation: String,
+    pub(super) part_number: String,
+    pub(super) material: String,
+    /// The body that its balloon points at, `screw` or `tendon`; empty without a balloon.
+    pub(super) shown: String,
+}
+
+/// Number of a part, as in the 3MF package.
+pub(super) fn part_number(built: &Built, part: &str) -> String {
+    format!("{}/{part}", built.design().configuration().switch.name)
+}
+
+/// All rows: assembled parts, pins, bought parts, then what stands beside the assembly.
+pub(super) fn items(built: &Built) -> Vec<Item> {
+    let design = built.design();
+    let bill = bill_of_materials(design);
+    let assembled: Vec<&Part> = built.assembly().map(|b| &b.part).collect();
+    let mut all = Vec::new();
+    let mut add = |quantity: String, designation: String, number: String, material: String, shown: &str| {
+        all.push(Item {
+            number: all.len() + 1,
+            quantity,
+            designation,
+            part_number: number,
+            material,
+            shown: shown.to_owned(),
+        });
+    };
+    let material = |part: &Part| words::material(design, part.material());
+    for part in assembled.iter().filter(|p| !matches!(p.role, Role::Pin { .. })) {
+        let name = &part.name;
+        add("1".to_owned(), designation(name), part_number(built, name), material(part), name);
+    }
+    if let Some(pin) = assembled.iter().find(|p| matches!(p.role, Role::Pin { .. })) {
+        let spares =
+            if bill.pins.spares > 0 { format!(", and {} spare", bill.pins.spares) } else { String::new() };
+        let words = format!(
+            "Pin \u{d8}{} \u{b1}{} \u{d7} {}{spares}",
+            number(bill.pins.diameter_mm),
+            number(design.configuration().pins.tolerance_mm),
+            number(bill.pins.length_mm)
+        );
+        let middle = nearest_pin(&assembled);
+        let shown = middle.map_or_else(|| pin.name.clone(), |p| p.name.clone());
+        add(bill.pins.number.to_string(), words, part_number(built, "pin"), material(pin), &shown);
+    }
+    if let Some(screws) = &bill.fasteners {
+        let words = format!("Screw {} \u{d7} {} with nut", screws.thread, number(screws.length_mm));
+        add(screws.number.to_string(), words, "bought".to_owned(), "Steel".to_owned(), "screw");
+    }
+    let tendon = format!(
+        "Tendon \u{d8}{}, rope \u{d8}{}, {} long",
+        number(bill.tendon.outer_diameter_mm),
+        number(bill.tendon.rope_diameter_mm),
+        number(bill.tendon.length_mm)
+    );
+    add("1".to_owned(), tendon, "bought".to_owned(), "Steel, polyamide 12".to_owned(), "tendon");
+    for part in built.printed().iter().map(|p| p.part()) {
+        if !assembled.iter().any(|a| a.name == part.name) {
+            let words = format!("{} (not in the assembly)", designation(&part.name));
+            add("1".to_owned(), words, part_number(built, &part.name), material(part), "");
+        }
+    }
+    all
+}
+
+/// The pin nearest to the middle, which the section cuts.
+fn nearest_pin<'a>(assembled: &[&'a Part]) -> Option<&'a Part> {
+    let off = |part: &Part| {
+        part.solid.bounds().map_or(f64::INFINITY, |(low, high)| f64::midpoint(low.x, high.x).abs())
+    };
+    let pins = assembled.iter().copied().filter(|p| matches!(p.role, Role::Pin { .. }));
+    pins.min_by(|a, b| off(a).total_cmp(&off(b)))
+}
+
+/// The name of a part as words: `support-left` is `Support left`.
+pub(super) fn designation(name: &str) -> String {
+    let words = name.replace('-', " ");
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,274 @@
+//! What every sheet must keep: nothing overlaps, each dimension stands once, views lie where the projection wants them, and
+//! what is measured in the DXF is what the manifest says.
+
+mod measured;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use rand::{RngExt as _, SeedableRng as _};
+
+use super::sheets;
+use super::words::number;
+use crate::built::Built;
+use crate::config::{self, Configuration};
+use crate::design::Design;
+use crate::templates::TEMPLATES;
+use pinswitch_plot::drawing::{Shape, Sheet, collisions};
+
+/// The built set of a configuration, if it is a valid one.
+fn built(text: &str) -> Option<Built> {
+    let (configuration, _) = config::read(text, "test.toml").ok()?;
+    Built::new(Design::new(configuration).ok()?).ok()
+}
+
+/// Configurations of this repository that build: templates, those that are pinned, and those that once broke.
+fn known() -> Vec<(String, String)> {
+    let mut all: Vec<(String, String)> =
+        TEMPLATES.iter().map(|t| (t.name.to_owned(), t.text.to_owned())).collect();
+    for folder in ["golden", "corpus"] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests").join(folder);
+        let mut paths: Vec<_> =
+            std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        paths.sort();
+        for path in paths.into_iter().filter(|p| p.extension().is_some_and(|e| e == "toml")) {
+            let text = std::fs::read_to_string(&path).unwrap();
+            if !text.starts_with("# refused") {
+                all.push((path.file_stem().unwrap().to_string_lossy().into_owned(), text));
+            }
+        }
+    }
+    all
+}
+
+/// A configuration drawn at random; many are refused.
+fn random(seed: u64) -> String {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+    let mut between = |low: f64, high: f64| low + (high - low) * rng.random::<f64>();
+    let (radius, wall, span) = (between(12.0, 70.0), between(3.0, 12.0), between(30.0, 170.0));
+    let (grooves, groove, margin) = (between(1.0, 22.0).floor(), between(0.4, 1.2), between(0.0, 3.0));
+    let (width, thickness, pin) = (between(8.0, 40.0), between(1.2, 4.0), between(0.5, 2.0));
+    let holes = between(0.0, 5.0).floor();
+    let mut word = |words: &[&'static str]| words[between(0.0, words.len() as f64) as usize];
+    let (slots, kind) = (word(&["all", "occupied"]), word(&["blind", "through"]));
+    let (mould, paper, projection) =
+        (word(&["split", "one-piece"]), word(&["a4", "a3"]), word(&["first", "third"]));
+    format!(
+        "[shell]\nouter_radius_mm = {radius:?}\nwall_mm = {wall:?}\nwidth_mm = {width:?}\n\
+         [segment]\nspan_deg = {span:?}\ngrooves = {grooves}\ngroove_radius_mm = {groove:?}\nend_margin_mm = {margin:?}\n\
+         [layout]\npins = [1]\nwrap_angle_deg = 20.0\n[silicone]\nthickness_mm = {thickness:?}\n\
+         [pins]\ndiameter_mm = {pin:?}\n[support]\nslots = {slots:?}\nslot_kind = {kind:?}\n[mould]\nkind = {mould:?}\n\
+         [fasteners]\ncount = {holes}\n[parts]\nguide_pulley = true\n[drawing]\npaper = {paper:?}\nprojection = {projection:?}\n"
+    )
+}
+
+/// What is wrong with the sheets of a set.
+fn faults(name: &str, built: &Built) -> Vec<String> {
+    let sheets = sheets(built);
+    let mut faults = Vec::new();
+    let mut fault = |sheet: &str, words: String| faults.push(format!("{name}, {sheet}: {words}"));
+    let mut wanted: Vec<String> = vec!["assembly".to_owned()];
+    wanted.extend(built.printed().iter().map(|p| p.part().name.clone()));
+    for part in wanted {
+        if !sheets.iter().any(|s| s.name == part) {
+            fault(&part, "no sheet".to_owned());
+        }
+    }
+    for sheet in &sheets {
+        for c in collisions(sheet) {
+            fault(&sheet.name, format!("{} on {} at {:?}", c.what, c.with, c.at));
+        }
+        let mut keys: BTreeMap<&str, usize> = BTreeMap::new();
+        for a in &sheet.annotations {
+            *keys.entry(&a.key).or_default() += 1;
+        }
+        for (key, text) in promised(built, &sheet.name) {
+            match keys.get(key.as_str()) {
+                Some(1) if text_of(sheet, &key).contains(&text) => {}
+                Some(1) => fault(&sheet.name, format!("{key} is {:?}, not {text}", text_of(sheet, &key))),
+                other => fault(&sheet.name, format!("{key} stands {} times", other.unwrap_or(&0))),
+            }
+        }
+        for (key, times) in keys {
+            if times > 1 && key != "bill of materials" {
+                fault(&sheet.name, format!("{key} stands {times} times"));
+            }
+        }
+    }
+    faults
+}
+
+fn text_of(sheet: &Sheet, key: &str) -> String {
+    sheet.annotations.iter().find(|a| a.key == key).map_or_else(String::new, |a| a.text.clone())
+}
+
+/// Dimensions without which a part cannot be made, from its design and not from its solid: key, and what must be said.
+fn promised(built: &Built, part: &str) -> Vec<(String, String)> {
+    let d = built.design();
+    let c = d.configuration();
+    let mut all: Vec<(String, String)> = Vec::new();
+    let mut add = |key: String, text: String| all.push((key, text));
+    let radius = |r: f64| (format!("radius {}", number(r)), format!("R{}", number(r)));
+    let is_grooved = matches!(part, "shell" | "proxy" | "silicone-layer");
+    let is_support = matches!(part, "support-left" | "support-right");
+    if is_grooved || is_support {
+        add("span".to_owned(), format!("{}\u{b0}", number(c.segment.span_deg)));
+    }
+    if c.fasteners.count > 0 && (part == "shell" || is_support) {
+        let n = if c.fasteners.count == 1 { String::new() } else { format!("{} \u{d7} ", c.fasteners.count) };
+        let diameter = number(c.fasteners.hole_diameter_mm);
+        add(
+            "hole 1".to_owned(),
+            format!(
+                "{n}\u{d8}{diameter} H13 through, for {}",
+                crate::documents::bill_of_materials(d).fasteners.unwrap().thread
+            ),
+        );
+        add("hole 1".to_owned(), format!("on R{}", number(d.fastener_radius_mm())));
+    }
+    if is_grooved {
+        let (inner, outer) = if part == "shell" {
+            (d.inner_radius_mm(), d.shell_radius_mm())
+        } else {
+            (d.shell_radius_mm(), d.contact_radius_mm())
+        };
+        let (key, text) = radius(inner);
+        add(key, text);
+        let (key, text) = radius(outer);
+        add(key, text);
+        let n = if c.segment.grooves == 1 { String::new() } else { format!("{} \u{d7} ", c.segment.grooves) };
+        add("groove".to_owned(), format!("{n}groove R{}", number(c.segment.groove_radius_mm)));
+        if c.segment.grooves > 2 {
+            let steps = c.segment.grooves - 1;
+            add("groove pitch".to_owned(), format!("{steps} \u{d7} {}\u{b0}", number(d.pitch_deg())));
+        }
+        let height = if part == "shell" { c.shell.width_mm } else { d.layer_width_mm() };
+        add("overall height".to_owned(), number(height));
+    }
+    if is_support && !d.slot_angles_rad().is_empty() {
+        add("slot width".to_owned(), format!("{} +0.1/0", number(d.slot().width_mm)));
+        add("slot travel".to_owned(), number(d.slot().outer_mm - d.slot().inner_mm));
+        add("slot".to_owned(), format!("outer centres on R{}", number(d.contact_radius_mm())));
+        let (key, text) = radius(d.support_radius_mm());
+        add(key, text);
+    }
+    if part == "pin" {
+        add(
+            "round 1".to_owned(),
+            format!("\u{d8}{} \u{b1}{}", number(c.pins.diameter_mm), number(c.pins.tolerance_mm)),
+        );
+        add("overall height".to_owned(), number(d.pin_length_mm()));
+    }
+    if part == "mould-tray" {
+        add("height ".to_owned() + &number(c.mould.floor_mm), number(c.mould.floor_mm));
+    }
+    all
+}
+
+#[test]
+fn nothing_overlaps_and_each_dimension_stands_once() {
+    let mut drawn = 0;
+    let mut all = Vec::new();
+    for (name, text) in known() {
+        let Some(built) = built(&text) else { continue };
+        all.extend(faults(&name, &built));
+        drawn += 1;
+    }
+    assert!(drawn >= 35, "only {drawn} configurations were drawn");
+    assert!(all.is_empty(), "{}", all.join("\n"));
+}
+
+#[test]
+fn random_configurations_are_drawn_without_overlaps() {
+    let mut drawn = 0;
+    let mut all = Vec::new();
+    for seed in 0..60 {
+        let Some(built) = built(&random(seed)) else { continue };
+        all.extend(faults(&format!("seed {seed}"), &built));
+        drawn += 1;
+        if drawn == 10 {
+            break;
+        }
+    }
+    assert!(drawn >= 8, "only {drawn} configurations were drawn");
+    assert!(all.is_empty(), "{}", all.join("\n"));
+}
+
+/// All points of a view's lines.
+fn points(sheet: &Sheet, view: &str) -> Vec<[f64; 2]> {
+    let number = sheet.views.iter().position(|v| v.name == view).unwrap();
+    sheet
+        .entities
+        .iter()
+        .filter(|e| e.view == Some(number))
+        .flat_map(|e| match &e.shape {
+            Shape::Line { from, to } => vec![[from.x, from.y], [to.x, to.y]],
+            other => other.pieces().iter().map(|p| [p[0].x, p[0].y]).collect(),
+        })
+        .collect()
+}
+
+fn ends(points: &[[f64; 2]], axis: usize) -> (f64, f64) {
+    points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[axis]), h.max(p[axis])))
+}
+
+/// In first angle the part is tipped over: what is seen from the left stands to the right, and the side that was nearest to
+/// the eye ends up farthest from the front view. In third angle it is the other way round.
+#[test]
+fn views_lie_where_the_projection_wants_them() {
+    for (word, is_first) in [("first", true), ("third", false)] {
+        let text = format!("[layout]\npins = [5, 8, 11]\n[drawing]\nprojection = {word:?}\n");
+        let all = sheets(&built(&text).unwrap());
+        let sheet = all.iter().find(|s| s.name == "support-left").unwrap();
+        let [front, above, section] = ["FRONT", "ABOVE", "SECTION_A"].map(|view| points(sheet, view));
+        let (front_x, front_y) = (ends(&front, 0), ends(&front, 1));
+        let (above_y, section_x) = (ends(&above, 1), ends(&section, 0));
+        assert!(section_x.0 > front_x.1, "the view from the side stands to the right");
+        assert_eq!(above_y.1 < front_y.0, is_first, "the view from above lies below in first angle only");
+        // Round corners are judged by their chords.
+        assert!((ends(&above, 0).0 - front_x.0).abs() < 0.1, "views lie over each other");
+        assert!((ends(&section, 1).0 - front_y.0).abs() < 1.0, "views lie beside each other");
+        // The lip stands on the face that the front view shows: there the section is wider than at its foot.
+        let foot: Vec<[f64; 2]> = section.iter().copied().filter(|p| p[1] < front_y.0 + 4.0).collect();
+        let (plate, whole) = (ends(&foot, 0), section_x);
+        let reaches = (plate.0 - whole.0, whole.1 - plate.1);
+        let lip_is_far = reaches.1 > reaches.0 + 1.0;
+        assert_eq!(lip_is_far, is_first, "{reaches:?}");
+        // The same of the view from above: its lip is shorter than the plate.
+        let wide = |y: f64| {
+            let at: Vec<[f64; 2]> = above.iter().copied().filter(|p| (p[1] - y).abs() < 0.01).collect();
+            let (low, high) = ends(&at, 0);
+            high - low
+        };
+        let (lower, upper) = (wide(above_y.0), wide(above_y.1));
+        assert!(lower < upper - 2.0, "z grows downward in the view from above: {lower} {upper}");
+    }
+}
+
+#[test]
+fn a_date_is_written_only_when_it_is_asked_for() {
+    let dated = |date: &str| {
+        let text = format!("[drawing]\ndate = {date:?}\n");
+        let all = sheets(&built(&text).unwrap());
+        all.iter()
+            .flat_map(|s| &s.entities)
+            .filter_map(|e| if let Shape::Text(t) = &e.shape { Some(t.content.clone()) } else { None })
+            .filter(|t| t == "Date" || t == "2026-01-31")
+            .count()
+    };
+    assert_eq!(dated(""), 0);
+    // Both words on each of nine sheets of parts, one of the assembly, and one of the layer.
+    let sheets_of = sheets(&Built::new(Design::new(Configuration::default()).unwrap()).unwrap()).len();
+    assert_eq!(dated("2026-01-31"), 2 * sheets_of);
+}
+
+#[test]
+fn paper_grows_only_where_a_part_asks_for_it() {
+    let paper = |text: &str, part: &str| {
+        let all = sheets(&built(text).unwrap());
+        all.iter().find(|s| s.name == part).map(|s| (s.paper.name(), s.scale)).unwrap()
+    };
+    assert_eq!(paper("", "shell"), ("A4", 2.0));
+    assert_eq!(paper("[drawing]\npaper = \"a3\"\n", "shell").0, "A3");
+    assert_eq!(paper("[shell]\nouter_radius_mm = 140.0\nwall_mm = 9.0\n", "shell").0, "A3");
+}

@@ -1,0 +1,273 @@
+//! What dimensions say: numbers, tolerances and fits. Where each comes from stands in cad/doc/drawing.md, "Tolerances
+//! on drawings".
+
+use std::f64::consts::PI;
+
+use super::features::{ArcSlot, Features, Pieces, Round, Rounding, Slot, same};
+use crate::design::Design;
+use crate::parts::{Material, Part, Role};
+use pinswitch_solid::profile::Point2;
+
+/// So many angles stand in one line of a list.
+const ANGLES_IN_LINE: usize = 5;
+
+/// A length or an angle with up to three digits behind the point.
+pub(super) fn number(value: f64) -> String {
+    let text = format!("{value:.3}");
+    let short = text.trim_end_matches('0').trim_end_matches('.');
+    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+}
+
+/// An angle.
+pub(super) fn degrees(angle_rad: f64) -> String {
+    format!("{}\u{b0}", number(angle_rad.to_degrees()))
+}
+
+/// `3 x ` before what is there three times.
+fn times(n: usize) -> String {
+    if n == 1 { String::new() } else { format!("{n} \u{d7} ") }
+}
+
+/// The angle of a point about the axis, from +y toward +x.
+pub(super) fn angle_rad(p: Point2) -> f64 {
+    p.x.atan2(p.y)
+}
+
+/// First angle and step of angles that are evenly spaced; at least three.
+pub(super) fn even_step(angles_rad: &[f64]) -> Option<(f64, f64)> {
+    let mut sorted = angles_rad.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let step = sorted.get(1)? - sorted[0];
+    let is_even = sorted.len() > 2 && sorted.windows(2).all(|w| same(w[1] - w[0], step));
+    is_even.then_some((sorted[0], step))
+}
+
+/// Where things lie on a radius: `on R16.75 at ±34.46°`.
+fn on_radius(places: &[Point2]) -> Vec<String> {
+    let radius = places.first().map_or(0.0, |p| p.coords.norm());
+    if same(radius, 0.0) || !places.iter().all(|p| same(p.coords.norm(), radius)) {
+        return Vec::new();
+    }
+    let mut angles: Vec<f64> = places.iter().map(|p| angle_rad(*p)).collect();
+    angles.sort_by(f64::total_cmp);
+    let mut at: Vec<String> = match angles[..] {
+        [a, b] if same(a, -b) => vec![format!("\u{b1}{}", degrees(b))],
+        _ => match even_step(&angles) {
+            Some((first, step)) => {
+                vec![format!("{} + {} \u{d7} {}", degrees(first), angles.len() - 1, degrees(step))]
+            }
+            None => angles.iter().map(|a| degrees(*a)).collect(),
+        },
+    };
+    let mut lines = vec![format!("on R{} at {}", number(radius), at.remove(0))];
+    for (i, angle) in at.into_iter().enumerate() {
+        // A long list of angles continues below.
+        match lines.last_mut() {
+            Some(line) if i % ANGLES_IN_LINE != ANGLES_IN_LINE - 2 => *line += &format!(", {angle}"),
+            Some(line) => {
+                *line += ",";
+                lines.push(angle);
+            }
+            None => {}
+        }
+    }
+    lines
+}
+
+/// What a round hole, peg or rim is called.
+pub(super) fn round(design: &Design, part: &Part, round: &Round) -> Vec<String> {
+    let (Some(first), Some(last)) = (round.levels.first(), round.levels.last()) else { return Vec::new() };
+    let n = times(round.centres.len());
+    let (low, high) = (number(2.0 * first.1), number(2.0 * last.1));
+    let depth = number(last.0 - first.0);
+    let c = design.configuration();
+    let is_clearance = matches!(part.role, Role::Shell | Role::Support { .. })
+        && same(2.0 * first.1, c.fasteners.hole_diameter_mm);
+    let mut lines = match (round.is_hole, same(first.1, last.1)) {
+        (true, true) if is_clearance => {
+            vec![format!("{n}\u{d8}{low} H13 through, for {}", screw(design))]
+        }
+        // The outer ring of a 608 bearing measures 22 mm.
+        (true, true) if round.is_blind && part.name == "guide-pulley" => {
+            vec![format!("\u{d8}{low} +0.1/0, {depth} deep, for bearing 608")]
+        }
+        (true, true) if round.is_blind => vec![format!("{n}\u{d8}{low}, {depth} deep")],
+        (true, true) => vec![format!("{n}\u{d8}{low} through")],
+        (true, false) => vec![format!("{n}\u{d8}{low}, {depth} deep, \u{d8}{high} at its end")],
+        (false, true) => vec![format!("{n}\u{d8}{low} \u{d7} {depth}")],
+        (false, false) => vec![format!("{n}peg \u{d8}{low}, \u{d8}{high} at {depth}")],
+    };
+    if matches!(part.role, Role::Pin { .. }) {
+        lines = vec![pin(design)];
+    }
+    lines.extend(on_radius(&round.centres));
+    lines
+}
+
+fn pin(design: &Design) -> String {
+    let p = &design.configuration().pins;
+    format!("\u{d8}{} \u{b1}{}", number(p.diameter_mm), number(p.tolerance_mm))
+}
+
+/// The screw that the holes take.
+fn screw(design: &Design) -> String {
+    crate::documents::bill_of_materials(design).fasteners.map_or_else(String::new, |f| f.thread.to_owned())
+}
+
+/// The width of a slot, and the tolerance that the pin's fit asks for: never narrower, at most 0.1 mm wider.
+pub(super) fn slot_width(slot: &Slot) -> String {
+    format!("{} +0.1/0", number(slot.width_mm))
+}
+
+/// What slots are called.
+pub(super) fn slot(design: &Design, part: &Part, slot: &Slot) -> Vec<String> {
+    let n = times(slot.places.len());
+    let depth = if slot.is_blind { format!("{} deep", number(slot.depth_mm)) } else { "through".to_owned() };
+    let mut lines = if matches!(part.role, Role::Support { .. }) {
+        vec![format!("{n}slot, {depth}"), format!("for pin {}", pin(design))]
+    } else {
+        vec![format!("{n}slot, {depth}")]
+    };
+    let outer: Vec<Point2> = slot.places.iter().map(|p| p.0).collect();
+    let angles: Vec<f64> = outer.iter().map(|p| angle_rad(*p)).collect();
+    if even_step(&angles).is_some() {
+        // The angles have a dimension of their own.
+        lines.push(format!("outer centres on R{}", number(outer[0].coords.norm())));
+    } else {
+        lines.extend(on_radius(&outer).into_iter().map(|l| l.replacen("on R", "outer centres on R", 1)));
+    }
+    lines
+}
+
+/// What a slot along an arc is called.
+pub(super) fn arc_slot(slot: &ArcSlot) -> Vec<String> {
+    let (low, high) = (number(slot.widths_mm.0), number(slot.widths_mm.1));
+    let width = if low == high { format!("{low} wide") } else { format!("{low} wide, {high} at the top") };
+    vec![
+        format!("slot along R{}, {width}", number(slot.radius_mm)),
+        format!("centres of its ends at \u{b1}{}", degrees(slot.half_rad)),
+    ]
+}
+
+/// What grooves, ribs and rounded corners are called.
+pub(super) fn rounding(rounding: &Rounding, is_axial: bool) -> Vec<String> {
+    let word = match (rounding.is_half_round, rounding.is_rib) {
+        (true, true) => "rib ",
+        (true, false) => "groove ",
+        (false, _) => "",
+    };
+    let mut lines = vec![format!("{}{word}R{}", times(rounding.arcs.len()), number(rounding.radius_mm))];
+    if rounding.is_half_round && !is_axial {
+        lines.push("centres on the edge".to_owned());
+    }
+    if rounding.is_half_round && is_axial {
+        let centres: Vec<Point2> = rounding.arcs.iter().map(|a| a.centre).collect();
+        let angles: Vec<f64> = centres.iter().map(|p| angle_rad(*p)).collect();
+        if even_step(&angles).is_some() {
+            lines.push(format!("centres on R{}", number(centres[0].coords.norm())));
+        } else {
+            lines.extend(on_radius(&centres).into_iter().map(|l| l.replacen("on R", "centres on R", 1)));
+        }
+    }
+    lines
+}
+
+/// What the pieces of a lip are called.
+pub(super) fn pieces(pieces: &Pieces, slots: &[f64]) -> Vec<String> {
+    let height = number(pieces.heights_mm.1 - pieces.heights_mm.0);
+    let mut lines = vec![
+        format!("lip R{} to R{}", number(pieces.inner_mm), number(pieces.outer_mm)),
+        format!("{height} high, in {} pieces", pieces.spans_rad.len()),
+    ];
+    let mut gaps: Vec<f64> = Vec::new();
+    for (from, to) in &pieces.spans_rad {
+        for end in [from, to] {
+            let gap = slots.iter().map(|s| (s - end).abs()).fold(f64::INFINITY, f64::min);
+            if gap < PI && !gaps.iter().any(|g| same(*g, gap)) {
+                gaps.push(gap);
+            }
+        }
+    }
+    let outermost = pieces.spans_rad.iter().map(|s| s.1).fold(f64::NEG_INFINITY, f64::max);
+    gaps.sort_by(f64::total_cmp);
+    if let Some(gap) = gaps.first() {
+        lines.push(format!("edges {} beside slot centres", degrees(*gap)));
+    }
+    lines.push(format!("outermost edges at \u{b1}{}", degrees(outermost)));
+    lines
+}
+
+/// What ends are called that do not lie in a plane through the axis.
+pub(super) fn ends(shift_mm: f64, half_span_rad: f64) -> Vec<String> {
+    vec![
+        "end face parallel to the plane".to_owned(),
+        format!("at \u{b1}{}, {} outside it", degrees(half_span_rad), number(shift_mm)),
+    ]
+}
+
+/// What the title block says of the material.
+pub(super) fn material(design: &Design, material: Material) -> String {
+    match material {
+        Material::Abs => "ABS, printed".to_owned(),
+        Material::Silicone => {
+            format!("Silicone, {} Shore A", number(design.configuration().silicone.hardness_shore_a))
+        }
+        Material::Steel => "Steel, polished".to_owned(),
+    }
+}
+
+/// What the title block says of dimensions without a tolerance of their own.
+pub(super) const fn general_tolerance(material: Material) -> &'static str {
+    match material {
+        Material::Abs => "ISO 2768-c printed, -m machined",
+        Material::Silicone => "as the mould, ISO 2768-c",
+        Material::Steel => "ISO 2768-m",
+    }
+}
+
+/// General notes of a part.
+pub(super) fn notes(design: &Design, part: &Part, features: &Features, has_lettering: bool) -> Vec<String> {
+    let c = design.configuration();
+    let mut notes = Vec::new();
+    if has_lettering {
+        let what = if part.name == "coupon" { "the slots' clearances".to_owned() } else { design.label() };
+        notes.push(format!("Engraved: {what}, {} deep", number(c.label.depth_mm)));
+    }
+    let is_printed = part.material() == Material::Abs;
+    if is_printed && c.print.elephant_foot_mm > 0.0 {
+        notes.push(format!("Bottom edges {} \u{d7} 45\u{b0}", number(c.print.elephant_foot_mm)));
+    }
+    if part.name == "mould-tray" && c.mould.overfill_mm > 0.0 && c.mould.draft_deg > 0.0 {
+        notes.push(format!("Walls of the basin: draft {}\u{b0}", number(c.mould.draft_deg)));
+    }
+    if features.axis_arcs.is_empty() && !features.slots.is_empty() {
+        notes.push("Slots: width \u{d7} distance of the centres of their ends, through".to_owned());
+    }
+    if !features.axis_arcs.is_empty() {
+        notes.push("R without a centre mark: about the pulley's axis".to_owned());
+        notes.push("Angles from the middle plane, + to the right".to_owned());
+    }
+    notes.extend(part.notes.iter().cloned());
+    notes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pinswitch_solid::profile::polar;
+
+    #[test]
+    fn places_on_a_radius_are_said_in_the_shortest_way() {
+        let at = |degrees: &[f64]| {
+            on_radius(&degrees.iter().map(|d| polar(10.0, d.to_radians())).collect::<Vec<_>>()).join("|")
+        };
+        assert_eq!(at(&[-30.0, 30.0]), "on R10 at \u{b1}30\u{b0}");
+        assert_eq!(at(&[-30.0, 0.0, 30.0]), "on R10 at -30\u{b0} + 2 \u{d7} 30\u{b0}");
+        assert_eq!(at(&[-30.0, 5.0, 31.0]), "on R10 at -30\u{b0}, 5\u{b0}, 31\u{b0}");
+        assert_eq!(at(&[0.0]), "on R10 at 0\u{b0}");
+        let many: Vec<f64> = (0..15).map(|i| f64::from(i * i) * 0.5 - 40.0).collect();
+        let text = at(&many);
+        assert!(text.split('|').all(|l| l.len() < 60) && text.matches('\u{b0}').count() == 15, "{text}");
+        assert_eq!(on_radius(&[Point2::origin()]), Vec::<String>::new());
+    }
+}

@@ -7,6 +7,9 @@ use crate::config::{Configuration, SlotKind, Slots};
 /// Grid to which pins are cut, mm.
 const PIN_LENGTH_STEP_MM: f64 = 0.5;
 
+/// Half of the widest span, in radians, at which the layers of a gang mould nest in each other.
+const MOST_NESTED_RAD: f64 = 1.3;
+
 /// A configuration with what follows from it, whether it can be built or not; cad/doc/dimensions.md explains each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dimensions {
@@ -69,9 +72,20 @@ impl Dimensions {
         2.0 * (half_chord - self.configuration.segment.groove_radius_mm)
     }
 
-    /// What stands beyond the outermost groove of the shell: half a land and the margin.
+    /// What stands beyond the outermost groove of the shell: half a land, the margin, and the stop with its gap.
     pub fn end_wall_mm(&self) -> f64 {
-        self.land_mm() / 2.0 + self.configuration.segment.end_margin_mm
+        self.land_mm() / 2.0 + self.shell_end_shift_mm()
+    }
+
+    /// How far the stops reach beyond the layer's ends, with the gap before them; 0 without stops.
+    pub fn stop_reach_mm(&self) -> f64 {
+        let c = &self.configuration;
+        if c.shell.stop_mm > 0.0 { c.silicone.side_clearance_mm + c.shell.stop_mm } else { 0.0 }
+    }
+
+    /// How far the ends of shell and supports lie outside the radial planes of the span.
+    pub fn shell_end_shift_mm(&self) -> f64 {
+        self.configuration.segment.end_margin_mm + self.stop_reach_mm()
     }
 
     /// Angles of all groove centres, ascending.
@@ -181,6 +195,11 @@ impl Dimensions {
             1 => vec![0.0],
             n => (0..n).map(|i| outermost * (2.0 * i as f64 / (n as f64 - 1.0) - 1.0)).collect(),
         }
+    }
+
+    /// Whether the layers of a gang mould nest in each other: bowed less than half a turn.
+    pub(crate) fn gang_nests(&self) -> bool {
+        self.half_span_rad() < MOST_NESTED_RAD
     }
 
     /// The engraved label: the configured text, or pins x step / first groove.

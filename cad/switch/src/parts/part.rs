@@ -12,6 +12,9 @@ use pinswitch_solid::validity::Expectation;
 /// What two lines may be short of by rounding, mm.
 const THIN_ROUNDING_MM: f64 = 1e-6;
 
+/// Thicknesses closer than this are those of one wall, mm.
+const TOLD_MM: f64 = 1e-3;
+
 /// What a part is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -152,7 +155,12 @@ impl Part {
 
     /// The thinnest place, as a warning with what to change; `None` where every wall has two printed lines.
     pub fn thin_warning(&self, design: &Design) -> Option<String> {
-        let places = self.thin_places(design);
+        let mut places = self.thin_places(design);
+        if self.role == Role::Shell {
+            // Rules of their own tell of these, and by how much to mend them.
+            let told = [design.land_mm(), design.end_wall_mm()];
+            places.retain(|p| told.iter().all(|t| (p.thickness_mm - t).abs() > TOLD_MM));
+        }
         let thinnest = places.first()?;
         let (at, line_mm) = (thinnest.middle, design.configuration().print.line_mm);
         Some(format!(
@@ -165,7 +173,11 @@ impl Part {
             at.x.atan2(at.y).to_degrees(),
             thinnest.from_mm,
             thinnest.to_mm,
-            if places.len() > 1 { format!(", and {} more places", places.len() - 1) } else { String::new() },
+            match places.len() {
+                1 => String::new(),
+                2 => ", and one more place".to_owned(),
+                n => format!(", and {} more places", n - 1),
+            },
             self.remedy_for_thin_places()
         ))
     }

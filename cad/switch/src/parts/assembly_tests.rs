@@ -106,7 +106,10 @@ fn overlap(parts: &[Part]) -> Option<String> {
                 }
                 for (depth, place) in [at_a.depth_mm(&at_b), at_b.depth_mm(&at_a)] {
                     if depth > TOUCHING_MM {
-                        return Some(format!("{} and {} overlap by {depth:.3} at {place} {z}", a.name, b.name));
+                        return Some(format!(
+                            "{} and {} overlap by {depth:.3} at {place} {z}",
+                            a.name, b.name
+                        ));
                     }
                 }
             }
@@ -125,14 +128,9 @@ fn no_two_bodies_of_an_assembly_overlap() {
     let twice = printed(&design(&[])).unwrap().remove(0);
     let mut lifted = twice.clone();
     lifted.name.push('2');
-    lifted.solid = pinswitch_solid::solid::Solid::prism(
-        &Contour::circle(polar(18.0, 0.0), 1.0),
-        &[],
-        0.0,
-        5.0,
-        0.0,
-    )
-    .unwrap();
+    lifted.solid =
+        pinswitch_solid::solid::Solid::prism(&Contour::circle(polar(18.0, 0.0), 1.0), &[], 0.0, 5.0, 0.0)
+            .unwrap();
     assert!(overlap(&[twice, lifted]).is_some());
 }
 
@@ -165,7 +163,11 @@ fn screws_and_dowels_pass_on_one_axis() {
                         assert!(free > -1e-9, "{name}: {} is off the axis by {free}", part.name);
                     }
                 }
-                assert!(closed_mm < design.membrane_mm() + 1e-6, "{name}: {} is closed for {closed_mm}", part.name);
+                assert!(
+                    closed_mm < design.membrane_mm() + 1e-6,
+                    "{name}: {} is closed for {closed_mm}",
+                    part.name
+                );
             }
         }
         for angle in design.dowel_angles_rad() {
@@ -225,7 +227,8 @@ fn the_layer_cannot_slide_along_the_shell() {
         let radius = c.shell.outer_radius_mm + c.shell.stop_height_mm / 2.0;
         for side in [-1.0, 1.0] {
             let shift = c.segment.end_margin_mm + c.silicone.side_clearance_mm;
-            let beyond = |mm: f64| polar(radius, side * (design.half_span_rad() + ((shift + mm) / radius).asin()));
+            let beyond =
+                |mm: f64| polar(radius, side * (design.half_span_rad() + ((shift + mm) / radius).asin()));
             assert!(!shell.holds(beyond(-0.01)) && shell.holds(beyond(0.01)), "{name}");
             let gap = layer.distance_mm(beyond(0.0));
             assert!((gap - c.silicone.side_clearance_mm).abs() < 1e-6, "{name}: {gap}");
@@ -247,8 +250,10 @@ fn casts_come_out_without_undercut() {
             let mut part = part;
             part.tool_pose = part.tool_pose.or(Some(pinswitch_solid::pose::Pose::upright(0.0)));
             let floor = design.configuration().mould.floor_mm;
-            let levels: Vec<f64> =
-                levels_mm(&[&part]).into_iter().filter(|z| *z > floor && *z < floor + design.layer_width_mm()).collect();
+            let levels: Vec<f64> = levels_mm(&[&part])
+                .into_iter()
+                .filter(|z| *z > floor && *z < floor + design.layer_width_mm())
+                .collect();
             let all = levels_mm(&[&part]);
             for z in levels {
                 let here = section(&part, z);
@@ -257,13 +262,15 @@ fn casts_come_out_without_undercut() {
                     let outline: Vec<Point2> = over.polygons.iter().flatten().copied().collect();
                     for p in outline {
                         // Keys of the core stand beside the cavity.
-                        let covers = over.distance_mm(p) < 1e-3 && !here.holds(p) && here.distance_mm(p) > TOUCHING_MM;
+                        let covers =
+                            over.distance_mm(p) < 1e-3 && !here.holds(p) && here.distance_mm(p) > TOUCHING_MM;
                         assert!(!covers || part.name == "mould-core", "{name}: {p} at {above} covers {z}");
                     }
                 }
             }
         }
-        let tools: Vec<Part> = printed(&design).unwrap().into_iter().filter(|p| p.tool_pose.is_some()).collect();
+        let tools: Vec<Part> =
+            printed(&design).unwrap().into_iter().filter(|p| p.tool_pose.is_some()).collect();
         assert_eq!(overlap(&tools), None, "{name}");
     }
     assert!(moulds >= 20, "{moulds}");

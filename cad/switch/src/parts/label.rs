@@ -16,6 +16,8 @@ const MIN_HEIGHT_MM: f64 = 1.5;
 pub(super) const EDGE_MM: f64 = 0.5;
 /// Width of a letter over its height.
 const ASPECT: f64 = 0.58;
+/// Heights closer than this are one, mm.
+pub(super) const SAME_MM: f64 = 1e-9;
 /// Points of a letter's outline that are closer than this are one point, mm.
 const MERGE_MM: f64 = 0.02;
 
@@ -49,7 +51,8 @@ impl Zone {
         let (middle, half) = (design.fastener_radius_mm(), design.half_span_rad());
         // The widest that a round hole is within the band: where a line from the axis touches it, or at the band's edge.
         let taken = |angles: Vec<f64>, reach_mm: f64| {
-            let at = (middle.powi(2) - reach_mm.powi(2)).max(0.0).sqrt().clamp(inner_mm, outer_mm.max(inner_mm));
+            let at =
+                (middle.powi(2) - reach_mm.powi(2)).max(0.0).sqrt().clamp(inner_mm, outer_mm.max(inner_mm));
             let cosine = (at.powi(2) + middle.powi(2) - reach_mm.powi(2)) / (2.0 * at * middle);
             let beside = cosine.clamp(-1.0, 1.0).acos();
             angles.into_iter().filter(move |_| cosine < 1.0).map(move |a| (a - beside, a + beside))
@@ -185,7 +188,7 @@ pub(super) fn largest_mm(design: &Design, text: &str, zone: &Zone) -> Option<f64
     let gap = stroke + c.print.least_wall_mm;
     let by_length = ((length - 2.0 * EDGE_MM + gap - stroke) / letters - gap) / ASPECT;
     let size = c.label.height_mm.min(height - 2.0 * EDGE_MM - stroke).min(by_length);
-    (size >= least_height_mm(design)).then_some(size)
+    (size >= least_height_mm(design) - SAME_MM).then_some(size)
 }
 
 /// The letters of `text` in a zone: outlines, clockwise, each with its islands, counter-clockwise.

@@ -1,7 +1,7 @@
 //! Marks on the outer faces of the supports, which stay visible: which side it is, which layout, where groove 1 is and
 //! where the load pulls (cad/doc/dimensions.md, "Label").
 
-use super::label::{EDGE_MM, Engraving, Zone, engrave_below, largest_mm, least_height_mm, left_out};
+use super::label::{EDGE_MM, Engraving, SAME_MM, Zone, engrave_below, largest_mm, least_height_mm, left_out};
 use crate::design::Design;
 use pinswitch_solid::solid::Solid;
 
@@ -60,8 +60,14 @@ fn fitted(design: &Design, rows: &[String]) -> Option<(f64, Vec<Zone>)> {
     let stroke = c.label.stroke_mm;
     let (inner, outer) = (design.inner_radius_mm(), design.slot().inner_edge_mm());
     let reach = design.fastener_along_mm();
-    let mut size = c.label.height_mm;
-    while size >= least_height_mm(design) {
+    let least = least_height_mm(design);
+    let steps = ((c.label.height_mm - least) / STEP_MM + SAME_MM).floor();
+    // From the configured height down, the least included.
+    let sizes = std::iter::successors(Some(0.0), |step: &f64| (*step < steps).then_some(step + 1.0))
+        .map(|step| c.label.height_mm - step * STEP_MM)
+        .filter(|size| *size >= least - SAME_MM)
+        .chain((c.label.height_mm >= least - SAME_MM).then_some(least));
+    for size in sizes {
         // Rows share the wall between them.
         let pitch = size + stroke + EDGE_MM;
         let zone = |i: usize| {
@@ -70,12 +76,12 @@ fn fitted(design: &Design, rows: &[String]) -> Option<(f64, Vec<Zone>)> {
                 .then(|| Zone::between_holes(design, reach, top - pitch - EDGE_MM, top))
         };
         let zones: Option<Vec<Zone>> = (0..rows.len()).map(zone).collect();
-        let fits =
-            |(row, zone): (&String, &Zone)| largest_mm(design, row, zone).is_some_and(|s| s >= size - 1e-9);
+        let fits = |(row, zone): (&String, &Zone)| {
+            largest_mm(design, row, zone).is_some_and(|s| s >= size - SAME_MM)
+        };
         if let Some(zones) = zones.filter(|zones| rows.iter().zip(zones).all(fits)) {
             return Some((size, zones));
         }
-        size -= STEP_MM;
     }
     None
 }

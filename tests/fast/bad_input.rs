@@ -48,7 +48,10 @@ const REFUSED: [(&str, &[&str]); 28] = [
     ("[shell]\nwidth_mm = inf", &["shell.width_mm = inf", "2 to 100"]),
     ("[fasteners]\nhole_diameter_mm = 8.0", &["fasteners.hole_diameter_mm = 8", "wall"]),
     ("[fasteners]\ncount = 12", &["fasteners.count = 12", "do not fit"]),
-    ("[shell]\nstop_mm = 0\n[fasteners]\nend_distance_mm = 1.5", &["fasteners.end_distance_mm = 1.5", "raise it to"]),
+    (
+        "[shell]\nstop_mm = 0\n[fasteners]\nend_distance_mm = 1.5",
+        &["fasteners.end_distance_mm = 1.5", "raise it to"],
+    ),
     (
         "[support]\ncorner_radius_mm = 4.7",
         &["my.toml:2: support.corner_radius_mm = 4.7", "outermost slot", "lower it to"],

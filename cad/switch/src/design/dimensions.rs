@@ -7,6 +7,10 @@ use crate::config::{Configuration, SlotKind, Slots};
 /// Grid to which pins are cut, mm.
 const PIN_LENGTH_STEP_MM: f64 = 0.5;
 
+/// How far the stops stay below the silicone's surface, and their least height, mm.
+const STOP_DEPTH_MM: f64 = 0.2;
+/// What chamfers on both sides leave of a stop on the bed, mm.
+const STOP_FOOT_MM: f64 = 0.05;
 /// Half of the widest span, in radians, at which the layers of a gang mould nest in each other.
 const MOST_NESTED_RAD: f64 = 1.3;
 
@@ -79,8 +83,17 @@ impl Dimensions {
 
     /// How far the stops reach beyond the layer's ends, with the gap before them; 0 without stops.
     pub fn stop_reach_mm(&self) -> f64 {
+        self.stops_mm()
+            .map_or(0.0, |[thickness, _]| self.configuration.silicone.side_clearance_mm + thickness)
+    }
+
+    /// Thickness and height of the stops: lower than the layer, over whose ends the tendon may run. `None` where none are
+    /// wanted, or where they are too thin or too low to print.
+    pub fn stops_mm(&self) -> Option<[f64; 2]> {
         let c = &self.configuration;
-        if c.shell.stop_mm > 0.0 { c.silicone.side_clearance_mm + c.shell.stop_mm } else { 0.0 }
+        let height = c.shell.stop_height_mm.min(c.silicone.thickness_mm - STOP_DEPTH_MM);
+        let least = c.print.least_wall_mm.max(2.0 * c.print.elephant_foot_mm + STOP_FOOT_MM);
+        (c.shell.stop_mm >= least && height >= STOP_DEPTH_MM).then_some([c.shell.stop_mm, height])
     }
 
     /// How far the ends of shell and supports lie outside the radial planes of the span.

@@ -11,6 +11,9 @@ use pinswitch_solid::solid::{Facing, Solid};
 /// Largest fillet of a stop, as a share of its thickness and height: something of its top must stay.
 const FILLET_SHARE: f64 = 0.45;
 
+/// Least fillet of a stop on the bed, mm.
+const LEAST_FILLET_MM: f64 = 0.05;
+
 /// The shell's face between the layer's ends, without stops.
 fn face_sector(design: &Design) -> Sector {
     Sector {
@@ -29,12 +32,15 @@ pub(super) fn wall_sector(design: &Design) -> Sector {
 /// The stops that keep the layer from sliding; `None` without.
 fn stops(design: &Design) -> Option<Stops> {
     let c = design.configuration();
-    let most = FILLET_SHARE * c.shell.stop_mm.min(c.shell.stop_height_mm);
-    (c.shell.stop_mm > 0.0).then(|| Stops {
+    let [thickness_mm, height_mm] = design.stops_mm()?;
+    let fillet_mm = c.tendon.entry_fillet_mm.min(FILLET_SHARE * thickness_mm.min(height_mm));
+    // A chamfer must leave something of it at the bed.
+    let survives = fillet_mm > c.print.elephant_foot_mm + LEAST_FILLET_MM;
+    Some(Stops {
         gap_mm: c.silicone.side_clearance_mm,
-        thickness_mm: c.shell.stop_mm,
-        height_mm: c.shell.stop_height_mm,
-        fillet_mm: c.tendon.entry_fillet_mm.min(most),
+        thickness_mm,
+        height_mm,
+        fillet_mm: if survives { fillet_mm } else { 0.0 },
     })
 }
 
@@ -64,5 +70,10 @@ pub(super) fn shell(design: &Design) -> Result<Part, ConfigError> {
     solid.cap(Facing::Up, top, &tops);
     let mut part = Part::new("shell", Role::Shell, solid, Some(Pose::upright(0.0)));
     part.notes.extend(engraved.note);
+    if c.shell.stop_mm > 0.0 && design.stops_mm().is_none() {
+        part.notes.push(
+            "the stops do not fit and are left out: raise shell.stop_mm or silicone.thickness_mm".to_owned(),
+        );
+    }
     Ok(part)
 }

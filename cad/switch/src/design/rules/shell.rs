@@ -1,21 +1,16 @@
 //! Rules for the grooved sector of the shell.
 
-use super::Change::{Ease, Lower, Raise, Set};
+use super::Change::{Ease, Lower, Raise};
 use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
 
 /// Least radius inside the shell: below it there is no room for a core.
 pub(super) const MIN_INNER_RADIUS_MM: f64 = 1.0;
-
-/// How far the stops stay below the silicone's surface.
-const MIN_STOP_DEPTH_MM: f64 = 0.2;
 
 pub(super) const RULES: &[Rule] = &[
     Rule { field: "shell.wall_mm", severity: Severity::Error, assess: inner_radius },
     Rule { field: "shell.wall_mm", severity: Severity::Error, assess: wall_under_grooves },
     Rule { field: "segment.grooves", severity: Severity::Error, assess: land },
     Rule { field: "segment.end_margin_mm", severity: Severity::Error, assess: end_walls },
-    Rule { field: "shell.stop_mm", severity: Severity::Error, assess: stops_print },
-    Rule { field: "shell.stop_height_mm", severity: Severity::Error, assess: stops_under_tendon },
     Rule { field: "shell.outer_radius_mm", severity: Severity::Warning, assess: thin_land },
     Rule { field: "segment.end_margin_mm", severity: Severity::Warning, assess: thin_end_walls },
 ];
@@ -86,41 +81,6 @@ fn end_walls(i: &Inspection<'_>) -> Assessment {
                 Ease("print.elephant_foot_mm"),
                 Ease("print.least_wall_mm"),
             ],
-        )
-    })
-}
-
-/// A stop is left out, or thick enough to print.
-fn stops_print(i: &Inspection<'_>) -> Assessment {
-    let c = i.configuration();
-    let least = least_wall_mm(c, 1.0);
-    require(c.shell.stop_mm == 0.0 || c.shell.stop_mm >= least, || {
-        (
-            format!("makes stops thinner than {least:.3} mm, the least wall; 0 leaves them out"),
-            &[
-                Raise("shell.stop_mm"),
-                Lower("shell.stop_mm"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
-            ],
-        )
-    })
-}
-
-/// The tendon runs over the stops where the wrap is as wide as the span: they stay below the silicone's surface.
-fn stops_under_tendon(i: &Inspection<'_>) -> Assessment {
-    let c = i.configuration();
-    if c.shell.stop_mm == 0.0 {
-        return Assessment::NotApplicable;
-    }
-    let most = c.silicone.thickness_mm - MIN_STOP_DEPTH_MM;
-    require(c.shell.stop_height_mm <= most, || {
-        (
-            format!(
-                "brings the stops to the tendon: {most:.3} mm is the most over a layer of {} mm",
-                c.silicone.thickness_mm
-            ),
-            &[Lower("shell.stop_height_mm"), Raise("silicone.thickness_mm"), Set("shell.stop_mm", "0")],
         )
     })
 }

@@ -53,7 +53,7 @@ const REFUSED: [(&str, &[&str]); 28] = [
         &["fasteners.end_distance_mm = 1.5", "raise it to"],
     ),
     (
-        "[support]\ncorner_radius_mm = 4.7",
+        "[support]\ncorner_radius_mm = 4.7\n[shell]\nstop_mm = 0",
         &["my.toml:2: support.corner_radius_mm = 4.7", "outermost slot", "lower it to"],
     ),
     (

@@ -90,7 +90,7 @@ configuration! {
             wall_mm: f64 = 8.5, 1.0..=60.0, Assumed, "radial thickness; 8.5 takes M3 nut traps and inserts with 1 mm of wall around them under the grooves";
             width_mm: f64 = 14.0, 2.0..=100.0, Assumed, "width along the axis";
             stop_mm: f64 = 1.0, 0.0..=5.0, Chosen, "thickness of the stops beyond both ends of the layer, which cannot slide along the shell; 0 leaves them out";
-            stop_height_mm: f64 = 0.8, 0.2..=5.0, Chosen, "height of the stops above the shell's face, less than the layer's thickness";
+            stop_height_mm: f64 = 0.8, 0.2..=5.0, Chosen, "height of the stops above the shell's face, at most 0.2 below the silicone's surface";
         }
         /// Axial holes that join shell and side supports.
         fasteners: FastenersTable {

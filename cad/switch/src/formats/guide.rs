@@ -176,7 +176,7 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest) {
     }
     let bed = if c.layout.substrate == Substrate::Silicone { "silicone layer" } else { "proxy" };
     steps.push(format!("Lay the {bed} on the shell, grooves outwards."));
-    let keeps = if c.shell.stop_mm > 0.0 { ", between the stops at its ends" } else { "" };
+    let keeps = if design.stops_mm().is_some() { ", between the stops at its ends" } else { "" };
     if let Some(last) = steps.last_mut() {
         last.insert_str(last.len() - 1, keeps);
     }

@@ -44,8 +44,8 @@ pub fn silicone_layer(design: &Design) -> Result<Part, ConfigError> {
 fn proxy_outline(design: &Design) -> Contour {
     let c = design.configuration();
     let reach = design.stop_reach_mm();
-    let from =
-        design.shell_radius_mm() + c.shell.stop_height_mm + c.silicone.side_clearance_mm.max(MIN_AIR_MM);
+    let height = design.stops_mm().map_or(0.0, |[_, height]| height);
+    let from = design.shell_radius_mm() + height + c.silicone.side_clearance_mm.max(MIN_AIR_MM);
     if reach <= 0.0
         || design.contact_radius_mm() - from < 2.0 * c.print.line_mm + 2.0 * c.print.elephant_foot_mm
     {

@@ -290,7 +290,9 @@ fn where_it_lies(design: &Design) -> String {
         .map(|t| format!("{:.1} to {:.1} deg", t.from_rad.to_degrees(), t.to_rad.to_degrees()))
         .collect();
     if places.is_empty() {
-        return format!(" As a limp string it lies on its pins only; load brings it down to the {bed} between them.");
+        return format!(
+            " As a limp string it lies on its pins only; load brings it down to the {bed} between them."
+        );
     }
     let radius = design.tendon_axis_radius_mm() - design.tendon_diameter_mm() / 2.0;
     let length: f64 =

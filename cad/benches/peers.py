@@ -24,6 +24,7 @@ parts = ["shell"]
 "shell.wall_mm" = 3.0
 "shell.width_mm" = 10.0
 "fasteners.count" = 0
+"shell.stop_mm" = 0
 "label.engrave" = false
 "mould.kind" = "none"
 "mesh.chord_tolerance_mm" = 0.01

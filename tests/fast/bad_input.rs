@@ -46,11 +46,14 @@ const REFUSED: [(&str, &[&str]); 28] = [
     ("[layout]\nwrap_angle_deg = 95.0", &["layout.wrap_angle_deg = 95", "beyond the segment of 89.45 deg"]),
     ("[shell]\nwidth_mm = nan", &["my.toml:2: shell.width_mm = nan", "2 to 100"]),
     ("[shell]\nwidth_mm = inf", &["shell.width_mm = inf", "2 to 100"]),
-    ("[fasteners]\nhole_diameter_mm = 5.0", &["fasteners.hole_diameter_mm = 5", "wall"]),
+    ("[fasteners]\nhole_diameter_mm = 8.0", &["fasteners.hole_diameter_mm = 8", "wall"]),
     ("[fasteners]\ncount = 12", &["fasteners.count = 12", "do not fit"]),
-    ("[fasteners]\nend_distance_mm = 1.5", &["fasteners.end_distance_mm = 1.5", "raise it to"]),
     (
-        "[support]\ncorner_radius_mm = 4.7",
+        "[shell]\nstop_mm = 0\n[fasteners]\nend_distance_mm = 1.5",
+        &["fasteners.end_distance_mm = 1.5", "raise it to"],
+    ),
+    (
+        "[support]\ncorner_radius_mm = 4.7\n[shell]\nstop_mm = 0",
         &["my.toml:2: support.corner_radius_mm = 4.7", "outermost slot", "lower it to"],
     ),
     (

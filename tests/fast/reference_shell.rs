@@ -16,6 +16,7 @@ fn shell(tolerance_mm: f64) -> (Design, pinswitch_switch::parts::Part) {
         "shell.wall_mm=3",
         "shell.width_mm=10",
         "fasteners.count=0",
+        "shell.stop_mm=0",
         "label.engrave=false",
         "mould.kind=none",
         &format!("mesh.chord_tolerance_mm={tolerance_mm}"),

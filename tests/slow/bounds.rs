@@ -10,10 +10,12 @@ use pinswitch_switch::design::Design;
 use pinswitch_switch::output::BuildError;
 
 /// Layers that a field may not like to be alone with.
-const BASES: [&[&str]; 3] = [
+const BASES: [&[&str]; 5] = [
     &[],
     &["mould.kind=one-piece", "label.engrave=false"],
     &["support.slot_kind=through", "parts.guide_pulley=true"],
+    &["fasteners.kind=insert", "mount.kind=finger-link", "tendon.sheath_diameter_mm=3"],
+    &["fasteners.dowel_diameter_mm=1.5", "mount.kind=rig", "mould.kind=one-piece"],
 ];
 
 /// The ends of a numeric field's range, as its description gives them.

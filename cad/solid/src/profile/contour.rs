@@ -184,19 +184,24 @@ impl Contour {
 
     /// Lower left and upper right corner of the exact bounding box.
     pub fn bounds(&self) -> (Point2, Point2) {
-        let mut low = Point2::new(f64::INFINITY, f64::INFINITY);
-        let mut high = -low;
-        let mut include = |p: Point2| {
-            low = Point2::new(low.x.min(p.x), low.y.min(p.y));
-            high = Point2::new(high.x.max(p.x), high.y.max(p.y));
-        };
-        self.corners.iter().for_each(|p| include(*p));
-        for edge in &self.edges {
-            let Edge::Arc(a) = edge else { continue };
+        let nowhere = Point2::new(f64::INFINITY, f64::INFINITY);
+        (0..self.edges.len()).map(|i| self.edge_bounds(i)).fold((nowhere, -nowhere), |(low, high), (a, b)| {
+            (Point2::new(low.x.min(a.x), low.y.min(a.y)), Point2::new(high.x.max(b.x), high.y.max(b.y)))
+        })
+    }
+
+    /// Lower left and upper right corner of the exact bounding box of edge `i`.
+    pub(crate) fn edge_bounds(&self, i: usize) -> (Point2, Point2) {
+        let (from, to) = self.ends(i);
+        let mut low = Point2::new(from.x.min(to.x), from.y.min(to.y));
+        let mut high = Point2::new(from.x.max(to.x), from.y.max(to.y));
+        if let Edge::Arc(a) = &self.edges[i] {
             for quadrant in 0..4 {
                 let angle = f64::from(quadrant) * FRAC_PI_2;
                 if a.covers(angle) {
-                    include(a.centre + Vector2::new(angle.cos(), angle.sin()) * a.radius_mm);
+                    let p = a.centre + Vector2::new(angle.cos(), angle.sin()) * a.radius_mm;
+                    low = Point2::new(low.x.min(p.x), low.y.min(p.y));
+                    high = Point2::new(high.x.max(p.x), high.y.max(p.y));
                 }
             }
         }

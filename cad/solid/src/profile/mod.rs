@@ -5,6 +5,7 @@
 mod arc;
 mod contour;
 mod flatten;
+mod hull;
 mod offset;
 mod pen;
 mod tolerance;
@@ -12,6 +13,7 @@ mod tolerance;
 pub use arc::Arc;
 pub use contour::{Contour, Edge};
 pub use flatten::{FLAT_MM, chords_for, deviation_mm};
+pub use hull::{Disc, HullArc, hull, hull_arcs};
 pub use offset::OffsetError;
 pub use pen::Pen;
 pub use tolerance::{ChordTolerance, ToleranceError};

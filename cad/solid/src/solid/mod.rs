@@ -9,6 +9,7 @@ mod cap;
 mod cap_cache;
 mod content;
 mod tessellate;
+mod thin;
 mod volume;
 
 use crate::profile::{Contour, OffsetError};
@@ -17,6 +18,7 @@ use crate::profile::{Contour, OffsetError};
 pub use brep::{BrepError, BrepMesh};
 pub use cap::CapError;
 pub use cap_cache::CapCache;
+pub use thin::ThinPlace;
 
 /// A ring: one contour at one height. Walls and caps that name it share its vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -157,6 +159,26 @@ impl Solid {
         }
         self.cap(Facing::Up, floor, &feet);
         top
+    }
+
+    /// A recess with a flat ceiling, sunk upward from `bottom_mm` to `ceiling_mm`: `outline` runs clockwise, islands inside
+    /// it counter-clockwise and as deep as the bottom. Returns the ring at its mouth, a hole in the cap there.
+    pub fn recess(
+        &mut self,
+        outline: &Contour,
+        islands: &[Contour],
+        bottom_mm: f64,
+        ceiling_mm: f64,
+    ) -> RingId {
+        let (mouth, ceiling) = self.extrude(outline, bottom_mm, ceiling_mm);
+        let mut roots = Vec::new();
+        for island in islands {
+            let (foot, root) = self.extrude(island, bottom_mm, ceiling_mm);
+            roots.push(root);
+            self.cap(Facing::Down, foot, &[]);
+        }
+        self.cap(Facing::Down, ceiling, &roots);
+        mouth
     }
 
     /// A boss with a flat top, raised from `foot_mm` to `top_mm` over `outline` (counter-clockwise). Returns the ring

@@ -11,7 +11,9 @@ mod text;
 pub use error::{ConfigError, Place};
 pub use name::Name;
 pub use parameter::{Choice, Origin};
-pub use parameters::{Configuration, MouldKind, MouldTable, Paper, Projection, SlotKind, Slots};
+pub use parameters::{
+    Configuration, FastenerKind, MouldKind, MouldTable, MountKind, Paper, Projection, SlotKind, Slots,
+};
 pub use read::{Places, assign, read, read_over};
 pub use reference::{reference_toml, to_toml};
 pub use text::text;

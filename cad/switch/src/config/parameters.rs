@@ -49,12 +49,38 @@ choice! {
 }
 
 choice! {
+    /// How shell and side supports are joined.
+    FastenerKind {
+        /// Screws right through, with nuts outside.
+        Screw = "screw",
+        /// The same, the nuts caught in the right support.
+        NutTrap = "nut-trap",
+        /// Short screws from both sides into heat-set inserts in the shell.
+        Insert = "insert",
+    }
+}
+
+choice! {
     /// Smallest paper of a drawing.
     Paper {
         /// 297 x 210 mm.
         A4 = "a4",
         /// 420 x 297 mm.
         A3 = "a3",
+    }
+}
+
+choice! {
+    /// What the switch is mounted by.
+    MountKind {
+        /// Nothing: the screws alone.
+        None = "none",
+        /// A base plate with four holes.
+        Flange = "flange",
+        /// A link of a finger: two bores at a given distance.
+        FingerLink = "finger-link",
+        /// The plate of a test rig, with the guide pulley.
+        Rig = "rig",
     }
 }
 
@@ -81,14 +107,20 @@ configuration! {
         /// The rigid shell.
         shell: ShellTable {
             outer_radius_mm: f64 = 20.0, 5.0..=150.0, Assumed, "radius on which the silicone lies; puts the contact at 22 mm, the only radius that the paper gives";
-            wall_mm: f64 = 6.0, 1.0..=60.0, Assumed, "radial thickness; 6 takes an M3 hole with 1 mm of wall around it under the grooves";
+            wall_mm: f64 = 8.5, 1.0..=60.0, Assumed, "radial thickness; 8.5 takes M3 nut traps and inserts with 1 mm of wall around them under the grooves";
             width_mm: f64 = 14.0, 2.0..=100.0, Assumed, "width along the axis";
+            stop_mm: f64 = 1.0, 0.0..=5.0, Chosen, "thickness of the stops beyond both ends of the layer, which cannot slide along the shell; 0 leaves them out";
+            stop_height_mm: f64 = 0.8, 0.2..=5.0, Chosen, "height of the stops above the shell's face, at most 0.2 below the silicone's surface";
         }
         /// Axial holes that join shell and side supports.
         fasteners: FastenersTable {
+            kind: FastenerKind = FastenerKind::NutTrap, (), Chosen, "nuts caught in the right support need no second wrench; inserts need a soldering iron";
             count: usize = 2, 0..=12, Chosen, "number of through holes; 0 leaves them out";
             hole_diameter_mm: f64 = 3.4, 1.0..=12.0, Chosen, "clearance hole: 3.4 for M3, 2.4 for M2";
             end_distance_mm: f64 = 3.0, 1.0..=40.0, Chosen, "from the ends of the sector to the middle of the outermost holes, along the arc";
+            nut_recess_mm: f64 = 1.5, 0.0..=10.0, Chosen, "depth of the nut traps, left out where they do not fit; half the default plate, so that the other half carries";
+            head_recess_mm: f64 = 0.0, 0.0..=10.0, Chosen, "depth of counterbores for the screw heads, left out where they do not fit; 0 for heads that stand out";
+            dowel_diameter_mm: f64 = 0.0, 0.0..=6.0, Chosen, "steel dowels that register shell and supports beside the outermost screws; 0 leaves them out";
         }
         /// The cast layer.
         silicone: SiliconeTable {
@@ -112,6 +144,8 @@ configuration! {
             rope_diameter_mm: f64 = 1.2, 0.1..=6.0, Published, "the paper's 1.2 mm \"radius\" read as diameter: 2.4 mm rope would carry four times the published 850 N";
             coating_mm: f64 = 0.25, 0.0..=2.0, Published, "polyamide-12 coating, on the radius";
             length_mm: f64 = 300.0, 10.0..=10000.0, Chosen, "to cut, for the bill of materials";
+            entry_fillet_mm: f64 = 0.45, 0.0..=3.0, Chosen, "rounds the stops where the tendon comes in and leaves, at most to 0.45 of their thickness; a sharp edge would cut the coating";
+            sheath_diameter_mm: f64 = 0.0, 0.0..=10.0, Chosen, "outer diameter of a sheath that ends in a stop on the mounting plate, on the side away from the load; 0 for none";
         }
         /// The two side supports.
         support: SupportTable {
@@ -133,6 +167,7 @@ configuration! {
             wall_mm: f64 = 3.0, 1.2..=20.0, Chosen, "least wall around the cavity";
             floor_mm: f64 = 3.0, 0.8..=20.0, Chosen, "floor, base plate and lid";
             overfill_mm: f64 = 1.0, 0.0..=10.0, Chosen, "one-piece: height of the basin above the layer; cut the layer along its ledge";
+            layers: usize = 1, 1..=12, Chosen, "one-piece: layers cast at once; 11 g are mixed, and one layer takes 1 g";
             draft_deg: f64 = 0.0, 0.0..=5.0, Chosen, "one-piece: slant of the basin's walls, whose silicone is cut off; the walls that shape the layer stay upright";
             shrinkage_pct: f64 = 0.0, 0.0..=3.0, Chosen, "linear shrinkage of the silicone: 0 when cured at 25 C, about 1 at 60 to 80 C";
             clearance_mm: f64 = 0.2, 0.05..=0.5, Chosen, "print clearance between parts of the split mould, per side";
@@ -140,6 +175,17 @@ configuration! {
             key_height_mm: f64 = 2.5, 0.5..=10.0, Chosen, "height of the keys";
             pour_width_mm: f64 = 6.0, 1.0..=20.0, Chosen, "mouth of the lid's pouring funnel";
             vent_diameter_mm: f64 = 1.5, 0.5..=4.0, Chosen, "vents at both ends of the lid, no wider than the cavity allows";
+        }
+        /// What the switch is mounted by: a plate beside the left support, held by the same screws.
+        mount: MountTable {
+            kind: MountKind = MountKind::None, (), Chosen, "flange, finger-link or rig; none leaves the two screws for a support of your own";
+            plate_mm: f64 = 5.0, 2.0..=20.0, Chosen, "thickness of the plate; 5 lets M3 heads sink";
+            hole_diameter_mm: f64 = 4.5, 2.0..=12.0, Chosen, "mounting holes, and bores of a finger link: 4.5 for M4 (ISO 273)";
+            rim_mm: f64 = 3.0, 1.0..=20.0, Chosen, "wall around every hole of the plate";
+            bore_distance_mm: f64 = 45.0, 5.0..=300.0, Chosen, "finger-link: distance between the two bores";
+            bore_axis_deg: f64 = 0.0, -180.0..=180.0, Chosen, "finger-link: direction from the first bore to the second, 0 along the tendon at the middle of the wrap";
+            bore_offset_mm: f64 = 0.0, -100.0..=100.0, Chosen, "finger-link: from the pulley's axis to the line between the bores, towards the wrap";
+            pulley_distance_mm: f64 = 70.0, 20.0..=500.0, Chosen, "rig: from the switch's axis to that of the guide pulley, along the tendon";
         }
         /// Parts beside shell, supports and mould.
         parts: PartsTable {
@@ -152,7 +198,7 @@ configuration! {
             engrave: bool = true, (), Chosen, "tells printed variants apart; left out, with a warning, where it does not fit";
             text: String = String::new(), 12, Chosen, "empty: pins x step / first groove, such as 3x3/5";
             height_mm: f64 = 3.2, 1.5..=10.0, Chosen, "height of the letters";
-            stroke_mm: f64 = 0.5, 0.3..=2.0, Chosen, "width of the strokes, at least one printed line";
+            stroke_mm: f64 = 0.45, 0.3..=2.0, Chosen, "width of the strokes, at least one printed line";
             depth_mm: f64 = 0.4, 0.1..=2.0, Chosen, "two layers";
         }
         /// The printer.

@@ -7,6 +7,13 @@ use crate::config::{Configuration, SlotKind, Slots};
 /// Grid to which pins are cut, mm.
 const PIN_LENGTH_STEP_MM: f64 = 0.5;
 
+/// How far the stops stay below the silicone's surface, and their least height, mm.
+const STOP_DEPTH_MM: f64 = 0.2;
+/// What chamfers on both sides leave of a stop on the bed, mm.
+const STOP_FOOT_MM: f64 = 0.05;
+/// Half of the widest span, in radians, at which the layers of a gang mould nest in each other.
+const MOST_NESTED_RAD: f64 = 1.3;
+
 /// A configuration with what follows from it, whether it can be built or not; cad/doc/dimensions.md explains each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dimensions {
@@ -69,9 +76,29 @@ impl Dimensions {
         2.0 * (half_chord - self.configuration.segment.groove_radius_mm)
     }
 
-    /// What stands beyond the outermost groove of the shell: half a land and the margin.
+    /// What stands beyond the outermost groove of the shell: half a land, the margin, and the stop with its gap.
     pub fn end_wall_mm(&self) -> f64 {
-        self.land_mm() / 2.0 + self.configuration.segment.end_margin_mm
+        self.land_mm() / 2.0 + self.shell_end_shift_mm()
+    }
+
+    /// How far the stops reach beyond the layer's ends, with the gap before them; 0 without stops.
+    pub fn stop_reach_mm(&self) -> f64 {
+        self.stops_mm()
+            .map_or(0.0, |[thickness, _]| self.configuration.silicone.side_clearance_mm + thickness)
+    }
+
+    /// Thickness and height of the stops: lower than the layer, over whose ends the tendon may run. `None` where none are
+    /// wanted, or where they are too thin or too low to print.
+    pub fn stops_mm(&self) -> Option<[f64; 2]> {
+        let c = &self.configuration;
+        let height = c.shell.stop_height_mm.min(c.silicone.thickness_mm - STOP_DEPTH_MM);
+        let least = c.print.least_wall_mm.max(2.0 * c.print.elephant_foot_mm + STOP_FOOT_MM);
+        (c.shell.stop_mm >= least && height >= STOP_DEPTH_MM).then_some([c.shell.stop_mm, height])
+    }
+
+    /// How far the ends of shell and supports lie outside the radial planes of the span.
+    pub fn shell_end_shift_mm(&self) -> f64 {
+        self.configuration.segment.end_margin_mm + self.stop_reach_mm()
     }
 
     /// Angles of all groove centres, ascending.
@@ -181,6 +208,11 @@ impl Dimensions {
             1 => vec![0.0],
             n => (0..n).map(|i| outermost * (2.0 * i as f64 / (n as f64 - 1.0) - 1.0)).collect(),
         }
+    }
+
+    /// Whether the layers of a gang mould nest in each other: bowed less than half a turn.
+    pub(crate) fn gang_nests(&self) -> bool {
+        self.half_span_rad() < MOST_NESTED_RAD
     }
 
     /// The engraved label: the configured text, or pins x step / first groove.

@@ -1,6 +1,8 @@
 //! A design: a configuration that can be built, printed and assembled, with every dimension that follows from it.
 
 mod dimensions;
+mod fastening;
+mod mounting;
 pub mod rules;
 
 use pinswitch_friction::physics::{Bed, modulus_of_shore_a_mpa};
@@ -10,6 +12,9 @@ use crate::config::{ConfigError, Configuration};
 use pinswitch_solid::profile::ChordTolerance;
 
 pub use dimensions::{Dimensions, Slot};
+pub use fastening::{Fastening, Recess, Thread};
+pub use mounting::{Hole, Mounting, SheathStop};
+pub(crate) use mounting::{PULLEY_RADIUS_MM, pulley_outer_mm, pulley_width_mm};
 
 /// A validated configuration: all its [`Dimensions`], the tolerance of its meshes, and what the tendon touches.
 ///

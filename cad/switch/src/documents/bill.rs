@@ -2,17 +2,16 @@
 
 use serde::Serialize;
 
-use crate::config::MouldKind;
+use crate::config::{MouldKind, MountKind};
 use crate::design::Design;
-use crate::parts::cavity_mm3;
+use crate::parts::{cavity_mm3, spacer_mm};
 use pinswitch_friction::Substrate;
 
 /// Lengths in which screws are sold, mm.
 const SCREW_LENGTHS_MM: [f64; 17] =
     [6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0, 100.0, 120.0];
-/// Clearance holes and the screws that go through them, mm.
-const SCREWS: [(f64, &str); 6] =
-    [(1.8, "M1.6"), (2.2, "M2"), (2.7, "M2.5"), (3.2, "M3"), (4.3, "M4"), (5.3, "M5")];
+/// Air between the tips of two screws that meet in the shell, mm.
+const SCREW_AIR_MM: f64 = 0.5;
 /// A nut and its washer, in screw diameters.
 const NUT: f64 = 1.2;
 
@@ -32,7 +31,9 @@ pub struct Pins {
 /// Silicone to weigh and pour.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Silicone {
-    /// Volume of the cast layer, mm³ before shrinkage.
+    /// Layers that the mould casts at once.
+    pub layers: usize,
+    /// Volume of the cast layers, mm³ before shrinkage.
     pub layer_mm3: f64,
     /// What to pour into the mould, ml: layer and overfill.
     pub pour_ml: f64,
@@ -57,15 +58,45 @@ pub struct Tendon {
     pub length_mm: f64,
 }
 
-/// Screws with nuts.
+/// Screws, with what they hold in.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fasteners {
-    /// Number of screws, each with a nut.
+    /// Number of screws.
     pub number: usize,
     /// Thread, the largest that the holes take.
     pub thread: &'static str,
-    /// Length, mm, through shell, both plates and the nut.
+    /// Length, mm: through all parts and the nut, or as far as the inserts.
     pub length_mm: f64,
+    /// Nuts; 0 with inserts.
+    pub nuts: usize,
+    /// Heat-set inserts; 0 without.
+    pub inserts: usize,
+}
+
+/// Steel dowels to cut.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Dowels {
+    /// Number.
+    pub number: usize,
+    /// Diameter, mm.
+    pub diameter_mm: f64,
+    /// Length, mm.
+    pub length_mm: f64,
+}
+
+/// What a mounting plate needs beside its printed parts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MountHardware {
+    /// Screws of the plate, or pins in the bores of a link.
+    pub holes: usize,
+    /// Diameter of these holes, mm.
+    pub hole_diameter_mm: f64,
+    /// Bearing of the guide pulley, on the rig.
+    pub bearing: Option<&'static str>,
+    /// Bolt through it.
+    pub axle: Option<String>,
+    /// Screws and nuts of the sheath stop.
+    pub sheath_stop: Option<String>,
 }
 
 /// The bill of materials of one set.
@@ -79,6 +110,12 @@ pub struct Bill {
     pub tendon: Tendon,
     /// Fasteners; absent without holes.
     pub fasteners: Option<Fasteners>,
+    /// Dowels; absent without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dowels: Option<Dowels>,
+    /// What the mounting plate needs; absent without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mount: Option<MountHardware>,
 }
 
 /// What `design` needs beside its printed parts.
@@ -91,7 +128,15 @@ pub fn bill_of_materials(design: &Design) -> Bill {
             let pour_g = pour_ml * c.silicone.density_g_cm3;
             let mix_g = (pour_g * c.silicone.waste_factor).max(c.silicone.least_mix_g);
             let agent_g = mix_g / (c.silicone.mix_ratio + 1.0);
-            Silicone { layer_mm3, pour_ml, pour_g, mix_g, base_g: mix_g - agent_g, agent_g }
+            Silicone {
+                layers: c.mould.layers,
+                layer_mm3,
+                pour_ml,
+                pour_g,
+                mix_g,
+                base_g: mix_g - agent_g,
+                agent_g,
+            }
         });
     Bill {
         pins: Pins {
@@ -107,17 +152,61 @@ pub fn bill_of_materials(design: &Design) -> Bill {
             length_mm: c.tendon.length_mm,
         },
         fasteners: fasteners(design),
+        dowels: dowels(design),
+        mount: mount(design),
     }
 }
 
 fn fasteners(design: &Design) -> Option<Fasteners> {
     let c = design.configuration();
+    let fastening = design.fastening();
     let hole = c.fasteners.hole_diameter_mm;
-    let thread =
-        SCREWS.iter().rev().find(|(clearance, _)| *clearance <= hole).map_or("smaller than M1.6", |s| s.1);
-    let stack = c.shell.width_mm + 2.0 * c.support.plate_mm + NUT * hole;
-    let length_mm = SCREW_LENGTHS_MM.into_iter().find(|l| *l >= stack).unwrap_or(stack.ceil());
-    (c.fasteners.count > 0).then_some(Fasteners { number: c.fasteners.count, thread, length_mm })
+    let thread = fastening.thread.map_or("smaller than M1.6", |t| t.name);
+    let has_mount = c.mount.kind != MountKind::None;
+    let sunk = fastening.counterbore.map_or(0.0, |r| r.depth_mm);
+    let number = c.fasteners.count;
+    let fasteners = match fastening.insert_mm {
+        Some([_, length]) => {
+            // As long as the insert and its share of the room between both allow; the thicker plate may need a longer one.
+            let plate = c.support.plate_mm + if has_mount { c.mount.plate_mm } else { 0.0 };
+            let most = plate - sunk + length.max(c.shell.width_mm / 2.0 - SCREW_AIR_MM);
+            let length_mm = SCREW_LENGTHS_MM.into_iter().rev().find(|l| *l <= most).unwrap_or(most.floor());
+            Fasteners { number: 2 * number, thread, length_mm, nuts: 0, inserts: 2 * number }
+        }
+        None => {
+            let plates = 2.0 * c.support.plate_mm + if has_mount { c.mount.plate_mm } else { 0.0 };
+            let trapped = fastening.nut_trap.map_or(0.0, |r| r.depth_mm);
+            let stack = c.shell.width_mm + plates + NUT * hole - sunk - trapped;
+            let length_mm = SCREW_LENGTHS_MM.into_iter().find(|l| *l >= stack).unwrap_or(stack.ceil());
+            Fasteners { number, thread, length_mm, nuts: number, inserts: 0 }
+        }
+    };
+    (number > 0).then_some(fasteners)
+}
+
+fn dowels(design: &Design) -> Option<Dowels> {
+    let diameter_mm = design.configuration().fasteners.dowel_diameter_mm;
+    let number = design.dowel_angles_rad().len();
+    (number > 0).then(|| Dowels { number, diameter_mm, length_mm: design.dowel_length_mm() })
+}
+
+fn mount(design: &Design) -> Option<MountHardware> {
+    let c = design.configuration();
+    let mounting = design.mounting()?;
+    let longer = |stack: f64| SCREW_LENGTHS_MM.into_iter().find(|l| *l >= stack).unwrap_or(stack.ceil());
+    // Through the plate, the spacer, the bearing and a nut of 6.8 mm (ISO 4032).
+    let axle =
+        mounting.axle.map(|_| format!("M8 x {}", longer(c.mount.plate_mm + spacer_mm(design) + 7.0 + 6.8)));
+    let floor = design.sheath_floor_mm();
+    let sheath =
+        mounting.sheath.map(|_| format!("2 screws M3 x {} and nuts", longer(c.mount.plate_mm + floor + 2.4)));
+    Some(MountHardware {
+        holes: mounting.holes.len(),
+        hole_diameter_mm: c.mount.hole_diameter_mm,
+        bearing: mounting.axle.map(|_| "608"),
+        axle,
+        sheath_stop: sheath,
+    })
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::{Bill, bill_of_materials};
 use crate::config::{Configuration, Origin};
 use crate::design::Design;
 use crate::output::{OutputFile, SetError};
-use crate::parts::{Material, Part};
+use crate::parts::{Material, Part, Touch, touches};
 use crate::prediction::Prediction;
 use pinswitch_solid::validity::MeshFacts;
 
@@ -202,7 +202,14 @@ impl Manifest {
         prediction: &Prediction,
     ) -> Self {
         let c = design.configuration();
-        let parts: Vec<_> = parts.into_iter().map(|(part, facts)| part_entry(part, facts, c)).collect();
+        let mut warnings = design.warnings();
+        let parts: Vec<_> = parts
+            .into_iter()
+            .map(|(part, facts)| {
+                warnings.extend(part.thin_warning(design));
+                part_entry(part, facts, c)
+            })
+            .collect();
         let error = |p: &PartEntry| (p.mesh.volume_mm3 / p.volume_mm3 - 1.0).abs();
         let curve = &prediction.curve;
         Self {
@@ -231,7 +238,7 @@ impl Manifest {
                 threshold_n: Transition::of(curve).map(|t| t.threshold_n),
                 curve_file: "friction.csv",
             },
-            warnings: design.warnings(),
+            warnings,
             files: Vec::new(),
         }
     }
@@ -326,6 +333,10 @@ pub fn derived(design: &Design) -> Vec<DerivedDimension> {
     let slot = design.slot();
     let entry = |name, value, unit, origin, from| DerivedDimension { name, value, unit, origin, from };
     use Origin::{Assumed, Chosen, Published};
+    let touches = touches(design);
+    let on_silicone = |t: &&Touch| t.pin.is_none();
+    let bare_deg: f64 =
+        touches.iter().filter(on_silicone).map(|t| (t.to_rad - t.from_rad).to_degrees()).sum();
     vec![
         entry("groove_pitch", design.pitch_deg(), "deg", Published, "segment.span_deg / segment.grooves"),
         entry(
@@ -343,7 +354,13 @@ pub fn derived(design: &Design) -> Vec<DerivedDimension> {
             "shell.outer_radius_mm - shell.wall_mm",
         ),
         entry("land_on_shell", land, "mm", Assumed, "chord between groove centres less a groove"),
-        entry("end_wall", design.end_wall_mm(), "mm", Assumed, "half a land and segment.end_margin_mm"),
+        entry(
+            "end_wall",
+            design.end_wall_mm(),
+            "mm",
+            Assumed,
+            "half a land, segment.end_margin_mm, and the stop with its gap",
+        ),
         entry(
             "layer_width",
             design.layer_width_mm(),
@@ -387,6 +404,13 @@ pub fn derived(design: &Design) -> Vec<DerivedDimension> {
             "mm",
             Chosen,
             "middle of the wall under the grooves",
+        ),
+        entry(
+            "unloaded_contact_beside_pins",
+            bare_deg,
+            "deg",
+            Assumed,
+            "where the unloaded, taut tendon lies on silicone or proxy, beside its pins",
         ),
     ]
 }

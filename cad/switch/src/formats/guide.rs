@@ -5,11 +5,12 @@ use std::fmt::Write as _;
 use super::markdown::escape;
 use super::{Format, Inclusion, png};
 use crate::built::Built;
-use crate::config::MouldKind;
+use crate::config::{FastenerKind, MouldKind, MountKind};
 use crate::design::Design;
 use crate::design::rules::checklist;
 use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
+use crate::parts::touches;
 use crate::prediction::Prediction;
 use crate::scene::{exploded_png, plate};
 use pinswitch_friction::Substrate;
@@ -146,7 +147,7 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
          3. {close} Use no release agent on ABS; a sulphur clay or latex gloves would stop the cure.\n\
          4. {pour}\n\
          5. Cure 48 h at 25 C, or 4 h at 60 C. Hotter than 70 C softens the mould. The mould is made for {} % of shrinkage (0 at 25 C, about 1 at 60 C: `mould.shrinkage_pct`).\n\
-         6. {release} Trim flash with a blade. The layer is {:.1} mm wide and {:.1} mm thick.\n\n",
+         6. {release} Trim flash with a blade. {} {:.1} mm wide and {:.1} mm thick.\n\n",
         s.base_g,
         s.agent_g,
         c.silicone.mix_ratio,
@@ -154,6 +155,7 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
         s.pour_ml,
         s.pour_g,
         c.mould.shrinkage_pct,
+        if s.layers > 1 { format!("The {} layers are", s.layers) } else { "The layer is".to_owned() },
         design.layer_width_mm(),
         c.silicone.thickness_mm
     );
@@ -174,27 +176,130 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest) {
     }
     let bed = if c.layout.substrate == Substrate::Silicone { "silicone layer" } else { "proxy" };
     steps.push(format!("Lay the {bed} on the shell, grooves outwards."));
-    steps.push("Put the left support on, its lip over the layer's edge.".to_owned());
+    let keeps = if design.stops_mm().is_some() { ", between the stops at its ends" } else { "" };
+    if let Some(last) = steps.last_mut() {
+        last.insert_str(last.len() - 1, keeps);
+    }
+    if bill.fasteners.as_ref().is_some_and(|f| f.inserts > 0) {
+        steps.push(
+            "Press the inserts into both ends of the shell's holes with a soldering iron, flush.".to_owned(),
+        );
+    }
+    if let Some(d) = &bill.dowels {
+        steps.push(format!(
+            "Cut {} dowels of {} mm and {} mm long, and put them into the shell.",
+            d.number, d.diameter_mm, d.length_mm
+        ));
+    }
+    steps.push(
+        "Put the left support (L) on, its lip over the layer's edge. Outside it says the layout. The load pulls on the side of groove 1: \
+         the arrow points there, and the `1` stands there."
+            .to_owned(),
+    );
     if bill.pins.number > 0 {
         steps.push(format!(
-            "Put the pins into grooves {:?}, numbered from 1 along increasing angle, and into the slots of the support.",
+            "Put the pins into grooves {:?}, counted from the `1`, and into the slots of the support.",
             c.layout.pins
         ));
     }
-    steps.push("Put the right support on. Every pin must slide to the end of its slot and back.".to_owned());
-    if let Some(f) = &bill.fasteners {
-        steps.push(format!(
-            "Fasten with {} screws {} x {} and nuts, finger tight: the layer must bulge freely.",
-            f.number, f.thread, f.length_mm
-        ));
-    }
+    steps.push(
+        "Put the right support (R) on. Every pin must slide to the end of its slot and back.".to_owned(),
+    );
+    steps.extend(mounting_step(design, manifest));
+    steps.extend(fastening_step(design, manifest));
     steps.push(format!(
-        "Lay {} mm of tendon ({} mm over its coating) over the pins; it touches {:.2} deg.",
-        bill.tendon.length_mm, bill.tendon.outer_diameter_mm, c.layout.wrap_angle_deg
+        "Lay {} mm of tendon ({} mm over its coating) over the pins; it touches {:.2} deg.{}",
+        bill.tendon.length_mm,
+        bill.tendon.outer_diameter_mm,
+        c.layout.wrap_angle_deg,
+        where_it_lies(design)
     ));
     text.push_str("## 3. Assemble\n\n");
     for (i, step) in steps.iter().enumerate() {
         let _ = writeln!(text, "{}. {step}", i + 1);
     }
     text.push('\n');
+}
+
+/// How plates and shell are joined.
+fn fastening_step(design: &Design, manifest: &Manifest) -> Option<String> {
+    let c = design.configuration();
+    let f = manifest.bill_of_materials.fasteners.as_ref()?;
+    let fastening = design.fastening();
+    let into = match (f.inserts > 0, fastening.nut_trap) {
+        (true, _) => "into the inserts, from both sides",
+        (false, Some(_)) => "from the left, into nuts that lie in the traps of the right support",
+        (false, None) => "and nuts",
+    };
+    let pierced = if fastening.nut_trap.is_some() || fastening.counterbore.is_some() {
+        format!(
+            " A skin of {} mm closes the holes above every recess, so that no support is needed: break it with the screw.",
+            design.membrane_mm()
+        )
+    } else {
+        String::new()
+    };
+    let tight = if c.fasteners.kind == FastenerKind::Insert {
+        ""
+    } else {
+        ", finger tight: the layer must bulge freely"
+    };
+    Some(format!("Fasten with {} screws {} x {} {into}{tight}.{pierced}", f.number, f.thread, f.length_mm))
+}
+
+/// What the switch is mounted by.
+fn mounting_step(design: &Design, manifest: &Manifest) -> Option<String> {
+    let c = design.configuration();
+    let m = manifest.bill_of_materials.mount.as_ref()?;
+    let mut step = match c.mount.kind {
+        MountKind::None => return None,
+        MountKind::Flange => format!(
+            "Lay `base-flange` outside the left support: the same screws hold it, and {} holes of {} mm take the switch to its place.",
+            m.holes, m.hole_diameter_mm
+        ),
+        MountKind::FingerLink => format!(
+            "Lay `finger-link` outside the left support: the same screws hold it; its two bores of {} mm are {} mm apart.",
+            m.hole_diameter_mm, c.mount.bore_distance_mm
+        ),
+        MountKind::Rig => format!(
+            "Lay `rig-plate` outside the left support: the same screws hold it, and {} holes of {} mm take it to the table. Press the \
+             {} bearing into `guide-pulley` and bolt it over `pulley-spacer` ({}), its bearing towards the plate, on the load's side: \
+             the tendon runs on over it to the load.",
+            m.holes,
+            m.hole_diameter_mm,
+            m.bearing.unwrap_or_default(),
+            m.axle.as_deref().unwrap_or_default()
+        ),
+    };
+    if let Some(hardware) = &m.sheath_stop {
+        let _ = write!(
+            step,
+            " Screw `sheath-stop` on it ({hardware}): the sheath's end rests on the step of its channel."
+        );
+    }
+    Some(step)
+}
+
+/// Where the unloaded tendon lies on the bed beside its pins.
+fn where_it_lies(design: &Design) -> String {
+    let c = design.configuration();
+    let bed = if c.layout.substrate == Substrate::Silicone { "silicone" } else { "proxy" };
+    let places: Vec<String> = touches(design)
+        .iter()
+        .filter(|t| t.pin.is_none())
+        .map(|t| format!("{:.1} to {:.1} deg", t.from_rad.to_degrees(), t.to_rad.to_degrees()))
+        .collect();
+    if places.is_empty() {
+        return format!(
+            " As a limp string it lies on its pins only; load brings it down to the {bed} between them."
+        );
+    }
+    let radius = design.tendon_axis_radius_mm() - design.tendon_diameter_mm() / 2.0;
+    let length: f64 =
+        touches(design).iter().filter(|t| t.pin.is_none()).map(|t| (t.to_rad - t.from_rad) * radius).sum();
+    format!(
+        " Beside the pins it comes down to the {bed}, and rubs there: as a limp string at {}, {length:.1} mm in all; its stiffness \
+         keeps it off at light loads, and load brings more of it down.",
+        places.join(" and ")
+    )
 }

@@ -1,4 +1,4 @@
-//! STEP: one exact solid per printed part, and the assembly.
+//! STEP: one exact solid per printed part, the assembly, and the split mould put together.
 
 use super::{Format, Inclusion};
 use crate::built::Built;
@@ -10,7 +10,7 @@ use pinswitch_solid::files::{StepPart, step_assembly, step_part};
 
 pub(super) const FORMAT: Format = Format {
     name: "step",
-    about: "Exact solids for CAD: one per part, and the assembly",
+    about: "Exact solids for CAD: one per part, the assembly, and the mould put together",
     inclusion: Inclusion::Named,
     make,
 };
@@ -27,5 +27,11 @@ fn make(built: &Built, _: &Prediction, _: &Manifest) -> Result<Vec<OutputFile>, 
     let placed: Vec<_> = built.assembly().filter_map(|b| Some((body(&b.part), b.part.pose?))).collect();
     let assembly = step_assembly(&built.design().configuration().switch.name, &placed);
     files.push(OutputFile::new("assembly.step", assembly));
+    // What is put together without the switch: the parts of a split mould.
+    let tools: Vec<_> =
+        built.printed().iter().filter_map(|p| Some((body(p.part()), p.part().tool_pose?))).collect();
+    if !tools.is_empty() {
+        files.push(OutputFile::new("mould.step", step_assembly("mould", &tools)));
+    }
     Ok(files)
 }

@@ -13,9 +13,11 @@ const ROUND_RAD: f64 = 0.5;
 /// Letters smaller than this are not legible in a print, mm.
 const MIN_HEIGHT_MM: f64 = 1.5;
 /// Wall between a letter and the edge of its zone, mm.
-const EDGE_MM: f64 = 0.5;
+pub(super) const EDGE_MM: f64 = 0.5;
 /// Width of a letter over its height.
 const ASPECT: f64 = 0.58;
+/// Heights closer than this are one, mm.
+pub(super) const SAME_MM: f64 = 1e-9;
 /// Points of a letter's outline that are closer than this are one point, mm.
 const MERGE_MM: f64 = 0.02;
 
@@ -39,24 +41,46 @@ impl Zone {
         Self::Flat { middle, length_mm, height_mm }
     }
 
-    /// The widest free stretch of the wall between the fastener holes, inside `outer_mm`.
+    /// The widest free stretch of the shell's wall between the fasteners, inside `outer_mm`.
     pub(super) fn between_fasteners(design: &Design, outer_mm: f64) -> Self {
-        let c = design.configuration();
-        let radius = design.fastener_radius_mm();
-        let beside = c.fasteners.hole_diameter_mm / 2.0 / radius;
-        let half = design.half_span_rad();
-        let mut from = vec![-half];
-        let mut to = Vec::new();
-        for angle in design.fastener_angles_rad() {
-            to.push(angle - beside);
-            from.push(angle + beside);
-        }
-        to.push(half);
-        let widest = from.into_iter().zip(to).fold((0.0, 0.0), |best: (f64, f64), gap| {
+        Self::between_holes(design, design.shell_hole_mm(), design.inner_radius_mm(), outer_mm)
+    }
+
+    /// The widest stretch of a band between two radii into which no fastener that takes `fastener_mm`, and no dowel reaches.
+    pub(super) fn between_holes(design: &Design, fastener_mm: f64, inner_mm: f64, outer_mm: f64) -> Self {
+        let (middle, half) = (design.fastener_radius_mm(), design.half_span_rad());
+        // The widest that a round hole is within the band: where a line from the axis touches it, or at the band's edge.
+        let taken = |angles: Vec<f64>, reach_mm: f64| {
+            let at =
+                (middle.powi(2) - reach_mm.powi(2)).max(0.0).sqrt().clamp(inner_mm, outer_mm.max(inner_mm));
+            let cosine = (at.powi(2) + middle.powi(2) - reach_mm.powi(2)) / (2.0 * at * middle);
+            let beside = cosine.clamp(-1.0, 1.0).acos();
+            angles.into_iter().filter(move |_| cosine < 1.0).map(move |a| (a - beside, a + beside))
+        };
+        let dowel = design.dowel_hole_radius_mm().unwrap_or(0.0);
+        let mut holes: Vec<(f64, f64)> = taken(design.fastener_angles_rad(), fastener_mm)
+            .chain(taken(design.dowel_angles_rad(), dowel))
+            .collect();
+        holes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let from = std::iter::once(-half).chain(holes.iter().map(|h| h.1));
+        let to = holes.iter().map(|h| h.0).chain([half]);
+        let widest = from.zip(to).fold((0.0, 0.0), |best: (f64, f64), gap| {
             // Equal gaps: the first, whatever the rounding.
             if gap.1 - gap.0 > best.1 - best.0 + 1e-9 { gap } else { best }
         });
-        Self::Arc { inner_mm: design.inner_radius_mm(), outer_mm, from_rad: widest.0, to_rad: widest.1 }
+        Self::Arc { inner_mm, outer_mm, from_rad: widest.0, to_rad: widest.1 }
+    }
+
+    /// The zone mirrored in the y axis.
+    fn mirrored(&self) -> Self {
+        match *self {
+            Self::Flat { middle, length_mm, height_mm } => {
+                Self::Flat { middle: Point2::new(-middle.x, middle.y), length_mm, height_mm }
+            }
+            Self::Arc { inner_mm, outer_mm, from_rad, to_rad } => {
+                Self::Arc { inner_mm, outer_mm, from_rad: -to_rad, to_rad: -from_rad }
+            }
+        }
     }
 
     /// Length along the feet of letters of `letter_mm`, and height across them, in mm.
@@ -115,6 +139,48 @@ pub(super) fn engrave_text(
     if !c.label.engrave {
         return Engraving { rings: Vec::new(), note: None };
     }
+    let size = largest_mm(design, text, zone).filter(|_| top_mm - c.label.depth_mm >= c.print.least_wall_mm);
+    let Some(size) = size else { return Engraving { rings: Vec::new(), note: Some(left_out(text)) } };
+    let rings = shapes(design, text, zone, size)
+        .into_iter()
+        .map(|(outline, islands)| solid.pocket(&outline, &islands, top_mm - c.label.depth_mm, top_mm))
+        .collect();
+    Engraving { rings, note: None }
+}
+
+/// Engraves `text` in letters of `size_mm` into the face on the bed, to be read from below; its rings are holes in the
+/// cap there.
+pub(super) fn engrave_below(
+    solid: &mut Solid,
+    design: &Design,
+    text: &str,
+    zone: &Zone,
+    size_mm: f64,
+) -> Vec<RingId> {
+    let ceiling = design.configuration().label.depth_mm;
+    shapes(design, text, &zone.mirrored(), size_mm)
+        .into_iter()
+        .map(|(outline, islands)| {
+            let islands: Vec<_> = islands.iter().map(Contour::mirrored).collect();
+            solid.recess(&outline.mirrored(), &islands, 0.0, ceiling)
+        })
+        .collect()
+}
+
+/// The note on a text that does not fit.
+pub(super) fn left_out(text: &str) -> String {
+    format!("the label {text:?} does not fit and is left out")
+}
+
+/// Least height of letters whose strokes leave walls between them, mm.
+pub(super) fn least_height_mm(design: &Design) -> f64 {
+    let c = design.configuration();
+    ((c.label.stroke_mm + c.print.least_wall_mm) * HEIGHT / 2.0).max(MIN_HEIGHT_MM)
+}
+
+/// The largest letters, up to the configured height, in which `text` fits the zone; `None` if it does not.
+pub(super) fn largest_mm(design: &Design, text: &str, zone: &Zone) -> Option<f64> {
+    let c = design.configuration();
     let stroke = c.label.stroke_mm;
     let (length, height) = zone.size_mm(c.label.height_mm + stroke);
     let letters = text.chars().count() as f64;
@@ -122,30 +188,29 @@ pub(super) fn engrave_text(
     let gap = stroke + c.print.least_wall_mm;
     let by_length = ((length - 2.0 * EDGE_MM + gap - stroke) / letters - gap) / ASPECT;
     let size = c.label.height_mm.min(height - 2.0 * EDGE_MM - stroke).min(by_length);
-    let advance = size * ASPECT + gap;
-    let fits = size >= (gap * HEIGHT / 2.0).max(MIN_HEIGHT_MM);
-    let deep_enough = top_mm - c.label.depth_mm >= c.print.least_wall_mm;
-    if !fits || !deep_enough {
-        return Engraving {
-            rings: Vec::new(),
-            note: Some(format!("the label {text:?} does not fit and is left out")),
-        };
-    }
-    let mut rings = Vec::new();
+    (size >= least_height_mm(design) - SAME_MM).then_some(size)
+}
+
+/// The letters of `text` in a zone: outlines, clockwise, each with its islands, counter-clockwise.
+fn shapes(design: &Design, text: &str, zone: &Zone, size_mm: f64) -> Vec<(Contour, Vec<Contour>)> {
+    let c = design.configuration();
+    let stroke = c.label.stroke_mm;
+    let letters = text.chars().count() as f64;
+    let advance = size_mm * ASPECT + stroke + c.print.least_wall_mm;
+    let mut all = Vec::new();
     for (i, letter) in text.chars().enumerate() {
         let middle = (i as f64 - (letters - 1.0) / 2.0) * advance;
-        for shape in letter_shapes(letter, size, stroke) {
+        for shape in letter_shapes(letter, size_mm, stroke) {
             let mut contours = shape.iter().map(|points| {
-                Contour::polygon(points.iter().map(|p| zone.place(middle, size + stroke, *p)).collect())
+                Contour::polygon(points.iter().map(|p| zone.place(middle, size_mm + stroke, *p)).collect())
             });
             let Some(outline) = contours.next().map(|c| oriented(c, Orientation::Clockwise)) else {
                 continue;
             };
-            let islands: Vec<_> = contours.map(|c| oriented(c, Orientation::CounterClockwise)).collect();
-            rings.push(solid.pocket(&outline, &islands, top_mm - c.label.depth_mm, top_mm));
+            all.push((outline, contours.map(|c| oriented(c, Orientation::CounterClockwise)).collect()));
         }
     }
-    Engraving { rings, note: None }
+    all
 }
 
 /// The outlines of a letter's strokes, united: each shape is its outline, then its islands, in mm about the letter's

@@ -6,6 +6,9 @@ use crate::design::Design;
 use pinswitch_solid::profile::Contour;
 use pinswitch_solid::solid::Solid;
 
+/// Least air between printed faces that must not touch, mm.
+const MIN_AIR_MM: f64 = 0.1;
+
 /// The sector that the layer fills, before its grooves are cut.
 pub(super) fn layer_sector(design: &Design) -> Sector {
     Sector {
@@ -36,9 +39,24 @@ pub fn silicone_layer(design: &Design) -> Result<Part, ConfigError> {
     Ok(Part::new("silicone-layer", Role::Layer, solid, pose(design)))
 }
 
+/// The proxy's outline: that of the layer, whose end walls are thin to print; where stops leave the room, its ends reach
+/// over them.
+fn proxy_outline(design: &Design) -> Contour {
+    let c = design.configuration();
+    let reach = design.stop_reach_mm();
+    let height = design.stops_mm().map_or(0.0, |[_, height]| height);
+    let from = design.shell_radius_mm() + height + c.silicone.side_clearance_mm.max(MIN_AIR_MM);
+    if reach <= 0.0
+        || design.contact_radius_mm() - from < 2.0 * c.print.line_mm + 2.0 * c.print.elephant_foot_mm
+    {
+        return outline(design);
+    }
+    layer_sector(design).eared(&design.groove_angles_rad(), c.segment.groove_radius_mm, from, reach)
+}
+
 pub(super) fn proxy(design: &Design) -> Result<Part, ConfigError> {
     let chamfer = design.configuration().print.elephant_foot_mm;
-    let solid = Solid::prism(&outline(design), &[], 0.0, design.layer_width_mm(), chamfer)
+    let solid = Solid::prism(&proxy_outline(design), &[], 0.0, design.layer_width_mm(), chamfer)
         .map_err(offset_error("print.elephant_foot_mm"))?;
     Ok(Part::new("proxy", Role::Proxy, solid, pose(design)))
 }

@@ -3,17 +3,21 @@
 //! A printed part is one file and one entry of [`PRINTED_PARTS`].
 
 mod coupon;
+mod fastening;
 mod guide_pulley;
 mod label;
 mod layer;
+mod marks;
 mod mould;
+mod mount;
 mod part;
 mod sector;
 mod shell;
 mod stroke_font;
 mod support;
+mod tendon;
 
-use crate::config::{ConfigError, Configuration, MouldKind};
+use crate::config::{ConfigError, Configuration, MouldKind, MountKind};
 use crate::design::Design;
 use pinswitch_friction::Substrate;
 use pinswitch_solid::pose::Pose;
@@ -21,10 +25,12 @@ use pinswitch_solid::profile::{Contour, OffsetError, polar};
 use pinswitch_solid::solid::Solid;
 
 pub use layer::silicone_layer;
-pub use mould::cavity_mm3;
+pub use mould::{cavity_mm3, gang_mm};
 pub(crate) use mould::{keys, one_piece as tray};
+pub use mount::spacer_mm;
 pub use part::{Material, Part, Role};
 pub use sector::Sector;
+pub use tendon::{Touch, touches};
 
 /// A printed part: when a configuration asks for it, and how it is built.
 pub struct PrintedPart {
@@ -48,9 +54,30 @@ pub const PRINTED_PARTS: &[PrintedPart] = &[
     PrintedPart { name: "coupon", is_wanted: |c| c.parts.coupon, build: coupon::coupon },
     PrintedPart {
         name: "guide-pulley",
-        is_wanted: |c| c.parts.guide_pulley,
+        is_wanted: |c| c.parts.guide_pulley || mount::has_plate(c, MountKind::Rig),
         build: guide_pulley::guide_pulley,
     },
+    PrintedPart {
+        name: "base-flange",
+        is_wanted: |c| mount::has_plate(c, MountKind::Flange),
+        build: mount::plate,
+    },
+    PrintedPart {
+        name: "finger-link",
+        is_wanted: |c| mount::has_plate(c, MountKind::FingerLink),
+        build: mount::plate,
+    },
+    PrintedPart {
+        name: "rig-plate",
+        is_wanted: |c| mount::has_plate(c, MountKind::Rig),
+        build: mount::plate,
+    },
+    PrintedPart {
+        name: "pulley-spacer",
+        is_wanted: |c| mount::has_plate(c, MountKind::Rig),
+        build: mount::spacer,
+    },
+    PrintedPart { name: "sheath-stop", is_wanted: mount::has_sheath_stop, build: mount::sheath_stop },
 ];
 
 fn is_rigid(c: &Configuration) -> bool {
@@ -74,7 +101,7 @@ pub fn printed(design: &Design) -> Result<Vec<Part>, ConfigError> {
     wanted.map(|p| (p.build)(design)).collect()
 }
 
-/// The bodies that are not printed, for the assembly and the bill of materials: layer and pins.
+/// The bodies that are not printed, for the assembly and the bill of materials: layer, pins and tendon.
 ///
 /// # Errors
 /// [`ConfigError`] if an offset swallows an edge.
@@ -92,6 +119,7 @@ pub fn reference_bodies(design: &Design) -> Result<Vec<Part>, ConfigError> {
         let pose = Some(Pose::upright(z_mm));
         bodies.push(Part::new(format!("pin-{}", index + 1), Role::Pin { index }, solid, pose));
     }
+    bodies.push(tendon::tendon(design));
     Ok(bodies)
 }
 
@@ -111,5 +139,7 @@ fn holes_at(radius_mm: f64, angles_rad: &[f64], hole_radius_mm: f64) -> Vec<Cont
     angles_rad.iter().map(|a| Contour::circle(polar(radius_mm, *a), hole_radius_mm).reversed()).collect()
 }
 
+#[cfg(test)]
+mod assembly_tests;
 #[cfg(test)]
 mod tests;

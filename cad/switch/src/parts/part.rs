@@ -6,8 +6,14 @@ use crate::design::Design;
 use pinswitch_solid::mesh::{Mesh, Vector3};
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::Contour;
-use pinswitch_solid::solid::{CapError, Facing, Solid};
+use pinswitch_solid::solid::{CapError, Facing, Solid, ThinPlace};
 use pinswitch_solid::validity::Expectation;
+
+/// What two lines may be short of by rounding, mm.
+const THIN_ROUNDING_MM: f64 = 1e-6;
+
+/// Thicknesses closer than this are those of one wall, mm.
+const TOLD_MM: f64 = 1e-3;
 
 /// What a part is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -42,6 +48,10 @@ pub enum Role {
         /// Its number, from 0, along increasing angle.
         index: usize,
     },
+    /// The tendon, taut over its bed.
+    Tendon,
+    /// What the switch is mounted by.
+    Mount,
     /// Anything beside the switch: coupon, guide pulley.
     Accessory,
 }
@@ -51,7 +61,7 @@ impl Role {
     pub const fn material(self) -> Material {
         match self {
             Self::Layer => Material::Silicone,
-            Self::Pin { .. } => Material::Steel,
+            Self::Pin { .. } | Self::Tendon => Material::Steel,
             _ => Material::Abs,
         }
     }
@@ -60,6 +70,8 @@ impl Role {
     pub const fn colour(self) -> [u8; 3] {
         match self {
             Self::Pin { .. } => [205, 210, 218],
+            Self::Tendon => [72, 82, 96],
+            Self::Mount => [168, 158, 140],
             Self::Layer => [120, 190, 225],
             Self::Support { .. } => [236, 178, 74],
             Self::Mould => [150, 178, 126],
@@ -74,6 +86,8 @@ impl Role {
             Self::Support { outwards_z } => Vector3::new(0.0, 0.0, 12.0 * outwards_z),
             Self::Proxy | Self::Layer => Vector3::new(0.0, 7.0, 0.0),
             Self::Pin { .. } => Vector3::new(0.0, 14.0, 0.0),
+            Self::Tendon => Vector3::new(0.0, 20.0, 0.0),
+            Self::Mount => Vector3::new(0.0, 0.0, -24.0),
             Self::Shell | Self::Mould | Self::Accessory => Vector3::zeros(),
         }
     }
@@ -90,13 +104,15 @@ pub struct Part {
     pub solid: Solid,
     /// Where it sits in the assembly; `None` for tools such as the mould.
     pub pose: Option<Pose>,
+    /// Where it sits among the tools that are put together with it: the parts of a split mould.
+    pub tool_pose: Option<Pose>,
     /// Notes on it for the user.
     pub notes: Vec<String>,
 }
 
 impl Part {
     pub(super) fn new(name: impl Into<String>, role: Role, solid: Solid, pose: Option<Pose>) -> Self {
-        Self { name: name.into(), role, solid, pose, notes: Vec::new() }
+        Self { name: name.into(), role, solid, pose, tool_pose: None, notes: Vec::new() }
     }
 
     /// What it is made of.
@@ -129,6 +145,55 @@ impl Part {
                 (high.x - low.x).min(high.y - low.y)
             })
             .fold(0.0, f64::max)
+    }
+
+    /// Places with less than two printed lines of material, the thinnest first; of what is printed.
+    pub fn thin_places(&self, design: &Design) -> Vec<ThinPlace> {
+        let limit = 2.0 * design.configuration().print.line_mm - THIN_ROUNDING_MM;
+        if self.material() == Material::Abs { self.solid.thin_places(limit) } else { Vec::new() }
+    }
+
+    /// The thinnest place, as a warning with what to change; `None` where every wall has two printed lines.
+    pub fn thin_warning(&self, design: &Design) -> Option<String> {
+        let mut places = self.thin_places(design);
+        if self.role == Role::Shell {
+            // Rules of their own tell of these, and by how much to mend them.
+            let told = [design.land_mm(), design.end_wall_mm()];
+            places.retain(|p| told.iter().all(|t| (p.thickness_mm - t).abs() > TOLD_MM));
+        }
+        let thinnest = places.first()?;
+        let (at, line_mm) = (thinnest.middle, design.configuration().print.line_mm);
+        Some(format!(
+            "{}: a wall of {:.2} mm, under two printed lines ({:.2} mm), at radius {:.1} mm and {:.1} deg, {:.1} to {:.1} mm \
+             above the bed{}: {}",
+            self.name,
+            thinnest.thickness_mm,
+            2.0 * line_mm,
+            at.coords.norm(),
+            at.x.atan2(at.y).to_degrees(),
+            thinnest.from_mm,
+            thinnest.to_mm,
+            match places.len() {
+                1 => String::new(),
+                2 => ", and one more place".to_owned(),
+                n => format!(", and {} more places", n - 1),
+            },
+            self.remedy_for_thin_places()
+        ))
+    }
+
+    fn remedy_for_thin_places(&self) -> &'static str {
+        match (self.role, self.name.as_str()) {
+            (_, "mould-lid") => "lower mould.pour_width_mm or mould.key_diameter_mm",
+            (Role::Mould, _) => "raise mould.wall_mm, or lower mould.key_diameter_mm",
+            (Role::Proxy, _) => "raise segment.end_margin_mm",
+            (Role::Support { .. }, _) => {
+                "raise segment.end_margin_mm or shell.wall_mm, or lower support.slot_clearance_mm"
+            }
+            (Role::Mount, _) => "raise mount.rim_mm",
+            (Role::Shell, _) => "raise segment.end_margin_mm or shell.wall_mm, or use fewer grooves",
+            _ => "lower print.line_mm",
+        }
     }
 
     /// The mesh about the pulley's axis, standing on z = 0.

@@ -16,6 +16,19 @@ pub struct Sector {
     pub end_shift_mm: f64,
 }
 
+/// Stops at both ends of a sector's face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stops {
+    /// From the end of the sector to the stop, mm.
+    pub gap_mm: f64,
+    /// Thickness along the arc, mm.
+    pub thickness_mm: f64,
+    /// Height above the face, mm.
+    pub height_mm: f64,
+    /// Radius of the outer corner, mm.
+    pub fillet_mm: f64,
+}
+
 /// The two ends of a sector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
@@ -74,6 +87,60 @@ impl Sector {
         .line_to(self.corner(self.inner_mm, End::Negative))
         .arc_to(Point2::origin(), self.corner(self.inner_mm, End::Positive), false)
         .close()
+    }
+
+    /// The grooved outline with a stop at each end: a wall beyond the layer's end that stands above the face.
+    pub(super) fn stopped(&self, angles_rad: &[f64], groove_radius_mm: f64, stops: &Stops) -> Contour {
+        let face = Self { end_shift_mm: self.end_shift_mm + stops.gap_mm, ..*self };
+        let top = Self {
+            outer_mm: self.outer_mm + stops.height_mm,
+            end_shift_mm: face.end_shift_mm + stops.thickness_mm,
+            ..*self
+        };
+        let axis = Point2::origin();
+        let rounded = |end: End| (stops.fillet_mm > 0.0).then(|| top.fillet(stops.fillet_mm, end));
+        let foot_of_gap = |end: End| face.corner(self.outer_mm, end);
+        let mut pen = Pen::at(top.corner(self.inner_mm, End::Positive));
+        pen = match rounded(End::Positive) {
+            Some(f) => pen.line_to(f.on_end).arc_to(f.centre, f.on_arc, true),
+            None => pen.line_to(top.corner(top.outer_mm, End::Positive)),
+        };
+        pen = pen
+            .arc_to(axis, face.corner(top.outer_mm, End::Positive), true)
+            .line_to(foot_of_gap(End::Positive));
+        let last = foot_of_gap(End::Negative);
+        pen = grooved_face(pen, self.outer_mm, angles_rad, groove_radius_mm, last, true)
+            .line_to(face.corner(top.outer_mm, End::Negative));
+        pen = match rounded(End::Negative) {
+            Some(f) => pen.arc_to(axis, f.on_arc, true).arc_to(f.centre, f.on_end, true),
+            None => pen.arc_to(axis, top.corner(top.outer_mm, End::Negative), true),
+        };
+        pen.line_to(top.corner(self.inner_mm, End::Negative))
+            .arc_to(axis, top.corner(self.inner_mm, End::Positive), false)
+            .close()
+    }
+
+    /// The grooved outline whose ends reach `reach_mm` further from `from_mm` outward, over what stands below.
+    pub(super) fn eared(
+        &self,
+        angles_rad: &[f64],
+        groove_radius_mm: f64,
+        from_mm: f64,
+        reach_mm: f64,
+    ) -> Contour {
+        let ear = Self { end_shift_mm: self.end_shift_mm + reach_mm, ..*self };
+        let axis = Point2::origin();
+        let pen = Pen::at(self.corner(self.inner_mm, End::Positive))
+            .line_to(self.corner(from_mm, End::Positive))
+            .arc_to(axis, ear.corner(from_mm, End::Positive), false)
+            .line_to(ear.corner(self.outer_mm, End::Positive));
+        let last = ear.corner(self.outer_mm, End::Negative);
+        grooved_face(pen, self.outer_mm, angles_rad, groove_radius_mm, last, true)
+            .line_to(ear.corner(from_mm, End::Negative))
+            .arc_to(axis, self.corner(from_mm, End::Negative), false)
+            .line_to(self.corner(self.inner_mm, End::Negative))
+            .arc_to(axis, self.corner(self.inner_mm, End::Positive), false)
+            .close()
     }
 
     /// The outline with its two outer corners rounded.

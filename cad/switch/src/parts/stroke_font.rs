@@ -56,6 +56,8 @@ pub(super) fn strokes(letter: char) -> Option<Vec<Vec<[f64; 2]>>> {
             ':' => "2122 2425",
             '+' => "2125 0343",
             '=' => "0242 0444",
+            '<' => "350331",
+            '>' => "154311",
             '(' => "36252130",
             ')' => "16252110",
             _ => return None,
@@ -72,7 +74,7 @@ mod tests {
 
     #[test]
     fn every_letter_stays_on_the_grid() {
-        let letters = ('A'..='Z').chain('0'..='9').chain("-_/.:+=() x".chars());
+        let letters = ('A'..='Z').chain('0'..='9').chain("-_/.:+=()<> x".chars());
         for letter in letters {
             for [x, y] in strokes(letter).unwrap().concat() {
                 assert!((0.0..=WIDTH).contains(&x) && (0.0..=HEIGHT).contains(&y), "{letter}");

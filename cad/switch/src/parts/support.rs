@@ -1,11 +1,11 @@
 //! The side supports: plates with radial slots, a lip over the silicone's edge and the shell's holes
 //! (cad/doc/dimensions.md, "Side supports").
 
-use super::label::{Zone, engrave};
+use super::marks::engrave_marks;
 use super::shell::wall_sector;
-use super::{Part, Pose, Role, holes_at, offset_error};
-use crate::config::{ConfigError, SlotKind};
-use crate::design::Design;
+use super::{Part, Pose, Role, fastening, offset_error};
+use crate::config::{ConfigError, FastenerKind, MountKind, SlotKind};
+use crate::design::{Design, Recess};
 use pinswitch_solid::profile::{Contour, Pen, Point2, Vector2, polar};
 use pinswitch_solid::solid::{Facing, Solid};
 
@@ -13,6 +13,10 @@ use pinswitch_solid::solid::{Facing, Solid};
 const LIP_END_MM: f64 = 0.5;
 /// Ledge between a slot and the lip beside it, mm: likewise.
 const LIP_LEDGE_MM: f64 = 0.1;
+/// Least height of a tooth of the lip, mm.
+const LEAST_TOOTH_MM: f64 = 0.05;
+/// Points closer than this are one, mm.
+const LIP_SAME_MM: f64 = 1e-6;
 
 /// Which side of the switch a support is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,51 +45,82 @@ fn support(design: &Design, side: Side) -> Result<Part, ConfigError> {
     let mut sector = wall_sector(design);
     sector.outer_mm = design.support_radius_mm();
     let outline = turned(sector.rounded(c.support.corner_radius_mm));
-    let mut through: Vec<_> = holes_at(
-        design.fastener_radius_mm(),
-        &design.fastener_angles_rad(),
-        c.fasteners.hole_diameter_mm / 2.0,
-    )
-    .into_iter()
-    .map(turned)
-    .collect();
     let slots: Vec<_> = design.slot_angles_rad().iter().map(|a| turned(slot(design, *a))).collect();
-    let mut blind = Vec::new();
-    match c.support.slot_kind {
-        SlotKind::Through => through.extend(slots),
-        SlotKind::Blind => blind = slots,
-    }
+    let (through, blind) = match c.support.slot_kind {
+        SlotKind::Through => (slots, Vec::new()),
+        SlotKind::Blind => (Vec::new(), slots),
+    };
     let foot = offset_error("print.elephant_foot_mm");
     let mut solid = Solid::new();
     let rounded = offset_error("support.corner_radius_mm");
     let (bottom, top) = solid.extrude_chamfered(&outline, 0.0, plate, chamfer).map_err(&rounded)?;
-    let (bottoms, mut tops) = solid.through_holes(&through, 0.0, plate, chamfer).map_err(&foot)?;
+    let (mut bottoms, mut tops) = solid.through_holes(&through, 0.0, plate, chamfer).map_err(&foot)?;
+    let (hole_bottoms, hole_tops) =
+        fastening::plate_holes(&mut solid, design, recess(design, side), plate).map_err(&foot)?;
+    bottoms.extend(hole_bottoms);
+    tops.extend(hole_tops);
+    let marks = engrave_marks(&mut solid, design, side == Side::Right);
+    bottoms.extend(marks.rings);
     solid.cap(Facing::Down, bottom, &bottoms);
     let floor = plate - design.slot().depth_mm;
+    let dowels = fastening::dowel_holes(design);
+    let dowel_floor = plate - design.dowel_depth_mm();
     tops.extend(blind.iter().map(|slot| solid.pocket(slot, &[], floor, plate)));
-    let lip_top = plate + c.support.lip_depth_mm;
+    tops.extend(dowels.iter().map(|hole| solid.pocket(hole, &[], dowel_floor, plate)));
     let lip = lip(design);
-    let lost_lip = lip.is_empty() && c.support.lip_depth_mm > 0.0;
-    for piece in lip {
-        tops.push(solid.boss(&turned(piece), plate, lip_top));
+    let lost_lip = lip.is_none() && c.support.lip_depth_mm > 0.0;
+    if let Some(band) = lip {
+        tops.push(solid.boss(&turned(band), plate, plate + c.support.lip_depth_mm));
     }
-    let under_slots = design.slot().inner_edge_mm();
-    let engraved = engrave(&mut solid, design, &Zone::between_fasteners(design, under_slots), plate);
-    tops.extend(engraved.rings);
     solid.cap(Facing::Up, top, &tops);
     let (name, outwards_z, pose) = match side {
         Side::Left => ("support-left", -1.0, Pose::upright(-plate)),
         Side::Right => ("support-right", 1.0, Pose { flipped: true, z_mm: c.shell.width_mm + plate }),
     };
     let mut part = Part::new(name, Role::Support { outwards_z }, solid, Some(pose));
-    part.notes.extend(engraved.note);
-    if lost_lip {
-        part.notes.push(
-            "the lip does not fit between the slots and is left out: use support.slots = \"occupied\""
-                .to_owned(),
-        );
-    }
+    part.notes.extend(marks.note);
+    part.notes.extend(notes(design, side, lost_lip));
     Ok(part)
+}
+
+/// The recess for heads or nuts in the outer face: heads are on the left, or on the mounting plate beside it.
+fn recess(design: &Design, side: Side) -> Option<Recess> {
+    let c = design.configuration();
+    let fastening = design.fastening();
+    match side {
+        Side::Left if c.mount.kind != MountKind::None => None,
+        Side::Left => fastening.recess(true),
+        Side::Right => fastening.recess(c.fasteners.kind == FastenerKind::Insert),
+    }
+}
+
+/// What was left out, and what does not hold.
+fn notes(design: &Design, side: Side, lost_lip: bool) -> Vec<String> {
+    let c = design.configuration();
+    let fastening = design.fastening();
+    let has_screws = c.fasteners.count > 0;
+    let lost = |is_lost: bool, note: &str| is_lost.then(|| note.to_owned());
+    let wants_trap =
+        side == Side::Right && c.fasteners.kind == FastenerKind::NutTrap && c.fasteners.nut_recess_mm > 0.0;
+    [
+        lost(
+            lost_lip,
+            "the lip does not fit under the edge of the plate and is left out: raise support.rise_mm",
+        ),
+        lost(
+            has_screws && wants_trap && fastening.nut_trap.is_none(),
+            "nut traps do not fit and are left out: raise shell.wall_mm or support.plate_mm, or lower \
+             fasteners.nut_recess_mm",
+        ),
+        lost(
+            has_screws && side == Side::Left && c.fasteners.head_recess_mm > 0.0 && fastening.counterbore.is_none(),
+            "counterbores for the heads do not fit and are left out: raise shell.wall_mm or the plate, or lower \
+             fasteners.head_recess_mm",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// A radial slot with round ends, clockwise: the places that a pin of the slot's width can take between its resting
@@ -104,43 +139,58 @@ fn slot(design: &Design, angle_rad: f64) -> Contour {
         .reversed()
 }
 
-/// Pieces of the lip, counter-clockwise: they reach over the silicone's edge wherever no pin needs the room.
-fn lip(design: &Design) -> Vec<Contour> {
+/// The lip, counter-clockwise: a band over the silicone's edge, unbroken behind the pins' slots. Between the slots it
+/// reaches down to the silicone, wherever a tooth of two printed lines fits; `None` where there is no room for the band.
+fn lip(design: &Design) -> Option<Contour> {
     let c = design.configuration();
     if c.support.lip_depth_mm <= 0.0 {
-        return Vec::new();
+        return None;
     }
     let inner = design.contact_radius_mm() + c.support.lip_clearance_mm;
-    let outer = inner + c.support.lip_height_mm;
-    let edge = design.support_radius_mm() - c.print.elephant_foot_mm - c.print.least_wall_mm;
-    let end = design.half_span_rad() + (c.segment.end_margin_mm - LIP_END_MM) / outer;
-    if outer > edge {
-        return Vec::new();
-    }
-    // A slot and its clearance, as an angle at the inner radius, where they are widest.
-    let beside = (design.slot().width_mm / 2.0 + LIP_LEDGE_MM) / inner;
+    let slot = design.slot();
+    // The band passes every slot, and a pin in it, with a ledge.
+    let behind_slots = slot.outer_mm + slot.width_mm / 2.0 + LIP_LEDGE_MM;
     let slots = design.slot_angles_rad();
-    let mut starts = vec![-end];
-    let mut ends = Vec::new();
-    for angle in slots {
-        ends.push(angle - beside);
-        starts.push(angle + beside);
-    }
+    let back = if slots.is_empty() { inner } else { inner.max(behind_slots) };
+    let outer = back + c.support.lip_height_mm;
+    let edge = design.support_radius_mm() - c.print.elephant_foot_mm - c.print.least_wall_mm;
     // Rounded plate corners leave no room under the ends of the lip.
-    ends.push(end);
-    let rounded = c.support.corner_radius_mm / outer;
-    let clamp = |a: f64| a.clamp(-end + rounded, end - rounded);
-    let least = 2.0 * c.print.line_mm / inner;
-    let pieces = starts.into_iter().zip(ends).map(|(a, b)| (clamp(a), clamp(b)));
-    pieces.filter(|(a, b)| b - a >= least).map(|(a, b)| annular_piece(inner, outer, a, b)).collect()
+    let rounded = c.support.corner_radius_mm.max(LIP_END_MM) + c.print.elephant_foot_mm;
+    let end = design.half_span_rad() + (design.shell_end_shift_mm() - LIP_END_MM - rounded) / outer;
+    if outer > edge || end <= 0.0 {
+        return None;
+    }
+    let teeth = if back - inner > LEAST_TOOTH_MM { teeth(design, inner, end) } else { Vec::new() };
+    let mut pen = Pen::at(polar(outer, end)).arc_to(Point2::origin(), polar(outer, -end), true);
+    let mut at = polar(back, -end);
+    pen = pen.line_to(at);
+    for (from, to) in teeth {
+        let start = polar(back, from);
+        if (start - at).norm() > LIP_SAME_MM {
+            pen = pen.arc_to(Point2::origin(), start, false);
+        }
+        pen = pen
+            .line_to(polar(inner, from))
+            .arc_to(Point2::origin(), polar(inner, to), false)
+            .line_to(polar(back, to));
+        at = polar(back, to);
+    }
+    if (polar(back, end) - at).norm() > LIP_SAME_MM {
+        pen = pen.arc_to(Point2::origin(), polar(back, end), false);
+    }
+    Some(pen.close())
 }
 
-/// An annular sector between two angles, counter-clockwise.
-fn annular_piece(inner_mm: f64, outer_mm: f64, from_rad: f64, to_rad: f64) -> Contour {
-    Pen::at(polar(inner_mm, to_rad))
-        .line_to(polar(outer_mm, to_rad))
-        .arc_to(Point2::origin(), polar(outer_mm, from_rad), true)
-        .line_to(polar(inner_mm, from_rad))
-        .arc_to(Point2::origin(), polar(inner_mm, to_rad), false)
-        .close()
+/// Angles between which the lip has teeth: beside slots, where two printed lines fit, and clear of the band's ends.
+fn teeth(design: &Design, inner_mm: f64, end_rad: f64) -> Vec<(f64, f64)> {
+    let c = design.configuration();
+    // A slot and its ledge, as an angle at the inner radius, where they are widest.
+    let beside = (design.slot().width_mm / 2.0 + LIP_LEDGE_MM) / inner_mm;
+    let least = 2.0 * c.print.line_mm / inner_mm;
+    let end = end_rad - LIP_LEDGE_MM / inner_mm;
+    let slots = design.slot_angles_rad();
+    let starts = std::iter::once(-end).chain(slots.iter().map(|a| a + beside));
+    let ends = slots.iter().map(|a| a - beside).chain([end]);
+    let within = |(a, b): (f64, f64)| (a.clamp(-end, end), b.clamp(-end, end));
+    starts.zip(ends).map(within).filter(|(a, b)| b - a >= least).collect()
 }

@@ -22,6 +22,8 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "segment.span_deg", severity: Severity::Error, assess: mould_ends_apart },
     Rule { field: "mould.key_diameter_mm", severity: Severity::Error, assess: keys_apart },
     Rule { field: "mould.key_height_mm", severity: Severity::Error, assess: keys_in_ring },
+    Rule { field: "mould.layers", severity: Severity::Error, assess: gang_in_one_piece },
+    Rule { field: "mould.layers", severity: Severity::Error, assess: gang_on_bed },
     Rule { field: "mould.draft_deg", severity: Severity::Warning, assess: draft_without_basin },
     Rule { field: "friction.load_min_n", severity: Severity::Error, assess: load_range },
 ];
@@ -36,7 +38,7 @@ struct Ends {
 impl Ends {
     /// Of shell and supports.
     fn of_sector(i: &Inspection<'_>) -> Self {
-        Self { inner_mm: i.inner_radius_mm(), shift_mm: i.configuration().segment.end_margin_mm }
+        Self { inner_mm: i.inner_radius_mm(), shift_mm: i.shell_end_shift_mm() }
     }
 
     /// Of the mould, which goes around the sector with a wall at both ends; `None` without one.
@@ -89,6 +91,7 @@ fn ends_in_sector(i: &Inspection<'_>) -> Assessment {
         Lower("segment.end_margin_mm"),
         Lower("shell.wall_mm"),
         Raise("shell.outer_radius_mm"),
+        Lower("shell.stop_mm"),
     ])
 }
 
@@ -101,6 +104,7 @@ fn ends_apart(i: &Inspection<'_>) -> Assessment {
             Lower("segment.end_margin_mm"),
             Lower("shell.wall_mm"),
             Lower("layout.wrap_angle_deg"),
+            Lower("shell.stop_mm"),
         ],
     )
 }
@@ -170,6 +174,49 @@ fn draft_without_basin(i: &Inspection<'_>) -> Assessment {
                 m.draft_deg
             ),
             "set it to 0, or raise mould.overfill_mm".to_owned(),
+        )
+    })
+}
+
+/// Only trays are made for several layers.
+fn gang_in_one_piece(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    require(c.mould.layers < 2 || c.mould.kind == MouldKind::OnePiece, || {
+        (
+            format!("asks for {} layers at once, which only the one-piece mould casts", c.mould.layers),
+            &[Lower("mould.layers"), Set("mould.kind", "\"one-piece\"")],
+        )
+    })
+}
+
+/// Sides of the block for a gang, mm, from above.
+fn gang_sides_mm(i: &Inspection<'_>) -> [f64; 2] {
+    let c = i.configuration();
+    let scale = 1.0 / (1.0 - c.mould.shrinkage_pct / 100.0);
+    let around = tray::around_mm(&c.mould);
+    let (outer, half) = (i.contact_radius_mm() * scale + around, i.half_span_rad());
+    let at_end = c.segment.end_margin_mm * scale + around;
+    let more = c.mould.layers as f64 - 1.0;
+    let wide = 2.0 * outer * half.min(std::f64::consts::FRAC_PI_2).sin() + 2.0 * at_end;
+    let tall = outer - (c.shell.outer_radius_mm * scale - around) * half.cos() + at_end;
+    let thick = c.silicone.thickness_mm * scale + 2.0 * around;
+    if i.gang_nests() {
+        [wide, tall + more * (thick / half.cos()).min(tall)]
+    } else {
+        [wide + more * wide, tall]
+    }
+}
+
+fn gang_on_bed(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    if c.mould.layers < 2 || !has_tray(i) {
+        return Assessment::NotApplicable;
+    }
+    let [wide, tall] = gang_sides_mm(i);
+    require(wide.max(tall) <= c.print.bed_mm, || {
+        (
+            format!("makes a mould of {wide:.0} by {tall:.0} mm on a bed of {} mm", c.print.bed_mm),
+            &[Lower("mould.layers"), Raise("print.bed_mm")],
         )
     })
 }

@@ -53,7 +53,7 @@ fn parts_on_bed(i: &Inspection<'_>) -> Assessment {
     let mould = i.contact_radius_mm() + c.mould.wall_mm + c.mould.key_diameter_mm + BED_MARGIN_MM;
     let reach = i.support_radius_mm().max(mould);
     let half = i.half_span_rad().min(std::f64::consts::FRAC_PI_2);
-    let width = 2.0 * reach * half.sin() + 2.0 * (c.segment.end_margin_mm + c.mould.wall_mm);
+    let width = 2.0 * reach * half.sin() + 2.0 * (i.shell_end_shift_mm() + c.mould.wall_mm);
     require(2.0 * reach <= c.print.bed_mm || width <= c.print.bed_mm, || {
         (
             format!(
@@ -66,6 +66,7 @@ fn parts_on_bed(i: &Inspection<'_>) -> Assessment {
                 Lower("shell.outer_radius_mm"),
                 Lower("segment.span_deg"),
                 Ease("segment.end_margin_mm"),
+                Ease("shell.stop_mm"),
                 Ease("mould.wall_mm"),
             ],
         )

@@ -409,7 +409,14 @@ mod tests {
         let mut faults = Vec::new();
         for case in 0..1000 {
             let mut c = Configuration::default();
-            for kind in ["mould.kind=one-piece", "mould.kind=none", "support.slot_kind=through"] {
+            for kind in [
+                "mould.kind=one-piece",
+                "mould.kind=none",
+                "support.slot_kind=through",
+                "fasteners.kind=insert",
+                "mount.kind=finger-link",
+                "mount.kind=rig",
+            ] {
                 if next() < 0.25 {
                     assign(&mut c, kind).unwrap();
                 }

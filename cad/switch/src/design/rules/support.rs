@@ -1,11 +1,10 @@
 //! Rules for the side supports, their slots and the fasteners.
 
-use super::Change::{Ease, Lower, Raise, Set};
+use super::Change::{self, Ease, Lower, Raise, Set};
 use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
-use crate::config::SlotKind;
+use crate::config::{FastenerKind, SlotKind};
+use crate::design::fastening::{HOLE_EDGE_MM, INSERT_TIP_MM};
 
-/// Wall left around a fastener hole (cad/doc/print-limits.md).
-const HOLE_EDGE_MM: f64 = 0.5;
 /// Beyond this clearance the pins walk noticeably (cad/doc/print-limits.md).
 const WIDE_CLEARANCE_MM: f64 = 0.3;
 
@@ -20,6 +19,9 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "fasteners.hole_diameter_mm", severity: Severity::Error, assess: holes_in_wall },
     Rule { field: "fasteners.end_distance_mm", severity: Severity::Error, assess: holes_in_sector },
     Rule { field: "fasteners.count", severity: Severity::Error, assess: holes_apart },
+    Rule { field: "fasteners.kind", severity: Severity::Error, assess: inserts_in_shell },
+    Rule { field: "fasteners.dowel_diameter_mm", severity: Severity::Error, assess: dowels_in_wall },
+    Rule { field: "support.slot_kind", severity: Severity::Warning, assess: loose_pins },
     Rule { field: "support.slot_clearance_mm", severity: Severity::Warning, assess: wide_clearance },
 ];
 
@@ -66,7 +68,7 @@ fn wall_beyond_slots(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     let slot = i.slot();
     let half = slot.width_mm / 2.0;
-    let end = slot.inner_edge_mm() * i.half_pitch_rad().sin() + c.segment.end_margin_mm - half;
+    let end = slot.inner_edge_mm() * i.half_pitch_rad().sin() + i.shell_end_shift_mm() - half;
     let least = least_wall_mm(c, 0.5);
     require(end >= least, || {
         (
@@ -106,7 +108,7 @@ fn corner_fits(i: &Inspection<'_>, radius_mm: f64) -> bool {
         return true;
     }
     let c = i.configuration();
-    let (half_span, shift) = (i.half_span_rad(), c.segment.end_margin_mm);
+    let (half_span, shift) = (i.half_span_rad(), i.shell_end_shift_mm());
     // In the frame of an end: along its radial plane, and outwards across it. A slot has round ends.
     let at = |mm: f64, rad: f64| [mm * (half_span - rad.abs()).cos(), -mm * (half_span - rad.abs()).sin()];
     let (across, reach) = (shift - radius_mm, i.support_radius_mm() - radius_mm);
@@ -221,7 +223,7 @@ fn holes_in_sector(i: &Inspection<'_>) -> Assessment {
         return Assessment::NotApplicable;
     }
     let needed = c.fasteners.hole_diameter_mm / 2.0 + hole_edge_mm(i);
-    require(c.fasteners.end_distance_mm + c.segment.end_margin_mm >= needed, || {
+    require(c.fasteners.end_distance_mm + i.shell_end_shift_mm() >= needed, || {
         (
             "lets the outermost hole leave the sector".to_owned(),
             &[
@@ -263,6 +265,77 @@ fn holes_apart(i: &Inspection<'_>) -> Assessment {
                 Ease("print.elephant_foot_mm"),
                 Ease("print.least_wall_mm"),
             ],
+        )
+    })
+}
+
+/// Inserts need a thread for which they are sold, walls around them, and room for both in the shell's width.
+fn inserts_in_shell(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    if c.fasteners.kind != FastenerKind::Insert || c.fasteners.count == 0 {
+        return Assessment::NotApplicable;
+    }
+    const CHANGES: &[Change] = &[
+        Set("fasteners.kind", "\"screw\""),
+        Lower("fasteners.hole_diameter_mm"),
+        Raise("fasteners.hole_diameter_mm"),
+        Raise("shell.width_mm"),
+        Raise("shell.wall_mm"),
+    ];
+    let hole = c.fasteners.hole_diameter_mm;
+    let Some([bore, length]) = i.fastening().insert_mm else {
+        return require(false, || {
+            (format!("has no inserts for holes of {hole} mm: M2 to M4 are known"), CHANGES)
+        });
+    };
+    let (radius, edge) = (i.fastener_radius_mm(), hole_edge_mm(i));
+    let wall = (radius - i.inner_radius_mm())
+        .min(c.shell.outer_radius_mm - c.segment.groove_radius_mm - radius)
+        .min(c.fasteners.end_distance_mm + i.shell_end_shift_mm())
+        - bore / 2.0;
+    if wall < edge || bore < hole {
+        return require(false, || {
+            (
+                format!(
+                    "leaves no wall around inserts in holes of {bore} mm: {wall:.3} mm, {edge} mm is the least"
+                ),
+                CHANGES,
+            )
+        });
+    }
+    let needed = 2.0 * length + INSERT_TIP_MM;
+    require(c.shell.width_mm >= needed, || {
+        (
+            format!(
+                "takes inserts of {length} mm from both sides: {needed:.1} mm of width, {} mm are there",
+                c.shell.width_mm
+            ),
+            CHANGES,
+        )
+    })
+}
+
+fn dowels_in_wall(i: &Inspection<'_>) -> Assessment {
+    require(i.dowels_fit(), || {
+        (
+            "leaves no wall around the dowels beside the outermost screws".to_owned(),
+            &[
+                Lower("fasteners.dowel_diameter_mm"),
+                Raise("shell.wall_mm"),
+                Lower("fasteners.count"),
+                Set("fasteners.dowel_diameter_mm", "0"),
+            ],
+        )
+    })
+}
+
+/// Nothing but friction holds a pin in a slot that goes right through.
+fn loose_pins(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    advise(c.support.slot_kind != SlotKind::Through || c.layout.pins.is_empty(), || {
+        (
+            "through slots do not hold the pins along the axis".to_owned(),
+            "cover the plates outside, or set support.slot_kind = \"blind\"".to_owned(),
         )
     })
 }

@@ -92,6 +92,10 @@ impl PageData {
         let mut bodies = Vec::new();
         for body in built.assembly() {
             let Some(pose) = body.part.pose else { continue };
+            // Where the physics gives the tendon's shape at every load, the page draws it itself.
+            if body.part.role == Role::Tendon && !contact.load_n.is_empty() {
+                continue;
+            }
             let own = built.printed().iter().position(|p| std::ptr::eq(&p.body, body));
             let (mesh, matrix) = match own {
                 Some(mesh) => (mesh, into_assembly(body, pose)),

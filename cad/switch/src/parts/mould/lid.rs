@@ -1,6 +1,6 @@
 //! The split mould's lid: it sets the layer's width, with a pouring funnel and vents at both ends.
 
-use super::super::{Part, Role, offset_error};
+use super::super::{Part, Pose, Role, offset_error};
 use super::split::plate_sector;
 use super::{Cavity, keys};
 use crate::config::ConfigError;
@@ -43,7 +43,9 @@ fn openings(design: &Design, plate: &Contour) -> Result<Openings, ConfigError> {
     let neighbours = keys.iter().chain(&vents).chain([plate]);
     let room = neighbours.map(|other| gap_mm(&spout, other)).fold(f64::INFINITY, f64::min);
     let wanted = (c.mould.pour_width_mm - width) / 2.0;
-    let widening = wanted.min(room - c.print.least_wall_mm).clamp(0.0, c.mould.floor_mm);
+    // Two printed lines stay, as everywhere else.
+    let wall = c.print.least_wall_mm.max(2.0 * c.print.line_mm);
+    let widening = wanted.min(room - wall).clamp(0.0, c.mould.floor_mm);
     let mouth = spout.offset(widening).map_err(offset_error("mould.pour_width_mm"))?;
     Ok(Openings { keys, vents, spout, mouth })
 }
@@ -78,11 +80,13 @@ pub(in crate::parts) fn lid(design: &Design) -> Result<Part, ConfigError> {
     tops.push(mouth);
     solid.cap(Facing::Down, bottom, &bottoms);
     solid.cap(Facing::Up, top, &tops);
-    Ok(Part::new("mould-lid", Role::Mould, solid, None))
+    let mut part = Part::new("mould-lid", Role::Mould, solid, None);
+    part.tool_pose = Some(Pose::upright(c.mould.floor_mm + Cavity::of(design).depth_mm));
+    Ok(part)
 }
 
 /// Least distance in mm from `slot`, at eight points of every edge, to the curve of `other`.
-fn gap_mm(slot: &Contour, other: &Contour) -> f64 {
+pub(super) fn gap_mm(slot: &Contour, other: &Contour) -> f64 {
     let points = slot.flattened(&vec![8; slot.edges().len()]);
     points.iter().map(|p| other.distance_mm(*p)).fold(f64::INFINITY, f64::min)
 }

@@ -12,10 +12,11 @@ use crate::design::Design;
 use pinswitch_solid::profile::Contour;
 
 pub(super) use lid::lid;
+pub use one_piece::gang_mm;
 pub(super) use one_piece::one_piece;
 pub(super) use split::{core, ring};
 
-/// Volume in mm³ of the mould's cavity, which is the layer, and of what lies above it: the basin of the one-piece mould,
+/// Volume in mm³ of the mould's cavity, which is the layer (or as many as a gang casts), and of what lies above it: the basin of the one-piece mould,
 /// or the split mould's funnel and vents.
 pub fn cavity_mm3(design: &Design) -> (f64, f64) {
     let cavity = Cavity::of(design);
@@ -25,7 +26,12 @@ pub fn cavity_mm3(design: &Design) -> (f64, f64) {
         MouldKind::OnePiece => one_piece::basin_mm3(design),
         MouldKind::Split => lid::openings_mm3(design),
     };
-    (layer, above)
+    let layers = if design.configuration().mould.kind == MouldKind::OnePiece {
+        design.configuration().mould.layers as f64
+    } else {
+        1.0
+    };
+    (layers * layer, layers * above)
 }
 
 /// The cavity before its ribs: the layer, enlarged by what the silicone shrinks.

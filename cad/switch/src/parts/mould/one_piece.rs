@@ -2,13 +2,17 @@
 
 use super::super::{Part, Role, offset_error};
 use super::Cavity;
+use super::lid::gap_mm;
 use crate::config::{ConfigError, MouldTable};
 use crate::design::Design;
-use pinswitch_solid::profile::Contour;
+use pinswitch_solid::profile::{Contour, Point2, Vector2};
 use pinswitch_solid::solid::{Facing, Solid};
 
 /// How far the basin reaches beyond the cavity: its ledge guides the blade that cuts the layer to width.
 const LEDGE_MM: f64 = 1.0;
+
+/// Halvings of the way between a step at which cavities of a gang meet and one at which they do not.
+const HALVINGS: usize = 40;
 
 /// How far the basin's walls lean outward at the brim, mm.
 ///
@@ -51,11 +55,47 @@ pub(super) fn basin_mm3(design: &Design) -> f64 {
     solid.volume_mm3()
 }
 
+/// From one cavity of a gang to the next: a step that leaves a wall between their basins. Bowed layers nest in each other
+/// where they are less than half a turn; others lie side by side.
+fn step(design: &Design, brim: &Contour) -> Vector2 {
+    let wall = design.configuration().mould.wall_mm;
+    let (low, high) = brim.bounds();
+    if !design.gang_nests() {
+        return Vector2::new(high.x - low.x + wall, 0.0);
+    }
+    let fits = |mm: f64| gap_mm(brim, &brim.translated(Vector2::new(0.0, mm))) >= wall;
+    let (mut far, mut near) = (high.y - low.y + wall, 0.0);
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(far, near);
+        if fits(middle) { far = middle } else { near = middle }
+    }
+    Vector2::new(0.0, far)
+}
+
+/// Sides of the block of a gang mould, mm: along the middle of the wrap's tangent, and across it.
+pub fn gang_mm(design: &Design) -> [f64; 2] {
+    let (low, high) = gang(design).bounds();
+    [high.x - low.x, high.y - low.y]
+}
+
+/// The block of a gang mould: a rectangle around all basins.
+fn gang(design: &Design) -> Contour {
+    let m = &design.configuration().mould;
+    let TrayCavity { brim, .. } = tray_cavity(design);
+    let last = step(design, &brim) * (m.layers as f64 - 1.0);
+    let (low, high) = brim.bounds();
+    let around = Vector2::new(m.wall_mm, m.wall_mm);
+    let (low, high) = (low - around, high + last + around);
+    Contour::polygon(vec![low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y)])
+}
+
 pub(in super::super) fn one_piece(design: &Design) -> Result<Part, ConfigError> {
     let m = &design.configuration().mould;
     let TrayCavity { cavity, layer, ledge, brim } = tray_cavity(design);
     let around = around_mm(m);
-    let body = cavity.sector.grown(around, around, around).outline();
+    let body =
+        if m.layers > 1 { gang(design) } else { cavity.sector.grown(around, around, around).outline() };
+    let step = if m.layers > 1 { step(design, &brim) } else { Vector2::zeros() };
     let ledge_mm = m.floor_mm + cavity.depth_mm;
     let top_mm = ledge_mm + m.overfill_mm;
     let chamfer = design.configuration().print.elephant_foot_mm;
@@ -65,15 +105,20 @@ pub(in super::super) fn one_piece(design: &Design) -> Result<Part, ConfigError> 
         .extrude_chamfered(&body, 0.0, top_mm, chamfer)
         .map_err(offset_error("print.elephant_foot_mm"))?;
     solid.cap(Facing::Down, bottom, &[]);
-    let (foot, mouth) = solid.extrude(&layer.reversed(), m.floor_mm, ledge_mm);
-    solid.cap(Facing::Up, foot, &[]);
-    if m.overfill_mm > 0.0 {
-        let (ledge, brim) = (solid.ring(ledge.reversed(), ledge_mm), solid.ring(brim.reversed(), top_mm));
-        solid.wall(ledge, brim);
-        solid.cap(Facing::Up, ledge, &[mouth]);
-        solid.cap(Facing::Up, top, &[brim]);
-    } else {
-        solid.cap(Facing::Up, top, &[mouth]);
+    let mut mouths = Vec::new();
+    for i in 0..m.layers {
+        let placed = |contour: &Contour| contour.translated(step * i as f64).reversed();
+        let (foot, mouth) = solid.extrude(&placed(&layer), m.floor_mm, ledge_mm);
+        solid.cap(Facing::Up, foot, &[]);
+        if m.overfill_mm > 0.0 {
+            let (ledge, brim) = (solid.ring(placed(&ledge), ledge_mm), solid.ring(placed(&brim), top_mm));
+            solid.wall(ledge, brim);
+            solid.cap(Facing::Up, ledge, &[mouth]);
+            mouths.push(brim);
+        } else {
+            mouths.push(mouth);
+        }
     }
+    solid.cap(Facing::Up, top, &mouths);
     Ok(Part::new("mould-tray", Role::Mould, solid, None))
 }

@@ -2,7 +2,7 @@
 
 use super::super::label::{Zone, engrave};
 use super::super::sector::{End, grooved_face};
-use super::super::{Part, Role, Sector, offset_error};
+use super::super::{Part, Pose, Role, Sector, offset_error};
 use super::{Cavity, keys};
 use crate::config::ConfigError;
 use crate::design::Design;
@@ -54,6 +54,7 @@ pub(in crate::parts) fn core(design: &Design) -> Result<Part, ConfigError> {
     let engraved = engrave(&mut solid, design, &zone, top);
     solid.cap(Facing::Up, head, &engraved.rings);
     let mut part = Part::new("mould-core", Role::Mould, solid, None);
+    part.tool_pose = Some(Pose::upright(0.0));
     part.notes.extend(engraved.note);
     Ok(part)
 }
@@ -71,7 +72,9 @@ pub(in crate::parts) fn ring(design: &Design) -> Result<Part, ConfigError> {
     solid.cap(Facing::Down, bottom, &mouths);
     let pegs = keys::pegs(&mut solid, design, height).map_err(&key)?;
     solid.cap(Facing::Up, top, &pegs);
-    Ok(Part::new("mould-ring", Role::Mould, solid, None))
+    let mut part = Part::new("mould-ring", Role::Mould, solid, None);
+    part.tool_pose = Some(Pose::upright(c.mould.floor_mm));
+    Ok(part)
 }
 
 /// The ring seen from above, counter-clockwise: outside round, along the left end wall, over the ribs, and back

@@ -1,0 +1,139 @@
+//! The convex hull of discs: a band stretched around them.
+//!
+//! A disc at `c` with radius `r` reaches `h(φ) = c·u(φ) + r` in the direction `u(φ)`. The hull is the disc that reaches
+//! furthest, direction by direction, and two discs take turns where they reach equally far.
+
+use std::f64::consts::TAU;
+
+use super::{Contour, Pen, Point2, Vector2};
+
+/// Directions closer than this, in radians, are one.
+const SAME_RAD: f64 = 1e-9;
+
+/// A disc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// Its centre.
+    pub centre: Point2,
+    /// Its radius, mm.
+    pub radius_mm: f64,
+}
+
+impl Disc {
+    fn reach_mm(&self, angle_rad: f64) -> f64 {
+        self.centre.coords.dot(&direction(angle_rad)) + self.radius_mm
+    }
+}
+
+/// The directions in which one disc is the outermost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HullArc {
+    /// Its number.
+    pub disc: usize,
+    /// First direction, radians, counter-clockwise from +x.
+    pub from_rad: f64,
+    /// Last direction.
+    pub to_rad: f64,
+}
+
+fn direction(angle_rad: f64) -> Vector2 {
+    Vector2::new(angle_rad.cos(), angle_rad.sin())
+}
+
+/// Which disc is outermost from the direction `from_rad` counter-clockwise to `to_rad`, in order. Between two of them the
+/// band is straight.
+pub fn hull_arcs(discs: &[Disc], from_rad: f64, to_rad: f64) -> Vec<HullArc> {
+    // Just behind the start, so that of two that reach equally far the one that leads is taken.
+    let start = from_rad + 2.0 * SAME_RAD;
+    let outermost =
+        (0..discs.len()).max_by(|a, b| discs[*a].reach_mm(start).total_cmp(&discs[*b].reach_mm(start)));
+    let Some(mut disc) = outermost else { return Vec::new() };
+    let mut arcs = Vec::new();
+    let mut here = from_rad;
+    while here < to_rad {
+        let next = (0..discs.len())
+            .filter(|other| *other != disc)
+            .filter_map(|other| Some((overtaken_rad(&discs[disc], &discs[other], here)?, other)))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let end = next.map_or(to_rad, |n| n.0.min(to_rad));
+        arcs.push(HullArc { disc, from_rad: here, to_rad: end });
+        let Some((_, other)) = next.filter(|n| n.0 < to_rad) else { break };
+        (disc, here) = (other, end);
+    }
+    arcs
+}
+
+/// The first direction after `after_rad` in which `other` begins to reach further than `disc`; `None` if it never does.
+fn overtaken_rad(disc: &Disc, other: &Disc, after_rad: f64) -> Option<f64> {
+    let between = other.centre - disc.centre;
+    let share = (disc.radius_mm - other.radius_mm) / between.norm();
+    if !(-1.0..1.0).contains(&share) {
+        return None;
+    }
+    // `between · u` exceeds the difference of the radii from here on, for less than half a turn.
+    let begins = between.y.atan2(between.x) - share.acos();
+    let turned = (begins - after_rad - SAME_RAD).rem_euclid(TAU);
+    Some(after_rad + SAME_RAD + turned)
+}
+
+/// The convex hull of `discs`, counter-clockwise; nothing without discs.
+pub fn hull(discs: &[Disc]) -> Option<Contour> {
+    // The rightmost disc leads at the direction +x: the hull starts where its turn begins.
+    let whole = hull_arcs(discs, 0.0, TAU);
+    let second = whole.get(1).copied();
+    let Some(second) = second else {
+        let only = discs.get(whole.first()?.disc)?;
+        return Some(Contour::circle(only.centre, only.radius_mm));
+    };
+    let arcs = hull_arcs(discs, second.from_rad, second.from_rad + TAU);
+    let at = |disc: usize, angle: f64| discs[disc].centre + direction(angle) * discs[disc].radius_mm;
+    let first = arcs.first()?;
+    let mut pen = Pen::at(at(first.disc, first.from_rad));
+    for (i, arc) in arcs.iter().enumerate() {
+        let next = arcs[(i + 1) % arcs.len()];
+        if arc.to_rad - arc.from_rad > SAME_RAD && discs[arc.disc].radius_mm > 0.0 {
+            pen = pen.arc_to(discs[arc.disc].centre, at(arc.disc, arc.to_rad), true);
+        }
+        if i + 1 < arcs.len() {
+            pen = pen.line_to(at(next.disc, next.from_rad));
+        }
+    }
+    Some(pen.close())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn disc(x: f64, y: f64, radius_mm: f64) -> Disc {
+        Disc { centre: Point2::new(x, y), radius_mm }
+    }
+
+    #[test]
+    fn a_band_around_two_discs_is_a_stadium() {
+        let band = hull(&[disc(0.0, 0.0, 1.0), disc(5.0, 0.0, 1.0)]).unwrap();
+        assert!((band.area_mm2() - (10.0 + std::f64::consts::PI)).abs() < 1e-9);
+        assert!(hull(&[]).is_none());
+        let swallowed = hull(&[disc(0.0, 0.0, 3.0), disc(1.0, 0.0, 1.0)]).unwrap();
+        assert!((swallowed.area_mm2() - 9.0 * std::f64::consts::PI).abs() < 1e-9);
+    }
+
+    proptest! {
+        /// It holds every disc, touches what it turns around, and never turns inward.
+        #[test]
+        fn a_hull_holds_its_discs(all in prop::collection::vec((-20.0..20.0f64, -20.0..20.0f64, 0.1..6.0f64), 2..9)) {
+            let discs: Vec<Disc> = all.iter().map(|(x, y, r)| disc(*x, *y, *r)).collect();
+            let band = hull(&discs).unwrap();
+            for d in &discs {
+                prop_assert!(band.distance_mm(d.centre) >= d.radius_mm - 1e-6);
+            }
+            let longest = discs.iter().map(|d| d.reach_mm(0.7)).fold(f64::NEG_INFINITY, f64::max);
+            let corners = band.flattened(&vec![64; band.edges().len()]);
+            let reached = corners.iter().map(|p| p.coords.dot(&direction(0.7))).fold(f64::NEG_INFINITY, f64::max);
+            // Flattened arcs keep their area, so that their corners lie a little outside.
+            prop_assert!((reached - longest).abs() < 0.05, "{reached}, {longest}");
+            prop_assert!(band.area_mm2() > 0.0);
+        }
+    }
+}

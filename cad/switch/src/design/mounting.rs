@@ -1,0 +1,178 @@
+//! Where the holes of a mounting plate lie (cad/doc/dimensions.md, "Mounting").
+
+use super::Dimensions;
+use crate::config::MountKind;
+use pinswitch_solid::profile::{Disc, Point2, Vector2, polar};
+
+/// Radius of the rig's guide pulley at the bottom of its groove (paper), mm.
+pub(crate) const PULLEY_RADIUS_MM: f64 = 22.0;
+/// Bore of a 608 bearing, and its hole in the plate for an M8 bolt, mm.
+const AXLE_HOLE_MM: f64 = 8.4;
+/// Width of each flange's rim of the guide pulley, mm.
+const PULLEY_RIM_MM: f64 = 1.2;
+/// Least width of the guide pulley: a 608 bearing of 7 mm over its ledge.
+const LEAST_PULLEY_MM: f64 = 8.5;
+/// Air between pulley and switch, mm.
+pub(super) const PULLEY_AIR_MM: f64 = 2.0;
+/// Length of the sheath stop along the tendon, mm.
+const STOP_LENGTH_MM: f64 = 14.0;
+/// Screws of the sheath stop: M3.
+const STOP_HOLE_MM: f64 = 3.4;
+/// Wall around sheath and screws of the sheath stop, mm.
+const STOP_WALL_MM: f64 = 2.0;
+
+/// Outer diameter of the pulley's flanges beyond its groove, in tendon diameters.
+const PULLEY_DEPTH: f64 = 1.5;
+
+/// Radius of the guide pulley's flanges.
+pub(crate) fn pulley_outer_mm(tendon_mm: f64) -> f64 {
+    PULLEY_RADIUS_MM + PULLEY_DEPTH * tendon_mm
+}
+
+/// Width of the guide pulley for a tendon.
+pub(crate) fn pulley_width_mm(tendon_mm: f64) -> f64 {
+    (2.0 * (PULLEY_RIM_MM + PULLEY_DEPTH * tendon_mm) + 1.2 * tendon_mm).max(LEAST_PULLEY_MM)
+}
+
+/// A hole right through the plate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hole {
+    /// Its middle.
+    pub centre: Point2,
+    /// Its radius, mm.
+    pub radius_mm: f64,
+}
+
+/// The sheath stop: a block beside the tendon, away from the load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SheathStop {
+    /// Where the tendon enters it from the switch.
+    pub start: Point2,
+    /// Along the tendon, away from the switch; a unit vector.
+    pub along: Vector2,
+    /// Length along the tendon, mm.
+    pub length_mm: f64,
+    /// Half of the block's width across the tendon, mm.
+    pub half_width_mm: f64,
+    /// Its screws.
+    pub screws: [Hole; 2],
+}
+
+/// A mounting plate: the holes that it has beside those of the fasteners.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mounting {
+    /// Holes for screws, or bores.
+    pub holes: Vec<Hole>,
+    /// The guide pulley's axle, on the rig.
+    pub axle: Option<Hole>,
+    /// The sheath stop.
+    pub sheath: Option<SheathStop>,
+    /// Discs whose hull the plate is.
+    pub discs: Vec<Disc>,
+}
+
+impl Dimensions {
+    /// Radius on which the axis of the tendon lies where it rests on the silicone.
+    pub fn tendon_axis_radius_mm(&self) -> f64 {
+        self.contact_radius_mm() + self.tendon_diameter_mm() / 2.0
+    }
+
+    /// Half of the angle over which the tendon touches.
+    pub fn half_wrap_rad(&self) -> f64 {
+        self.configuration().layout.wrap_angle_deg.to_radians() / 2.0
+    }
+
+    /// Height of the sheath stop's base above the plate, mm: the sheath lies on it, its axis in the middle of the switch.
+    pub fn sheath_floor_mm(&self) -> f64 {
+        let c = self.configuration();
+        c.support.plate_mm + c.shell.width_mm / 2.0 - c.tendon.sheath_diameter_mm / 2.0
+    }
+
+    /// The mounting plate; `None` without one.
+    pub fn mounting(&self) -> Option<Mounting> {
+        let c = self.configuration();
+        let m = &c.mount;
+        let radius_mm = m.hole_diameter_mm / 2.0;
+        let hole = |centre: Point2| Hole { centre, radius_mm };
+        let (holes, axle) = match m.kind {
+            MountKind::None => return None,
+            MountKind::Flange => (self.flange_holes().map(hole).to_vec(), None),
+            MountKind::FingerLink => (self.link_bores().map(hole).to_vec(), None),
+            MountKind::Rig => {
+                let (middle, holes) = self.rig();
+                let axle = Hole { centre: middle, radius_mm: AXLE_HOLE_MM / 2.0 };
+                (holes.map(hole).to_vec(), Some(axle))
+            }
+        };
+        let sheath = self.sheath_stop();
+        let rim = m.rim_mm;
+        let fasteners = self.fastener_angles_rad().into_iter().map(|a| Hole {
+            centre: polar(self.fastener_radius_mm(), a),
+            radius_mm: self.fastener_along_mm(),
+        });
+        let stop = sheath.iter().flat_map(|s| s.screws);
+        let all = holes.iter().copied().chain(axle).chain(fasteners).chain(stop);
+        let discs = all.map(|h| Disc { centre: h.centre, radius_mm: h.radius_mm + rim }).collect();
+        Some(Mounting { holes, axle, sheath, discs })
+    }
+
+    /// Four holes around the supports.
+    fn flange_holes(&self) -> [Point2; 4] {
+        let m = &self.configuration().mount;
+        let half = self.half_span_rad();
+        let reach = self.support_radius_mm();
+        let beside = m.rim_mm + m.hole_diameter_mm / 2.0;
+        let x = reach * half.min(std::f64::consts::FRAC_PI_2).sin() + self.shell_end_shift_mm() + beside;
+        let (low, high) = (self.inner_radius_mm() * half.cos(), reach);
+        [[-x, low], [x, low], [-x, high], [x, high]].map(|[x, y]| Point2::new(x, y))
+    }
+
+    /// The two bores of a finger link.
+    fn link_bores(&self) -> [Point2; 2] {
+        let m = &self.configuration().mount;
+        let angle = m.bore_axis_deg.to_radians();
+        let along = Vector2::new(angle.cos(), angle.sin());
+        let middle = Point2::from(Vector2::new(-along.y, along.x) * m.bore_offset_mm);
+        [middle - along * (m.bore_distance_mm / 2.0), middle + along * (m.bore_distance_mm / 2.0)]
+    }
+
+    /// Axis of the guide pulley on the load side, over which the tendon runs on in the same sense, and four holes for the
+    /// table around both.
+    fn rig(&self) -> (Point2, [Point2; 4]) {
+        let m = &self.configuration().mount;
+        let leaves = -self.half_wrap_rad();
+        let outwards = polar(1.0, leaves).coords;
+        // Away from the wrap: to ever smaller angles.
+        let along = Vector2::new(-outwards.y, outwards.x);
+        let drop = self.tendon_axis_radius_mm() - PULLEY_RADIUS_MM - self.tendon_diameter_mm() / 2.0;
+        let middle = Point2::from(outwards * drop + along * m.pulley_distance_mm);
+        let aside = self.support_radius_mm() + m.rim_mm + m.hole_diameter_mm / 2.0;
+        let at = |base: Point2, up: f64| base + outwards * up;
+        let behind = Point2::origin() - along * aside;
+        let beyond =
+            middle + along * (pulley_outer_mm(self.tendon_diameter_mm()) + m.rim_mm + m.hole_diameter_mm);
+        (middle, [at(behind, 0.0), at(behind, aside), at(beyond, -aside / 2.0), at(beyond, aside / 2.0)])
+    }
+
+    /// The sheath stop on the side away from the load; `None` without a sheath.
+    fn sheath_stop(&self) -> Option<SheathStop> {
+        let sheath = self.configuration().tendon.sheath_diameter_mm;
+        if sheath <= 0.0 {
+            return None;
+        }
+        let leaves = self.half_wrap_rad();
+        let outwards = polar(1.0, leaves).coords;
+        let along = Vector2::new(outwards.y, -outwards.x);
+        let axis = self.tendon_axis_radius_mm();
+        // Beyond the supports, whose corners lie within their outer radius.
+        let clear = self.support_radius_mm() + STOP_WALL_MM;
+        let half_width_mm = sheath / 2.0 + 2.0 * STOP_WALL_MM + STOP_HOLE_MM + STOP_WALL_MM;
+        let inner = (axis - half_width_mm).max(0.0);
+        let start = Point2::from(outwards * axis) + along * (clear.powi(2) - inner.powi(2)).max(0.0).sqrt();
+        let aside = half_width_mm - STOP_WALL_MM - STOP_HOLE_MM / 2.0;
+        let middle = start + along * (STOP_LENGTH_MM / 2.0);
+        let screws =
+            [-aside, aside].map(|by| Hole { centre: middle + outwards * by, radius_mm: STOP_HOLE_MM / 2.0 });
+        Some(SheathStop { start, along, length_mm: STOP_LENGTH_MM, half_width_mm, screws })
+    }
+}

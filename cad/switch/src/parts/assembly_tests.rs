@@ -1,0 +1,407 @@
+//! The set as it is put together, measured on the exact sections of its bodies: screws and dowels pass, nothing overlaps,
+//! the layer cannot slide, casts come out, and every wall prints.
+
+use std::path::Path;
+
+use super::{Part, Role, gang_mm, printed, reference_bodies, silicone_layer, touches};
+use crate::config::{Configuration, MountKind, assign, read};
+use crate::design::Design;
+use pinswitch_solid::profile::{ChordTolerance, Contour, Point2, polar};
+
+/// Chord tolerance of the polygons that tell what lies inside a section, mm.
+const FINE_MM: f64 = 5e-3;
+/// Bodies that touch overlap by less than this, mm: what the pieces of an arc are off.
+const TOUCHING_MM: f64 = 0.02;
+
+fn design(assignments: &[&str]) -> Design {
+    let mut c = Configuration::default();
+    assignments.iter().for_each(|a| assign(&mut c, a).unwrap());
+    Design::new(c).unwrap()
+}
+
+/// Every design of `tests/corpus` whose file is named for its hardware.
+fn corpus() -> Vec<(String, Design)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/corpus");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    files.sort();
+    let name = |p: &Path| p.file_name().unwrap().to_string_lossy().into_owned();
+    let ours = files.into_iter().filter(|p| name(p).starts_with("hardware-"));
+    let all: Vec<_> = ours
+        .map(|path| {
+            let (configuration, _) = read(&std::fs::read_to_string(&path).unwrap(), &name(&path)).unwrap();
+            (name(&path), Design::new(configuration).unwrap())
+        })
+        .collect();
+    assert!(all.len() >= 30, "{}", all.len());
+    all
+}
+
+/// A section of a body in the assembly.
+struct Section {
+    exact: Vec<Contour>,
+    polygons: Vec<Vec<Point2>>,
+}
+
+impl Section {
+    fn holds(&self, p: Point2) -> bool {
+        let crossings = self.polygons.iter().flat_map(|polygon| {
+            let next = polygon.iter().cycle().skip(1);
+            polygon.iter().zip(next).filter(|(a, b)| {
+                (a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x
+            })
+        });
+        crossings.count() % 2 == 1
+    }
+
+    fn distance_mm(&self, p: Point2) -> f64 {
+        self.exact.iter().map(|c| c.distance_mm(p)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How deep the outline of `other` lies in this section, mm.
+    fn depth_mm(&self, other: &Self) -> (f64, Point2) {
+        let points = other.polygons.iter().flatten();
+        let inside = points.filter(|p| self.holds(**p)).map(|p| (self.distance_mm(*p), *p));
+        inside.fold((0.0, Point2::origin()), |best, next| if next.0 > best.0 { next } else { best })
+    }
+}
+
+fn section(part: &Part, z_mm: f64) -> Section {
+    let pose = part.pose.or(part.tool_pose).unwrap();
+    let own = if pose.flipped { pose.z_mm - z_mm } else { z_mm - pose.z_mm };
+    let turn = |c: Contour| if pose.flipped { c.mirrored() } else { c };
+    let exact: Vec<Contour> = part.solid.section(own).into_iter().map(turn).collect();
+    let fine = ChordTolerance::new(FINE_MM).unwrap();
+    let polygons = exact.iter().map(|c| c.flattened(&c.chords(fine))).collect();
+    Section { exact, polygons }
+}
+
+/// Heights in the assembly at which a ring of the part lies.
+fn heights_mm(part: &Part) -> Vec<f64> {
+    let pose = part.pose.or(part.tool_pose).unwrap();
+    let own = part.solid.heights_mm().into_iter();
+    own.map(|z| if pose.flipped { pose.z_mm - z } else { pose.z_mm + z }).collect()
+}
+
+/// Middles of the intervals between all heights of the parts.
+fn levels_mm(parts: &[&Part]) -> Vec<f64> {
+    let mut all: Vec<f64> = parts.iter().flat_map(|p| heights_mm(p)).collect();
+    all.sort_by(f64::total_cmp);
+    all.windows(2).filter(|w| w[1] - w[0] > 1e-6).map(|w| f64::midpoint(w[0], w[1])).collect()
+}
+
+fn assembled(design: &Design) -> Vec<Part> {
+    let all = [printed(design).unwrap(), reference_bodies(design).unwrap()].concat();
+    let has_layer = all.iter().any(|p| p.role == Role::Layer);
+    all.into_iter().filter(|p| p.pose.is_some() && !(has_layer && p.role == Role::Proxy)).collect()
+}
+
+/// The deepest overlap of any two of the bodies.
+fn overlap(parts: &[Part]) -> Option<String> {
+    for (i, a) in parts.iter().enumerate() {
+        for b in &parts[i + 1..] {
+            for z in levels_mm(&[a, b]) {
+                let (at_a, at_b) = (section(a, z), section(b, z));
+                if at_a.exact.is_empty() || at_b.exact.is_empty() {
+                    continue;
+                }
+                for (depth, place) in [at_a.depth_mm(&at_b), at_b.depth_mm(&at_a)] {
+                    if depth > TOUCHING_MM {
+                        return Some(format!(
+                            "{} and {} overlap by {depth:.3} at {place} {z}",
+                            a.name, b.name
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    None
+}
+
+#[test]
+fn no_two_bodies_of_an_assembly_overlap() {
+    for (name, design) in corpus() {
+        assert_eq!(overlap(&assembled(&design)), None, "{name}");
+    }
+    assert_eq!(overlap(&assembled(&design(&["layout.pins=[5, 8, 11]"]))), None);
+    // A test must be able to fail: a shell in its own place twice.
+    let twice = printed(&design(&[])).unwrap().remove(0);
+    let mut lifted = twice.clone();
+    lifted.name.push('2');
+    lifted.solid =
+        pinswitch_solid::solid::Solid::prism(&Contour::circle(polar(18.0, 0.0), 1.0), &[], 0.0, 5.0, 0.0)
+            .unwrap();
+    assert!(overlap(&[twice, lifted]).is_some());
+}
+
+/// Every screw has its clear hole through shell, supports and plate, on one axis; only the skin above a recess is in its
+/// way. Every dowel has its hole, closed outside.
+#[test]
+fn screws_and_dowels_pass_on_one_axis() {
+    for (name, design) in corpus() {
+        let c = design.configuration();
+        let parts = assembled(&design);
+        let joined: Vec<&Part> = parts
+            .iter()
+            .filter(|p| {
+                matches!(p.role, Role::Shell | Role::Support { .. })
+                    || ["base-flange", "finger-link", "rig-plate"].contains(&p.name.as_str())
+            })
+            .collect();
+        for part in &joined {
+            for angle in design.fastener_angles_rad() {
+                let axis = polar(design.fastener_radius_mm(), angle);
+                let mut closed_mm = 0.0;
+                let mut heights = heights_mm(part);
+                heights.sort_by(f64::total_cmp);
+                for w in heights.windows(2).filter(|w| w[1] - w[0] > 1e-6) {
+                    let here = section(part, f64::midpoint(w[0], w[1]));
+                    if here.holds(axis) {
+                        closed_mm += w[1] - w[0];
+                    } else {
+                        let free = here.distance_mm(axis) - c.fasteners.hole_diameter_mm / 2.0;
+                        assert!(free > -1e-9, "{name}: {} is off the axis by {free}", part.name);
+                    }
+                }
+                assert!(
+                    closed_mm < design.membrane_mm() + 1e-6,
+                    "{name}: {} is closed for {closed_mm}",
+                    part.name
+                );
+            }
+        }
+        for angle in design.dowel_angles_rad() {
+            let axis = polar(design.fastener_radius_mm(), angle);
+            let length = design.dowel_length_mm();
+            let middle = c.shell.width_mm / 2.0;
+            for share in [-0.499, -0.3, 0.0, 0.3, 0.499] {
+                for part in &joined {
+                    let here = section(part, middle + share * length);
+                    let free = here.distance_mm(axis) - c.fasteners.dowel_diameter_mm / 2.0;
+                    assert!(!here.holds(axis) && free > 0.0, "{name}: {} at {share}", part.name);
+                }
+            }
+            let outside = c.shell.width_mm + c.support.plate_mm - 0.01;
+            let right = joined.iter().find(|p| p.name == "support-right").unwrap();
+            assert!(section(right, outside).holds(axis), "{name}");
+        }
+    }
+}
+
+/// Nuts and heads go into their recesses and cannot turn; inserts have their hole at both ends of the shell.
+#[test]
+fn recesses_take_their_hardware() {
+    let nut = design(&["layout.pins=[5, 8, 11]"]);
+    let trap = nut.fastening().nut_trap.unwrap();
+    // ISO 4032: M3 is 5.5 mm across flats, and 6.01 mm across corners at the least.
+    assert!(2.0 * trap.radial_mm > 5.5 && 2.0 * trap.radial_mm < 6.01, "{trap:?}");
+    let head = design(&["fasteners.head_recess_mm=1.5"]).fastening().counterbore.unwrap();
+    assert!(2.0 * head.radial_mm > 5.68, "{head:?}");
+    let sunk = design(&["mount.kind=flange", "fasteners.head_recess_mm=3.2"]);
+    assert!(sunk.fastening().counterbore.unwrap().depth_mm > 3.0);
+    let insert = design(&["fasteners.kind=insert"]);
+    let shell = printed(&insert).unwrap().remove(0);
+    let axis = polar(insert.fastener_radius_mm(), insert.fastener_angles_rad()[0]);
+    for (z, radius) in [(0.5, 2.0), (5.6, 2.0), (7.0, 1.7), (8.4, 2.0), (13.5, 2.0)] {
+        assert!((section(&shell, z).distance_mm(axis) - radius).abs() < 1e-9, "{z}");
+    }
+    // What does not fit is left out, and says so.
+    let thin = design(&["shell.wall_mm=5.5"]);
+    assert!(thin.fastening().nut_trap.is_none());
+    let right = printed(&thin).unwrap().into_iter().find(|p| p.name == "support-right").unwrap();
+    assert!(right.notes.iter().any(|n| n.contains("nut traps do not fit")), "{:?}", right.notes);
+}
+
+/// Between the stops the layer has its clearance at both ends and no more, over its whole width.
+#[test]
+fn the_layer_cannot_slide_along_the_shell() {
+    for (name, design) in corpus() {
+        let c = design.configuration();
+        let Some([_, height]) = design.stops_mm() else { continue };
+        let shell = printed(&design).unwrap().remove(0);
+        let layer = silicone_layer(&design).unwrap();
+        let z = c.shell.width_mm / 2.0;
+        let (shell, layer) = (section(&shell, z), section(&layer, z));
+        let radius = c.shell.outer_radius_mm + height / 2.0;
+        for side in [-1.0, 1.0] {
+            let shift = c.segment.end_margin_mm + c.silicone.side_clearance_mm;
+            let beyond =
+                |mm: f64| polar(radius, side * (design.half_span_rad() + ((shift + mm) / radius).asin()));
+            assert!(!shell.holds(beyond(-0.01)) && shell.holds(beyond(0.01)), "{name}");
+            let gap = layer.distance_mm(beyond(0.0));
+            assert!((gap - c.silicone.side_clearance_mm).abs() < 1e-6, "{name}: {gap}");
+        }
+        assert!(height < c.silicone.thickness_mm, "{name}");
+    }
+}
+
+/// Whatever is open at a height of a mould is open all the way up: the layer comes out along the axis.
+#[test]
+fn casts_come_out_without_undercut() {
+    let mut moulds = 0;
+    for (name, design) in corpus() {
+        for part in printed(&design).unwrap() {
+            if !["mould-tray", "mould-core"].contains(&part.name.as_str()) {
+                continue;
+            }
+            moulds += 1;
+            let mut part = part;
+            part.tool_pose = part.tool_pose.or(Some(pinswitch_solid::pose::Pose::upright(0.0)));
+            let floor = design.configuration().mould.floor_mm;
+            let levels: Vec<f64> = levels_mm(&[&part])
+                .into_iter()
+                .filter(|z| *z > floor && *z < floor + design.layer_width_mm())
+                .collect();
+            let all = levels_mm(&[&part]);
+            for z in levels {
+                let here = section(&part, z);
+                for above in all.iter().filter(|a| **a > z) {
+                    let over = section(&part, *above);
+                    let outline: Vec<Point2> = over.polygons.iter().flatten().copied().collect();
+                    for p in outline {
+                        // Keys of the core stand beside the cavity.
+                        let covers =
+                            over.distance_mm(p) < 1e-3 && !here.holds(p) && here.distance_mm(p) > TOUCHING_MM;
+                        assert!(!covers || part.name == "mould-core", "{name}: {p} at {above} covers {z}");
+                    }
+                }
+            }
+        }
+        let tools: Vec<Part> =
+            printed(&design).unwrap().into_iter().filter(|p| p.tool_pose.is_some()).collect();
+        assert_eq!(overlap(&tools), None, "{name}");
+    }
+    assert!(moulds >= 20, "{moulds}");
+}
+
+/// A gang has as many cavities as layers, each as large as the layer, with a wall between their basins.
+#[test]
+fn a_gang_casts_as_many_layers_as_asked_for() {
+    for layers in [1, 2, 5] {
+        let layers_set = format!("mould.layers={layers}");
+        let design = design(&["mould.kind=one-piece", &layers_set]);
+        let tray = printed(&design).unwrap().into_iter().find(|p| p.name == "mould-tray").unwrap();
+        let at = |z: f64| -> Vec<Contour> { tray.solid.section(z) };
+        let cavities: Vec<Contour> = at(5.0).into_iter().filter(|c| c.area_mm2() < 0.0).collect();
+        assert_eq!(cavities.len(), layers);
+        let layer = silicone_layer(&design).unwrap().solid.volume_mm3() / design.layer_width_mm();
+        assert!(cavities.iter().all(|c| (c.area_mm2() + layer).abs() < 1e-9));
+        let wall = design.configuration().mould.wall_mm;
+        let thinnest = tray.solid.thin_places(wall - 1e-3);
+        assert!(thinnest.is_empty(), "{layers}: {thinnest:?}");
+        let (low, high) = tray.solid.bounds().unwrap();
+        if layers > 1 {
+            let [x, y] = gang_mm(&design);
+            assert!((high.x - low.x - x).abs() < 1e-9 && (high.y - low.y - y).abs() < 1e-9);
+        }
+    }
+}
+
+/// The one rule for thin places: no part of the published layouts has one, whatever it is mounted by.
+#[test]
+fn no_part_of_the_defaults_has_a_thin_place() {
+    for mount in ["none", "flange", "finger-link", "rig"] {
+        for kind in ["screw", "nut-trap", "insert"] {
+            for mould in ["split", "one-piece"] {
+                let set = [
+                    format!("mount.kind={mount}"),
+                    format!("fasteners.kind={kind}"),
+                    format!("mould.kind={mould}"),
+                    "layout.pins=[5, 8, 11]".to_owned(),
+                ];
+                let design = design(&set.iter().map(String::as_str).collect::<Vec<_>>());
+                for part in printed(&design).unwrap() {
+                    assert_eq!(part.thin_warning(&design), None, "{set:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn thin_places_are_reported_with_part_place_and_remedy() {
+    // Without stops the proxy keeps the end walls of the published layer, 0.64 mm, and plates are thin beside their slots.
+    let bare = design(&["shell.stop_mm=0"]);
+    let warning = |name: &str| {
+        let part = printed(&bare).unwrap().into_iter().find(|p| p.name == name).unwrap();
+        part.thin_warning(&bare)
+    };
+    let proxy = warning("proxy").unwrap();
+    assert!(proxy.starts_with("proxy: a wall of 0.64 mm") && proxy.contains("at radius 22.0 mm"), "{proxy}");
+    assert!(proxy.contains("and one more place: raise segment.end_margin_mm"), "{proxy}");
+    assert!(warning("support-left").unwrap().contains("a wall of 0.54 mm"));
+    // The shell's end walls have a rule of their own, which says by how much to mend them: nothing is told twice.
+    assert_eq!(warning("shell"), None);
+    assert!(bare.warnings().iter().any(|w| w.contains("end walls are 0.54 mm")), "{:?}", bare.warnings());
+    // The wall that was once left between funnel and key hole, 0.61 mm, is what the rule finds.
+    let lid = printed(&design(&[])).unwrap().into_iter().find(|p| p.name == "mould-lid").unwrap();
+    let thinnest = lid.solid.thin_places(3.0)[0].thickness_mm;
+    assert!(thinnest >= 0.9 - 1e-6, "{thinnest}");
+}
+
+/// The tendon's body is taut over pins and silicone, in the middle of the width, and is what the guide says it is.
+#[test]
+fn the_tendon_lies_on_pins_and_beside_them_on_silicone() {
+    let design = design(&["layout.pins=[5, 8, 11]"]);
+    let touching = touches(&design);
+    let pins: Vec<_> = touching.iter().filter_map(|t| t.pin).collect();
+    assert_eq!(pins, [0, 1, 2]);
+    let beside: Vec<_> = touching.iter().filter(|t| t.pin.is_none()).collect();
+    assert_eq!(beside.len(), 2);
+    assert!((beside[1].to_rad - design.half_wrap_rad()).abs() < 1e-9);
+    assert!((beside[0].from_rad + beside[1].to_rad).abs() < 1e-9);
+    // Tangents of the pins' discs and the layer's: by hand, from the law of cosines.
+    let pin = design.pin_angles_rad()[2];
+    let (far, near) = (22.0f64, 22.0 + 0.85);
+    let turn = ((near - (0.47 + 0.85)) / far).acos();
+    assert!((beside[1].from_rad - (pin + turn)).abs() < 1e-9, "{beside:?}");
+    let tendon = reference_bodies(&design).unwrap().pop().unwrap();
+    assert_eq!(tendon.role, Role::Tendon);
+    let (low, high) = tendon.solid.bounds().unwrap();
+    assert!((low.z + high.z).abs() < 1e-9 && high.z < 0.85 && high.z > 0.8);
+    // A twelve-sided bar of its length.
+    let area = 3.0 * 0.85f64.powi(2);
+    let length = tendon.solid.volume_mm3() / area;
+    assert!((60.0..70.0).contains(&length), "{length}");
+    let bare = self::design(&[]);
+    assert_eq!(touches(&bare).len(), 1);
+}
+
+/// The rig's tendon runs on over the guide pulley: tangent to both, at one height.
+#[test]
+fn the_guide_pulley_lies_where_the_tendon_runs() {
+    let design = design(&["mount.kind=rig", "layout.pins=[5, 8, 11]"]);
+    assert_eq!(design.configuration().mount.kind, MountKind::Rig);
+    let parts = assembled(&design);
+    let pulley = parts.iter().find(|p| p.name == "guide-pulley").unwrap();
+    let middle = design.configuration().shell.width_mm / 2.0;
+    let groove = section(pulley, middle);
+    let outline = groove.exact.iter().max_by(|a, b| a.area_mm2().total_cmp(&b.area_mm2())).unwrap();
+    let radius = (outline.area_mm2() / std::f64::consts::PI).sqrt();
+    assert!((radius - 22.0).abs() < 1e-9, "{radius}");
+    let axle = design.mounting().unwrap().axle.unwrap().centre;
+    let (low, high) = outline.bounds();
+    assert!((nalgebra::center(&low, &high) - axle).norm() < 1e-9);
+    // The straight part of the tendon's axis is as far from the axle as groove and half a tendon.
+    let leaves = polar(1.0, -design.half_wrap_rad());
+    let reach = axle.coords.dot(&leaves.coords);
+    assert!((design.tendon_axis_radius_mm() - reach - (22.0 + 0.85)).abs() < 1e-9);
+}
+
+/// The sheath stop's channel has the tendon's axis in its middle, and its step the sheath's end.
+#[test]
+fn the_sheath_ends_on_a_step_around_the_tendon() {
+    let design = design(&["mount.kind=flange", "tendon.sheath_diameter_mm=3", "layout.pins=[5, 8, 11]"]);
+    let parts = assembled(&design);
+    let part = parts.iter().find(|p| p.name == "sheath-stop").unwrap();
+    let stop = design.mounting().unwrap().sheath.unwrap();
+    let middle = section(part, design.configuration().shell.width_mm / 2.0);
+    for (along, free) in [(2.0, 0.85 + 0.2), (12.0, 1.5 + 0.2)] {
+        let p = stop.start + stop.along * along;
+        assert!(!middle.holds(p));
+        assert!((middle.distance_mm(p) - free).abs() < 1e-9, "{along}: {}", middle.distance_mm(p));
+    }
+    // The sheath rests on the base.
+    let floor = design.sheath_floor_mm() - design.configuration().support.plate_mm;
+    assert!((design.configuration().shell.width_mm / 2.0 - 1.5 - floor).abs() < 1e-9);
+}

@@ -1,0 +1,84 @@
+//! Holes for screws, nuts, heads, inserts and dowels in shell and plates (cad/doc/dimensions.md, "Fasteners").
+
+use super::holes_at;
+use crate::design::{Design, Recess};
+use pinswitch_solid::profile::{Contour, OffsetError, Point2, Vector2, polar};
+use pinswitch_solid::solid::{Facing, RingId, Solid};
+
+/// Rings at the bottom and at the top of a part: holes in its caps.
+pub(super) type Mouths = (Vec<RingId>, Vec<RingId>);
+
+/// Clearance holes for the screws, clockwise.
+fn clearance_holes(design: &Design) -> Vec<Contour> {
+    let radius = design.configuration().fasteners.hole_diameter_mm / 2.0;
+    holes_at(design.fastener_radius_mm(), &design.fastener_angles_rad(), radius)
+}
+
+/// Holes for dowels, clockwise.
+pub(super) fn dowel_holes(design: &Design) -> Vec<Contour> {
+    let radius = design.dowel_hole_radius_mm().unwrap_or_default();
+    holes_at(design.fastener_radius_mm(), &design.dowel_angles_rad(), radius)
+}
+
+/// The shell's holes: clearance holes, or at both ends those for inserts, with a narrower one between for the tips of
+/// the screws.
+pub(super) fn shell_holes(solid: &mut Solid, design: &Design) -> Result<Mouths, OffsetError> {
+    let c = design.configuration();
+    let (width, chamfer) = (c.shell.width_mm, c.print.elephant_foot_mm);
+    let narrow = clearance_holes(design);
+    let Some([bore, length]) = design.fastening().insert_mm else {
+        return solid.through_holes(&narrow, 0.0, width, chamfer);
+    };
+    let wide = holes_at(design.fastener_radius_mm(), &design.fastener_angles_rad(), bore / 2.0);
+    let mut mouths = Mouths::default();
+    for (wide, narrow) in wide.iter().zip(&narrow) {
+        let (bottom, ceiling) = solid.extrude_chamfered(wide, 0.0, length, chamfer)?;
+        let (foot, head) = solid.extrude(narrow, length, width - length);
+        let (floor, top) = solid.extrude(wide, width - length, width);
+        solid.cap(Facing::Down, ceiling, &[foot]);
+        solid.cap(Facing::Up, floor, &[head]);
+        mouths.0.push(bottom);
+        mouths.1.push(top);
+    }
+    Ok(mouths)
+}
+
+/// The holes of a plate `plate_mm` thick, whose outer face lies on the bed: clearance holes, or blind ones above a recess.
+/// A membrane stays between the two, over which the printer bridges; the screw breaks through it.
+pub(super) fn plate_holes(
+    solid: &mut Solid,
+    design: &Design,
+    recess: Option<Recess>,
+    plate_mm: f64,
+) -> Result<Mouths, OffsetError> {
+    let print = &design.configuration().print;
+    let holes = clearance_holes(design);
+    let Some(recess) = recess else {
+        return solid.through_holes(&holes, 0.0, plate_mm, print.elephant_foot_mm);
+    };
+    let floor = recess.depth_mm + design.membrane_mm();
+    let mut mouths = Mouths::default();
+    for (angle, hole) in design.fastener_angles_rad().into_iter().zip(&holes) {
+        // The right plate is printed as its mirror image, and its holes lie alike on both sides.
+        mouths.0.push(solid.recess(&outline(design, &recess, angle), &[], 0.0, recess.depth_mm));
+        mouths.1.push(solid.pocket(hole, &[], floor, plate_mm));
+    }
+    Ok(mouths)
+}
+
+/// The recess about the fastener at `angle_rad`, clockwise; a hexagon has two sides along the arc.
+fn outline(design: &Design, recess: &Recess, angle_rad: f64) -> Contour {
+    let middle = polar(design.fastener_radius_mm(), angle_rad);
+    if !recess.is_hexagon {
+        return Contour::circle(middle, recess.radial_mm).reversed();
+    }
+    let up = polar(1.0, angle_rad).coords;
+    let right = Vector2::new(up.y, -up.x);
+    let corner =
+        |x: f64, y: f64| -> Point2 { middle + right * (x * recess.along_mm) + up * (y * recess.radial_mm) };
+    Contour::polygon(
+        [(1.0, 0.0), (0.5, -1.0), (-0.5, -1.0), (-1.0, 0.0), (-0.5, 1.0), (0.5, 1.0)]
+            .map(|(x, y)| corner(x, y))
+            .to_vec(),
+    )
+}

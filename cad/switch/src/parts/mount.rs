@@ -1,0 +1,147 @@
+//! What the switch is mounted by: a plate beside the left support, the spacer of the rig's pulley, and the stop of a
+//! sheath (cad/doc/dimensions.md, "Mounting").
+
+use super::{Part, Pose, Role, fastening, offset_error};
+use crate::config::{ConfigError, Configuration, MountKind};
+use crate::design::{Design, SheathStop, pulley_width_mm};
+use pinswitch_solid::profile::{Contour, Point2, Vector2, hull};
+use pinswitch_solid::solid::{Facing, Solid};
+
+/// Shoulder of a 608 bearing's inner ring, mm (ISO 15: bore 8, outer diameter 22, width 7).
+const SPACER_RADIUS_MM: f64 = 6.0;
+/// Play around the sheath and around the tendon in the sheath stop, mm.
+const STOP_PLAY_MM: f64 = 0.2;
+/// Share of the sheath stop that the sheath reaches into.
+const SHEATH_SHARE: f64 = 0.6;
+/// How far its jaws stand back from the edge of its base, mm: two coincident walls would not be a solid.
+const STAND_BACK_MM: f64 = 0.5;
+/// From a screw's hole to the jaw beside it, with the wall beyond the hole, mm: the head of an M3 screw turns there.
+const JAW_AIR_MM: f64 = 3.5;
+
+/// The name of the plate of a kind of mount.
+fn name(kind: MountKind) -> &'static str {
+    match kind {
+        MountKind::FingerLink => "finger-link",
+        MountKind::Rig => "rig-plate",
+        MountKind::Flange | MountKind::None => "base-flange",
+    }
+}
+
+pub(super) fn has_plate(c: &Configuration, kind: MountKind) -> bool {
+    c.mount.kind == kind
+}
+
+pub(super) fn has_sheath_stop(c: &Configuration) -> bool {
+    c.mount.kind != MountKind::None && c.tendon.sheath_diameter_mm > 0.0
+}
+
+/// Height of the plate's inner face in the assembly, mm.
+fn face_mm(design: &Design) -> f64 {
+    -design.configuration().support.plate_mm
+}
+
+fn no_plate() -> ConfigError {
+    ConfigError {
+        field: "mount.kind".to_owned(),
+        value: None,
+        problem: "has no plate".to_owned(),
+        remedy: "set it to \"flange\"".to_owned(),
+        place: None,
+    }
+}
+
+/// The plate: the hull of discs around all its holes, printed on its outer face.
+pub(super) fn plate(design: &Design) -> Result<Part, ConfigError> {
+    let c = design.configuration();
+    let (thickness, chamfer) = (c.mount.plate_mm, c.print.elephant_foot_mm);
+    let foot = offset_error("print.elephant_foot_mm");
+    let mounting = design.mounting().ok_or_else(no_plate)?;
+    let outline = hull(&mounting.discs).ok_or_else(no_plate)?;
+    let screws = mounting.sheath.iter().flat_map(|s| s.screws);
+    let holes: Vec<_> = mounting
+        .holes
+        .iter()
+        .copied()
+        .chain(mounting.axle)
+        .chain(screws)
+        .map(|h| Contour::circle(h.centre, h.radius_mm).reversed())
+        .collect();
+    let mut solid = Solid::new();
+    let (bottom, top) = solid.extrude_chamfered(&outline, 0.0, thickness, chamfer).map_err(&foot)?;
+    let (mut bottoms, mut tops) = solid.through_holes(&holes, 0.0, thickness, chamfer).map_err(&foot)?;
+    let recess = design.fastening().recess(true);
+    let (screw_bottoms, screw_tops) =
+        fastening::plate_holes(&mut solid, design, recess, thickness).map_err(&foot)?;
+    bottoms.extend(screw_bottoms);
+    tops.extend(screw_tops);
+    solid.cap(Facing::Down, bottom, &bottoms);
+    solid.cap(Facing::Up, top, &tops);
+    let pose = Pose::upright(face_mm(design) - thickness);
+    let kind = c.mount.kind;
+    Ok(Part::new(name(kind), Role::Mount, solid, Some(pose)))
+}
+
+/// Length of the spacer between plate and bearing, mm: the pulley's groove lies where the tendon runs.
+pub fn spacer_mm(design: &Design) -> f64 {
+    let c = design.configuration();
+    c.support.plate_mm + c.shell.width_mm / 2.0 - pulley_width_mm(design.tendon_diameter_mm()) / 2.0
+}
+
+/// The spacer under the rig's pulley.
+pub(super) fn spacer(design: &Design) -> Result<Part, ConfigError> {
+    let mounting = design.mounting().ok_or_else(no_plate)?;
+    let axle = mounting.axle.ok_or_else(no_plate)?;
+    let ring = Contour::circle(axle.centre, SPACER_RADIUS_MM);
+    let bore = Contour::circle(axle.centre, axle.radius_mm).reversed();
+    let chamfer = design.configuration().print.elephant_foot_mm;
+    let solid = Solid::prism(&ring, &[bore], 0.0, spacer_mm(design), chamfer)
+        .map_err(offset_error("print.elephant_foot_mm"))?;
+    Ok(Part::new("pulley-spacer", Role::Mount, solid, Some(Pose::upright(face_mm(design)))))
+}
+
+/// A point of the sheath stop: along the tendon from its start, and outward from the tendon's axis.
+fn at(stop: &SheathStop, along_mm: f64, outward_mm: f64) -> Point2 {
+    let outwards = Vector2::new(-stop.along.y, stop.along.x);
+    stop.start + stop.along * along_mm + outwards * outward_mm
+}
+
+/// The stop in which a sheath ends: a base with two jaws that leave a channel for the tendon, and a wider one, as long as
+/// [`SHEATH_SHARE`], for the sheath, whose end rests on the step between them. Open above, so that the tendon is laid in.
+pub(super) fn sheath_stop(design: &Design) -> Result<Part, ConfigError> {
+    let c = design.configuration();
+    let mounting = design.mounting().ok_or_else(no_plate)?;
+    let stop = mounting.sheath.ok_or_else(no_plate)?;
+    let foot = offset_error("print.elephant_foot_mm");
+    let (length, half, chamfer) = (stop.length_mm, stop.half_width_mm, c.print.elephant_foot_mm);
+    let (tendon, sheath) = (design.tendon_diameter_mm() / 2.0, c.tendon.sheath_diameter_mm / 2.0);
+    // The tendon's axis lies in the middle of the switch's width.
+    let axis = c.support.plate_mm + c.shell.width_mm / 2.0;
+    let floor = design.sheath_floor_mm();
+    let top = axis + sheath;
+    let quad = |points: [(f64, f64); 4]| Contour::polygon(points.map(|(x, y)| at(&stop, x, y)).to_vec());
+    let base = quad([(0.0, -half), (length, -half), (length, half), (0.0, half)]);
+    let screws: Vec<_> =
+        stop.screws.iter().map(|h| Contour::circle(h.centre, h.radius_mm).reversed()).collect();
+    let mut solid = Solid::new();
+    let (bottom, deck) = solid.extrude_chamfered(&base, 0.0, floor, chamfer).map_err(&foot)?;
+    let (bottoms, mut standing) = solid.through_holes(&screws, 0.0, floor, chamfer).map_err(&foot)?;
+    solid.cap(Facing::Down, bottom, &bottoms);
+    let step = length * (1.0 - SHEATH_SHARE);
+    let jaw_half = stop.half_width_mm - 2.0 * stop.screws[0].radius_mm - JAW_AIR_MM;
+    for side in [-1.0, 1.0] {
+        let jaw = |x: f64, y: f64| at(&stop, x, side * y);
+        let points = [
+            jaw(STAND_BACK_MM, tendon + STOP_PLAY_MM),
+            jaw(step, tendon + STOP_PLAY_MM),
+            jaw(step, sheath + STOP_PLAY_MM),
+            jaw(length - STAND_BACK_MM, sheath + STOP_PLAY_MM),
+            jaw(length - STAND_BACK_MM, jaw_half),
+            jaw(STAND_BACK_MM, jaw_half),
+        ];
+        let outline = Contour::polygon(points.to_vec());
+        let outline = if outline.area_mm2() < 0.0 { outline.reversed() } else { outline };
+        standing.push(solid.boss(&outline, floor, top));
+    }
+    solid.cap(Facing::Up, deck, &standing);
+    Ok(Part::new("sheath-stop", Role::Mount, solid, Some(Pose::upright(face_mm(design)))))
+}

@@ -112,9 +112,8 @@ fn another_kind_of_file_is_recognised_before_it_is_read() {
         let path = entry.unwrap().path();
         let kind = path.extension().unwrap_or_default().to_string_lossy().into_owned();
         let word = match kind.as_str() {
-            "3mf" => "3MF",
-            "step" => "STEP",
             "dxf" => "DXF",
+            "pdf" => "PDF",
             _ => continue,
         };
         let (code, said) = ended(folder.path(), &["check", &path.to_string_lossy()]);

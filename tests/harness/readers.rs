@@ -19,7 +19,8 @@ use pinswitch_calibration::segmentation::{Log, RunPlan, segment};
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_friction::Substrate;
 use pinswitch_simulation::{Plan, simulate};
-use pinswitch_solid::files::{read_stl, stl_bytes};
+use pinswitch_solid::files::{read_step, read_stl, read_three_mf, stl_bytes};
+use pinswitch_solid::profile::ChordTolerance;
 use pinswitch_solid::validity::{Expectation, examine};
 use pinswitch_switch::ask::Ask;
 use pinswitch_switch::config::{Configuration, read, read_over, to_toml};
@@ -46,7 +47,7 @@ pub struct Reader {
 }
 
 /// All of them.
-pub const READERS: [Reader; 15] = [
+pub const READERS: [Reader; 17] = [
     Reader { name: "configuration", judge: configuration },
     Reader { name: "preset", judge: preset },
     Reader { name: "ask", judge: ask },
@@ -60,6 +61,8 @@ pub const READERS: [Reader; 15] = [
     Reader { name: "effects", judge: effects },
     Reader { name: "sweep", judge: sweep },
     Reader { name: "stl", judge: stl },
+    Reader { name: "three_mf", judge: three_mf },
+    Reader { name: "step", judge: step },
     Reader { name: "shard_table", judge: shard_table },
     Reader { name: "batch_files", judge: batch_files },
 ];
@@ -387,6 +390,39 @@ fn stl(bytes: &[u8]) -> Result<Reading, String> {
     Ok(Reading::Accepted)
 }
 
+/// A 3MF, whose meshes are then examined as an STL is.
+fn three_mf(bytes: &[u8]) -> Result<Reading, String> {
+    let package = match read_three_mf(bytes) {
+        Ok(package) => package,
+        Err(e) => return refused(&e),
+    };
+    for fault in &package.faults {
+        let text = fault.to_string();
+        require(!text.is_empty() && text.chars().count() < LONGEST, || format!("a fault: {text:.200}"))?;
+    }
+    for object in package.meshes.iter().filter(|o| o.mesh.triangles.len() < 20_000) {
+        let corners = object.mesh.positions.len();
+        let inside = object.mesh.triangles.iter().flatten().all(|i| (*i as usize) < corners);
+        require(inside, || "a triangle names a vertex that is not there".to_owned())?;
+        examine(&object.mesh, &Expectation::default());
+    }
+    Ok(Reading::Accepted)
+}
+
+/// A STEP file, whose solids are then examined as an STL is.
+fn step(bytes: &[u8]) -> Result<Reading, String> {
+    let tolerance = ChordTolerance::new(0.05).map_err(|e| e.to_string())?;
+    let file = match read_step(&String::from_utf8_lossy(bytes), tolerance) {
+        Ok(file) => file,
+        Err(e) => return refused(&e),
+    };
+    require(!file.solids.is_empty(), || "a STEP without solids".to_owned())?;
+    for solid in file.solids.iter().filter(|s| s.mesh.triangles.len() < 20_000) {
+        examine(&solid.mesh, &Expectation::default());
+    }
+    Ok(Reading::Accepted)
+}
+
 /// The sweep of the batches that are judged: two variants of one part.
 const SMALL_SWEEP: &str = "[sweep]\nname = \"small\"\nparts = [\"coupon\"]\n[set]\n\"friction.points\" = 2\n\
                            [axes]\n\"tendon.length_mm\" = [200, 300]\n";
@@ -442,6 +478,14 @@ pub fn sealed(json: &[u8]) -> Vec<u8> {
     let body = body.strip_suffix(b"}").unwrap_or(body).trim_ascii_end();
     let hash: String = Sha256::digest(body).iter().map(|b| format!("{b:02x}")).collect();
     [body, format!(",\n  \"checksum\": \"{hash}\"\n}}\n").as_bytes()].concat()
+}
+
+/// The table of a finished shard: its columns are those of the parameters of today, so that the corpus cannot keep one for
+/// good.
+pub fn finished_shard_table() -> Result<Vec<u8>, String> {
+    let shards = Shards::new()?;
+    let table = shards.files.into_iter().find(|(name, _)| name.ends_with(".parquet"));
+    table.map(|(_, bytes)| bytes).ok_or_else(|| "a shard without a table".to_owned())
 }
 
 /// Two finished shards of one variant each, and what merging them makes.

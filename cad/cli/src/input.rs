@@ -1,6 +1,8 @@
 //! Reading a file that the user names, and knowing afterwards which ones were read: no command writes over its own input.
 
 use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -9,6 +11,8 @@ use pinswitch_switch::config::text;
 
 /// Longest configuration, plan, model or report: some hundred times the longest that anybody writes.
 const MAX_TEXT: u64 = 16 << 20;
+/// Longest configuration, if a 3MF holds it.
+const MAX_PACKAGE: u64 = 256 << 20;
 /// Longest table or log: some million rows.
 const MAX_TABLE: u64 = 1 << 30;
 
@@ -18,6 +22,18 @@ const MAX_TABLE: u64 = 1 << 30;
 /// [`Failure::BadInput`] names the file, where it is no text, and what to do.
 pub(super) fn read_text_file(path: &Path) -> Result<String, Failure> {
     text(read_at_most(path, MAX_TEXT)?, &path.display().to_string()).map_err(Failure::bad_input)
+}
+
+/// The bytes of the configuration at `path`: a text, or the 3MF of a set.
+///
+/// # Errors
+/// [`Failure::BadInput`] names the file and what to do.
+pub(super) fn read_configuration(path: &Path) -> Result<Vec<u8>, Failure> {
+    let mut begin = [0; 2];
+    let is_package = path.is_file()
+        && File::open(path).and_then(|mut f| f.read_exact(&mut begin)).is_ok()
+        && begin == *b"PK";
+    read_at_most(path, if is_package { MAX_PACKAGE } else { MAX_TEXT })
 }
 
 /// Every file that was read, without links and dots.

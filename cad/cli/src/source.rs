@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::Failure;
 use pinswitch_friction::excerpt;
+use pinswitch_solid::files::read_three_mf;
 use pinswitch_switch::config::{
     ConfigError, Configuration, Name, Place, Places, assign, read, read_over, text,
 };
@@ -16,7 +17,8 @@ use pinswitch_switch::templates;
 /// A configuration and what is laid over it.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Source {
-    /// A TOML file, or the name of a template (see `pinswitch layouts`).
+    /// A TOML file, the assembly.3mf of a set, which holds its configuration, or the name of a template (see `pinswitch
+    /// layouts`).
     config: String,
     /// A template or file whose values lie under the configuration, such as printer-fff-0.4.
     #[arg(long, value_name = "NAME|FILE")]
@@ -59,7 +61,7 @@ impl Source {
     /// # Errors
     /// As [`Self::design`].
     pub(super) fn design_from(&self, bytes: Vec<u8>) -> Result<Design, Failure> {
-        let text = text(bytes, &self.config).map_err(Failure::bad_input)?;
+        let (text, _) = configuration_text(bytes, &self.config)?;
         self.design_of_text(&text, &self.config)
     }
 
@@ -89,9 +91,13 @@ impl Source {
     /// # Errors
     /// As [`Self::design`].
     pub(super) fn design_and_origin(&self) -> Result<(Design, Origin), Failure> {
-        let (text, file) = read_text(&self.config)?;
+        let (text, file, kind) = read_configuration_text(&self.config)?;
         let design = self.design_of_text(&text, &file)?;
-        Ok((design, Origin::of(&file, &text)))
+        let origin = match kind {
+            Kind::Text => Origin::of(&file, &text),
+            Kind::Package => Origin::of_package(&file, design.configuration()),
+        };
+        Ok((design, origin))
     }
 
     fn design_of_text(&self, text: &str, file: &str) -> Result<Design, Failure> {
@@ -116,20 +122,46 @@ impl Source {
 
 /// The text of a file or template, and the name to use for it in errors.
 pub(super) fn read_text(name: &str) -> Result<(String, String), Failure> {
+    read_configuration_text(name).map(|(text, file, _)| (text, file))
+}
+
+/// What a configuration is read from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// A TOML file, or a template.
+    Text,
+    /// A 3MF with a configuration in it.
+    Package,
+}
+
+fn read_configuration_text(name: &str) -> Result<(String, String, Kind), Failure> {
     let path = Path::new(name);
     let bare = name.strip_prefix("templates/").unwrap_or(name);
     let bare = bare.strip_suffix(".toml").unwrap_or(bare);
     // A folder that has the name of a template, such as the one that its set went to, is not in the way.
     if path.exists() && !(path.is_dir() && templates::text(bare).is_some()) {
-        let text = crate::input::read_text_file(path)?;
-        return Ok((text, name.to_owned()));
+        let (text, kind) = configuration_text(crate::input::read_configuration(path)?, name)?;
+        return Ok((text, name.to_owned(), kind));
     }
-    templates::text(bare).map(|text| (text, name.to_owned())).ok_or_else(|| {
+    templates::text(bare).map(|text| (text, name.to_owned(), Kind::Text)).ok_or_else(|| {
         let names = templates::names();
         let near = names.iter().max_by(|a, b| strsim::jaro_winkler(bare, a).total_cmp(&strsim::jaro_winkler(bare, b)));
         let near = near.copied().unwrap_or_default();
         Failure::bad_input(format!(
             "{name}: no such file or template; the nearest template is {near:?}, `pinswitch layouts` lists all"
+        ))
+    })
+}
+
+/// The text of a configuration: the file itself, or what a 3MF of ours has in it.
+fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Failure> {
+    if !bytes.starts_with(b"PK") {
+        return text(bytes, file).map(|text| (text, Kind::Text)).map_err(Failure::bad_input);
+    }
+    let package = read_three_mf(&bytes).map_err(|e| Failure::bad_input(format!("{file}: {e}")))?;
+    package.configuration.map(|text| (text, Kind::Package)).ok_or_else(|| {
+        Failure::bad_input(format!(
+            "{file}: holds no configuration; give a TOML file, or an assembly.3mf that pinswitch wrote"
         ))
     })
 }
@@ -144,6 +176,18 @@ pub(super) enum Origin {
 }
 
 impl Origin {
+    /// Of a 3MF: a template that makes the same set made it, and otherwise the file stands for what did.
+    fn of_package(file: &str, configuration: &Configuration) -> Self {
+        let name = configuration.switch.name.to_string();
+        let template = templates::text(&name).and_then(|text| read(&text, &name).ok());
+        // A template takes its name from its file.
+        let makes_it = template.is_some_and(|(mut template, _)| {
+            template.switch.name.clone_from(&configuration.switch.name);
+            template == *configuration
+        });
+        if makes_it { Self::Template(name) } else { Self::File(PathBuf::from(file)) }
+    }
+
     fn of(file: &str, text: &str) -> Self {
         let (path, stem) = (Path::new(file), stem(file));
         // A template's own file, as in this repository, is the template.

@@ -1,6 +1,7 @@
-//! Files of any solid or mesh: STL, 3MF, STEP and DXF, as bytes.
+//! Files of any solid or mesh: STL, 3MF, STEP, DXF and GLB, as bytes.
 
 mod dxf;
+mod glb;
 mod kind;
 mod plate;
 mod step;
@@ -11,6 +12,7 @@ mod three_mf;
 mod vertex_join;
 
 pub use dxf::dxf;
+pub use glb::{GlbBody, GlbError, GlbMaterial, glb};
 pub use plate::lay_out;
 #[cfg(feature = "brep")]
 pub use step::{ReadSolid, StepFile, StepReadError, read_step};

@@ -35,7 +35,9 @@ pub fn to_toml(configuration: &Configuration) -> String {
     let mut section = "";
     for parameter in Configuration::PARAMETERS {
         let value = (parameter.get)(configuration).to_string();
-        if value == (parameter.get)(&defaults).to_string() {
+        // A file without a name would lend its own.
+        let is_name = (parameter.section, parameter.key) == ("switch", "name");
+        if !is_name && value == (parameter.get)(&defaults).to_string() {
             continue;
         }
         if parameter.section != section {

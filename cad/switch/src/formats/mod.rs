@@ -52,6 +52,7 @@ formats! {
     curve,
     three_mf,
     step,
+    glb,
     drawing,
     dxf,
     guide,

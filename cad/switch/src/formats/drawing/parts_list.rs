@@ -39,7 +39,8 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
         });
     };
     let material = |part: &Part| words::material(design, part.material());
-    for part in assembled.iter().filter(|p| !matches!(p.role, Role::Pin { .. })) {
+    // Pins and tendon are bought, and listed as such.
+    for part in assembled.iter().filter(|p| !matches!(p.role, Role::Pin { .. } | Role::Tendon)) {
         let name = &part.name;
         add("1".to_owned(), designation(name), part_number(built, name), material(part), name);
     }
@@ -56,9 +57,29 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
         let shown = middle.map_or_else(|| pin.name.clone(), |p| p.name.clone());
         add(bill.pins.number.to_string(), words, part_number(built, "pin"), material(pin), &shown);
     }
+    let mut bought = |quantity: usize, words: String, shown: &str| {
+        add(quantity.to_string(), words, "bought".to_owned(), "Steel".to_owned(), shown);
+    };
     if let Some(screws) = &bill.fasteners {
-        let words = format!("Screw {} \u{d7} {} with nut", screws.thread, number(screws.length_mm));
-        add(screws.number.to_string(), words, "bought".to_owned(), "Steel".to_owned(), "screw");
+        let with = if screws.nuts > 0 { " with nut" } else { "" };
+        bought(
+            screws.number,
+            format!("Screw {} \u{d7} {}{with}", screws.thread, number(screws.length_mm)),
+            "screw",
+        );
+        if screws.inserts > 0 {
+            bought(screws.inserts, format!("Heat-set insert {}", screws.thread), "");
+        }
+    }
+    if let Some(dowels) = &bill.dowels {
+        let words = format!("Dowel \u{d8}{} \u{d7} {}", number(dowels.diameter_mm), number(dowels.length_mm));
+        bought(dowels.number, words, "");
+    }
+    let mount = bill.mount.as_ref();
+    for words in
+        mount.into_iter().flat_map(|m| [m.bearing.map(str::to_owned), m.axle.clone(), m.sheath_stop.clone()])
+    {
+        words.into_iter().for_each(|words| bought(1, words, ""));
     }
     let tendon = format!(
         "Tendon \u{d8}{}, rope \u{d8}{}, {} long",

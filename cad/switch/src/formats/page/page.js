@@ -324,7 +324,13 @@ function fillTables(data) {
     rows.push(['silicone, to mix', `${bill.silicone.mix_g.toFixed(1)} g`, `${bill.silicone.base_g.toFixed(1)} g base + ${bill.silicone.agent_g.toFixed(1)} g agent`]);
   }
   rows.push(['tendon', `${bill.tendon.length_mm} mm`, `${bill.tendon.rope_diameter_mm} mm, ${bill.tendon.outer_diameter_mm.toFixed(2)} mm coated`]);
-  if (bill.fasteners) rows.push(['screws with nuts', bill.fasteners.number, `${bill.fasteners.thread} x ${bill.fasteners.length_mm} mm`]);
+  if (bill.fasteners) {
+    const { number, thread, length_mm, nuts, inserts } = bill.fasteners;
+    rows.push([nuts ? 'screws with nuts' : 'screws', number, `${thread} x ${length_mm} mm`]);
+    if (inserts) rows.push(['heat-set inserts', inserts, thread]);
+  }
+  if (bill.dowels) rows.push(['dowels', bill.dowels.number, `${bill.dowels.diameter_mm} x ${bill.dowels.length_mm} mm`]);
+  for (const item of [bill.mount?.bearing, bill.mount?.axle, bill.mount?.sheath_stop]) if (item) rows.push([item, 1, 'for the mount']);
   byId('bill').replaceChildren(table(['item', 'quantity', 'size'], rows));
   byId('parts').replaceChildren(table(['part', 'mass (g)', 'volume (mm³)', 'triangles'],
     manifest.parts.map((p) => [p.name, p.mass_g.toFixed(2), p.volume_mm3.toFixed(2), p.mesh.triangles])));

@@ -1,0 +1,41 @@
+//! assembly.glb: the assembly with named bodies and materials, for viewers and web pages.
+
+use super::{Format, Inclusion};
+use crate::built::Built;
+use crate::documents::Manifest;
+use crate::output::{OutputFile, SetError};
+use crate::parts::Material;
+use crate::prediction::Prediction;
+use pinswitch_solid::files::{GlbBody, GlbMaterial, glb};
+use pinswitch_solid::mesh::Mesh;
+
+pub(super) const FORMAT: Format = Format {
+    name: "glb",
+    about: "assembly.glb: the assembly with materials, for viewers and web pages",
+    inclusion: Inclusion::Named,
+    make,
+};
+
+/// How much of what lies behind it silicone hides.
+const SILICONE_OPACITY: f64 = 0.78;
+
+fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
+    let placed: Vec<(&str, Mesh, GlbMaterial<'_>)> = built
+        .assembly()
+        .filter_map(|body| {
+            let mesh = body.part.pose?.apply(body.mesh.clone());
+            let (name, opacity) = match body.part.material() {
+                Material::Abs => ("ABS", 1.0),
+                Material::Silicone => ("silicone", SILICONE_OPACITY),
+                Material::Steel => ("steel", 1.0),
+            };
+            let metal = body.part.material() == Material::Steel;
+            let material = GlbMaterial { name, colour: body.part.role.colour(), opacity, metal };
+            Some((body.part.name.as_str(), mesh, material))
+        })
+        .collect();
+    let bodies: Vec<GlbBody<'_>> =
+        placed.iter().map(|(name, mesh, material)| GlbBody { name, mesh, material: *material }).collect();
+    let bytes = glb(manifest.name.as_ref(), &bodies).map_err(SetError::encoding)?;
+    Ok(vec![OutputFile::new("assembly.glb", bytes)])
+}

@@ -1,0 +1,106 @@
+//! 3MF, STEP and GLB of a set: judged by `check`, and the 3MF made into the set again.
+
+use crate::harness::{done, ended};
+
+/// Files of a folder with their bytes.
+fn files(folder: &std::path::Path) -> std::collections::BTreeMap<String, Vec<u8>> {
+    let entry = |e: std::io::Result<std::fs::DirEntry>| {
+        let path = e.unwrap().path();
+        (path.file_name().unwrap().to_string_lossy().into_owned(), std::fs::read(&path).unwrap())
+    };
+    std::fs::read_dir(folder).unwrap().map(entry).collect()
+}
+
+#[test]
+fn what_is_written_is_valid_and_what_is_broken_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    done(
+        folder.path(),
+        &["-q", "generate", "three-single", "--format", "3mf", "--format", "step", "--out", "set"],
+    );
+    let (code, said) =
+        ended(folder.path(), &["check", "set/assembly.3mf", "set/assembly.step", "set/shell.step", "--json"]);
+    assert_eq!(code, Some(0), "{said}");
+    let manifest: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("set/manifest.json")).unwrap()).unwrap();
+    let verdicts: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let volume = |part: &serde_json::Value| part["facts"]["volume_mm3"].as_f64().unwrap();
+    let exact = |name: &str| {
+        let parts = manifest["parts"].as_array().unwrap();
+        parts.iter().find(|p| p["name"] == name).unwrap()["volume_mm3"].as_f64().unwrap()
+    };
+    // Each solid has the volume that the manifest says of it, within what a chord tolerance of 0.01 mm leaves.
+    for (file, allowed) in [(0, 5e-3), (1, 5e-3), (2, 5e-3)] {
+        let parts = verdicts[file]["parts"].as_array().unwrap();
+        let shell = parts.iter().find(|p| p["name"].as_str().unwrap().contains("shell")).unwrap();
+        assert!((volume(shell) / exact("shell") - 1.0).abs() < allowed, "{file}: {}", volume(shell));
+    }
+    // Broken by hand.
+    let step = std::fs::read_to_string(folder.path().join("set/shell.step")).unwrap();
+    let broken = [
+        ("cut.step", step[..step.len() / 2].to_owned(), 2, "no whole STEP file"),
+        ("face.step", step.replacen("ADVANCED_FACE", "ADVANCED_FAKE", 1), 2, "not read here"),
+        ("unit.step", step.replace(".MILLI.,.METRE.", "$,.METRE."), 1, "unit"),
+        ("text.step", "ISO-10303-21;\nnothing\n".to_owned(), 2, "no whole STEP file"),
+        ("archive.3mf", "PK\u{3}\u{4} nothing".to_owned(), 2, "ZIP archive cannot be read"),
+    ];
+    for (name, text, code, words) in broken {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        let (found, said) = ended(folder.path(), &["check", name]);
+        assert!(found == Some(code) && said.contains(words), "{name}: {found:?} {said}");
+    }
+}
+
+#[test]
+fn the_3mf_of_a_set_makes_the_set_again() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("mine.toml"),
+        "[switch]\nname = \"a <b> & c\"\n[layout]\npins = [3, 8, 12]\n[shell]\nwidth_mm = 15\n"
+            .replace(['<', '>', '&'], "+"),
+    )
+    .unwrap();
+    for (config, name) in [("three-double", "first"), ("mine.toml", "second")] {
+        done(folder.path(), &["-q", "generate", config, "--out", name]);
+        let package = format!("{name}/assembly.3mf");
+        let again = format!("{name}-again");
+        done(folder.path(), &["-q", "generate", &package, "--out", &again]);
+        let (before, after) = (files(&folder.path().join(name)), files(&folder.path().join(&again)));
+        assert!(before.keys().eq(after.keys()));
+        for (file, bytes) in &before {
+            // The manifest names the file that a set was made from; a template is still the template.
+            assert!(after[file] == *bytes || (file == "manifest.json" && name == "second"), "{name}/{file}");
+        }
+    }
+    // A 3MF of another program holds no configuration.
+    let foreign = folder.path().join("foreign.3mf");
+    let mut archive = zip::ZipWriter::new(std::fs::File::create(&foreign).unwrap());
+    archive.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default()).unwrap();
+    std::io::Write::write_all(
+        &mut archive,
+        br#"<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources/><build/></model>"#,
+    )
+    .unwrap();
+    archive.finish().unwrap();
+    let (code, said) = ended(folder.path(), &["generate", "foreign.3mf"]);
+    assert!(code == Some(2) && said.contains("foreign.3mf: holds no configuration"), "{said}");
+}
+
+#[test]
+fn the_glb_names_every_body_of_the_assembly() {
+    let folder = tempfile::tempdir().unwrap();
+    done(folder.path(), &["-q", "generate", "three-double", "--format", "glb", "--out", "set"]);
+    let file = std::fs::read(folder.path().join("set/assembly.glb")).unwrap();
+    let length = u32::from_le_bytes(file[12..16].try_into().unwrap()) as usize;
+    let scene: serde_json::Value = serde_json::from_slice(&file[20..20 + length]).unwrap();
+    let names: Vec<&str> =
+        scene["nodes"].as_array().unwrap().iter().map(|n| n["name"].as_str().unwrap()).collect();
+    for name in ["shell", "support-left", "support-right", "silicone-layer", "pin-1", "pin-3", "tendon"] {
+        assert!(names.contains(&name), "{name} is not among {names:?}");
+    }
+    let materials: Vec<_> =
+        scene["materials"].as_array().unwrap().iter().map(|m| m["name"].clone()).collect();
+    for material in ["ABS", "silicone", "steel"] {
+        assert!(materials.contains(&material.into()), "{material}");
+    }
+}

@@ -40,7 +40,7 @@ fn what_is_written_is_valid_and_what_is_broken_is_not() {
     let broken = [
         ("cut.step", step[..step.len() / 2].to_owned(), 2, "no whole STEP file"),
         ("face.step", step.replacen("ADVANCED_FACE", "ADVANCED_FAKE", 1), 2, "not read here"),
-        ("unit.step", step.replace(".MILLI.,.METRE.", "$,.METRE."), 1, "unit"),
+        ("unit.step", step.replace(".MILLI.,.METRE.", "$,.METRE."), 2, "export it in millimetres"),
         ("text.step", "ISO-10303-21;\nnothing\n".to_owned(), 2, "no whole STEP file"),
         ("archive.3mf", "PK\u{3}\u{4} nothing".to_owned(), 2, "ZIP archive cannot be read"),
     ];

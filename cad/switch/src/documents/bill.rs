@@ -67,6 +67,9 @@ pub struct Fasteners {
     pub thread: &'static str,
     /// Length, mm: through all parts and the nut, or as far as the inserts.
     pub length_mm: f64,
+    /// Length of those that enter from the right, mm, where it is another: a mounting plate lies on the left only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub right_length_mm: Option<f64>,
     /// Nuts; 0 with inserts.
     pub nuts: usize,
     /// Heat-set inserts; 0 without.
@@ -167,18 +170,22 @@ fn fasteners(design: &Design) -> Option<Fasteners> {
     let number = c.fasteners.count;
     let fasteners = match fastening.insert_mm {
         Some([_, length]) => {
-            // As long as the insert and its share of the room between both allow; the thicker plate may need a longer one.
-            let plate = c.support.plate_mm + if has_mount { c.mount.plate_mm } else { 0.0 };
-            let most = plate - sunk + length.max(c.shell.width_mm / 2.0 - SCREW_AIR_MM);
-            let length_mm = SCREW_LENGTHS_MM.into_iter().rev().find(|l| *l <= most).unwrap_or(most.floor());
-            Fasteners { number: 2 * number, thread, length_mm, nuts: 0, inserts: 2 * number }
+            // From each side, as long as the insert and its share of the room between both allow.
+            let longest = |plates_mm: f64| {
+                let most = plates_mm - sunk + length.max(c.shell.width_mm / 2.0 - SCREW_AIR_MM);
+                SCREW_LENGTHS_MM.into_iter().rev().find(|l| *l <= most).unwrap_or(most.floor())
+            };
+            let right_mm = longest(c.support.plate_mm);
+            let length_mm = if has_mount { longest(c.support.plate_mm + c.mount.plate_mm) } else { right_mm };
+            let right_length_mm = (right_mm != length_mm).then_some(right_mm);
+            Fasteners { number: 2 * number, thread, length_mm, right_length_mm, nuts: 0, inserts: 2 * number }
         }
         None => {
             let plates = 2.0 * c.support.plate_mm + if has_mount { c.mount.plate_mm } else { 0.0 };
             let trapped = fastening.nut_trap.map_or(0.0, |r| r.depth_mm);
             let stack = c.shell.width_mm + plates + NUT * hole - sunk - trapped;
             let length_mm = SCREW_LENGTHS_MM.into_iter().find(|l| *l >= stack).unwrap_or(stack.ceil());
-            Fasteners { number, thread, length_mm, nuts: number, inserts: 0 }
+            Fasteners { number, thread, length_mm, right_length_mm: None, nuts: number, inserts: 0 }
         }
     };
     (number > 0).then_some(fasteners)
@@ -224,5 +231,24 @@ mod tests {
         let screws = bill.fasteners.unwrap();
         assert_eq!((screws.thread, screws.length_mm, screws.number), ("M3", 25.0, 2));
         assert_eq!((bill.pins.length_mm, bill.pins.spares), (18.0, 0));
+    }
+
+    #[test]
+    fn screws_from_both_sides_do_not_meet_whatever_plate_lies_on_one() {
+        for (plate_mm, recess_mm, width_mm) in
+            [(20.0, 0.0, 14.0), (10.0, 0.0, 14.0), (5.0, 1.5, 14.0), (5.0, 0.0, 14.0), (8.0, 0.0, 20.0)]
+        {
+            let text = format!(
+                "[fasteners]\nkind = \"insert\"\nhead_recess_mm = {recess_mm:?}\n[mount]\nkind = \"flange\"\nplate_mm = {plate_mm:?}\n[shell]\nwidth_mm = {width_mm:?}\n"
+            );
+            let (configuration, _) = crate::config::read(&text, "x.toml").unwrap();
+            let design = Design::new(configuration).unwrap();
+            let screws = bill_of_materials(&design).fasteners.unwrap();
+            let c = design.configuration();
+            let sunk = design.fastening().counterbore.map_or(0.0, |r| r.depth_mm);
+            let left = screws.length_mm - (c.support.plate_mm + c.mount.plate_mm - sunk);
+            let right = screws.right_length_mm.unwrap_or(screws.length_mm) - (c.support.plate_mm - sunk);
+            assert!(left > 0.0 && right > 0.0 && left + right < width_mm, "{plate_mm}: {left} and {right}");
+        }
     }
 }

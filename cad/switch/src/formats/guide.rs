@@ -10,7 +10,7 @@ use crate::design::Design;
 use crate::design::rules::checklist;
 use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
-use crate::parts::touches;
+use crate::parts::{left_out, touches};
 use crate::prediction::Prediction;
 use crate::scene::{exploded_png, plate};
 use pinswitch_friction::Substrate;
@@ -139,10 +139,15 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
         }
         _ => "Peel the layer out from one end.",
     };
+    let why = if s.mix_g > s.pour_g * c.silicone.waste_factor {
+        "and less cannot be weighed well"
+    } else {
+        "and some stays in the cup"
+    };
     let _ = write!(
         text,
         "## 2. Cast the silicone\n\n\
-         1. Weigh {:.1} g of base and {:.1} g of curing agent ({:.0}:1), {:.1} g in all: the mould takes {:.2} ml ({:.2} g), and less cannot be weighed well.\n\
+         1. Weigh {:.1} g of base and {:.1} g of curing agent ({:.0}:1), {:.1} g in all: the mould takes {:.2} ml ({:.2} g), {why}.\n\
          2. Mix for three minutes, scraping the walls; degas until it lies flat.\n\
          3. {close} Use no release agent on ABS; a sulphur clay or latex gloves would stop the cure.\n\
          4. {pour}\n\
@@ -191,20 +196,34 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest) {
             d.number, d.diameter_mm, d.length_mm
         ));
     }
-    steps.push(
-        "Put the left support (L) on, its lip over the layer's edge. Outside it says the layout. The load pulls on the side of groove 1: \
-         the arrow points there, and the `1` stands there."
-            .to_owned(),
-    );
+    // What found no room on a support is left out, and a note of the part says so.
+    let has_lost = |label: &str| {
+        let notes = manifest.parts.iter().filter(|p| p.name.starts_with("support")).flat_map(|p| &p.notes);
+        notes.into_iter().any(|note| note.contains(&left_out(label)))
+    };
+    let is_marked = !has_lost("L") && !has_lost("R");
+    let marks = match (is_marked, has_lost(&design.label())) {
+        (true, false) => {
+            "Outside it says the layout. The load pulls on the side of groove 1: the arrow points there, and the `1` stands there."
+        }
+        (true, true) => {
+            "The load pulls on the side of groove 1: the arrow outside points there, and the `1` stands there."
+        }
+        (false, _) => {
+            "There is no room for marks on the supports: the load pulls on the side of groove 1, which seen from outside the left support is on the right."
+        }
+    };
+    steps.push(format!("Put the left support (L) on, its lip over the layer's edge. {marks}"));
     if bill.pins.number > 0 {
+        let from = if is_marked { "counted from the `1`" } else { "counted from the load's side" };
         steps.push(format!(
-            "Put the pins into grooves {:?}, counted from the `1`, and into the slots of the support.",
+            "Put the pins into grooves {:?}, {from}, and into the slots of the support.",
             c.layout.pins
         ));
     }
-    steps.push(
-        "Put the right support (R) on. Every pin must slide to the end of its slot and back.".to_owned(),
-    );
+    let slides =
+        if bill.pins.number > 0 { " Every pin must slide to the end of its slot and back." } else { "" };
+    steps.push(format!("Put the right support (R) on.{slides}"));
     steps.extend(mounting_step(design, manifest));
     steps.extend(fastening_step(design, manifest));
     steps.push(format!(
@@ -239,12 +258,19 @@ fn fastening_step(design: &Design, manifest: &Manifest) -> Option<String> {
     } else {
         String::new()
     };
-    let tight = if c.fasteners.kind == FastenerKind::Insert {
+    let tight = if c.fasteners.kind == FastenerKind::Insert || c.layout.substrate != Substrate::Silicone {
         ""
     } else {
         ", finger tight: the layer must bulge freely"
     };
-    Some(format!("Fasten with {} screws {} x {} {into}{tight}.{pierced}", f.number, f.thread, f.length_mm))
+    let screws = match f.right_length_mm {
+        Some(right_mm) => format!(
+            "{} screws {} x {} from the left and {} x {right_mm} from the right",
+            f.number, f.thread, f.length_mm, f.thread
+        ),
+        None => format!("{} screws {} x {}", f.number, f.thread, f.length_mm),
+    };
+    Some(format!("Fasten with {screws} {into}{tight}.{pierced}"))
 }
 
 /// What the switch is mounted by.

@@ -168,7 +168,7 @@ pub(super) fn engrave_below(
 }
 
 /// The note on a text that does not fit.
-pub(super) fn left_out(text: &str) -> String {
+pub(crate) fn left_out(text: &str) -> String {
     format!("the label {text:?} does not fit and is left out")
 }
 

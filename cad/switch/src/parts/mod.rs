@@ -24,6 +24,7 @@ use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Contour, OffsetError, polar};
 use pinswitch_solid::solid::Solid;
 
+pub(crate) use label::left_out;
 pub use layer::silicone_layer;
 pub use mould::{cavity_mm3, gang_mm};
 pub(crate) use mould::{keys, one_piece as tray};

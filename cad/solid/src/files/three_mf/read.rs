@@ -25,6 +25,10 @@ const MAX_NODES: u32 = 8_000_000;
 const MAX_DEPTH: usize = 16;
 /// Most objects that are placed: components of components multiply.
 const MAX_STEPS: usize = 10_000;
+/// Most meshes that are examined again because they are built in another size.
+const MAX_SCALED: usize = 100;
+/// How far a turn may be off by rounding.
+const RIGID: f64 = 1e-4;
 /// How far below zero a part may lie, mm: what rounding leaves.
 const ROUNDING_MM: f64 = 1e-3;
 
@@ -108,9 +112,9 @@ pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
         };
         models.insert(missing, model);
     }
-    placed(&models, &name, &mut found.faults);
+    let scaled = placed(&models, &name, &mut found.faults);
     let main = models.remove(&name).into_iter();
-    found.meshes = main.chain(models.into_values()).flat_map(Model::meshes).collect();
+    found.meshes = main.chain(models.into_values()).flat_map(Model::meshes).chain(scaled).collect();
     Ok(found)
 }
 
@@ -381,15 +385,16 @@ fn missing_part(models: &BTreeMap<String, Model>) -> Option<String> {
         .find(|part| !models.contains_key(part))
 }
 
-/// Follows what is to be built down to its meshes, and says what cannot be built.
-fn placed(models: &BTreeMap<String, Model>, main: &str, faults: &mut Vec<Fault>) {
+/// Follows what is to be built down to its meshes, and says what cannot be built. Meshes that are built in another size
+/// or shape than their own are returned as they are built.
+fn placed(models: &BTreeMap<String, Model>, main: &str, faults: &mut Vec<Fault>) -> Vec<PackagedMesh> {
     let items = models.get(main).map_or(&[][..], |model| &model.items);
     if items.is_empty() {
         faults.push(fault("build", "nothing is to be built".to_owned()));
     }
-    let mut steps = 0;
+    let (mut steps, mut scaled) = (0, Vec::new());
     for (place, transform) in items {
-        let mut way = Way { models, bounds: None, faults, steps };
+        let mut way = Way { models, bounds: None, faults, steps, scaled: &mut scaled };
         way.follow(place, *transform, 0);
         steps = way.steps;
         // What reaches over an edge of the bed, slicers centre; what lies below or beside it is a mistake.
@@ -401,6 +406,7 @@ fn placed(models: &BTreeMap<String, Model>, main: &str, faults: &mut Vec<Fault>)
             faults.push(fault("outside", detail));
         }
     }
+    scaled
 }
 
 /// The way from an item down to its meshes.
@@ -411,6 +417,8 @@ struct Way<'a> {
     faults: &'a mut Vec<Fault>,
     /// Objects met, on the ways of all items.
     steps: usize,
+    /// Meshes that are built otherwise than they are.
+    scaled: &'a mut Vec<PackagedMesh>,
 }
 
 impl Way<'_> {
@@ -434,10 +442,32 @@ impl Way<'_> {
             let (low, high) = self.bounds.unwrap_or((p, p));
             self.bounds = Some((low.inf(&p), high.sup(&p)));
         }
+        let is_solid = matches!(object.kind.as_str(), "model" | "solidsupport");
+        if let Some(mesh) =
+            object.mesh.as_ref().filter(|_| !is_rigid(&transform) && self.scaled.len() < MAX_SCALED)
+        {
+            let positions = mesh.positions.iter().map(|p| moved(&transform, *p)).collect();
+            let mesh = Mesh::new(positions, mesh.triangles.clone());
+            self.scaled.push(PackagedMesh {
+                name: format!("{}, as it is built", object.name),
+                is_solid,
+                mesh,
+            });
+        }
         for (place, inner) in &object.components {
             self.follow(place, after(inner, &transform), depth + 1);
         }
     }
+}
+
+/// Whether a transform turns and moves only.
+fn is_rigid(m: &Transform) -> bool {
+    (0..3).all(|i| {
+        (0..3).all(|j| {
+            let product: f64 = (0..3).map(|k| m[i][k] * m[j][k]).sum();
+            (product - f64::from(u8::from(i == j))).abs() < RIGID
+        })
+    })
 }
 
 fn moved(m: &Transform, p: Point3) -> Point3 {

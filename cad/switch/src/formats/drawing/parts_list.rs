@@ -62,11 +62,10 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
     };
     if let Some(screws) = &bill.fasteners {
         let with = if screws.nuts > 0 { " with nut" } else { "" };
-        bought(
-            screws.number,
-            format!("Screw {} \u{d7} {}{with}", screws.thread, number(screws.length_mm)),
-            "screw",
-        );
+        let words = |mm: f64| format!("Screw {} \u{d7} {}{with}", screws.thread, number(mm));
+        let from_right = screws.right_length_mm.map_or(0, |_| screws.number / 2);
+        bought(screws.number - from_right, words(screws.length_mm), "screw");
+        screws.right_length_mm.into_iter().for_each(|mm| bought(from_right, words(mm), ""));
         if screws.inserts > 0 {
             bought(screws.inserts, format!("Heat-set insert {}", screws.thread), "");
         }

@@ -325,8 +325,8 @@ function fillTables(data) {
   }
   rows.push(['tendon', `${bill.tendon.length_mm} mm`, `${bill.tendon.rope_diameter_mm} mm, ${bill.tendon.outer_diameter_mm.toFixed(2)} mm coated`]);
   if (bill.fasteners) {
-    const { number, thread, length_mm, nuts, inserts } = bill.fasteners;
-    rows.push([nuts ? 'screws with nuts' : 'screws', number, `${thread} x ${length_mm} mm`]);
+    const { number, thread, length_mm, right_length_mm, nuts, inserts } = bill.fasteners;
+    rows.push([nuts ? 'screws with nuts' : 'screws', number, `${thread} x ${length_mm}${right_length_mm ? ` left, ${right_length_mm} right` : ''} mm`]);
     if (inserts) rows.push(['heat-set inserts', inserts, thread]);
   }
   if (bill.dowels) rows.push(['dowels', bill.dowels.number, `${bill.dowels.diameter_mm} x ${bill.dowels.length_mm} mm`]);

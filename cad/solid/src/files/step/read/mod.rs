@@ -75,6 +75,11 @@ pub enum StepReadError {
 pub fn read_step(text: &str, tolerance: ChordTolerance) -> Result<StepFile, StepReadError> {
     let entities = Entities::parse(text)?;
     let unit_mm = entities.unit_mm()?;
+    // Truck's own tolerance is absolute, whatever the unit.
+    if tolerance.mm() / unit_mm < FINEST {
+        let words = format!("its unit of length is {unit_mm} mm, too coarse to follow round faces in");
+        return Err(StepReadError::Unit(words));
+    }
     let dangling = entities.dangling();
     let mut found = StepFile::default();
     if let Some(first) = dangling.first() {
@@ -115,6 +120,8 @@ pub fn read_step(text: &str, tolerance: ChordTolerance) -> Result<StepFile, Step
     Ok(found)
 }
 
+/// Finest chord tolerance that truck follows, in the file's unit: a hundred times its own tolerance.
+const FINEST: f64 = 1e-4;
 /// Distance below which corners are one, in the file's unit: truck's own.
 const WELD: f64 = 1e-6;
 

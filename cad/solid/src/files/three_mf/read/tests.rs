@@ -114,6 +114,16 @@ fn each_fault_is_named() {
 }
 
 #[test]
+fn what_is_built_in_another_size_is_read_in_that_size_too() {
+    let flat = r#"<item objectid="1" transform="1 0 0 0 1 0 0 0 0.01 0 0 0"/>"#;
+    let found = read(&model_of("", "", &object(1), flat));
+    let volumes: Vec<f64> = found.meshes.iter().map(|m| m.mesh.volume_mm3()).collect();
+    assert!((volumes[0] - 121.5).abs() < 1e-9 && (volumes[1] - 1.215).abs() < 1e-9, "{volumes:?}");
+    let turned = r#"<item objectid="1" transform="0 1 0 -1 0 0 0 0 1 20 20 0"/>"#;
+    assert_eq!(read(&model_of("", "", &object(1), turned)).meshes.len(), 1);
+}
+
+#[test]
 fn components_multiply_no_longer_than_bounded() {
     let twice = |id: u32| {
         let component = format!(r#"<component objectid="{}"/>"#, id - 1).repeat(9);

@@ -170,12 +170,7 @@ fn dashed(
 /// The same dashes for the legend.
 fn dashed_sample((x, y): (i32, i32), [dash, gap]: [u8; 2], colour: RGBColor) -> DashedSample {
     let ends = vec![(x, y), (x + fine::<i32>(22), y)];
-    DashedPathElement::new(
-        ends.into_iter(),
-        fine::<u32>(dash),
-        fine::<u32>(gap),
-        colour.stroke_width(fine(1)),
-    )
+    DashedPathElement::new(ends, fine::<u32>(dash), fine::<u32>(gap), colour.stroke_width(fine(1)))
 }
 
 fn trust_label(trust: Trust) -> &'static str {

@@ -56,7 +56,7 @@ impl Entities {
 
     /// Entities with a record of this kind, with its parameters.
     pub(super) fn of_kind(&self, kind: &'static str) -> impl Iterator<Item = (u64, &[Parameter])> {
-        self.records.iter().filter_map(move |(id, _)| Some((*id, self.record(*id, kind)?)))
+        self.records.keys().filter_map(move |id| Some((*id, self.record(*id, kind)?)))
     }
 
     /// The parameters of entity `id` as a record of this kind.

@@ -125,11 +125,11 @@ fn shell(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value) {
         );
     }
     let radii: Vec<f64> = arcs.iter().filter(about_axis).map(|e| e.number(40)).collect();
-    near(
-        radii.iter().copied().fold(0.0, f64::max),
-        listed(manifest, "shell.outer_radius_mm"),
-        "outer radius",
-    );
+    // The lands between grooves: the stops at both ends stand higher.
+    let alike = |r: &f64| radii.iter().filter(|other| (*other - r).abs() < 1e-6).count();
+    let lands = radii.iter().copied().max_by_key(alike).unwrap();
+    assert!(alike(&lands) >= 10, "{radii:?}");
+    near(lands, listed(manifest, "shell.outer_radius_mm"), "outer radius");
     near(
         radii.iter().copied().fold(f64::INFINITY, f64::min),
         listed(manifest, "inner_radius"),

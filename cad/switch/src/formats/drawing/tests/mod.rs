@@ -114,7 +114,10 @@ fn promised(built: &Built, part: &str) -> Vec<(String, String)> {
     if is_grooved || is_support {
         add("span".to_owned(), format!("{}\u{b0}", number(c.segment.span_deg)));
     }
-    if c.fasteners.count > 0 && (part == "shell" || is_support) {
+    // Of a hole with a recess over it, or for an insert, what is promised is said of the recess.
+    let fastening = d.fastening();
+    let is_plain = fastening.insert_mm.is_none() && fastening.counterbore.is_none();
+    if c.fasteners.count > 0 && is_plain && (part == "shell" || is_support) {
         let n = if c.fasteners.count == 1 { String::new() } else { format!("{} \u{d7} ", c.fasteners.count) };
         let diameter = number(c.fasteners.hole_diameter_mm);
         add(

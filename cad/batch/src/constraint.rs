@@ -197,20 +197,20 @@ mod tests {
     #[test]
     fn conditions_range_over_fields_dimensions_and_friction() {
         for met in [
-            "shell.outer_radius_mm - shell.wall_mm >= 14",
+            "shell.outer_radius_mm - shell.wall_mm >= 11.5",
             "contact_radius_mm == 22 && pin_count == 3",
             "friction_n > 8.9 && friction_n < 9.1",
             "threshold_n > 20 || 1 > 2",
-            "1 > 2 && 1 > 2 || shell.wall_mm < 7",
-            "-shell.wall_mm + 2 * 3 == 0",
-            "max(shell.wall_mm, 3) <= 6.0",
+            "1 > 2 && 1 > 2 || shell.wall_mm < 9",
+            "-shell.wall_mm + 2 * 4.25 == 0",
+            "max(shell.wall_mm, 3) <= 8.5",
         ] {
             assert_eq!(refusal(met), None, "{met}");
         }
-        let text = refusal("shell.wall_mm + 1 > 7 && pin_count < 9").unwrap();
+        let text = refusal("shell.wall_mm + 1 > 9.5 && pin_count < 9").unwrap();
         assert_eq!(
             text,
-            "constraint \"shell.wall_mm + 1 > 7 && pin_count < 9\" is not met: pin_count = 3, shell.wall_mm = 6, the mandrel"
+            "constraint \"shell.wall_mm + 1 > 9.5 && pin_count < 9\" is not met: pin_count = 3, shell.wall_mm = 8.5, the mandrel"
         );
     }
 

@@ -19,6 +19,8 @@ use pinswitch_plot::drawing::{
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::Point2;
 
+/// Scale down to which room is looked for, as a share of the largest at which the views fit.
+const LEAST_SHARE: f64 = 0.5;
 /// Scales of details, the largest first.
 const DETAIL_SCALES: [f64; 6] = [20.0, 10.0, 5.0, 2.0, 1.0, 0.5];
 /// Between hatching lines, mm on paper.
@@ -68,19 +70,22 @@ pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked:
     let face = Face::of(&body, cut);
     let behind = elevation(&[body], Some(cut));
     let subject = Subject { design, part, title, features, above, cut_x, face, behind, low, high };
-    let all = choices(asked);
-    for (paper, scale) in &all {
-        if let Some((sheet, left)) = subject.attempt(*paper, *scale, &[])
-            && left.is_empty()
-        {
+    // The first sheet that holds the views with all that is to be said. A part is not drawn smaller and smaller until
+    // nothing is in the way of anything.
+    let mut first: Option<(Paper, f64, Vec<Wanted>)> = None;
+    for (paper, scale) in choices(asked) {
+        if first.as_ref().is_some_and(|(_, largest, _)| scale < LEAST_SHARE * largest) {
+            break;
+        }
+        let Some((sheet, left)) = subject.attempt(paper, scale, &[]) else { continue };
+        if left.is_empty() {
             return Some(sheet);
         }
+        first.get_or_insert((paper, scale, left));
     }
-    // What finds no room anywhere is written among the notes of the first sheet that holds the views.
-    all.iter().find_map(|(paper, scale)| {
-        let (_, left) = subject.attempt(*paper, *scale, &[])?;
-        subject.attempt(*paper, *scale, &left).map(|(sheet, _)| sheet)
-    })
+    // What finds no room is written among the notes of the first that holds the views.
+    let (paper, scale, left) = first?;
+    subject.attempt(paper, scale, &left).map(|(sheet, _)| sheet)
 }
 
 impl Subject<'_> {

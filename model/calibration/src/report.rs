@@ -25,6 +25,17 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// Its word in the report.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Verdict::None => "none",
+            Verdict::Inconclusive => "inconclusive",
+            Verdict::Attributed => "attributed",
+            Verdict::Ambiguous => "ambiguous",
+            Verdict::Unattributed => "unattributed",
+        }
+    }
+
     /// The verdict of a selection.
     pub fn of(selection: &Selection) -> Self {
         if selection.structure.is_some() {
@@ -320,13 +331,7 @@ impl SessionReport {
     /// In words: the verdict, and what it is about.
     pub fn words(&self) -> String {
         let found: Vec<String> = self.effects.iter().map(|ids| ids.join(" or ")).collect();
-        let word = match self.verdict {
-            Verdict::None => "none",
-            Verdict::Inconclusive => "inconclusive",
-            Verdict::Attributed => "attributed",
-            Verdict::Ambiguous => "ambiguous",
-            Verdict::Unattributed => "unattributed",
-        };
+        let word = self.verdict.as_str();
         match (found.is_empty(), self.verdict) {
             (false, _) => format!("{word}: {}", found.join(", ")),
             (true, Verdict::Inconclusive) => {

@@ -44,18 +44,21 @@ impl Study {
     /// The confusion matrix by case, in Markdown.
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "| protocol | group | rig | sets | right | honest | error after/before | next session | intervals that hold | said instead |\n|---|---|---|---|---|---|---|---|---|---|\n",
+            "| protocol | group | rig | sets | right | of the visible | honest | left open | error after/before | next session | intervals that hold | said instead |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         );
         for (case, outcomes) in &self.outcomes {
             let exact = outcomes.iter().filter(|o| o.exact).count();
             let honest = outcomes.iter().filter(|o| o.exact || o.honest).count();
+            let open = outcomes.iter().filter(|o| o.open && !o.exact && !o.honest).count();
+            let visible = outcomes.iter().filter(|o| o.visible).count();
+            let seen = outcomes.iter().filter(|o| o.visible && o.exact).count();
             let mut other: BTreeMap<String, usize> = BTreeMap::new();
             for o in outcomes.iter().filter(|o| !o.exact) {
-                *other.entry(said(&o.named)).or_default() += 1;
+                *other.entry(said(o)).or_default() += 1;
             }
             let other: Vec<String> = other.into_iter().map(|(said, k)| format!("{said} ({k})")).collect();
             text.push_str(&format!(
-                "| {} | {} | {} | {} | {exact} | {honest} | {:.3} | {:.3} | {} | {} |\n",
+                "| {} | {} | {} | {} | {exact} | {seen} of {visible} | {honest} | {open} | {:.3} | {:.3} | {} | {} |\n",
                 format!("{:?}", case.protocol).to_lowercase(),
                 case.group.as_str(),
                 case.name,

@@ -2,8 +2,8 @@
 
 use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 use pinswitch_calibration::inference::{
-    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, Weighed, degrees_of_freedom,
-    family_p_value, interval_half_widths, select,
+    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, VISIBLE, Weighed, degrees_of_freedom,
+    expected_gain, family_p_value, interval_half_widths, probability_found, select,
 };
 use pinswitch_calibration::table::{Frame, PlateauRow, PlateauTable};
 use pinswitch_calibration::{Verdict, calibrate};
@@ -11,8 +11,10 @@ use pinswitch_calibration::{Verdict, calibrate};
 use super::cases::{Case, plan_of};
 use super::said::Said;
 use crate::next_session::next_session;
-use crate::plan::Plan;
+use crate::plan::{EffectPlan, Plan};
+use crate::series_marks::SeriesMarks;
 use crate::simulate::simulate;
+use crate::twin::readings;
 
 /// What the calibrator said of one rig.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +33,12 @@ pub struct CaseOutcome {
     pub exact: bool,
     /// Whether every true effect is named or among the rivals, and nothing else stands alone.
     pub honest: bool,
+    /// Whether it named nothing and left every true effect possible: within its limits, or told as one that the session
+    /// cannot show.
+    pub open: bool,
+    /// Whether the session could show every true effect: generalised least squares, told the noise of the same rig
+    /// without them, would find each alone with a probability of at least [`VISIBLE`]. True without effects.
+    pub visible: bool,
     /// What it said beside the truth.
     pub extras: Vec<String>,
     /// For each size of a true effect in the form of `model/doc/effect-catalogue.md`: whether its 95 % interval holds
@@ -71,7 +79,6 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels, promised: bool) -> Optio
     let degrees = degrees_of_freedom(&data, found.baseline.model.values().len());
     Some(CaseOutcome {
         verdict,
-        named,
         fresh_n: [error_n(baseline, &frame, fresh)?, error_n(augmented, &frame, fresh)?],
         next_n,
         promise_ratio: promised
@@ -80,13 +87,57 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels, promised: bool) -> Optio
             .map(|promise_n| promise_n / next_n[1].max(1e-9)),
         exact,
         honest,
+        open: named.is_empty() && left_open(&plan, &found),
+        visible: shows_all(&plan, levels)?,
         extras: said.extras(case),
         covered: covered(&plan, &found, &data),
         largest_gain,
         p_value: family_p_value(largest_gain, CATALOGUE.len(), degrees),
         structure_gain: found.structure_gain,
         excluded: data.excluded_series(),
+        named,
     })
+}
+
+/// Whether every true effect is left possible: told as invisible, or within the limits of its size (one of consequence
+/// where its form has another size).
+fn left_open(plan: &Plan, found: &Selection) -> bool {
+    plan.effects.iter().all(|e| {
+        let hidden = found.invisible().any(|candidate| candidate.effect.id() == e.id);
+        hidden
+            || found.limits.iter().filter(|limit| limit.effect.id() == e.id).any(|limit| {
+                let [low, high] = limit.interval;
+                match e.values.first() {
+                    Some(size) if e.form == 0 => (low..=high).contains(size),
+                    _ => !limit.is_excluded(),
+                }
+            })
+    })
+}
+
+/// Whether a session of this plan could show each of its effects. The noise is that of the same rig without them.
+fn shows_all(plan: &Plan, levels: Levels) -> Option<bool> {
+    if plan.effects.is_empty() {
+        return Some(true);
+    }
+    let quiet = Plan { effects: Vec::new(), ..plan.clone() };
+    let simulated = simulate(&quiet);
+    let rows = &simulated.rows;
+    let frame = Frame::new(rows);
+    let mut data = Observations::new(&frame, rows)?;
+    let alone = select(&Model::baseline(frame), &mut data, levels);
+    let weighed = Weighed::new(&data, alone.noise);
+    let degrees = degrees_of_freedom(&data, alone.baseline.model.values().len());
+    let readings = |effects: Vec<EffectPlan>| {
+        readings(&Plan { effects, ..quiet.clone() }, rows, &SeriesMarks::default())
+    };
+    let without = readings(Vec::new());
+    Some(plan.effects.iter().all(|effect| {
+        let with = readings(vec![effect.clone()]);
+        let change_n: Vec<f64> = with.iter().zip(&without).map(|(a, b)| a - b).collect();
+        let gain = expected_gain(&alone.baseline.model, &weighed, &change_n);
+        probability_found(gain, levels, CATALOGUE.len(), degrees) >= VISIBLE
+    }))
 }
 
 /// Root mean square of prediction minus reading, in newtons.

@@ -6,6 +6,9 @@ use pinswitch_calibration::median;
 
 use super::{Case, CaseOutcome, Group, Study};
 
+/// A promise below this share of what a new session has is broken.
+const LEAST_PROMISE: f64 = 0.8;
+
 impl Study {
     /// A row for each group, and one for each kind of rig without effect, in Markdown.
     pub fn groups(&self) -> String {
@@ -41,6 +44,17 @@ impl Study {
             let held = all.iter().filter(|c| **c).count();
             lines.push(format!("95 % intervals that hold the true size: {held} of {}", all.len()));
         }
+        let mut promises: Vec<f64> = self.of(|_| true).iter().filter_map(|o| o.promise_ratio).collect();
+        promises.sort_by(f64::total_cmp);
+        if let (Some(least), Some(most)) = (promises.first(), promises.last()) {
+            let below = promises.iter().filter(|p| **p < LEAST_PROMISE).count();
+            lines.push(format!(
+                "error promised for a new session over that of the next one: median {:.3}, {least:.3} to {most:.3}; \
+                 below {LEAST_PROMISE} in {below} of {}",
+                median_of(promises.iter().copied()),
+                promises.len()
+            ));
+        }
         lines.iter().map(|l| format!("- {l}\n")).collect()
     }
 
@@ -53,7 +67,16 @@ impl Study {
 fn in_words(group: Group, outcomes: &[&CaseOutcome]) -> Vec<String> {
     let (exact, honest) = (share(outcomes, |o| o.exact), share(outcomes, |o| o.exact || o.honest));
     let named = |what: &str| {
-        vec![format!("{what} named exactly: {exact}"), format!("{what} named or among the rivals: {honest}")]
+        let visible: Vec<&CaseOutcome> = outcomes.iter().filter(|o| o.visible).copied().collect();
+        vec![
+            format!("{what} named exactly: {exact}"),
+            format!("... of those that the session could show: {}", share(&visible, |o| o.exact)),
+            format!("{what} named or among the rivals: {honest}"),
+            format!(
+                "... or left open: within the limits told, or told as invisible: {}",
+                share(outcomes, |o| o.exact || o.honest || o.open)
+            ),
+        ]
     };
     match group {
         Group::Nulls => vec![
@@ -109,9 +132,9 @@ fn row(name: &str, outcomes: &[&CaseOutcome]) -> String {
     )
 }
 
-/// What was named, as one text.
-pub(super) fn said(named: &[String]) -> String {
-    if named.is_empty() { "none".to_owned() } else { named.join(" + ") }
+/// What was said, as one text: what was named, or else the verdict.
+pub(super) fn said(outcome: &CaseOutcome) -> String {
+    if outcome.named.is_empty() { outcome.verdict.as_str().to_owned() } else { outcome.named.join(" + ") }
 }
 
 /// Median; not a number without values.
@@ -150,6 +173,8 @@ mod tests {
             promise_ratio: None,
             exact,
             honest: exact,
+            open: false,
+            visible: exact,
             extras: extras.iter().map(|e| (*e).to_owned()).collect(),
             covered: vec![exact],
             largest_gain: 0.0,
@@ -172,7 +197,8 @@ mod tests {
         assert!(text.contains(row) && text.lines().count() == 3, "{text}");
         let words = study.summary();
         assert!(words.contains("95 % intervals that hold the true size: 1 of 3"), "{words}");
-        assert_eq!(words.lines().count(), 3, "{words}");
+        assert_eq!(words.lines().count(), 5, "{words}");
+        assert!(words.contains("... of those that the session could show: 1 of 1"), "{words}");
         let mut promised = outcome(true, &[]);
         promised.promise_ratio = Some(1.1);
         let null = study_cases().into_iter().find(|c| c.group == Group::Nulls);

@@ -98,6 +98,61 @@ fn the_preview_answers_its_own_page_only() {
     assert!(head.starts_with("HTTP/1.1 200") && head.ends_with("\r\n\r\n"), "{head:.200}");
 }
 
+/// The answer to a question of the configurator.
+fn asked(preview: &Preview, path: &str, question: &str) -> String {
+    let headers = format!(
+        "{}Origin: http://{}\r\nContent-Length: {}\r\n\r\n{question}",
+        preview.host(),
+        preview.address,
+        question.len()
+    );
+    let answer = preview.ask(&format!("POST {path}"), &headers);
+    answer.split_once("\r\n\r\n").map_or(answer.clone(), |(_, body)| body.to_owned())
+}
+
+#[test]
+fn the_configurator_asks_and_saves_into_the_file_that_is_followed() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "# mine\n[layout]\npins = [5, 8, 11] # three\n\n[shell]\nwidth_mm = 14\n";
+    std::fs::write(folder.path().join("mine.toml"), text).unwrap();
+    let preview = Preview::start(folder.path(), "mine.toml");
+    let page = preview.ask("GET /configure", &preview.host());
+    let policy = page.lines().find_map(|l| l.strip_prefix("content-security-policy: ")).unwrap();
+    assert!(policy.contains("worker-src blob:") && page.contains(&format!("content=\"{policy}\"")));
+    let start = preview.ask("GET /start", &preview.host());
+    let start: serde_json::Value = serde_json::from_str(start.split_once("\r\n\r\n").unwrap().1).unwrap();
+    assert_eq!(start["file"], "mine.toml");
+    assert_eq!(start["values"]["layout.pins"], serde_json::json!([5, 8, 11]));
+
+    let shown = asked(&preview, "/answer", r#"{"ask": "design", "values": {"segment.grooves": 40}}"#);
+    let shown: serde_json::Value = serde_json::from_str(&shown).unwrap();
+    assert_eq!(shown["trouble"]["field"], "segment.grooves");
+    let change = &shown["trouble"]["changes"][0];
+    let mended =
+        serde_json::json!({"ask": "design", "values": {change["path"].as_str().unwrap(): change["value"]}});
+    let shown = asked(&preview, "/answer", &mended.to_string());
+    assert!(shown.contains(r#""trouble":null"#), "{shown:.300}");
+
+    let mut values = start["values"].clone();
+    values["shell.width_mm"] = 12.5.into();
+    values["layout.pins"] = serde_json::json!([5, 11]);
+    let saved = asked(&preview, "/save", &serde_json::json!({ "values": values }).to_string());
+    assert_eq!(saved, r#"{"saved":"mine.toml"}"#);
+    let now = std::fs::read_to_string(folder.path().join("mine.toml")).unwrap();
+    let wanted = text.replace("[5, 8, 11]", "[5, 11]").replace("width_mm = 14", "width_mm = 12.5");
+    // The name that the file lent is written, since a page may have changed it.
+    let named = now.replace("\n[switch]\nname = \"mine\"\n", "");
+    assert_eq!(named, wanted, "{now}");
+    for bad in ["", "{}", r#"{"values": {"shell.width_mm": 1e9}}"#, r#"{"values": {"x": 1}}"#] {
+        assert!(asked(&preview, "/save", bad).contains("error"), "{bad}");
+        assert!(asked(&preview, "/answer", bad).contains("error"), "{bad}");
+    }
+    assert_eq!(std::fs::read_to_string(folder.path().join("mine.toml")).unwrap(), now);
+    // Another page cannot ask.
+    let foreign = format!("{}Origin: http://evil.example\r\nContent-Length: 2\r\n\r\n{{}}", preview.host());
+    assert!(preview.ask("POST /save", &foreign).starts_with("HTTP/1.1 403"));
+}
+
 #[test]
 fn the_preview_bounds_headers_connections_and_waiting_pages() {
     let folder = tempfile::tempdir().unwrap();

@@ -186,6 +186,7 @@ fn missing(field: &str, name: &str, problem: &str) -> ConfigError {
         problem: problem.to_owned(),
         remedy: "give a path relative to the sweep's file; `pinswitch layouts` lists the templates"
             .to_owned(),
+        changes: Vec::new(),
         place: None,
     }
 }
@@ -202,6 +203,7 @@ fn unreadable(file: &str, error: &std::io::Error) -> ConfigError {
             }
             _ => "give the path of a sweep; see `pinswitch batch --help`".to_owned(),
         },
+        changes: Vec::new(),
         place: None,
     }
 }

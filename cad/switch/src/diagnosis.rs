@@ -54,6 +54,7 @@ fn blame(
         value: c.shown(&field.path()),
         problem: format!("does not fit this geometry: contours of {part} cross"),
         remedy: format!("{verb} it to {shown}"),
+        changes: vec![(field.path(), shown.to_string())],
         place: None,
     })
 }

@@ -212,6 +212,7 @@ pub(super) fn config_error(field: &str, value: Option<&str>, problem: &str, reme
         value: value.map(|v| v.trim().to_owned()),
         problem: problem.to_owned(),
         remedy: remedy.to_owned(),
+        changes: Vec::new(),
         place: None,
     }
 }

@@ -8,7 +8,7 @@ use pinswitch_calibration::ModelFile;
 use pinswitch_friction::{Carry, Contact, FrictionCurve, Substrate};
 
 use crate::Failure;
-use crate::calibrated_curve::rig_contact;
+use pinswitch_web::rig_contact;
 use pinswitch_switch::design_search::{Belief, Curve, Part};
 
 /// Changes that are kept: one part is asked for many times, with other constants.

@@ -88,8 +88,8 @@ pub(super) fn follow(states: &watch::Sender<State>, arguments: &Arguments, file:
         states.send_modify(|state| {
             state.version = next;
             match built {
-                Ok((page, data)) => {
-                    (state.page, state.data, state.trouble) = (page.into(), data.into(), None);
+                Ok(built) => {
+                    *state = built;
                     log::info!("rebuilt");
                 }
                 Err(message) => {

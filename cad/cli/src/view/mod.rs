@@ -1,5 +1,6 @@
 //! `pinswitch view CONFIG`: the page of a set, following its configuration.
 
+mod configure;
 mod follow;
 mod server;
 mod state;
@@ -14,19 +15,24 @@ use tokio::sync::watch;
 use super::law::LawChoice;
 use super::source::Source;
 use super::{Failure, print};
+use configure::Configurator;
 use pinswitch_switch::built::Built;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::formats::named;
 use pinswitch_switch::formats::page::{PageData, page_html};
 use pinswitch_switch::set::Set;
+use pinswitch_web::values;
 use state::State;
 
-/// Show the page of a configuration on this machine, and rebuild it whenever the file changes.
+/// Show the page of a configuration on this machine, rebuilt whenever the file changes, and a configurator that changes it.
 ///
-/// Serves on 127.0.0.1 only, and only to its own page. A configuration that breaks shows its error, and the last good
-/// state stays. Ends with Ctrl-C.
+/// Serves on 127.0.0.1 only, and only to its own pages: the page of the set at /, the configurator at /configure, which
+/// writes the file only when asked. A configuration that breaks shows its error, and the last good state stays. Ends with
+/// Ctrl-C.
 #[derive(Args, Clone, Debug)]
+#[command(mut_arg("config", |a| a.required(false).default_value("three-double")))]
 #[command(after_help = "Examples:
+  pinswitch view
   pinswitch init three-double --out mine.toml && pinswitch view mine.toml")]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -48,9 +54,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some((bytes, _)) => arguments.source.design_from(bytes.clone()),
         None => arguments.source.design(),
     };
-    let (page, data) = build(arguments, design?, 1)?;
-    let (sender, states) =
-        watch::channel(State { version: 1, data: data.into(), page: page.into(), trouble: None });
+    let (sender, states) = watch::channel(build(arguments, design?, 1)?);
+    let configurator = Configurator::new(followed.as_ref().map(|(_, file)| file.clone()));
     // Kept to the end, also where there is no file to follow: pages that wait are not sent away.
     let sender = Arc::new(sender);
     // One thread answers all, however many wait.
@@ -65,19 +70,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         };
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, arguments.port)).await.map_err(busy)?;
         let address: SocketAddr = listener.local_addr().map_err(Failure::failed)?;
-        print(format!("http://{address}\n").as_bytes())?;
+        print(format!("http://{address}\nhttp://{address}/configure\n").as_bytes())?;
         if let Some((bytes, file)) = followed {
             log::info!("following {}; end with Ctrl-C", file.display());
             let (sender, arguments) = (Arc::clone(&sender), arguments.clone());
             std::thread::spawn(move || follow::follow(&sender, &arguments, &file, bytes));
         }
-        server::serve(listener, address, states).await;
+        server::serve(listener, address, states, configurator).await;
         Ok(())
     })
 }
 
-/// The page of a design and its data.
-fn build(arguments: &Arguments, design: Design, version: u64) -> Result<(String, String), Failure> {
+/// What is shown of a design.
+fn build(arguments: &Arguments, design: Design, version: u64) -> Result<State, Failure> {
     let prediction = arguments.law.prediction(&design)?;
     let built = Built::new(design).map_err(Failure::bad_input)?;
     let formats = named(&["stl"]).map_err(Failure::failed)?;
@@ -85,5 +90,8 @@ fn build(arguments: &Arguments, design: Design, version: u64) -> Result<(String,
     let data = PageData::new(&built, &prediction, &set.manifest, Some(version));
     // A live page is rebuilt while somebody waits, in a browser that has shown it already: no picture.
     let page = page_html(&data, "").map_err(Failure::failed)?;
-    Ok((page, data.json().map_err(Failure::failed)?))
+    let values = values(built.design().configuration());
+    let values = serde_json::to_string(&values).map_err(Failure::failed)?;
+    let data = data.json().map_err(Failure::failed)?;
+    Ok(State { version, data: data.into(), page: page.into(), values: values.into(), trouble: None })
 }

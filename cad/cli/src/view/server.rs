@@ -15,8 +15,11 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, watch};
 
-use super::state::{State, after};
+use super::configure::{Configurator, question};
+use super::state::{State, after, values_after};
 use pinswitch_switch::formats::page::page_policy;
+use pinswitch_web::Answer;
+use pinswitch_web::page::{configurator_html, configurator_policy};
 
 /// How long a request for the next state is held before the browser repeats it.
 const LONG_POLL_TIMEOUT: Duration = Duration::from_secs(20);
@@ -30,8 +33,12 @@ const MAX_HEADER_BYTES: usize = 16 * 1024;
 const MAX_HEADERS: usize = 64;
 /// How long a request may take to arrive.
 const HEADER_TIMEOUT: Duration = Duration::from_secs(5);
-/// How long a connection may live: one answer, waited for and sent.
-const CONNECTION_TIMEOUT: Duration = Duration::from_secs(60);
+/// How long a connection may live: one answer, waited for and sent. A search or a calibration takes its time.
+const CONNECTION_TIMEOUT: Duration = Duration::from_secs(600);
+/// How long a question may take to arrive.
+const QUESTION_TIMEOUT: Duration = Duration::from_secs(60);
+/// What the configurator asks.
+const QUESTIONS: [&str; 2] = ["/answer", "/save"];
 
 /// What every request is answered from.
 #[derive(Debug)]
@@ -40,12 +47,25 @@ struct Site {
     long_polls: Semaphore,
     address: SocketAddr,
     policy: String,
+    configurator: Arc<Configurator>,
+    configurator_policy: String,
 }
 
 /// Answers requests until the program ends.
-pub(super) async fn serve(listener: TcpListener, address: SocketAddr, states: watch::Receiver<State>) {
-    let long_polls = Semaphore::new(MAX_LONG_POLLS);
-    let site = Arc::new(Site { states, long_polls, address, policy: page_policy() });
+pub(super) async fn serve(
+    listener: TcpListener,
+    address: SocketAddr,
+    states: watch::Receiver<State>,
+    configurator: Configurator,
+) {
+    let site = Arc::new(Site {
+        states,
+        long_polls: Semaphore::new(MAX_LONG_POLLS),
+        address,
+        policy: page_policy(),
+        configurator: Arc::new(configurator),
+        configurator_policy: configurator_policy(),
+    });
     let connections = Arc::new(Semaphore::new(MAX_CONNECTIONS));
     while let Ok(place) = Arc::clone(&connections).acquire_owned().await {
         let Ok((stream, _)) = listener.accept().await else {
@@ -57,7 +77,7 @@ pub(super) async fn serve(listener: TcpListener, address: SocketAddr, states: wa
         tokio::spawn(async move {
             let answer = service_fn(move |request| {
                 let site = Arc::clone(&site);
-                async move { Ok::<_, Infallible>(site.answer(&request).await) }
+                async move { Ok::<_, Infallible>(site.answer(request).await) }
             });
             let connection = http1::Builder::new()
                 .timer(TokioTimer::new())
@@ -74,16 +94,27 @@ pub(super) async fn serve(listener: TcpListener, address: SocketAddr, states: wa
 }
 
 impl Site {
-    async fn answer(&self, request: &Request<Incoming>) -> Response<Full<Bytes>> {
-        if let Some(refusal) = refused(request.method(), request.headers(), self.address) {
+    async fn answer(&self, request: Request<Incoming>) -> Response<Full<Bytes>> {
+        let path = request.uri().path().to_owned();
+        if let Some(refusal) = refused(request.method(), &path, request.headers(), self.address) {
             return self.response(refusal.0, "text/plain; charset=utf-8", refusal.1);
         }
-        match request.uri().path() {
+        let query = request.uri().query().unwrap_or_default();
+        let version = query.strip_prefix("after=").and_then(|v| v.parse().ok()).unwrap_or(0);
+        match path.as_str() {
             "/" => {
                 let page = Arc::clone(&self.states.borrow().page);
                 self.response(StatusCode::OK, "text/html; charset=utf-8", page.to_string())
             }
-            "/state" => {
+            "/configure" => {
+                let page = configurator_html(None);
+                let mut response = self.response(StatusCode::OK, "text/html; charset=utf-8", page);
+                if let Ok(policy) = HeaderValue::from_str(&self.configurator_policy) {
+                    response.headers_mut().insert("content-security-policy", policy);
+                }
+                response
+            }
+            "/state" | "/start" => {
                 let Ok(_place) = self.long_polls.try_acquire() else {
                     return self.response(
                         StatusCode::SERVICE_UNAVAILABLE,
@@ -91,12 +122,31 @@ impl Site {
                         "too many pages wait",
                     );
                 };
-                let query = request.uri().query().unwrap_or_default();
-                let version = query.strip_prefix("after=").and_then(|v| v.parse().ok()).unwrap_or(0);
-                let state = after(self.states.clone(), version, LONG_POLL_TIMEOUT).await;
+                let states = self.states.clone();
+                let state = match path.as_str() {
+                    "/state" => after(states, version, LONG_POLL_TIMEOUT).await,
+                    _ => values_after(states, version, LONG_POLL_TIMEOUT, &self.configurator.file()).await,
+                };
                 self.response(StatusCode::OK, "application/json", state)
             }
+            question if QUESTIONS.contains(&question) => self.questioned(request.into_body(), question).await,
             _ => self.response(StatusCode::NOT_FOUND, "text/plain", "no such page"),
+        }
+    }
+
+    /// The answer to what the configurator asks.
+    async fn questioned(&self, body: Incoming, path: &str) -> Response<Full<Bytes>> {
+        let asked = tokio::time::timeout(QUESTION_TIMEOUT, question(body)).await;
+        let question = match asked.unwrap_or_else(|_| Err("the question did not arrive in time".to_owned())) {
+            Ok(question) => question,
+            Err(reason) => return self.response(StatusCode::PAYLOAD_TOO_LARGE, "text/plain", reason),
+        };
+        if path == "/save" {
+            return self.response(StatusCode::OK, "application/json", self.configurator.save(&question));
+        }
+        match Arc::clone(&self.configurator).answer(question).await {
+            Answer::Json(text) => self.response(StatusCode::OK, "application/json", text),
+            Answer::Bytes(bytes) => self.response(StatusCode::OK, "application/octet-stream", bytes),
         }
     }
 
@@ -126,8 +176,18 @@ impl Site {
 
 /// Why a request is not answered: it would change something, or comes from a page of elsewhere. A name that was bound to
 /// this address (DNS rebinding) stands in `Host`, a foreign page in `Origin`.
-fn refused(method: &Method, headers: &HeaderMap, address: SocketAddr) -> Option<(StatusCode, &'static str)> {
-    if !matches!(*method, Method::GET | Method::HEAD) {
+fn refused(
+    method: &Method,
+    path: &str,
+    headers: &HeaderMap,
+    address: SocketAddr,
+) -> Option<(StatusCode, &'static str)> {
+    let asks = *method == Method::POST && QUESTIONS.contains(&path);
+    // What may change something says where it comes from: browsers always do.
+    if asks && !headers.contains_key(ORIGIN) {
+        return Some((StatusCode::FORBIDDEN, "a question without Origin comes from no page of this server"));
+    }
+    if !asks && (!matches!(*method, Method::GET | Method::HEAD) || QUESTIONS.contains(&path)) {
         return Some((StatusCode::METHOD_NOT_ALLOWED, "only GET and HEAD are answered"));
     }
     let mut hosts = headers.get_all(HOST).iter();
@@ -171,7 +231,11 @@ mod tests {
             .iter()
             .map(|(name, value)| (name.parse().unwrap(), HeaderValue::from_static(value)))
             .collect();
-        refused(&method, &headers, SocketAddr::from(([127, 0, 0, 1], 8737)))
+        status_at("/", method, &headers)
+    }
+
+    fn status_at(path: &str, method: Method, headers: &HeaderMap) -> Option<u16> {
+        refused(&method, path, headers, SocketAddr::from(([127, 0, 0, 1], 8737)))
             .map(|(status, _)| status.as_u16())
     }
 
@@ -199,6 +263,26 @@ mod tests {
         // A link that somebody follows.
         let link = [host, ("sec-fetch-site", "cross-site"), ("sec-fetch-mode", "navigate")];
         assert_eq!(status(Method::GET, &link), None);
+    }
+
+    #[test]
+    fn questions_come_from_the_own_page_only() {
+        let headers = |origin: Option<&'static str>| {
+            let mut headers = HeaderMap::new();
+            headers.insert("host", HeaderValue::from_static("127.0.0.1:8737"));
+            headers.extend(origin.map(|o| (ORIGIN, HeaderValue::from_static(o))));
+            headers
+        };
+        let own = headers(Some("http://127.0.0.1:8737"));
+        for path in QUESTIONS {
+            assert_eq!(status_at(path, Method::POST, &own), None);
+            assert_eq!(status_at(path, Method::GET, &own), Some(405));
+            assert_eq!(status_at(path, Method::POST, &headers(None)), Some(403));
+            for foreign in ["http://evil.example", "null", "http://127.0.0.1:1"] {
+                assert_eq!(status_at(path, Method::POST, &headers(Some(foreign))), Some(403), "{foreign}");
+            }
+        }
+        assert_eq!(status_at("/state", Method::POST, &own), Some(405));
     }
 
     #[test]

@@ -12,6 +12,8 @@ pub(super) struct State {
     /// JSON of the page's data.
     pub(super) data: Arc<str>,
     pub(super) page: Arc<str>,
+    /// JSON of the values that differ from the defaults.
+    pub(super) values: Arc<str>,
     pub(super) trouble: Option<String>,
 }
 
@@ -22,6 +24,20 @@ impl State {
         let trouble = serde_json::to_string(&self.trouble).unwrap_or_else(|_| "null".to_owned());
         format!(r#"{{"version":{},"trouble":{trouble},"data":{data}}}"#, self.version)
     }
+}
+
+/// Waits for the state after `version`, with a timeout; gives its version, values and trouble as JSON, for a configurator
+/// that follows `file`.
+pub(super) async fn values_after(
+    mut states: watch::Receiver<State>,
+    version: u64,
+    timeout: Duration,
+    file: &serde_json::Value,
+) -> String {
+    let _ = tokio::time::timeout(timeout, states.wait_for(|state| state.version > version)).await;
+    let state = states.borrow();
+    let trouble = serde_json::to_string(&state.trouble).unwrap_or_else(|_| "null".to_owned());
+    format!(r#"{{"version":{},"values":{},"file":{file},"trouble":{trouble}}}"#, state.version, state.values)
 }
 
 /// The JSON of the state after `version`; waits for it, with a timeout.

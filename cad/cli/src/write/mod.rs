@@ -77,6 +77,14 @@ fn refuse_obstacle(path: &Path) -> Result<(), WriteError> {
 /// [`WriteError`] names the path; the old file is untouched.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     refuse_obstacle(path)?;
+    write_back(path, bytes)
+}
+
+/// The same for a file that was read in order to be changed.
+///
+/// # Errors
+/// As [`write_file`].
+pub fn write_back(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     match std::fs::metadata(path) {
         Ok(there) if there.is_dir() => return Err(WriteError::at(path)(ErrorKind::IsADirectory.into())),
         // A pipe or a terminal has no old content, and is not replaced by a file.

@@ -44,6 +44,9 @@ pub struct ConfigError {
     pub problem: String,
     /// What to change.
     pub remedy: String,
+    /// Fields and values, as TOML, that mend it when all of them are set: the first way that `remedy` tells. Empty where only
+    /// words can say it.
+    pub changes: Vec<(String, String)>,
     /// Where it stands.
     pub place: Option<Place>,
 }
@@ -56,6 +59,7 @@ impl ConfigError {
             value: Some(value.into()),
             problem: "is not accepted".to_owned(),
             remedy,
+            changes: Vec::new(),
             place: None,
         }
     }
@@ -67,6 +71,7 @@ impl ConfigError {
             value: None,
             problem: message.trim().replace('\n', ", "),
             remedy: "mend the line; templates/reference.toml shows the form".to_owned(),
+            changes: Vec::new(),
             place: Some(place),
         }
     }

@@ -6,6 +6,7 @@ pub mod parameter;
 mod parameters;
 mod read;
 mod reference;
+mod rewrite;
 mod text;
 
 pub use error::{ConfigError, Place};
@@ -16,4 +17,5 @@ pub use parameters::{
 };
 pub use read::{Places, assign, read, read_over};
 pub use reference::{reference_toml, to_toml};
+pub use rewrite::rewritten;
 pub use text::text;

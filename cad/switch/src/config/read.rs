@@ -89,6 +89,7 @@ fn no_field(name: &str, value: &str, place: Place) -> ConfigError {
         value: None,
         problem: if name.is_empty() { "is missing" } else { "is no field" }.to_owned(),
         remedy,
+        changes: Vec::new(),
         place: Some(place),
     }
 }
@@ -161,6 +162,7 @@ fn unknown(word: &str, known: &[&str], what: &str, place: Place) -> ConfigError 
         value: None,
         problem: format!("is no known {what}"),
         remedy,
+        changes: Vec::new(),
         place: Some(place),
     }
 }

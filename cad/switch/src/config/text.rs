@@ -23,6 +23,7 @@ pub fn text(bytes: Vec<u8>, file: &str) -> Result<String, ConfigError> {
             value: None,
             problem: "is no UTF-8 text".to_owned(),
             remedy: "give a text file, saved as UTF-8".to_owned(),
+            changes: Vec::new(),
             place: Some(Place {
                 file: file.to_owned(),
                 line: Some(1 + before.iter().filter(|b| **b == b'\n').count()),

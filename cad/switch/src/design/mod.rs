@@ -106,6 +106,7 @@ fn contact(dimensions: &Dimensions) -> Result<Contact, ConfigError> {
             value: Some(format!("{:?}", c.layout.pins)),
             problem: "leaves nothing to predict".to_owned(),
             remedy: e.to_string(),
+            changes: Vec::new(),
             place: None,
         })
 }

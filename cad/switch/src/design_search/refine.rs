@@ -84,6 +84,7 @@ pub(super) fn refined(trial: &Trial<'_>, space: &Space, place: &Place, aim: Aim,
     let Ok(solver) = NelderMead::new(simplex).with_sd_tolerance(ENOUGH) else { return place.clone() };
     let best = Executor::new(Cost { trial, space, place, aim }, solver)
         .configure(|state| state.max_iters(steps))
+        .timer(false)
         .run()
         .ok()
         .and_then(|result| result.state.best_param);

@@ -131,6 +131,7 @@ fn offset_error(field: &'static str) -> impl Fn(OffsetError) -> ConfigError {
         value: None,
         problem: format!("is too large for this geometry: {e}"),
         remedy: format!("lower {field}"),
+        changes: Vec::new(),
         place: None,
     }
 }

@@ -46,6 +46,7 @@ fn no_plate() -> ConfigError {
         value: None,
         problem: "has no plate".to_owned(),
         remedy: "set it to \"flange\"".to_owned(),
+        changes: vec![("mount.kind".to_owned(), "\"flange\"".to_owned())],
         place: None,
     }
 }

@@ -86,15 +86,29 @@ impl Tried {
 /// The error of `rule`, which `dimensions` break with this `problem`.
 pub(super) fn error(rule: &Rule, dimensions: &Dimensions, problem: String, remedy: Remedy) -> ConfigError {
     let c = dimensions.configuration();
-    let (field, remedy) = match remedy {
-        Remedy::Words(words) => (rule.field, words),
+    let (field, remedy, changes) = match remedy {
+        Remedy::Words(words) => (rule.field, words, Vec::new()),
         Remedy::Changes(changes) => advice(rule, c, changes),
     };
-    ConfigError { field: field.to_owned(), value: c.shown(field), problem, remedy, place: None }
+    ConfigError { field: field.to_owned(), value: c.shown(field), problem, remedy, changes, place: None }
 }
 
-/// The field to blame, and what to change.
-fn advice(rule: &Rule, c: &Configuration, changes: &[Change]) -> (&'static str, String) {
+/// The values that changes made one after another have set.
+fn settings(changes: &[Tried]) -> Vec<(String, String)> {
+    let set = |t: &Tried| {
+        let field = t.field?;
+        let parameter = Configuration::PARAMETERS.iter().find(|p| p.path() == field)?;
+        Some((field.to_owned(), (parameter.get)(&t.changed).to_string()))
+    };
+    changes.iter().filter_map(set).collect()
+}
+
+/// The field to blame, and what to change, in words and as the values of the first way.
+fn advice(
+    rule: &Rule,
+    c: &Configuration,
+    changes: &[Change],
+) -> (&'static str, String, Vec<(String, String)>) {
     // What keeps all that is kept now: a remedy that breaks another rule leads in circles.
     let before = Dimensions::new(c.clone());
     let kept: Vec<_> = rules().filter(|r| r.severity == Severity::Error && keeps(r, &before)).collect();
@@ -108,7 +122,8 @@ fn advice(rule: &Rule, c: &Configuration, changes: &[Change]) -> (&'static str, 
         found = together(changes, c, &breaks_none);
         if !found.is_empty() {
             let words: Vec<_> = found.iter().map(|t| t.words(rule.field)).collect();
-            return (rule.field, format!("no single value mends it: {}", words.join(", and ")));
+            let words = format!("no single value mends it: {}", words.join(", and "));
+            return (rule.field, words, settings(&found));
         }
         found = single(&of_rule_alone);
     }
@@ -118,7 +133,7 @@ fn advice(rule: &Rule, c: &Configuration, changes: &[Change]) -> (&'static str, 
             "no single value mends it: bring {} nearer to their defaults, which `pinswitch init reference` shows",
             fields.join(", ")
         );
-        return (rule.field, remedy);
+        return (rule.field, remedy, Vec::new());
     }
     let subject = subject(rule, c, &found);
     // What is spoken of comes first, then what somebody set, which is more likely wrong than a default.
@@ -128,7 +143,9 @@ fn advice(rule: &Rule, c: &Configuration, changes: &[Change]) -> (&'static str, 
         _ => 2,
     });
     found.truncate(NAMED);
-    (subject, alternatives(found.iter().map(|t| t.words(subject)).collect()))
+    let first = found.iter().find(|t| t.field.is_some()).map(std::slice::from_ref).unwrap_or_default();
+    let settings = settings(first);
+    (subject, alternatives(found.iter().map(|t| t.words(subject)).collect()), settings)
 }
 
 /// The rule's own field, unless it has its default and another that was set can mend it: that one stands in a file.
@@ -354,7 +371,9 @@ mod tests {
         } else {
             named.iter().all(|a| mends(std::slice::from_ref(a)))
         };
-        (!is_mended).then(|| format!("{text}: does not work: {named:?}"))
+        let set: Vec<String> = error.changes.iter().map(|(field, value)| format!("{field}={value}")).collect();
+        let is_set = set.is_empty() != is_tried && (set.is_empty() || mends(&set));
+        (!is_mended || !is_set).then(|| format!("{text}: does not work: {named:?}, {set:?}"))
     }
 
     fn with_all(assignments: &[&str]) -> Configuration {

@@ -32,9 +32,12 @@ const HTML: &str = include_str!("page.html");
 const CSS: &str = include_str!("page.css");
 const JS: &str = include_str!("page.js");
 // Vendored builds, see vendor.md.
-const THREE: &str = include_str!("three.min.js");
-const UPLOT: &str = include_str!("uplot.min.js");
-const UPLOT_CSS: &str = include_str!("uplot.min.css");
+/// three.js, as vendored.
+pub const THREE: &str = include_str!("three.min.js");
+/// uPlot, as vendored.
+pub const UPLOT: &str = include_str!("uplot.min.js");
+/// The style of uPlot.
+pub const UPLOT_CSS: &str = include_str!("uplot.min.css");
 
 /// The page that shows `data`, with the data URL of a picture for browsers without WebGL. A live page needs none: it is
 /// rebuilt while somebody waits, in a browser that has shown it already.

@@ -1,0 +1,73 @@
+//! A table of measured plateaus that was dropped on the page: its verdict and its model.
+
+use pinswitch_calibration::effects::Vocabulary;
+use pinswitch_calibration::inference::Levels;
+use pinswitch_calibration::table::PlateauTable;
+use pinswitch_calibration::{ModelFile, SessionReport, calibrate_among};
+use serde::Serialize;
+
+use crate::Answer;
+
+/// Largest table that is read, in bytes: some hundred thousand rows, for which a browser computes minutes.
+const LARGEST: usize = 20 << 20;
+
+/// What the table says.
+#[derive(Serialize)]
+struct Said {
+    verdict: &'static str,
+    words: String,
+    before_n: f64,
+    after_n: f64,
+    promise_n: Option<f64>,
+    noise_n: f64,
+    adequate: bool,
+    effects: Vec<String>,
+    /// The text of `model.toml`.
+    model: String,
+}
+
+/// Calibrates the table; `file` names it in errors.
+pub(crate) fn answer(csv: &str, file: &str) -> Answer {
+    said(csv, file).map_or_else(Answer::error, |said| Answer::json(&said))
+}
+
+fn said(csv: &str, file: &str) -> Result<Said, String> {
+    if csv.len() > LARGEST {
+        return Err(format!(
+            "{file}: {} MB are more than the {} MB that a page can work on; use `pinswitch calibrate {file}`",
+            csv.len() >> 20,
+            LARGEST >> 20
+        ));
+    }
+    let table = PlateauTable::read(csv.as_bytes(), file).map_err(|e| e.to_string())?;
+    let calibration = calibrate_among(&table.rows, &Vocabulary::built_in(), Levels::default())
+        .map_err(|e| format!("{file}: {e}"))?;
+    let (report, selection) = (&calibration.report, &calibration.selection);
+    let model = ModelFile::new(&selection.augmented, &calibration.data, selection.noise);
+    Ok(Said {
+        verdict: report.verdict.as_str(),
+        words: SessionReport::after(file.to_owned(), report).words(),
+        before_n: report.baseline.heldout_rmse_n,
+        after_n: report.augmented.heldout_rmse_n,
+        promise_n: report.promise_n,
+        noise_n: report.noise_floor_n,
+        adequate: report.adequate,
+        effects: report.effects.iter().map(|effect| effect.id.clone()).collect(),
+        model: model.to_text().map_err(|e| e.to_string())?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_table_is_told_in_words() {
+        for text in ["", "a,b\n1,2\n", "\u{0}PK"] {
+            let Answer::Json(answer) = answer(text, "x.csv") else { panic!("bytes") };
+            assert!(answer.contains("error") && answer.contains("x.csv"), "{answer}");
+        }
+        let large = answer(&" ".repeat(LARGEST + 1), "large.csv");
+        assert!(matches!(large, Answer::Json(text) if text.contains("pinswitch calibrate large.csv")));
+    }
+}

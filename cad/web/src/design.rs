@@ -1,0 +1,76 @@
+//! What the page shows of a design.
+
+use pinswitch_calibration::ModelFile;
+use pinswitch_switch::built::Built;
+use pinswitch_switch::config::{Configuration, to_toml};
+use pinswitch_switch::design::Design;
+use pinswitch_switch::formats::{named, page::PageData};
+use pinswitch_switch::output::{BuildError, SetError};
+use pinswitch_switch::prediction::Prediction;
+use pinswitch_switch::set::Set;
+use serde::Serialize;
+
+use crate::calibrated_curve::calibrated_curve;
+use crate::request::{Asked, Quality};
+use crate::trouble::Trouble;
+use crate::values::configuration;
+
+/// Chord tolerance of what is only looked at, in millimetres.
+const COARSE_MM: f64 = 0.05;
+/// What a model dropped on the page is called in errors.
+const MODEL: &str = "the calibrated model";
+
+/// A design as the page shows it, or what is wrong with it.
+#[derive(Debug, Serialize)]
+pub(crate) struct Shown {
+    data: Option<PageData>,
+    toml: Option<String>,
+    trouble: Option<Trouble>,
+}
+
+/// The data of a design, its configuration as text, or its trouble.
+pub(crate) fn answer(asked: &Asked, quality: Quality) -> Shown {
+    match shown(asked, quality) {
+        Ok((data, toml)) => Shown { data: Some(data), toml: Some(toml), trouble: None },
+        Err(trouble) => Shown { data: None, toml: None, trouble: Some(trouble) },
+    }
+}
+
+fn shown(asked: &Asked, quality: Quality) -> Result<(PageData, String), Trouble> {
+    let exact = configuration(&asked.values)?;
+    let toml = to_toml(&exact);
+    let mut seen = exact;
+    if quality == Quality::Coarse {
+        seen.mesh.chord_tolerance_mm = seen.mesh.chord_tolerance_mm.max(COARSE_MM);
+    }
+    let (built, prediction) = built(seen, asked.model.as_deref())?;
+    let formats = named(&["stl"]).map_err(Trouble::general)?;
+    let set = Set::new(&built, &prediction, &formats).map_err(trouble)?;
+    Ok((PageData::new(&built, &prediction, &set.manifest, Some(1)), toml))
+}
+
+/// The parts of a configuration and the curve, by the published constants or by a calibrated model.
+pub(crate) fn built(
+    configuration: Configuration,
+    model: Option<&str>,
+) -> Result<(Built, Prediction), Trouble> {
+    let design = Design::new(configuration)?;
+    let prediction = match model {
+        Some(text) => {
+            let model = ModelFile::parse(text, MODEL).map_err(Trouble::general)?;
+            let curve = calibrated_curve(&design, &model, MODEL).map_err(Trouble::general)?;
+            Prediction::with_curve(&design, curve)
+        }
+        None => Prediction::of(&design),
+    };
+    let built = Built::new(design).map_err(|e| trouble(e.into()))?;
+    Ok((built, prediction))
+}
+
+/// What is wrong with a set, at its field where it has one.
+pub(crate) fn trouble(error: SetError) -> Trouble {
+    match error {
+        SetError::Build(BuildError::Configuration(error)) => error.into(),
+        other => Trouble::general(other),
+    }
+}

@@ -1,0 +1,67 @@
+//! The page of the configurator: one file with everything in it, which a file server or a double click opens.
+
+use pinswitch_plot::html::{filled, policy};
+use pinswitch_switch::formats::page::{THREE, UPLOT, UPLOT_CSS};
+
+const HTML: &str = include_str!("../page/configurator.html");
+const CSS: &str = include_str!("../page/configurator.css");
+const WORKER: &str = include_str!("../page/worker.js");
+
+/// The page's own scripts, in the order in which they are read.
+const SCRIPTS: [&str; 11] = [
+    include_str!("../page/words.js"),
+    include_str!("../page/state.js"),
+    include_str!("../page/engine.js"),
+    include_str!("../page/controls.js"),
+    include_str!("../page/pins.js"),
+    include_str!("../page/assembly.js"),
+    include_str!("../page/curve.js"),
+    include_str!("../page/checks.js"),
+    include_str!("../page/downloads.js"),
+    include_str!("../page/drop.js"),
+    include_str!("../page/page.js"),
+];
+
+/// The page, with the WebAssembly module in base64; without one it asks the server that it came from.
+#[must_use]
+pub fn configurator_html(module: Option<&str>) -> String {
+    let (script, policy) = (SCRIPTS.concat(), configurator_policy());
+    filled(HTML, |place| match place {
+        "CSS" => Some(CSS.into()),
+        "UPLOT_CSS" => Some(UPLOT_CSS.into()),
+        "THREE" => Some(THREE.into()),
+        "UPLOT" => Some(UPLOT.into()),
+        "JS" => Some(script.as_str().into()),
+        "WORKER" => Some(WORKER.into()),
+        "MODULE" => Some(module.unwrap_or_default().into()),
+        "POLICY" => Some(policy.as_str().into()),
+        _ => None,
+    })
+}
+
+/// The Content-Security-Policy of the page, the same where it is saved and where it is served. Its worker is made from a
+/// text in the page, and compiles the module.
+#[must_use]
+pub fn configurator_policy() -> String {
+    policy(&[THREE, UPLOT, &SCRIPTS.concat()])
+        .replace("script-src", "worker-src blob:; script-src 'wasm-unsafe-eval'")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_of_the_page_is_filled() {
+        let page = configurator_html(Some("AGFzbQ=="));
+        assert!(page.contains(&configurator_policy()) && page.contains("AGFzbQ=="));
+        for place in ["CSS", "UPLOT_CSS", "THREE", "UPLOT", "JS", "WORKER", "MODULE", "POLICY"] {
+            assert!(HTML.contains(&format!("{{{{{place}}}}}")), "{place} stands nowhere");
+            assert!(!page.contains(&format!("{{{{{place}}}}}")), "{place} is left");
+        }
+        assert!(
+            !page.contains("src=\"http") && !page.contains("href=\"http"),
+            "nothing comes from elsewhere"
+        );
+    }
+}

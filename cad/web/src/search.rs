@@ -1,0 +1,99 @@
+//! Designs that do what the handles on the plot ask for.
+
+use pinswitch_friction::FrictionCurve;
+use pinswitch_switch::ask::{Ask, DEFAULT_WITHIN, Quantity, Target, Wish};
+use pinswitch_switch::design::Design;
+use pinswitch_switch::design_search::{Options, Proposal, PublishedPhysics, Silent, load_range_n, search};
+use pinswitch_switch::prediction::predicted_curve;
+use serde::Serialize;
+
+use crate::Answer;
+use crate::request::{Values, Wanted};
+use crate::trouble::Trouble;
+use crate::values::{configuration, values};
+
+/// Designs that are proposed at the most, whatever is asked.
+const MOST: usize = 12;
+/// Made parts that are drawn for a probability, and patterns whose dimensions are searched: less than half of what the
+/// command line takes, since somebody waits.
+const QUICK: Options = Options { best: 6, draws: 400, seed: 1, starts: 6 };
+
+/// One card.
+#[derive(Debug, Serialize)]
+struct Card {
+    values: Values,
+    words: String,
+    probability: f64,
+    threshold_n: Option<f64>,
+    friction_n: f64,
+    curve: FrictionCurve,
+}
+
+/// Cards, the most probable first, and how the search went, in words.
+#[derive(Debug, Serialize)]
+struct Found {
+    designs: Vec<Card>,
+    words: String,
+}
+
+/// The best designs for what is wanted.
+pub(crate) fn answer(wanted: &Wanted) -> Answer {
+    match found(wanted) {
+        Ok(found) => Answer::json(&found),
+        Err(trouble) => Answer::json(&serde_json::json!({ "trouble": trouble })),
+    }
+}
+
+fn found(wanted: &Wanted) -> Result<Found, Trouble> {
+    let base = Design::new(configuration(&wanted.values)?)?;
+    let about = |value| Wish::About { value, within: DEFAULT_WITHIN };
+    let threshold = wanted.threshold_n.map(|n| Target { quantity: Quantity::Threshold, wish: about(n) });
+    let friction = wanted
+        .friction
+        .iter()
+        .map(|at| Target { quantity: Quantity::Friction { load_n: at.load_n }, wish: about(at.friction_n) });
+    let ask = Ask { targets: threshold.into_iter().chain(friction).collect(), ..Ask::default() };
+    ask.check().map_err(Trouble::general)?;
+    ask.check_loads(load_range_n(base.configuration(), &ask)).map_err(Trouble::general)?;
+    let options = Options { best: wanted.most.clamp(1, MOST), ..QUICK };
+    let found = search(&base, &ask, &PublishedPhysics::default(), options, &Silent);
+    let mut words = format!("{} patterns, {} curves computed", found.patterns, found.tried);
+    if found.blocked.is_some() {
+        words.push_str("; none does all of it by the best guess: this is the nearest");
+    }
+    Ok(Found { designs: found.proposals.iter().filter_map(card).collect(), words })
+}
+
+fn card(proposal: &Proposal) -> Option<Card> {
+    let design = Design::new(proposal.configuration.clone()).ok()?;
+    let threshold = proposal.threshold_n.map_or("no switching".to_owned(), |n| format!("threshold {n:.1} N"));
+    Some(Card {
+        values: values(&proposal.configuration),
+        words: format!(
+            "pins {:?}, {threshold}, {:.1} N at the heaviest load",
+            proposal.pins, proposal.friction_n
+        ),
+        probability: proposal.probability.all,
+        threshold_n: proposal.threshold_n,
+        friction_n: proposal.friction_n,
+        curve: predicted_curve(&design),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_proposed_can_be_taken() {
+        let wanted: Wanted = serde_json::from_str(r#"{"threshold_n": 24, "most": 2}"#).unwrap();
+        let proposed = found(&wanted).unwrap();
+        assert!((1..=2).contains(&proposed.designs.len()));
+        for card in &proposed.designs {
+            assert!((0.0..=1.0).contains(&card.probability));
+            Design::new(configuration(&card.values).unwrap()).unwrap();
+        }
+        let wanted: Wanted = serde_json::from_str(r#"{"threshold_n": -1}"#).unwrap();
+        assert!(found(&wanted).is_err());
+    }
+}

@@ -1,0 +1,105 @@
+// Asks backwards: what the switch shall do; the search; the best designs as cards.
+
+class Ask {
+  constructor(state, engine, curve, handles) {
+    Object.assign(this, { state, engine, curve, handles });
+    const threshold = byId('ask-threshold');
+    threshold.addEventListener('input', () => this.handles.ask({ threshold_n: Number(threshold.value) > 0 ? Number(threshold.value) : null }, 'ask.threshold'));
+    byId('ask-no-threshold').addEventListener('click', () => { this.handles.ask({ threshold_n: null }); threshold.focus(); });
+    byId('add-friction').addEventListener('click', () => this.add());
+    byId('search').addEventListener('click', () => this.search());
+    byId('stop').addEventListener('click', () => this.engine.stopSlow());
+    state.addEventListener('change', () => this.show());
+    this.show();
+  }
+
+  add() {
+    const { friction } = this.state.now.ask;
+    const load_n = friction.length ? friction.at(-1).load_n / 2 : this.handles.frictions()[0]?.load_n ?? 40;
+    const curve = this.curve.data?.curve;
+    const friction_n = curve ? at(curve.load_n, curve.friction_n, load_n) : 5;
+    this.handles.ask({ friction: [...friction, { load_n: Number(load_n.toFixed(1)), friction_n: Number(friction_n.toFixed(2)) }] });
+  }
+
+  show() {
+    const { threshold_n, friction } = this.state.now.ask;
+    const input = byId('ask-threshold');
+    if (document.activeElement !== input) input.value = threshold_n ?? '';
+    byId('ask-no-threshold').hidden = threshold_n === null;
+    byId('add-friction').hidden = friction.length >= 4;
+    const rows = byId('ask-frictions');
+    while (rows.children.length > friction.length) rows.lastChild.remove();
+    while (rows.children.length < friction.length) rows.append(this.row(rows.children.length));
+    friction.forEach((f, i) => [...rows.children[i].querySelectorAll('input')].forEach((box, k) => {
+      if (document.activeElement !== box) box.value = k ? f.load_n : f.friction_n;
+    }));
+  }
+
+  row(i) {
+    const row = make('div', undefined, { class: 'ask-row' });
+    const box = (word, key) => {
+      const label = make('label', word);
+      const input = make('input', undefined, { type: 'number', min: 0, step: key === 'load_n' ? 0.5 : 0.1, inputmode: 'decimal' });
+      input.addEventListener('input', () => { if (Number(input.value) > 0) this.handles.setFriction(i, { ...this.state.now.ask.friction[i], [key]: Number(input.value) }); });
+      label.append(input, make('span', WORDS.units.n, { class: 'unit' }));
+      return label;
+    };
+    const remove = button('×', () => this.handles.ask({ friction: this.state.now.ask.friction.filter((_, k) => k !== i) }), { class: 'tiny', 'aria-label': WORDS.removeFriction(i + 1) });
+    row.append(box(WORDS.askFriction, 'friction_n'), box(WORDS.askLoad, 'load_n'), remove);
+    return row;
+  }
+
+  async search() {
+    const { ask, values } = this.state.now;
+    if (ask.threshold_n === null && !ask.friction.length) { byId('search-says').textContent = WORDS.searchNothing; return; }
+    byId('search').disabled = true;
+    byId('stop').hidden = false;
+    const began = performance.now();
+    const tick = () => { byId('search-says').textContent = WORDS.searching(Math.round((performance.now() - began) / 1000)); };
+    tick();
+    const clock = setInterval(tick, 1000);
+    try {
+      const answer = await this.engine.ask({ ask: 'search', values, threshold_n: ask.threshold_n, friction: ask.friction, most: 6 });
+      this.found(answer.designs);
+      byId('search-says').textContent = answer.words;
+    } catch (problem) {
+      byId('search-says').textContent = problem instanceof Stale ? WORDS.stopped : problem.message;
+    } finally {
+      clearInterval(clock);
+      byId('search').disabled = false;
+      byId('stop').hidden = true;
+    }
+  }
+
+  found(designs) {
+    this.curve.further('preview', null);
+    byId('designs').replaceChildren(...designs.map((design, i) => this.card(design, i)));
+  }
+
+  card(design, i) {
+    const card = make('li', undefined, { class: 'design' });
+    const percent = Math.round(100 * design.probability);
+    const head = make('div', undefined, { class: 'design-head' });
+    head.append(make('b', WORDS.likely(percent), { title: WORDS.askFor }), this.spark(design.curve));
+    const bar = make('div', undefined, { class: 'bar', 'aria-hidden': 'true' });
+    bar.append(make('i', undefined, { style: `width: ${percent}%` }));
+    const has = WORDS.designHas(design.threshold_n === null ? null : design.threshold_n.toFixed(1), design.friction_n === null ? null : design.friction_n.toFixed(2));
+    const take = button(WORDS.take, () => {
+      this.curve.further('preview', null);
+      this.state.change({ values: { ...design.values } });
+      say(WORDS.designTaken);
+    }, { class: 'btn', 'aria-label': `${WORDS.take}: ${WORDS.designName(i + 1)}` });
+    card.append(head, bar, make('p', design.words), make('p', has, { class: 'dim' }), take);
+    const preview = (on) => this.curve.further('preview', on ? { name: WORDS.previewCurve(i + 1), curve: design.curve } : null);
+    for (const [event, on] of [['pointerenter', true], ['focusin', true], ['pointerleave', false], ['focusout', false]]) card.addEventListener(event, () => preview(on));
+    return card;
+  }
+
+  spark({ load_n, friction_n }) {
+    const [widest, highest] = [load_n.at(-1), Math.max(...friction_n, 1e-9)];
+    const drawing = svg('svg', { viewBox: '0 0 64 24', class: 'spark', 'aria-hidden': 'true' });
+    const points = load_n.map((x, i) => `${(62 * x / widest + 1).toFixed(1)},${(23 - 21 * friction_n[i] / highest).toFixed(1)}`);
+    drawing.append(svg('polyline', { points: points.join(' ') }));
+    return drawing;
+  }
+}

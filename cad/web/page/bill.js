@@ -1,0 +1,69 @@
+// What one needs: bill of materials, printed parts with their volumes, and how they lie on the print bed.
+
+// Between parts on the bed, in millimetres.
+const GAP_MM = 4;
+
+function billRows(bill, parts) {
+  const rows = [];
+  if (bill.pins?.number) rows.push([WORDS.steelPins, `${WORDS.spare(bill.pins.number, bill.pins.spares)}, ${plain(bill.pins.diameter_mm)} x ${plain(bill.pins.length_mm)} mm`]);
+  if (bill.silicone) {
+    rows.push([WORDS.mix, `${bill.silicone.mix_g.toFixed(1)} g: ${WORDS.mixed(plain(bill.silicone.base_g, 1), plain(bill.silicone.agent_g, 1))}`]);
+    rows.push([WORDS.pour, `${bill.silicone.pour_ml.toFixed(2)} ml`]);
+  }
+  if (bill.tendon) rows.push([WORDS.tendon, `${plain(bill.tendon.length_mm)} mm, ${WORDS.coated(plain(bill.tendon.rope_diameter_mm), bill.tendon.outer_diameter_mm.toFixed(2))}`]);
+  if (bill.fasteners) {
+    const { number, thread, length_mm, right_length_mm, nuts, inserts } = bill.fasteners;
+    rows.push([WORDS.screws, `${number} x ${thread} x ${right_length_mm ? WORDS.rightSide(plain(length_mm), plain(right_length_mm)) : plain(length_mm)} mm`]);
+    if (nuts) rows.push([WORDS.nuts, `${nuts} x ${thread}`]);
+    if (inserts) rows.push([WORDS.inserts, `${inserts} x ${thread}`]);
+  }
+  if (bill.dowels) rows.push([WORDS.dowels, `${bill.dowels.number} x ${plain(bill.dowels.diameter_mm)} x ${plain(bill.dowels.length_mm)} mm`]);
+  for (const item of [bill.mount?.bearing, bill.mount?.axle, bill.mount?.sheath_stop]) if (item) rows.push([String(item), WORDS.forMount]);
+  rows.push([WORDS.plastic, `${parts.reduce((sum, p) => sum + p.mass_g, 0).toFixed(1)} g`]);
+  return rows;
+}
+
+const sizeOf = ({ mesh }) => mesh.high_mm.map((high, k) => high - mesh.low_mm[k]);
+
+// Rows of parts, the deepest first: how they could lie. Null if they do not all fit.
+function shelves(parts, bed) {
+  const placed = [];
+  let [x, y, depth] = [0, 0, 0];
+  const sorted = parts.map((part) => ({ part, size: sizeOf(part) })).sort((a, b) => b.size[1] - a.size[1] || b.size[0] - a.size[0]);
+  for (const { part, size } of sorted) {
+    if (size[0] > bed || size[1] > bed) return null;
+    if (x + size[0] > bed) { x = 0; y += depth + GAP_MM; depth = 0; }
+    if (y + size[1] > bed) return null;
+    placed.push({ part, x, y, size });
+    x += size[0] + GAP_MM;
+    depth = Math.max(depth, size[1]);
+  }
+  return placed;
+}
+
+function drawBed(parts, bed) {
+  const placed = shelves(parts, bed);
+  byId('bed-says').textContent = WORDS.bedSays(plain(bed), placed !== null);
+  const used = placed ? placed.reduce(([w, h], p) => [Math.max(w, p.x + p.size[0]), Math.max(h, p.y + p.size[1])], [0, 0]) : [bed, bed];
+  const [dx, dy] = [(bed - used[0]) / 2, (bed - used[1]) / 2];
+  const drawing = svg('svg', { viewBox: `-2 -2 ${bed + 4} ${bed + 4}`, role: 'img', 'aria-label': WORDS.bedName(parts.length, plain(bed)), class: 'bed' });
+  drawing.append(svg('rect', { width: bed, height: bed, rx: 4, class: 'plate' }));
+  for (const { part, x, y, size } of placed ?? []) {
+    const outline = svg('rect', { x: x + dx, y: y + dy, width: size[0], height: size[1], rx: 1, class: 'outline' });
+    outline.append(svg('title', {}, WORDS.bedPart(part.name, size[0].toFixed(1), size[1].toFixed(1))));
+    drawing.append(outline);
+  }
+  byId('bed').replaceChildren(drawing);
+}
+
+function showBill(data) {
+  const { parts, bill_of_materials: bill, settings } = data.manifest;
+  byId('bill').replaceChildren(...billRows(bill, parts).map(([name, much]) => {
+    const row = make('div');
+    row.append(make('dt', name), make('dd', much));
+    return row;
+  }));
+  const rows = parts.map((p) => [p.name, sizeOf(p).map((v) => v.toFixed(1)).join(' x '), p.mass_g.toFixed(2), p.volume_mm3.toFixed(1), p.mesh.triangles]);
+  byId('parts').replaceChildren(table([WORDS.part, WORDS.size, WORDS.mass, WORDS.volume, WORDS.triangles], rows));
+  drawBed(parts, settings.find((s) => s.field === 'print.bed_mm')?.value ?? 250);
+}

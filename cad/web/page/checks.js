@@ -1,0 +1,47 @@
+// Checks and warnings: what needs a look first, what is fine on demand.
+
+function showChecks(data) {
+  const fine = data.checks.filter((c) => c.fine);
+  const look = data.checks.filter((c) => !c.fine);
+  const line = (mark, name, words, remedy) => {
+    const li = make('li', undefined, { class: name });
+    li.append(make('span', mark, { class: 'mark', 'aria-hidden': 'true' }));
+    const text = make('span');
+    text.append(make('span', `${name === 'fine' ? WORDS.checkFine : name === 'look' ? WORDS.checkLook : WORDS.checkWarning}: `, { class: 'unseen' }), words);
+    if (remedy) text.append(make('span', remedy, { class: 'remedy' }));
+    li.append(text);
+    return li;
+  };
+  const problems = [...look.map((c) => line('!', 'look', c.words, c.remedy)), ...data.manifest.warnings.map((w) => line('!', 'warning', w))];
+  byId('checks-sum').textContent = WORDS.checksSum(fine.length, data.checks.length);
+  byId('checks').replaceChildren(...problems, ...(problems.length > 2 ? [] : fine.map((c) => line('✓', 'fine', c.words))));
+  byId('fine-checks').hidden = problems.length <= 2;
+  byId('fine-head').textContent = WORDS.showFine(fine.length);
+  byId('fine-list').replaceChildren(...(problems.length > 2 ? fine.map((c) => line('✓', 'fine', c.words)) : []));
+}
+
+// Trouble with a design: above the view, and at the control of its field, with a button that mends it.
+function showTrouble(trouble, controls, state) {
+  const host = byId('trouble');
+  host.hidden = !trouble;
+  document.body.classList.toggle('stale', Boolean(trouble));
+  const mend = () => {
+    const fits = (trouble?.changes ?? []).filter((c) => state.fields.has(c.path));
+    if (!fits.length) return undefined;
+    const words = fits.map((c) => WORDS.setTo(fieldName(state.fields.get(c.path)), shownValue(c.value)));
+    return button(WORDS.mends(words), () => {
+      state.change({ values: { ...state.now.values, ...Object.fromEntries(fits.map((c) => [c.path, c.value])) } });
+    }, { class: 'btn mend' });
+  };
+  controls.trouble(trouble, mend());
+  host.replaceChildren();
+  if (!trouble) return;
+  const field = state.fields.get(trouble.field);
+  const name = field ? `${WORDS.groups[field.section] ?? field.section}, ${fieldName(field)}: ` : '';
+  const text = make('p');
+  text.append(make('b', `${WORDS.refused} `), `${name}${trouble.problem}${trouble.remedy ? `; ${trouble.remedy}` : ''}.`);
+  host.append(text);
+  const mending = mend();
+  if (mending) host.append(mending);
+  host.append(button(WORDS.undo, () => state.undo(), { class: 'btn' }));
+}

@@ -1,0 +1,123 @@
+// Asks the engine: a worker with the module that the page holds, or the server that served the page.
+
+// Answers of the engine that are no answers: told in words.
+class EngineError extends Error {
+  constructor(message, kind) { super(message); this.kind = kind; }
+}
+// A question that a newer one has made pointless.
+class Stale extends Error {}
+
+// One worker: answers one question at a time, in their order. Of questions with the same `newest` only the last waits.
+class WorkerLane {
+  constructor(source, module) {
+    this.source = source;
+    this.module = module;
+    this.waiting = [];
+    this.asked = null;
+  }
+
+  start() {
+    const address = URL.createObjectURL(new Blob([this.source], { type: 'text/javascript' }));
+    this.worker = new Worker(address);
+    URL.revokeObjectURL(address);
+    this.worker.onmessage = (event) => this.answered(event.data);
+    this.worker.onerror = (event) => { event.preventDefault(); this.answered({ fatal: event.message ?? '' }); };
+    this.worker.postMessage({ module: this.module() });
+  }
+
+  ask(request, newest) {
+    return new Promise((resolve, reject) => {
+      if (newest) {
+        this.waiting.filter((q) => q.newest === newest).forEach((q) => q.reject(new Stale()));
+        this.waiting = this.waiting.filter((q) => q.newest !== newest);
+      }
+      this.waiting.push({ request, newest, resolve, reject });
+      this.next();
+    });
+  }
+
+  next() {
+    if (this.asked || !this.waiting.length) return;
+    if (!this.worker) this.start();
+    this.asked = this.waiting.shift();
+    this.worker.postMessage({ question: JSON.stringify(this.asked.request) });
+  }
+
+  answered(message) {
+    if (message.fatal !== undefined || message.trap !== undefined) {
+      this.end();
+      const broken = message.fatal !== undefined;
+      this.asked?.reject(new EngineError(broken ? WORDS.engineBroken(message.fatal) : WORDS.engineStopped, broken ? 'broken' : 'trap'));
+    } else if (message.bytes) {
+      this.asked?.resolve(message.bytes);
+    } else {
+      this.asked?.resolve(JSON.parse(message.json));
+    }
+    this.asked = null;
+    this.next();
+  }
+
+  // Ends the worker with what it does; the next question starts another.
+  end() { this.worker?.terminate(); this.worker = null; }
+
+  stop() {
+    this.end();
+    this.asked?.reject(new Stale());
+    this.asked = null;
+    this.next();
+  }
+}
+
+// The server answers many at once; here too only the newest design counts.
+class ServerLane {
+  constructor() { this.turn = {}; this.stopping = new AbortController(); }
+
+  async ask(request, newest) {
+    const turn = newest && (this.turn[newest] = (this.turn[newest] ?? 0) + 1);
+    if (newest) {
+      await this.running?.catch(() => {});
+      if (turn !== this.turn[newest]) throw new Stale();
+    }
+    const answer = this.post(request);
+    if (newest) this.running = answer;
+    return answer;
+  }
+
+  async post(request) {
+    const { signal } = this.stopping;
+    let response;
+    try {
+      response = await fetch('answer', { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(request), signal });
+    } catch {
+      if (signal.aborted) throw new Stale();
+      throw new EngineError(location.protocol === 'file:' ? WORDS.engineMissing : WORDS.serverGone, 'gone');
+    }
+    const isJson = (response.headers.get('content-type') ?? '').includes('json');
+    if (!response.ok && !isJson) throw new EngineError(response.status === 404 ? WORDS.engineMissing : WORDS.enginePart(`${response.status}`), 'gone');
+    return isJson ? response.json() : response.arrayBuffer();
+  }
+
+  stop() { this.stopping.abort(); this.stopping = new AbortController(); }
+}
+
+class Engine {
+  constructor() {
+    const module = byId('module').textContent.trim();
+    const lane = () => (module ? new WorkerLane(byId('worker').textContent, () => bytesOf(module).buffer) : new ServerLane());
+    // What takes seconds has a lane of its own, so that pins still move.
+    this.quick = lane();
+    this.slow = lane();
+  }
+
+  // The answer; an EngineError in words if there is none, Stale if a newer design was asked for meanwhile.
+  async ask(request) {
+    const isSlow = ['search', 'files', 'file', 'zip', 'calibrate'].includes(request.ask);
+    const newest = request.ask === 'design' && !request.aside ? 'design' : undefined;
+    const { aside: _, ...question } = request;
+    const answer = await (isSlow ? this.slow : this.quick).ask(question, newest);
+    if (answer?.error !== undefined) throw new EngineError(answer.error, 'refused');
+    return answer;
+  }
+
+  stopSlow() { this.slow.stop(); }
+}

@@ -1,0 +1,61 @@
+// Measurements of one's own: a table of plateaus, the verdict on it, and its model in the design.
+
+class Measured {
+  constructor(state, engine, curve) {
+    Object.assign(this, { state, engine, curve });
+    byId('table-file').addEventListener('change', (event) => { this.chosen?.(event.target.files); event.target.value = ''; });
+    byId('choose-table').addEventListener('click', () => byId('table-file').click());
+    byId('take-model').addEventListener('click', () => this.take());
+    byId('drop-model').addEventListener('click', () => this.state.change({ model: null }));
+    state.addEventListener('change', () => this.show());
+    this.show();
+  }
+
+  show() {
+    const { model } = this.state.now;
+    byId('model-used').hidden = !model;
+    byId('model-words').textContent = model ? `${WORDS.modelName(model.name)}. ${WORDS.modelTaken}` : '';
+    byId('take-model').hidden = !this.found || model?.toml === this.found.toml;
+    if (model) this.curve.further('calibrated', null);
+  }
+
+  async calibrate(csv, file) {
+    this.tell([WORDS.calibrating(file)]);
+    byId('measured').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
+    try {
+      const answer = await this.engine.ask({ ask: 'calibrate', csv, file });
+      const digits = (v) => (v < 0.1 ? v.toFixed(4) : v.toFixed(2));
+      const errors = answer.before_n === null || answer.after_n === null ? [] : [WORDS.calibrated(digits(answer.before_n), digits(answer.after_n), digits(answer.promise_n ?? answer.after_n))];
+      this.tell([answer.words, ...errors, ...(answer.effects?.length ? [WORDS.effects(answer.effects)] : [])], WORDS.verdicts[answer.verdict] ?? answer.verdict);
+      this.found = answer.model ? { name: file, toml: answer.model } : null;
+      this.show();
+      if (this.found) await this.preview();
+    } catch (problem) {
+      if (!(problem instanceof Stale)) this.tell([problem.message], undefined, true);
+    }
+  }
+
+  // The curve of the design by the model just found, beside the one that is shown.
+  async preview() {
+    const { values } = this.state.now;
+    const { data, trouble } = await this.engine.ask({ ask: 'design', values, quality: 'coarse', model: this.found.toml, aside: true });
+    if (data) this.curve.further('calibrated', { curve: data.curve });
+    else if (trouble) byId('verdict').append(make('p', trouble.problem, { class: 'error' }));
+  }
+
+  async take() {
+    this.state.change({ model: await packModel(this.found.name, this.found.toml) });
+  }
+
+  // A model.toml of an earlier calibration.
+  async takeModel(toml, file) {
+    this.tell([WORDS.opened(file)]);
+    this.found = { name: file, toml };
+    await this.take();
+  }
+
+  tell(lines, head, isError = false) {
+    byId('measured-help').hidden = true;
+    byId('verdict').replaceChildren(...(head ? [make('b', head)] : []), ...lines.map((line) => make('p', line, { class: isError ? 'error' : undefined })));
+  }
+}

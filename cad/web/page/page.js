@@ -1,0 +1,248 @@
+// The whole: starts the engine, shows each design that the state asks for, and keeps the address.
+
+// So long nothing may change before the exact design is asked for, in place of the coarse one.
+const CALM_MS = 450;
+// The address is written no more often: browsers refuse a hundred in ten seconds.
+const ADDRESS_MS = 250;
+const FIRST = 'three-double';
+
+let faults = 0;
+function fault(message) {
+  faults += 1;
+  document.body.dataset.errors = faults;
+  showNotice(WORDS.fault(message));
+}
+document.body.dataset.errors = 0;
+document.body.dataset.generation = 0;
+addEventListener('error', (event) => { if (!/ResizeObserver/.test(event.message)) fault(event.message); });
+addEventListener('unhandledrejection', (event) => fault(String(event.reason?.message ?? event.reason)));
+
+// A line above the view: about an address, a file, the engine. `act` is what could be done.
+function showNotice(words, act) {
+  const host = byId('notice');
+  host.hidden = !words;
+  host.replaceChildren();
+  if (!words) return;
+  host.append(make('p', words));
+  if (act) host.append(act);
+  host.append(button('×', () => showNotice(''), { class: 'tiny', 'aria-label': WORDS.close }));
+}
+
+function fillWords() {
+  document.title = WORDS.title;
+  for (const element of document.querySelectorAll('[data-word]')) element.prepend(WORDS[element.dataset.word]);
+  for (const element of document.querySelectorAll('[data-name]')) element.setAttribute('aria-label', WORDS[element.dataset.name]);
+  for (const element of document.querySelectorAll('[data-tip]')) element.title = WORDS[element.dataset.tip];
+}
+
+class Page {
+  async start() {
+    fillWords();
+    this.engine = new Engine();
+    byId('busy').textContent = WORDS.starting;
+    let facts;
+    try {
+      facts = await this.engine.ask({ ask: 'facts' });
+    } catch (problem) {
+      byId('busy').textContent = '';
+      document.body.dataset.broken = 'true';
+      showNotice(problem.message, button(WORDS.retry, () => location.reload()));
+      return;
+    }
+    this.facts = facts;
+    const state = this.state = new State(facts);
+    await this.first();
+    this.view = new View();
+    this.curve = new Curve(state);
+    this.curve.moved = (load_n) => this.view.load(load_n);
+    this.handles = new Handles(this.curve, state);
+    this.controls = new Controls(byId('fields'), facts, state);
+    this.pins = new Pins(byId('pins'), state);
+    this.ask = new Ask(state, this.engine, this.curve, this.handles);
+    this.measured = new Measured(state, this.engine, this.curve);
+    this.downloads = new Downloads(state, this.engine);
+    this.embed = new Embed((hash) => this.take(hash), state);
+    const drop = new Drop({ table: (text, file) => this.measured.calibrate(text, file), configuration: (text, file) => this.open(text, file), model: (text, file) => this.measured.takeModel(text, file) });
+    this.measured.chosen = (files) => drop.files(files);
+    this.templates();
+    this.buttons();
+    this.exactly = later(() => this.design('exact'), CALM_MS);
+    this.address = later(() => this.writeAddress(), ADDRESS_MS);
+    state.addEventListener('change', () => { this.changed(); this.address(); });
+    addEventListener('hashchange', () => this.addressChanged());
+    byId('maker').textContent = facts.generator;
+    this.changed();
+    this.writeAddress();
+  }
+
+  // The first state: of the address, of the last visit, or a published layout.
+  async first() {
+    const given = await decodeHash(location.hash, this.state.fields);
+    if (given?.said.length) showNotice(given.said.join(' '));
+    if (given?.parts) { this.state.begin(given.parts); return; }
+    const last = given ? null : await decodeHash(remembered().hash ?? '', this.state.fields);
+    if (last?.parts) { this.state.begin(last.parts); say(WORDS.welcomeBack); return; }
+    const template = this.facts.templates.find((t) => t.name === FIRST) ?? this.facts.templates[0];
+    this.state.begin({ values: { ...template?.values } });
+  }
+
+  async take(hash) {
+    const given = await decodeHash(hash, this.state.fields);
+    showNotice(given?.said.join(' ') ?? '');
+    if (given?.parts) this.state.change(given.parts);
+  }
+
+  addressChanged() { if (location.hash !== this.written) this.take(location.hash); }
+
+  writeAddress() {
+    this.written = encodeHash(this.state.now);
+    history.replaceState(null, '', this.written);
+    remember({ ...remembered(), hash: this.written });
+  }
+
+  changed() {
+    byId('undo').disabled = !this.state.past.length;
+    byId('redo').disabled = !this.state.future.length;
+    this.markTemplate();
+    const asked = JSON.stringify([this.state.now.values, this.state.now.model?.packed]);
+    // A mark of the ask changes no part.
+    if (asked === this.asked) return;
+    this.asked = asked;
+    this.design('coarse');
+    this.exactly();
+  }
+
+  async design(quality) {
+    const { values, model } = this.state.now;
+    const asked = this.asked;
+    document.body.dataset.pending = 'true';
+    const slow = setTimeout(() => { byId('busy').textContent = WORDS.working; }, 300);
+    try {
+      const answer = await this.engine.ask({ ask: 'design', values, quality, model: model?.toml ?? null });
+      if (answer.data) this.show(answer, quality);
+      showTrouble(answer.trouble, this.controls, this.state);
+      this.embed.tell(this.state, answer.data, answer.trouble);
+      if (quality === 'exact' && asked === this.asked) document.body.dataset.pending = 'false';
+      if (this.isGone) { this.isGone = false; showNotice(''); }
+    } catch (problem) {
+      if (problem instanceof Stale) return;
+      if (!(problem instanceof EngineError)) throw problem;
+      this.isGone = problem.kind === 'gone';
+      document.body.classList.add('stale');
+      showNotice(problem.message, button(WORDS.retry, () => this.design('exact')));
+      if (asked === this.asked) document.body.dataset.pending = 'false';
+    } finally {
+      clearTimeout(slow);
+      byId('busy').textContent = '';
+    }
+  }
+
+  show({ data, toml }, quality) {
+    this.data = data;
+    byId('name').textContent = data.manifest.name;
+    this.view.show(data);
+    this.curve.show(data);
+    showChecks(data);
+    showBill(data);
+    this.downloads.show(data, toml);
+    const { dataset } = document.body;
+    dataset.generation = Number(dataset.generation) + 1;
+    dataset.quality = quality;
+    dataset.ready = 'true';
+  }
+
+  async open(text, file) {
+    try {
+      const { values, trouble } = await this.engine.ask({ ask: 'open', toml: text, file });
+      if (values) { this.state.change({ values }); say(WORDS.opened(file)); }
+      else showNotice(WORDS.notOpened(file) + (trouble ? `${trouble.problem}${trouble.remedy ? `; ${trouble.remedy}` : ''}` : ''));
+    } catch (problem) {
+      if (!(problem instanceof Stale)) showNotice(WORDS.notOpened(file) + problem.message);
+    }
+  }
+
+  templates() {
+    this.chips = [];
+    const published = this.facts.templates.filter((t) => t.kind === 'published');
+    const quick = published.filter((t) => !t.name.startsWith('proxy-'));
+    quick.forEach((t) => {
+      const chip = button(t.name, () => this.takeTemplate(t), { class: 'chip', 'aria-pressed': 'false', title: t.about });
+      this.chips.push([chip, t]);
+      byId('chips').append(chip);
+    });
+    const list = byId('template-list');
+    const group = (title, templates) => {
+      if (!templates.length) return;
+      list.append(make('h3', title));
+      for (const t of templates) {
+        const item = button(t.name, () => { this.takeTemplate(t); byId('more').open = false; byId('more').querySelector('summary').focus(); }, { class: 'link' });
+        item.append(make('span', t.about, { class: 'dim' }));
+        list.append(item);
+      }
+    };
+    group(WORDS.published, published);
+    group(WORDS.printers, this.facts.templates.filter((t) => t.kind === 'printer'));
+  }
+
+  takeTemplate(template) {
+    const { values } = this.state.now;
+    if (template.kind === 'printer') {
+      this.state.change({ values: { ...values, ...template.values } });
+      say(WORDS.printerTaken(template.name));
+      return;
+    }
+    const isOfTemplates = (path) => this.facts.templates.some((t) => t.kind === 'published' && path in t.values);
+    const lost = Object.keys(values).filter((path) => !(path in template.values) && !isOfTemplates(path)).length;
+    this.state.change({ values: { ...template.values } });
+    say(WORDS.templateTaken(template.name, lost));
+  }
+
+  markTemplate() {
+    const now = this.state.now.values;
+    for (const [chip, t] of this.chips) chip.setAttribute('aria-pressed', String(sameValue(this.state.withoutDefaults(t.values), this.state.withoutDefaults(now))));
+  }
+
+  buttons() {
+    const { state } = this;
+    byId('undo').addEventListener('click', () => state.undo());
+    byId('redo').addEventListener('click', () => state.redo());
+    byId('share').addEventListener('click', () => this.share());
+    byId('parameters').addEventListener('click', () => this.sheet(true));
+    byId('sheet-close').addEventListener('click', () => this.sheet(false));
+    byId('curve-table').addEventListener('toggle', () => this.curve.data && this.curve.words());
+    addEventListener('keydown', (event) => {
+      if (event.key === 'Escape') { this.sheet(false); byId('more').open = byId('look').open = false; }
+      if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+      const key = event.key.toLowerCase();
+      // In a text that is being written, the browser's own undo.
+      if (event.target.matches?.('input[type=text], input[type=search]')) return;
+      if (key === 'z' && !event.shiftKey) state.undo();
+      else if (key === 'y' || (key === 'z' && event.shiftKey)) state.redo();
+      else return;
+      event.preventDefault();
+    });
+    addEventListener('pointerdown', (event) => {
+      for (const id of ['more', 'look']) if (byId(id).open && !byId(id).contains(event.target)) byId(id).open = false;
+    });
+  }
+
+  sheet(open) {
+    const was = document.body.classList.contains('sheet');
+    document.body.classList.toggle('sheet', open);
+    byId('parameters').setAttribute('aria-expanded', String(open));
+    if (open) byId('find').focus();
+    else if (was) byId('parameters').focus();
+  }
+
+  async share() {
+    this.writeAddress();
+    try {
+      await navigator.clipboard.writeText(location.href);
+      say(WORDS.shared);
+    } catch {
+      say(WORDS.shareByHand);
+    }
+  }
+}
+
+new Page().start();

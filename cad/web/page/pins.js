@@ -1,0 +1,159 @@
+// The segment with its grooves, seen along the axis: pins are set, carried and lifted here.
+
+// More grooves than this, and not each has its number.
+const NUMBERED = 24;
+
+class Pins {
+  constructor(host, state) {
+    this.host = host;
+    this.state = state;
+    this.focused = null;
+    state.addEventListener('change', () => this.draw());
+    byId('clear-pins').addEventListener('click', () => state.change({ values: { ...state.now.values, 'layout.pins': [] } }, 'pins'));
+    byId('mirror-pins').addEventListener('click', () => this.set(this.pins().map((i) => this.grooves() + 1 - i)));
+    this.draw();
+  }
+
+  grooves() { return clamp(Math.round(this.state.value('segment.grooves')) || 1, 1, 60); }
+  pins() { return this.state.value('layout.pins').filter((i) => i >= 1); }
+  set(pins) { this.state.set('layout.pins', [...new Set(pins)].sort((a, b) => a - b)); }
+
+  toggle(i) {
+    const pins = this.pins();
+    this.set(pins.includes(i) ? pins.filter((p) => p !== i) : [...pins, i]);
+  }
+
+  carry(from, to) {
+    const pins = this.pins();
+    if (from === to || !pins.includes(from) || pins.includes(to) || to < 1 || to > this.grooves()) return false;
+    this.set(pins.map((p) => (p === from ? to : p)));
+    return true;
+  }
+
+  // Dimensions of the drawing, in millimetres, from the same values that the part has.
+  sizes() {
+    const v = (path, low, high) => clamp(Number(this.state.value(path)) || 0, low, high);
+    const shell = v('shell.outer_radius_mm', 5, 150);
+    const contact = shell + v('silicone.thickness_mm', 0.3, 10);
+    const n = this.grooves();
+    const span = v('segment.span_deg', 5, 340) * Math.PI / 180;
+    const pitch = 2 * contact * Math.sin(span / n / 2);
+    const pin = v('pins.diameter_mm', 0.1, 5) / 2;
+    const rope = v('tendon.rope_diameter_mm', 0.1, 6) / 2 + v('tendon.coating_mm', 0, 2);
+    // What can be clicked must be seen, however fine the grooves are.
+    return { shell, contact, n, span, pin: Math.max(pin, 0.42 * Math.min(pitch, 1.5)), rope, inner: shell - clamp(v('shell.wall_mm', 1, 60), 2, 4.5),
+      wrap: v('layout.wrap_angle_deg', 1, 340) * Math.PI / 180 };
+  }
+
+  angle(i, { n, span }) { return (i - (n + 1) / 2) * span / n; }
+
+  draw() {
+    const s = this.sizes();
+    this.s = s;
+    const point = (radius, angle) => [radius * Math.sin(angle), -radius * Math.cos(angle)];
+    const sector = (low, high) => {
+      const [a, b, c, d] = [point(high, -s.span / 2), point(high, s.span / 2), point(low, s.span / 2), point(low, -s.span / 2)];
+      const large = s.span > Math.PI ? 1 : 0;
+      return `M${a}A${high} ${high} 0 ${large} 1 ${b}L${c}A${low} ${low} 0 ${large} 0 ${d}Z`;
+    };
+    const pins = this.pins();
+    const axis = s.contact + s.pin * 1.1 + s.rope;
+    const [l, r] = [point(axis, -s.wrap / 2), point(axis, s.wrap / 2)];
+    const free = 0.28 * s.contact;
+    const ends = [[l[0] - free * Math.cos(s.wrap / 2), l[1] + free * Math.sin(s.wrap / 2)], [r[0] + free * Math.cos(s.wrap / 2), r[1] + free * Math.sin(s.wrap / 2)]];
+    const reach = s.span > Math.PI ? s.contact : s.contact * Math.sin(s.span / 2);
+    const width = Math.max(reach, ends[1][0]) + 1.2;
+    const lowest = Math.max(-s.inner * Math.cos(Math.min(s.span / 2, Math.PI)), -s.contact * Math.cos(Math.min(s.span / 2, Math.PI)), ends[0][1]) + 1;
+    const top = -(axis + s.rope) - 0.6;
+    const drawing = svg('svg', { viewBox: `${-width} ${top} ${2 * width} ${lowest - top}`, role: 'group', 'aria-label': WORDS.pinsName, class: 'strip' });
+    drawing.append(svg('path', { d: sector(s.inner, s.shell), class: 'shell' }), svg('path', { d: sector(s.shell, s.contact), class: this.state.value('layout.substrate') === 'abs' ? 'shell' : 'layer' }));
+    drawing.append(svg('path', { d: `M${ends[0]}L${l}A${axis} ${axis} 0 ${s.wrap > Math.PI ? 1 : 0} 1 ${r}L${ends[1]}`, class: 'tendon', 'stroke-width': 2 * s.rope }));
+    this.marks = [];
+    for (let i = 1; i <= s.n; i += 1) drawing.append(this.groove(i, s, pins.includes(i), point));
+    this.carried = svg('circle', { r: s.pin, class: 'carried', visibility: 'hidden' });
+    drawing.append(this.carried);
+    this.listen(drawing, point);
+    const hadFocus = this.host.contains(document.activeElement);
+    this.host.replaceChildren(drawing);
+    if (hadFocus) this.marks[this.focused - 1]?.focus();
+    byId('pins-say').textContent = WORDS.pinsIn(pins);
+    byId('pins-of').textContent = pins.length ? WORDS.pinsOf(pins.length, s.n) : WORDS.bare;
+    byId('clear-pins').disabled = byId('mirror-pins').disabled = !pins.length;
+  }
+
+  groove(i, s, hasPin, point) {
+    if (this.focused === null || this.focused > s.n) this.focused = this.pins()[0] ?? 1;
+    const angle = this.angle(i, s);
+    const [x, y] = point(s.contact, angle);
+    const mark = svg('g', { class: hasPin ? 'groove on' : 'groove', role: 'checkbox', 'aria-checked': hasPin, 'aria-label': WORDS.groove(i, hasPin), tabindex: i === this.focused ? 0 : -1, 'data-groove': i });
+    mark.append(svg('circle', { cx: x, cy: y, r: s.pin * 1.75, class: 'halo' }), svg('circle', { cx: x, cy: y, r: s.pin, class: 'dot' }));
+    if (s.n <= NUMBERED || i % 5 === 0 || i === 1) {
+      const [tx, ty] = point((s.inner + s.shell) / 2, angle);
+      mark.append(svg('text', { x: tx, y: ty, 'font-size': clamp(0.055 * s.contact, 0.5, 1.25), 'text-anchor': 'middle', 'dominant-baseline': 'central' }, i));
+    }
+    this.marks.push(mark);
+    return mark;
+  }
+
+  // The groove nearest to a place of the pointer, and how far along the radius it lies, in millimetres.
+  nearest(drawing, event) {
+    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(drawing.getScreenCTM().inverse());
+    const s = this.s;
+    const groove = clamp(Math.round(Math.atan2(x, -y) / (s.span / s.n) + (s.n + 1) / 2), 1, s.n);
+    return { groove, off: Math.hypot(x, y) - s.contact };
+  }
+
+  listen(drawing, point) {
+    let from = null;
+    let moved = false;
+    draggable(drawing, {
+      start: (event) => {
+        const { groove, off } = this.nearest(drawing, event);
+        // Beside the grooves and their numbers, a finger scrolls the page.
+        if (off > 4 * this.s.pin + 2 * this.s.rope || off < this.s.inner - this.s.contact) return false;
+        from = groove;
+        moved = false;
+        return true;
+      },
+      move: (event) => {
+        const { groove } = this.nearest(drawing, event);
+        moved ||= groove !== from;
+        if (!moved || !this.pins().includes(from)) return;
+        const [x, y] = point(this.s.contact, this.angle(groove, this.s));
+        for (const [name, value] of Object.entries({ cx: x, cy: y, visibility: 'visible' })) this.carried.setAttribute(name, value);
+        this.marks[from - 1].classList.add('leaving');
+      },
+      end: (event, cancelled) => {
+        this.carried.setAttribute('visibility', 'hidden');
+        this.marks[from - 1]?.classList.remove('leaving');
+        if (cancelled) return;
+        const { groove } = this.nearest(drawing, event);
+        this.focused = groove;
+        if (!moved) this.toggle(groove); else this.carry(from, groove);
+      },
+    });
+    drawing.addEventListener('keydown', (event) => this.key(event));
+  }
+
+  key(event) {
+    const i = Number(event.target.closest?.('[data-groove]')?.dataset.groove);
+    if (!i || event.ctrlKey || event.metaKey || event.altKey) return;
+    const step = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
+    const to = event.key === 'Home' ? 1 : event.key === 'End' ? this.grooves() : clamp(i + (step ?? 0), 1, this.grooves());
+    if (event.key === ' ' || event.key === 'Enter') { this.focused = i; this.toggle(i); }
+    else if ((event.key === 'Delete' || event.key === 'Backspace') && this.pins().includes(i)) this.toggle(i);
+    else if (step && event.shiftKey) {
+      if (!this.pins().includes(i)) return;
+      // Over pins in the way, to the next empty groove.
+      let free = i + step;
+      while (this.pins().includes(free)) free += step;
+      this.focused = free >= 1 && free <= this.grooves() ? free : i;
+      this.carry(i, free);
+    } else if (step || event.key === 'Home' || event.key === 'End') {
+      this.focused = to;
+      this.marks.forEach((mark, k) => mark.setAttribute('tabindex', k + 1 === to ? 0 : -1));
+      this.marks[to - 1].focus();
+    } else return;
+    event.preventDefault();
+  }
+}

@@ -1,0 +1,172 @@
+// What the person has chosen: values that differ from the defaults, a calibrated model, an ask; its history; its address.
+
+const HASH_VERSION = 1;
+const STORE = 'pinswitch.configurator.1';
+// Changes of one field in so short a time are one step back.
+const ONE_STEP_MS = 700;
+const sameValue = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+class State extends EventTarget {
+  constructor(facts) {
+    super();
+    this.fields = new Map(facts.fields.map((f) => [f.path, f]));
+    this.now = { values: {}, model: null, ask: { threshold_n: null, friction: [] } };
+    this.past = [];
+    this.future = [];
+    this.last = { what: null, when: 0 };
+  }
+
+  value(path) {
+    const field = this.fields.get(path);
+    return this.now.values[path] ?? field?.default;
+  }
+
+  isChanged(path) { return path in this.now.values; }
+
+  // Replaces parts of the state; `what` names the step, and steps of one name in a row are one.
+  change(parts, what) {
+    const next = { ...this.now, ...parts };
+    if (parts.values) next.values = this.withoutDefaults(parts.values);
+    if (sameValue(next, this.now)) return;
+    const when = performance.now();
+    const goesOn = what && what === this.last.what && when - this.last.when < ONE_STEP_MS && this.past.length;
+    if (!goesOn) this.past.push(this.now);
+    if (this.past.length > 200) this.past.shift();
+    this.future = [];
+    this.last = { what, when };
+    this.now = next;
+    this.tell();
+  }
+
+  set(path, value) { this.change({ values: { ...this.now.values, [path]: value } }, path); }
+
+  reset(path) {
+    const { [path]: _, ...rest } = this.now.values;
+    this.change({ values: rest });
+  }
+
+  withoutDefaults(values) {
+    return Object.fromEntries(Object.entries(values).filter(([path, value]) => {
+      const field = this.fields.get(path);
+      return !field || !sameValue(field.default, value);
+    }).sort(([a], [b]) => (a < b ? -1 : 1)));
+  }
+
+  // Takes a state without a step back to the one before: the first one.
+  begin(parts) {
+    this.now = { ...this.now, ...parts };
+    this.now.values = this.withoutDefaults(this.now.values);
+  }
+
+  undo() { this.step(this.past, this.future); }
+  redo() { this.step(this.future, this.past); }
+  step(from, to) {
+    if (!from.length) return;
+    to.push(this.now);
+    this.now = from.pop();
+    this.last = { what: null, when: 0 };
+    this.tell();
+  }
+
+  tell() { this.dispatchEvent(new Event('change')); }
+}
+
+// ---- the address --------------------------------------------------------------------------------------------------
+// #v=1&layout.pins=5,8,11&shell.wall_mm=9&ask.threshold_n=24&ask.friction=30:8.5&model=(deflated, base64url)
+
+function encodeHash(now) {
+  const pairs = [`v=${HASH_VERSION}`];
+  const text = (value) => encodeURIComponent(Array.isArray(value) ? value.join(',') : String(value)).replaceAll('%2C', ',');
+  for (const [path, value] of Object.entries(now.values)) pairs.push(`${path}=${text(value)}`);
+  if (now.ask.threshold_n !== null) pairs.push(`ask.threshold_n=${plain(now.ask.threshold_n)}`);
+  if (now.ask.friction.length) pairs.push(`ask.friction=${now.ask.friction.map((f) => `${plain(f.load_n)}:${plain(f.friction_n)}`).join(',')}`);
+  if (now.model) pairs.push(`model=${now.model.packed}`);
+  return `#${pairs.join('&')}`;
+}
+
+// A value of the address as the field's kind wants it; undefined if it cannot be one. Ranges are the engine's affair.
+function readValue(field, text) {
+  if (field.kind === 'flag') return { true: true, false: false }[text];
+  if (field.kind === 'list') {
+    const items = text.trim() === '' ? [] : text.split(',').map(Number);
+    return items.every(Number.isInteger) ? items : undefined;
+  }
+  if (field.kind === 'number' || field.kind === 'whole') {
+    const value = text.trim() === '' ? NaN : Number(text);
+    return Number.isFinite(value) && (field.kind === 'number' || Number.isInteger(value)) ? value : undefined;
+  }
+  if (field.kind === 'choice' && field.choices && !field.choices.includes(text)) return undefined;
+  return text.length <= 200 ? text : undefined;
+}
+
+// What an address holds, and in words what of it could not be taken. Null without one.
+async function decodeHash(hash, fields) {
+  const text = hash.replace(/^#/, '');
+  if (!text) return null;
+  const pairs = text.split('&').map((pair) => [pair.slice(0, pair.indexOf('=')), pair.slice(pair.indexOf('=') + 1)]).filter(([name]) => name);
+  const given = new Map(pairs);
+  const said = [];
+  if (!/^\d+$/.test(given.get('v') ?? '')) return { broken: true, said: [WORDS.hash.broken] };
+  if (Number(given.get('v')) > HASH_VERSION) said.push(WORDS.hash.newer(given.get('v')));
+  given.delete('v');
+  const parts = { values: {}, model: null, ask: { threshold_n: null, friction: [] } };
+  const [unknown, wrong] = [[], []];
+  for (const [name, raw] of given) {
+    let value;
+    try { value = decodeURIComponent(raw); } catch { wrong.push(name); continue; }
+    if (name === 'model') {
+      parts.model = await unpackModel(raw);
+      if (!parts.model) said.push(WORDS.hash.model);
+    } else if (name === 'ask.threshold_n' || name === 'ask.friction') {
+      if (!readAsk(parts.ask, name, value)) wrong.push(name);
+    } else if (!fields.has(name)) {
+      unknown.push(name.slice(0, 60));
+    } else {
+      const read = readValue(fields.get(name), value);
+      if (read === undefined) wrong.push(name); else parts.values[name] = read;
+    }
+  }
+  if (unknown.length) said.push(WORDS.hash.unknown(unknown));
+  if (wrong.length) said.push(WORDS.hash.wrong(wrong));
+  return { parts, said };
+}
+
+function readAsk(ask, name, text) {
+  const numbers = text.split(',').map((item) => item.split(':').map(Number));
+  if (!numbers.flat().every((v) => Number.isFinite(v) && v > 0)) return false;
+  if (name === 'ask.threshold_n') { [[ask.threshold_n]] = numbers; return true; }
+  if (!numbers.every((pair) => pair.length === 2)) return false;
+  ask.friction = numbers.slice(0, 4).map(([load_n, friction_n]) => ({ load_n, friction_n }));
+  return true;
+}
+
+const throughStream = async (content, stream) => new Response(new Blob([content]).stream().pipeThrough(stream)).arrayBuffer();
+
+// A model with the short form of it that the address carries.
+async function packModel(name, toml) {
+  const bytes = new Uint8Array(await throughStream(toml, new CompressionStream('deflate-raw')));
+  let text = '';
+  for (const byte of bytes) text += String.fromCharCode(byte);
+  return { name, toml, packed: `${encodeURIComponent(name)}~${btoa(text).replaceAll('+', '-').replaceAll('/', '_').replace(/=+$/, '')}` };
+}
+
+async function unpackModel(packed) {
+  try {
+    const [name, text] = packed.split('~');
+    const bytes = bytesOf(text.replaceAll('-', '+').replaceAll('_', '/'));
+    const toml = new TextDecoder('utf-8', { fatal: true }).decode(await throughStream(bytes, new DecompressionStream('deflate-raw')));
+    return toml.length < 1e6 ? { name: decodeURIComponent(name), toml, packed } : null;
+  } catch {
+    return null;
+  }
+}
+
+// ---- between visits -----------------------------------------------------------------------------------------------
+
+// Storage may be forbidden; then nothing is remembered, and nothing breaks.
+function remember(what) {
+  try { localStorage.setItem(STORE, JSON.stringify(what)); } catch { /* Private windows, files: the address still holds it. */ }
+}
+function remembered() {
+  try { return JSON.parse(localStorage.getItem(STORE)) ?? {}; } catch { return {}; }
+}

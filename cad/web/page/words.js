@@ -1,0 +1,129 @@
+'use strict';
+// All English of the page. What an answer of the engine says (reasons, problems, remedies) comes in its own words.
+
+const WORDS = {
+  title: 'pinswitch: configure a printable friction switch',
+  brand: 'pinswitch',
+  skip: 'Skip the parameters',
+  // Places of the page, by `data-word`, and accessible names, by `data-name`.
+  layouts: 'Layouts', moreTemplates: 'More', undo: 'Undo', redo: 'Redo', share: 'Share', open: 'Open a file', download: 'Download',
+  parameters: 'Parameters', close: 'Close', fresh: 'Start afresh',
+  find: 'Find a parameter', changedOnly: 'Changed only', noField: 'No parameter has these words.',
+  assembly: 'Assembly', apart: 'Pull apart', cut: 'Cut open', cutAt: 'Cut at', turn: 'Turn', tilt: 'Tilt', show: 'Show', look: 'View',
+  assemblyName: 'The assembly in three dimensions. Drag to turn, wheel or pinch to zoom; under View, sliders do the same from the keyboard.',
+  curve: 'Friction over load', load: 'Load', rivals: 'Other laws', keep: 'Keep to compare', letGo: 'Let the kept curve go',
+  curveTable: 'The curve as a table', why: 'How far to trust it, and why',
+  pins: 'Pins', clearPins: 'Lift all', mirror: 'Mirror',
+  pinsHelp: 'Click a groove to set or lift a pin, drag a pin to move it. From the keyboard: arrows walk, Space sets or lifts, Shift and an arrow carry the pin along.',
+  checks: 'Checks', bill: 'You will need', parts: 'Printed parts', bed: 'On the print bed',
+  ask: 'Ask backwards', askHelp: 'Drag the diamonds on the curve, or type: where it should switch, how much friction it should make.',
+  askThreshold: 'Switches at', askFriction: 'Friction of', askLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', take: 'Take this',
+  measured: 'Your measurements', chooseTable: 'Choose a table', takeModel: 'Use this model in the design', dropModel: 'Back to the published constants',
+  measuredHelp: 'Drop a table of plateaus (CSV) anywhere on the page. It says whether the model holds for your switch, and what it misses.',
+  filesTitle: 'Download', everything: 'Everything, as ZIP', configuration: 'Configuration (TOML)', dropHere: 'Drop a table of plateaus (CSV), a configuration (TOML) or a model.toml',
+
+  groups: {
+    switch: 'Switch', layout: 'Layout', segment: 'Segment', shell: 'Shell', fasteners: 'Fasteners', silicone: 'Silicone layer', pins: 'Pins', tendon: 'Tendon',
+    support: 'Side supports', mould: 'Casting mould', mount: 'Mount', parts: 'Parts', label: 'Label', print: 'Printer', mesh: 'Mesh', drawing: 'Drawing', friction: 'Friction curve',
+  },
+  // Where the key without its unit is not what one would say.
+  fields: {
+    'layout.pins': 'pins in grooves', 'layout.wrap_angle_deg': 'wrap angle', 'segment.span_deg': 'span', 'silicone.hardness_shore_a': 'hardness',
+    'silicone.density_g_cm3': 'density', 'print.abs_density_g_cm3': 'density of the plastic', 'silicone.least_mix_g': 'least to mix', 'mould.shrinkage_pct': 'shrinkage',
+    'print.bed_mm': 'side of the bed', 'friction.six_single_threshold': 'threshold of six-single', 'parts.proxy': 'rigid proxy', 'parts.coupon': 'fit coupon', 'label.engrave': 'engrave a label',
+  },
+  units: { deg: '°', shore_a: 'Shore A', g_cm3: 'g/cm³', pct: '%', n: 'N' },
+  groupChanged: (n) => (n === 1 ? '1 changed' : `${n} changed`),
+  reset: (name) => `Reset ${name}`,
+  about: (name) => `About ${name}`,
+  aboutField: (f, shown) => `${f.reason}. Range: ${f.range}. Default: ${shown}, ${f.origin}.`,
+  slider: (name) => `${name}, slider`,
+  notNumber: 'This is no number.', notWhole: 'A whole number goes here.', notList: 'Groove numbers go here, with commas: 5, 8, 11.',
+  undoTo: (what) => `Undo: ${what}`,
+  setTo: (name, value) => `Set ${name} to ${value}`,
+
+  mends: (changes) => `Mend it: ${changes.join(', ')}`,
+  refused: 'This cannot be built. The last design that can stays in view, in grey.',
+  keptGrey: 'the last good design',
+
+  newtons: (v, digits = 1) => `${v.toFixed(digits)} N`,
+  frictionAt: (load) => `of friction at ${load} of load`,
+  range: (low, high) => `${low} to ${high}`,
+  curveName: (law, load, friction, low, high) => `Friction over load by ${law}: ${friction} N at ${load} N of load, band ${low} to ${high} N`,
+  trust: { published: 'published layout', interpolated: 'between measurements', extrapolated: 'a guess beyond them', calibrated: 'calibrated' },
+  trustMark: { published: '●', interpolated: '◐', extrapolated: '○', calibrated: '●' },
+  trustOf: (words) => `How far to trust the curve: ${words}. Show the reasons`,
+  axisLoad: 'load (N)', axisFriction: 'friction (N)',
+  band: 'band of 95 %', measuredPoint: 'measured', kept: (name) => `kept: ${name}`, calibratedCurve: 'with your model', previewCurve: (n) => `design ${n}`,
+  law: (law, source) => `Law: ${law}. ${source}.`,
+  thresholdNow: (n) => `switches at ${n}`, thresholdAsked: (n) => `asked: ${n}`, frictionNow: (n) => n, frictionAsked: (n) => `asked: ${n}`,
+  thresholdHandle: 'Load at which it should switch', frictionHandle: (i) => `Friction that is asked for, mark ${i}`,
+  loadText: (load, friction) => `${load} N of load, ${friction} N of friction`,
+  columns: { load: 'load (N)', eccentric: 'eccentric', concentric: 'concentric', friction: 'friction', low: 'low', high: 'high' },
+
+  groove: (i, pin) => `Groove ${i}, ${pin ? 'with a pin' : 'empty'}`,
+  pinsName: 'Grooves of the segment, from left to right',
+  pinsIn: (pins) => (pins.length ? `Pins in ${pins.join(', ')}` : 'No pins'),
+  pinsOf: (n, grooves) => `${n} of ${grooves} grooves`,
+  bare: 'The tendon lies on the substrate from the start.',
+
+  checkFine: 'fine', checkLook: 'look', checkWarning: 'warning', checksSum: (fine, all) => `${fine} of ${all} fine`, showFine: (n) => `${n} that are fine`,
+  noChecks: 'Nothing to look at.',
+  steelPins: 'steel pins', spare: (n, s) => `${n} + ${s} spare`, pour: 'silicone, to pour', mix: 'silicone, to mix', mixed: (b, a) => `${b} g base, ${a} g agent`,
+  tendon: 'tendon', coated: (d, o) => `${d} mm, ${o} mm coated`, screws: 'screws', nuts: 'nuts', inserts: 'heat-set inserts', dowels: 'dowels', forMount: 'for the mount',
+  rightSide: (l, r) => `${l} left, ${r} right`,
+  plastic: 'plastic, all printed parts', part: 'part', size: 'size (mm)', mass: 'mass (g)', volume: 'volume (mm³)', triangles: 'triangles',
+  bedSays: (bed, fits) => (fits ? `Outlines of the printed parts, to scale, on a bed of ${bed} mm.` : `Not all parts lie on one bed of ${bed} mm: print them in turns.`),
+  bedPart: (name, x, y) => `${name}, ${x} by ${y} mm`, bedName: (n, bed) => `Outlines of ${n} printed parts on a bed of ${bed} mm`,
+
+  searching: (s) => `Looking for designs, ${s} s. The page stays yours meanwhile.`, searchNothing: 'Say first where it should switch or how much friction it should make.',
+  stopped: 'Stopped.', likely: (p) => `${p} % likely`, designHas: (t, f) => [t === null ? '' : `switches at ${t} N`, f === null ? '' : `${f} N at the heaviest load`].filter(Boolean).join(', '),
+  removeFriction: (i) => `Remove friction ${i}`, designName: (i) => `Design ${i}`, askFor: 'likely that a made part does what was asked',
+  forgetThreshold: 'Ask for no threshold',
+
+  calibrating: (file) => `Fitting the model to ${file} …`,
+  calibrated: (before, after, promise) => `Held-out error ${before} N before, ${after} N after; a new session: ${promise} N.`,
+  effects: (names) => `Effects: ${names.join(', ')}.`,
+  modelTaken: 'The design uses your calibrated model. The address carries it, and is long.', modelName: (file) => `model from ${file}`,
+  verdicts: { attributed: 'Attributed', unattributed: 'Not attributed', none: 'Nothing to mend' },
+  tooLarge: (name, mb, limit) => `${name} has ${mb} MB. A table of plateaus has one line per plateau and stays under ${limit} MB. A raw log becomes one with: pinswitch segment.`,
+  tooLargeConfiguration: (name, mb) => `${name} has ${mb} MB, which is no configuration of pinswitch. Drop the TOML file that it wrote.`,
+  foreign: (name) => `${name} is of no kind that this page reads. It reads tables of plateaus (.csv), configurations and models (.toml).`,
+  notText: (name) => `${name} holds no text. It may be packed, or of another program: export it as CSV.`,
+  empty: (name) => `${name} is empty.`, unreadable: (name) => `${name} could not be read. Is it still there?`, manyFiles: 'One file at a time: the first was taken.',
+
+  makingFiles: 'Making the files …', filesFail: 'The files were not made: ', saving: (name) => `Making ${name} …`, saved: (name) => `${name} is saved.`, noFiles: 'This design cannot be built, so that it has no files. Mend it first.',
+  megabytes: (bytes) => (bytes < 1000 ? `${bytes} B` : bytes < 1e6 ? `${Math.round(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`),
+  kinds: { stl: 'Printed parts, one by one', '3mf': 'All parts on a plate', step: 'For CAD, exact', dxf: 'Drawings', svg: 'Drawings and figures', pdf: 'Drawings', glb: 'For viewers and web pages', png: 'Pictures', md: 'Guide', csv: 'Tables', json: 'Tables', html: 'Pages', ini: 'Printer', other: 'Other' },
+
+  shared: 'The address is copied: it holds the whole design.', shareByHand: 'Copy the address of this page: it holds the whole design.',
+  templateTaken: (name, lost) => (lost ? `${name}, as it ships. Undo brings your ${lost} changed ${lost === 1 ? 'value' : 'values'} back.` : `${name}, as it ships.`), printerTaken: (name) => `${name} set under your design.`,
+  opened: (file) => `${file} is open.`, notOpened: (file) => `${file} could not be opened: `, designTaken: 'Taken. Undo brings the former back.',
+  welcomeBack: 'Went on where you left off.',
+  published: 'Published', printers: 'Printers',
+
+  hash: {
+    newer: (v) => `The address is of version ${v}, newer than this page (1). What this page knows of it was taken.`,
+    broken: 'The address holds no design, or is cut off. The page starts with a published one.',
+    unknown: (names) => `The address names ${names.join(', ')}, which this version does not have. The rest was taken.`,
+    wrong: (names) => `The address gives ${names.join(', ')} a value that cannot be. The rest was taken.`,
+    model: 'The address holds a calibrated model that is cut off. The published constants are used.',
+  },
+
+  starting: 'Starting the engine …', working: 'Working …',
+  engineMissing: 'This copy of the page holds no engine, and no server answers. Open it with: pinswitch view --configure',
+  engineBroken: (reason) => `The engine does not start in this browser (${reason}). A current Firefox, Chrome, Edge or Safari runs it, and so does: pinswitch view --configure`,
+  engineStopped: 'The engine stopped on this design and was started again. Undo the last change, or try another value.',
+  enginePart: (reason) => `The engine did not answer: ${reason}.`,
+  serverGone: 'The server does not answer. Is pinswitch view still running? The last design stays; what you change next asks again.',
+  retry: 'Try again',
+  noWebgl: 'This browser shows no WebGL, which the turning view needs. Pins, curve, checks and downloads work without.',
+  fault: (message) => `The page has a fault: ${message}. Reloading keeps the design, which the address holds.`,
+};
+
+// What a field is called: its key without the unit, unless it has a name of its own.
+function fieldName(field) {
+  if (WORDS.fields[field.path]) return WORDS.fields[field.path];
+  return field.key.replace(/_(mm|deg|n|g|pct|g_cm3|shore_a)$/, '').replaceAll('_', ' ');
+}
+const unitName = (field) => WORDS.units[field.unit] ?? (field.unit || WORDS.units[/_(shore_a|g_cm3|pct|n)$/.exec(field.key)?.[1]] || '');

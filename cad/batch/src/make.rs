@@ -13,7 +13,7 @@ use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::formats::curve_files;
 use pinswitch_switch::output::{BuildError, OutputFile, SetError};
-use pinswitch_switch::parts::{Part, printed};
+use pinswitch_switch::parts::{Part, fit_on_bed, printed};
 use pinswitch_switch::prediction::Prediction;
 
 /// The table of a variant's curve.
@@ -82,6 +82,7 @@ pub(super) fn accepted(
         None => {
             let mut parts = printed(&design).map_err(|e| e.to_string())?;
             parts.retain(|part| variants.sweep().parts.contains(&part.name.as_str()));
+            fit_on_bed(&parts, &design).map_err(|e| e.to_string())?;
             Ok(AcceptedVariant { design, forecast, parts })
         }
     }

@@ -1,7 +1,7 @@
 //! A whole set in memory: nothing is written before everything is known to be right.
 
 use crate::built::Built;
-use crate::documents::{FileEntry, Manifest, SourceEntry};
+use crate::documents::{FileEntry, Manifest, SourceEntry, plate_entries};
 use crate::formats::Format;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
@@ -43,6 +43,9 @@ impl Set {
             // A format may list what was made before it: the manifest always lists the files so far.
             let made = (format.make)(built, prediction, &manifest)?;
             manifest.files.extend(made.iter().map(FileEntry::of));
+            if made.iter().any(|file| file.name.ends_with(".3mf")) {
+                manifest.plates = plate_entries(built);
+            }
             files.extend(made);
         }
         files.push(OutputFile::new(MANIFEST, manifest.bytes()?));

@@ -2,6 +2,9 @@
 
 use std::fmt::Write as _;
 
+mod plates_section;
+
+use self::plates_section::plates_section;
 use super::markdown::escape;
 use super::{Format, Inclusion, png};
 use crate::built::Built;
@@ -12,6 +15,7 @@ use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
 use crate::parts::{left_out, touches};
 use crate::prediction::Prediction;
+use crate::plates::{Plate, plates};
 use crate::scene::{exploded_png, plate};
 use pinswitch_friction::Substrate;
 use pinswitch_solid::render::View;
@@ -24,15 +28,17 @@ const PLATE_PIXELS: (u32, u32) = (900, 675);
 
 fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
     let above = View { turn_deg: 0.0, rise_deg: 55.0 };
-    Ok(vec![
-        OutputFile::new("assembly.png", exploded_png(built)?),
-        OutputFile::new("plate.png", png(&plate(built), above, PLATE_PIXELS.0, PLATE_PIXELS.1)?),
-        OutputFile::new("PRINTING.md", printing_guide(built.design(), manifest)),
-    ])
+    let plates = plates(built);
+    let mut files = vec![OutputFile::new("assembly.png", exploded_png(built)?)];
+    for p in &plates {
+        files.push(OutputFile::new(p.picture(), png(&plate(p), above, PLATE_PIXELS.0, PLATE_PIXELS.1)?));
+    }
+    files.push(OutputFile::new("PRINTING.md", printing_guide(built.design(), manifest, &plates)));
+    Ok(files)
 }
 
-/// The text of the guide; assembly.png and plate.png lie beside it.
-fn printing_guide(design: &Design, manifest: &Manifest) -> String {
+/// The text of the guide; assembly.png and the pictures of the plates lie beside it.
+fn printing_guide(design: &Design, manifest: &Manifest, plates: &[Plate<'_>]) -> String {
     let c = design.configuration();
     let mut text = format!("# Printing and assembling {}\n\n", escape(&manifest.name));
     let picture = |text: &mut String, alt: &str, file: &str| {
@@ -40,7 +46,7 @@ fn printing_guide(design: &Design, manifest: &Manifest) -> String {
     };
     picture(&mut text, "The parts, pulled apart", "assembly.png");
     print_section(&mut text, design, manifest);
-    picture(&mut text, "The printed parts on a plate", "plate.png");
+    text.push_str(&plates_section(design, manifest, plates));
     if c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None {
         cast_section(&mut text, design, manifest);
     }

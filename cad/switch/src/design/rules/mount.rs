@@ -5,6 +5,7 @@ use super::{Assessment, Inspection, Rule, Severity, require};
 use crate::config::MountKind;
 use crate::design::mounting::{Hole, PULLEY_AIR_MM, PULLEY_RADIUS_MM, SheathStop};
 use crate::design::{pulley_outer_mm, pulley_width_mm};
+use pinswitch_solid::files::BED_EDGE_MM;
 use pinswitch_solid::profile::hull;
 
 /// Least wall between two holes of the plate.
@@ -147,9 +148,9 @@ fn plate_on_bed(i: &Inspection<'_>) -> Assessment {
         let (low, high) = outline.bounds();
         (high.x - low.x).max(high.y - low.y)
     });
-    require(side <= bed, || {
+    require(side + 2.0 * BED_EDGE_MM <= bed, || {
         (
-            format!("makes a plate that is {side:.1} mm long, on a bed of {bed} mm"),
+            format!("makes a plate that is {side:.1} mm long, on a bed of {bed} mm with {BED_EDGE_MM} mm free along each edge"),
             &[
                 Lower("mount.bore_distance_mm"),
                 Lower("mount.pulley_distance_mm"),

@@ -66,7 +66,9 @@ fn a_small_bed_takes_the_parts_on_several_plates() {
     for (i, plate) in plates.iter().enumerate() {
         let (file, picture) = (format!("assembly-{}.3mf", i + 1), format!("plate-{}.png", i + 1));
         assert_eq!(plate["file"], file);
-        assert!(set.contains_key(&picture) && guide.contains(&format!("]({picture})")) && guide.contains(&file));
+        assert!(
+            set.contains_key(&picture) && guide.contains(&format!("]({picture})")) && guide.contains(&file)
+        );
         let path = format!("set/{file}");
         let (code, said) = ended(folder.path(), &["check", &path, "--json"]);
         assert_eq!(code, Some(0), "{said}");
@@ -82,8 +84,12 @@ fn a_small_bed_takes_the_parts_on_several_plates() {
         let again = files(&folder.path().join(again));
         assert!(again.iter().all(|(name, bytes)| name == "manifest.json" || set[name] == *bytes));
     }
-    let mut parts: Vec<String> =
-        manifest["parts"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap().to_owned()).collect();
+    let mut parts: Vec<String> = manifest["parts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|p| p["name"].as_str().unwrap().to_owned())
+        .collect();
     (printed.sort(), parts.sort());
     assert_eq!(printed, parts);
     // With a larger bed the same folder holds one plate, and none of those before.

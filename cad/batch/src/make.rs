@@ -8,7 +8,9 @@ use super::destination::{Destination, DestinationError};
 use super::forecast::{Forecast, Forecasts};
 use super::inspect::Inspector;
 use super::seal::seal;
+use super::slicing::VariantSlicer;
 use super::variant::{Variant, Variants};
+use pinswitch_slicer::Slicer;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::formats::curve_files;
@@ -44,6 +46,7 @@ pub(super) struct VariantMaker<'a> {
     destination: &'a Destination,
     contents: PartStore<'a>,
     forecasts: Forecasts,
+    slicer: Option<VariantSlicer<'a>>,
     /// What looks at the variants that an earlier run may have left.
     inspector: Option<Inspector<'a>>,
 }
@@ -96,6 +99,7 @@ impl<'a> VariantMaker<'a> {
         destination: &'a Destination,
         resumed: bool,
         mesh_maker: MeshMaker,
+        slicer: Option<&'a Slicer>,
     ) -> Self {
         Self {
             variants,
@@ -103,6 +107,7 @@ impl<'a> VariantMaker<'a> {
             destination,
             contents: PartStore::new(destination, mesh_maker),
             forecasts: Forecasts::default(),
+            slicer: slicer.map(VariantSlicer::new),
             inspector: resumed.then(|| Inspector::new(destination)),
         }
     }
@@ -148,6 +153,15 @@ impl<'a> VariantMaker<'a> {
             index: variant.index,
             label: variant.label.clone(),
         });
+        if let Some(slicer) = &self.slicer {
+            let parts: Vec<_> = parts
+                .iter()
+                .zip(&kept)
+                .map(|(part, kept)| (part.name.as_str(), kept.sha256.as_str()))
+                .collect();
+            let stored = |sha256: &str| self.contents.stored(sha256);
+            manifest.print = Some(slicer.entry(design.configuration(), &parts, stored)?);
+        }
         let bytes = seal(manifest.bytes()?);
         let folder = variant_folder(&variant.id);
         for file in curve.files.iter().map(|(file, _)| file).chain(&plots) {
@@ -183,6 +197,10 @@ impl<'a> VariantMaker<'a> {
     ) -> Result<Option<Vec<u8>>, DestinationError> {
         let Some((bytes, listing)) = inspector.manifest(&variant.id)? else { return Ok(None) };
         if listing.batch.sweep_sha256 != self.sweep_sha256 || listing.batch.index != variant.index {
+            return Ok(None);
+        }
+        // Made while no slicer was there.
+        if self.slicer.is_some() && listing.print.is_none() {
             return Ok(None);
         }
         let expected: BTreeSet<String> = accepted

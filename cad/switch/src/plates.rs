@@ -74,7 +74,9 @@ mod tests {
     #[test]
     fn every_part_lies_once_on_its_plate_whatever_the_bed() {
         let rig = "[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 3.0\n";
-        for (text, bed_mm, least) in [("", 250.0, 1), ("", 120.0, 1), ("", 62.0, 3), (rig, 250.0, 1), (rig, 165.0, 2)] {
+        for (text, bed_mm, least) in
+            [("", 250.0, 1), ("", 120.0, 1), ("", 62.0, 3), (rig, 250.0, 1), (rig, 165.0, 2)]
+        {
             let text = format!("{text}[print]\nbed_mm = {bed_mm:?}\n");
             let (built, plates) = lying(&text);
             assert!(plates.len() >= least && plates.len() <= least + 4, "{text}: {} plates", plates.len());

@@ -1,8 +1,8 @@
 //! Bodies to draw: assembled, exploded, or side by side on a plate.
 
 use crate::built::{Built, BuiltPart};
-use crate::plates::{Plate, plates};
 use crate::output::SetError;
+use crate::plates::{Plate, plates};
 use pinswitch_solid::files::Placement;
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
 use pinswitch_solid::render::{Body, View, render};

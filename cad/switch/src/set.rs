@@ -1,7 +1,7 @@
 //! A whole set in memory: nothing is written before everything is known to be right.
 
 use crate::built::Built;
-use crate::documents::{FileEntry, Manifest, SourceEntry, plate_entries};
+use crate::documents::{FileEntry, Manifest, PrintEntry, SourceEntry, plate_entries};
 use crate::formats::Format;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
@@ -58,6 +58,22 @@ impl Set {
     /// As [`Manifest::bytes`].
     pub fn made_from(mut self, source: SourceEntry) -> Result<Self, SetError> {
         self.manifest.source = Some(source);
+        self.with_manifest()
+    }
+
+    /// The same set with what a slicer said of it, and the files that hold all of that.
+    ///
+    /// # Errors
+    /// As [`Manifest::bytes`].
+    pub fn sliced(mut self, print: PrintEntry, files: Vec<OutputFile>) -> Result<Self, SetError> {
+        self.manifest.print = Some(print);
+        self.manifest.files.extend(files.iter().map(FileEntry::of));
+        self.files.extend(files);
+        self.with_manifest()
+    }
+
+    /// The set with its manifest as it is now, as the last file.
+    fn with_manifest(mut self) -> Result<Self, SetError> {
         self.files.retain(|file| file.name != MANIFEST);
         self.files.push(OutputFile::new(MANIFEST, self.manifest.bytes()?));
         Ok(self)

@@ -19,5 +19,6 @@ pub use step::{ReadSolid, StepFile, StepReadError, read_step};
 pub use step::{StepPart, step_assembly, step_part};
 pub use stl::{StlError, StlFile, read_stl, stl_bytes};
 pub use three_mf::{
-    BaseMaterial, Object, Package, PackagedMesh, ThreeMf, ThreeMfError, ThreeMfReadError, read_three_mf, three_mf,
+    BaseMaterial, Object, Package, PackagedMesh, ThreeMf, ThreeMfError, ThreeMfReadError, read_three_mf,
+    three_mf,
 };

@@ -59,7 +59,8 @@ pub fn lay_out(boxes: &[Box3], bed_mm: f64) -> Vec<Placement> {
         .find(|spots| spots.iter().all(|s| s.plate == 0));
     let spots = compact.unwrap_or_else(|| shelved(&footprints, free_mm));
     let plates = spots.iter().map(|s| s.plate + 1).max().unwrap_or(0);
-    let corners: Vec<Vector2<f64>> = (0..plates).map(|plate| corner(&footprints, &spots, plate, bed_mm)).collect();
+    let corners: Vec<Vector2<f64>> =
+        (0..plates).map(|plate| corner(&footprints, &spots, plate, bed_mm)).collect();
     let place = |((f, spot), (low, high)): ((&Footprint, &Spot), &Box3)| {
         let at = corners[spot.plate] + spot.at;
         // The corner of the part that comes to lie there.
@@ -173,7 +174,12 @@ mod tests {
         let lying: Vec<_> = boxes.iter().zip(&places).map(|(b, p)| (placed(b, p), p.plate)).collect();
         for (i, ((low, high), plate)) in lying.iter().enumerate() {
             let within = |v: f64| v >= BED_EDGE_MM - 2e-3 && v <= bed_mm - BED_EDGE_MM + 2e-3;
-            prop_assert!(within(low.x) && within(low.y) && within(high.x) && within(high.y), "{:?} {:?}", low, high);
+            prop_assert!(
+                within(low.x) && within(low.y) && within(high.x) && within(high.y),
+                "{:?} {:?}",
+                low,
+                high
+            );
             prop_assert!(low.z == 0.0);
             for ((other_low, other_high), other_plate) in &lying[..i] {
                 let gap = PART_GAP_MM - 2e-3;

@@ -37,7 +37,9 @@ pub fn fit_on_bed(parts: &[Part], design: &Design) -> Result<(), ConfigError> {
 fn smaller(part: &Part) -> &'static str {
     match (part.role, part.name.as_str()) {
         (_, "coupon") => "leave the coupon out: parts.coupon = false",
-        (_, "guide-pulley") => "leave the pulley out: parts.guide_pulley = false, and mount.kind other than rig",
+        (_, "guide-pulley") => {
+            "leave the pulley out: parts.guide_pulley = false, and mount.kind other than rig"
+        }
         (Role::Mould, "mould-tray") => "lower mould.layers, mould.wall_mm or shell.outer_radius_mm",
         (Role::Mould, _) => "lower mould.wall_mm or shell.outer_radius_mm",
         (Role::Mount, _) => "lower mount.bore_distance_mm, mount.pulley_distance_mm or mount.rim_mm",

@@ -154,7 +154,8 @@ fn model(objects: &[Object<'_>], package: &Package) -> String {
         let _ = writeln!(text, r#"<basematerials id="{materials_id}">"#);
         for BaseMaterial { name, colour: [red, green, blue] } in &package.materials {
             let name = escaped(name);
-            let _ = writeln!(text, r##"<base name="{name}" displaycolor="#{red:02X}{green:02X}{blue:02X}"/>"##);
+            let _ =
+                writeln!(text, r##"<base name="{name}" displaycolor="#{red:02X}{green:02X}{blue:02X}"/>"##);
         }
         text.push_str("</basematerials>\n");
     }
@@ -187,14 +188,8 @@ fn model(objects: &[Object<'_>], package: &Package) -> String {
         let turn = if place.is_turned { "0 1 0 -1 0 0 0 0 1" } else { "1 0 0 0 1 0 0 0 1" };
         // A negative zero is a zero.
         let at = place.shift.map(|v| v + 0.0);
-        let _ = writeln!(
-            text,
-            r#"<item objectid="{}" transform="{turn} {} {} {}"/>"#,
-            i + 1,
-            at.x,
-            at.y,
-            at.z
-        );
+        let _ =
+            writeln!(text, r#"<item objectid="{}" transform="{turn} {} {} {}"/>"#, i + 1, at.x, at.y, at.z);
     }
     text.push_str("</build>\n</model>\n");
     text

@@ -150,7 +150,9 @@ fn plate_on_bed(i: &Inspection<'_>) -> Assessment {
     });
     require(side + 2.0 * BED_EDGE_MM <= bed, || {
         (
-            format!("makes a plate that is {side:.1} mm long, on a bed of {bed} mm with {BED_EDGE_MM} mm free along each edge"),
+            format!(
+                "makes a plate that is {side:.1} mm long, on a bed of {bed} mm with {BED_EDGE_MM} mm free along each edge"
+            ),
             &[
                 Lower("mount.bore_distance_mm"),
                 Lower("mount.pulley_distance_mm"),

@@ -63,11 +63,7 @@ fn parts_on_bed(i: &Inspection<'_>) -> Assessment {
     let width = 2.0 * reach * half.sin() + 2.0 * (i.shell_end_shift_mm() + c.mould.wall_mm);
     require(2.0 * reach <= c.print.bed_mm || width <= c.print.bed_mm, || {
         (
-            format!(
-                "makes {part} {:.1} mm wide, on a bed of {} mm",
-                width.min(2.0 * reach),
-                c.print.bed_mm
-            ),
+            format!("makes {part} {:.1} mm wide, on a bed of {} mm", width.min(2.0 * reach), c.print.bed_mm),
             &[
                 Raise("print.bed_mm"),
                 Lower("shell.outer_radius_mm"),

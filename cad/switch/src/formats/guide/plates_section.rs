@@ -27,7 +27,8 @@ pub(super) fn plates_section(design: &Design, manifest: &Manifest, plates: &[Pla
         );
         for plate in plates {
             let names: Vec<&str> = plate.parts.iter().map(|(part, _)| part.part().name.as_str()).collect();
-            let _ = writeln!(text, "| {} | {} | {} |", plate.number, plate.package(), escape(&names.join(", ")));
+            let _ =
+                writeln!(text, "| {} | {} | {} |", plate.number, plate.package(), escape(&names.join(", ")));
         }
         text.push('\n');
     }

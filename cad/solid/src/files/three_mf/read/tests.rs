@@ -61,13 +61,8 @@ fn what_is_written_is_read() {
         ..Package::default()
     };
     let place = Placement { plate: 0, is_turned: true, shift: Vector3::new(9.0, 0.0, 0.0) };
-    let object = |name, material| Object {
-        name,
-        part_number: "x/1".to_owned(),
-        mesh: &mesh,
-        material,
-        place,
-    };
+    let object =
+        |name, material| Object { name, part_number: "x/1".to_owned(), mesh: &mesh, material, place };
     let objects = [object("a <part>", 0), object("of nothing", 1)];
     let found = read_three_mf(&three_mf(&objects, &package).unwrap()).unwrap();
     assert_eq!(checks(&found), [""; 0], "{:?}", found.faults);

@@ -1,4 +1,6 @@
-//! Bodies to draw: assembled, exploded, or side by side on a plate.
+//! Bodies to draw: assembled, exploded, step by step, or side by side on a plate.
+
+mod stage;
 
 use crate::built::{Built, BuiltPart};
 use crate::output::SetError;
@@ -6,6 +8,8 @@ use crate::plates::{Plate, plates};
 use pinswitch_solid::files::Placement;
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
 use pinswitch_solid::render::{Body, View, render};
+
+pub use stage::{STAGE_VIEW, Stage, stage_scene};
 
 /// The assembly; `explosion` from 0, in place, to 1, pulled apart.
 pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {

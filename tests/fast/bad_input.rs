@@ -11,7 +11,7 @@ fn generate(text: &str) -> (Option<i32>, String, usize) {
 }
 
 /// Every rule of cad/doc/dimensions.md that refuses a configuration.
-const REFUSED: [(&str, &[&str]); 28] = [
+const REFUSED: [(&str, &[&str]); 29] = [
     ("[segment]\ngrooves = 40", &["my.toml:2: segment.grooves = 40", "overlap", "lower it to"]),
     (
         "[segment]\nend_margin_mm = 0\n[print]\nelephant_foot_mm = 0.3",
@@ -62,7 +62,11 @@ const REFUSED: [(&str, &[&str]); 28] = [
     ),
     ("[mould]\nkey_height_mm = 10.0", &["my.toml:2: mould.key_height_mm = 10", "may be", "lower it to"]),
     ("[friction]\nload_min_n = 60", &["friction.load_min_n = 60", "load_max_n = 49.671"]),
-    ("[print]\nbed_mm = 50\n[shell]\nouter_radius_mm = 60", &["print.bed_mm = 50", "wide"]),
+    ("[print]\nbed_mm = 50\n[shell]\nouter_radius_mm = 60", &["print.bed_mm = 50", "the mould", "wide"]),
+    (
+        "[print]\nbed_mm = 55",
+        &["my.toml:2: print.bed_mm = 55", "coupon", "54.5 x", "raise it to 60.5", "parts.coupon"],
+    ),
     ("[layout]\nsubstrate = \"abs\"\npins = []", &["layout.pins = []", "no pin within the wrap"]),
 ];
 

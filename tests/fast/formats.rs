@@ -71,6 +71,41 @@ fn the_package_names_its_parts_and_carries_the_curve() {
     assert!(model.contains("pins = [5, 8, 11]"), "the configuration travels along");
 }
 
+/// Each step of the assembly with a picture of its own, whatever the switch is made of.
+#[test]
+fn every_step_of_the_guide_has_its_picture() {
+    let rig = [
+        "three-double",
+        "--set",
+        "mount.kind=rig",
+        "--set",
+        "fasteners.kind=insert",
+        "--set",
+        "fasteners.dowel_diameter_mm=2",
+    ];
+    for (source, least) in
+        [(&["three-double"][..], 7), (&["silicone-only"], 5), (&["proxy-six-single"], 7), (&rig, 10)]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        let files = generate(folder.path(), &[source, &["--format", "guide"]].concat());
+        let guide = std::str::from_utf8(&files["PRINTING.md"]).unwrap();
+        let (_, assembly) = guide.split_once("## 3. Assemble").unwrap();
+        let (assembly, _) = assembly.split_once("## What to expect").unwrap();
+        let is_step = |line: &&str| line.split_once(". ").is_some_and(|(n, _)| n.parse::<usize>().is_ok());
+        let steps = assembly.lines().filter(is_step).count();
+        assert!(steps >= least, "{source:?}: {steps} steps");
+        let mut seen = Vec::new();
+        for number in 1..=steps {
+            let name = format!("step-{number}.png");
+            assert!(assembly.contains(&format!("   ![Step {number}]({name})")), "{source:?}: {name}");
+            assert!(files[&name].starts_with(b"\x89PNG"), "{source:?}: {name}");
+            assert!(!seen.contains(&&files[&name]), "{source:?}: {name} shows what another step shows");
+            seen.push(&files[&name]);
+        }
+        assert!(!files.contains_key(&format!("step-{}.png", steps + 1)), "{source:?}");
+    }
+}
+
 #[test]
 fn step_files_hold_true_planes_and_cylinders() {
     let folder = tempfile::tempdir().unwrap();

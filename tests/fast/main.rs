@@ -30,6 +30,7 @@ mod pictures;
 mod readme;
 mod reference_shell;
 mod segment_raw;
+mod slicing;
 mod solid_files;
 mod table_columns;
 mod view;

@@ -109,6 +109,54 @@ fn items_of_a_plate_that_share_space_are_not_valid() {
     }
 }
 
+/// A bed that takes few parts at once: several plates, of which each is judged, and each makes the set again.
+#[test]
+fn a_small_bed_takes_the_parts_on_several_plates() {
+    let folder = tempfile::tempdir().unwrap();
+    let generate = ["-q", "generate", "three-double", "--set", "print.bed_mm=62", "--out"];
+    done(folder.path(), &[&generate[..], &["set"]].concat());
+    let set = files(&folder.path().join("set"));
+    let manifest: serde_json::Value = serde_json::from_slice(&set["manifest.json"]).unwrap();
+    let plates = manifest["plates"].as_array().unwrap();
+    assert!(plates.len() > 1 && !set.contains_key("assembly.3mf") && !set.contains_key("plate.png"));
+    let guide = std::str::from_utf8(&set["PRINTING.md"]).unwrap();
+    let mut printed = Vec::new();
+    for (i, plate) in plates.iter().enumerate() {
+        let (file, picture) = (format!("assembly-{}.3mf", i + 1), format!("plate-{}.png", i + 1));
+        assert_eq!(plate["file"], file);
+        assert!(
+            set.contains_key(&picture) && guide.contains(&format!("]({picture})")) && guide.contains(&file)
+        );
+        let path = format!("set/{file}");
+        let (code, said) = ended(folder.path(), &["check", &path, "--json"]);
+        assert_eq!(code, Some(0), "{said}");
+        let verdict: serde_json::Value = serde_json::from_str(&said).unwrap();
+        let names = |list: &serde_json::Value| -> Vec<String> {
+            list.as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap().to_owned()).collect()
+        };
+        let on_plate = names(&plate["parts"]);
+        assert_eq!(names(&verdict[0]["parts"]), on_plate);
+        printed.extend(on_plate);
+        let again = format!("again-{i}");
+        done(folder.path(), &["-q", "generate", &path, "--out", &again]);
+        let again = files(&folder.path().join(again));
+        assert!(again.iter().all(|(name, bytes)| name == "manifest.json" || set[name] == *bytes));
+    }
+    let mut parts: Vec<String> = manifest["parts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|p| p["name"].as_str().unwrap().to_owned())
+        .collect();
+    (printed.sort(), parts.sort());
+    assert_eq!(printed, parts);
+    // With a larger bed the same folder holds one plate, and none of those before.
+    done(folder.path(), &["-q", "generate", "three-double", "--out", "set"]);
+    let one = files(&folder.path().join("set"));
+    assert!(one.contains_key("assembly.3mf") && one.contains_key("plate.png"));
+    assert!(!one.contains_key("assembly-1.3mf") && !one.contains_key("plate-1.png"));
+}
+
 #[test]
 fn the_3mf_of_a_set_makes_the_set_again() {
     let folder = tempfile::tempdir().unwrap();

@@ -429,6 +429,7 @@ const SMALL_SWEEP: &str = "[sweep]\nname = \"small\"\nparts = [\"coupon\"]\n[set
 
 fn small_source() -> SweepSource {
     SweepSource {
+        slice: false,
         name: "small".to_owned(),
         file: "sweep.toml".to_owned(),
         sweep: SMALL_SWEEP.to_owned(),
@@ -509,7 +510,7 @@ impl Shards {
         let place = open(&folder.path().join("b"))?;
         for shard in ["1/2", "2/2"] {
             let shard = shard.parse().map_err(|e: pinswitch_batch::ShardError| e.to_string())?;
-            let options = Options { shard, threads: 1, fail_fast: true, mesh_maker: mesh_file };
+            let options = Options { shard, threads: 1, fail_fast: true, mesh_maker: mesh_file, slicer: None };
             run(&variants, &source, &place, options, &Nobody).map_err(|e| e.to_string())?;
         }
         let mut files = Vec::new();

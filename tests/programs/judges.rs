@@ -127,3 +127,45 @@ fn readers_of_3mf_and_step_accept_the_three_layouts() {
         );
     }
 }
+
+/// The installed slicer slices every plate as it lies, and says what printing takes: the set's own masses, within what walls and
+/// infill round.
+#[test]
+fn the_installed_slicer_tells_time_and_filament() {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    if !std::env::split_paths(&path).any(|folder| folder.join("prusa-slicer").is_file()) {
+        return say_skipped("prusa-slicer is not installed");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let said = done(
+        folder.path(),
+        &[
+            "generate",
+            "three-single",
+            "--set",
+            "print.bed_mm=80",
+            "--set",
+            "parts.coupon=false",
+            "--slice",
+            "--out",
+            "set",
+        ],
+    );
+    let set = files(&folder.path().join("set"));
+    let read = |name: &str| -> Value { serde_json::from_slice(&set[name]).unwrap() };
+    let (slicing, manifest) = (read("slicing.json"), read("manifest.json"));
+    assert!(slicing["slicer"].as_str().unwrap().starts_with("PrusaSlicer "), "{said}");
+    let list = |value: &Value| value.as_array().unwrap().clone();
+    let grams = |entry: &Value| entry["filament_g"].as_f64().unwrap();
+    for (sliced, part) in list(&slicing["parts"]).iter().zip(list(&manifest["parts"])) {
+        assert_eq!(sliced["file"], part["file"]);
+        let share = grams(sliced) / part["mass_g"].as_f64().unwrap();
+        // The skirt comes on top.
+        assert!((0.9..1.6).contains(&share), "{sliced} of {} g", part["mass_g"]);
+        assert!(sliced["print_minutes"].as_f64().unwrap() > 1.0);
+    }
+    assert_eq!(slicing["plates"].as_array().unwrap().len(), manifest["plates"].as_array().unwrap().len());
+    let together: f64 = list(&slicing["plates"]).iter().map(grams).sum();
+    let alone: f64 = list(&slicing["parts"]).iter().map(grams).sum();
+    assert!(together <= alone + 0.1, "{together} g on plates, {alone} g alone");
+}

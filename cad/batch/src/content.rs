@@ -7,6 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::destination::{Destination, DestinationError};
 use super::hexadecimal;
+use pinswitch_slicer::SlicerError;
 use pinswitch_solid::files::stl_bytes;
 use pinswitch_solid::solid::CapCache;
 use pinswitch_solid::validity::MeshFacts;
@@ -52,6 +53,12 @@ pub(super) enum ContentError {
     /// It cannot be written.
     #[error(transparent)]
     Destination(#[from] DestinationError),
+    /// It cannot be sliced.
+    #[error(transparent)]
+    Slicer(#[from] SlicerError),
+    /// What was kept is gone.
+    #[error("{0} is gone; give the same command again")]
+    Gone(String),
 }
 
 /// The parts of a batch at a destination.
@@ -89,6 +96,15 @@ impl<'a> PartStore<'a> {
             self.write(&content_path(&sha256), &bytes)?;
             Ok(Arc::new(StoredPart { sha256, bytes: bytes.len(), facts }))
         })
+    }
+
+    /// The bytes of the part with this hash, as kept.
+    ///
+    /// # Errors
+    /// [`ContentError`] if they cannot be read.
+    pub(super) fn stored(&self, sha256: &str) -> Result<Vec<u8>, ContentError> {
+        let path = content_path(sha256);
+        self.destination.get(&path)?.ok_or(ContentError::Gone(path))
     }
 
     /// Writes the file unless it is there already, whole: a file that is replaced would no longer be the same as the

@@ -153,7 +153,7 @@ fn measure(
     let folder = tempfile::tempdir().map_err(failed)?;
     let destination = Destination::open(&folder.path().display().to_string(), ".partial-dry-run")?;
     let _lock = destination.lock()?;
-    let maker = VariantMaker::new(variants, "", &destination, false, mesh_maker);
+    let maker = VariantMaker::new(variants, "", &destination, false, mesh_maker, None);
     let chosen: Vec<u64> = (0..good.len().min(WARM_UP_VARIANTS + MEASURED_VARIANTS))
         .map(|i| good[i * good.len() / good.len().min(WARM_UP_VARIANTS + MEASURED_VARIANTS)])
         .collect();

@@ -17,6 +17,8 @@ use super::seal::is_sealed;
 pub(super) struct VariantListing {
     /// The batch that it was made in.
     pub(super) batch: ListedBatch,
+    /// What a slicer said of it.
+    pub(super) print: Option<serde_json::Value>,
     /// All its files.
     pub(super) files: Vec<ListedFile>,
 }

@@ -14,6 +14,7 @@
 //! "#;
 //! // SweepSource::read takes a file, with all that it names.
 //! let source = SweepSource {
+//!     slice: false,
 //!     name: "widths".to_owned(),
 //!     file: "sweep.toml".to_owned(),
 //!     sweep: text.to_owned(),
@@ -50,6 +51,7 @@ mod products;
 mod run;
 mod seal;
 mod shard;
+mod slicing;
 mod source;
 mod stamp;
 mod sweep;

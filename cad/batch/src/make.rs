@@ -8,12 +8,14 @@ use super::destination::{Destination, DestinationError};
 use super::forecast::{Forecast, Forecasts};
 use super::inspect::Inspector;
 use super::seal::seal;
+use super::slicing::VariantSlicer;
 use super::variant::{Variant, Variants};
+use pinswitch_slicer::Slicer;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::{BatchEntry, FileEntry, Manifest};
 use pinswitch_switch::formats::curve_files;
 use pinswitch_switch::output::{BuildError, OutputFile, SetError};
-use pinswitch_switch::parts::{Part, printed};
+use pinswitch_switch::parts::{Part, fit_on_bed, printed};
 use pinswitch_switch::prediction::Prediction;
 
 /// The table of a variant's curve.
@@ -44,6 +46,7 @@ pub(super) struct VariantMaker<'a> {
     destination: &'a Destination,
     contents: PartStore<'a>,
     forecasts: Forecasts,
+    slicer: Option<VariantSlicer<'a>>,
     /// What looks at the variants that an earlier run may have left.
     inspector: Option<Inspector<'a>>,
 }
@@ -82,6 +85,7 @@ pub(super) fn accepted(
         None => {
             let mut parts = printed(&design).map_err(|e| e.to_string())?;
             parts.retain(|part| variants.sweep().parts.contains(&part.name.as_str()));
+            fit_on_bed(&parts, &design).map_err(|e| e.to_string())?;
             Ok(AcceptedVariant { design, forecast, parts })
         }
     }
@@ -95,6 +99,7 @@ impl<'a> VariantMaker<'a> {
         destination: &'a Destination,
         resumed: bool,
         mesh_maker: MeshMaker,
+        slicer: Option<&'a Slicer>,
     ) -> Self {
         Self {
             variants,
@@ -102,6 +107,7 @@ impl<'a> VariantMaker<'a> {
             destination,
             contents: PartStore::new(destination, mesh_maker),
             forecasts: Forecasts::default(),
+            slicer: slicer.map(VariantSlicer::new),
             inspector: resumed.then(|| Inspector::new(destination)),
         }
     }
@@ -147,6 +153,15 @@ impl<'a> VariantMaker<'a> {
             index: variant.index,
             label: variant.label.clone(),
         });
+        if let Some(slicer) = &self.slicer {
+            let parts: Vec<_> = parts
+                .iter()
+                .zip(&kept)
+                .map(|(part, kept)| (part.name.as_str(), kept.sha256.as_str()))
+                .collect();
+            let stored = |sha256: &str| self.contents.stored(sha256);
+            manifest.print = Some(slicer.entry(design.configuration(), &parts, stored)?);
+        }
         let bytes = seal(manifest.bytes()?);
         let folder = variant_folder(&variant.id);
         for file in curve.files.iter().map(|(file, _)| file).chain(&plots) {
@@ -182,6 +197,10 @@ impl<'a> VariantMaker<'a> {
     ) -> Result<Option<Vec<u8>>, DestinationError> {
         let Some((bytes, listing)) = inspector.manifest(&variant.id)? else { return Ok(None) };
         if listing.batch.sweep_sha256 != self.sweep_sha256 || listing.batch.index != variant.index {
+            return Ok(None);
+        }
+        // Made while no slicer was there.
+        if self.slicer.is_some() && listing.print.is_none() {
             return Ok(None);
         }
         let expected: BTreeSet<String> = accepted

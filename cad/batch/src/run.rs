@@ -20,6 +20,7 @@ use super::stamp::{Stamp, StampError};
 use super::table::{Row, Schema};
 use super::tally::Tally;
 use super::variant::Variants;
+use pinswitch_slicer::Slicer;
 
 /// Variants whose rows are in memory at the same time.
 const CHUNK_VARIANTS: u64 = 512;
@@ -29,7 +30,7 @@ const STORE_THREADS: usize = 16;
 
 /// How a batch is run.
 #[derive(Clone, Copy, Debug)]
-pub struct Options {
+pub struct Options<'a> {
     /// Which variants are made.
     pub shard: Shard,
     /// Threads; 0 takes one per processor, or 16 for a store.
@@ -38,6 +39,8 @@ pub struct Options {
     pub fail_fast: bool,
     /// What makes the parts.
     pub mesh_maker: MeshMaker,
+    /// What says how long the parts print, where [`SweepSource::slice`] asks for it.
+    pub slicer: Option<&'a Slicer>,
 }
 
 /// Observes a run, and may stop it.
@@ -117,7 +120,7 @@ pub fn run(
     variants: &Variants,
     source: &SweepSource,
     destination: &Destination,
-    options: Options,
+    options: Options<'_>,
     observer: &dyn Observer,
 ) -> Result<Tally, RunError> {
     // A folder with something else in it is left as it is, before anything is written there.
@@ -127,7 +130,14 @@ pub fn run(
     let _lock = destination.lock().map_err(RunError::Unusable)?;
     let resumed = stamp.put(destination)?;
     let range = options.shard.range(variants.count());
-    let maker = VariantMaker::new(variants, &stamp.sweep_sha256, destination, resumed, options.mesh_maker);
+    let maker = VariantMaker::new(
+        variants,
+        &stamp.sweep_sha256,
+        destination,
+        resumed,
+        options.mesh_maker,
+        options.slicer,
+    );
     let mut products = Products::new(variants, destination)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(options, destination)).build()?;
     let (mut done, of) = (0, range.end - range.start);
@@ -165,7 +175,7 @@ pub fn run(
 }
 
 /// Threads of a run. A thread waits for a store most of the time: so many uploads go on at once.
-fn threads(options: Options, destination: &Destination) -> usize {
+fn threads(options: Options<'_>, destination: &Destination) -> usize {
     if options.threads > 0 || destination.links() { options.threads } else { STORE_THREADS }
 }
 
@@ -205,7 +215,7 @@ fn make_chunk(
     variants: &Variants,
     maker: &VariantMaker<'_>,
     schema: &Schema,
-    options: Options,
+    options: Options<'_>,
     observer: &dyn Observer,
 ) -> Vec<VariantResult> {
     let halt = AtomicBool::new(false);

@@ -50,6 +50,9 @@ pub struct SweepSource {
     pub base: String,
     /// Name and text of the CSV of rows.
     pub rows: Option<(String, String)>,
+    /// Whether a slicer is asked of every variant: said by whoever runs it, not by the sweep's file.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub slice: bool,
 }
 
 /// The files that a sweep may name.
@@ -131,6 +134,7 @@ impl SweepSource {
             file,
             sweep,
             rows,
+            slice: false,
         })
     }
 
@@ -146,6 +150,9 @@ impl SweepSource {
         for text in [env!("CARGO_PKG_VERSION"), &self.name, &self.sweep, &self.base, rows] {
             hash.update((text.len() as u64).to_le_bytes());
             hash.update(text);
+        }
+        if self.slice {
+            hash.update("slice");
         }
         hexadecimal(&hash.finalize())
     }

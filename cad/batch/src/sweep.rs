@@ -19,6 +19,8 @@ pub struct Sweep {
     pub parts: Vec<&'static str>,
     /// Whether every variant gets its own `friction.svg`.
     pub plots: bool,
+    /// Whether a slicer is asked of every variant.
+    pub slice: bool,
     /// The dimensions; the last varies fastest.
     pub axes: Vec<SweepAxis>,
     /// What every variant must fulfil.
@@ -99,6 +101,7 @@ impl Sweep {
             base,
             parts: parts(sweep).map_err(located(written("parts")))?,
             plots: sweep.and_then(|t| t.get("plots")).and_then(Item::as_bool).unwrap_or(false),
+            slice: source.slice,
             axes,
             constraints: constraints(source, &document)?,
         })

@@ -69,11 +69,15 @@ const PART: [(&str, ColumnType); 6] = [
     ("sha256", ColumnType::Text),
 ];
 
+/// What a slicer says of printing the parts of a variant, one by one: only where one is asked.
+const PRINT: [&str; 3] = ["print_minutes", "filament_g", "filament_m"];
+
 /// The columns of a table.
 #[derive(Clone, Debug)]
 pub struct Schema {
     columns: Vec<Column>,
     parts: Vec<&'static str>,
+    slice: bool,
 }
 
 impl Schema {
@@ -105,8 +109,11 @@ impl Schema {
                 add(format!("{part}.{key}"), kind);
             }
         }
+        for name in PRINT.into_iter().filter(|_| sweep.slice) {
+            add(name.to_owned(), ColumnType::Real);
+        }
         add("manifest_sha256".to_owned(), ColumnType::Text);
-        Self { columns, parts: sweep.parts.clone() }
+        Self { columns, parts: sweep.parts.clone(), slice: sweep.slice }
     }
 
     /// All columns.
@@ -183,6 +190,8 @@ impl Schema {
                 row.push(cell(fact, kind));
             }
         }
+        let print = PRINT.into_iter().filter(|_| self.slice);
+        row.extend(print.map(|name| cell(&facts["print"][name], ColumnType::Real)));
     }
 }
 

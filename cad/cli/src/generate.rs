@@ -1,12 +1,13 @@
 //! `pinswitch generate CONFIG`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
 use super::calibrated_curve::calibrated_curve;
 use super::law::LawChoice;
+use super::slicing;
 use super::source::Source;
 use super::{Failure, print};
 use crate::write::{PublishError, SetFolder};
@@ -29,6 +30,7 @@ use pinswitch_switch::set::Set;
   pinswitch generate three-double
   pinswitch generate my-switch.toml --out parts --preset printer-fff-0.4
   pinswitch generate three-double --format stl,step
+  pinswitch generate three-double --slice
   pinswitch generate three-double --set layout.pins=[4,8,12] --set support.slots=occupied")]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -44,6 +46,10 @@ pub(super) struct Arguments {
     format: Vec<String>,
     #[command(flatten)]
     law: LawChoice,
+    /// Ask an installed PrusaSlicer (`prusa-slicer` on PATH, or PINSWITCH_SLICER) how long each part and plate prints and how
+    /// much filament it takes: a table here, slicing.json and settings.ini in the set.
+    #[arg(long)]
+    slice: bool,
     /// Replace a set that was made from another configuration, and files that are no set's.
     #[arg(long)]
     force: bool,
@@ -73,6 +79,7 @@ fn refused(error: PublishError) -> Failure {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let slicer = if arguments.slice { slicing::installed()? } else { None };
     let (design, origin) = arguments.source.design_and_origin()?;
     let prediction = match &arguments.model {
         Some(model) => Prediction::with_curve(&design, calibrated_curve(&design, model)?),
@@ -94,7 +101,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     let names: Vec<&str> = arguments.format.iter().map(String::as_str).collect();
     let formats = named(&names).map_err(Failure::bad_input)?;
-    let set = Set::new(&built, &prediction, &formats).map_err(Failure::failed)?;
+    let mut set = Set::new(&built, &prediction, &formats).map_err(Failure::failed)?;
+    // What the slicer refuses is said at the end: the parts are made all the same.
+    let sliced = slicer.map(|slicer| slicing::slicing(slicer, &built, &prediction)).transpose();
+    if let Ok(Some((slicing, files))) = &sliced {
+        set = set.sliced(slicing.entry(), files.clone()).map_err(Failure::failed)?;
+    }
     let set = set.made_from(origin.clone()).map_err(Failure::failed)?;
     for changed in place.publish(&set.files, &origin, arguments.force).map_err(refused)? {
         log::warn!(
@@ -102,6 +114,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             folder.join(changed).display()
         );
     }
+    report(arguments, &set, &folder, &prediction);
+    if let (Some((slicing, _)), false) = (sliced?, arguments.json) {
+        print(slicing.table().as_bytes())?;
+    }
+    if arguments.json {
+        print(&set.manifest.bytes().map_err(Failure::failed)?)?;
+    }
+    Ok(())
+}
+
+/// Says what was made, with all that is not ideal of it.
+fn report(arguments: &Arguments, set: &Set, folder: &Path, prediction: &Prediction) {
     for warning in &set.manifest.warnings {
         log::warn!("{warning}");
     }
@@ -129,8 +153,4 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         log::info!("the curve comes from {}", model.display());
         prediction.curve.reasons.iter().for_each(|reason| log::info!("{reason}"));
     }
-    if arguments.json {
-        print(&set.manifest.bytes().map_err(Failure::failed)?)?;
-    }
-    Ok(())
 }

@@ -2,7 +2,7 @@
 //! and keeps that curve honest with measured data.
 //!
 //! This crate is the command line: one file per subcommand, input and output at its edges. What it does is done by the
-//! crates below, which it shows under short names. All but [`batch`] read no file, clock or environment: text and numbers
+//! crates below, which it shows under short names. All but [`batch`] and [`slicer`] read no file, clock or environment: text and numbers
 //! go in, and values, text and bytes come out.
 //!
 //! | crate | what it knows |
@@ -13,6 +13,7 @@
 //! | [`solid`] | exact solids of lines and arcs, their meshes, what makes a mesh valid, STL, 3MF, STEP and DXF |
 //! | [`switch`] | a switch: its configuration, its rules, its parts, built once, and every document made from them |
 //! | [`batch`] | sweeps of many switches, made in parallel and taken up where they stopped |
+//! | [`slicer`] | what an installed slicer says of printing them |
 //! | [`plot`] | figures of curves, layouts and calibrations, as SVG and HTML |
 //!
 //! A configuration becomes a design, the design parts, and the parts files. Everything that a configuration does not say
@@ -55,6 +56,7 @@ pub use pinswitch_calibration as calibration;
 pub use pinswitch_friction as friction;
 pub use pinswitch_plot as plot;
 pub use pinswitch_simulation as simulation;
+pub use pinswitch_slicer as slicer;
 pub use pinswitch_solid as solid;
 pub use pinswitch_switch as switch;
 
@@ -72,6 +74,7 @@ mod law;
 mod own_effects;
 mod predict_rows;
 mod range;
+mod slicing;
 mod source;
 pub mod write;
 

@@ -10,7 +10,7 @@ use crate::write::write_file;
 use pinswitch_solid::render::{View, render};
 use pinswitch_switch::built::Built;
 use pinswitch_switch::output::BuildError;
-use pinswitch_switch::scene::{assembled, plate};
+use pinswitch_switch::scene::{all_plates, assembled};
 
 /// Draw a picture of the parts as PNG: assembled, pulled apart, or laid out as printed.
 #[derive(Args, Debug)]
@@ -43,7 +43,7 @@ enum Scene {
     Assembled,
     /// Supports and layer pulled away from the shell.
     Exploded,
-    /// All printed parts side by side, in print orientation.
+    /// All printed parts side by side, in print orientation; where they need several plates, each on its bed.
     Plate,
 }
 
@@ -61,7 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bodies = match arguments.scene {
         Scene::Assembled => assembled(&built, 0.0),
         Scene::Exploded => assembled(&built, 1.0),
-        Scene::Plate => plate(&built),
+        Scene::Plate => all_plates(&built),
     };
     let view = View { turn_deg: arguments.turn, rise_deg: arguments.rise };
     let picture = render(&bodies, view, arguments.width, arguments.width * 3 / 4);

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::{Failure, print, print_json};
+use super::{Failure, print, print_json, slicing};
 use pinswitch_batch::{
     CountedSweep, Destination, Estimate, Observer, Options, Reach, RunError, Shard, SweepSource, Tally,
     VariantOutcome, Variants, admit, estimate, mesh_file, partial_folder, run as run_batch, would_fail,
@@ -60,6 +60,10 @@ pub(super) struct Arguments {
         value_parser = clap::value_parser!(u16).range(0..=MAX_THREADS)
     )]
     threads: u16,
+    /// Ask an installed PrusaSlicer (`prusa-slicer` on PATH, or PINSWITCH_SLICER) of every variant: columns print_minutes,
+    /// filament_g and filament_m, the sums over its parts.
+    #[arg(long)]
+    slice: bool,
     /// Stop at the first variant that fails.
     #[arg(long)]
     fail_fast: bool,
@@ -70,7 +74,8 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let reach = if arguments.read_outside { Reach::Anywhere } else { Reach::Beside };
-    let source = SweepSource::read_within(&arguments.sweep, reach).map_err(Failure::bad_input)?;
+    let mut source = SweepSource::read_within(&arguments.sweep, reach).map_err(Failure::bad_input)?;
+    source.slice = arguments.slice;
     let counted = CountedSweep::new(&source).map_err(Failure::bad_input)?;
     let count = counted.count().ok_or_else(|| {
         Failure::bad_input(format!(
@@ -112,6 +117,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             ))),
         };
     }
+    let slicer = if arguments.slice { slicing::installed()? } else { None };
     let destination = open()?;
     let progress = Progress::new(own.end - own.start)?;
     let options = Options {
@@ -119,6 +125,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         threads: usize::from(arguments.threads),
         fail_fast: arguments.fail_fast,
         mesh_maker: mesh_file,
+        slicer: slicer.as_ref(),
     };
     let outcome = run_batch(&variants, &source, &destination, options, &progress);
     progress.bar.finish_and_clear();
@@ -224,6 +231,11 @@ fn dry_run(arguments: &Arguments, variants: &Variants) -> Result<(), Failure> {
     let threads = pool.current_num_threads();
     let estimate =
         pool.install(|| estimate(variants, arguments.shard, threads, mesh_file)).map_err(Failure::failed)?;
+    if arguments.slice {
+        log::info!(
+            "--slice takes seconds more for each part that is like no other, which this does not count"
+        );
+    }
     if arguments.json { print_json(&estimate) } else { print(describe(variants, &estimate).as_bytes()) }
 }
 

@@ -44,6 +44,8 @@ struct Axis {
     read: Box<dyn Fn(&Point) -> f64>,
     /// Names of its values 0, 1, ..., if it has names.
     names: Vec<String>,
+    /// Whether its values are whole numbers.
+    is_count: bool,
 }
 
 impl Axis {
@@ -53,15 +55,19 @@ impl Axis {
             label: label.to_owned(),
             read,
             names: Vec::new(),
+            is_count: false,
         };
         let named = |label: &str, names: Vec<String>, read: Box<dyn Fn(&Point) -> f64>| Self {
             label: label.to_owned(),
             read,
             names,
+            is_count: false,
         };
         match covariate {
             Covariate::Load => plain("load (N)", Box::new(|p| p.load_n)),
-            Covariate::Repetition => plain("repetition", Box::new(|p| p.repetition)),
+            Covariate::Repetition => {
+                Self { is_count: true, ..plain("repetition", Box::new(|p| p.repetition)) }
+            }
             Covariate::Position => plain("position (mm)", Box::new(move |p| p.position * stroke)),
             Covariate::Speed => plain("speed (%)", Box::new(move |p| speed * p.log_speed.exp())),
             Covariate::Dwell => {
@@ -198,10 +204,14 @@ fn residual(
             .y_label_area_size(50)
             .build_cartesian_2d(drawable(least - pad, most + pad), drawable(-high, high))?;
         let format = |x: &f64| name_at(&axis.names, *x);
+        let whole = |x: &f64| whole_at(*x);
         let mut mesh = chart.configure_mesh();
         mesh.light_line_style(TRANSPARENT).x_desc(&axis.label).y_desc("reading - model (N)");
         if named {
             mesh.x_labels(2 * axis.names.len() + 1).x_label_formatter(&format).disable_x_mesh();
+        }
+        if axis.is_count {
+            mesh.x_labels(counts_between(least, most)).x_label_formatter(&whole);
         }
         mesh.draw()?;
         let shown = (0..xs.len()).step_by(stride).filter(|i| residual[*i].abs() < high);
@@ -231,6 +241,19 @@ fn name_at(names: &[String], x: f64) -> String {
     names.get(near as usize).cloned().unwrap_or_default()
 }
 
+/// A count at an axis; nothing between two counts.
+fn whole_at(x: f64) -> String {
+    if (x - x.round()).abs() < 1e-6 { format!("{:.0}", x.round() + 0.0) } else { String::new() }
+}
+
+/// Labels of an axis of counts: one each, as long as they find room.
+fn counts_between(least: f64, most: f64) -> usize {
+    const MOST: f64 = 12.0;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 12")]
+    let labels = (most.floor() - least.ceil() + 1.0).clamp(1.0, MOST) as usize;
+    labels
+}
+
 /// Weighted means of the residuals over stretches of a covariate.
 fn means(xs: &[f64], residual: &[f64], weights: &[f64], least: f64, most: f64) -> Vec<(f64, f64)> {
     let mut sums = vec![[0.0; 3]; STRETCHES];
@@ -247,4 +270,42 @@ fn means(xs: &[f64], residual: &[f64], weights: &[f64], least: f64, most: f64) -
         sums[at][2] += w * r;
     }
     sums.iter().filter(|s| s[0] > 0.5).map(|s| (s[1] / s[0], s[2] / s[0])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_written_as_counts() {
+        assert_eq!([1.0, 1.5, 12.0, -0.0].map(whole_at), ["1", "", "12", "0"]);
+        assert_eq!(
+            (counts_between(1.0, 5.0), counts_between(1.0, 400.0), counts_between(1.0, 1.5)),
+            (5, 12, 1)
+        );
+    }
+
+    #[test]
+    fn an_axis_of_counts_has_a_tick_for_each() {
+        for most in [2.0, 3.0, 5.0, 10.0, 60.0] {
+            let mut svg = String::new();
+            {
+                let root = SVGBackend::with_string(&mut svg, RESIDUAL).into_drawing_area();
+                let pad = 0.03 * (most - 1.0);
+                let mut chart = ChartBuilder::on(&root)
+                    .x_label_area_size(38)
+                    .build_cartesian_2d(drawable(1.0 - pad, most + pad), drawable(0.0, 1.0))
+                    .unwrap();
+                let mut mesh = chart.configure_mesh();
+                let whole = |x: &f64| whole_at(*x);
+                mesh.x_labels(counts_between(1.0, most)).x_label_formatter(&whole).draw().unwrap();
+                root.present().unwrap();
+            }
+            let texts: Vec<&str> = svg.lines().map(str::trim).filter(|l| l.parse::<f64>().is_ok()).collect();
+            assert!(texts.len() >= 2 && texts.iter().all(|t| !t.contains('.')), "{most}: {texts:?}");
+            if most <= 12.0 {
+                assert!(texts.len() as f64 >= most / 2.0, "{most}: {texts:?}");
+            }
+        }
+    }
 }

@@ -8,7 +8,7 @@ use crate::design::Design;
 use crate::diagnosis::diagnosed;
 use crate::output::BuildError;
 use crate::parallel::map_each;
-use crate::parts::{Part, Role, printed, reference_bodies};
+use crate::parts::{Part, Role, fit_on_bed, printed, reference_bodies};
 use pinswitch_solid::files::stl_bytes;
 use pinswitch_solid::mesh::Mesh;
 use pinswitch_solid::solid::CapCache;
@@ -124,7 +124,9 @@ impl Built {
     /// # Errors
     /// [`BuildError`]; nothing is returned if one part cannot be built.
     pub fn new(design: Design) -> Result<Self, BuildError> {
-        let printed = map_each(printed(&design)?, |part| BuiltPart::new(part, &design))
+        let parts = printed(&design)?;
+        fit_on_bed(&parts, &design)?;
+        let printed = map_each(parts, |part| BuiltPart::new(part, &design))
             .into_iter()
             .collect::<Result<Vec<_>, _>>()
             .map_err(|e| diagnosed(e, &design))?;

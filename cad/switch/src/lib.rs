@@ -27,6 +27,7 @@ pub mod formats;
 pub mod output;
 mod parallel;
 pub mod parts;
+pub mod plates;
 pub mod prediction;
 pub mod scene;
 pub mod set;

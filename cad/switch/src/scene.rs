@@ -1,10 +1,15 @@
-//! Bodies to draw: assembled, exploded, or side by side on a plate.
+//! Bodies to draw: assembled, exploded, step by step, or side by side on a plate.
 
-use crate::built::Built;
+mod stage;
+
+use crate::built::{Built, BuiltPart};
 use crate::output::SetError;
-use pinswitch_solid::files::lay_out;
-use pinswitch_solid::mesh::Mesh;
+use crate::plates::{Plate, plates};
+use pinswitch_solid::files::Placement;
+use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
 use pinswitch_solid::render::{Body, View, render};
+
+pub use stage::{STAGE_VIEW, Stage, stage_scene};
 
 /// The assembly; `explosion` from 0, in place, to 1, pulled apart.
 pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {
@@ -21,19 +26,39 @@ pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {
         .collect()
 }
 
-/// Printed parts side by side, as they are printed.
-pub fn plate(built: &Built) -> Vec<Body> {
-    let meshes: Vec<&Mesh> = built.printed().iter().map(|p| &p.body.mesh).collect();
-    let shifts = lay_out(&meshes);
-    built
-        .printed()
-        .iter()
-        .zip(shifts)
-        .map(|(p, shift)| Body {
-            mesh: p.body.mesh.clone().translated(shift),
-            colour: p.part().role.colour(),
-        })
-        .collect()
+/// Space between beds that are shown side by side, mm.
+const BEDS_APART_MM: f64 = 20.0;
+/// Colour of a bed.
+const BED_COLOUR: [u8; 3] = [214, 216, 222];
+
+/// The parts of a plate as they are printed.
+pub fn plate(plate: &Plate<'_>) -> Vec<Body> {
+    let body = |(part, place): &(&BuiltPart, _)| Body {
+        mesh: Placement::apply(place, part.print_mesh.clone()),
+        colour: part.part().role.colour(),
+    };
+    plate.parts.iter().map(body).collect()
+}
+
+/// All printed parts as they are printed; where one plate is not enough, each plate on its bed, side by side.
+pub fn all_plates(built: &Built) -> Vec<Body> {
+    let plates = plates(built);
+    if let [only] = plates.as_slice() {
+        return plate(only);
+    }
+    let bed_mm = built.design().configuration().print.bed_mm;
+    let with_bed = |(i, p): (usize, &Plate<'_>)| {
+        let aside = Vector3::new(i as f64 * (bed_mm + BEDS_APART_MM), 0.0, 0.0);
+        let bodies = plate(p).into_iter().chain([Body { mesh: bed(bed_mm), colour: BED_COLOUR }]);
+        bodies.map(|b| Body { mesh: b.mesh.translated(aside), ..b }).collect::<Vec<_>>()
+    };
+    plates.iter().enumerate().flat_map(with_bed).collect()
+}
+
+/// The upper face of a bed.
+fn bed(side_mm: f64) -> Mesh {
+    let at = |x: f64, y: f64| Point3::new(x * side_mm, y * side_mm, 0.0);
+    Mesh::new(vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)], vec![[0, 1, 2], [0, 2, 3]])
 }
 
 /// Pixels of the picture of the exploded assembly, across and up.

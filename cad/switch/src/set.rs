@@ -1,7 +1,7 @@
 //! A whole set in memory: nothing is written before everything is known to be right.
 
 use crate::built::Built;
-use crate::documents::{FileEntry, Manifest, SourceEntry};
+use crate::documents::{FileEntry, Manifest, PrintEntry, SourceEntry, plate_entries};
 use crate::formats::Format;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
@@ -43,6 +43,9 @@ impl Set {
             // A format may list what was made before it: the manifest always lists the files so far.
             let made = (format.make)(built, prediction, &manifest)?;
             manifest.files.extend(made.iter().map(FileEntry::of));
+            if made.iter().any(|file| file.name.ends_with(".3mf")) {
+                manifest.plates = plate_entries(built);
+            }
             files.extend(made);
         }
         files.push(OutputFile::new(MANIFEST, manifest.bytes()?));
@@ -55,6 +58,22 @@ impl Set {
     /// As [`Manifest::bytes`].
     pub fn made_from(mut self, source: SourceEntry) -> Result<Self, SetError> {
         self.manifest.source = Some(source);
+        self.with_manifest()
+    }
+
+    /// The same set with what a slicer said of it, and the files that hold all of that.
+    ///
+    /// # Errors
+    /// As [`Manifest::bytes`].
+    pub fn sliced(mut self, print: PrintEntry, files: Vec<OutputFile>) -> Result<Self, SetError> {
+        self.manifest.print = Some(print);
+        self.manifest.files.extend(files.iter().map(FileEntry::of));
+        self.files.extend(files);
+        self.with_manifest()
+    }
+
+    /// The set with its manifest as it is now, as the last file.
+    fn with_manifest(mut self) -> Result<Self, SetError> {
         self.files.retain(|file| file.name != MANIFEST);
         self.files.push(OutputFile::new(MANIFEST, self.manifest.bytes()?));
         Ok(self)

@@ -8,8 +8,8 @@ use pinswitch_calibration::ModelFile;
 use pinswitch_friction::{Carry, Contact, FrictionCurve, Substrate};
 
 use crate::Failure;
-use pinswitch_web::rig_contact;
 use pinswitch_switch::design_search::{Belief, Curve, Part};
+use pinswitch_web::rig_contact;
 
 /// Changes that are kept: one part is asked for many times, with other constants.
 const KEPT: usize = 24;

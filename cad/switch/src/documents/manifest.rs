@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use super::{Bill, bill_of_materials};
+use super::{Bill, PlateEntry, PrintEntry, bill_of_materials};
 use crate::config::{Configuration, Origin};
 use crate::design::Design;
 use crate::output::{OutputFile, SetError};
@@ -182,6 +182,12 @@ pub struct Manifest {
     pub derived: Vec<DerivedDimension>,
     /// The parts.
     pub parts: Vec<PartEntry>,
+    /// The plates that they are printed on, where the set has packages of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub plates: Vec<PlateEntry>,
+    /// What a slicer says of printing them, where one was asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub print: Option<PrintEntry>,
     /// The bound on their meshes.
     pub mesh: MeshBound,
     /// What to buy, cut and pour.
@@ -225,6 +231,8 @@ impl Manifest {
                 largest_volume_error: parts.iter().map(error).fold(0.0, f64::max),
             },
             parts,
+            plates: Vec::new(),
+            print: None,
             bill_of_materials: bill_of_materials(design),
             friction: FrictionEntry {
                 law: curve.law,

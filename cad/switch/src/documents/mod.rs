@@ -3,9 +3,13 @@
 mod bill;
 mod friction_csv;
 mod manifest;
+mod plate_entry;
+mod print_entry;
 
 pub use bill::{Bill, bill_of_materials};
 pub use friction_csv::friction_csv;
 pub use manifest::{
     BatchEntry, DerivedDimension, FileEntry, Manifest, PartEntry, SourceEntry, derived, toml_to_json,
 };
+pub use plate_entry::{PlacedPart, PlateEntry, plate_entries};
+pub use print_entry::PrintEntry;

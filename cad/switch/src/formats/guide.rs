@@ -2,6 +2,9 @@
 
 use std::fmt::Write as _;
 
+mod plates_section;
+
+use self::plates_section::plates_section;
 use super::markdown::escape;
 use super::{Format, Inclusion, png};
 use crate::built::Built;
@@ -10,9 +13,11 @@ use crate::design::Design;
 use crate::design::rules::checklist;
 use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
+use crate::parallel::map_each;
 use crate::parts::{left_out, touches};
+use crate::plates::{Plate, plates};
 use crate::prediction::Prediction;
-use crate::scene::{exploded_png, plate};
+use crate::scene::{STAGE_VIEW, Stage, exploded_png, plate, stage_scene};
 use pinswitch_friction::Substrate;
 use pinswitch_solid::render::View;
 
@@ -21,18 +26,40 @@ pub(super) const FORMAT: Format =
 
 /// Pixels of the picture of the plate, across and up.
 const PLATE_PIXELS: (u32, u32) = (900, 675);
+/// Pixels of the picture of a step, across and up.
+const STEP_PIXELS: (u32, u32) = (640, 480);
 
 fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
     let above = View { turn_deg: 0.0, rise_deg: 55.0 };
-    Ok(vec![
-        OutputFile::new("assembly.png", exploded_png(built)?),
-        OutputFile::new("plate.png", png(&plate(built), above, PLATE_PIXELS.0, PLATE_PIXELS.1)?),
-        OutputFile::new("PRINTING.md", printing_guide(built.design(), manifest)),
-    ])
+    let plates = plates(built);
+    let mut files = vec![OutputFile::new("assembly.png", exploded_png(built)?)];
+    for p in &plates {
+        files.push(OutputFile::new(p.picture(), png(&plate(p), above, PLATE_PIXELS.0, PLATE_PIXELS.1)?));
+    }
+    let (text, stages) = printing_guide(built.design(), manifest, &plates);
+    files.extend(step_pictures(built, &stages)?);
+    files.push(OutputFile::new("PRINTING.md", text));
+    Ok(files)
 }
 
-/// The text of the guide; assembly.png and plate.png lie beside it.
-fn printing_guide(design: &Design, manifest: &Manifest) -> String {
+/// The name of the picture of a step, from 1.
+fn step_picture(number: usize) -> String {
+    format!("step-{number}.png")
+}
+
+/// A picture for each step of the assembly.
+fn step_pictures(built: &Built, stages: &[Stage]) -> Result<Vec<OutputFile>, SetError> {
+    let (width, height) = STEP_PIXELS;
+    map_each((1..=stages.len()).collect(), |number| {
+        let bodies = stage_scene(built, &stages[..number]);
+        Ok(OutputFile::new(step_picture(number), png(&bodies, STAGE_VIEW, width, height)?))
+    })
+    .into_iter()
+    .collect()
+}
+
+/// The text of the guide, and what each step of the assembly adds; the pictures of both lie beside it.
+fn printing_guide(design: &Design, manifest: &Manifest, plates: &[Plate<'_>]) -> (String, Vec<Stage>) {
     let c = design.configuration();
     let mut text = format!("# Printing and assembling {}\n\n", escape(&manifest.name));
     let picture = |text: &mut String, alt: &str, file: &str| {
@@ -40,12 +67,12 @@ fn printing_guide(design: &Design, manifest: &Manifest) -> String {
     };
     picture(&mut text, "The parts, pulled apart", "assembly.png");
     print_section(&mut text, design, manifest);
-    picture(&mut text, "The printed parts on a plate", "plate.png");
+    text.push_str(&plates_section(design, manifest, plates));
     let casts = c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None;
     if casts {
         cast_section(&mut text, design, manifest);
     }
-    assemble_section(&mut text, design, manifest, if casts { 3 } else { 2 });
+    let stages = assemble_section(&mut text, design, manifest, if casts { 3 } else { 2 });
     let f = &manifest.friction;
     let _ = write!(
         text,
@@ -57,7 +84,7 @@ fn printing_guide(design: &Design, manifest: &Manifest) -> String {
         f.band_n[1],
         format!("{:?}", f.trust).to_lowercase()
     );
-    text
+    (text, stages)
 }
 
 fn print_section(text: &mut String, design: &Design, manifest: &Manifest) {
@@ -169,11 +196,13 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
     );
 }
 
-fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, number: usize) {
+/// Writes the section; returns what each of its steps adds.
+fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, section: usize) -> Vec<Stage> {
     let c = design.configuration();
     let bill = &manifest.bill_of_materials;
-    let mut steps = Vec::new();
+    let (mut steps, mut stages) = (Vec::new(), Vec::new());
     if bill.pins.number > 0 {
+        stages.push(Stage::CutPins);
         steps.push(format!(
             "Cut {} of {} mm and {:.1} mm long ({} to spare); break their edges, polish them.",
             counted(bill.pins.number + bill.pins.spares, "pin"),
@@ -184,26 +213,31 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, num
     }
     let is_silicone = c.layout.substrate == Substrate::Silicone;
     let bed = if is_silicone { "silicone layer" } else { "proxy" };
-    if is_silicone && c.mould.kind == MouldKind::None {
-        steps.push(format!(
+    stages.push(Stage::Bed);
+    let from_where = if is_silicone && c.mould.kind == MouldKind::None {
+        format!(
             "Take a silicone layer that was cast before: this set has no mould (`mould.kind = \"none\"`). It is {:.1} mm wide and {} mm \
-             thick, its ribs fit the {} of the shell; the sheet `silicone-layer` of the drawing has all its dimensions.",
+             thick, its ribs fit the {} of the shell; the sheet `silicone-layer` of the drawing has all its dimensions. ",
             design.layer_width_mm(),
             c.silicone.thickness_mm,
             counted(c.segment.grooves, "groove")
-        ));
-    }
-    steps.push(format!("Lay the {bed} on the shell, grooves outwards."));
+        )
+    } else {
+        String::new()
+    };
+    steps.push(format!("{from_where}Lay the {bed} on the shell, grooves outwards."));
     let keeps = if design.stops_mm().is_some() { ", between the stops at its ends" } else { "" };
     if let Some(last) = steps.last_mut() {
         last.insert_str(last.len() - 1, keeps);
     }
     if bill.fasteners.as_ref().is_some_and(|f| f.inserts > 0) {
+        stages.push(Stage::Inserts);
         steps.push(
             "Press the inserts into both ends of the shell's holes with a soldering iron, flush.".to_owned(),
         );
     }
     if let Some(d) = &bill.dowels {
+        stages.push(Stage::Dowels);
         steps.push(format!(
             "Cut {} dowels of {} mm and {} mm long, and put them into the shell.",
             d.number, d.diameter_mm, d.length_mm
@@ -226,9 +260,11 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, num
             "There is no room for marks on the supports: the load pulls on the side of groove 1, which seen from outside the left support is on the right."
         }
     };
+    stages.push(Stage::LeftSupport);
     steps.push(format!("Put the left support (L) on, its lip over the layer's edge. {marks}"));
     if bill.pins.number > 0 {
         let from = if is_marked { "counted from the `1`" } else { "counted from the load's side" };
+        stages.push(Stage::Pins);
         steps.push(format!(
             "Put the pins into grooves {:?}, {from}, and into the slots of the support.",
             c.layout.pins
@@ -236,10 +272,25 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, num
     }
     let slides =
         if bill.pins.number > 0 { " Every pin must slide to the end of its slot and back." } else { "" };
+    stages.push(Stage::RightSupport);
     steps.push(format!("Put the right support (R) on.{slides}"));
-    steps.extend(mounting_step(design, manifest));
-    steps.extend(fastening_step(design, manifest));
-    steps.extend(pulley_step(design, manifest));
+    if let Some(step) = mounting_step(design, manifest) {
+        stages.push(Stage::Mount);
+        steps.push(step);
+    }
+    if let Some(step) = fastening_step(design, manifest) {
+        stages.push(Stage::Fasteners);
+        steps.push(step);
+    }
+    // A pulley on somebody else's axle is on no picture of the switch.
+    let mut beside = pulley_step(design, manifest);
+    if bill.mount.as_ref().is_some_and(|mount| mount.bearing.is_some())
+        && let Some(step) = beside.take()
+    {
+        stages.push(Stage::Pulley);
+        steps.push(step);
+    }
+    stages.push(Stage::Tendon);
     steps.push(format!(
         "Lay {} mm of tendon ({} mm over its coating) over the pins; it touches {:.2} deg.{}",
         bill.tendon.length_mm,
@@ -247,11 +298,18 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, num
         c.layout.wrap_angle_deg,
         where_it_lies(design)
     ));
-    let _ = write!(text, "## {number}. Assemble\n\n");
-    for (i, step) in steps.iter().enumerate() {
-        let _ = writeln!(text, "{}. {step}", i + 1);
+    if let (Some(beside), Some(last)) = (beside, steps.last_mut()) {
+        last.insert_str(0, &format!("{beside} "));
     }
-    text.push('\n');
+    let _ = write!(
+        text,
+        "## {section}. Assemble\n\nThe pictures show the left support on the left. What a step adds is in colour and apart from its \
+         place; what is there already is grey.\n\n"
+    );
+    for (number, step) in (1..).zip(&steps) {
+        let _ = writeln!(text, "{number}. {step}\n\n   ![Step {number}]({})\n", step_picture(number));
+    }
+    stages
 }
 
 /// How plates and shell are joined.

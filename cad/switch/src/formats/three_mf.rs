@@ -1,18 +1,21 @@
-//! assembly.3mf: all printed parts on one plate, with thumbnail, configuration and curve.
+//! assembly.3mf: all printed parts on one plate, or assembly-1.3mf and so on where the bed takes fewer at once; with thumbnail,
+//! configuration and curve.
 
 use super::{Format, Inclusion, png};
 use crate::built::Built;
 use crate::config::to_toml;
 use crate::documents::{Manifest, friction_csv};
 use crate::output::{OutputFile, SetError};
+use crate::parts::Role;
+use crate::plates::{Plate, plates};
 use crate::prediction::Prediction;
-use crate::scene::plate;
-use pinswitch_solid::files::{Object, Package, three_mf};
+use crate::scene::plate as scene_of;
+use pinswitch_solid::files::{BaseMaterial, Object, Package, three_mf};
 use pinswitch_solid::render::View;
 
 pub(super) const FORMAT: Format = Format {
     name: "3mf",
-    about: "assembly.3mf: all printed parts on a plate, for slicers",
+    about: "assembly.3mf: all printed parts on a plate, for slicers; one file for each plate that they need",
     inclusion: Inclusion::Default,
     make,
 };
@@ -21,21 +24,36 @@ pub(super) const FORMAT: Format = Format {
 const THUMBNAIL: u32 = 256;
 
 fn make(built: &Built, prediction: &Prediction, _: &Manifest) -> Result<Vec<OutputFile>, SetError> {
+    plates(built)
+        .iter()
+        .map(|plate| Ok(OutputFile::new(plate.package(), package_bytes(built, prediction, plate)?)))
+        .collect()
+}
+
+/// The bytes of the package of one plate.
+fn package_bytes(built: &Built, prediction: &Prediction, plate: &Plate<'_>) -> Result<Vec<u8>, SetError> {
     let c = built.design().configuration();
     let name = &c.switch.name;
-    let objects: Vec<Object<'_>> = built
-        .printed()
+    let materials = materials(plate);
+    let objects: Vec<Object<'_>> = plate
+        .parts
         .iter()
-        .map(|p| Object {
+        .map(|(p, place)| Object {
             name: &p.part().name,
             part_number: format!("{name}/{}", p.part().name),
             mesh: &p.print_mesh,
+            material: materials.iter().position(|m| *m == material(p.part().role)).unwrap_or(usize::MAX),
+            place: *place,
         })
         .collect();
+    let on_plate = match plate.of {
+        1 => String::new(),
+        of => format!(", plate {} of {of}", plate.number),
+    };
     let above = View { turn_deg: 20.0, rise_deg: 50.0 };
     let package = Package {
         metadata: vec![
-            ("Title", format!("{name}: friction switch")),
+            ("Title", format!("{name}: friction switch{on_plate}")),
             ("Designer", "pinswitch".to_owned()),
             (
                 "Description",
@@ -45,9 +63,35 @@ fn make(built: &Built, prediction: &Prediction, _: &Manifest) -> Result<Vec<Outp
             ("Application", concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned()),
         ],
         own_metadata: vec![("layout", built.design().label()), ("configuration", to_toml(c))],
-        thumbnail: png(&plate(built), above, THUMBNAIL, THUMBNAIL)?,
+        materials,
+        thumbnail: png(&scene_of(plate), above, THUMBNAIL, THUMBNAIL)?,
         attachments: vec![("friction.csv".to_owned(), friction_csv(&prediction.curve).into_bytes())],
     };
-    let bytes = three_mf(&objects, &package).map_err(SetError::encoding)?;
-    Ok(vec![OutputFile::new("assembly.3mf", bytes)])
+    three_mf(&objects, &package).map_err(SetError::encoding)
+}
+
+/// The materials of a plate, each once, in the order of its parts.
+fn materials(plate: &Plate<'_>) -> Vec<BaseMaterial> {
+    plate.parts.iter().fold(Vec::new(), |mut known, (p, _)| {
+        let own = material(p.part().role);
+        if !known.contains(&own) {
+            known.push(own);
+        }
+        known
+    })
+}
+
+/// What parts of a role are printed from, in the colour of their pictures.
+fn material(role: Role) -> BaseMaterial {
+    let what = match role {
+        Role::Shell => "shell",
+        Role::Mould => "mould",
+        Role::Support { .. } => "support",
+        Role::Proxy => "proxy",
+        Role::Mount => "mount",
+        Role::Accessory => "accessory",
+        // Cast or bought: on no plate.
+        Role::Layer | Role::Pin { .. } | Role::Tendon => "part",
+    };
+    BaseMaterial { name: format!("ABS ({what})"), colour: role.colour() }
 }

@@ -2,6 +2,7 @@
 //!
 //! A printed part is one file and one entry of [`PRINTED_PARTS`].
 
+mod bed;
 mod coupon;
 mod fastening;
 mod guide_pulley;
@@ -24,6 +25,7 @@ use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Contour, OffsetError, polar};
 use pinswitch_solid::solid::Solid;
 
+pub use bed::fit_on_bed;
 pub(crate) use label::left_out;
 pub use layer::silicone_layer;
 pub use mould::{cavity_mm3, gang_mm};

@@ -5,7 +5,7 @@ mod vocabulary;
 mod write;
 
 pub use read::{PackagedMesh, ThreeMf, ThreeMfReadError, read_three_mf};
-pub use write::{Object, Package, ThreeMfError, three_mf};
+pub use write::{BaseMaterial, Object, Package, ThreeMfError, three_mf};
 
 /// Namespace of the core specification.
 const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";

@@ -1,4 +1,4 @@
-//! Writes a package: every printed part as a named object on one plate, byte for byte the same every time.
+//! Writes a package: printed parts as named, coloured objects in their places on one plate, byte for byte the same every time.
 
 use std::fmt::Write as _;
 use std::io::{Cursor, Write as _};
@@ -7,7 +7,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::{CORE, MODEL_TYPE, OWN};
-use crate::files::plate::lay_out;
+use crate::files::plate::Placement;
 use crate::mesh::Mesh;
 
 /// A printed part.
@@ -19,6 +19,19 @@ pub struct Object<'a> {
     pub part_number: String,
     /// Its mesh in print orientation.
     pub mesh: &'a Mesh,
+    /// Its material: a number in [`Package::materials`], or one beyond them for none.
+    pub material: usize,
+    /// Where it lies on the plate; the plate's number is not looked at.
+    pub place: Placement,
+}
+
+/// What an object is made of, and how it is shown.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BaseMaterial {
+    /// Its name.
+    pub name: String,
+    /// Red, green, blue.
+    pub colour: [u8; 3],
 }
 
 /// What a package holds besides its objects.
@@ -28,6 +41,8 @@ pub struct Package {
     pub metadata: Vec<(&'static str, String)>,
     /// Metadata of our own, in a namespace of our own.
     pub own_metadata: Vec<(&'static str, String)>,
+    /// What the objects are made of.
+    pub materials: Vec<BaseMaterial>,
     /// A picture, as PNG.
     pub thumbnail: Vec<u8>,
     /// Attached files, by name in `Metadata/`: the friction curve.
@@ -45,7 +60,7 @@ const THUMBNAIL_TYPE: &str =
 /// Relationship of an attachment that means nothing to a printer.
 const ATTACHMENT_TYPE: &str = "urn:pinswitch:attachment:1";
 
-/// The bytes of a 3MF file with `objects` laid out on a plate. The same input gives the same bytes.
+/// The bytes of a 3MF file with `objects` in their places. The same input gives the same bytes.
 ///
 /// # Errors
 /// [`ThreeMfError`] if the archive cannot be written.
@@ -134,10 +149,24 @@ fn model(objects: &[Object<'_>], package: &Package) -> String {
         let _ = writeln!(text, r#"<metadata name="{}">{}</metadata>"#, escaped(&name), escaped(value));
     }
     text.push_str("<resources>\n");
+    let materials_id = objects.len() + 1;
+    if !package.materials.is_empty() {
+        let _ = writeln!(text, r#"<basematerials id="{materials_id}">"#);
+        for BaseMaterial { name, colour: [red, green, blue] } in &package.materials {
+            let name = escaped(name);
+            let _ =
+                writeln!(text, r##"<base name="{name}" displaycolor="#{red:02X}{green:02X}{blue:02X}"/>"##);
+        }
+        text.push_str("</basematerials>\n");
+    }
     for (i, object) in objects.iter().enumerate() {
+        let material = match object.material {
+            known if known < package.materials.len() => format!(r#" pid="{materials_id}" pindex="{known}""#),
+            _ => String::new(),
+        };
         let _ = writeln!(
             text,
-            r#"<object id="{}" type="model" name="{}" partnumber="{}"><mesh><vertices>"#,
+            r#"<object id="{}" type="model" name="{}" partnumber="{}"{material}><mesh><vertices>"#,
             i + 1,
             escaped(object.name),
             escaped(&object.part_number)
@@ -154,18 +183,13 @@ fn model(objects: &[Object<'_>], package: &Package) -> String {
         text.push_str("</triangles></mesh></object>\n");
     }
     text.push_str("</resources>\n<build>\n");
-    let meshes: Vec<&Mesh> = objects.iter().map(|o| o.mesh).collect();
-    for (i, by) in lay_out(&meshes).iter().enumerate() {
-        // Rounded up to whole micrometres, so that rounding leaves nothing outside the positive octant.
-        let at = by.map(|v| (v * 1e3).ceil() / 1e3);
-        let _ = writeln!(
-            text,
-            r#"<item objectid="{}" transform="1 0 0 0 1 0 0 0 1 {} {} {}"/>"#,
-            i + 1,
-            at.x,
-            at.y,
-            at.z
-        );
+    for (i, Object { place, .. }) in objects.iter().enumerate() {
+        // Row by row what becomes of x, y and z (core specification, 3.3).
+        let turn = if place.is_turned { "0 1 0 -1 0 0 0 0 1" } else { "1 0 0 0 1 0 0 0 1" };
+        // A negative zero is a zero.
+        let at = place.shift.map(|v| v + 0.0);
+        let _ =
+            writeln!(text, r#"<item objectid="{}" transform="{turn} {} {} {}"/>"#, i + 1, at.x, at.y, at.z);
     }
     text.push_str("</build>\n</model>\n");
     text

@@ -6,6 +6,7 @@ use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, requi
 use crate::config::MouldKind;
 use crate::parts::{keys, tray};
 use pinswitch_friction::Substrate;
+use pinswitch_solid::files::BED_EDGE_MM;
 
 /// Largest shift of a sector's ends, as a share of its inner radius: beyond it they miss the circle.
 const LARGEST_SHIFT: f64 = 0.9;
@@ -213,7 +214,7 @@ fn gang_on_bed(i: &Inspection<'_>) -> Assessment {
         return Assessment::NotApplicable;
     }
     let [wide, tall] = gang_sides_mm(i);
-    require(wide.max(tall) <= c.print.bed_mm, || {
+    require(wide.max(tall) + 2.0 * BED_EDGE_MM <= c.print.bed_mm, || {
         (
             format!("makes a mould of {wide:.0} by {tall:.0} mm on a bed of {} mm", c.print.bed_mm),
             &[Lower("mould.layers"), Raise("print.bed_mm")],

@@ -6,6 +6,7 @@ use crate::config::MountKind;
 use crate::design::fastening::{HEAD_BELOW_MM, axle_recess, stop_recess};
 use crate::design::mounting::{Hole, PULLEY_AIR_MM, PULLEY_RADIUS_MM, SheathStop};
 use crate::design::{pulley_outer_mm, pulley_width_mm};
+use pinswitch_solid::files::BED_EDGE_MM;
 use pinswitch_solid::profile::hull;
 
 /// Least wall between two holes of the plate.
@@ -138,9 +139,11 @@ fn plate_on_bed(i: &Inspection<'_>) -> Assessment {
         let (low, high) = outline.bounds();
         (high.x - low.x).max(high.y - low.y)
     });
-    require(side <= bed, || {
+    require(side + 2.0 * BED_EDGE_MM <= bed, || {
         (
-            format!("makes a plate that is {side:.1} mm long, on a bed of {bed} mm"),
+            format!(
+                "makes a plate that is {side:.1} mm long, on a bed of {bed} mm with {BED_EDGE_MM} mm free along each edge"
+            ),
             &[
                 Lower("mount.bore_distance_mm"),
                 Lower("mount.pulley_distance_mm"),

@@ -2,6 +2,8 @@
 
 use super::Change::{Ease, Lower, Raise};
 use super::{Assessment, Inspection, Remedy, Rule, Severity, advise, require};
+use crate::config::MouldKind;
+use pinswitch_friction::Substrate;
 
 /// Least chamfer of a bottom edge.
 const MIN_CHAMFER_MM: f64 = 0.02;
@@ -48,19 +50,20 @@ fn chamfer_prints(i: &Inspection<'_>) -> Assessment {
     })
 }
 
+/// An estimate before anything is built; the parts themselves are asked by `parts::fit_on_bed`.
 fn parts_on_bed(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
+    let has_mould = c.mould.kind != MouldKind::None && c.layout.substrate == Substrate::Silicone;
     let mould = i.contact_radius_mm() + c.mould.wall_mm + c.mould.key_diameter_mm + BED_MARGIN_MM;
-    let reach = i.support_radius_mm().max(mould);
+    let (part, reach) = match i.support_radius_mm() {
+        support if has_mould && mould > support => ("the mould", mould),
+        support => ("the supports", support),
+    };
     let half = i.half_span_rad().min(std::f64::consts::FRAC_PI_2);
     let width = 2.0 * reach * half.sin() + 2.0 * (i.shell_end_shift_mm() + c.mould.wall_mm);
     require(2.0 * reach <= c.print.bed_mm || width <= c.print.bed_mm, || {
         (
-            format!(
-                "makes parts that are {:.1} mm wide, on a bed of {} mm",
-                width.min(2.0 * reach),
-                c.print.bed_mm
-            ),
+            format!("makes {part} {:.1} mm wide, on a bed of {} mm", width.min(2.0 * reach), c.print.bed_mm),
             &[
                 Raise("print.bed_mm"),
                 Lower("shell.outer_radius_mm"),

@@ -405,7 +405,8 @@ mod tests {
         } else {
             named.iter().all(|a| mends(std::slice::from_ref(a)))
         };
-        let set: Vec<String> = error.changes.iter().map(|(field, value)| format!("{field}={value}")).collect();
+        let set: Vec<String> =
+            error.changes.iter().map(|(field, value)| format!("{field}={value}")).collect();
         let is_set = set.is_empty() != is_tried && (set.is_empty() || mends(&set));
         (!is_mended || !is_set).then(|| format!("{text}: does not work: {named:?}, {set:?}"))
     }

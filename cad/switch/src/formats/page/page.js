@@ -357,6 +357,8 @@ function fillTables(data) {
   const links = beside.map((name) => {
     const item = make('li');
     item.append(make('a', name, { href: encodeURI(name), download: name }));
+    const plate = (manifest.plates ?? []).find((p) => p.file === name);
+    if (plate) item.append(` a plate: ${plate.parts.map((p) => p.name).join(', ')}`);
     return item;
   });
   byId('files').replaceChildren(...saves, ...links);

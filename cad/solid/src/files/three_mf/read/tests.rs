@@ -6,7 +6,8 @@ use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
 use super::*;
-use crate::files::{Object, Package, three_mf};
+use crate::files::{BaseMaterial, Object, Package, Placement, three_mf};
+use crate::mesh::Vector3;
 
 const TYPES: &str = r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"/>"#;
 
@@ -56,10 +57,14 @@ fn what_is_written_is_read() {
     let package = Package {
         metadata: vec![("Title", "a & b".to_owned())],
         own_metadata: vec![("configuration", text.to_owned())],
+        materials: vec![BaseMaterial { name: "\"ABS\"".to_owned(), colour: [0, 128, 255] }],
         ..Package::default()
     };
-    let object = Object { name: "a <part>", part_number: "x/1".to_owned(), mesh: &mesh };
-    let found = read_three_mf(&three_mf(&[object], &package).unwrap()).unwrap();
+    let place = Placement { plate: 0, is_turned: true, shift: Vector3::new(9.0, 0.0, 0.0) };
+    let object =
+        |name, material| Object { name, part_number: "x/1".to_owned(), mesh: &mesh, material, place };
+    let objects = [object("a <part>", 0), object("of nothing", 1)];
+    let found = read_three_mf(&three_mf(&objects, &package).unwrap()).unwrap();
     assert_eq!(checks(&found), [""; 0], "{:?}", found.faults);
     assert_eq!((found.meshes[0].name.as_str(), &found.meshes[0].mesh), ("a <part>", &mesh));
     assert_eq!(found.configuration.as_deref(), Some(text));

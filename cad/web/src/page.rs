@@ -8,17 +8,25 @@ const CSS: &str = include_str!("../page/configurator.css");
 const WORKER: &str = include_str!("../page/worker.js");
 
 /// The page's own scripts, in the order in which they are read.
-const SCRIPTS: [&str; 11] = [
+const SCRIPTS: [&str; 19] = [
     include_str!("../page/words.js"),
+    include_str!("../page/dom.js"),
     include_str!("../page/state.js"),
     include_str!("../page/engine.js"),
     include_str!("../page/controls.js"),
     include_str!("../page/pins.js"),
     include_str!("../page/assembly.js"),
+    include_str!("../page/view.js"),
+    include_str!("../page/scales.js"),
     include_str!("../page/curve.js"),
+    include_str!("../page/handles.js"),
     include_str!("../page/checks.js"),
-    include_str!("../page/downloads.js"),
+    include_str!("../page/bill.js"),
+    include_str!("../page/ask.js"),
+    include_str!("../page/measured.js"),
     include_str!("../page/drop.js"),
+    include_str!("../page/downloads.js"),
+    include_str!("../page/embed.js"),
     include_str!("../page/page.js"),
 ];
 

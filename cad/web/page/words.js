@@ -16,7 +16,7 @@ const WORDS = {
   pins: 'Pins', clearPins: 'Lift all', mirror: 'Mirror',
   pinsHelp: 'Click a groove to set or lift a pin, drag a pin to move it. From the keyboard: arrows walk, Space sets or lifts, Shift and an arrow carry the pin along.',
   checks: 'Checks', bill: 'You will need', parts: 'Printed parts', bed: 'On the print bed',
-  ask: 'Ask backwards', askHelp: 'Drag the diamonds on the curve, or type: where it should switch, how much friction it should make.',
+  ask: 'Ask backwards', askHelp: 'Drag the marks on the curve, or type: where it should switch, how much friction it should make.',
   askThreshold: 'Switches at', askFriction: 'Friction of', askLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', take: 'Take this',
   measured: 'Your measurements', chooseTable: 'Choose a table', takeModel: 'Use this model in the design', dropModel: 'Back to the published constants',
   measuredHelp: 'Drop a table of plateaus (CSV) anywhere on the page. It says whether the model holds for your switch, and what it misses.',
@@ -28,11 +28,11 @@ const WORDS = {
   },
   // Where the key without its unit is not what one would say.
   fields: {
-    'layout.pins': 'pins in grooves', 'layout.wrap_angle_deg': 'wrap angle', 'segment.span_deg': 'span', 'silicone.hardness_shore_a': 'hardness',
+    'layout.pins': 'pins in', 'layout.wrap_angle_deg': 'wrap angle', 'segment.span_deg': 'span', 'silicone.hardness_shore_a': 'hardness',
     'silicone.density_g_cm3': 'density', 'print.abs_density_g_cm3': 'density of the plastic', 'silicone.least_mix_g': 'least to mix', 'mould.shrinkage_pct': 'shrinkage',
     'print.bed_mm': 'side of the bed', 'friction.six_single_threshold': 'threshold of six-single', 'parts.proxy': 'rigid proxy', 'parts.coupon': 'fit coupon', 'label.engrave': 'engrave a label',
   },
-  units: { deg: '°', shore_a: 'Shore A', g_cm3: 'g/cm³', pct: '%', n: 'N' },
+  units: { deg: '°', shore_a: 'Shore A', 'g/cm3': 'g/cm³', g_cm3: 'g/cm³', pct: '%', n: 'N' },
   groupChanged: (n) => (n === 1 ? '1 changed' : `${n} changed`),
   reset: (name) => `Reset ${name}`,
   about: (name) => `About ${name}`,
@@ -103,16 +103,19 @@ const WORDS = {
   published: 'Published', printers: 'Printers',
 
   hash: {
-    newer: (v) => `The address is of version ${v}, newer than this page (1). What this page knows of it was taken.`,
+    newer: (v) => `The address is of version ${v}, newer than this page (1).`,
     broken: 'The address holds no design, or is cut off. The page starts with a published one.',
-    unknown: (names) => `The address names ${names.join(', ')}, which this version does not have. The rest was taken.`,
-    wrong: (names) => `The address gives ${names.join(', ')} a value that cannot be. The rest was taken.`,
+    unknown: (names) => `The address names ${names.join(', ')}, which this version does not have.`,
+    wrong: (names) => `The address gives ${names.join(', ')} a value that cannot be.`,
+    rest: 'The rest was taken.',
     model: 'The address holds a calibrated model that is cut off. The published constants are used.',
   },
 
+  saveTo: (file) => `Save to ${file}`, savedTo: (file) => `Saved to ${file}.`, notSaved: (file) => `${file} was not saved: `, fileChanged: (file) => `${file} was changed: its values are shown. Undo goes back.`,
+
   starting: 'Starting the engine …', working: 'Working …',
-  engineMissing: 'This copy of the page holds no engine, and no server answers. Open it with: pinswitch view --configure',
-  engineBroken: (reason) => `The engine does not start in this browser (${reason}). A current Firefox, Chrome, Edge or Safari runs it, and so does: pinswitch view --configure`,
+  engineMissing: 'This copy of the page holds no engine, and no server answers. Open it with: pinswitch view',
+  engineBroken: (reason) => `The engine does not start in this browser (${reason}). A current Firefox, Chrome, Edge or Safari runs it, and so does: pinswitch view`,
   engineStopped: 'The engine stopped on this design and was started again. Undo the last change, or try another value.',
   enginePart: (reason) => `The engine did not answer: ${reason}.`,
   serverGone: 'The server does not answer. Is pinswitch view still running? The last design stays; what you change next asks again.',

@@ -121,9 +121,9 @@ class Curve {
   words() {
     const { curve, manifest } = this.data;
     const isOurs = Boolean(this.state.now.model);
-    const trust = isOurs ? 'calibrated' : curve.trust;
-    const words = WORDS.trust[trust] ?? trust;
-    byId('trust').textContent = `${WORDS.trustMark[trust] ?? ''} ${words}`;
+    const trust = WORDS.trust[curve.trust] ?? curve.trust;
+    const words = isOurs ? WORDS.calibratedTrust(trust) : trust;
+    byId('trust').textContent = `${WORDS.trustMark[curve.trust] ?? ''} ${words}`;
     byId('trust').className = `badge ${curve.trust}`;
     byId('trust').setAttribute('aria-label', WORDS.trustOf(words));
     byId('reason-list').replaceChildren(...curve.reasons.map((r) => make('li', r)));

@@ -177,7 +177,7 @@ class Page {
     const list = byId('template-list');
     const group = (title, templates) => {
       if (!templates.length) return;
-      list.append(make('h3', title));
+      list.append(make('h2', title));
       for (const t of templates) {
         const item = button(t.name, () => { this.takeTemplate(t); byId('more').open = false; byId('more').querySelector('summary').focus(); }, { class: 'link' });
         item.append(make('span', t.about, { class: 'dim' }));

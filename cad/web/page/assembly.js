@@ -6,7 +6,9 @@ const groupOf = (name) => (/^pin-\d+$/.test(name) ? 'pins' : name);
 // Constants of three.js that its build for this page leaves out.
 const FRONT = 0, BACK = 1, ALWAYS = 519, NOT_EQUAL = 517, INCREMENT = 34055, DECREMENT = 34056;
 // Room around what is shown, as a share of it.
-const ROOM = 1.06;
+const ROOM = 1.1;
+// So many points of a body are enough to see how far it reaches.
+const SAMPLES = 600;
 
 // Counts, where a body is cut, the faces seen from inside less those from outside: what is left over is cut material.
 function counting(geometry, side, operation, plane) {
@@ -121,29 +123,38 @@ class Assembly {
     this.frame();
   }
 
+  // Points of what is shown, in the assembly; of large meshes not all, since neighbours say the same.
+  *points() {
+    for (const node of this.group.children) {
+      if (!node.visible) continue;
+      const mesh = node.isMesh ? node : node.children[0];
+      const { array } = mesh.geometry.getAttribute('position');
+      const step = 3 * Math.max(1, Math.floor(array.length / 3 / SAMPLES));
+      for (let i = 0; i < array.length; i += step) yield new THREE.Vector3(array[i], array[i + 1], array[i + 2]).applyMatrix4(mesh.matrixWorld);
+    }
+  }
+
   // Moves the camera along its way so that all that is shown fills the picture.
   frame() {
     if (!this.bodies || !this.towards) return;
-    const all = new THREE.Box3();
-    const boxes = this.group.children.filter((node) => node.visible).map((node) => new THREE.Box3().setFromObject(node));
-    boxes.forEach((box) => all.union(box));
-    if (all.isEmpty()) return;
-    const middle = all.getCenter(new THREE.Vector3());
     const right = new THREE.Vector3(0, 1, 0).cross(this.towards).normalize();
     const up = this.towards.clone().cross(right);
+    const seen = [...this.points()].map((p) => [p.dot(right), p.dot(up), p.dot(this.towards)]);
+    if (!seen.length) return;
+    const middle = [0, 1, 2].map((k) => {
+      const [low, high] = seen.reduce(([l, h], p) => [Math.min(l, p[k]), Math.max(h, p[k])], [Infinity, -Infinity]);
+      return (low + high) / 2;
+    });
     const height = Math.tan(this.camera.fov * Math.PI / 360);
-    let distance = 0;
-    for (const { min, max } of boxes) {
-      for (let i = 0; i < 8; i += 1) {
-        const corner = new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z).sub(middle);
-        const aside = Math.max(Math.abs(corner.dot(right)) / (height * this.camera.aspect), Math.abs(corner.dot(up)) / height);
-        distance = Math.max(distance, corner.dot(this.towards) + aside * ROOM);
-      }
-    }
+    const distance = seen.reduce((far, p) => {
+      const aside = Math.max(Math.abs(p[0] - middle[0]) / (height * this.camera.aspect), Math.abs(p[1] - middle[1]) / height);
+      return Math.max(far, p[2] - middle[2] + aside * ROOM);
+    }, 0);
+    const centre = right.multiplyScalar(middle[0]).add(up.multiplyScalar(middle[1])).add(this.towards.clone().multiplyScalar(middle[2]));
     this.camera.far = 10 * distance + 10 * this.reach;
     this.camera.updateProjectionMatrix();
-    this.camera.position.copy(this.towards).multiplyScalar(distance).add(middle);
-    this.controls.target.copy(middle);
+    this.camera.position.copy(this.towards).multiplyScalar(distance).add(centre);
+    this.controls.target.copy(centre);
     this.controls.update();
     this.draw();
   }

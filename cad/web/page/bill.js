@@ -41,23 +41,35 @@ function shelves(parts, bed) {
   return placed;
 }
 
-function drawBed(parts, bed) {
+// Outlines on beds: where the manifest puts them, else in rows; null where they need more than one bed and nobody said which.
+function beds({ plates, parts, settings }) {
+  const bed = settings.find((s) => s.field === 'print.bed_mm')?.value ?? 250;
+  if (plates?.length) {
+    return plates.map((plate) => ({ bed: plate.bed_mm, placed: plate.parts.flatMap(({ name, x_mm, y_mm, is_turned }) => {
+      const part = parts.find((p) => p.name === name);
+      if (!part) return [];
+      const [width, depth] = is_turned ? [sizeOf(part)[1], sizeOf(part)[0]] : sizeOf(part);
+      return [{ part, x: x_mm - width / 2, y: plate.bed_mm - y_mm - depth / 2, size: [width, depth] }];
+    }) }));
+  }
   const placed = shelves(parts, bed);
-  byId('bed-says').textContent = WORDS.bedSays(plain(bed), placed !== null);
-  const used = placed ? placed.reduce(([w, h], p) => [Math.max(w, p.x + p.size[0]), Math.max(h, p.y + p.size[1])], [0, 0]) : [bed, bed];
-  const [dx, dy] = [(bed - used[0]) / 2, (bed - used[1]) / 2];
-  const drawing = svg('svg', { viewBox: `-2 -2 ${bed + 4} ${bed + 4}`, role: 'img', 'aria-label': WORDS.bedName(parts.length, plain(bed)), class: 'bed' });
-  drawing.append(svg('rect', { width: bed, height: bed, rx: 4, class: 'plate' }));
+  const used = placed?.reduce(([w, h], p) => [Math.max(w, p.x + p.size[0]), Math.max(h, p.y + p.size[1])], [0, 0]);
+  return [{ bed, placed: placed?.map((p) => ({ ...p, x: p.x + (bed - used[0]) / 2, y: p.y + (bed - used[1]) / 2 })) ?? null }];
+}
+
+function drawBed({ bed, placed }) {
+  const drawing = svg('svg', { viewBox: `-2 -2 ${bed + 4} ${bed + 4}`, role: 'img', 'aria-label': WORDS.bedName(placed?.length ?? 0, plain(bed)), class: 'bed' });
+  drawing.append(svg('rect', { width: bed, height: bed, rx: bed / 60, class: 'plate' }));
   for (const { part, x, y, size } of placed ?? []) {
-    const outline = svg('rect', { x: x + dx, y: y + dy, width: size[0], height: size[1], rx: 1, class: 'outline' });
+    const outline = svg('rect', { x, y, width: size[0], height: size[1], rx: 1, class: 'outline' });
     outline.append(svg('title', {}, WORDS.bedPart(part.name, size[0].toFixed(1), size[1].toFixed(1))));
     drawing.append(outline);
   }
-  byId('bed').replaceChildren(drawing);
+  return drawing;
 }
 
 function showBill(data) {
-  const { parts, bill_of_materials: bill, settings } = data.manifest;
+  const { parts, bill_of_materials: bill } = data.manifest;
   byId('bill').replaceChildren(...billRows(bill, parts).map(([name, much]) => {
     const row = make('div');
     row.append(make('dt', name), make('dd', much));
@@ -65,5 +77,7 @@ function showBill(data) {
   }));
   const rows = parts.map((p) => [p.name, sizeOf(p).map((v) => v.toFixed(1)).join(' x '), p.mass_g.toFixed(2), p.volume_mm3.toFixed(1), p.mesh.triangles]);
   byId('parts').replaceChildren(table([WORDS.part, WORDS.size, WORDS.mass, WORDS.volume, WORDS.triangles], rows));
-  drawBed(parts, settings.find((s) => s.field === 'print.bed_mm')?.value ?? 250);
+  const all = beds(data.manifest);
+  byId('bed').replaceChildren(...all.map(drawBed));
+  byId('bed-says').textContent = WORDS.bedSays(all.length, plain(all[0].bed), all[0].placed !== null);
 }

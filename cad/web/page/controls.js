@@ -47,7 +47,7 @@ class Control {
     const row = make('div', undefined, { class: 'line' });
     this.build();
     row.append(this.label, this.back, this.input);
-    if (unitName(field)) row.append(make('span', unitName(field), { class: 'unit' }));
+    if (unitName(field) || field.ends) row.append(make('span', unitName(field), { class: 'unit' }));
     row.append(this.asks);
     this.element.append(row);
     if (this.slider) this.element.append(this.slider);

@@ -55,7 +55,6 @@ class Curve {
     this.ends = endsOf(columns, this.state.now.ask);
     if (!this.chart) this.build(columns); else this.chart.setData(columns);
     this.legend();
-    this.handles?.place();
   }
 
   build(columns) {
@@ -66,11 +65,11 @@ class Curve {
       if (i === MEASURED) return { paths: () => null, points: { show: true, size: 11, width: 2, stroke: card, fill: colourOf('--amber') } };
       return { spanGaps: true, points: { show: false }, stroke: line ? colourOf(line.colour) : 'transparent', width: line?.width, dash: line?.dash };
     });
-    const axis = (side) => ({ stroke: ink, grid: { stroke: grid, width: 1, show: side === 3 }, ticks: { show: false }, font: '12px system-ui, sans-serif', size: side === 3 ? 34 : 26, gap: 4, side });
+    const axis = (side) => ({ stroke: ink, grid: { stroke: grid, width: 1, show: side === 3 }, space: side === 3 ? 46 : 60, ticks: { show: false }, font: '12px system-ui, sans-serif', size: side === 3 ? 34 : 26, gap: 4, side });
     this.chart = new uPlot({
       ...this.room(), series, legend: { show: false }, cursor: { show: false }, padding: [26, 14, 0, 0],
       scales: { x: { time: false, range: () => [0, this.ends.load] }, y: { range: () => [0, this.ends.friction] } },
-      bands: [{ series: [HIGH, LOW], fill: colourOf('--band') }], axes: [axis(2), axis(3)], hooks: { draw: [(u) => this.mark(u)] },
+      bands: [{ series: [HIGH, LOW], fill: colourOf('--band') }], axes: [axis(2), axis(3)], hooks: { draw: [(u) => this.mark(u), () => this.handles?.place()] },
     }, columns, this.host);
     draggable(this.chart.over, { start: (e) => { if (e.target !== this.chart.over) return false; this.point(e); return true; }, move: (e) => this.point(e) });
     this.chart.over.append(make('span', WORDS.axisLoad, { class: 'axis x', 'aria-hidden': 'true' }), make('span', WORDS.axisFriction, { class: 'axis y', 'aria-hidden': 'true' }));
@@ -78,7 +77,7 @@ class Curve {
   }
 
   room() { return { width: Math.max(this.host.clientWidth, 120), height: Math.max(this.host.clientHeight, 120) }; }
-  resize() { this.chart?.setSize(this.room()); this.handles?.place(); }
+  resize() { this.chart?.setSize(this.room()); }
 
   // A pull on the plot moves the load.
   point(event) {
@@ -122,9 +121,9 @@ class Curve {
   words() {
     const { curve, manifest } = this.data;
     const isOurs = Boolean(this.state.now.model);
-    const trust = isOurs ? 'calibrated' : curve.trust;
-    const words = WORDS.trust[trust] ?? trust;
-    byId('trust').textContent = `${WORDS.trustMark[trust] ?? ''} ${words}`;
+    const trust = WORDS.trust[curve.trust] ?? curve.trust;
+    const words = isOurs ? WORDS.calibratedTrust(trust) : trust;
+    byId('trust').textContent = `${WORDS.trustMark[curve.trust] ?? ''} ${words}`;
     byId('trust').className = `badge ${curve.trust}`;
     byId('trust').setAttribute('aria-label', WORDS.trustOf(words));
     byId('reason-list').replaceChildren(...curve.reasons.map((r) => make('li', r)));

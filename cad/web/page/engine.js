@@ -100,6 +100,8 @@ class ServerLane {
   stop() { this.stopping.abort(); this.stopping = new AbortController(); }
 }
 
+const troubleWords = ({ field, problem, remedy }) => `${field ? `${field}: ` : ''}${problem}${remedy ? `; ${remedy}` : ''}`;
+
 class Engine {
   constructor() {
     const module = byId('module').textContent.trim();
@@ -116,6 +118,8 @@ class Engine {
     const { aside: _, ...question } = request;
     const answer = await (isSlow ? this.slow : this.quick).ask(question, newest);
     if (answer?.error !== undefined) throw new EngineError(answer.error, 'refused');
+    // Designs and files that were opened tell trouble at its field; what follows from a design says it in a line.
+    if (isSlow && answer?.trouble) throw new EngineError(troubleWords(answer.trouble), 'refused');
     return answer;
   }
 

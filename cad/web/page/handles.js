@@ -14,7 +14,6 @@ class Handles {
   attach(over) {
     this.over = over;
     over.append(this.line, this.threshold, ...this.diamonds);
-    this.place();
   }
 
   grip(kind, name, pull, nudge) {
@@ -74,7 +73,7 @@ class Handles {
       this.line.style.left = `${x}px`;
       this.tell(this.threshold, x, 0, words, load, ends.load, ask.threshold_n !== null);
       // The words stay on the plot, wherever the mark is.
-      this.threshold.style.setProperty('--aside', `${clamp(0, 56 - x, this.over.clientWidth - x - 50)}px`);
+      this.threshold.style.setProperty('--aside', `${clamp(0, 56 - x, chart.bbox.width / devicePixelRatio - x - 50)}px`);
     }
     this.line.classList.toggle('asked', ask.threshold_n !== null);
     const wanted = this.frictions();

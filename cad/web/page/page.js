@@ -32,6 +32,7 @@ function fillWords() {
   document.title = WORDS.title;
   for (const element of document.querySelectorAll('[data-word]')) element.prepend(WORDS[element.dataset.word]);
   for (const element of document.querySelectorAll('[data-name]')) element.setAttribute('aria-label', WORDS[element.dataset.name]);
+  for (const element of document.querySelectorAll('[data-hint]')) element.placeholder = WORDS[element.dataset.hint];
   for (const element of document.querySelectorAll('[data-tip]')) element.title = WORDS[element.dataset.tip];
 }
 
@@ -51,7 +52,8 @@ class Page {
     }
     this.facts = facts;
     const state = this.state = new State(facts);
-    await this.first();
+    const started = await Served.start();
+    await this.first(started);
     this.view = new View();
     this.curve = new Curve(state);
     this.curve.moved = (load_n) => this.view.load(load_n);
@@ -73,13 +75,15 @@ class Page {
     byId('maker').textContent = facts.generator;
     this.changed();
     this.writeAddress();
+    new Served(state).begin(started);
   }
 
-  // The first state: of the address, of the last visit, or a published layout.
-  async first() {
+  // The first state: of the address, of the server's file, of the last visit, or a published layout.
+  async first(started) {
     const given = await decodeHash(location.hash, this.state.fields);
     if (given?.said.length) showNotice(given.said.join(' '));
     if (given?.parts) { this.state.begin(given.parts); return; }
+    if (started?.file && !started.trouble) { this.state.begin({ values: started.values }); return; }
     const last = given ? null : await decodeHash(remembered().hash ?? '', this.state.fields);
     if (last?.parts) { this.state.begin(last.parts); say(WORDS.welcomeBack); return; }
     const template = this.facts.templates.find((t) => t.name === FIRST) ?? this.facts.templates[0];
@@ -173,7 +177,7 @@ class Page {
     const list = byId('template-list');
     const group = (title, templates) => {
       if (!templates.length) return;
-      list.append(make('h3', title));
+      list.append(make('h2', title));
       for (const t of templates) {
         const item = button(t.name, () => { this.takeTemplate(t); byId('more').open = false; byId('more').querySelector('summary').focus(); }, { class: 'link' });
         item.append(make('span', t.about, { class: 'dim' }));

@@ -128,6 +128,7 @@ async function decodeHash(hash, fields) {
   }
   if (unknown.length) said.push(WORDS.hash.unknown(unknown));
   if (wrong.length) said.push(WORDS.hash.wrong(wrong));
+  if (said.length) said.push(WORDS.hash.rest);
   return { parts, said };
 }
 

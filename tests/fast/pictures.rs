@@ -9,9 +9,12 @@ use std::process::Command;
 use crate::harness::{browser, done, repository, sha256};
 
 /// A picture in `cad/doc`, and the file of a run that it is.
-const DRAWN: [(&str, &str); 7] = [
+const DRAWN: [(&str, &str); 10] = [
     ("exploded.png", "out/three-double/assembly.png"),
     ("plate.png", "out/three-double/plate.png"),
+    ("step-layer.png", "out/three-double/step-2.png"),
+    ("step-pins.png", "out/three-double/step-4.png"),
+    ("step-tendon.png", "out/three-double/step-7.png"),
     ("friction.svg", "out/three-double/friction.svg"),
     ("contact.svg", "physics/contact.svg"),
     ("pareto.svg", "designs/pareto.svg"),

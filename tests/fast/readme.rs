@@ -1,4 +1,4 @@
-//! README as a stranger follows it: every block is run in order in one folder, and shows what README shows.
+//! README and cad/doc/walk.md as a stranger follows them: every block is run in order in one folder, and shows what they show.
 
 use std::path::Path;
 
@@ -35,7 +35,7 @@ fn commands(readme: &str) -> Vec<Shown> {
 }
 
 /// Runs a command in a folder; returns what it prints. The test command is the one that runs this test.
-fn run(folder: &Path, command: &str) -> Option<String> {
+fn run(folder: &Path, slicer: Option<&Path>, command: &str) -> Option<String> {
     let command = command.split(" #").next().unwrap_or(command).trim();
     if command.starts_with("cargo test") {
         let ci = std::fs::read_to_string(repository(".ci/run")).unwrap();
@@ -45,13 +45,31 @@ fn run(folder: &Path, command: &str) -> Option<String> {
     let arguments = command.strip_prefix("cargo run --release -- ").or(command.strip_prefix("pinswitch "));
     let arguments =
         arguments.unwrap_or_else(|| panic!("README shows {command:?}, which is no pinswitch command"));
-    let run = binary().args(arguments.split_whitespace()).current_dir(folder).output().unwrap();
+    let mut program = binary();
+    program.args(arguments.split_whitespace()).current_dir(folder);
+    if let Some(slicer) = slicer {
+        program.env("PINSWITCH_SLICER", slicer);
+    }
+    let run = program.output().unwrap();
     Some(String::from_utf8([run.stderr, run.stdout].concat()).unwrap())
 }
 
 #[test]
 fn every_block_does_what_readme_shows() {
-    let readme = std::fs::read_to_string(repository("README.md")).unwrap();
+    follow("README.md", 15, None);
+}
+
+/// A slicer that stands in says in no time what the real one would; its table is shown in the walk as text.
+#[cfg(unix)]
+#[test]
+fn every_block_does_what_the_walk_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    follow("cad/doc/walk.md", 6, Some(&crate::slicing::stand_in(folder.path())));
+}
+
+/// Runs all commands of a document, at least so many, and compares what they print with what it shows.
+fn follow(document: &str, least: usize, slicer: Option<&Path>) {
+    let readme = std::fs::read_to_string(repository(document)).unwrap();
     let folder = tempfile::tempdir().unwrap();
     // As in a clone: the templates lie there.
     std::fs::create_dir(folder.path().join("templates")).unwrap();
@@ -61,9 +79,9 @@ fn every_block_does_what_readme_shows() {
         }
     }
     let shown = commands(&readme);
-    assert!(shown.len() >= 15, "README shows {} commands", shown.len());
+    assert!(shown.len() >= least, "{document} shows {} commands", shown.len());
     for Shown { command, output } in shown {
-        let Some(printed) = run(folder.path(), &command) else { continue };
+        let Some(printed) = run(folder.path(), slicer, &command) else { continue };
         let Some(output) = output else {
             assert!(!printed.contains("error"), "{command}: {printed}");
             continue;

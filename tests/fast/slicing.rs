@@ -33,7 +33,7 @@ echo "$size" >> "$here/asked"
   echo "; estimated printing time (normal mode) = 1h 0m $((size / 1000 % 60))s"; } > "$out"
 "##;
 
-fn stand_in(folder: &Path) -> PathBuf {
+pub(crate) fn stand_in(folder: &Path) -> PathBuf {
     let program = folder.join("slicer");
     std::fs::write(&program, STAND_IN).unwrap();
     std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();

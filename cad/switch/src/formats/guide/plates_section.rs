@@ -10,7 +10,7 @@ use crate::plates::Plate;
 /// The section on the plates; files of plates are named only where the set has them.
 pub(super) fn plates_section(design: &Design, manifest: &Manifest, plates: &[Plate<'_>]) -> String {
     let bed_mm = design.configuration().print.bed_mm;
-    let mut text = String::new();
+    let mut text = "### Plates\n\n".to_owned();
     let has_files = !manifest.plates.is_empty();
     if let ([only], true) = (plates, has_files) {
         let _ = writeln!(

@@ -143,7 +143,7 @@ class Page {
 
   show({ data, toml }, quality) {
     this.data = data;
-    byId('name').textContent = data.manifest.name;
+    this.markTemplate();
     this.view.show(data);
     this.curve.show(data);
     showChecks(data);
@@ -203,7 +203,11 @@ class Page {
 
   markTemplate() {
     const now = this.state.now.values;
-    for (const [chip, t] of this.chips) chip.setAttribute('aria-pressed', String(sameValue(this.state.withoutDefaults(t.values), this.state.withoutDefaults(now))));
+    const isThis = (t) => sameValue(this.state.withoutDefaults(t.values), this.state.withoutDefaults(now));
+    for (const [chip, t] of this.chips) chip.setAttribute('aria-pressed', String(isThis(t)));
+    const name = this.data?.manifest.name ?? '';
+    const template = this.facts.templates.find((t) => t.name === name);
+    byId('name').textContent = template && !isThis(template) ? WORDS.changedFrom(name) : name;
   }
 
   buttons() {

@@ -16,7 +16,7 @@ const WORDS = {
   pins: 'Pins', clearPins: 'Lift all', mirror: 'Mirror',
   pinsHelp: 'Click a groove to set or lift a pin, drag a pin to move it. From the keyboard: arrows walk, Space sets or lifts, Shift and an arrow carry the pin along.',
   checks: 'Checks', bill: 'You will need', parts: 'Printed parts', bed: 'On the print bed',
-  ask: 'Ask backwards', askHelp: 'Drag the marks on the curve, or type: where it should switch, how much friction it should make.',
+  ask: 'Ask backwards', found: 'Designs that come near', askHelp: 'Drag the marks on the curve, or type: where it should switch, how much friction it should make.',
   askThreshold: 'Switches at', askFriction: 'Friction of', askLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', take: 'Take this',
   measured: 'Your measurements', chooseTable: 'Choose a table', takeModel: 'Use this model in the design', dropModel: 'Back to the published constants',
   measuredHelp: 'Drop a table of plateaus (CSV) anywhere on the page. It says whether the model holds for your switch, and what it misses.',
@@ -44,7 +44,7 @@ const WORDS = {
 
   mends: (changes) => `Mend it: ${changes.join(', ')}`,
   refused: 'This cannot be built. The last design that can stays in view, in grey.',
-  keptGrey: 'the last good design',
+  changedFrom: (name) => `${name}, changed`,
 
   newtons: (v, digits = 1) => `${v.toFixed(digits)} N`,
   frictionAt: (load) => `of friction at ${load} of load`,
@@ -56,7 +56,7 @@ const WORDS = {
   trustOf: (words) => `How far to trust the curve: ${words}. Show the reasons`,
   axisLoad: 'load (N)', axisFriction: 'friction (N)',
   band: 'band of 95 %', measuredPoint: 'measured', kept: (name) => `kept: ${name}`, calibratedCurve: 'with your model', previewCurve: (n) => `design ${n}`,
-  law: (law, source) => `Law: ${law}. ${source}.`,
+  law: (law, source) => `Law of the curve, ${law}: ${source}.`,
   thresholdNow: (n) => `switches at ${n}`, thresholdAsked: (n) => `asked: ${n}`, frictionNow: (n) => n, frictionAsked: (n) => `asked: ${n}`,
   thresholdHandle: 'Load at which it should switch', frictionHandle: (i) => `Friction that is asked for, mark ${i}`,
   loadText: (load, friction) => `${load} N of load, ${friction} N of friction`,

@@ -8,7 +8,7 @@
 
 class Embed {
   constructor(takeParts, state) {
-    this.isOn = new URLSearchParams(location.search).has('embed');
+    this.isOn = isEmbedded();
     document.body.classList.toggle('embed', this.isOn);
     if (!this.isOn) return;
     addEventListener('message', async ({ source, data }) => {

@@ -25,6 +25,6 @@ class Embed {
     if (!this.isOn || parent === window) return;
     const f = data?.manifest.friction;
     parent.postMessage({ type: 'pinswitch-state', version: 1, hash: encodeHash(state.now), values: state.now.values, friction_n: f?.friction_n ?? null, load_n: f?.load_n ?? null,
-      threshold_n: f?.threshold_n ?? null, trust: f?.trust ?? null, trouble: trouble ? `${trouble.problem}${trouble.remedy ? `; ${trouble.remedy}` : ''}` : null }, '*');
+      threshold_n: f?.threshold_n ?? null, trust: f?.trust ?? null, trouble: trouble ? troubleWords(trouble) : null }, '*');
   }
 }

@@ -123,6 +123,12 @@ const WORDS = {
   fault: (message) => `The page has a fault: ${message}. Reloading keeps the design, which the address holds.`,
 };
 
+// Trouble as the engine tells it: what has it, its value, what is wrong, and what helps.
+function troubleWords({ field, value, problem, remedy }, name = field) {
+  const has = [name, value === null || value === undefined || value === '' ? '' : `= ${String(value).slice(0, 60)}`, problem].filter(Boolean).join(' ');
+  return `${has}${remedy ? `; ${remedy}` : ''}`;
+}
+
 // What a field is called: its key without the unit, unless it has a name of its own.
 function fieldName(field) {
   if (WORDS.fields[field.path]) return WORDS.fields[field.path];

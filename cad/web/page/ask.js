@@ -7,7 +7,8 @@ class Ask {
     threshold.addEventListener('input', () => this.handles.ask({ threshold_n: Number(threshold.value) > 0 ? Number(threshold.value) : null }, 'ask.threshold'));
     byId('ask-no-threshold').addEventListener('click', () => { this.handles.ask({ threshold_n: null }); threshold.focus(); });
     byId('add-friction').addEventListener('click', () => this.add());
-    byId('search').addEventListener('click', () => this.search());
+    for (const id of ['search', 'search-here']) byId(id).addEventListener('click', () => this.search());
+    byId('found-close').addEventListener('click', () => this.close());
     byId('stop').addEventListener('click', () => this.engine.stopSlow());
     state.addEventListener('change', () => this.show());
     this.show();
@@ -27,6 +28,7 @@ class Ask {
     if (document.activeElement !== input) input.value = threshold_n ?? '';
     byId('ask-no-threshold').hidden = threshold_n === null;
     byId('add-friction').hidden = friction.length >= 4;
+    byId('search-here').hidden = threshold_n === null && !friction.length;
     const rows = byId('ask-frictions');
     while (rows.children.length > friction.length) rows.lastChild.remove();
     while (rows.children.length < friction.length) rows.append(this.row(rows.children.length));
@@ -51,8 +53,13 @@ class Ask {
 
   async search() {
     const { ask, values } = this.state.now;
-    if (ask.threshold_n === null && !ask.friction.length) { byId('search-says').textContent = WORDS.searchNothing; return; }
-    byId('search').disabled = true;
+    const isEmpty = ask.threshold_n === null && !ask.friction.length;
+    byId('ask-says').hidden = !isEmpty;
+    byId('ask-says').textContent = isEmpty ? WORDS.searchNothing : '';
+    if (isEmpty) return;
+    byId('found').hidden = false;
+    byId('found').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
+    byId('search').disabled = byId('search-here').disabled = true;
     byId('stop').hidden = false;
     const began = performance.now();
     const tick = () => { byId('search-says').textContent = WORDS.searching(Math.round((performance.now() - began) / 1000)); };
@@ -66,9 +73,16 @@ class Ask {
       byId('search-says').textContent = problem instanceof Stale ? WORDS.stopped : problem.message;
     } finally {
       clearInterval(clock);
-      byId('search').disabled = false;
+      byId('search').disabled = byId('search-here').disabled = false;
       byId('stop').hidden = true;
     }
+  }
+
+  close() {
+    this.engine.stopSlow();
+    this.curve.further('preview', null);
+    byId('found').hidden = true;
+    byId('search').focus();
   }
 
   found(designs) {

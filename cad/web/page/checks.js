@@ -37,9 +37,9 @@ function showTrouble(trouble, controls, state) {
   host.replaceChildren();
   if (!trouble) return;
   const field = state.fields.get(trouble.field);
-  const name = field ? `${WORDS.groups[field.section] ?? field.section}, ${fieldName(field)}: ` : '';
+  const name = field ? `${WORDS.groups[field.section] ?? field.section}, ${fieldName(field)}` : trouble.field;
   const text = make('p');
-  text.append(make('b', `${WORDS.refused} `), `${name}${trouble.problem}${trouble.remedy ? `; ${trouble.remedy}` : ''}.`);
+  text.append(make('b', `${WORDS.refused} `), `${troubleWords(trouble, name)}.`);
   host.append(text);
   const mending = mend();
   if (mending) host.append(mending);

@@ -202,7 +202,7 @@ class Controls {
     for (const control of this.controls.values()) if (control.told) { control.complain(''); control.told = false; }
     const control = trouble && this.controls.get(trouble.field);
     if (!control) return false;
-    control.complain(`${trouble.problem}${trouble.remedy ? `; ${trouble.remedy}` : ''}.`, mend);
+    control.complain(`${troubleWords(trouble, control.name)}.`, mend);
     control.told = true;
     control.element.closest('details').open = true;
     return true;

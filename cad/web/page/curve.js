@@ -63,7 +63,7 @@ class Curve {
       const line = LINES[i];
       if (i === LOAD) return {};
       if (i === MEASURED) return { paths: () => null, points: { show: true, size: 11, width: 2, stroke: card, fill: colourOf('--amber') } };
-      return { spanGaps: true, points: { show: false }, stroke: line ? colourOf(line.colour) : 'transparent', width: line?.width, dash: line?.dash };
+      return { spanGaps: true, pxAlign: 0, points: { show: false }, stroke: line ? colourOf(line.colour) : 'transparent', width: line?.width, dash: line?.dash };
     });
     const axis = (side) => ({ stroke: ink, grid: { stroke: grid, width: 1, show: side === 3 }, space: side === 3 ? 46 : 60, ticks: { show: false }, font: '12px system-ui, sans-serif', size: side === 3 ? 34 : 26, gap: 4, side });
     this.chart = new uPlot({

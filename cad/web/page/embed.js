@@ -8,7 +8,7 @@
 
 class Embed {
   constructor(takeParts, state) {
-    this.isOn = new URLSearchParams(location.search).has('embed');
+    this.isOn = isEmbedded();
     document.body.classList.toggle('embed', this.isOn);
     if (!this.isOn) return;
     addEventListener('message', async ({ source, data }) => {
@@ -25,6 +25,6 @@ class Embed {
     if (!this.isOn || parent === window) return;
     const f = data?.manifest.friction;
     parent.postMessage({ type: 'pinswitch-state', version: 1, hash: encodeHash(state.now), values: state.now.values, friction_n: f?.friction_n ?? null, load_n: f?.load_n ?? null,
-      threshold_n: f?.threshold_n ?? null, trust: f?.trust ?? null, trouble: trouble ? `${trouble.problem}${trouble.remedy ? `; ${trouble.remedy}` : ''}` : null }, '*');
+      threshold_n: f?.threshold_n ?? null, trust: f?.trust ?? null, trouble: trouble ? troubleWords(trouble) : null }, '*');
   }
 }

@@ -100,8 +100,6 @@ class ServerLane {
   stop() { this.stopping.abort(); this.stopping = new AbortController(); }
 }
 
-const troubleWords = ({ field, problem, remedy }) => `${field ? `${field}: ` : ''}${problem}${remedy ? `; ${remedy}` : ''}`;
-
 class Engine {
   constructor() {
     const module = byId('module').textContent.trim();

@@ -40,7 +40,7 @@ class Measured {
     const { values } = this.state.now;
     const { data, trouble } = await this.engine.ask({ ask: 'design', values, quality: 'coarse', model: this.found.toml, aside: true });
     if (data) this.curve.further('calibrated', { curve: data.curve });
-    else if (trouble) byId('verdict').append(make('p', trouble.problem, { class: 'error' }));
+    else if (trouble) byId('verdict').append(make('p', troubleWords(trouble), { class: 'error' }));
   }
 
   async take() {

@@ -143,7 +143,7 @@ class Page {
 
   show({ data, toml }, quality) {
     this.data = data;
-    byId('name').textContent = data.manifest.name;
+    this.markTemplate();
     this.view.show(data);
     this.curve.show(data);
     showChecks(data);
@@ -153,13 +153,20 @@ class Page {
     dataset.generation = Number(dataset.generation) + 1;
     dataset.quality = quality;
     dataset.ready = 'true';
+    if (quality === 'exact') byId('heard').textContent = this.inWords(data);
+  }
+
+  // What changed, for those who do not see it.
+  inWords({ manifest: { friction: f } }) {
+    const switches = f.threshold_n === null ? [] : [WORDS.thresholdNow(WORDS.newtons(f.threshold_n))];
+    return [WORDS.loadText(f.load_n.toFixed(1), f.friction_n.toFixed(2)), ...switches, WORDS.trust[f.trust] ?? f.trust].join('; ');
   }
 
   async open(text, file) {
     try {
       const { values, trouble } = await this.engine.ask({ ask: 'open', toml: text, file });
       if (values) { this.state.change({ values }); say(WORDS.opened(file)); }
-      else showNotice(WORDS.notOpened(file) + (trouble ? `${trouble.problem}${trouble.remedy ? `; ${trouble.remedy}` : ''}` : ''));
+      else showNotice(WORDS.notOpened(file) + (trouble ? troubleWords(trouble) : ''));
     } catch (problem) {
       if (!(problem instanceof Stale)) showNotice(WORDS.notOpened(file) + problem.message);
     }
@@ -184,6 +191,7 @@ class Page {
         list.append(item);
       }
     };
+    list.append(button(WORDS.open, () => byId('open-file').click(), { class: 'link narrow' }));
     group(WORDS.published, published);
     group(WORDS.printers, this.facts.templates.filter((t) => t.kind === 'printer'));
   }
@@ -203,7 +211,11 @@ class Page {
 
   markTemplate() {
     const now = this.state.now.values;
-    for (const [chip, t] of this.chips) chip.setAttribute('aria-pressed', String(sameValue(this.state.withoutDefaults(t.values), this.state.withoutDefaults(now))));
+    const isThis = (t) => sameValue(this.state.withoutDefaults(t.values), this.state.withoutDefaults(now));
+    for (const [chip, t] of this.chips) chip.setAttribute('aria-pressed', String(isThis(t)));
+    const name = this.data?.manifest.name ?? '';
+    const template = this.facts.templates.find((t) => t.name === name);
+    byId('name').textContent = template && !isThis(template) ? WORDS.changedFrom(name) : name;
   }
 
   buttons() {

@@ -164,10 +164,13 @@ async function unpackModel(packed) {
 
 // ---- between visits -----------------------------------------------------------------------------------------------
 
-// Storage may be forbidden; then nothing is remembered, and nothing breaks.
+// Storage may be forbidden; then nothing is remembered, and nothing breaks. Within another page, that page remembers.
+const isEmbedded = () => new URLSearchParams(location.search).has('embed');
 function remember(what) {
+  if (isEmbedded()) return;
   try { localStorage.setItem(STORE, JSON.stringify(what)); } catch { /* Private windows, files: the address still holds it. */ }
 }
 function remembered() {
+  if (isEmbedded()) return {};
   try { return JSON.parse(localStorage.getItem(STORE)) ?? {}; } catch { return {}; }
 }

@@ -4,6 +4,8 @@ class View {
   constructor() {
     this.hidden = new Set();
     try {
+      // Asked first, since three.js complains aloud.
+      if (!document.createElement('canvas').getContext('webgl2')) throw new Error('no WebGL');
       this.assembly = new Assembly(byId('view'));
       this.assembly.turned = (turn, tilt) => {
         byId('turn').value = turn * 180 / Math.PI;

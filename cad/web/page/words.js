@@ -7,16 +7,16 @@ const WORDS = {
   skip: 'Skip the parameters',
   // Places of the page, by `data-word`, and accessible names, by `data-name`.
   layouts: 'Layouts', moreTemplates: 'More', undo: 'Undo', redo: 'Redo', share: 'Share', open: 'Open a file', download: 'Download',
-  parameters: 'Parameters', close: 'Close', fresh: 'Start afresh',
+  parameters: 'Parameters', close: 'Close',
   find: 'Find a parameter', changedOnly: 'Changed only', noField: 'No parameter has these words.',
   assembly: 'Assembly', apart: 'Pull apart', cut: 'Cut open', cutAt: 'Cut at', turn: 'Turn', tilt: 'Tilt', show: 'Show', look: 'View',
   assemblyName: 'The assembly in three dimensions. Drag to turn, wheel or pinch to zoom; under View, sliders do the same from the keyboard.',
-  curve: 'Friction over load', load: 'Load', rivals: 'Other laws', keep: 'Keep to compare', letGo: 'Let the kept curve go',
+  curve: 'Friction over load', load: 'Load', rivals: 'Other laws', keep: 'Keep to compare', letGo: 'Forget the kept',
   curveTable: 'The curve as a table', why: 'How far to trust it, and why',
   pins: 'Pins', clearPins: 'Lift all', mirror: 'Mirror',
   pinsHelp: 'Click a groove to set or lift a pin, drag a pin to move it. From the keyboard: arrows walk, Space sets or lifts, Shift and an arrow carry the pin along.',
   checks: 'Checks', bill: 'You will need', parts: 'Printed parts', bed: 'On the print bed',
-  ask: 'Ask backwards', askHelp: 'Drag the marks on the curve, or type: where it should switch, how much friction it should make.',
+  ask: 'Ask backwards', found: 'Designs that come near', askHelp: 'Drag the marks on the curve, or type: where it should switch, how much friction it should make.',
   askThreshold: 'Switches at', askFriction: 'Friction of', askLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', take: 'Take this',
   measured: 'Your measurements', chooseTable: 'Choose a table', takeModel: 'Use this model in the design', dropModel: 'Back to the published constants',
   measuredHelp: 'Drop a table of plateaus (CSV) anywhere on the page. It says whether the model holds for your switch, and what it misses.',
@@ -39,12 +39,11 @@ const WORDS = {
   aboutField: (f, shown) => `${f.reason}. Range: ${f.range}. Default: ${shown}, ${f.origin}.`,
   slider: (name) => `${name}, slider`,
   notNumber: 'This is no number.', notWhole: 'A whole number goes here.', notList: 'Groove numbers go here, with commas: 5, 8, 11.',
-  undoTo: (what) => `Undo: ${what}`,
   setTo: (name, value) => `Set ${name} to ${value}`,
 
   mends: (changes) => `Mend it: ${changes.join(', ')}`,
   refused: 'This cannot be built. The last design that can stays in view, in grey.',
-  keptGrey: 'the last good design',
+  changedFrom: (name) => `${name}, changed`,
 
   newtons: (v, digits = 1) => `${v.toFixed(digits)} N`,
   frictionAt: (load) => `of friction at ${load} of load`,
@@ -56,8 +55,8 @@ const WORDS = {
   trustOf: (words) => `How far to trust the curve: ${words}. Show the reasons`,
   axisLoad: 'load (N)', axisFriction: 'friction (N)',
   band: 'band of 95 %', measuredPoint: 'measured', kept: (name) => `kept: ${name}`, calibratedCurve: 'with your model', previewCurve: (n) => `design ${n}`,
-  law: (law, source) => `Law: ${law}. ${source}.`,
-  thresholdNow: (n) => `switches at ${n}`, thresholdAsked: (n) => `asked: ${n}`, frictionNow: (n) => n, frictionAsked: (n) => `asked: ${n}`,
+  law: (law, source) => `Law of the curve, ${law}: ${source}.`,
+  thresholdNow: (n) => `switches at ${n}`, thresholdAsked: (n) => `asked: ${n}`, frictionAsked: (n) => `asked: ${n}`,
   thresholdHandle: 'Load at which it should switch', frictionHandle: (i) => `Friction that is asked for, mark ${i}`,
   loadText: (load, friction) => `${load} N of load, ${friction} N of friction`,
   columns: { load: 'load (N)', eccentric: 'eccentric', concentric: 'concentric', friction: 'friction', low: 'low', high: 'high' },
@@ -69,7 +68,6 @@ const WORDS = {
   bare: 'The tendon lies on the substrate from the start.',
 
   checkFine: 'fine', checkLook: 'look', checkWarning: 'warning', checksSum: (fine, all) => `${fine} of ${all} fine`, showFine: (n) => `${n} that are fine`,
-  noChecks: 'Nothing to look at.',
   steelPins: 'steel pins', spare: (n, s) => `${n} + ${s} spare`, pour: 'silicone, to pour', mix: 'silicone, to mix', mixed: (b, a) => `${b} g base, ${a} g agent`,
   tendon: 'tendon', coated: (d, o) => `${d} mm, ${o} mm coated`, screws: 'screws', nuts: 'nuts', inserts: 'heat-set inserts', dowels: 'dowels', forMount: 'for the mount',
   rightSide: (l, r) => `${l} left, ${r} right`,
@@ -124,6 +122,12 @@ const WORDS = {
   noWebgl: 'This browser shows no WebGL, which the turning view needs. Pins, curve, checks and downloads work without.',
   fault: (message) => `The page has a fault: ${message}. Reloading keeps the design, which the address holds.`,
 };
+
+// Trouble as the engine tells it: what has it, its value, what is wrong, and what helps.
+function troubleWords({ field, value, problem, remedy }, name = field) {
+  const has = [name, value === null || value === undefined || value === '' ? '' : `= ${String(value).slice(0, 60)}`, problem].filter(Boolean).join(' ');
+  return `${has}${remedy ? `; ${remedy}` : ''}`;
+}
 
 // What a field is called: its key without the unit, unless it has a name of its own.
 function fieldName(field) {

@@ -4,12 +4,34 @@
 
 let ready = null;
 
+// The module comes packed with gzip, since the page is downloaded whole.
+async function unpacked(bytes) {
+  const [first, second] = new Uint8Array(bytes, 0, 2);
+  if (first !== 0x1f || second !== 0x8b) return bytes;
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+}
+
+// What the module needs of a host is nothing. Libraries in it name functions of browsers that it never calls.
+function stubs(module) {
+  const all = {};
+  for (const { module: from, name, kind } of WebAssembly.Module.imports(module)) {
+    if (kind !== 'function') continue;
+    (all[from] ??= {})[name] = () => { throw new Error(`the module called ${from}.${name}`); };
+  }
+  return all;
+}
+
+async function started(bytes) {
+  const module = await WebAssembly.compile(await unpacked(bytes));
+  return (await WebAssembly.instantiate(module, stubs(module))).exports;
+}
+
 // [kind u32][length u32][place u32], little-endian, at what `answer` returns; kind 0 is JSON, 1 bytes.
 function ask({ memory, room, answer, free }, question) {
   const text = new TextEncoder().encode(question);
-  const place = room(text.length);
+  const place = room(text.length) >>> 0;
   new Uint8Array(memory.buffer, place, text.length).set(text);
-  const head = answer(place, text.length);
+  const head = answer(place, text.length) >>> 0;
   const view = new DataView(memory.buffer, head, 12);
   const [kind, length, start] = [0, 4, 8].map((offset) => view.getUint32(offset, true));
   const content = new Uint8Array(memory.buffer, start, length).slice();
@@ -19,7 +41,7 @@ function ask({ memory, room, answer, free }, question) {
 
 onmessage = async ({ data }) => {
   if (data.module) {
-    ready = WebAssembly.instantiate(data.module, {}).then(({ instance }) => instance.exports);
+    ready = started(data.module);
     // Told with the first question.
     ready.catch(() => {});
     return;

@@ -11,7 +11,7 @@ fn generate(text: &str) -> (Option<i32>, String, usize) {
 }
 
 /// Every rule of cad/doc/dimensions.md that refuses a configuration.
-const REFUSED: [(&str, &[&str]); 28] = [
+const REFUSED: [(&str, &[&str]); 29] = [
     ("[segment]\ngrooves = 40", &["my.toml:2: segment.grooves = 40", "overlap", "lower it to"]),
     (
         "[segment]\nend_margin_mm = 0\n[print]\nelephant_foot_mm = 0.3",

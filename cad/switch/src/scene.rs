@@ -9,7 +9,7 @@ use pinswitch_solid::files::Placement;
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
 use pinswitch_solid::render::{Body, View, render};
 
-pub use stage::{STAGE_VIEW, Stage, stage_scene};
+pub use stage::{Stage, stage_scene, stage_view};
 
 /// The assembly; `explosion` from 0, in place, to 1, pulled apart.
 pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {

@@ -17,7 +17,7 @@ use crate::parallel::map_each;
 use crate::parts::{left_out, touches};
 use crate::plates::{Plate, plates};
 use crate::prediction::Prediction;
-use crate::scene::{STAGE_VIEW, Stage, exploded_png, plate, stage_scene};
+use crate::scene::{Stage, exploded_png, plate, stage_scene, stage_view};
 use pinswitch_friction::Substrate;
 use pinswitch_solid::render::View;
 
@@ -52,7 +52,8 @@ fn step_pictures(built: &Built, stages: &[Stage]) -> Result<Vec<OutputFile>, Set
     let (width, height) = STEP_PIXELS;
     map_each((1..=stages.len()).collect(), |number| {
         let bodies = stage_scene(built, &stages[..number]);
-        Ok(OutputFile::new(step_picture(number), png(&bodies, STAGE_VIEW, width, height)?))
+        let view = stage_view(built.design(), stages[number - 1]);
+        Ok(OutputFile::new(step_picture(number), png(&bodies, view, width, height)?))
     })
     .into_iter()
     .collect()

@@ -37,8 +37,10 @@ pub enum Stage {
     Tendon,
 }
 
-/// Where the eye stands: the switch lies with its grooves up and its left support on the left, whose outer face is seen.
-pub const STAGE_VIEW: View = View { turn_deg: 38.0, rise_deg: 32.0 };
+/// Turn of the switch, grooves up and left support on the left, so that the outer face of the left support is seen.
+const TURN_DEG: f64 = 38.0;
+/// Height of the eye.
+const RISE_DEG: f64 = 32.0;
 
 /// Colours of what is there already, from the shell to the pins: greys, so that neighbours can be told apart.
 const SHELL_GREY: [u8; 3] = [224, 224, 222];
@@ -67,6 +69,13 @@ struct Item {
     colour: [u8; 3],
     /// How far it is shown from its place while its step adds it, in the assembly's frame.
     apart: Vector3,
+}
+
+/// Where the eye stands: on the side of the left support, but where a large plate in front of it would hide what a step shows.
+pub fn stage_view(design: &Design, stage: Stage) -> View {
+    let is_hidden = matches!(design.configuration().mount.kind, MountKind::Rig | MountKind::Flange)
+        && matches!(stage, Stage::Mount | Stage::Tendon);
+    View { turn_deg: if is_hidden { -TURN_DEG } else { TURN_DEG }, rise_deg: RISE_DEG }
 }
 
 /// The picture's bodies for the last of `stages`, with all of those before it done.

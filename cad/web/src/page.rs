@@ -8,7 +8,7 @@ const CSS: &str = include_str!("../page/configurator.css");
 const WORKER: &str = include_str!("../page/worker.js");
 
 /// The page's own scripts, in the order in which they are read.
-const SCRIPTS: [&str; 19] = [
+const SCRIPTS: [&str; 20] = [
     include_str!("../page/words.js"),
     include_str!("../page/dom.js"),
     include_str!("../page/state.js"),
@@ -27,6 +27,7 @@ const SCRIPTS: [&str; 19] = [
     include_str!("../page/drop.js"),
     include_str!("../page/downloads.js"),
     include_str!("../page/embed.js"),
+    include_str!("../page/server.js"),
     include_str!("../page/page.js"),
 ];
 

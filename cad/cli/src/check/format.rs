@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read, Seek};
 
 use pinswitch_solid::files::{read_stl, read_three_mf};
-use pinswitch_solid::validity::{Examination, Expectation, Fault, examine};
+use pinswitch_solid::validity::{Examination, Expectation, Fault, examine, shared_place};
 
 use super::verdict::PartVerdict;
 
@@ -50,7 +50,10 @@ impl Format {
 }
 
 /// Examines an STL.
-pub(super) fn stl(reader: &mut (impl BufRead + Seek), expected: &Expectation) -> Result<Examination, String> {
+pub(super) fn stl(
+    reader: &mut (impl BufRead + Seek),
+    expected: &Expectation,
+) -> Result<(Examination, Vec<String>), String> {
     let stl = read_stl(reader).map_err(|e| e.to_string())?;
     let mut examination = examine(&stl.mesh, expected);
     if stl.contrary_normals > 0 {
@@ -61,10 +64,15 @@ pub(super) fn stl(reader: &mut (impl BufRead + Seek), expected: &Expectation) ->
             detail: format!("{} stored normals contradict the order of the corners", stl.contrary_normals),
         });
     }
-    Ok(examination)
+    let mut remarks = Vec::new();
+    if stl.trailing_bytes > 0 {
+        remarks
+            .push(format!("{} bytes follow the last triangle; readers pass over them", stl.trailing_bytes));
+    }
+    Ok((examination, remarks))
 }
 
-/// Examines each solid object of a 3MF.
+/// Examines each solid object of a 3MF, and whether those that are built share space.
 pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<Parts, String> {
     let mut bytes = Vec::new();
     reader.read_to_end(&mut bytes).map_err(|e| format!("cannot read: {e}; give a file that can be read"))?;
@@ -78,6 +86,17 @@ pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<
         .map(|object| PartVerdict::new(object.name.clone(), examine(&object.mesh, &each)))
         .collect();
     let mut faults = package.faults;
+    if parts.iter().all(|part| part.valid) {
+        for (i, (item, name, mesh)) in package.built.iter().enumerate() {
+            // Solids of one item are one object, which may be put together from any.
+            for (_, other, beside) in package.built[..i].iter().filter(|(other, ..)| other != item) {
+                if let Some(at) = shared_place(mesh, beside, SHARED_MM) {
+                    let detail = format!("{other} and {name} share space on the plate");
+                    faults.push(Fault { check: "overlap", count: 1, at_mm: Some(at), detail });
+                }
+            }
+        }
+    }
     if parts.is_empty() && faults.is_empty() {
         faults.push(Fault {
             check: "empty",
@@ -88,6 +107,9 @@ pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<
     }
     Ok((faults, parts))
 }
+
+/// Solids of a 3MF lie this deep inside one another before they share space, mm: exporters round, and parts may touch.
+const SHARED_MM: f64 = 0.05;
 
 /// Solids of a STEP lie this many chord tolerances inside one another before they share space.
 #[cfg(feature = "brep")]
@@ -103,7 +125,6 @@ pub(super) fn step(
     use pinswitch_solid::files::read_step;
     use pinswitch_solid::mesh::Mesh;
     use pinswitch_solid::profile::ChordTolerance;
-    use pinswitch_solid::validity::shared_place;
 
     say_nothing_of_truck();
     let mut bytes = Vec::new();

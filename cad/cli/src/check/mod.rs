@@ -16,7 +16,7 @@ use verdict::Verdict;
 ///
 /// Looks for holes, edges with more than two facets, flipped, repeated and degenerate facets, vertices that only touch,
 /// inward and nested bodies, facets that pass through each other, contrary normals, thin walls and wrong units; of a 3MF
-/// for what breaks the core specification as well, of each object; of a STEP for references to nothing, for faces that
+/// for what breaks the core specification as well, of each object, and for items of its plate that share space; of a STEP for references to nothing, for faces that
 /// do not meet, and for solids of an assembly that share space, its curved faces followed within --tolerance. Nothing is
 /// repaired. Exit code 0: all valid; 1: something is not valid; 2: a file cannot be judged.
 #[derive(Args, Debug)]

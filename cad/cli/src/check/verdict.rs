@@ -20,6 +20,9 @@ pub(super) struct Verdict {
     /// Objects of a 3MF, solids of a STEP.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parts: Vec<PartVerdict>,
+    /// What is worth knowing, and no fault.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    remarks: Vec<String>,
 }
 
 /// What is known of one part of a file.
@@ -56,13 +59,14 @@ pub(super) fn of(file: &Path, expected: &Expectation, tolerance_mm: f64) -> Resu
     let name = file.display().to_string();
     match format {
         Format::Stl => {
-            let examination = format::stl(&mut reader, expected)?;
+            let (examination, remarks) = format::stl(&mut reader, expected)?;
             Ok(Verdict {
                 file: name,
                 format: format.name(),
                 valid: examination.is_valid(),
                 examination,
                 parts: Vec::new(),
+                remarks,
             })
         }
         Format::ThreeMf => {
@@ -97,7 +101,8 @@ impl Verdict {
             });
         }
         let valid = faults.is_empty() && parts.iter().all(|part| part.valid);
-        Self { file, format: format.name(), valid, examination: Examination { facts, faults }, parts }
+        let examination = Examination { facts, faults };
+        Self { file, format: format.name(), valid, examination, parts, remarks: Vec::new() }
     }
 
     /// The verdict in words, a line for the file and for each part, and one for each fault.
@@ -108,6 +113,7 @@ impl Verdict {
             part.examination.faults.iter().for_each(|fault| text += &format!("    {fault}\n"));
         }
         self.examination.faults.iter().for_each(|fault| text += &format!("  {fault}\n"));
+        self.remarks.iter().for_each(|remark| text += &format!("  note: {remark}\n"));
         text
     }
 }

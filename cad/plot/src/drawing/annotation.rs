@@ -240,6 +240,45 @@ pub struct Callout {
     pub around: Option<(Point, f64)>,
 }
 
+/// A name beside a round thing, without a leader.
+#[derive(Clone, Debug)]
+pub struct Label {
+    /// What it is of.
+    pub key: String,
+    /// What it says.
+    pub text: String,
+    /// Middle of what it names, on paper.
+    pub middle: Point,
+    /// How far that reaches around its middle, mm.
+    pub reach_mm: f64,
+}
+
+/// Farthest that a label stands from what it names, in steps of a millimetre.
+const LABEL_STEPS: u32 = 5;
+
+impl Label {
+    /// Draws it; whether there was room.
+    pub fn place(&self, draft: &mut Draft) -> bool {
+        draft.place(&self.key, self.candidates())
+    }
+
+    fn candidates(&self) -> Vec<Candidate> {
+        let half = Point::new(text_width_mm(&self.text, TEXT_MM) / 2.0, TEXT_MM / 2.0);
+        let mut all = Vec::new();
+        for step in 0..LABEL_STEPS {
+            for i in 0..16 {
+                let direction = Point::towards(TAU * (f64::from(i) + 0.5) / 16.0);
+                let away = self.reach_mm + 1.0 + f64::from(step);
+                // The box of the text stands clear of the circle, whatever its shape.
+                let beside = half.x * direction.x.abs() + half.y * direction.y.abs();
+                let at = self.middle + direction * (away + beside) - half;
+                all.push((f64::from(step), vec![(Layer::Text, text(at, &self.text, false))]));
+            }
+        }
+        all
+    }
+}
+
 /// How much further a leader goes rather than end where it had better not, mm.
 const AVOID_MM: f64 = 40.0;
 
@@ -349,12 +388,19 @@ impl Draft {
     pub fn notes(&mut self, lines: &[String], width_mm: f64) {
         let frame = self.sheet().paper.frame();
         let group = self.group();
-        let number = lines.len();
-        for (i, content) in lines.iter().enumerate() {
-            let (content, height_mm) = super::fitted(content, TEXT_MM, 1.8, width_mm);
-            let y = frame.low.y + 3.0 + LINE_MM * (number - 1 - i) as f64;
-            let at = Point::new(frame.low.x + 3.0, y);
-            self.put(Layer::Text, Shape::Text(Text { at, height_mm, content, upright: false }), None, group);
+        let mut y = frame.low.y + 3.0;
+        for content in lines.iter().rev() {
+            let (broken, height_mm) = super::fitted(content, TEXT_MM, 1.8, [width_mm, 6.0 * LINE_MM]);
+            for content in broken.into_iter().rev() {
+                let at = Point::new(frame.low.x + 3.0, y);
+                self.put(
+                    Layer::Text,
+                    Shape::Text(Text { at, height_mm, content, upright: false }),
+                    None,
+                    group,
+                );
+                y += LINE_MM;
+            }
         }
     }
 }

@@ -41,24 +41,65 @@ pub fn text_width_mm(text: &str, height_mm: f64) -> f64 {
     text.chars().map(|c| f64::from(width_thousandths(c))).sum::<f64>() / 1000.0 * height_mm / CAPITAL_PER_EM
 }
 
-/// `text` and the height of its capitals, as near to `height_mm` as `width_mm` allows and no less than `least_mm`; what is
-/// still too long loses its end.
+/// From one line of a text to the next, over the height of its capitals.
+pub(super) const LINE_PER_CAPITAL: f64 = 1.45;
+
+/// `text` in one or more lines that all fit in `width_mm`, and the height of their capitals: as near to `height_mm` as the
+/// room allows. Nothing is cut: a text that would be smaller than `least_mm` in one line goes on in the next, as long as
+/// all lines find room in `room_mm`; what is longer still becomes smaller.
 #[must_use]
-pub fn fitted(text: &str, height_mm: f64, least_mm: f64, width_mm: f64) -> (String, f64) {
-    let wanted = text_width_mm(text, height_mm);
-    let height = if wanted > width_mm { (height_mm * width_mm / wanted).max(least_mm) } else { height_mm };
-    let mut kept = text.to_owned();
-    while text_width_mm(&kept, height) > width_mm + 1e-9 {
-        let shorter: Vec<char> = kept.trim_end_matches('.').chars().collect();
-        if shorter.is_empty() {
+pub fn fitted(
+    text: &str,
+    height_mm: f64,
+    least_mm: f64,
+    [width_mm, room_mm]: [f64; 2],
+) -> (Vec<String>, f64) {
+    let mut best = (vec![text.to_owned()], 0.0);
+    for lines in 1..=MOST_LINES {
+        // All lines are as high as the room allows; then the smallest that still holds the text decides.
+        let of_room = room_mm / (1.0 + LINE_PER_CAPITAL * (lines - 1) as f64);
+        let mut height = height_mm.min(of_room.max(if lines == 1 { height_mm } else { 0.0 }));
+        let mut broken = broken(text, height, width_mm);
+        for _ in 0..SHRINKINGS {
+            if broken.len() <= lines && broken.iter().all(|l| text_width_mm(l, height) <= width_mm + 1e-9) {
+                break;
+            }
+            height *= SHRINKING;
+            broken = self::broken(text, height, width_mm);
+        }
+        if height > best.1 {
+            best = (broken, height);
+        }
+        if best.1 >= least_mm {
             break;
         }
-        kept = shorter[..shorter.len() - 1].iter().collect::<String>() + "...";
-        if shorter.len() == 1 {
-            kept = String::new();
-        }
     }
-    (kept, height)
+    best
+}
+
+/// Most lines into which a text is broken.
+const MOST_LINES: usize = 6;
+/// By how much a text that does not fit becomes smaller, and how often at most.
+const SHRINKING: f64 = 0.97;
+const SHRINKINGS: u32 = 120;
+
+/// `text` in lines of at most `width_mm`, broken behind spaces and marks where there are any.
+fn broken(text: &str, height_mm: f64, width_mm: f64) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut rest = text;
+    while text_width_mm(rest, height_mm) > width_mm + 1e-9 {
+        let ends = rest.char_indices().map(|(i, c)| i + c.len_utf8());
+        let fits: Vec<usize> =
+            ends.take_while(|i| text_width_mm(&rest[..*i], height_mm) <= width_mm).collect();
+        let Some(longest) = fits.last().copied() else { break };
+        let is_seam = |i: &&usize| rest[..**i].ends_with([' ', '/', '-', '_', ',']);
+        let seam = fits.iter().rev().find(is_seam).copied().filter(|i| 2 * i > longest);
+        let (line, after) = rest.split_at(seam.unwrap_or(longest));
+        lines.push(line.trim_end().to_owned());
+        rest = after;
+    }
+    lines.push(rest.to_owned());
+    lines
 }
 
 #[cfg(test)]
@@ -73,11 +114,18 @@ mod tests {
     }
 
     #[test]
-    fn a_text_that_is_too_long_shrinks_and_then_loses_its_end() {
-        assert_eq!(fitted("abc", 5.0, 1.8, 100.0), ("abc".to_owned(), 5.0));
-        let long = "a very long name of a switch, which nobody would write on a title block".repeat(2);
-        let (kept, height) = fitted(&long, 5.0, 1.8, 60.0);
-        assert!(height >= 1.8 && kept.ends_with("...") && text_width_mm(&kept, height) <= 60.0 + 1e-9);
-        assert_eq!(fitted("abc", 5.0, 5.0, 0.1).0, "");
+    fn a_text_that_is_too_long_shrinks_and_then_goes_on_below() {
+        assert_eq!(fitted("abc", 5.0, 1.8, [100.0, 6.0]), (vec!["abc".to_owned()], 5.0));
+        let long = "a very long name of a switch, which nobody would write on a title block ".repeat(2);
+        for (text, width) in
+            [(long.as_str(), 60.0), (&"W".repeat(160), 60.0), (&"\u{30b9}".repeat(120), 30.0)]
+        {
+            let (lines, height) = fitted(text, 3.0, 1.4, [width, 6.0]);
+            let letters = |t: &str| t.chars().filter(|c| *c != ' ').collect::<String>();
+            assert_eq!(letters(&lines.concat()), letters(text), "nothing is lost");
+            assert!(lines.len() > 1 && height > 0.4, "{height}");
+            assert!(lines.iter().all(|l| text_width_mm(l, height) <= width + 1e-9));
+            assert!(height * (1.0 + LINE_PER_CAPITAL * (lines.len() - 1) as f64) <= 6.0 + 1e-9);
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The title block, and the sign of the projection.
 
 use super::draft::Draft;
-use super::font::fitted;
+use super::font::{LINE_PER_CAPITAL, fitted};
 use super::geometry::{Extent, Point};
 use super::sheet::{Layer, Paper, Shape, Text};
 
@@ -9,6 +9,10 @@ use super::sheet::{Layer, Paper, Shape, Text};
 pub(super) const TITLE_WIDTH_MM: f64 = 180.0;
 /// Height of a row of it, mm.
 const ROW_MM: f64 = 9.5;
+/// Height of the words that say what a cell holds, mm.
+const LABEL_MM: f64 = 1.6;
+/// What is smaller in one line goes on in the next, mm.
+const LEAST_MM: f64 = 1.8;
 /// Its height, mm.
 pub(super) const TITLE_HEIGHT_MM: f64 = 3.0 * ROW_MM;
 
@@ -104,15 +108,23 @@ impl Draft {
 
     fn cell(&mut self, cell: Extent, label: &str, value: &str) {
         self.rectangle(Layer::Thin, cell, 0);
-        let write = |draft: &mut Self, content: &str, size: f64, y: f64| {
-            let (content, height_mm) = fitted(content, size, 1.4, cell.width() - 2.4);
-            let at = Point::new(cell.low.x + 1.2, y);
-            let group = draft.group();
-            draft.put(Layer::Text, Shape::Text(Text { at, height_mm, content, upright: false }), None, group);
-        };
-        if !label.is_empty() {
-            write(self, label, 1.6, cell.high.y - 2.7);
-            write(self, value, 3.0, cell.low.y + 1.7);
+        if label.is_empty() {
+            return;
+        }
+        let at = Point::new(cell.low.x + 1.2, cell.high.y - LABEL_MM - 1.1);
+        self.lines_of_text(label, LABEL_MM, at, [cell.width() - 2.4, LABEL_MM]);
+        let at = Point::new(cell.low.x + 1.2, cell.low.y + 1.7);
+        self.lines_of_text(value, 3.0, at, [cell.width() - 2.4, ROW_MM - LABEL_MM - 3.3]);
+    }
+
+    /// Writes `content` whole into a room whose lower left corner is `low`, in as many lines as that takes.
+    pub(super) fn lines_of_text(&mut self, content: &str, wanted_mm: f64, low: Point, room: [f64; 2]) {
+        let (lines, height_mm) = fitted(content, wanted_mm, LEAST_MM, room);
+        let pitch = LINE_PER_CAPITAL * height_mm;
+        let group = self.group();
+        for (i, content) in lines.into_iter().rev().enumerate() {
+            let at = low + Point::new(0.0, pitch * i as f64);
+            self.put(Layer::Text, Shape::Text(Text { at, height_mm, content, upright: false }), None, group);
         }
     }
 
@@ -144,6 +156,19 @@ mod tests {
     use super::super::collisions;
     use super::*;
 
+    /// The words of a sheet in the order in which they are read, cell by cell.
+    fn texts(sheet: &super::super::Sheet) -> String {
+        let all = sheet.entities.iter();
+        let mut lines: Vec<(usize, f64, &str)> = all
+            .filter_map(|e| match &e.shape {
+                Shape::Text(t) => Some((e.group, -t.at.y, t.content.as_str())),
+                _ => None,
+            })
+            .collect();
+        lines.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        lines.iter().map(|l| l.2).collect()
+    }
+
     #[test]
     fn a_title_block_holds_whatever_it_is_told() {
         for name in ["three-double".to_owned(), "W".repeat(80), "スイッチ".repeat(20)] {
@@ -166,6 +191,9 @@ mod tests {
                     assert_eq!(collisions(draft.sheet()), [], "{name}");
                     let block = draft.sheet().title_block;
                     assert!(paper.frame().holds(block));
+                    // Nothing is cut: whoever reads a number may trust it.
+                    let said: String = texts(draft.sheet());
+                    assert!(said.contains(&title.part_number), "{said}");
                 }
             }
         }

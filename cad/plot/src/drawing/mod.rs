@@ -17,7 +17,7 @@ mod sheet;
 mod svg;
 mod table;
 
-pub use annotation::{Angular, Callout, Leader, Linear};
+pub use annotation::{Angular, Callout, Label, Leader, Linear};
 pub use clearance::{Collision, collisions};
 pub use draft::Draft;
 pub use dxf::drawing_dxf;

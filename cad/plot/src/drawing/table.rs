@@ -2,9 +2,8 @@
 
 use super::annotation::TEXT_MM;
 use super::draft::Draft;
-use super::font::fitted;
 use super::geometry::{Extent, Point};
-use super::sheet::{Annotation, Layer, Shape, Text};
+use super::sheet::{Annotation, Layer};
 
 /// Height of a row, mm.
 const ROW_MM: f64 = 5.5;
@@ -18,6 +17,8 @@ pub struct Table {
     pub columns: Vec<(String, f64)>,
     /// Its rows, from the first.
     pub rows: Vec<Vec<String>>,
+    /// Whether its heading stands on top. Lists of parts grow upward from theirs (ISO 7573).
+    pub reads_down: bool,
 }
 
 impl Table {
@@ -27,29 +28,29 @@ impl Table {
         ROW_MM * (self.rows.len() + 1) as f64
     }
 
-    /// Draws it with its lower right corner at `corner`, the heading below and the first row next to it, as lists of parts
-    /// are written that grow upward (ISO 7573).
+    /// Width and height on paper, mm.
+    #[must_use]
+    pub fn size_mm(&self) -> [f64; 2] {
+        [self.columns.iter().map(|c| c.1).sum(), self.height_mm()]
+    }
+
+    /// Draws it with its lower right corner at `corner`, the first row next to the heading.
     pub fn draw(&self, draft: &mut Draft, corner: Point) -> Extent {
         let width: f64 = self.columns.iter().map(|c| c.1).sum();
         let headings: Vec<String> = self.columns.iter().map(|c| c.0.clone()).collect();
         let lines = draft.group();
         for (i, row) in std::iter::once(&headings).chain(&self.rows).enumerate() {
-            let low = corner.y + ROW_MM * i as f64;
+            let step = if self.reads_down { self.rows.len() - i } else { i };
+            let low = corner.y + ROW_MM * step as f64;
             let mut left = corner.x - width;
-            let group = draft.group();
             for ((_, width_mm), content) in self.columns.iter().zip(row) {
                 let cell = Extent::between(Point::new(left, low), Point::new(left + width_mm, low + ROW_MM));
                 draft.rectangle(Layer::Thin, cell, lines);
-                let (content, height_mm) = fitted(content, TEXT_MM, 1.6, width_mm - 2.0);
                 let at = Point::new(left + 1.0, low + (ROW_MM - TEXT_MM) / 2.0);
-                draft.put(
-                    Layer::Text,
-                    Shape::Text(Text { at, height_mm, content, upright: false }),
-                    None,
-                    group,
-                );
+                draft.lines_of_text(content, TEXT_MM, at, [width_mm - 2.0, TEXT_MM + 1.0]);
                 left += width_mm;
             }
+            let group = draft.group();
             draft.annotate(Annotation { group, key: self.key.clone(), text: row.join("\t") });
         }
         Extent::between(corner, corner + Point::new(-width, self.height_mm()))

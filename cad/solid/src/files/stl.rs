@@ -36,7 +36,7 @@ pub enum StlError {
         found: u64,
     },
     /// The file is of another kind.
-    #[error("the file is {0}, not an STL; export the part as STL")]
+    #[error("the file is {0}, not an STL; give an STL, a 3MF or a STEP")]
     OtherKind(&'static str),
     /// There is nothing in the file.
     #[error("the file is empty; export the part again")]
@@ -64,6 +64,8 @@ pub struct StlFile {
     pub mesh: Mesh,
     /// Facets whose stored normal contradicts the order of their corners.
     pub contrary_normals: usize,
+    /// Bytes behind the last triangle that a binary file announces. Readers pass over them.
+    pub trailing_bytes: u64,
 }
 
 /// The mesh as binary STL: single precision, unit normals, an empty header.
@@ -123,7 +125,8 @@ pub fn read_stl(source: &mut (impl Read + Seek)) -> Result<StlFile, StlError> {
     }
     head.check_length()?;
     let facets = if is_ascii(&head.bytes) { read_ascii(source)? } else { read_binary(source, head.length)? };
-    facets.finish().ok_or(StlError::Empty)
+    let trailing_bytes = if is_ascii(&head.bytes) { 0 } else { head.trailing() };
+    facets.finish().map(|file| StlFile { trailing_bytes, ..file }).ok_or(StlError::Empty)
 }
 
 /// How a file begins, and how long it is.
@@ -153,6 +156,10 @@ impl Head {
     /// and so do we.
     fn fits(&self) -> bool {
         self.announced().is_some_and(|(_, expected)| expected <= self.length)
+    }
+
+    fn trailing(&self) -> u64 {
+        self.announced().map_or(0, |(_, expected)| self.length.saturating_sub(expected))
     }
 
     /// A binary STL says how long it is; a file cut short must not pass for a smaller part.
@@ -188,6 +195,15 @@ mod tests {
         for volume in back.axis_volumes_mm3() {
             assert!((volume - 1.0 / 6.0).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn bytes_behind_the_last_triangle_are_counted() {
+        let mut bytes = stl_bytes(&tetrahedron()).unwrap();
+        let trailing = |bytes: &[u8]| read_stl(&mut Cursor::new(bytes.to_vec())).unwrap().trailing_bytes;
+        assert_eq!(trailing(&bytes), 0);
+        bytes.extend([7; 13]);
+        assert_eq!(trailing(&bytes), 13);
     }
 
     #[test]

@@ -61,7 +61,11 @@ impl Facets {
     /// The mesh of all facets; `None` without any.
     pub(super) fn finish(self) -> Option<StlFile> {
         let mesh = Mesh::new(self.vertices.into_positions(), self.triangles);
-        (!mesh.triangles.is_empty()).then_some(StlFile { mesh, contrary_normals: self.contrary_normals })
+        (!mesh.triangles.is_empty()).then_some(StlFile {
+            mesh,
+            contrary_normals: self.contrary_normals,
+            trailing_bytes: 0,
+        })
     }
 }
 

@@ -179,7 +179,7 @@ configuration! {
         /// What the switch is mounted by: a plate beside the left support, held by the same screws.
         mount: MountTable {
             kind: MountKind = MountKind::None, (), Chosen, "flange, finger-link or rig; none leaves the two screws for a support of your own";
-            plate_mm: f64 = 5.0, 2.0..=20.0, Chosen, "thickness of the plate; 5 lets M3 heads sink";
+            plate_mm: f64 = 7.0, 2.0..=20.0, Chosen, "thickness of the plate; 7 lets the heads of M5 screws and of the rig's M8 bolt sink";
             hole_diameter_mm: f64 = 4.5, 2.0..=12.0, Chosen, "mounting holes, and bores of a finger link: 4.5 for M4 (ISO 273)";
             rim_mm: f64 = 3.0, 1.0..=20.0, Chosen, "wall around every hole of the plate";
             bore_distance_mm: f64 = 45.0, 5.0..=300.0, Chosen, "finger-link: distance between the two bores";

@@ -21,6 +21,30 @@ const MEMBRANE_LAYERS: f64 = 2.0;
 const LEAST_MEMBRANE_MM: f64 = 0.4;
 /// Room for the tip of a screw between two inserts, mm.
 pub(super) const INSERT_TIP_MM: f64 = 1.0;
+/// Shoulder on which an insert stops above a narrower hole, mm.
+pub(super) const INSERT_SHOULDER_MM: f64 = 0.1;
+/// How far a head lies below the face that stands on a table, mm.
+pub(super) const HEAD_BELOW_MM: f64 = 0.2;
+/// What rounding may take of a wall, mm.
+const ROUNDING_MM: f64 = 1e-9;
+/// Lengths of socket screws, mm (ISO 4762); each thread has those between its [`Thread::lengths_mm`].
+const SCREW_LENGTHS_MM: [f64; 16] =
+    [2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0];
+/// Diameters of dowels, mm (ISO 2338).
+pub(super) const DOWELS_MM: &[f64] = &[0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
+/// Clearance holes of M1.6 to M5, fine, medium and coarse, mm (ISO 273).
+pub(super) const CLEARANCE_HOLES_MM: &[f64] =
+    &[1.7, 1.8, 2.0, 2.2, 2.4, 2.6, 2.7, 2.9, 3.1, 3.2, 3.4, 3.6, 4.3, 4.5, 4.8, 5.3, 5.5, 5.8];
+/// A nut and what the screw stands out of it, in diameters of the hole.
+const NUT: f64 = 1.2;
+/// Air between the tips of two screws that meet in the shell, mm.
+const SCREW_AIR_MM: f64 = 0.5;
+/// Least that a screw must reach into an insert, in diameters of the hole.
+const LEAST_GRIP: f64 = 0.6;
+/// Socket screws and nuts of the sheath stop: M3.
+pub(crate) const STOP_SCREW: Thread = THREADS[3];
+/// Head of the axle's hexagon bolt, M8: across its flats and its height, mm (ISO 4017).
+const AXLE_HEAD_MM: [f64; 2] = [13.0, 5.3];
 
 /// A metric thread with the hardware that fits it. Sources: cad/doc/print-limits.md, "Fasteners".
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,16 +59,35 @@ pub struct Thread {
     pub head_mm: [f64; 2],
     /// Heat-set insert: hole and length, mm; `None` where none is sold for prints.
     pub insert_mm: Option<[f64; 2]>,
+    /// Shortest and longest socket screw (ISO 4762), mm.
+    pub lengths_mm: [f64; 2],
+}
+
+impl Thread {
+    /// The shortest screw of at least `least_mm` that is sold.
+    pub fn at_least_mm(&self, least_mm: f64) -> Option<f64> {
+        self.sold_mm().find(|l| *l >= least_mm - ROUNDING_MM)
+    }
+
+    /// The longest screw of at most `most_mm` that is sold.
+    pub fn at_most_mm(&self, most_mm: f64) -> Option<f64> {
+        self.sold_mm().filter(|l| *l <= most_mm + ROUNDING_MM).last()
+    }
+
+    fn sold_mm(&self) -> impl Iterator<Item = f64> {
+        let [low, high] = self.lengths_mm;
+        SCREW_LENGTHS_MM.into_iter().filter(move |l| (low..=high).contains(l))
+    }
 }
 
 /// Threads, the narrowest first.
 const THREADS: [Thread; 6] = [
-    thread("M1.6", 1.8, [3.2, 1.3], [3.0, 1.6], None),
-    thread("M2", 2.2, [4.0, 1.6], [3.8, 2.0], Some([3.2, 4.0])),
-    thread("M2.5", 2.7, [5.0, 2.0], [4.5, 2.5], Some([4.0, 5.7])),
-    thread("M3", 3.2, [5.5, 2.4], [5.5, 3.0], Some([4.0, 5.7])),
-    thread("M4", 4.3, [7.0, 3.2], [7.0, 4.0], Some([5.6, 8.1])),
-    thread("M5", 5.3, [8.0, 4.7], [8.5, 5.0], None),
+    thread("M1.6", 1.7, [3.2, 1.3], [3.0, 1.6], None, [2.5, 16.0]),
+    thread("M2", 2.2, [4.0, 1.6], [3.8, 2.0], Some([3.2, 4.0]), [3.0, 20.0]),
+    thread("M2.5", 2.7, [5.0, 2.0], [4.5, 2.5], Some([4.0, 5.7]), [4.0, 25.0]),
+    thread("M3", 3.2, [5.5, 2.4], [5.5, 3.0], Some([4.0, 5.7]), [5.0, 30.0]),
+    thread("M4", 4.3, [7.0, 3.2], [7.0, 4.0], Some([5.6, 8.1]), [6.0, 40.0]),
+    thread("M5", 5.3, [8.0, 4.7], [8.5, 5.0], None, [8.0, 50.0]),
 ];
 
 const fn thread(
@@ -53,8 +96,9 @@ const fn thread(
     nut_mm: [f64; 2],
     head_mm: [f64; 2],
     insert_mm: Option<[f64; 2]>,
+    lengths_mm: [f64; 2],
 ) -> Thread {
-    Thread { name, least_hole_mm, nut_mm, head_mm, insert_mm }
+    Thread { name, least_hole_mm, nut_mm, head_mm, insert_mm, lengths_mm }
 }
 
 /// A recess in an outer face: hexagonal for nuts, round for heads.
@@ -77,18 +121,38 @@ pub struct Fastening {
     pub thread: Option<Thread>,
     /// Nut traps in the right support's outer face, if they are wanted and fit.
     pub nut_trap: Option<Recess>,
-    /// Counterbores for the heads, if they are wanted and fit: in the outer face of the left support, or of the mounting
-    /// plate; with inserts in that of the right support as well.
+    /// Counterbores for the heads in the outer faces of the supports, if they are wanted and fit: of the left one, unless a
+    /// mounting plate covers it, and with inserts of the right one.
     pub counterbore: Option<Recess>,
+    /// Counterbores for the heads in the outer face of the mounting plate, if they are wanted and fit.
+    pub mount_counterbore: Option<Recess>,
     /// Hole and length of the inserts at both ends of the shell's holes.
     pub insert_mm: Option<[f64; 2]>,
 }
 
 impl Fastening {
-    /// The recess in the outer face of a plate: where the screws' heads are, or their nuts.
+    /// The recess in the outer face of a support: where the screws' heads are, or their nuts.
     pub const fn recess(&self, has_heads: bool) -> Option<Recess> {
         if has_heads { self.counterbore } else { self.nut_trap }
     }
+}
+
+/// A counterbore for the heads of a thread.
+fn head_recess(thread: &Thread, depth_mm: f64) -> Recess {
+    let radius = (thread.head_mm[0] + HEAD_PLAY_MM) / 2.0;
+    Recess { radial_mm: radius, along_mm: radius, depth_mm, is_hexagon: false }
+}
+
+/// Counterbore in the mounting plate for a screw of the sheath stop.
+pub(crate) fn stop_recess() -> Recess {
+    head_recess(&STOP_SCREW, STOP_SCREW.head_mm[1] + HEAD_BELOW_MM)
+}
+
+/// Pocket in the mounting plate for the head of the axle's bolt, which it keeps from turning.
+pub(crate) fn axle_recess() -> Recess {
+    let radial_mm = (AXLE_HEAD_MM[0] + RECESS_PLAY_MM) / 2.0;
+    let along_mm = radial_mm / std::f64::consts::FRAC_PI_6.cos();
+    Recess { radial_mm, along_mm, depth_mm: AXLE_HEAD_MM[1] + HEAD_BELOW_MM, is_hexagon: true }
 }
 
 impl Dimensions {
@@ -97,32 +161,29 @@ impl Dimensions {
         let c = self.configuration();
         let f = &c.fasteners;
         let thread = THREADS.into_iter().rev().find(|t| t.least_hole_mm <= f.hole_diameter_mm);
-        let plate = |has_heads: bool| {
-            if has_heads && c.mount.kind != MountKind::None { c.mount.plate_mm } else { c.support.plate_mm }
-        };
-        let fits = |recess: Recess, plate_mm: f64| {
-            let seat = plate_mm - recess.depth_mm - self.membrane_mm();
-            (recess.depth_mm > 0.0 && f.count > 0 && seat >= LEAST_SEAT_MM && self.recess_fits(&recess))
+        let fits = |recess: Recess| {
+            (f.count > 0 && recess.depth_mm > 0.0 && self.recess_obstacle(&recess).is_none())
                 .then_some(recess)
         };
         let nut_trap = thread.filter(|_| f.kind == FastenerKind::NutTrap).and_then(|t| {
             let flats = (t.nut_mm[0] + RECESS_PLAY_MM) / 2.0;
             let along_mm = flats / std::f64::consts::FRAC_PI_6.cos();
-            let recess = Recess { radial_mm: flats, along_mm, depth_mm: f.nut_recess_mm, is_hexagon: true };
-            fits(recess, plate(false))
+            fits(Recess { radial_mm: flats, along_mm, depth_mm: f.nut_recess_mm, is_hexagon: true })
         });
-        let counterbore = thread.and_then(|t| {
-            let radius = (t.head_mm[0] + HEAD_PLAY_MM) / 2.0;
-            let depth_mm = f.head_recess_mm;
-            let recess = Recess { radial_mm: radius, along_mm: radius, depth_mm, is_hexagon: false };
-            // With inserts there are heads on both sides.
-            let thinner =
-                if f.kind == FastenerKind::Insert { plate(true).min(plate(false)) } else { plate(true) };
-            fits(recess, thinner)
+        let has_mount = c.mount.kind != MountKind::None;
+        let counterbore = thread
+            .filter(|_| !has_mount || f.kind == FastenerKind::Insert)
+            .and_then(|t| fits(head_recess(&t, f.head_recess_mm)));
+        let mount_counterbore = thread.filter(|_| has_mount && f.count > 0).and_then(|t| {
+            let depth = if self.lies_on_a_table() { t.head_mm[1] + HEAD_BELOW_MM } else { 0.0 };
+            let recess = head_recess(&t, f.head_recess_mm.max(depth));
+            let is_apart = self.fastener_angles_rad().windows(2).all(|w| self.are_apart(w, &recess));
+            let fits = c.mount.plate_mm + ROUNDING_MM >= self.seated_mm(recess.depth_mm) && is_apart;
+            (recess.depth_mm > 0.0 && fits).then_some(recess)
         });
         let insert_mm =
             thread.filter(|_| f.kind == FastenerKind::Insert && f.count > 0).and_then(|t| t.insert_mm);
-        Fastening { thread, nut_trap, counterbore, insert_mm }
+        Fastening { thread, nut_trap, counterbore, mount_counterbore, insert_mm }
     }
 
     /// Thickness of what closes a hole above a recess: the printer bridges it, and the screw breaks it.
@@ -136,16 +197,106 @@ impl Dimensions {
         HOLE_EDGE_MM.max(p.least_wall_mm)
     }
 
-    /// Whether walls stay between a recess and the inner face, the slots, the ends, and its neighbours.
-    fn recess_fits(&self, recess: &Recess) -> bool {
+    /// Whether the mounting plate lies flat on something: heads must not stand out of it.
+    pub(crate) fn lies_on_a_table(&self) -> bool {
+        matches!(self.configuration().mount.kind, MountKind::Flange | MountKind::Rig)
+    }
+
+    /// Thickness of a plate in which something sinks by `depth_mm`: with what closes the hole, and what carries the head.
+    pub(crate) fn seated_mm(&self, depth_mm: f64) -> f64 {
+        depth_mm + self.membrane_mm() + LEAST_SEAT_MM
+    }
+
+    /// Whether a wall stays between the recesses of two neighbours.
+    fn are_apart(&self, angles_rad: &[f64], recess: &Recess) -> bool {
+        let chord = 2.0 * self.fastener_radius_mm() * ((angles_rad[1] - angles_rad[0]) / 2.0).sin();
+        chord + ROUNDING_MM >= 2.0 * recess.along_mm + self.rim_mm()
+    }
+
+    /// What keeps a recess out of the outer face of a support, as what to change: its seat, or a wall between it and the
+    /// inner face, the slots, the ends, or its neighbours.
+    fn recess_obstacle(&self, recess: &Recess) -> Option<String> {
         let c = self.configuration();
         let (middle, rim) = (self.fastener_radius_mm(), self.rim_mm());
-        let inside = middle - recess.radial_mm - self.inner_radius_mm() >= rim;
-        let under_slots = self.slot().inner_edge_mm() - middle - recess.along_mm.max(recess.radial_mm) >= rim;
-        let at_ends = c.fasteners.count < 2
-            || c.fasteners.end_distance_mm + self.shell_end_shift_mm() - recess.along_mm >= rim;
-        let apart = |w: &[f64]| 2.0 * middle * ((w[1] - w[0]) / 2.0).sin() >= 2.0 * recess.along_mm + rim;
-        inside && under_slots && at_ends && self.fastener_angles_rad().windows(2).all(apart)
+        let inside = middle - recess.radial_mm - self.inner_radius_mm() - rim;
+        let under_slots = self.slot().inner_edge_mm() - middle - recess.along_mm.max(recess.radial_mm) - rim;
+        let at_ends = c.fasteners.end_distance_mm + self.shell_end_shift_mm() - recess.along_mm - rim;
+        let seated = self.seated_mm(recess.depth_mm);
+        // The value that mends it, shown so that it does after rounding.
+        let raised = |now: f64, by: f64| ((now + by) * 1e3 - 1e-6).ceil() / 1e3;
+        let is_short = |left: f64| left < -ROUNDING_MM;
+        if is_short(c.support.plate_mm - seated) {
+            Some(format!("raise support.plate_mm to {}", raised(seated, 0.0)))
+        } else if is_short(inside) || is_short(under_slots) {
+            // The holes lie in the middle of the wall: of what it gains, half comes to lie on each side.
+            let by = 2.0 * -inside.min(under_slots);
+            Some(format!("raise shell.wall_mm to {}", raised(c.shell.wall_mm, by)))
+        } else if c.fasteners.count > 1 && is_short(at_ends) {
+            Some(format!(
+                "raise fasteners.end_distance_mm to {}",
+                raised(c.fasteners.end_distance_mm, -at_ends)
+            ))
+        } else {
+            let is_crowded = self.fastener_angles_rad().windows(2).any(|w| !self.are_apart(w, recess));
+            is_crowded.then(|| format!("lower fasteners.count to {}", c.fasteners.count - 1))
+        }
+    }
+
+    /// What to change for nut traps in the right support that were asked for and do not fit.
+    pub fn nut_trap_remedy(&self) -> Option<String> {
+        let (c, fastening) = (self.configuration(), self.fastening());
+        let f = &c.fasteners;
+        let is_lost = f.kind == FastenerKind::NutTrap
+            && f.count > 0
+            && f.nut_recess_mm > 0.0
+            && fastening.nut_trap.is_none();
+        let thread = fastening.thread.filter(|_| is_lost)?;
+        let flats = (thread.nut_mm[0] + RECESS_PLAY_MM) / 2.0;
+        let along_mm = flats / std::f64::consts::FRAC_PI_6.cos();
+        self.recess_obstacle(&Recess {
+            radial_mm: flats,
+            along_mm,
+            depth_mm: f.nut_recess_mm,
+            is_hexagon: true,
+        })
+    }
+
+    /// The same of counterbores in the supports.
+    pub fn counterbore_remedy(&self) -> Option<String> {
+        let (c, fastening) = (self.configuration(), self.fastening());
+        let f = &c.fasteners;
+        let in_supports = c.mount.kind == MountKind::None || f.kind == FastenerKind::Insert;
+        let is_lost = in_supports && f.count > 0 && f.head_recess_mm > 0.0 && fastening.counterbore.is_none();
+        let thread = fastening.thread.filter(|_| is_lost)?;
+        self.recess_obstacle(&head_recess(&thread, f.head_recess_mm))
+    }
+
+    /// Length of the screws that enter from the left and from the right, mm, the latter with inserts only; `None` where no
+    /// such screw is sold (ISO 4762).
+    pub fn screw_lengths_mm(&self) -> Option<(f64, Option<f64>)> {
+        let c = self.configuration();
+        let fastening = self.fastening();
+        let thread = fastening.thread?;
+        let has_mount = c.mount.kind != MountKind::None;
+        let depth = |recess: Option<Recess>| recess.map_or(0.0, |r| r.depth_mm);
+        let in_support = c.support.plate_mm - depth(fastening.counterbore);
+        let left_plates = if has_mount {
+            c.support.plate_mm + c.mount.plate_mm - depth(fastening.mount_counterbore)
+        } else {
+            in_support
+        };
+        let hole = c.fasteners.hole_diameter_mm;
+        if let Some([_, length]) = fastening.insert_mm {
+            // From each side, as long as the insert and its share of the room between both allow.
+            let longest = |plates_mm: f64| {
+                let most = plates_mm + length.max(c.shell.width_mm / 2.0 - SCREW_AIR_MM);
+                thread.at_most_mm(most).filter(|l| *l >= plates_mm + LEAST_GRIP * hole)
+            };
+            return Some((longest(left_plates)?, Some(longest(in_support)?)));
+        }
+        let right = c.support.plate_mm - depth(fastening.nut_trap);
+        let stack = left_plates + c.shell.width_mm + right + NUT * hole;
+        Some((thread.at_least_mm(stack)?, None))
     }
 
     /// Half of what a fastener takes of the arc of the shell.
@@ -160,6 +311,12 @@ impl Dimensions {
         let hole = self.configuration().fasteners.hole_diameter_mm / 2.0;
         let recesses = [f.nut_trap, f.counterbore].into_iter().flatten().map(|r| r.along_mm);
         recesses.chain(f.insert_mm.map(|[hole, _]| hole / 2.0)).fold(hole, f64::max)
+    }
+
+    /// Half of what a fastener takes of the mounting plate.
+    pub(crate) fn mount_along_mm(&self) -> f64 {
+        let hole = self.configuration().fasteners.hole_diameter_mm / 2.0;
+        self.fastening().mount_counterbore.map_or(hole, |r| r.along_mm)
     }
 
     /// Radius of the holes for dowels; `None` without dowels.

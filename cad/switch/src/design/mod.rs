@@ -13,6 +13,7 @@ use pinswitch_solid::profile::ChordTolerance;
 
 pub use dimensions::{Dimensions, Slot};
 pub use fastening::{Fastening, Recess, Thread};
+pub(crate) use fastening::{STOP_SCREW, axle_recess, stop_recess};
 pub use mounting::{Hole, Mounting, SheathStop};
 pub(crate) use mounting::{PULLEY_RADIUS_MM, pulley_outer_mm, pulley_width_mm};
 

@@ -1,6 +1,7 @@
 //! Where the holes of a mounting plate lie (cad/doc/dimensions.md, "Mounting").
 
 use super::Dimensions;
+use super::fastening::{axle_recess, stop_recess};
 use crate::config::MountKind;
 use pinswitch_solid::profile::{Disc, Point2, Vector2, polar};
 
@@ -58,6 +59,18 @@ pub struct SheathStop {
     pub screws: [Hole; 2],
 }
 
+impl SheathStop {
+    /// The stop by itself, from the origin along +x.
+    pub fn along_the_paper(&self) -> Self {
+        let outwards = Vector2::new(-self.along.y, self.along.x);
+        let screws = self.screws.map(|hole| {
+            let from = hole.centre - self.start;
+            Hole { centre: Point2::new(from.dot(&self.along), from.dot(&outwards)), ..hole }
+        });
+        Self { start: Point2::origin(), along: Vector2::x(), screws, ..*self }
+    }
+}
+
 /// A mounting plate: the holes that it has beside those of the fasteners.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mounting {
@@ -67,6 +80,8 @@ pub struct Mounting {
     pub axle: Option<Hole>,
     /// The sheath stop.
     pub sheath: Option<SheathStop>,
+    /// What all holes take of the plate, those of the fasteners with it: their recesses included.
+    pub taken: Vec<Hole>,
     /// Discs whose hull the plate is.
     pub discs: Vec<Disc>,
 }
@@ -106,14 +121,21 @@ impl Dimensions {
         };
         let sheath = self.sheath_stop();
         let rim = m.rim_mm;
-        let fasteners = self.fastener_angles_rad().into_iter().map(|a| Hole {
-            centre: polar(self.fastener_radius_mm(), a),
-            radius_mm: self.fastener_along_mm(),
-        });
-        let stop = sheath.iter().flat_map(|s| s.screws);
-        let all = holes.iter().copied().chain(axle).chain(fasteners).chain(stop);
-        let discs = all.map(|h| Disc { centre: h.centre, radius_mm: h.radius_mm + rim }).collect();
-        Some(Mounting { holes, axle, sheath, discs })
+        let all = self.taken(&holes, axle, sheath.as_ref());
+        let discs = all.iter().map(|h| Disc { centre: h.centre, radius_mm: h.radius_mm + rim }).collect();
+        Some(Mounting { holes, axle, sheath, taken: all, discs })
+    }
+
+    /// What holes take of the plate, with their recesses: its own, the axle's, the fasteners' and the sheath stop's.
+    fn taken(&self, holes: &[Hole], axle: Option<Hole>, sheath: Option<&SheathStop>) -> Vec<Hole> {
+        let fasteners = self
+            .fastener_angles_rad()
+            .into_iter()
+            .map(|a| Hole { centre: polar(self.fastener_radius_mm(), a), radius_mm: self.mount_along_mm() });
+        let axle = axle.map(|h| Hole { radius_mm: axle_recess().along_mm, ..h });
+        let screws = sheath.map_or(Vec::new(), |s| s.screws.to_vec()).into_iter();
+        let screws = screws.map(|h| Hole { radius_mm: stop_recess().along_mm, ..h });
+        holes.iter().copied().chain(axle).chain(fasteners).chain(screws).collect()
     }
 
     /// Four holes around the supports.

@@ -3,17 +3,20 @@
 use serde::Serialize;
 
 use crate::config::{MouldKind, MountKind};
-use crate::design::Design;
+use crate::design::{Design, STOP_SCREW, axle_recess, stop_recess};
 use crate::parts::{cavity_mm3, spacer_mm};
 use pinswitch_friction::Substrate;
 
-/// Lengths in which screws are sold, mm.
-const SCREW_LENGTHS_MM: [f64; 17] =
-    [6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0, 100.0, 120.0];
-/// Air between the tips of two screws that meet in the shell, mm.
-const SCREW_AIR_MM: f64 = 0.5;
-/// A nut and its washer, in screw diameters.
-const NUT: f64 = 1.2;
+/// Lengths of hexagon bolts M8 that are threaded to their heads, mm (ISO 4017).
+const BOLT_LENGTHS_MM: [f64; 20] = [
+    16.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 80.0, 90.0, 100.0, 110.0, 120.0,
+    130.0, 140.0, 150.0,
+];
+/// Bearing of the guide pulley.
+const BEARING: &str = "608";
+/// Width of a 608 bearing (ISO 15), and height of an M8 nut (ISO 4032), mm.
+const BEARING_MM: f64 = 7.0;
+const AXLE_NUT_MM: f64 = 6.8;
 
 /// Pins to cut.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -116,6 +119,9 @@ pub struct Bill {
     /// Dowels; absent without.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dowels: Option<Dowels>,
+    /// Bearing of a guide pulley that stands by itself; that of the rig is among what its plate needs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pulley_bearing: Option<&'static str>,
     /// What the mounting plate needs; absent without.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mount: Option<MountHardware>,
@@ -156,6 +162,7 @@ pub fn bill_of_materials(design: &Design) -> Bill {
         },
         fasteners: fasteners(design),
         dowels: dowels(design),
+        pulley_bearing: (c.parts.guide_pulley && c.mount.kind != MountKind::Rig).then_some(BEARING),
         mount: mount(design),
     }
 }
@@ -163,30 +170,16 @@ pub fn bill_of_materials(design: &Design) -> Bill {
 fn fasteners(design: &Design) -> Option<Fasteners> {
     let c = design.configuration();
     let fastening = design.fastening();
-    let hole = c.fasteners.hole_diameter_mm;
-    let thread = fastening.thread.map_or("smaller than M1.6", |t| t.name);
-    let has_mount = c.mount.kind != MountKind::None;
-    let sunk = fastening.counterbore.map_or(0.0, |r| r.depth_mm);
+    let thread = fastening.thread?.name;
     let number = c.fasteners.count;
-    let fasteners = match fastening.insert_mm {
-        Some([_, length]) => {
-            // From each side, as long as the insert and its share of the room between both allow.
-            let longest = |plates_mm: f64| {
-                let most = plates_mm - sunk + length.max(c.shell.width_mm / 2.0 - SCREW_AIR_MM);
-                SCREW_LENGTHS_MM.into_iter().rev().find(|l| *l <= most).unwrap_or(most.floor())
-            };
-            let right_mm = longest(c.support.plate_mm);
-            let length_mm = if has_mount { longest(c.support.plate_mm + c.mount.plate_mm) } else { right_mm };
+    // A design has screws that are sold, or none.
+    let (length_mm, right_mm) = design.screw_lengths_mm()?;
+    let fasteners = match right_mm {
+        Some(right_mm) => {
             let right_length_mm = (right_mm != length_mm).then_some(right_mm);
             Fasteners { number: 2 * number, thread, length_mm, right_length_mm, nuts: 0, inserts: 2 * number }
         }
-        None => {
-            let plates = 2.0 * c.support.plate_mm + if has_mount { c.mount.plate_mm } else { 0.0 };
-            let trapped = fastening.nut_trap.map_or(0.0, |r| r.depth_mm);
-            let stack = c.shell.width_mm + plates + NUT * hole - sunk - trapped;
-            let length_mm = SCREW_LENGTHS_MM.into_iter().find(|l| *l >= stack).unwrap_or(stack.ceil());
-            Fasteners { number, thread, length_mm, right_length_mm: None, nuts: number, inserts: 0 }
-        }
+        None => Fasteners { number, thread, length_mm, right_length_mm: None, nuts: number, inserts: 0 },
     };
     (number > 0).then_some(fasteners)
 }
@@ -200,17 +193,20 @@ fn dowels(design: &Design) -> Option<Dowels> {
 fn mount(design: &Design) -> Option<MountHardware> {
     let c = design.configuration();
     let mounting = design.mounting()?;
-    let longer = |stack: f64| SCREW_LENGTHS_MM.into_iter().find(|l| *l >= stack).unwrap_or(stack.ceil());
-    // Through the plate, the spacer, the bearing and a nut of 6.8 mm (ISO 4032).
-    let axle =
-        mounting.axle.map(|_| format!("M8 x {}", longer(c.mount.plate_mm + spacer_mm(design) + 7.0 + 6.8)));
-    let floor = design.sheath_floor_mm();
-    let sheath =
-        mounting.sheath.map(|_| format!("2 screws M3 x {} and nuts", longer(c.mount.plate_mm + floor + 2.4)));
+    // Its head lies in the plate; then come spacer, bearing and nut.
+    let stack = c.mount.plate_mm - axle_recess().depth_mm + spacer_mm(design) + BEARING_MM + AXLE_NUT_MM;
+    let axle = mounting.axle.map(|_| {
+        let length = BOLT_LENGTHS_MM.into_iter().find(|l| *l >= stack);
+        format!("M8 x {} hexagon bolt (ISO 4017), washer and nut", length.unwrap_or(BOLT_LENGTHS_MM[19]))
+    });
+    let stack = c.mount.plate_mm - stop_recess().depth_mm + design.sheath_floor_mm() + STOP_SCREW.nut_mm[1];
+    let sheath = mounting.sheath.and_then(|_| {
+        Some(format!("2 screws {} x {} (ISO 4762) and nuts", STOP_SCREW.name, STOP_SCREW.at_least_mm(stack)?))
+    });
     Some(MountHardware {
         holes: mounting.holes.len(),
         hole_diameter_mm: c.mount.hole_diameter_mm,
-        bearing: mounting.axle.map(|_| "608"),
+        bearing: mounting.axle.map(|_| BEARING),
         axle,
         sheath_stop: sheath,
     })
@@ -245,9 +241,14 @@ mod tests {
             let design = Design::new(configuration).unwrap();
             let screws = bill_of_materials(&design).fasteners.unwrap();
             let c = design.configuration();
-            let sunk = design.fastening().counterbore.map_or(0.0, |r| r.depth_mm);
-            let left = screws.length_mm - (c.support.plate_mm + c.mount.plate_mm - sunk);
-            let right = screws.right_length_mm.unwrap_or(screws.length_mm) - (c.support.plate_mm - sunk);
+            let fastening = design.fastening();
+            let sunk = |recess: Option<crate::design::Recess>| recess.map_or(0.0, |r| r.depth_mm);
+            let (on_plate, on_support) = (sunk(fastening.mount_counterbore), sunk(fastening.counterbore));
+            // On a flange every head lies within the plate.
+            assert!(on_plate >= 3.0, "{on_plate}");
+            let left = screws.length_mm - (c.support.plate_mm + c.mount.plate_mm - on_plate);
+            let right =
+                screws.right_length_mm.unwrap_or(screws.length_mm) - (c.support.plate_mm - on_support);
             assert!(left > 0.0 && right > 0.0 && left + right < width_mm, "{plate_mm}: {left} and {right}");
         }
     }

@@ -41,10 +41,11 @@ fn printing_guide(design: &Design, manifest: &Manifest) -> String {
     picture(&mut text, "The parts, pulled apart", "assembly.png");
     print_section(&mut text, design, manifest);
     picture(&mut text, "The printed parts on a plate", "plate.png");
-    if c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None {
+    let casts = c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None;
+    if casts {
         cast_section(&mut text, design, manifest);
     }
-    assemble_section(&mut text, design, manifest);
+    assemble_section(&mut text, design, manifest, if casts { 3 } else { 2 });
     let f = &manifest.friction;
     let _ = write!(
         text,
@@ -61,9 +62,11 @@ fn printing_guide(design: &Design, manifest: &Manifest) -> String {
 
 fn print_section(text: &mut String, design: &Design, manifest: &Manifest) {
     let c = design.configuration();
+    let has_mould = manifest.parts.iter().any(|p| p.name.starts_with("mould"));
+    let infill = if has_mould { "100 % infill for the mould, " } else { "" };
     let _ = write!(
         text,
-        "## 1. Print\n\nMaterial ABS. Layer {} mm, line {} mm, nozzle {} mm, four walls, 100 % infill for the mould, no supports: every file lies in \
+        "## 1. Print\n\nMaterial ABS. Layer {} mm, line {} mm, nozzle {} mm, four walls, {infill}no supports: every file lies in \
          print orientation. Shrinkage: set it in the slicer (0.7 % for ABS is usual), not here.\n\n| part | file | mass | widest ceiling to bridge |\n|---|---|---|---|\n",
         c.print.layer_mm, c.print.line_mm, c.print.nozzle_mm
     );
@@ -86,7 +89,7 @@ fn print_section(text: &mut String, design: &Design, manifest: &Manifest) {
         "Leave the slicer's elephant-foot compensation on (0.2 mm): the parts carry no chamfer.".to_owned()
     };
     let _ = write!(text, "\n{foot}\n");
-    if c.parts.coupon {
+    if c.parts.coupon && !c.layout.pins.is_empty() {
         let _ = write!(
             text,
             "\nPrint `coupon.stl` first and push a pin into each slot. Take the smallest clearance in which it slides, set it as \
@@ -166,20 +169,30 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
     );
 }
 
-fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest) {
+fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, number: usize) {
     let c = design.configuration();
     let bill = &manifest.bill_of_materials;
     let mut steps = Vec::new();
     if bill.pins.number > 0 {
         steps.push(format!(
-            "Cut {} pins of {} mm and {:.1} mm long ({} to spare); break their edges, polish them.",
-            bill.pins.number + bill.pins.spares,
+            "Cut {} of {} mm and {:.1} mm long ({} to spare); break their edges, polish them.",
+            counted(bill.pins.number + bill.pins.spares, "pin"),
             bill.pins.diameter_mm,
             bill.pins.length_mm,
             bill.pins.spares
         ));
     }
-    let bed = if c.layout.substrate == Substrate::Silicone { "silicone layer" } else { "proxy" };
+    let is_silicone = c.layout.substrate == Substrate::Silicone;
+    let bed = if is_silicone { "silicone layer" } else { "proxy" };
+    if is_silicone && c.mould.kind == MouldKind::None {
+        steps.push(format!(
+            "Take a silicone layer that was cast before: this set has no mould (`mould.kind = \"none\"`). It is {:.1} mm wide and {} mm \
+             thick, its ribs fit the {} of the shell; the sheet `silicone-layer` of the drawing has all its dimensions.",
+            design.layer_width_mm(),
+            c.silicone.thickness_mm,
+            counted(c.segment.grooves, "groove")
+        ));
+    }
     steps.push(format!("Lay the {bed} on the shell, grooves outwards."));
     let keeps = if design.stops_mm().is_some() { ", between the stops at its ends" } else { "" };
     if let Some(last) = steps.last_mut() {
@@ -226,6 +239,7 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest) {
     steps.push(format!("Put the right support (R) on.{slides}"));
     steps.extend(mounting_step(design, manifest));
     steps.extend(fastening_step(design, manifest));
+    steps.extend(pulley_step(design, manifest));
     steps.push(format!(
         "Lay {} mm of tendon ({} mm over its coating) over the pins; it touches {:.2} deg.{}",
         bill.tendon.length_mm,
@@ -233,7 +247,7 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest) {
         c.layout.wrap_angle_deg,
         where_it_lies(design)
     ));
-    text.push_str("## 3. Assemble\n\n");
+    let _ = write!(text, "## {number}. Assemble\n\n");
     for (i, step) in steps.iter().enumerate() {
         let _ = writeln!(text, "{}. {step}", i + 1);
     }
@@ -247,10 +261,15 @@ fn fastening_step(design: &Design, manifest: &Manifest) -> Option<String> {
     let fastening = design.fastening();
     let into = match (f.inserts > 0, fastening.nut_trap) {
         (true, _) => "into the inserts, from both sides",
+        (false, Some(_)) if f.nuts == 1 => {
+            "from the left, into a nut that lies in the trap of the right support"
+        }
         (false, Some(_)) => "from the left, into nuts that lie in the traps of the right support",
+        (false, None) if f.nuts == 1 => "and a nut",
         (false, None) => "and nuts",
     };
-    let pierced = if fastening.nut_trap.is_some() || fastening.counterbore.is_some() {
+    let recesses = [fastening.nut_trap, fastening.counterbore, fastening.mount_counterbore];
+    let pierced = if recesses.iter().any(Option::is_some) {
         format!(
             " A skin of {} mm closes the holes above every recess, so that no support is needed: break it with the screw.",
             design.membrane_mm()
@@ -265,10 +284,13 @@ fn fastening_step(design: &Design, manifest: &Manifest) -> Option<String> {
     };
     let screws = match f.right_length_mm {
         Some(right_mm) => format!(
-            "{} screws {} x {} from the left and {} x {right_mm} from the right",
-            f.number, f.thread, f.length_mm, f.thread
+            "{} {} x {} from the left and {} x {right_mm} from the right",
+            counted(f.number, "screw"),
+            f.thread,
+            f.length_mm,
+            f.thread
         ),
-        None => format!("{} screws {} x {}", f.number, f.thread, f.length_mm),
+        None => format!("{} {} x {}", counted(f.number, "screw"), f.thread, f.length_mm),
     };
     Some(format!("Fasten with {screws} {into}{tight}.{pierced}"))
 }
@@ -288,13 +310,9 @@ fn mounting_step(design: &Design, manifest: &Manifest) -> Option<String> {
             m.hole_diameter_mm, c.mount.bore_distance_mm
         ),
         MountKind::Rig => format!(
-            "Lay `rig-plate` outside the left support: the same screws hold it, and {} holes of {} mm take it to the table. Press the \
-             {} bearing into `guide-pulley` and bolt it over `pulley-spacer` ({}), its bearing towards the plate, on the load's side: \
-             the tendon runs on over it to the load.",
-            m.holes,
-            m.hole_diameter_mm,
-            m.bearing.unwrap_or_default(),
-            m.axle.as_deref().unwrap_or_default()
+            "Put the axle's bolt through `rig-plate` from below, its head in the pocket, and lay the plate outside the left support: the \
+             same screws hold it, and {} holes of {} mm take it to the table. No head stands out below it.",
+            m.holes, m.hole_diameter_mm
         ),
     };
     if let Some(hardware) = &m.sheath_stop {
@@ -304,6 +322,31 @@ fn mounting_step(design: &Design, manifest: &Manifest) -> Option<String> {
         );
     }
     Some(step)
+}
+
+/// The guide pulley on its axle, on the rig or by itself.
+fn pulley_step(design: &Design, manifest: &Manifest) -> Option<String> {
+    let bill = &manifest.bill_of_materials;
+    let mount = bill.mount.as_ref();
+    if let (Some(bearing), Some(axle)) = (mount.and_then(|m| m.bearing), mount.and_then(|m| m.axle.as_ref()))
+    {
+        return Some(format!(
+            "Press the {bearing} bearing into `guide-pulley`. Put `pulley-spacer` on the bolt ({axle}), then the pulley, its bearing \
+             towards the plate, washer and nut: it turns freely on the load's side, {} mm from the switch along the tendon, which runs on \
+             over it to the load.",
+            design.configuration().mount.pulley_distance_mm
+        ));
+    }
+    let bearing = bill.pulley_bearing?;
+    Some(format!(
+        "Press a {bearing} bearing into `guide-pulley`, and put it on an axle of 8 mm beside the switch, on the load's side: the tendon \
+         runs on over it to the load."
+    ))
+}
+
+/// `1 screw`, `2 screws`.
+fn counted(number: usize, word: &str) -> String {
+    format!("{number} {word}{}", if number == 1 { "" } else { "s" })
 }
 
 /// Where the unloaded tendon lies on the bed beside its pins.
@@ -328,4 +371,65 @@ fn where_it_lies(design: &Design) -> String {
          keeps it off at light loads, and load brings more of it down.",
         places.join(" and ")
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config;
+
+    fn guide(text: &str) -> String {
+        let (configuration, _) = config::read(text, "x.toml").unwrap();
+        let built = Built::new(Design::new(configuration).unwrap()).unwrap();
+        let prediction = Prediction::of(built.design());
+        let set =
+            crate::set::Set::new(&built, &prediction, &super::super::named(&["guide"]).unwrap()).unwrap();
+        let bytes = set.files.iter().find(|f| f.name == "PRINTING.md").unwrap().bytes.clone();
+        String::from_utf8(bytes).unwrap()
+    }
+
+    /// Numbers of sections and of steps follow each other, whatever is in the set.
+    fn assert_numbered(text: &str) {
+        let sections = text.lines().filter_map(|l| l.strip_prefix("## ")?.split_once(". "));
+        let numbers: Vec<&str> = sections.map(|s| s.0).collect();
+        let expected: Vec<String> = (1..=numbers.len()).map(|n| n.to_string()).collect();
+        assert_eq!(numbers, expected, "{text}");
+    }
+
+    #[test]
+    fn a_guide_speaks_of_what_is_in_the_set() {
+        let usual = guide("[layout]\npins = [5, 8, 11]\n");
+        assert_numbered(&usual);
+        assert!(usual.contains("100 % infill for the mould") && usual.contains("push a pin into each slot"));
+        assert!(!usual.contains("cast before") && !usual.contains("608"));
+
+        let without_mould = guide("[layout]\npins = [5, 8, 11]\n[mould]\nkind = \"none\"\n");
+        assert_numbered(&without_mould);
+        assert!(!without_mould.contains("infill for the mould"), "{without_mould}");
+        assert!(without_mould.contains("Take a silicone layer that was cast before"), "{without_mould}");
+
+        let rigid = guide("substrate = \"abs\"\n[layout]\npins = [5, 8, 11]\n");
+        assert_numbered(&rigid);
+        assert!(!rigid.contains("silicone layer") && !rigid.contains("infill for the mould"), "{rigid}");
+
+        let bare = guide("[layout]\npins = []\n");
+        assert!(!bare.contains("push a pin into each slot"), "{bare}");
+    }
+
+    #[test]
+    fn one_is_one() {
+        let single = guide("[layout]\npins = [8]\n[fasteners]\ncount = 1\n[pins]\nspares = 0\n");
+        assert!(single.contains("Fasten with 1 screw M3 x ") && single.contains("Cut 1 pin of"), "{single}");
+        let words = ["pins", "screws", "dowels", "layers", "grooves", "holes", "nuts"];
+        assert!(words.iter().all(|w| !single.contains(&format!(" 1 {w} "))), "{single}");
+    }
+
+    #[test]
+    fn a_guide_pulley_has_its_bearing_and_its_step() {
+        let alone = guide("[layout]\npins = [5, 8, 11]\n[parts]\nguide_pulley = true\n");
+        assert!(alone.contains("Press a 608 bearing into `guide-pulley`"), "{alone}");
+        let rig = guide("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n");
+        assert_eq!(rig.matches("608").count(), 1, "{rig}");
+        assert!(rig.contains("Put `pulley-spacer` on the bolt (M8 x "), "{rig}");
+    }
 }

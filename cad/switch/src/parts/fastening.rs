@@ -56,19 +56,42 @@ pub(super) fn plate_holes(
     let Some(recess) = recess else {
         return solid.through_holes(&holes, 0.0, plate_mm, print.elephant_foot_mm);
     };
-    let floor = recess.depth_mm + design.membrane_mm();
     let mut mouths = Mouths::default();
     for (angle, hole) in design.fastener_angles_rad().into_iter().zip(&holes) {
         // The right plate is printed as its mirror image, and its holes lie alike on both sides.
-        mouths.0.push(solid.recess(&outline(design, &recess, angle), &[], 0.0, recess.depth_mm));
-        mouths.1.push(solid.pocket(hole, &[], floor, plate_mm));
+        let outline = outline(&recess, polar(design.fastener_radius_mm(), angle), angle);
+        add_seated(&mut mouths, solid, design, [&outline, hole], recess.depth_mm, plate_mm);
     }
     Ok(mouths)
 }
 
-/// The recess about the fastener at `angle_rad`, clockwise; a hexagon has two sides along the arc.
-fn outline(design: &Design, recess: &Recess, angle_rad: f64) -> Contour {
-    let middle = polar(design.fastener_radius_mm(), angle_rad);
+/// A hole of a plate at `middle` over a recess in its outer face.
+pub(super) fn seated_hole(
+    mouths: &mut Mouths,
+    solid: &mut Solid,
+    design: &Design,
+    hole: &Contour,
+    (middle, recess): (Point2, Recess),
+    plate_mm: f64,
+) {
+    let outline = outline(&recess, middle, 0.0);
+    add_seated(mouths, solid, design, [&outline, hole], recess.depth_mm, plate_mm);
+}
+
+fn add_seated(
+    mouths: &mut Mouths,
+    solid: &mut Solid,
+    design: &Design,
+    [outline, hole]: [&Contour; 2],
+    depth_mm: f64,
+    plate_mm: f64,
+) {
+    mouths.0.push(solid.recess(outline, &[], 0.0, depth_mm));
+    mouths.1.push(solid.pocket(hole, &[], depth_mm + design.membrane_mm(), plate_mm));
+}
+
+/// A recess, clockwise; a hexagon has two sides square to the direction at `angle_rad`.
+fn outline(recess: &Recess, middle: Point2, angle_rad: f64) -> Contour {
     if !recess.is_hexagon {
         return Contour::circle(middle, recess.radial_mm).reversed();
     }

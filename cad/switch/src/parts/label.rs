@@ -34,6 +34,15 @@ pub(super) enum Zone {
 pub(super) struct Engraving {
     pub(super) rings: Vec<RingId>,
     pub(super) note: Option<String>,
+    /// What was engraved, line by line.
+    pub(super) lines: Vec<String>,
+}
+
+impl Engraving {
+    /// Nothing, and why.
+    pub(super) const fn none(note: Option<String>) -> Self {
+        Self { rings: Vec::new(), note, lines: Vec::new() }
+    }
 }
 
 impl Zone {
@@ -137,15 +146,15 @@ pub(super) fn engrave_text(
 ) -> Engraving {
     let c = design.configuration();
     if !c.label.engrave {
-        return Engraving { rings: Vec::new(), note: None };
+        return Engraving::none(None);
     }
     let size = largest_mm(design, text, zone).filter(|_| top_mm - c.label.depth_mm >= c.print.least_wall_mm);
-    let Some(size) = size else { return Engraving { rings: Vec::new(), note: Some(left_out(text)) } };
+    let Some(size) = size else { return Engraving::none(Some(left_out(text))) };
     let rings = shapes(design, text, zone, size)
         .into_iter()
         .map(|(outline, islands)| solid.pocket(&outline, &islands, top_mm - c.label.depth_mm, top_mm))
         .collect();
-    Engraving { rings, note: None }
+    Engraving { rings, note: None, lines: vec![text.to_owned()] }
 }
 
 /// Engraves `text` in letters of `size_mm` into the face on the bed, to be read from below; its rings are holes in the

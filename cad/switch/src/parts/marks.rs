@@ -12,18 +12,18 @@ const STEP_MM: f64 = 0.1;
 pub(super) fn engrave_marks(solid: &mut Solid, design: &Design, is_right: bool) -> Engraving {
     let c = design.configuration();
     if !c.label.engrave {
-        return Engraving { rings: Vec::new(), note: None };
+        return Engraving::none(None);
     }
     let side = if is_right { "R" } else { "L" };
     let least_floor =
         c.print.least_wall_mm.max(c.support.plate_mm - c.support.plate_mm.max(c.label.depth_mm));
     if c.support.plate_mm - c.label.depth_mm < least_floor {
-        return Engraving { rings: Vec::new(), note: Some(left_out(side)) };
+        return Engraving::none(Some(left_out(side)));
     }
     let wanted = row_sets(side, &design.label(), is_right);
     let found = wanted.iter().find_map(|rows| Some((rows, fitted(design, rows)?)));
     let Some((rows, (size, zones))) = found else {
-        return Engraving { rings: Vec::new(), note: Some(left_out(side)) };
+        return Engraving::none(Some(left_out(side)));
     };
     let rings = rows
         .iter()
@@ -32,7 +32,7 @@ pub(super) fn engrave_marks(solid: &mut Solid, design: &Design, is_right: bool) 
         .collect();
     let is_whole = rows.concat().contains(&design.label());
     let note = (!is_whole).then(|| left_out(&design.label()));
-    Engraving { rings, note }
+    Engraving { rings, note, lines: rows.clone() }
 }
 
 /// Rows from the outside inward, the fullest set first. Groove 1 is on the load's side, to which the arrow points: seen

@@ -3,7 +3,7 @@
 
 use super::{Part, Pose, Role, fastening, offset_error};
 use crate::config::{ConfigError, Configuration, MountKind};
-use crate::design::{Design, SheathStop, pulley_width_mm};
+use crate::design::{Design, Hole, SheathStop, axle_recess, pulley_width_mm, stop_recess};
 use pinswitch_solid::profile::{Contour, Point2, Vector2, hull};
 use pinswitch_solid::solid::{Facing, Solid};
 
@@ -57,19 +57,19 @@ pub(super) fn plate(design: &Design) -> Result<Part, ConfigError> {
     let foot = offset_error("print.elephant_foot_mm");
     let mounting = design.mounting().ok_or_else(no_plate)?;
     let outline = hull(&mounting.discs).ok_or_else(no_plate)?;
-    let screws = mounting.sheath.iter().flat_map(|s| s.screws);
-    let holes: Vec<_> = mounting
-        .holes
-        .iter()
-        .copied()
-        .chain(mounting.axle)
-        .chain(screws)
-        .map(|h| Contour::circle(h.centre, h.radius_mm).reversed())
-        .collect();
+    let circle = |h: &Hole| Contour::circle(h.centre, h.radius_mm).reversed();
+    let holes: Vec<_> = mounting.holes.iter().map(circle).collect();
     let mut solid = Solid::new();
     let (bottom, top) = solid.extrude_chamfered(&outline, 0.0, thickness, chamfer).map_err(&foot)?;
-    let (mut bottoms, mut tops) = solid.through_holes(&holes, 0.0, thickness, chamfer).map_err(&foot)?;
-    let recess = design.fastening().recess(true);
+    let mut mouths = solid.through_holes(&holes, 0.0, thickness, chamfer).map_err(&foot)?;
+    let axle = mounting.axle.iter().map(|h| (*h, axle_recess()));
+    let screws = mounting.sheath.iter().flat_map(|s| s.screws).map(|h| (h, stop_recess()));
+    for (hole, recess) in axle.chain(screws) {
+        let (outline, seat) = (circle(&hole), (hole.centre, recess));
+        fastening::seated_hole(&mut mouths, &mut solid, design, &outline, seat, thickness);
+    }
+    let (mut bottoms, mut tops) = mouths;
+    let recess = design.fastening().mount_counterbore;
     let (screw_bottoms, screw_tops) =
         fastening::plate_holes(&mut solid, design, recess, thickness).map_err(&foot)?;
     bottoms.extend(screw_bottoms);
@@ -78,7 +78,14 @@ pub(super) fn plate(design: &Design) -> Result<Part, ConfigError> {
     solid.cap(Facing::Up, top, &tops);
     let pose = Pose::upright(face_mm(design) - thickness);
     let kind = c.mount.kind;
-    Ok(Part::new(name(kind), Role::Mount, solid, Some(pose)))
+    let mut part = Part::new(name(kind), Role::Mount, solid, Some(pose));
+    if recess.is_none() && c.fasteners.count > 0 && c.fasteners.head_recess_mm > 0.0 {
+        part.notes.push(format!(
+            "counterbores for the heads do not fit and are left out: raise mount.plate_mm to {}",
+            design.seated_mm(c.fasteners.head_recess_mm)
+        ));
+    }
+    Ok(part)
 }
 
 /// Length of the spacer between plate and bearing, mm: the pulley's groove lies where the tendon runs.
@@ -91,12 +98,16 @@ pub fn spacer_mm(design: &Design) -> f64 {
 pub(super) fn spacer(design: &Design) -> Result<Part, ConfigError> {
     let mounting = design.mounting().ok_or_else(no_plate)?;
     let axle = mounting.axle.ok_or_else(no_plate)?;
-    let ring = Contour::circle(axle.centre, SPACER_RADIUS_MM);
-    let bore = Contour::circle(axle.centre, axle.radius_mm).reversed();
     let chamfer = design.configuration().print.elephant_foot_mm;
-    let solid = Solid::prism(&ring, &[bore], 0.0, spacer_mm(design), chamfer)
-        .map_err(offset_error("print.elephant_foot_mm"))?;
-    Ok(Part::new("pulley-spacer", Role::Mount, solid, Some(Pose::upright(face_mm(design)))))
+    let about = |centre: Point2| {
+        let ring = Contour::circle(centre, SPACER_RADIUS_MM);
+        let bore = Contour::circle(centre, axle.radius_mm).reversed();
+        Solid::prism(&ring, &[bore], 0.0, spacer_mm(design), chamfer)
+            .map_err(offset_error("print.elephant_foot_mm"))
+    };
+    let pose = Some(Pose::upright(face_mm(design)));
+    let part = Part::new("pulley-spacer", Role::Mount, about(axle.centre)?, pose);
+    Ok(Part { drawn: Some(about(Point2::origin())?), ..part })
 }
 
 /// A point of the sheath stop: along the tendon from its start, and outward from the tendon's axis.
@@ -108,9 +119,15 @@ fn at(stop: &SheathStop, along_mm: f64, outward_mm: f64) -> Point2 {
 /// The stop in which a sheath ends: a base with two jaws that leave a channel for the tendon, and a wider one, as long as
 /// [`SHEATH_SHARE`], for the sheath, whose end rests on the step between them. Open above, so that the tendon is laid in.
 pub(super) fn sheath_stop(design: &Design) -> Result<Part, ConfigError> {
-    let c = design.configuration();
     let mounting = design.mounting().ok_or_else(no_plate)?;
     let stop = mounting.sheath.ok_or_else(no_plate)?;
+    let pose = Some(Pose::upright(face_mm(design)));
+    let part = Part::new("sheath-stop", Role::Mount, stop_solid(design, &stop)?, pose);
+    Ok(Part { drawn: Some(stop_solid(design, &stop.along_the_paper())?), ..part })
+}
+
+fn stop_solid(design: &Design, stop: &SheathStop) -> Result<Solid, ConfigError> {
+    let c = design.configuration();
     let foot = offset_error("print.elephant_foot_mm");
     let (length, half, chamfer) = (stop.length_mm, stop.half_width_mm, c.print.elephant_foot_mm);
     let (tendon, sheath) = (design.tendon_diameter_mm() / 2.0, c.tendon.sheath_diameter_mm / 2.0);
@@ -118,7 +135,7 @@ pub(super) fn sheath_stop(design: &Design) -> Result<Part, ConfigError> {
     let axis = c.support.plate_mm + c.shell.width_mm / 2.0;
     let floor = design.sheath_floor_mm();
     let top = axis + sheath;
-    let quad = |points: [(f64, f64); 4]| Contour::polygon(points.map(|(x, y)| at(&stop, x, y)).to_vec());
+    let quad = |points: [(f64, f64); 4]| Contour::polygon(points.map(|(x, y)| at(stop, x, y)).to_vec());
     let base = quad([(0.0, -half), (length, -half), (length, half), (0.0, half)]);
     let screws: Vec<_> =
         stop.screws.iter().map(|h| Contour::circle(h.centre, h.radius_mm).reversed()).collect();
@@ -129,7 +146,7 @@ pub(super) fn sheath_stop(design: &Design) -> Result<Part, ConfigError> {
     let step = length * (1.0 - SHEATH_SHARE);
     let jaw_half = stop.half_width_mm - 2.0 * stop.screws[0].radius_mm - JAW_AIR_MM;
     for side in [-1.0, 1.0] {
-        let jaw = |x: f64, y: f64| at(&stop, x, side * y);
+        let jaw = |x: f64, y: f64| at(stop, x, side * y);
         let points = [
             jaw(STAND_BACK_MM, tendon + STOP_PLAY_MM),
             jaw(step, tendon + STOP_PLAY_MM),
@@ -143,5 +160,5 @@ pub(super) fn sheath_stop(design: &Design) -> Result<Part, ConfigError> {
         standing.push(solid.boss(&outline, floor, top));
     }
     solid.cap(Facing::Up, deck, &standing);
-    Ok(Part::new("sheath-stop", Role::Mount, solid, Some(Pose::upright(face_mm(design)))))
+    Ok(solid)
 }

@@ -108,11 +108,25 @@ pub struct Part {
     pub tool_pose: Option<Pose>,
     /// Notes on it for the user.
     pub notes: Vec<String>,
+    /// What is engraved in it, line by line.
+    pub engraved: Vec<String>,
+    /// The solid as a workshop draws it, where that is not as it lies in the set: about its own axis, or with its sides
+    /// along the paper.
+    pub drawn: Option<Solid>,
 }
 
 impl Part {
     pub(super) fn new(name: impl Into<String>, role: Role, solid: Solid, pose: Option<Pose>) -> Self {
-        Self { name: name.into(), role, solid, pose, tool_pose: None, notes: Vec::new() }
+        Self {
+            name: name.into(),
+            role,
+            solid,
+            pose,
+            tool_pose: None,
+            notes: Vec::new(),
+            engraved: Vec::new(),
+            drawn: None,
+        }
     }
 
     /// What it is made of.

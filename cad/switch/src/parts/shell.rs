@@ -70,6 +70,7 @@ pub(super) fn shell(design: &Design) -> Result<Part, ConfigError> {
     solid.cap(Facing::Up, top, &tops);
     let mut part = Part::new("shell", Role::Shell, solid, Some(Pose::upright(0.0)));
     part.notes.extend(engraved.note);
+    part.engraved = engraved.lines;
     if c.shell.stop_mm > 0.0 && design.stops_mm().is_none() {
         part.notes.push(
             "the stops do not fit and are left out: raise shell.stop_mm or silicone.thickness_mm".to_owned(),

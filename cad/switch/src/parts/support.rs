@@ -79,6 +79,7 @@ fn support(design: &Design, side: Side) -> Result<Part, ConfigError> {
     };
     let mut part = Part::new(name, Role::Support { outwards_z }, solid, Some(pose));
     part.notes.extend(marks.note);
+    part.engraved = marks.lines;
     part.notes.extend(notes(design, side, lost_lip));
     Ok(part)
 }
@@ -97,26 +98,24 @@ fn recess(design: &Design, side: Side) -> Option<Recess> {
 /// What was left out, and what does not hold.
 fn notes(design: &Design, side: Side, lost_lip: bool) -> Vec<String> {
     let c = design.configuration();
-    let fastening = design.fastening();
-    let has_screws = c.fasteners.count > 0;
+    let has_heads = match side {
+        Side::Left => c.mount.kind == MountKind::None,
+        Side::Right => c.fasteners.kind == FastenerKind::Insert,
+    };
     let lost = |is_lost: bool, note: &str| is_lost.then(|| note.to_owned());
-    let wants_trap =
-        side == Side::Right && c.fasteners.kind == FastenerKind::NutTrap && c.fasteners.nut_recess_mm > 0.0;
     [
         lost(
             lost_lip,
             "the lip does not fit under the edge of the plate and is left out: raise support.rise_mm",
         ),
-        lost(
-            has_screws && wants_trap && fastening.nut_trap.is_none(),
-            "nut traps do not fit and are left out: raise shell.wall_mm or support.plate_mm, or lower \
-             fasteners.nut_recess_mm",
-        ),
-        lost(
-            has_screws && side == Side::Left && c.fasteners.head_recess_mm > 0.0 && fastening.counterbore.is_none(),
-            "counterbores for the heads do not fit and are left out: raise shell.wall_mm or the plate, or lower \
-             fasteners.head_recess_mm",
-        ),
+        design
+            .nut_trap_remedy()
+            .filter(|_| side == Side::Right)
+            .map(|remedy| format!("nut traps do not fit and are left out: {remedy}")),
+        design
+            .counterbore_remedy()
+            .filter(|_| has_heads)
+            .map(|remedy| format!("counterbores for the heads do not fit and are left out: {remedy}")),
     ]
     .into_iter()
     .flatten()

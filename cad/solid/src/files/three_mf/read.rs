@@ -27,6 +27,10 @@ const MAX_DEPTH: usize = 16;
 const MAX_STEPS: usize = 10_000;
 /// Most meshes that are examined again because they are built in another size.
 const MAX_SCALED: usize = 100;
+/// Most solids that are kept in their places.
+const MAX_BUILT: usize = 500;
+/// And most triangles of all of them.
+const MAX_BUILT_TRIANGLES: usize = 10_000_000;
 /// How far a turn may be off by rounding.
 const RIGID: f64 = 1e-4;
 /// How far below zero a part may lie, mm: what rounding leaves.
@@ -50,6 +54,9 @@ pub struct ThreeMf {
     pub meshes: Vec<PackagedMesh>,
     /// Where it breaks the specification.
     pub faults: Vec<Fault>,
+    /// Each solid as it stands on the plate: the number of its build item from 0, its name, and its mesh in place. Solids of
+    /// one item are one object.
+    pub built: Vec<(usize, String, Mesh)>,
     /// The configuration that made it, if this program wrote it.
     pub configuration: Option<String>,
 }
@@ -112,7 +119,8 @@ pub fn read_three_mf(bytes: &[u8]) -> Result<ThreeMf, ThreeMfReadError> {
         };
         models.insert(missing, model);
     }
-    let scaled = placed(&models, &name, &mut found.faults);
+    let (scaled, built) = placed(&models, &name, &mut found.faults);
+    found.built = built;
     let main = models.remove(&name).into_iter();
     found.meshes = main.chain(models.into_values()).flat_map(Model::meshes).chain(scaled).collect();
     Ok(found)
@@ -313,13 +321,28 @@ fn metadata_faults(root: Node<'_, '_>) -> Vec<Fault> {
 }
 
 fn read_mesh(mesh: Node<'_, '_>, id: &str, unit_mm: f64, faults: &mut Vec<Fault>) -> Mesh {
-    let number = |node: Node<'_, '_>, name| -> f64 {
-        node.attribute(name).and_then(|v| v.trim().parse().ok()).unwrap_or(f64::NAN)
+    let mut unread: Vec<String> = Vec::new();
+    let mut number = |node: Node<'_, '_>, name: &str| -> f64 {
+        let text = node.attribute(name);
+        let value = text.and_then(|v| v.trim().parse().ok());
+        if value.is_none() {
+            unread.push(text.map_or_else(|| format!("without {name}"), |v| format!("with {name}=\"{v}\"")));
+        }
+        value.unwrap_or(f64::NAN)
     };
     let positions: Vec<Point3> = core(mesh, "vertices")
         .flat_map(|all| core(all, "vertex"))
         .map(|v| Point3::new(number(v, "x"), number(v, "y"), number(v, "z")) * unit_mm)
         .collect();
+    if let Some(first) = unread.first() {
+        let comma = if first.contains(',') { "; numbers have a point, not a comma" } else { "" };
+        faults.push(Fault {
+            check: "number",
+            count: unread.len(),
+            at_mm: None,
+            detail: format!("object {id} has a vertex {first}, which says no number{comma}"),
+        });
+    }
     let mut outside = 0;
     let mut triangles = Vec::new();
     for triangle in core(mesh, "triangles").flat_map(|all| core(all, "triangle")) {
@@ -387,14 +410,19 @@ fn missing_part(models: &BTreeMap<String, Model>) -> Option<String> {
 
 /// Follows what is to be built down to its meshes, and says what cannot be built. Meshes that are built in another size
 /// or shape than their own are returned as they are built.
-fn placed(models: &BTreeMap<String, Model>, main: &str, faults: &mut Vec<Fault>) -> Vec<PackagedMesh> {
+fn placed(
+    models: &BTreeMap<String, Model>,
+    main: &str,
+    faults: &mut Vec<Fault>,
+) -> (Vec<PackagedMesh>, Vec<(usize, String, Mesh)>) {
     let items = models.get(main).map_or(&[][..], |model| &model.items);
     if items.is_empty() {
         faults.push(fault("build", "nothing is to be built".to_owned()));
     }
-    let (mut steps, mut scaled) = (0, Vec::new());
-    for (place, transform) in items {
-        let mut way = Way { models, bounds: None, faults, steps, scaled: &mut scaled };
+    let (mut steps, mut scaled, mut built) = (0, Vec::new(), Vec::new());
+    for (item, (place, transform)) in items.iter().enumerate() {
+        let mut way =
+            Way { models, bounds: None, faults, steps, scaled: &mut scaled, item, built: &mut built };
         way.follow(place, *transform, 0);
         steps = way.steps;
         // What reaches over an edge of the bed, slicers centre; what lies below or beside it is a mistake.
@@ -406,7 +434,7 @@ fn placed(models: &BTreeMap<String, Model>, main: &str, faults: &mut Vec<Fault>)
             faults.push(fault("outside", detail));
         }
     }
-    scaled
+    (scaled, built)
 }
 
 /// The way from an item down to its meshes.
@@ -419,9 +447,18 @@ struct Way<'a> {
     steps: usize,
     /// Meshes that are built otherwise than they are.
     scaled: &'a mut Vec<PackagedMesh>,
+    /// The number of the item, and all solids of all items in place.
+    item: usize,
+    built: &'a mut Vec<(usize, String, Mesh)>,
 }
 
 impl Way<'_> {
+    /// Whether a mesh in its place is kept: a few numbers in a file may ask for any number of copies.
+    fn keeps(&self, mesh: &Mesh) -> bool {
+        let kept: usize = self.built.iter().map(|(_, _, m)| m.triangles.len()).sum();
+        self.built.len() < MAX_BUILT && kept + mesh.triangles.len() <= MAX_BUILT_TRIANGLES
+    }
+
     fn follow(&mut self, (part, id): &Place, transform: Transform, depth: usize) {
         self.steps += 1;
         let Some(object) = self.models.get(part).and_then(|model| model.objects.get(id)) else {
@@ -443,6 +480,10 @@ impl Way<'_> {
             self.bounds = Some((low.inf(&p), high.sup(&p)));
         }
         let is_solid = matches!(object.kind.as_str(), "model" | "solidsupport");
+        if let Some(mesh) = object.mesh.as_ref().filter(|m| is_solid && self.keeps(m)) {
+            let positions = mesh.positions.iter().map(|p| moved(&transform, *p)).collect();
+            self.built.push((self.item, object.name.clone(), Mesh::new(positions, mesh.triangles.clone())));
+        }
         if let Some(mesh) =
             object.mesh.as_ref().filter(|_| !is_rigid(&transform) && self.scaled.len() < MAX_SCALED)
         {

@@ -1,8 +1,9 @@
 //! Rules for the mounting plate and the sheath stop.
 
-use super::Change::{self, Lower, Raise, Set};
+use super::Change::{self, Ease, Lower, Raise, Set};
 use super::{Assessment, Inspection, Rule, Severity, require};
 use crate::config::MountKind;
+use crate::design::fastening::{HEAD_BELOW_MM, axle_recess, stop_recess};
 use crate::design::mounting::{Hole, PULLEY_AIR_MM, PULLEY_RADIUS_MM, SheathStop};
 use crate::design::{pulley_outer_mm, pulley_width_mm};
 use pinswitch_solid::profile::hull;
@@ -22,6 +23,7 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "mount.pulley_distance_mm", severity: Severity::Error, assess: pulley_beside_switch },
     Rule { field: "mount.kind", severity: Severity::Error, assess: pulley_over_plate },
     Rule { field: "mount.kind", severity: Severity::Error, assess: plate_on_bed },
+    Rule { field: "mount.plate_mm", severity: Severity::Error, assess: heads_within_plate },
 ];
 
 const NO_MOUNT: Change = Set("mount.kind", "\"none\"");
@@ -70,17 +72,6 @@ fn plate_is_fastened(i: &Inspection<'_>) -> Assessment {
     })
 }
 
-/// All holes of the plate; the fasteners with what their heads take.
-fn holes(i: &Inspection<'_>) -> Vec<Hole> {
-    let Some(mounting) = i.mounting() else { return Vec::new() };
-    let fasteners = i.fastener_angles_rad().into_iter().map(|angle| Hole {
-        centre: pinswitch_solid::profile::polar(i.fastener_radius_mm(), angle),
-        radius_mm: i.fastener_along_mm(),
-    });
-    let screws = mounting.sheath.iter().flat_map(|s| s.screws);
-    mounting.holes.iter().copied().chain(mounting.axle).chain(screws).chain(fasteners).collect()
-}
-
 /// How far a hole stays from the sheath stop's base, mm.
 fn beside_stop_mm(hole: &Hole, stop: &SheathStop) -> f64 {
     let from = hole.centre - stop.start;
@@ -91,7 +82,7 @@ fn beside_stop_mm(hole: &Hole, stop: &SheathStop) -> f64 {
 
 fn holes_clear_each_other(i: &Inspection<'_>) -> Assessment {
     let Some(mounting) = i.mounting() else { return Assessment::NotApplicable };
-    let all = holes(i);
+    let all = &mounting.taken;
     let apart = |a: &Hole, b: &Hole| (a.centre - b.centre).norm() >= a.radius_mm + b.radius_mm + HOLE_WALL_MM;
     let pairs = all.iter().enumerate().all(|(k, a)| all[k + 1..].iter().all(|b| apart(a, b)));
     let own = mounting.holes.iter().chain(&mounting.axle);
@@ -154,6 +145,42 @@ fn plate_on_bed(i: &Inspection<'_>) -> Assessment {
                 Lower("mount.bore_distance_mm"),
                 Lower("mount.pulley_distance_mm"),
                 Raise("print.bed_mm"),
+                NO_MOUNT,
+            ],
+        )
+    })
+}
+
+/// The heads of all screws that stand in the plate from below must lie within it.
+fn heads_within_plate(i: &Inspection<'_>) -> Assessment {
+    let Some(mounting) = i.mounting() else { return Assessment::NotApplicable };
+    let c = i.configuration();
+    let fastening = i.fastening();
+    let stop = mounting.sheath.map(|_| ("the sheath stop's screws", stop_recess().depth_mm));
+    let axle = mounting.axle.map(|_| ("the axle's bolt", axle_recess().depth_mm));
+    let heads = fastening.thread.filter(|_| i.lies_on_a_table() && c.fasteners.count > 0);
+    let heads = heads.map(|t| ("the screws", (t.head_mm[1] + HEAD_BELOW_MM).max(c.fasteners.head_recess_mm)));
+    let deepest = [stop, axle, heads].into_iter().flatten().max_by(|a, b| a.1.total_cmp(&b.1));
+    let Some((whose, depth)) = deepest else { return Assessment::NotApplicable };
+    let needed = i.seated_mm(depth);
+    let is_crowded = heads.is_some() && fastening.mount_counterbore.is_none();
+    require(c.mount.plate_mm + 1e-9 >= needed && !is_crowded, || {
+        let problem = if c.mount.plate_mm + 1e-9 < needed {
+            format!(
+                "is too thin for the heads of {whose}, which sink in its outer face: {needed:.3} mm is the least"
+            )
+        } else {
+            "has no room between the screws for the recesses of their heads".to_owned()
+        };
+        (
+            problem,
+            &[
+                Raise("mount.plate_mm"),
+                Ease("fasteners.head_recess_mm"),
+                Ease("print.layer_mm"),
+                Lower("fasteners.hole_diameter_mm"),
+                Lower("fasteners.count"),
+                Raise("shell.outer_radius_mm"),
                 NO_MOUNT,
             ],
         )

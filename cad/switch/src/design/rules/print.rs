@@ -160,10 +160,23 @@ fn rim_of_holes(i: &Inspection<'_>) -> Assessment {
     if c.fasteners.count == 0 {
         return Assessment::NotApplicable;
     }
-    let rim = (c.shell.wall_mm - c.segment.groove_radius_mm - c.fasteners.hole_diameter_mm) / 2.0;
+    // The widest that a fastener is across the wall: its hole or insert in the shell, its recess in the supports.
+    let fastening = i.fastening();
+    let (middle, hole) = (i.fastener_radius_mm(), c.fasteners.hole_diameter_mm / 2.0);
+    let in_shell = i.shell_hole_mm();
+    let recesses = [fastening.nut_trap, fastening.counterbore].into_iter().flatten();
+    let in_support = recesses.fold(hole, |widest, r| widest.max(r.radial_mm));
+    let of_shell = (c.shell.wall_mm - c.segment.groove_radius_mm) / 2.0 - in_shell;
+    let of_support = (middle - i.inner_radius_mm()).min(i.slot().inner_edge_mm() - middle) - in_support;
+    let rim = of_shell.min(of_support);
+    let what = match (in_shell > hole, in_support > hole && of_support < of_shell) {
+        (_, true) => "the recesses for heads or nuts",
+        (true, false) => "the inserts",
+        (false, false) => "the screw holes",
+    };
     check(
         rim >= GOOD_RIM_MM,
-        format!("{rim:.2} mm of wall around the screw holes, {GOOD_RIM_MM:.1} is good"),
+        format!("{rim:.2} mm of wall around {what}, {GOOD_RIM_MM:.1} is good"),
         "raise shell.wall_mm or lower fasteners.hole_diameter_mm",
     )
 }

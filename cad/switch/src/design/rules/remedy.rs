@@ -15,7 +15,7 @@ const STEPS_PER_UNIT: f64 = 1e3;
 const NAMED: usize = 4;
 
 /// A change that may mend what a rule found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
     /// A smaller value of this parameter.
     Lower(&'static str),
@@ -23,6 +23,8 @@ pub enum Change {
     Raise(&'static str),
     /// A smaller value where it is above its default: of what nobody would lower who had not raised it.
     Ease(&'static str),
+    /// The nearest of these values on either side: of what is sold in sizes.
+    OneOf(&'static str, &'static [f64]),
     /// This value, as TOML.
     Set(&'static str, &'static str),
     /// What only words can say.
@@ -32,7 +34,11 @@ pub enum Change {
 impl Change {
     const fn field(self) -> Option<&'static str> {
         match self {
-            Self::Lower(field) | Self::Raise(field) | Self::Ease(field) | Self::Set(field, _) => Some(field),
+            Self::Lower(field)
+            | Self::Raise(field)
+            | Self::Ease(field)
+            | Self::OneOf(field, _)
+            | Self::Set(field, _) => Some(field),
             Self::Say(_) => None,
         }
     }
@@ -46,7 +52,7 @@ impl Change {
                 let default = number(&(parameter.get)(&Configuration::default()))?;
                 (number(&(parameter.get)(c))? > default).then_some(false)
             }
-            Self::Set(..) | Self::Say(_) => None,
+            Self::OneOf(..) | Self::Set(..) | Self::Say(_) => None,
         }
     }
 }
@@ -103,7 +109,13 @@ fn advice(rule: &Rule, c: &Configuration, changes: &[Change]) -> (&'static str, 
     let single = |fits: &dyn Fn(&Dimensions) -> bool| -> Vec<Tried> {
         changes.iter().filter_map(|change| tried(*change, c, fits)).collect()
     };
-    let mut found = single(&breaks_none);
+    // Best is what mends all that is broken: other rules may be broken by the same value.
+    let all: Vec<_> = rules().filter(|r| r.severity == Severity::Error).collect();
+    let mends_all = |d: &Dimensions| all.iter().all(|r| keeps(r, d));
+    let mut found = single(&mends_all);
+    if found.is_empty() {
+        found = single(&breaks_none);
+    }
     if found.is_empty() {
         found = together(changes, c, &breaks_none);
         if !found.is_empty() {
@@ -163,11 +175,33 @@ fn tried(change: Change, c: &Configuration, fits: &dyn Fn(&Dimensions) -> bool) 
         let (value, changed) = (format!("= {value}"), changed.configuration().clone());
         return is_fine.then_some(Tried { field: Some(field), verb: "set", value, changed });
     }
+    if let Change::OneOf(_, values) = change {
+        return nearest_of((field, values), c, parameter, fits);
+    }
     let is_upwards = change.is_upwards(c, parameter)?;
     let walk = Walk::new(c, parameter, is_upwards)?;
     let (shown, changed) = walk.nearest(fits)?;
     let verb = if is_upwards { "raise" } else { "lower" };
     Some(Tried { field: Some(field), verb, value: format!("to {shown}"), changed })
+}
+
+/// The nearest of `values` that `fits`.
+fn nearest_of(
+    (field, values): (&'static str, &[f64]),
+    c: &Configuration,
+    parameter: &Parameter<Configuration>,
+    fits: &dyn Fn(&Dimensions) -> bool,
+) -> Option<Tried> {
+    let now = number(&(parameter.get)(c))?;
+    let mut nearest: Vec<f64> = values.iter().copied().filter(|v| (v - now).abs() > 1e-9).collect();
+    nearest.sort_by(|a, b| (a - now).abs().total_cmp(&(b - now).abs()));
+    nearest.into_iter().find_map(|value| {
+        let shown = format!("{value:?}");
+        let changed = with(c, parameter, &shown)?;
+        let verb = if value > now { "raise" } else { "lower" };
+        let tried = Tried { field: Some(field), verb, value: format!("to {shown}"), changed };
+        fits(&Dimensions::new(tried.changed.clone())).then_some(tried)
+    })
 }
 
 /// Changes that mend it together, as few as will do; none if all of them do not.
@@ -448,6 +482,85 @@ mod tests {
             assert_eq!(error.field, field, "{error}");
             assert!(error.remedy.contains(words), "{error}");
         }
+    }
+
+    /// The error of a configuration as a user meets it, of its rules or of its parts.
+    fn error_of(c: &Configuration) -> Option<ConfigError> {
+        match crate::design::Design::new(c.clone()) {
+            Err(error) => Some(error),
+            Ok(design) => crate::parts::printed(&design).err(),
+        }
+    }
+
+    /// Every value that the error names, taken, leads to a set that can be made: no next error, and no note that something
+    /// was left out for the same reason.
+    #[test]
+    fn a_remedy_about_hardware_mends_all_of_it() {
+        for assignments_of_case in [
+            &["fasteners.kind=insert", "fasteners.hole_diameter_mm=4"][..],
+            &["fasteners.kind=insert", "fasteners.hole_diameter_mm=4.1"],
+            &["fasteners.kind=insert", "fasteners.hole_diameter_mm=5.5"],
+            &["fasteners.hole_diameter_mm=1.5"],
+            &["fasteners.dowel_diameter_mm=3.95"],
+            &["fasteners.dowel_diameter_mm=2.2"],
+            &["shell.width_mm=60"],
+            &["shell.width_mm=120"],
+            &["mount.kind=rig", "mount.plate_mm=5"],
+            &["mount.kind=flange", "mount.plate_mm=3"],
+            &["mount.kind=flange", "tendon.sheath_diameter_mm=3", "mount.plate_mm=2.5"],
+            &["segment.grooves=40"],
+            &["segment.grooves=60"],
+        ] {
+            let c = with_all(assignments_of_case);
+            let error = error_of(&c).unwrap_or_else(|| panic!("{assignments_of_case:?} is fine"));
+            let named = assignments(&error);
+            assert!(!named.is_empty(), "{error}");
+            let mut ways: Vec<Vec<String>> = named.iter().map(|a| vec![a.clone()]).collect();
+            if error.remedy.starts_with("no single") {
+                ways = vec![named];
+            }
+            for way in ways {
+                let mut changed = c.clone();
+                way.iter().for_each(|a| assign(&mut changed, a).unwrap());
+                let next = error_of(&changed);
+                assert!(next.is_none(), "{error}\n{way:?} leads to {}", next.unwrap());
+            }
+        }
+    }
+
+    /// A note that something was left out names what brings it back.
+    #[test]
+    fn a_note_about_what_was_left_out_mends_it() {
+        let notes = |c: &Configuration| -> Vec<String> {
+            let design = crate::design::Design::new(c.clone()).unwrap();
+            let all = crate::parts::printed(&design).unwrap().into_iter();
+            all.flat_map(|p| p.notes).filter(|n| n.contains("do not fit and are left out: ")).collect()
+        };
+        let mut told = 0;
+        for case in [
+            &["shell.stop_mm=0"][..],
+            &["shell.wall_mm=5.5"],
+            &["fasteners.nut_recess_mm=2.4"],
+            &["fasteners.head_recess_mm=3"],
+            &["fasteners.head_recess_mm=1.7"],
+            &["fasteners.kind=insert", "fasteners.head_recess_mm=2"],
+            &["mount.kind=finger-link", "fasteners.head_recess_mm=6.5"],
+            &["fasteners.count=5"],
+        ] {
+            let mut c = with_all(case);
+            for _ in 0..6 {
+                let Some(note) = notes(&c).first().cloned() else { break };
+                let remedy = note.split("left out: ").nth(1).unwrap().to_owned();
+                let words: Vec<&str> = remedy.split(' ').collect();
+                let ["raise" | "lower", field, "to", value] = words[..] else { panic!("{note}") };
+                assign(&mut c, &format!("{field}={value}")).unwrap_or_else(|e| panic!("{note}: {e:?}"));
+                told += 1;
+            }
+            assert_eq!(notes(&c), Vec::<String>::new(), "{case:?}");
+        }
+        assert!(told >= 7, "{told}");
+        // What fits to a hair is not lost to rounding.
+        assert_eq!(notes(&with_all(&["fasteners.head_recess_mm=1.6"])), Vec::<String>::new());
     }
 
     #[test]

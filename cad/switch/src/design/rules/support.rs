@@ -1,9 +1,11 @@
 //! Rules for the side supports, their slots and the fasteners.
 
-use super::Change::{self, Ease, Lower, Raise, Set};
+use super::Change::{self, Ease, Lower, OneOf, Raise, Set};
 use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
 use crate::config::{FastenerKind, SlotKind};
-use crate::design::fastening::{HOLE_EDGE_MM, INSERT_TIP_MM};
+use crate::design::fastening::{
+    CLEARANCE_HOLES_MM, DOWELS_MM, HOLE_EDGE_MM, INSERT_SHOULDER_MM, INSERT_TIP_MM,
+};
 
 /// Beyond this clearance the pins walk noticeably (cad/doc/print-limits.md).
 const WIDE_CLEARANCE_MM: f64 = 0.3;
@@ -20,6 +22,8 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "fasteners.end_distance_mm", severity: Severity::Error, assess: holes_in_sector },
     Rule { field: "fasteners.count", severity: Severity::Error, assess: holes_apart },
     Rule { field: "fasteners.kind", severity: Severity::Error, assess: inserts_in_shell },
+    Rule { field: "fasteners.hole_diameter_mm", severity: Severity::Error, assess: screws_are_sold },
+    Rule { field: "fasteners.dowel_diameter_mm", severity: Severity::Error, assess: dowels_are_sold },
     Rule { field: "fasteners.dowel_diameter_mm", severity: Severity::Error, assess: dowels_in_wall },
     Rule { field: "support.slot_kind", severity: Severity::Warning, assess: loose_pins },
     Rule { field: "support.slot_clearance_mm", severity: Severity::Warning, assess: wide_clearance },
@@ -277,8 +281,7 @@ fn inserts_in_shell(i: &Inspection<'_>) -> Assessment {
     }
     const CHANGES: &[Change] = &[
         Set("fasteners.kind", "\"screw\""),
-        Lower("fasteners.hole_diameter_mm"),
-        Raise("fasteners.hole_diameter_mm"),
+        OneOf("fasteners.hole_diameter_mm", CLEARANCE_HOLES_MM),
         Raise("shell.width_mm"),
         Raise("shell.wall_mm"),
     ];
@@ -293,7 +296,17 @@ fn inserts_in_shell(i: &Inspection<'_>) -> Assessment {
         .min(c.shell.outer_radius_mm - c.segment.groove_radius_mm - radius)
         .min(c.fasteners.end_distance_mm + i.shell_end_shift_mm())
         - bore / 2.0;
-    if wall < edge || bore < hole {
+    if hole > bore - 2.0 * INSERT_SHOULDER_MM + 1e-9 {
+        return require(false, || {
+            (
+                format!(
+                    "has no shoulder for inserts: they sit in holes of {bore} mm, over a hole of {hole} mm for the screw"
+                ),
+                CHANGES,
+            )
+        });
+    }
+    if wall < edge {
         return require(false, || {
             (
                 format!(
@@ -315,12 +328,57 @@ fn inserts_in_shell(i: &Inspection<'_>) -> Assessment {
     })
 }
 
+/// A screw that nobody sells cannot be billed: ISO 4762 lists lengths for each thread.
+fn screws_are_sold(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    if c.fasteners.count == 0 || i.screw_lengths_mm().is_some() {
+        return Assessment::NotApplicable;
+    }
+    const CHANGES: &[Change] = &[
+        OneOf("fasteners.hole_diameter_mm", CLEARANCE_HOLES_MM),
+        Lower("shell.width_mm"),
+        Ease("support.plate_mm"),
+        Ease("mount.plate_mm"),
+        Raise("fasteners.head_recess_mm"),
+        Set("fasteners.kind", "\"insert\""),
+        Set("fasteners.kind", "\"screw\""),
+        Set("fasteners.count", "0"),
+    ];
+    let hole = c.fasteners.hole_diameter_mm;
+    let Some(thread) = i.fastening().thread else {
+        return require(false, || {
+            (format!("lets no screw through a hole of {hole} mm: M1.6, the smallest, takes 1.7 mm"), CHANGES)
+        });
+    };
+    let [low, high] = thread.lengths_mm;
+    require(false, || {
+        (
+            format!(
+                "takes {} screws, which are sold from {low} to {high} mm long (ISO 4762): none of them joins shell and plates",
+                thread.name
+            ),
+            CHANGES,
+        )
+    })
+}
+
+/// Dowels are bought as they are: ISO 2338 lists their diameters.
+fn dowels_are_sold(i: &Inspection<'_>) -> Assessment {
+    let diameter = i.configuration().fasteners.dowel_diameter_mm;
+    require(diameter == 0.0 || DOWELS_MM.iter().any(|d| (d - diameter).abs() < 1e-9), || {
+        (
+            "is no diameter in which dowels are sold (ISO 2338)".to_owned(),
+            &[OneOf("fasteners.dowel_diameter_mm", DOWELS_MM), Set("fasteners.dowel_diameter_mm", "0")],
+        )
+    })
+}
+
 fn dowels_in_wall(i: &Inspection<'_>) -> Assessment {
     require(i.dowels_fit(), || {
         (
             "leaves no wall around the dowels beside the outermost screws".to_owned(),
             &[
-                Lower("fasteners.dowel_diameter_mm"),
+                OneOf("fasteners.dowel_diameter_mm", DOWELS_MM),
                 Raise("shell.wall_mm"),
                 Lower("fasteners.count"),
                 Set("fasteners.dowel_diameter_mm", "0"),

@@ -87,6 +87,7 @@ impl Assembly<'_> {
             detail_mm: 0.0,
             details: 0,
             table_mm: table.height_mm() + 3.0,
+            beside_mm: [0.0, 0.0],
         };
         let layout = Layout::on(&draft, &sizes, projection)?;
         let block = draft.sheet().title_block;
@@ -242,6 +243,7 @@ impl Assembly<'_> {
             key: "bill of materials".to_owned(),
             columns: columns.map(|(word, width)| (word.to_owned(), width)).to_vec(),
             rows: rows.collect(),
+            reads_down: false,
         }
     }
 

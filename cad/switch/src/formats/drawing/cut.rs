@@ -56,9 +56,9 @@ pub(super) fn cut_x(
     (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>),
 ) -> f64 {
     let bottom = low.z;
-    let pegs = f.rounds.iter().filter(|r| !r.is_hole && r.levels[0].0 > bottom + 1e-9);
-    let blind = f.rounds.iter().filter(|r| r.is_blind);
-    let holes = f.rounds.iter().filter(|r| r.is_hole && !r.is_blind);
+    let pegs = f.rounds.iter().filter(|r| r.levels[0].0 > bottom + 1e-9);
+    let blind = f.bores.iter().filter(|b| !b.is_plain());
+    let holes = f.bores.iter().filter(|b| b.is_plain());
     let xs = |points: Vec<Point2>| points.into_iter().map(|p| p.x).collect::<Vec<f64>>();
     let slots = |is_blind: bool| {
         let of_kind = f.slots.iter().filter(move |s| s.is_blind == is_blind);

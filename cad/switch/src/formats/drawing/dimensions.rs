@@ -2,13 +2,15 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::bore::bore as words_of_bore;
 use super::cut::Detail;
 use super::features::{Features, Slot, same};
+use super::hole_table;
 use super::plan::Place;
 use super::words;
 use crate::design::Design;
 use crate::parts::Part;
-use pinswitch_plot::drawing::{Angular, Callout, Draft, Extent, Leader, Linear, Point};
+use pinswitch_plot::drawing::{Angular, Callout, Draft, Label, Leader, Linear, Point};
 use pinswitch_solid::profile::{Arc, Point2};
 
 /// A dimension that is to be written.
@@ -26,6 +28,7 @@ enum Form {
     Linear(Linear),
     Angular(Angular),
     Callout(Callout),
+    Label(Label),
 }
 
 impl Wanted {
@@ -35,6 +38,10 @@ impl Wanted {
 
     fn angular(angular: Angular) -> Self {
         Self { key: angular.key.clone(), lines: vec![angular.text.clone()], form: Form::Angular(angular) }
+    }
+
+    pub(super) fn label(label: Label) -> Self {
+        Self { key: label.key.clone(), lines: vec![label.text.clone()], form: Form::Label(label) }
     }
 
     fn callout(key: impl Into<String>, lines: Vec<String>, leaders: Vec<Leader>) -> Self {
@@ -56,6 +63,7 @@ impl Wanted {
             Form::Linear(l) => l.place(draft),
             Form::Angular(a) => a.place(draft),
             Form::Callout(c) => c.place(draft),
+            Form::Label(l) => l.place(draft),
         }
     }
 }
@@ -124,7 +132,7 @@ pub(super) fn of_detail(
             let Some(arc) = rounding.arcs.iter().find(|a| (a.centre - detail.middle).norm() < 1e-6) else {
                 continue;
             };
-            let lines = words::rounding(rounding, !f.axis_arcs.is_empty());
+            let lines = words::rounding(rounding, f);
             all.push(Wanted::callout(
                 numbered("groove", i),
                 lines,
@@ -211,30 +219,7 @@ pub(super) fn callouts(
 ) -> Vec<Wanted> {
     let mut all = Vec::new();
     let is_axial = !f.axis_arcs.is_empty();
-    for (i, round) in f.rounds.iter().enumerate() {
-        let is_hole = round.is_hole;
-        let mut radii: Vec<f64> = round.levels.iter().map(|l| l.1).collect();
-        radii.dedup_by(|a, b| same(*a, *b));
-        let word = if is_hole { "hole" } else { "round" };
-        // A rim of several diameters has a callout for each; a hole or peg is told in one.
-        if !is_hole && radii.len() > 2 {
-            radii.sort_by(f64::total_cmp);
-            radii.dedup_by(|a, b| same(*a, *b));
-            for radius in radii {
-                let leaders = Leader::around(place.at(round.centres[0]), radius * place.scale);
-                let text = format!("\u{d8}{}", words::number(2.0 * radius));
-                all.push(Wanted::callout(
-                    format!("diameter {}", words::number(2.0 * radius)),
-                    vec![text],
-                    leaders,
-                ));
-            }
-            continue;
-        }
-        let radius = round.levels[0].1 * place.scale;
-        let leaders = round.centres.iter().flat_map(|c| Leader::around(place.at(*c), radius)).collect();
-        all.push(Wanted::callout(format!("{word} {}", i + 1), words::round(design, part, round), leaders));
-    }
+    holes_and_rounds(design, part, f, place, &mut all);
     slots_and_roundings(design, part, f, place, details, &mut all);
     for (i, pieces) in f.pieces.iter().enumerate() {
         let slots: Vec<f64> =
@@ -284,6 +269,39 @@ pub(super) fn callouts(
     all
 }
 
+fn holes_and_rounds(design: &Design, part: &Part, f: &Features, place: &Place, all: &mut Vec<Wanted>) {
+    let is_axial = !f.axis_arcs.is_empty();
+    for (i, bore) in f.bores.iter().enumerate() {
+        let radius = bore.shown_mm() * place.scale;
+        let leaders = bore.centres.iter().flat_map(|c| Leader::around(place.at(*c), radius)).collect();
+        let mut lines = words_of_bore(design, part, bore, is_axial);
+        if let (Some(name), Some(first)) = (hole_table::letter(f, i), lines.first_mut()) {
+            *first = format!("{name}: {first}");
+        }
+        all.push(Wanted::callout(format!("hole {}", i + 1), lines, leaders));
+    }
+    for (i, round) in f.rounds.iter().enumerate() {
+        let mut radii: Vec<f64> = round.levels.iter().map(|l| l.1).collect();
+        radii.dedup_by(|a, b| same(*a, *b));
+        // A rim of several diameters has a callout for each; a peg is told in one.
+        if radii.len() > 2 {
+            radii.sort_by(f64::total_cmp);
+            radii.dedup_by(|a, b| same(*a, *b));
+            for radius in radii {
+                let leaders = Leader::around(place.at(round.centres[0]), radius * place.scale);
+                let diameter = words::number(2.0 * radius);
+                let text = format!("\u{d8}{diameter}");
+                all.push(Wanted::callout(format!("diameter {diameter}"), vec![text], leaders));
+            }
+            continue;
+        }
+        let radius = round.levels[0].1 * place.scale;
+        let leaders = round.centres.iter().flat_map(|c| Leader::around(place.at(*c), radius)).collect();
+        let lines = words::round(design, part, round, f.is_round_body(), is_axial);
+        all.push(Wanted::callout(format!("round {}", i + 1), lines, leaders));
+    }
+}
+
 fn slots_and_roundings(
     design: &Design,
     part: &Part,
@@ -329,7 +347,7 @@ fn slots_and_roundings(
             format!("corner {}", words::number(rounding.radius_mm))
         };
         let leaders = rounding.arcs.iter().flat_map(|a| on_arc(a, place, &[0.3, 0.5, 0.7], 0.0)).collect();
-        all.push(Wanted::callout(key, words::rounding(rounding, is_axial), leaders));
+        all.push(Wanted::callout(key, words::rounding(rounding, f), leaders));
     }
 }
 
@@ -352,109 +370,4 @@ fn radii(f: &Features, place: &Place, all: &mut Vec<Wanted>) {
         let key = format!("radius {}", words::number(radius));
         all.push(Wanted::callout(key, vec![format!("R{}", words::number(radius))], leaders));
     }
-}
-
-/// Sizes and places of a part that has no axis: along its two sides.
-pub(super) fn rectangular(
-    f: &Features,
-    place: &Place,
-    front: Extent,
-    (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>),
-) -> Vec<Wanted> {
-    let mut all = Vec::new();
-    if f.rounds
-        .iter()
-        .any(|r| !r.is_hole && r.centres.len() == 1 && f.slots.is_empty() && f.roundings.is_empty())
-    {
-        // A round part: its diameter says it all.
-        return all;
-    }
-    let mut linear = |key: String, text: String, from: Point2, to: Point2, upright: bool, is_far: bool| {
-        let edge_mm = match (upright, is_far) {
-            (true, true) => front.high.x,
-            (true, false) => front.low.x,
-            (false, true) => front.high.y,
-            (false, false) => front.low.y,
-        };
-        let outward = if is_far { 1.0 } else { -1.0 };
-        let (from, to) = (place.at(from), place.at(to));
-        let clear_of = if upright { [from.y, to.y] } else { [from.x, to.x] };
-        let clear_of = [clear_of[0].min(clear_of[1]), clear_of[0].max(clear_of[1])];
-        all.push(Wanted::linear(Linear { key, text, from, to, upright, edge_mm, outward, clear_of }));
-    };
-    let corner = Point2::new(low.x, low.y);
-    let mut rows: Vec<(&str, Vec<Point2>)> = Vec::new();
-    let slots: Vec<Point2> =
-        f.slots.iter().flat_map(|s| s.places.iter().map(|(a, b)| nalgebra::center(a, b))).collect();
-    rows.push(("slots", slots));
-    let grooves =
-        f.roundings.iter().filter(|r| r.is_half_round).flat_map(|r| r.arcs.iter().map(|a| a.centre));
-    rows.push(("grooves", grooves.collect()));
-    rows.push(("holes", f.rounds.iter().flat_map(|r| r.centres.clone()).collect()));
-    for (word, mut points) in rows {
-        points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { continue };
-        let is_far = word == "grooves";
-        let first_key = format!("first of the {word}");
-        linear(
-            first_key,
-            words::number(first.x - corner.x),
-            corner_at(corner, first.y),
-            first,
-            false,
-            is_far,
-        );
-        if points.len() > 1 {
-            let step = points[1].x - first.x;
-            let steps = points.len() - 1;
-            let is_even = points.windows(2).all(|w| same(w[1].x - w[0].x, step));
-            if is_even {
-                let text =
-                    format!("{steps} \u{d7} {} = {}", words::number(step), words::number(last.x - first.x));
-                linear(format!("pitch of the {word}"), text, first, last, false, is_far);
-            } else {
-                for (i, p) in points.iter().enumerate().skip(1) {
-                    linear(
-                        format!("{word} {}", i + 1),
-                        words::number(p.x - corner.x),
-                        corner_at(corner, p.y),
-                        *p,
-                        false,
-                        is_far,
-                    );
-                }
-            }
-        }
-        if !same(first.y, high.y) {
-            linear(
-                format!("level of the {word}"),
-                words::number(first.y - corner.y),
-                Point2::new(low.x, low.y),
-                first,
-                true,
-                false,
-            );
-        }
-    }
-    linear(
-        "length".to_owned(),
-        words::number(high.x - low.x),
-        corner,
-        Point2::new(high.x, low.y),
-        false,
-        false,
-    );
-    linear(
-        "width".to_owned(),
-        words::number(high.y - low.y),
-        Point2::new(high.x, low.y),
-        Point2::new(high.x, high.y),
-        true,
-        true,
-    );
-    all
-}
-
-fn corner_at(corner: Point2, y: f64) -> Point2 {
-    Point2::new(corner.x, y)
 }

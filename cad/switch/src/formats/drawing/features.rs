@@ -1,8 +1,9 @@
-//! What a solid has that is dimensioned: radii about the axis, round holes and pegs, slots, grooves, ends and heights.
+//! What a solid has that is dimensioned: radii about the axis, bores, pegs, slots, grooves, ends and heights.
 //!
 //! They are found in the contours of the exact solid, so that a part that nobody has drawn yet has its dimensions, too.
 
-use pinswitch_solid::profile::{Arc, Contour, Edge, Point2};
+use super::bore::{Bore, Stage, add_stage, gathered, hexagon};
+use pinswitch_solid::profile::{Arc, Contour, Edge, Point2, Vector2};
 use pinswitch_solid::solid::Solid;
 use std::f64::consts::PI;
 
@@ -10,7 +11,7 @@ use std::f64::consts::PI;
 const MOST_CORNERS: usize = 12;
 /// What is nearer than this is the same, mm.
 const SAME_MM: f64 = 1e-6;
-/// Half-round grooves and ribs turn by more than this, corners by less.
+/// Half-round grooves and ribs turn by more than this, and meet their neighbours at an edge; corners do not.
 const HALF_ROUND_RAD: f64 = 2.2;
 
 /// Which rings of a solid are outlines of engraved letters, or of islands in them.
@@ -35,13 +36,18 @@ pub(super) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() < SAME_MM
 }
 
-/// A round hole, peg or rim: radii at heights, from below.
+/// A peg or a rim: radii at heights, from below.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Round {
     pub(super) centres: Vec<Point2>,
     pub(super) levels: Vec<(f64, f64)>,
-    pub(super) is_hole: bool,
-    pub(super) is_blind: bool,
+}
+
+/// Hollows that are there more than once, all alike, each a step from the one before: the basins of a gang mould.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Copies {
+    pub(super) number: usize,
+    pub(super) step: Vector2,
 }
 
 /// Slots with round ends, all alike.
@@ -106,11 +112,17 @@ pub(super) struct Features {
     /// Arcs about the axis, one list per radius, the largest radius first.
     pub(super) axis_arcs: Vec<Vec<Arc>>,
     pub(super) rounds: Vec<Round>,
+    pub(super) bores: Vec<Bore>,
     pub(super) slots: Vec<Slot>,
     pub(super) arc_slots: Vec<ArcSlot>,
     pub(super) pieces: Vec<Pieces>,
     pub(super) roundings: Vec<Rounding>,
     pub(super) ends: Vec<Ends>,
+    /// Straight edges that are no such ends.
+    pub(super) straight: Vec<(Point2, Point2)>,
+    /// Opposite corners of an outline that is a rectangle along the paper.
+    pub(super) block: Option<(Point2, Point2)>,
+    pub(super) copies: Option<Copies>,
     /// Heights over the bottom at which the body's own walls begin or end, ascending, without 0.
     pub(super) heights_mm: Vec<f64>,
 }
@@ -118,8 +130,36 @@ pub(super) struct Features {
 /// A run of walls over each other, each with its rings.
 struct Chain<'a> {
     rings: Vec<(&'a Contour, f64)>,
-    is_blind: bool,
+    /// Where it begins, its chamfer included.
+    foot_mm: f64,
+    /// Whether it ends in the open below, and above, and not on a floor or a ceiling.
+    opens: (bool, bool),
     is_lettering: bool,
+}
+
+impl Chain<'_> {
+    fn is_hole(&self) -> bool {
+        self.rings[0].0.area_mm2() < 0.0
+    }
+
+    fn is_blind(&self) -> bool {
+        self.opens != (true, true)
+    }
+
+    /// By how far this is `other`, moved; `None` if it is anything else.
+    fn moved_from(&self, other: &Self) -> Option<Vector2> {
+        let first = |chain: &Self| chain.rings[0].0.corners().first().copied();
+        let by = first(self)? - first(other)?;
+        let is_moved = |(a, b): (&(&Contour, f64), &(&Contour, f64))| {
+            let corners = (a.0.corners(), b.0.corners());
+            same(a.1, b.1)
+                && corners.0.len() == corners.1.len()
+                && corners.0.iter().zip(corners.1).all(|(p, q)| (p - q - by).norm() < SAME_MM)
+        };
+        let is_copy =
+            self.rings.len() == other.rings.len() && self.rings.iter().zip(&other.rings).all(is_moved);
+        (is_copy && by.norm() > SAME_MM).then_some(by)
+    }
 }
 
 /// The features of `solid`, whose bottom edges have a chamfer of `chamfer_mm` and whose ends are parallel to the planes at
@@ -129,34 +169,52 @@ pub(super) fn features(solid: &Solid, chamfer_mm: f64, half_span_rad: f64) -> Fe
     let bottom = solid.bounds().map_or(0.0, |(low, _)| low.z);
     let mut pieces: Vec<(&Contour, (f64, f64))> = Vec::new();
     let mut heights = Vec::new();
-    for chain in chains(solid, chamfer_mm) {
+    let mut axes: Vec<Bore> = Vec::new();
+    // Hollows that were seen, which others may be copies of.
+    let mut hollows: Vec<Chain<'_>> = Vec::new();
+    for chain in chains(solid, chamfer_mm).into_iter().filter(|c| !c.is_lettering) {
         let (first, last) = (chain.rings[0], chain.rings[chain.rings.len() - 1]);
-        let is_hole = first.0.area_mm2() < 0.0;
-        if chain.is_lettering {
-            continue;
-        }
-        if let Some((centre, _)) = circle(first.0) {
+        let is_hole = chain.is_hole();
+        let round = |c: &Contour| circle(c).map(|(centre, radius)| (centre, radius, false));
+        let of_bore =
+            |c: &Contour| round(c).or_else(|| hexagon(c).map(|(centre, half)| (centre, half, true)));
+        if let (true, Some((centre, _, is_hexagon))) = (is_hole, of_bore(first.0)) {
+            let width = |c: &Contour| of_bore(c).map_or(0.0, |(_, half, _)| half);
+            let mut levels: Vec<(f64, f64)> = chain.rings.iter().map(|(c, z)| (*z, width(c))).collect();
+            levels[0].0 = chain.foot_mm;
+            let (opens_down, opens_up) = chain.opens;
+            add_stage(&mut axes, centre, Stage { levels, is_hexagon, opens_down, opens_up });
+        } else if let Some((centre, ..)) = round(first.0) {
             let radius = |c: &Contour| circle(c).map_or(0.0, |(_, r)| r);
             let levels: Vec<(f64, f64)> = chain.rings.iter().map(|(c, z)| (*z, radius(c))).collect();
-            if !is_hole && same(first.1, bottom) {
-                heights.extend(levels.iter().map(|l| l.0));
+            if same(chain.foot_mm, bottom) {
+                heights.extend(levels.iter().skip(1).map(|l| l.0));
             }
-            all.add_round(Round { centres: vec![centre], levels, is_hole, is_blind: chain.is_blind });
+            all.add_round(Round { centres: vec![centre], levels });
         } else if let Some((a, b, radius)) = slot(first.0) {
-            all.add_slot(a, b, 2.0 * radius, last.1 - first.1, chain.is_blind);
+            all.add_slot(a, b, 2.0 * radius, last.1 - first.1, chain.is_blind());
         } else if let (Some(low), Some(high)) = (arc_slot(first.0), arc_slot(last.0)) {
             all.arc_slots.push(ArcSlot { widths_mm: (low.widths_mm.0, high.widths_mm.0), ..low });
+        } else if let (true, Some(by)) = (is_hole, hollows.iter().find_map(|h| chain.moved_from(h))) {
+            all.add_copy(by);
         } else {
-            heights.extend(chain.rings.iter().map(|r| r.1));
+            // Of the body itself, what begins on the bed is no height.
+            let from_bed = usize::from(same(chain.foot_mm, bottom));
+            heights.extend(chain.rings.iter().skip(from_bed).map(|r| r.1));
             if piece(first.0).is_some() && !is_hole && !same(first.1, bottom) {
                 pieces.push((first.0, (first.1, last.1)));
             } else {
                 for (contour, _) in &chain.rings {
                     all.add_outline(contour, half_span_rad);
                 }
+                all.block = all.block.or_else(|| rectangle(first.0).filter(|_| !is_hole));
+            }
+            if is_hole {
+                hollows.push(chain);
             }
         }
     }
+    all.bores = gathered(axes);
     for (contour, z) in &pieces {
         // One piece alone is a body of its own.
         if pieces.len() > 1 { all.add_piece(contour, *z) } else { all.add_outline(contour, half_span_rad) }
@@ -182,14 +240,15 @@ fn chains(solid: &Solid, chamfer_mm: f64) -> Vec<Chain<'_>> {
             while let Some((_, next)) = walls.iter().find(|(low, _)| low == &numbers[numbers.len() - 1]) {
                 numbers.push(*next);
             }
-            let is_hole = rings[*low].0.area_mm2() < 0.0;
-            let is_blind = is_hole && numbers.iter().any(|i| floors.contains(i));
+            let foot_mm = rings[*low].1;
+            let is_open = |i: usize| !floors.contains(&i);
+            let opens = (is_open(*low), is_open(numbers[numbers.len() - 1]));
             let mut chain: Vec<_> = numbers.iter().map(|i| rings[*i]).collect();
             let is_chamfer = chamfer_mm > 0.0 && chain.len() > 2 && same(chain[1].1 - chain[0].1, chamfer_mm);
             if is_chamfer {
                 chain.remove(0);
             }
-            Chain { rings: chain, is_blind, is_lettering: letters[*low] }
+            Chain { rings: chain, foot_mm, opens, is_lettering: letters[*low] }
         })
         .collect()
 }
@@ -251,12 +310,58 @@ fn piece(contour: &Contour) -> Option<(f64, f64, f64, f64)> {
     Some((inner, outer, from, to))
 }
 
+/// Opposite corners of a rectangle along the paper.
+fn rectangle(contour: &Contour) -> Option<(Point2, Point2)> {
+    let is_straight = contour.edges().len() == 4
+        && (0..4).all(|i| {
+            let (from, to) = contour.ends(i);
+            matches!(contour.edges()[i], Edge::Line) && (same(from.x, to.x) || same(from.y, to.y))
+        });
+    is_straight.then(|| contour.bounds())
+}
+
+/// Where an edge goes, at its beginning and at its end: unit vectors.
+fn directions(contour: &Contour, i: usize) -> [Vector2; 2] {
+    let (from, to) = contour.ends(i);
+    match contour.edges()[i] {
+        Edge::Line => [(to - from).normalize(); 2],
+        Edge::Arc(arc) => [from, to].map(|p| {
+            let out = (p - arc.centre).normalize() * arc.sweep_rad.signum();
+            Vector2::new(-out.y, out.x)
+        }),
+    }
+}
+
+/// Whether an edge passes into both of its neighbours without a corner.
+fn is_smooth(contour: &Contour, i: usize) -> bool {
+    let n = contour.edges().len();
+    let [begins, ends] = directions(contour, i);
+    let (before, after) = (directions(contour, (i + n - 1) % n)[1], directions(contour, (i + 1) % n)[0]);
+    (begins - before).norm() < 1e-6 && (ends - after).norm() < 1e-6
+}
+
 impl Features {
+    /// Whether the part is round itself: diameters and heights say it all.
+    pub(super) fn is_round_body(&self) -> bool {
+        self.rounds.iter().any(|r| r.centres.len() == 1)
+            && self.slots.is_empty()
+            && self.roundings.is_empty()
+            && self.axis_arcs.is_empty()
+    }
+
+    /// Another hollow, `by` that far from the first of its kind: the nearest tells the step.
+    fn add_copy(&mut self, by: Vector2) {
+        let copies = self.copies.get_or_insert(Copies { number: 1, step: by });
+        if by.norm() < copies.step.norm() - SAME_MM {
+            copies.step = by;
+        }
+        let steps = (by.norm() / copies.step.norm()).round() as usize;
+        copies.number = copies.number.max(steps + 1);
+    }
+
     fn add_round(&mut self, round: Round) {
         let alike = self.rounds.iter_mut().find(|other| {
-            other.is_hole == round.is_hole
-                && other.is_blind == round.is_blind
-                && other.levels.len() == round.levels.len()
+            other.levels.len() == round.levels.len()
                 && other.levels.iter().zip(&round.levels).all(|(a, b)| same(a.0, b.0) && same(a.1, b.1))
         });
         match alike {
@@ -294,7 +399,7 @@ impl Features {
         for (i, edge) in contour.edges().iter().enumerate() {
             match edge {
                 Edge::Arc(arc) if arc.centre.coords.norm() < SAME_MM => self.add_axis_arc(*arc),
-                Edge::Arc(arc) => self.add_rounding(*arc),
+                Edge::Arc(arc) => self.add_rounding(*arc, is_smooth(contour, i)),
                 Edge::Line => self.add_end(contour.ends(i), half_span_rad),
             }
         }
@@ -307,8 +412,8 @@ impl Features {
         }
     }
 
-    fn add_rounding(&mut self, arc: Arc) {
-        let is_half_round = arc.sweep_rad.abs() > HALF_ROUND_RAD;
+    fn add_rounding(&mut self, arc: Arc, is_smooth: bool) {
+        let is_half_round = arc.sweep_rad.abs() > HALF_ROUND_RAD && !is_smooth;
         // Material lies to the left: an arc that turns left bulges out of it.
         let is_rib = is_half_round && arc.sweep_rad > 0.0;
         let alike = self.roundings.iter_mut().find(|r| {
@@ -334,6 +439,7 @@ impl Features {
             .iter()
             .any(|a| (along.x * a.cos() - along.y * a.sin()).abs() < 1e-6);
         if !is_end {
+            self.straight.push((from, to));
             return;
         }
         let shift_mm = (from.x * along.y - from.y * along.x).abs();

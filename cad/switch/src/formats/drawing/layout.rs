@@ -19,6 +19,9 @@ const BELOW_MM: f64 = 8.0;
 /// Around a detail, for its dimensions and its title, mm: to the sides, and above and below.
 const AROUND_DETAIL_MM: (f64, f64) = (32.0, 26.0);
 
+/// Between a table beside the views and the frame or a detail, mm.
+const AROUND_TABLE_MM: f64 = 5.0;
+
 /// Sheets and scales in the order in which they are tried. A part that does not fit A4 at twice its size gets A3 for that,
 /// and then A4 before it is reduced.
 pub(super) fn choices(asked: Paper) -> Vec<(Paper, f64)> {
@@ -48,6 +51,8 @@ pub(super) struct Sizes {
     pub(super) details: usize,
     /// Height at the lower right that a table takes, mm.
     pub(super) table_mm: f64,
+    /// Width and height of a table at the upper right, mm; 0 without one.
+    pub(super) beside_mm: [f64; 2],
 }
 
 /// Where everything lies.
@@ -63,6 +68,8 @@ pub(super) struct Layout {
     pub(super) section_sense: f64,
     /// Middles of the details.
     pub(super) details: Vec<Point>,
+    /// Lower right corner of the table beside the views.
+    pub(super) beside: Point,
 }
 
 impl Layout {
@@ -72,12 +79,16 @@ impl Layout {
         let floor = draft.sheet().title_block.high.y + 3.0 + sizes.table_mm;
         let (width, height) = (sizes.front.width(), sizes.front.height());
         let detail_column = if sizes.details == 0 { 0.0 } else { 2.0 * sizes.detail_mm + AROUND_DETAIL_MM.0 };
-        let wanted = LEFT_MM + width + BESIDE_MM + sizes.depth_mm + RIGHT_MM + detail_column;
+        let [table_wide, table_high] = sizes.beside_mm;
+        let table_column = if table_wide > 0.0 { table_wide + AROUND_TABLE_MM } else { 0.0 };
+        let wanted =
+            LEFT_MM + width + BESIDE_MM + sizes.depth_mm + RIGHT_MM + detail_column.max(table_column);
         let spare_x = frame.width() - wanted;
         let stack = ABOVE_MM + height + BETWEEN_MM + sizes.depth_mm + BELOW_MM;
         let spare_y = frame.high.y - floor - stack;
+        let ceiling = frame.high.y - if table_high > 0.0 { table_high + AROUND_TABLE_MM } else { 0.0 };
         let details_fit =
-            sizes.details as f64 * (2.0 * sizes.detail_mm + AROUND_DETAIL_MM.1) <= frame.high.y - floor;
+            sizes.details as f64 * (2.0 * sizes.detail_mm + AROUND_DETAIL_MM.1) <= ceiling - floor;
         if spare_x < 0.0 || spare_y < 0.0 || !details_fit {
             return None;
         }
@@ -97,15 +108,15 @@ impl Layout {
         let front = Point::new(left - sizes.front.low.x, front_top - sizes.front.high.y);
         let column = section_left + sizes.depth_mm + RIGHT_MM;
         let middle = f64::midpoint(column, frame.high.x);
-        let each = (frame.high.y - floor) / sizes.details.max(1) as f64;
-        let details = (0..sizes.details)
-            .map(|i| Point::new(middle, frame.high.y - each * (i as f64 + 0.5) - 1.0))
-            .collect();
+        let each = (ceiling - floor) / sizes.details.max(1) as f64;
+        let details =
+            (0..sizes.details).map(|i| Point::new(middle, ceiling - each * (i as f64 + 0.5) - 1.0)).collect();
         // From the left, z runs to the right; from the right, to the left.
         let (section_mm, section_sense) = match projection {
             Projection::First => (section_left, 1.0),
             Projection::Third => (section_left + sizes.depth_mm, -1.0),
         };
-        Some(Self { front, above_mm: above_top, section_mm, section_sense, details })
+        let beside = Point::new(frame.high.x - AROUND_TABLE_MM, frame.high.y - AROUND_TABLE_MM - table_high);
+        Some(Self { front, above_mm: above_top, section_mm, section_sense, details, beside })
     }
 }

@@ -2,15 +2,18 @@
 
 mod assembly_sheet;
 mod body;
+mod bore;
 mod cut;
 mod dimensions;
 mod elevation;
 mod features;
+mod hole_table;
 mod layout;
 mod part_sheet;
 mod parts_list;
 mod plan;
 mod section;
+mod sides;
 mod words;
 
 use super::{Format, Inclusion};

@@ -7,14 +7,16 @@ use super::cut::{Detail, cut_x, enlarged};
 use super::dimensions::{self, Wanted};
 use super::elevation::{Elevation, Stroke, elevation, joined, legible};
 use super::features::{Features, features, lettering};
+use super::hole_table;
 use super::layout::{Layout, Sizes, choices};
 use super::plan::{Place, Trace, draw, plan, within};
 use super::section::Face;
+use super::sides;
 use super::words;
 use crate::design::Design;
 use crate::parts::{Part, Role};
 use pinswitch_plot::drawing::{
-    Draft, Extent, Layer, Linear, Paper, Point, Projection, Shape, Sheet, Text, TitleBlock,
+    Draft, Extent, Layer, Linear, Paper, Point, Projection, Shape, Sheet, Table, Text, TitleBlock,
 };
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::Point2;
@@ -56,8 +58,11 @@ struct Views {
     details: Vec<(Detail, Place, String)>,
 }
 
-/// The sheet of `part`; nothing for a part without extent.
+/// The sheet of `part`; nothing for a part without extent. It is drawn as a workshop holds it, where that differs from how
+/// it lies in the set.
 pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked: Paper) -> Option<Sheet> {
+    let turned = part.drawn.as_ref().map(|solid| Part { solid: solid.clone(), drawn: None, ..part.clone() });
+    let part = turned.as_ref().unwrap_or(part);
     let (low, high) = part.solid.bounds()?;
     let chamfer_mm = design.configuration().print.elephant_foot_mm;
     let features = features(&part.solid, chamfer_mm, design.half_span_rad());
@@ -108,6 +113,7 @@ impl Subject<'_> {
     fn views(&self, draft: &mut Draft, scale: f64, written: &[Wanted]) -> Option<Views> {
         let paper = draft.sheet().paper;
         let details = enlarged(&self.features, scale);
+        let table = hole_table::table(&self.features);
         let reach = if paper == Paper::A4 { 20.0 } else { 27.0 };
         let sizes = Sizes {
             front: self.front_extent(scale),
@@ -115,8 +121,12 @@ impl Subject<'_> {
             detail_mm: reach,
             details: details.len(),
             table_mm: 0.0,
+            beside_mm: table.as_ref().map_or([0.0, 0.0], Table::size_mm),
         };
         let layout = Layout::on(draft, &sizes, self.title.projection)?;
+        if let Some(table) = table {
+            table.draw(draft, layout.beside);
+        }
         let place = Place::straight(layout.front, scale);
         let lines = plan(&self.part.solid, false, self.design.configuration().print.elephant_foot_mm);
         let view = draft.view("FRONT", layout.front, scale);
@@ -159,11 +169,10 @@ impl Subject<'_> {
             let radius = detail.radius_mm * views.place.scale;
             all.push(dimensions::mark_of_detail(views.place.at(detail.middle), radius, letter));
         }
-        if f.axis_arcs.is_empty() {
-            all.extend(dimensions::rectangular(f, &views.place, views.front, (self.low, self.high)));
-        }
+        all.extend(sides::of_part(f, &views.place, views.front, (self.low, self.high)));
         let details: Vec<Detail> = views.details.iter().map(|d| d.0).collect();
         all.extend(dimensions::callouts(self.design, self.part, f, &views.place, &details));
+        all.extend(hole_table::names(f, &views.place));
         all
     }
 
@@ -247,12 +256,16 @@ impl Subject<'_> {
                 line(axis - Point::new(half, 0.0), axis + Point::new(half, 0.0));
             }
         }
-        for round in &f.rounds {
-            for centre in &round.centres {
-                let radius = round.levels.iter().map(|l| l.1).fold(0.0, f64::max) * place.scale;
-                let (at, reach) = (place.at(*centre), radius + 1.5);
+        let rounds = f.rounds.iter().map(|r| (&r.centres, r.levels.iter().map(|l| l.1).fold(0.0, f64::max)));
+        for (centres, radius_mm) in rounds.chain(f.bores.iter().map(|b| (&b.centres, b.reach_mm()))) {
+            for centre in centres {
+                let (at, reach) = (place.at(*centre), radius_mm * place.scale + 1.5);
                 let is_on_axis = centre.coords.norm() < 1e-6;
-                let along = if is_on_axis { Point::new(0.0, 1.0) } else { (at - axis).unit() };
+                let along = if is_on_axis || f.axis_arcs.is_empty() {
+                    Point::new(0.0, 1.0)
+                } else {
+                    (at - axis).unit()
+                };
                 line(at - along * reach, at + along * reach);
                 line(at - along.left() * reach, at + along.left() * reach);
             }

@@ -74,9 +74,13 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
         let words = format!("Dowel \u{d8}{} \u{d7} {}", number(dowels.diameter_mm), number(dowels.length_mm));
         bought(dowels.number, words, "");
     }
+    if let Some(bearing) = bill.pulley_bearing {
+        bought(1, format!("Bearing {bearing}"), "");
+    }
     let mount = bill.mount.as_ref();
-    for words in
-        mount.into_iter().flat_map(|m| [m.bearing.map(str::to_owned), m.axle.clone(), m.sheath_stop.clone()])
+    for words in mount
+        .into_iter()
+        .flat_map(|m| [m.bearing.map(|b| format!("Bearing {b}")), m.axle.clone(), m.sheath_stop.clone()])
     {
         words.into_iter().for_each(|words| bought(1, words, ""));
     }

@@ -24,7 +24,7 @@ pub(super) fn degrees(angle_rad: f64) -> String {
 }
 
 /// `3 x ` before what is there three times.
-fn times(n: usize) -> String {
+pub(super) fn times(n: usize) -> String {
     if n == 1 { String::new() } else { format!("{n} \u{d7} ") }
 }
 
@@ -43,7 +43,7 @@ pub(super) fn even_step(angles_rad: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// Where things lie on a radius: `on R16.75 at ±34.46°`.
-fn on_radius(places: &[Point2]) -> Vec<String> {
+pub(super) fn on_radius(places: &[Point2]) -> Vec<String> {
     let radius = places.first().map_or(0.0, |p| p.coords.norm());
     if same(radius, 0.0) || !places.iter().all(|p| same(p.coords.norm(), radius)) {
         return Vec::new();
@@ -74,33 +74,29 @@ fn on_radius(places: &[Point2]) -> Vec<String> {
     lines
 }
 
-/// What a round hole, peg or rim is called.
-pub(super) fn round(design: &Design, part: &Part, round: &Round) -> Vec<String> {
+/// What a peg or a rim is called. A round part's own height stands beside it.
+pub(super) fn round(
+    design: &Design,
+    part: &Part,
+    round: &Round,
+    is_body: bool,
+    is_axial: bool,
+) -> Vec<String> {
     let (Some(first), Some(last)) = (round.levels.first(), round.levels.last()) else { return Vec::new() };
     let n = times(round.centres.len());
     let (low, high) = (number(2.0 * first.1), number(2.0 * last.1));
     let depth = number(last.0 - first.0);
-    let c = design.configuration();
-    let is_clearance = matches!(part.role, Role::Shell | Role::Support { .. })
-        && same(2.0 * first.1, c.fasteners.hole_diameter_mm);
-    let mut lines = match (round.is_hole, same(first.1, last.1)) {
-        (true, true) if is_clearance => {
-            vec![format!("{n}\u{d8}{low} H13 through, for {}", screw(design))]
-        }
-        // The outer ring of a 608 bearing measures 22 mm.
-        (true, true) if round.is_blind && part.name == "guide-pulley" => {
-            vec![format!("\u{d8}{low} +0.1/0, {depth} deep, for bearing 608")]
-        }
-        (true, true) if round.is_blind => vec![format!("{n}\u{d8}{low}, {depth} deep")],
-        (true, true) => vec![format!("{n}\u{d8}{low} through")],
-        (true, false) => vec![format!("{n}\u{d8}{low}, {depth} deep, \u{d8}{high} at its end")],
-        (false, true) => vec![format!("{n}\u{d8}{low} \u{d7} {depth}")],
-        (false, false) => vec![format!("{n}peg \u{d8}{low}, \u{d8}{high} at {depth}")],
-    };
     if matches!(part.role, Role::Pin { .. }) {
-        lines = vec![pin(design)];
+        return vec![pin(design)];
     }
-    lines.extend(on_radius(&round.centres));
+    let mut lines = match (same(first.1, last.1), is_body) {
+        (true, true) => vec![format!("{n}\u{d8}{low}")],
+        (true, false) => vec![format!("{n}\u{d8}{low} \u{d7} {depth}")],
+        (false, _) => vec![format!("{n}peg \u{d8}{low}, \u{d8}{high} at {depth}")],
+    };
+    if is_axial {
+        lines.extend(on_radius(&round.centres));
+    }
     lines
 }
 
@@ -110,7 +106,7 @@ fn pin(design: &Design) -> String {
 }
 
 /// The screw that the holes take.
-fn screw(design: &Design) -> String {
+pub(super) fn screw(design: &Design) -> String {
     crate::documents::bill_of_materials(design).fasteners.map_or_else(String::new, |f| f.thread.to_owned())
 }
 
@@ -150,7 +146,8 @@ pub(super) fn arc_slot(slot: &ArcSlot) -> Vec<String> {
 }
 
 /// What grooves, ribs and rounded corners are called.
-pub(super) fn rounding(rounding: &Rounding, is_axial: bool) -> Vec<String> {
+pub(super) fn rounding(rounding: &Rounding, f: &Features) -> Vec<String> {
+    let is_axial = !f.axis_arcs.is_empty();
     let word = match (rounding.is_half_round, rounding.is_rib) {
         (true, true) => "rib ",
         (true, false) => "groove ",
@@ -159,6 +156,10 @@ pub(super) fn rounding(rounding: &Rounding, is_axial: bool) -> Vec<String> {
     let mut lines = vec![format!("{}{word}R{}", times(rounding.arcs.len()), number(rounding.radius_mm))];
     if rounding.is_half_round && !is_axial {
         lines.push("centres on the edge".to_owned());
+    }
+    let is_hole = |p: &Point2| f.bores.iter().any(|b| b.centres.iter().any(|c| (c - p).norm() < 1e-6));
+    if !rounding.is_half_round && rounding.arcs.iter().all(|a| is_hole(&a.centre)) {
+        lines.push("about the hole's axis".to_owned());
     }
     if rounding.is_half_round && is_axial {
         let centres: Vec<Point2> = rounding.arcs.iter().map(|a| a.centre).collect();
@@ -230,8 +231,11 @@ pub(super) fn notes(design: &Design, part: &Part, features: &Features, has_lette
     let c = design.configuration();
     let mut notes = Vec::new();
     if has_lettering {
-        let what = if part.name == "coupon" { "the slots' clearances".to_owned() } else { design.label() };
-        notes.push(format!("Engraved: {what}, {} deep", number(c.label.depth_mm)));
+        let what =
+            if part.name == "coupon" { "the slots' clearances".to_owned() } else { part.engraved.join(", ") };
+        // Supports have their marks on the face that was printed on the bed.
+        let face = if matches!(part.role, Role::Support { .. }) { " in the far face" } else { "" };
+        notes.push(format!("Engraved{face}: {what}, {} deep", number(c.label.depth_mm)));
     }
     let is_printed = part.material() == Material::Abs;
     if is_printed && c.print.elephant_foot_mm > 0.0 {
@@ -242,6 +246,15 @@ pub(super) fn notes(design: &Design, part: &Part, features: &Features, has_lette
     }
     if features.axis_arcs.is_empty() && !features.slots.is_empty() {
         notes.push("Slots: width \u{d7} distance of the centres of their ends, through".to_owned());
+    }
+    if features.bores.iter().any(|b| !b.is_plain()) {
+        notes.push("Near face: the one shown in the front view".to_owned());
+    }
+    if let Some(copies) = features.copies {
+        notes.push(format!("{} basins, all alike: dimensions stand at the first", copies.number));
+    }
+    if features.axis_arcs.is_empty() && features.block.is_none() && !features.bores.is_empty() {
+        notes.push("Outline: straight lines that touch both arcs".to_owned());
     }
     if !features.axis_arcs.is_empty() {
         notes.push("R without a centre mark: about the pulley's axis".to_owned());

@@ -330,6 +330,7 @@ function fillTables(data) {
     if (inserts) rows.push(['heat-set inserts', inserts, thread]);
   }
   if (bill.dowels) rows.push(['dowels', bill.dowels.number, `${bill.dowels.diameter_mm} x ${bill.dowels.length_mm} mm`]);
+  if (bill.pulley_bearing) rows.push([`bearing ${bill.pulley_bearing}`, 1, 'for the guide pulley']);
   for (const item of [bill.mount?.bearing, bill.mount?.axle, bill.mount?.sheath_stop]) if (item) rows.push([item, 1, 'for the mount']);
   byId('bill').replaceChildren(table(['item', 'quantity', 'size'], rows));
   byId('parts').replaceChildren(table(['part', 'mass (g)', 'volume (mm³)', 'triangles'],

@@ -56,6 +56,7 @@ pub(in crate::parts) fn core(design: &Design) -> Result<Part, ConfigError> {
     let mut part = Part::new("mould-core", Role::Mould, solid, None);
     part.tool_pose = Some(Pose::upright(0.0));
     part.notes.extend(engraved.note);
+    part.engraved = engraved.lines;
     Ok(part)
 }
 

@@ -2,19 +2,20 @@
 
 mod entities;
 mod placement;
+mod readable;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use truck_meshalgo::prelude::{
     Faces, MeshedShape, OptimizingFilter, PolygonMesh, RobustMeshableShape, StandardAttributes,
 };
-use truck_stepio::r#in::Table;
 
 use crate::mesh::{Mesh, Point3};
 use crate::profile::ChordTolerance;
 use crate::validity::Fault;
 use entities::Entities;
 use placement::{Isometry, Placements};
+use readable::{table_of, unreadable};
 
 /// A solid of a STEP file.
 #[derive(Clone, Debug)]
@@ -48,6 +49,9 @@ pub enum StepReadError {
     /// No boundary representation in it.
     #[error("it holds no solid with faces; export solids as AP203, AP214 or AP242 boundary representations")]
     NoSolid,
+    /// It describes something else than shapes.
+    #[error("its schema is {0}, not one of shapes; export it as AP203, AP214 or AP242")]
+    Schema(String),
     /// Its lengths cannot be told.
     #[error("{0}; export it in millimetres")]
     Unit(String),
@@ -91,13 +95,26 @@ pub fn read_step(text: &str, tolerance: ChordTolerance) -> Result<StepFile, Step
         });
     }
     // A library for well-formed files may give up on others; nothing of it outlives the attempt.
-    let table = catch_unwind(|| Table::from_data_section(entities.section()));
-    let table = table.map_err(|_| StepReadError::Truck)?;
+    let asked = catch_unwind(|| {
+        let table = table_of(entities.section());
+        let lost = unreadable(&table);
+        (table, lost)
+    });
+    let (table, lost) = asked.map_err(|_| StepReadError::Truck)?;
+    found.faults.extend(entities.impossible_radii());
+    found.faults.extend(entities.open_shells());
     let mut shells: Vec<_> = table.shell.iter().collect();
     shells.sort_by_key(|(id, _)| **id);
     let placements = Placements::of(&entities, unit_mm);
     for (id, holder) in shells {
         let of = holder.cfs_faces.len();
+        let faces = entities.faces_with(*id, &lost);
+        if faces > 0 && dangling.is_empty() {
+            return Err(StepReadError::Unread { shell: *id, faces, of });
+        } else if faces > 0 {
+            // What it refers to is not there: that was said.
+            continue;
+        }
         let meshed = catch_unwind(AssertUnwindSafe(|| {
             let shell = table.to_compressed_shell(holder).ok()?;
             let meshed = shell.robust_triangulation(tolerance.mm() / unit_mm);
@@ -114,7 +131,7 @@ pub fn read_step(text: &str, tolerance: ChordTolerance) -> Result<StepFile, Step
         let placements = solid.map_or_else(|| vec![Isometry::identity()], |solid| placements.of_solid(solid));
         found.solids.push(ReadSolid { name, mesh, placements, untriangulated });
     }
-    if found.solids.is_empty() {
+    if found.solids.is_empty() && found.faults.is_empty() {
         return Err(StepReadError::NoSolid);
     }
     Ok(found)

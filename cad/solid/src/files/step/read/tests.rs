@@ -67,6 +67,23 @@ fn what_is_broken_is_named() {
     assert!(refused(&text.replace("HEADER;", "")).contains("no whole STEP file"));
     assert!(refused(&text.replace("FILE_SCHEMA", "FILE_SCHEMA_")).contains("names no schema"));
     assert!(refused(&text.replace("CYLINDRICAL_SURFACE", "SURFACE_OF_NOTHING")).contains("not read here"));
+    // The line is that of the entity, comments and texts with semicolons before it or not.
+    let at = text.find("#20=").unwrap();
+    let line = text[..at].matches('\n').count() + 2;
+    let broken = format!("{}/* a;\n */ {}", &text[..at], text[at..].replacen("#20=", "#20=)", 1));
+    let said = refused(&broken);
+    assert!(said.contains(&format!("line {line} is no entity: #20=)")), "{said}");
+    assert!(refused(&text.replace("AUTOMOTIVE_DESIGN", "IFC4")).contains("its schema is IFC4"));
+    // A radius below nothing, and a shell that says that it is open, bound no solid, whatever the facets look like.
+    let fault = |text: &str, check: &str| {
+        let found = read_step(text, fine()).unwrap();
+        found.faults.iter().any(|f| f.check == check)
+    };
+    let at = text.find("=CYLINDRICAL_SURFACE(").unwrap();
+    let end = at + text[at..].find(");").unwrap();
+    let radius = at + text[at..end].rfind(',').unwrap() + 1;
+    assert!(fault(&format!("{}-{}", &text[..radius], &text[radius..]), "radius"));
+    assert!(fault(&text.replace("CLOSED_SHELL", "OPEN_SHELL"), "open shell"));
     // A face that is not there.
     let shell = text.find("CLOSED_SHELL('',(#").unwrap() + "CLOSED_SHELL('',(#".len();
     let end = shell + text[shell..].find(',').unwrap();

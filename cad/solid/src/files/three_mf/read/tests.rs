@@ -124,6 +124,27 @@ fn what_is_built_in_another_size_is_read_in_that_size_too() {
 }
 
 #[test]
+fn solids_are_kept_where_they_stand() {
+    let two = r#"<item objectid="1"/><item objectid="1" transform="1 0 0 0 1 0 0 0 1 3 0 0"/>"#;
+    let found = read(&model_of("", "", &object(1), two));
+    let places: Vec<(usize, f64)> =
+        found.built.iter().map(|(item, _, mesh)| (*item, mesh.bounds().unwrap().0.x)).collect();
+    assert_eq!(places, [(0, 0.0), (1, 3.0)]);
+}
+
+#[test]
+fn what_is_no_number_is_named_as_it_stands_there() {
+    let item = r#"<item objectid="1"/>"#;
+    let good = model_of("", "", &object(1), item);
+    let comma = read(&good.replacen(r#"x="9""#, r#"x="9,5""#, 1));
+    assert_eq!(checks(&comma)[0], "number");
+    let words = &comma.faults[0].detail;
+    assert!(words.contains(r#"x="9,5""#) && words.contains("a point, not a comma"), "{words}");
+    let missing = read(&good.replacen(r#"x="9" "#, "", 1));
+    assert!(missing.faults[0].detail.contains("without x"), "{:?}", missing.faults);
+}
+
+#[test]
 fn components_multiply_no_longer_than_bounded() {
     let twice = |id: u32| {
         let component = format!(r#"<component objectid="{}"/>"#, id - 1).repeat(9);

@@ -1,6 +1,7 @@
 //! What every sheet must keep: nothing overlaps, each dimension stands once, views lie where the projection wants them, and
 //! what is measured in the DXF is what the manifest says.
 
+mod complete;
 mod measured;
 
 use std::collections::BTreeMap;
@@ -90,7 +91,8 @@ fn faults(name: &str, built: &Built) -> Vec<String> {
             }
         }
         for (key, times) in keys {
-            if times > 1 && key != "bill of materials" {
+            // Each row of a table has the key of its table.
+            if times > 1 && !["bill of materials", "places of the holes"].contains(&key) {
                 fault(&sheet.name, format!("{key} stands {times} times"));
             }
         }
@@ -114,20 +116,11 @@ fn promised(built: &Built, part: &str) -> Vec<(String, String)> {
     if is_grooved || is_support {
         add("span".to_owned(), format!("{}\u{b0}", number(c.segment.span_deg)));
     }
-    // Of a hole with a recess over it, or for an insert, what is promised is said of the recess.
-    let fastening = d.fastening();
-    let is_plain = fastening.insert_mm.is_none() && fastening.counterbore.is_none();
-    if c.fasteners.count > 0 && is_plain && (part == "shell" || is_support) {
-        let n = if c.fasteners.count == 1 { String::new() } else { format!("{} \u{d7} ", c.fasteners.count) };
-        let diameter = number(c.fasteners.hole_diameter_mm);
-        add(
-            "hole 1".to_owned(),
-            format!(
-                "{n}\u{d8}{diameter} H13 through, for {}",
-                crate::documents::bill_of_materials(d).fasteners.unwrap().thread
-            ),
-        );
+    if c.fasteners.count > 0 && (part == "shell" || is_support) {
         add("hole 1".to_owned(), format!("on R{}", number(d.fastener_radius_mm())));
+        for words in promised_of_holes(d, part) {
+            add("hole 1".to_owned(), words);
+        }
     }
     if is_grooved {
         let (inner, outer) = if part == "shell" {
@@ -166,6 +159,35 @@ fn promised(built: &Built, part: &str) -> Vec<(String, String)> {
         add("height ".to_owned() + &number(c.mould.floor_mm), number(c.mould.floor_mm));
     }
     all
+}
+
+/// What is said of the holes for screws in shell and supports.
+fn promised_of_holes(d: &Design, part: &str) -> Vec<String> {
+    let c = d.configuration();
+    let n = if c.fasteners.count == 1 { String::new() } else { format!("{} \u{d7} ", c.fasteners.count) };
+    let thread = crate::documents::bill_of_materials(d).fasteners.unwrap().thread;
+    let diameter = number(c.fasteners.hole_diameter_mm);
+    let fastening = d.fastening();
+    let has_heads = part == "support-left" || fastening.insert_mm.is_some();
+    let is_covered = part == "support-left" && c.mount.kind != config::MountKind::None;
+    match (part, fastening.insert_mm, fastening.recess(has_heads)) {
+        ("shell", Some([bore, length]), _) => vec![
+            format!("{n}\u{d8}{}, {} deep, both faces", number(bore), number(length)),
+            format!("for heat-set insert {thread}"),
+            format!("\u{d8}{diameter} between them"),
+        ],
+        (_, _, Some(recess)) if part != "shell" && !is_covered => {
+            let word = if recess.is_hexagon { "hexagon AF " } else { "\u{d8}" };
+            let depth = number(recess.depth_mm);
+            let rest = c.support.plate_mm - recess.depth_mm - d.membrane_mm();
+            vec![
+                format!("{n}{word}{}, {depth} deep, far face", number(2.0 * recess.radial_mm)),
+                format!("closed skin {} above it", number(d.membrane_mm())),
+                format!("\u{d8}{diameter} H13, {} deep, near face, for {thread}", number(rest)),
+            ]
+        }
+        _ => vec![format!("{n}\u{d8}{diameter} H13 through, for {thread}")],
+    }
 }
 
 #[test]

@@ -1,0 +1,169 @@
+//! Lengths along the two sides of the paper: of parts without an axis, and of blocks around one.
+
+use super::dimensions::Wanted;
+use super::features::{Features, same};
+use super::plan::Place;
+use super::words::number;
+use pinswitch_plot::drawing::{Extent, Linear};
+use pinswitch_solid::profile::Point2;
+
+/// Where dimensions of a front view are put.
+struct Frame<'a> {
+    place: &'a Place,
+    front: Extent,
+    low: Point2,
+    high: Point2,
+    all: Vec<Wanted>,
+}
+
+impl Frame<'_> {
+    /// The distance of two points along x, or along y if `upright`; below or to the left, unless `is_far`.
+    fn linear(
+        &mut self,
+        key: impl Into<String>,
+        text: String,
+        ends: [Point2; 2],
+        upright: bool,
+        is_far: bool,
+    ) {
+        let edge_mm = match (upright, is_far) {
+            (true, true) => self.front.high.x,
+            (true, false) => self.front.low.x,
+            (false, true) => self.front.high.y,
+            (false, false) => self.front.low.y,
+        };
+        let outward = if is_far { 1.0 } else { -1.0 };
+        let [from, to] = ends.map(|p| self.place.at(p));
+        let ends = if upright { [from.y, to.y] } else { [from.x, to.x] };
+        let clear_of = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        let key = key.into();
+        self.all.push(Wanted::linear(Linear { key, text, from, to, upright, edge_mm, outward, clear_of }));
+    }
+
+    /// Length and width over all; in parentheses where other dimensions make them.
+    fn overall(&mut self, follows: bool) {
+        let (low, high) = (self.low, self.high);
+        let said = |mm: f64| if follows { format!("({})", number(mm)) } else { number(mm) };
+        self.linear("length", said(high.x - low.x), [low, Point2::new(high.x, low.y)], false, false);
+        self.linear("width", said(high.y - low.y), [Point2::new(high.x, low.y), high], true, true);
+    }
+}
+
+/// What of a part is measured along the paper; nothing for a part whose radii and angles say it all.
+pub(super) fn of_part(
+    f: &Features,
+    place: &Place,
+    front: Extent,
+    (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>),
+) -> Vec<Wanted> {
+    let (low, high) = (Point2::new(low.x, low.y), Point2::new(high.x, high.y));
+    let mut frame = Frame { place, front, low, high, all: Vec::new() };
+    match (f.axis_arcs.is_empty(), f.block) {
+        (true, Some(_)) => block(f, &mut frame),
+        (false, Some(_)) => block_about_axis(&mut frame),
+        (false, None) => {}
+        (true, None) if f.is_round_body() => {}
+        (true, None) if f.bores.is_empty() => {
+            rows(f, &mut frame);
+            frame.overall(false);
+        }
+        // The arcs of the outline and the places of the holes make the lengths of a plate.
+        (true, None) => frame.overall(true),
+    }
+    copies(f, &mut frame);
+    frame.all
+}
+
+/// Everything on a rectangular block: from its left side, and across its middle line where things lie alike on both sides.
+fn block(f: &Features, frame: &mut Frame<'_>) {
+    let corners = f.straight.iter().flat_map(|(a, b)| [*a, *b]);
+    let points: Vec<Point2> = corners.chain(f.bores.iter().flat_map(|b| b.centres.clone())).collect();
+    let (low, high) = (frame.low, frame.high);
+    let mut xs: Vec<f64> = points.iter().map(|p| p.x).filter(|x| !same(*x, low.x)).collect();
+    xs.sort_by(f64::total_cmp);
+    xs.dedup_by(|a, b| same(*a, *b));
+    for x in xs.iter().filter(|x| !same(**x, high.x)) {
+        let y = points.iter().filter(|p| same(p.x, *x)).map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let text = number(x - low.x);
+        frame.linear(format!("along {text}"), text, [low, Point2::new(*x, y)], false, false);
+    }
+    let middle = f64::midpoint(low.y, high.y);
+    let is_paired = |p: &Point2| points.iter().any(|q| same(p.x, q.x) && same(q.y - middle, middle - p.y));
+    let mut above: Vec<Point2> = points.iter().copied().filter(|p| p.y > middle || !is_paired(p)).collect();
+    // Of those at one height the nearest to the side on which it is written.
+    above.sort_by(|a, b| a.y.total_cmp(&b.y).then(b.x.total_cmp(&a.x)));
+    above.dedup_by(|a, b| same(a.y, b.y));
+    for p in above.iter().filter(|p| !same(p.y, high.y)) {
+        if is_paired(p) {
+            let text = number(2.0 * (p.y - middle));
+            let other = Point2::new(p.x, 2.0 * middle - p.y);
+            frame.linear(format!("across {text}"), text, [other, *p], true, true);
+        } else {
+            let text = number(p.y - low.y);
+            frame.linear(format!("level {text}"), text, [Point2::new(p.x, low.y), *p], true, false);
+        }
+    }
+    frame.overall(false);
+}
+
+/// A block that holds something about the pulley's axis: its lower side is measured from the axis.
+fn block_about_axis(frame: &mut Frame<'_>) {
+    let (low, high) = (frame.low, frame.high);
+    frame.overall(false);
+    let text = number(low.y.abs());
+    frame.linear("lower side from the axis", text, [Point2::origin(), low], true, false);
+    if !same(low.x, -high.x) {
+        let text = number(low.x.abs());
+        frame.linear("left side from the axis", text, [low, Point2::origin()], false, false);
+    }
+}
+
+/// From one basin of a gang to the next.
+fn copies(f: &Features, frame: &mut Frame<'_>) {
+    let Some(copies) = f.copies else { return };
+    let steps = copies.number - 1;
+    let last = Point2::from(copies.step * steps as f64);
+    for (upright, step, word) in [(false, copies.step.x, "along"), (true, copies.step.y, "across")] {
+        if !same(step, 0.0) {
+            let (step, steps) = (step.abs(), steps as f64);
+            let text = if steps > 1.0 {
+                format!("{steps} \u{d7} {} = {}", number(step), number(steps * step))
+            } else {
+                number(step)
+            };
+            let first = Point2::origin();
+            frame.linear(format!("pitch of the basins {word}"), text, [first, last], upright, false);
+        }
+    }
+}
+
+/// Rows of slots and grooves: the first from the corner, the others from it.
+fn rows(f: &Features, frame: &mut Frame<'_>) {
+    let (corner, high) = (frame.low, frame.high);
+    let middle = |s: &(Point2, Point2)| nalgebra::center(&s.0, &s.1);
+    let slots: Vec<Point2> = f.slots.iter().flat_map(|s| s.places.iter().map(middle)).collect();
+    let half_rounds = f.roundings.iter().filter(|r| r.is_half_round);
+    let grooves = half_rounds.flat_map(|r| r.arcs.iter().map(|a| a.centre)).collect();
+    for (word, mut points) in [("slots", slots), ("grooves", grooves)] {
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { continue };
+        let is_far = word == "grooves";
+        let from = |p: Point2| [Point2::new(corner.x, p.y), p];
+        frame.linear(format!("first of the {word}"), number(first.x - corner.x), from(first), false, is_far);
+        let steps = points.len() - 1;
+        let step = points.get(1).map_or(0.0, |p| p.x - first.x);
+        if steps > 1 && points.windows(2).all(|w| same(w[1].x - w[0].x, step)) {
+            let text = format!("{steps} \u{d7} {} = {}", number(step), number(last.x - first.x));
+            frame.linear(format!("pitch of the {word}"), text, [first, last], false, is_far);
+        } else {
+            for (i, p) in points.iter().enumerate().skip(1) {
+                let key = format!("{word} {}", i + 1);
+                frame.linear(key, number(p.x - corner.x), from(*p), false, is_far);
+            }
+        }
+        if !same(first.y, high.y) {
+            let key = format!("level of the {word}");
+            frame.linear(key, number(first.y - corner.y), [corner, first], true, false);
+        }
+    }
+}

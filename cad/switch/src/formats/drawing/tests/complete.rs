@@ -1,0 +1,289 @@
+//! A sheet says all that it takes to make its part, and nothing twice. What must be said is read from the contours of the
+//! exact solid, and not from the features that the sheet was drawn from.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::super::features::{lettering, same};
+use super::super::words::number;
+use super::{built, known};
+use crate::built::Built;
+use crate::parts::Part;
+use pinswitch_plot::drawing::{Shape, Sheet};
+use pinswitch_solid::profile::{Contour, Edge, Point2};
+use std::f64::consts::PI;
+
+/// All that is written on a sheet, its title block left out.
+fn texts(sheet: &Sheet) -> Vec<String> {
+    let content = sheet.entities.iter().filter(|e| e.group >= sheet.first_group);
+    content
+        .filter_map(|e| if let Shape::Text(t) = &e.shape { Some(t.content.clone()) } else { None })
+        .collect()
+}
+
+/// All numbers of a sheet, without signs, as they are written.
+fn numbers(sheet: &Sheet) -> BTreeSet<String> {
+    let is_part = |c: char| c.is_ascii_digit() || c == '.';
+    texts(sheet)
+        .iter()
+        .flat_map(|t| t.split(|c: char| !is_part(c)).map(str::to_owned).collect::<Vec<_>>())
+        .filter(|t| !t.is_empty())
+        .collect()
+}
+
+/// What a sheet leaves open of one contour, in words.
+struct Reader<'a> {
+    said: BTreeSet<String>,
+    table: Vec<Vec<String>>,
+    bounds: (Point2, Point2),
+    levels: Vec<f64>,
+    is_axial: bool,
+    is_round: bool,
+    missing: Vec<String>,
+    sheet: &'a Sheet,
+}
+
+impl Reader<'_> {
+    fn says(&self, value: f64) -> bool {
+        same(value, 0.0) || self.said.contains(&number(value.abs()))
+    }
+
+    fn need(&mut self, what: &str, ways: &[f64]) {
+        if !ways.iter().any(|w| self.says(*w)) {
+            let ways: Vec<String> = ways.iter().map(|w| number(*w)).collect();
+            self.missing.push(format!("{}: {what} {}", self.sheet.name, ways.join(" or ")));
+        }
+    }
+
+    /// A place of a plate: in the table, from the first hole.
+    fn place(&mut self, at: Point2, origin: Option<Point2>) {
+        if self.is_round {
+            return;
+        }
+        if self.is_axial {
+            self.need("radius of a place", &[at.coords.norm()]);
+            let angle = at.x.atan2(at.y).to_degrees();
+            let is_stepped = texts(self.sheet).iter().any(|t| t.contains(" \u{d7} ") && t.contains('\u{b0}'));
+            if !is_stepped {
+                self.need("angle of a place", &[angle]);
+            }
+        } else if let Some(origin) = origin {
+            let row = [number(at.x - origin.x), number(at.y - origin.y)];
+            if !self.table.iter().any(|r| r[1..] == row) {
+                self.missing.push(format!("{}: a hole at {row:?} is not in the table", self.sheet.name));
+            }
+        } else {
+            let (low, high) = self.bounds;
+            let middle = nalgebra::center(&low, &high);
+            self.need("place along", &[at.x - low.x, 2.0 * (at.x - middle.x)]);
+            self.need("place across", &[at.y - low.y, 2.0 * (at.y - middle.y)]);
+        }
+    }
+
+    fn height(&mut self, z: f64) {
+        let ways: Vec<f64> = self.levels.iter().map(|other| z - other).filter(|d| !same(*d, 0.0)).collect();
+        self.need("height", &ways);
+    }
+
+    fn outline(&mut self, contour: &Contour) {
+        let arcs: Vec<_> = contour
+            .edges()
+            .iter()
+            .filter_map(|e| if let Edge::Arc(a) = e { Some(a) } else { None })
+            .collect();
+        match (contour.edges().len(), &arcs[..]) {
+            // A slot with round ends: its width, and where its ends are.
+            (4, [a, b]) if (a.sweep_rad.abs() - PI).abs() < 1e-6 && (b.sweep_rad.abs() - PI).abs() < 1e-6 => {
+                self.need("width", &[2.0 * a.radius_mm]);
+                self.need("travel", &[(a.centre - b.centre).norm()]);
+            }
+            // A slot along an arc: its width and its middle.
+            (4, [_, _, _, _]) => {
+                let mut radii: Vec<f64> = arcs.iter().map(|a| a.radius_mm).collect();
+                radii.sort_by(f64::total_cmp);
+                self.need("width", &[radii[3] - radii[2]]);
+                self.need("radius", &[f64::midpoint(radii[3], radii[2])]);
+            }
+            _ => self.edges(contour),
+        }
+    }
+
+    fn edges(&mut self, contour: &Contour) {
+        for (i, edge) in contour.edges().iter().enumerate() {
+            let (from, to) = contour.ends(i);
+            match edge {
+                Edge::Arc(arc) => {
+                    self.need("radius", &[arc.radius_mm, 2.0 * arc.radius_mm]);
+                }
+                Edge::Line if !self.is_axial && !self.is_round => {
+                    let (low, high) = self.bounds;
+                    let middle = nalgebra::center(&low, &high);
+                    if same(from.x, to.x) {
+                        self.need("x", &[from.x - low.x, high.x - from.x, 2.0 * (from.x - middle.x)]);
+                    }
+                    if same(from.y, to.y) {
+                        self.need("y", &[from.y - low.y, high.y - from.y, 2.0 * (from.y - middle.y)]);
+                    }
+                }
+                Edge::Line => {}
+            }
+        }
+    }
+}
+
+fn is_circle(c: &Contour) -> Option<(Point2, f64)> {
+    let arcs: Vec<_> =
+        c.edges().iter().filter_map(|e| if let Edge::Arc(a) = e { Some(a) } else { None }).collect();
+    match arcs[..] {
+        [a, b] if c.edges().len() == 2 && (a.centre - b.centre).norm() < 1e-6 => {
+            Some((a.centre, a.radius_mm))
+        }
+        _ => None,
+    }
+}
+
+fn is_moved(a: &Contour, b: &Contour) -> bool {
+    let (a, b) = (a.corners(), b.corners());
+    a.len() == b.len() && a.iter().zip(b).all(|(p, q)| (p - q - (a[0] - b[0])).norm() < 1e-6)
+}
+
+/// What the sheet of a part does not say.
+fn open_questions(part: &Part, sheet: &Sheet, chamfer_mm: f64) -> Vec<String> {
+    let solid = part.drawn.as_ref().unwrap_or(&part.solid);
+    let (low, high) = solid.bounds().unwrap();
+    let rings: Vec<(&Contour, f64)> = solid.rings().collect();
+    let letters = lettering(solid);
+    let feet: Vec<usize> = solid
+        .walls()
+        .filter(|(a, b)| rings[*a].0 != rings[*b].0 && same(rings[*b].1 - rings[*a].1, chamfer_mm))
+        .map(|(a, _)| a)
+        .collect();
+    let kept: Vec<(&Contour, f64)> =
+        (0..rings.len()).filter(|i| !letters[*i] && !feet.contains(i)).map(|i| rings[i]).collect();
+    let outer = kept.iter().max_by(|a, b| a.0.area_mm2().total_cmp(&b.0.area_mm2())).unwrap();
+    let about_axis =
+        |c: &Contour| c.edges().iter().any(|e| matches!(e, Edge::Arc(a) if a.centre.coords.norm() < 1e-6));
+    let is_round = is_circle(outer.0).is_some();
+    let rows = sheet.annotations.iter().filter(|a| a.key == "places of the holes");
+    let table: Vec<Vec<String>> =
+        rows.map(|a| a.text.split('\t').map(str::to_owned).collect()).skip(1).collect();
+    let mut reader = Reader {
+        said: numbers(sheet),
+        bounds: (Point2::new(low.x, low.y), Point2::new(high.x, high.y)),
+        levels: rings.iter().map(|r| r.1).collect(),
+        is_axial: !is_round && kept.iter().any(|r| about_axis(r.0)),
+        is_round,
+        missing: Vec::new(),
+        table,
+        sheet,
+    };
+    // The hole from which the others are measured: the one whose row says so.
+    let centres: Vec<Point2> = kept.iter().filter_map(|r| is_circle(r.0)).map(|c| c.0).collect();
+    let origin = centres.iter().copied().find(|o| {
+        let rows: Vec<[String; 2]> = centres.iter().map(|p| [number(p.x - o.x), number(p.y - o.y)]).collect();
+        !reader.table.is_empty() && rows.iter().all(|r| reader.table.iter().any(|t| t[1..] == *r))
+    });
+    if !reader.table.is_empty() && origin.is_none() {
+        reader.missing.push(format!("{}: the table does not hold all holes", sheet.name));
+    }
+    let mut seen: Vec<&Contour> = Vec::new();
+    for (contour, z) in kept {
+        if !same(z, low.z) && !same(z, low.z + chamfer_mm) {
+            reader.height(z);
+        }
+        if seen.iter().any(|s| *s == contour)
+            || seen.iter().any(|s| s.edges().len() > 6 && is_moved(s, contour))
+        {
+            continue;
+        }
+        seen.push(contour);
+        if let Some((centre, radius)) = is_circle(contour) {
+            reader.need("diameter", &[2.0 * radius]);
+            reader.place(centre, origin);
+        } else if let Some((centre, half)) = super::super::bore::hexagon(contour) {
+            reader.need("width across flats", &[2.0 * half]);
+            reader.place(centre, origin);
+        } else {
+            reader.outline(contour);
+        }
+    }
+    reader.missing.sort();
+    reader.missing.dedup();
+    reader.missing
+}
+
+/// Dimensions that stand on a sheet twice.
+fn repeated(sheet: &Sheet) -> Vec<String> {
+    let mut times: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    let is_name =
+        |key: &str| ["mark of", "title of", "section title", "places of"].iter().any(|w| key.starts_with(w));
+    for a in sheet.annotations.iter().filter(|a| !is_name(&a.key)) {
+        times.entry(&a.text).or_default().push(&a.key);
+    }
+    times.retain(|_, keys| keys.len() > 1);
+    times.into_iter().map(|(text, keys)| format!("{}: {text:?} is said of {keys:?}", sheet.name)).collect()
+}
+
+fn faults(name: &str, built: &Built) -> Vec<String> {
+    let chamfer_mm = built.design().configuration().print.elephant_foot_mm;
+    let sheets = super::sheets(built);
+    let mut all = Vec::new();
+    for part in built.printed().iter().map(|p| p.part()) {
+        let Some(sheet) = sheets.iter().find(|s| s.name == part.name) else { continue };
+        all.extend(open_questions(part, sheet, chamfer_mm));
+        all.extend(repeated(sheet));
+    }
+    all.into_iter().map(|f| format!("{name}, {f}")).collect()
+}
+
+#[test]
+fn every_contour_of_a_part_is_dimensioned_and_nothing_twice() {
+    let mut drawn = 0;
+    let mut all = Vec::new();
+    for (name, text) in known() {
+        let Some(built) = built(&text) else { continue };
+        all.extend(faults(&name, &built));
+        drawn += 1;
+    }
+    assert!(drawn >= 35, "only {drawn} configurations were drawn");
+    assert!(all.is_empty(), "{}", all.join("\n"));
+}
+
+/// A hole is called through if one sees through it, and only then.
+#[test]
+fn holes_are_called_through_that_are() {
+    let told = |text: &str, part: &str| {
+        let built = built(text).unwrap();
+        let all = super::sheets(&built);
+        let sheet = all.iter().find(|s| s.name == part).unwrap();
+        super::text_of(sheet, "hole 1")
+    };
+    let trap = told("[layout]\npins = [5, 8, 11]\n", "support-right");
+    for words in ["hexagon AF 5.7", "far face", "closed skin 0.4", "near face, for M3"] {
+        assert!(trap.contains(words), "{words} is not in {trap:?}");
+    }
+    assert!(!trap.contains("through"), "{trap}");
+    let screw = told("[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"screw\"\n", "support-right");
+    assert!(screw.contains("H13 through, for M3"), "{screw}");
+    let insert = told("[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"insert\"\n", "shell");
+    assert!(insert.contains("2 \u{d7} \u{d8}4, 5.7 deep, both faces\nfor heat-set insert M3"), "{insert}");
+    assert_eq!(insert.matches("33.635").count(), 1, "{insert}");
+}
+
+/// What is engraved is what the note says, in words that the part has.
+#[test]
+fn nothing_is_called_engraved_that_was_left_out() {
+    let mut left_out = 0;
+    for (name, text) in known() {
+        let Some(built) = built(&text) else { continue };
+        for sheet in super::sheets(&built) {
+            let all = texts(&sheet).join(" ");
+            for label in all.split("the label \"").skip(1).filter_map(|t| t.split('"').next()) {
+                let engraved = all.split("Engraved").nth(1).unwrap_or("");
+                let engraved = engraved.split(" deep").next().unwrap_or("");
+                assert!(!engraved.contains(label), "{name}, {}: {all}", sheet.name);
+                left_out += 1;
+            }
+        }
+    }
+    assert!(left_out > 0, "some label should have found no room");
+}

@@ -35,8 +35,8 @@ pub(super) const DOWELS_MM: &[f64] = &[0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4
 /// Clearance holes of M1.6 to M5, fine, medium and coarse, mm (ISO 273).
 pub(super) const CLEARANCE_HOLES_MM: &[f64] =
     &[1.7, 1.8, 2.0, 2.2, 2.4, 2.6, 2.7, 2.9, 3.1, 3.2, 3.4, 3.6, 4.3, 4.5, 4.8, 5.3, 5.5, 5.8];
-/// A nut and what the screw stands out of it, in diameters of the hole.
-const NUT: f64 = 1.2;
+/// What a screw stands out of its nut: a turn of its thread, mm.
+const STANDS_OUT_MM: f64 = 0.5;
 /// Air between the tips of two screws that meet in the shell, mm.
 const SCREW_AIR_MM: f64 = 0.5;
 /// Least that a screw must reach into an insert, in diameters of the hole.
@@ -295,7 +295,7 @@ impl Dimensions {
             return Some((longest(left_plates)?, Some(longest(in_support)?)));
         }
         let right = c.support.plate_mm - depth(fastening.nut_trap);
-        let stack = left_plates + c.shell.width_mm + right + NUT * hole;
+        let stack = left_plates + c.shell.width_mm + right + thread.nut_mm[1] + STANDS_OUT_MM;
         Some((thread.at_least_mm(stack)?, None))
     }
 

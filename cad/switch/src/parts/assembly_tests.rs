@@ -197,8 +197,38 @@ fn recesses_take_their_hardware() {
     assert!(2.0 * trap.radial_mm > 5.5 && 2.0 * trap.radial_mm < 6.01, "{trap:?}");
     let head = design(&["fasteners.head_recess_mm=1.5"]).fastening().counterbore.unwrap();
     assert!(2.0 * head.radial_mm > 5.68, "{head:?}");
-    let sunk = design(&["mount.kind=flange", "fasteners.head_recess_mm=3.2"]);
-    assert!(sunk.fastening().counterbore.unwrap().depth_mm > 3.0);
+    // On a plate that lies on a table every head lies within it, asked for or not: M3 heads are 3 mm high, M4 heads 4 mm.
+    for (assignments, least) in [
+        (&["mount.kind=flange", "fasteners.head_recess_mm=3.6"][..], 3.6),
+        (&["mount.kind=flange"], 3.0),
+        (&["mount.kind=rig"], 3.0),
+        (
+            &[
+                "mount.kind=rig",
+                "fasteners.hole_diameter_mm=4.5",
+                "shell.wall_mm=11",
+                "fasteners.end_distance_mm=5",
+            ],
+            4.0,
+        ),
+    ] {
+        let sunk = design(assignments);
+        let depth = sunk.fastening().mount_counterbore.unwrap().depth_mm;
+        assert!(depth >= least && depth < sunk.configuration().mount.plate_mm, "{assignments:?}: {depth}");
+    }
+    // So do the head of the axle's bolt, 5.3 mm (ISO 4017), which cannot turn, and those of the sheath stop.
+    let rig = design(&["mount.kind=rig", "tendon.sheath_diameter_mm=3"]);
+    let plate = printed(&rig).unwrap().into_iter().find(|p| p.name == "rig-plate").unwrap();
+    let mounting = rig.mounting().unwrap();
+    let open = |z: f64, at: Point2| section(&plate, z).distance_mm(at);
+    for z in [0.01, 5.29] {
+        let half = open(z, mounting.axle.unwrap().centre);
+        assert!(half > 6.5 && half < 13.0 / 3.0_f64.sqrt(), "{z}: {half}");
+    }
+    for screw in mounting.sheath.unwrap().screws {
+        assert!(open(0.01, screw.centre) > 2.75 && open(2.99, screw.centre) > 2.75);
+        assert!((open(6.9, screw.centre) - 1.7).abs() < 1e-9);
+    }
     let insert = design(&["fasteners.kind=insert"]);
     let shell = printed(&insert).unwrap().remove(0);
     let axis = polar(insert.fastener_radius_mm(), insert.fastener_angles_rad()[0]);

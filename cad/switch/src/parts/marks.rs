@@ -110,7 +110,8 @@ mod tests {
 
     #[test]
     fn small_supports_keep_the_side_and_the_load_before_the_layout() {
-        let small = rows(&["shell.wall_mm=3.5", "fasteners.hole_diameter_mm=1.8"], false);
+        let small =
+            rows(&["shell.wall_mm=3.5", "fasteners.hole_diameter_mm=1.8", "shell.width_mm=7.5"], false);
         assert!(small.is_none_or(|rows| rows[0].starts_with('L')));
     }
 }

@@ -504,7 +504,7 @@ mod tests {
             &["fasteners.dowel_diameter_mm=3.95"],
             &["fasteners.dowel_diameter_mm=2.2"],
             &["shell.width_mm=60"],
-            &["shell.width_mm=120"],
+            &["shell.width_mm=100"],
             &["mount.kind=rig", "mount.plate_mm=5"],
             &["mount.kind=flange", "mount.plate_mm=3"],
             &["mount.kind=flange", "tendon.sheath_diameter_mm=3", "mount.plate_mm=2.5"],

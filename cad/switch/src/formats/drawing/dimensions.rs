@@ -284,7 +284,7 @@ fn holes_and_rounds(design: &Design, part: &Part, f: &Features, place: &Place, a
         let mut radii: Vec<f64> = round.levels.iter().map(|l| l.1).collect();
         radii.dedup_by(|a, b| same(*a, *b));
         // A rim of several diameters has a callout for each; a peg is told in one.
-        if radii.len() > 2 {
+        if radii.len() > 2 && f.is_round_body() {
             radii.sort_by(f64::total_cmp);
             radii.dedup_by(|a, b| same(*a, *b));
             for radius in radii {

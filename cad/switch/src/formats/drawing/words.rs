@@ -84,7 +84,7 @@ pub(super) fn round(
 ) -> Vec<String> {
     let (Some(first), Some(last)) = (round.levels.first(), round.levels.last()) else { return Vec::new() };
     let n = times(round.centres.len());
-    let (low, high) = (number(2.0 * first.1), number(2.0 * last.1));
+    let low = number(2.0 * first.1);
     let depth = number(last.0 - first.0);
     if matches!(part.role, Role::Pin { .. }) {
         return vec![pin(design)];
@@ -92,7 +92,12 @@ pub(super) fn round(
     let mut lines = match (same(first.1, last.1), is_body) {
         (true, true) => vec![format!("{n}\u{d8}{low}")],
         (true, false) => vec![format!("{n}\u{d8}{low} \u{d7} {depth}")],
-        (false, _) => vec![format!("{n}peg \u{d8}{low}, \u{d8}{high} at {depth}")],
+        (false, _) => {
+            let mut levels = round.levels[1..].to_vec();
+            levels.dedup_by(|a, b| same(a.1, b.1));
+            let at = |(z, r): &(f64, f64)| format!(", \u{d8}{} at {}", number(2.0 * r), number(z - first.0));
+            vec![format!("{n}peg \u{d8}{low}{}", levels.iter().map(at).collect::<String>())]
+        }
     };
     if is_axial {
         lines.extend(on_radius(&round.centres));

@@ -51,6 +51,64 @@ fn what_is_written_is_valid_and_what_is_broken_is_not() {
     }
 }
 
+/// A STEP library that gives up says so on the terminal, line by line; a user hears one sentence of ours.
+#[test]
+fn what_a_step_cannot_mean_is_said_in_one_sentence() {
+    let folder = tempfile::tempdir().unwrap();
+    done(folder.path(), &["-q", "generate", "three-single", "--format", "step", "--out", "set"]);
+    let step = std::fs::read_to_string(folder.path().join("set/shell.step")).unwrap();
+    let at = step.find("=CYLINDRICAL_SURFACE(").unwrap();
+    let end = at + step[at..].find(");").unwrap();
+    let radius = at + step[at..end].rfind(',').unwrap() + 1;
+    let plane = step.find("=PLANE(").unwrap() + "=PLANE(".len();
+    let end = plane + step[plane..].find(");").unwrap();
+    let broken = [
+        ("parameters.step", format!("{}''{}", &step[..plane], &step[end..]), 2, "not read here"),
+        ("schema.step", step.replace("AUTOMOTIVE_DESIGN", "IFC4"), 2, "its schema is IFC4"),
+        ("radius.step", format!("{}-{}", &step[..radius], &step[radius..]), 1, "has a radius of -"),
+        ("open.step", step.replace("CLOSED_SHELL", "OPEN_SHELL"), 1, "is an OPEN_SHELL"),
+    ];
+    for (name, text, code, words) in broken {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        let (found, said) = ended(folder.path(), &["check", name]);
+        assert!(found == Some(code) && said.contains(words), "{name}: {found:?} {said}");
+        let is_ours = |line: &str| ["error: ", name, "  "].iter().any(|begin| line.starts_with(begin));
+        assert!(said.lines().all(is_ours), "{name}: {said}");
+    }
+}
+
+/// A 3MF whose items stand in each other cannot be printed, however good each of them is.
+#[test]
+fn items_of_a_plate_that_share_space_are_not_valid() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = r#"<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="9" y="0" z="0"/><vertex x="0" y="9" z="0"/><vertex x="0" y="0" z="9"/></vertices><triangles><triangle v1="0" v2="2" v3="1"/><triangle v1="0" v2="1" v3="3"/><triangle v1="1" v2="2" v3="3"/><triangle v1="2" v2="0" v3="3"/></triangles></mesh>"#;
+    for (name, x, code) in [("apart.3mf", 9, Some(0)), ("inside.3mf", 2, Some(1))] {
+        let model = format!(
+            r#"<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1">{mesh}</object></resources><build><item objectid="1"/><item objectid="1" transform="1 0 0 0 1 0 0 0 1 {x} 0 0"/></build></model>"#
+        );
+        let mut archive = zip::ZipWriter::new(std::fs::File::create(folder.path().join(name)).unwrap());
+        let parts = [
+            (
+                "[Content_Types].xml",
+                r#"<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"/>"#,
+            ),
+            (
+                "_rels/.rels",
+                r#"<Relationships><Relationship Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel" Target="/3D/3dmodel.model"/></Relationships>"#,
+            ),
+            ("3D/3dmodel.model", model.as_str()),
+        ];
+        for (part, text) in parts {
+            archive.start_file(part, zip::write::SimpleFileOptions::default()).unwrap();
+            std::io::Write::write_all(&mut archive, text.as_bytes()).unwrap();
+        }
+        archive.finish().unwrap();
+        let (found, said) = ended(folder.path(), &["check", name]);
+        assert_eq!(found, code, "{name}: {said}");
+        assert_eq!(said.contains("share space on the plate"), code == Some(1), "{said}");
+    }
+}
+
 #[test]
 fn the_3mf_of_a_set_makes_the_set_again() {
     let folder = tempfile::tempdir().unwrap();

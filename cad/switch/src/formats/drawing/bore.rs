@@ -215,8 +215,10 @@ fn stacked(design: &Design, bore: &Bore, stages: &[Stage], is_fastener: bool, n:
         };
         let first = if i == 0 { n } else { "" };
         lines.push(format!("{first}{}{bearing}{fit}{depth}{use_of}", stage.across()));
-        if stage.is_hexagon && is_fastener {
-            lines.push("two flats square to the radius".to_owned());
+        if stage.is_hexagon {
+            lines.push(
+                if is_fastener { "two flats square to the radius" } else { "two flats along X" }.to_owned(),
+            );
         }
         if let Some(skin) = skins.get(i).filter(|s| !same(**s, 0.0)) {
             lines.push(format!("closed skin {} above it", number(*skin)));

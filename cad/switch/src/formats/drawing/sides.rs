@@ -82,10 +82,14 @@ fn block(f: &Features, frame: &mut Frame<'_>) {
     let mut xs: Vec<f64> = points.iter().map(|p| p.x).filter(|x| !same(*x, low.x)).collect();
     xs.sort_by(f64::total_cmp);
     xs.dedup_by(|a, b| same(*a, *b));
-    for x in xs.iter().filter(|x| !same(**x, high.x)) {
-        let y = points.iter().filter(|p| same(p.x, *x)).map(|p| p.y).fold(f64::INFINITY, f64::min);
+    // In turn below and above, so that all find room.
+    for (i, x) in xs.iter().filter(|x| !same(**x, high.x)).enumerate() {
+        let is_far = i % 2 == 1;
+        let ys = points.iter().filter(|p| same(p.x, *x)).map(|p| p.y);
+        let y = if is_far { ys.fold(f64::NEG_INFINITY, f64::max) } else { ys.fold(f64::INFINITY, f64::min) };
+        let from = Point2::new(low.x, if is_far { high.y } else { low.y });
         let text = number(x - low.x);
-        frame.linear(format!("along {text}"), text, [low, Point2::new(*x, y)], false, false);
+        frame.linear(format!("from the left side, {text}"), text, [from, Point2::new(*x, y)], false, is_far);
     }
     let middle = f64::midpoint(low.y, high.y);
     let is_paired = |p: &Point2| points.iter().any(|q| same(p.x, q.x) && same(q.y - middle, middle - p.y));
@@ -93,14 +97,23 @@ fn block(f: &Features, frame: &mut Frame<'_>) {
     // Of those at one height the nearest to the side on which it is written.
     above.sort_by(|a, b| a.y.total_cmp(&b.y).then(b.x.total_cmp(&a.x)));
     above.dedup_by(|a, b| same(a.y, b.y));
-    for p in above.iter().filter(|p| !same(p.y, high.y)) {
+    for (i, p) in above.iter().filter(|p| !same(p.y, high.y)).enumerate() {
         if is_paired(p) {
             let text = number(2.0 * (p.y - middle));
-            let other = Point2::new(p.x, 2.0 * middle - p.y);
-            frame.linear(format!("across {text}"), text, [other, *p], true, true);
+            let is_far = i % 2 == 0;
+            // To the side on which it is written, where the same height is met nearest to it.
+            let at_height = points.iter().filter(|q| same(q.y, p.y)).map(|q| q.x);
+            let x = if is_far {
+                at_height.fold(f64::NEG_INFINITY, f64::max)
+            } else {
+                at_height.fold(f64::INFINITY, f64::min)
+            };
+            let ends = [Point2::new(x, 2.0 * middle - p.y), Point2::new(x, p.y)];
+            frame.linear(format!("across the middle, {text}"), text, ends, true, is_far);
         } else {
             let text = number(p.y - low.y);
-            frame.linear(format!("level {text}"), text, [Point2::new(p.x, low.y), *p], true, false);
+            let ends = [Point2::new(p.x, low.y), *p];
+            frame.linear(format!("from the lower side, {text}"), text, ends, true, false);
         }
     }
     frame.overall(false);
@@ -132,7 +145,8 @@ fn copies(f: &Features, frame: &mut Frame<'_>) {
                 number(step)
             };
             let first = Point2::origin();
-            frame.linear(format!("pitch of the basins {word}"), text, [first, last], upright, false);
+            // The axis is measured from on the left.
+            frame.linear(format!("pitch of the basins {word}"), text, [first, last], upright, upright);
         }
     }
 }

@@ -29,7 +29,7 @@ pub(crate) use mounting::{PULLEY_RADIUS_MM, pulley_outer_mm, pulley_width_mm};
 /// assign(&mut crowded, "segment.grooves=40")?;
 /// let error = Design::new(crowded).unwrap_err();
 /// assert_eq!(error.field, "segment.grooves");
-/// assert!(error.remedy.starts_with("lower it to 21"));
+/// assert!(error.remedy.starts_with("lower it to 20"));
 /// # Ok::<(), pinswitch_switch::config::ConfigError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,8 @@
 //!
 //! They are found in the contours of the exact solid, so that a part that nobody has drawn yet has its dimensions, too.
 
-use super::bore::{Bore, Stage, add_stage, gathered, hexagon};
+use super::bore::{Bore, add_stage, gathered};
+use super::chains::{Chain, chains};
 use pinswitch_solid::profile::{Arc, Contour, Edge, Point2, Vector2};
 use pinswitch_solid::solid::Solid;
 use std::f64::consts::PI;
@@ -127,41 +128,6 @@ pub(super) struct Features {
     pub(super) heights_mm: Vec<f64>,
 }
 
-/// A run of walls over each other, each with its rings.
-struct Chain<'a> {
-    rings: Vec<(&'a Contour, f64)>,
-    /// Where it begins, its chamfer included.
-    foot_mm: f64,
-    /// Whether it ends in the open below, and above, and not on a floor or a ceiling.
-    opens: (bool, bool),
-    is_lettering: bool,
-}
-
-impl Chain<'_> {
-    fn is_hole(&self) -> bool {
-        self.rings[0].0.area_mm2() < 0.0
-    }
-
-    fn is_blind(&self) -> bool {
-        self.opens != (true, true)
-    }
-
-    /// By how far this is `other`, moved; `None` if it is anything else.
-    fn moved_from(&self, other: &Self) -> Option<Vector2> {
-        let first = |chain: &Self| chain.rings[0].0.corners().first().copied();
-        let by = first(self)? - first(other)?;
-        let is_moved = |(a, b): (&(&Contour, f64), &(&Contour, f64))| {
-            let corners = (a.0.corners(), b.0.corners());
-            same(a.1, b.1)
-                && corners.0.len() == corners.1.len()
-                && corners.0.iter().zip(corners.1).all(|(p, q)| (p - q - by).norm() < SAME_MM)
-        };
-        let is_copy =
-            self.rings.len() == other.rings.len() && self.rings.iter().zip(&other.rings).all(is_moved);
-        (is_copy && by.norm() > SAME_MM).then_some(by)
-    }
-}
-
 /// The features of `solid`, whose bottom edges have a chamfer of `chamfer_mm` and whose ends are parallel to the planes at
 /// plus and minus `half_span_rad`.
 pub(super) fn features(solid: &Solid, chamfer_mm: f64, half_span_rad: f64) -> Features {
@@ -175,16 +141,9 @@ pub(super) fn features(solid: &Solid, chamfer_mm: f64, half_span_rad: f64) -> Fe
     for chain in chains(solid, chamfer_mm).into_iter().filter(|c| !c.is_lettering) {
         let (first, last) = (chain.rings[0], chain.rings[chain.rings.len() - 1]);
         let is_hole = chain.is_hole();
-        let round = |c: &Contour| circle(c).map(|(centre, radius)| (centre, radius, false));
-        let of_bore =
-            |c: &Contour| round(c).or_else(|| hexagon(c).map(|(centre, half)| (centre, half, true)));
-        if let (true, Some((centre, _, is_hexagon))) = (is_hole, of_bore(first.0)) {
-            let width = |c: &Contour| of_bore(c).map_or(0.0, |(_, half, _)| half);
-            let mut levels: Vec<(f64, f64)> = chain.rings.iter().map(|(c, z)| (*z, width(c))).collect();
-            levels[0].0 = chain.foot_mm;
-            let (opens_down, opens_up) = chain.opens;
-            add_stage(&mut axes, centre, Stage { levels, is_hexagon, opens_down, opens_up });
-        } else if let Some((centre, ..)) = round(first.0) {
+        if let Some((centre, stage)) = chain.stage() {
+            add_stage(&mut axes, centre, stage);
+        } else if let Some((centre, _)) = circle(first.0) {
             let radius = |c: &Contour| circle(c).map_or(0.0, |(_, r)| r);
             let levels: Vec<(f64, f64)> = chain.rings.iter().map(|(c, z)| (*z, radius(c))).collect();
             if same(chain.foot_mm, bottom) {
@@ -225,32 +184,6 @@ pub(super) fn features(solid: &Solid, chamfer_mm: f64, half_span_rad: f64) -> Fe
     heights.dedup_by(|a, b| same(*a, *b));
     all.heights_mm = heights.into_iter().map(|z| z - bottom).collect();
     all
-}
-
-/// The walls of a solid, joined where they share a ring, without the chamfers at their feet.
-fn chains(solid: &Solid, chamfer_mm: f64) -> Vec<Chain<'_>> {
-    let rings: Vec<(&Contour, f64)> = solid.rings().collect();
-    let walls: Vec<(usize, usize)> = solid.walls().collect();
-    let letters = lettering(solid);
-    let floors: Vec<usize> = solid.caps().filter_map(|(_, members)| members.first().copied()).collect();
-    let starts = walls.iter().filter(|(low, _)| !walls.iter().any(|(_, high)| high == low));
-    starts
-        .map(|(low, high)| {
-            let mut numbers = vec![*low, *high];
-            while let Some((_, next)) = walls.iter().find(|(low, _)| low == &numbers[numbers.len() - 1]) {
-                numbers.push(*next);
-            }
-            let foot_mm = rings[*low].1;
-            let is_open = |i: usize| !floors.contains(&i);
-            let opens = (is_open(*low), is_open(numbers[numbers.len() - 1]));
-            let mut chain: Vec<_> = numbers.iter().map(|i| rings[*i]).collect();
-            let is_chamfer = chamfer_mm > 0.0 && chain.len() > 2 && same(chain[1].1 - chain[0].1, chamfer_mm);
-            if is_chamfer {
-                chain.remove(0);
-            }
-            Chain { rings: chain, foot_mm, opens, is_lettering: letters[*low] }
-        })
-        .collect()
 }
 
 /// Centre and radius of a contour that is a whole circle.

@@ -3,6 +3,7 @@
 mod assembly_sheet;
 mod body;
 mod bore;
+mod chains;
 mod cut;
 mod dimensions;
 mod elevation;

@@ -467,7 +467,7 @@ mod tests {
         assert!(!without_mould.contains("infill for the mould"), "{without_mould}");
         assert!(without_mould.contains("Take a silicone layer that was cast before"), "{without_mould}");
 
-        let rigid = guide("substrate = \"abs\"\n[layout]\npins = [5, 8, 11]\n");
+        let rigid = guide("[layout]\npins = [5, 8, 11]\nsubstrate = \"abs\"\n");
         assert_numbered(&rigid);
         assert!(!rigid.contains("silicone layer") && !rigid.contains("infill for the mould"), "{rigid}");
 

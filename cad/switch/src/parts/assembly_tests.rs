@@ -220,7 +220,9 @@ fn recesses_take_their_hardware() {
     let rig = design(&["mount.kind=rig", "tendon.sheath_diameter_mm=3"]);
     let plate = printed(&rig).unwrap().into_iter().find(|p| p.name == "rig-plate").unwrap();
     let mounting = rig.mounting().unwrap();
-    let open = |z: f64, at: Point2| section(&plate, z).distance_mm(at);
+    // From the face that lies on the table.
+    let outer = plate.pose.unwrap().z_mm;
+    let open = |z: f64, at: Point2| section(&plate, outer + z).distance_mm(at);
     for z in [0.01, 5.29] {
         let half = open(z, mounting.axle.unwrap().centre);
         assert!(half > 6.5 && half < 13.0 / 3.0_f64.sqrt(), "{z}: {half}");

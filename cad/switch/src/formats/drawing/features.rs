@@ -160,7 +160,7 @@ pub(super) fn features(solid: &Solid, chamfer_mm: f64, half_span_rad: f64) -> Fe
             // Of the body itself, what begins on the bed is no height.
             let from_bed = usize::from(same(chain.foot_mm, bottom));
             heights.extend(chain.rings.iter().skip(from_bed).map(|r| r.1));
-            if piece(first.0).is_some() && !is_hole && !same(first.1, bottom) {
+            if piece(first.0).is_some() && !is_hole && !same(chain.foot_mm, bottom) {
                 pieces.push((first.0, (first.1, last.1)));
             } else {
                 for (contour, _) in &chain.rings {

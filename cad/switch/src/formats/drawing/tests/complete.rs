@@ -192,9 +192,7 @@ fn open_questions(part: &Part, sheet: &Sheet, chamfer_mm: f64) -> Vec<String> {
         if !same(z, low.z) && !same(z, low.z + chamfer_mm) {
             reader.height(z);
         }
-        if seen.iter().any(|s| *s == contour)
-            || seen.iter().any(|s| s.edges().len() > 6 && is_moved(s, contour))
-        {
+        if seen.contains(&contour) || seen.iter().any(|s| s.edges().len() > 6 && is_moved(s, contour)) {
             continue;
         }
         seen.push(contour);

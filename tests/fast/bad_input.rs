@@ -65,7 +65,7 @@ const REFUSED: [(&str, &[&str]); 29] = [
     ("[print]\nbed_mm = 50\n[shell]\nouter_radius_mm = 60", &["print.bed_mm = 50", "the mould", "wide"]),
     (
         "[print]\nbed_mm = 55",
-        &["my.toml:2: print.bed_mm = 55", "coupon", "54.5 x", "raise it to 60.5", "parts.coupon"],
+        &["print.bed_mm = 55 is too small for coupon", "54.5 x", "raise it to 60.5", "parts.coupon"],
     ),
     ("[layout]\nsubstrate = \"abs\"\npins = []", &["layout.pins = []", "no pin within the wrap"]),
 ];

@@ -30,11 +30,13 @@ fn readme_s_first_command_makes_a_complete_checked_set() {
         "PRINTING.md",
         "assembly.png",
         "plate.png",
+        "step-1.png",
+        "step-7.png",
         "report.html",
     ] {
         assert!(written.contains_key(name), "{name} is missing");
     }
-    assert_eq!(written.len(), 19, "{:?}", written.keys());
+    assert_eq!(written.len(), 26, "{:?}", written.keys());
 
     let manifest: Value = serde_json::from_slice(&written["manifest.json"]).unwrap();
     let listed = manifest["files"].as_array().unwrap();

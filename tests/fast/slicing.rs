@@ -175,9 +175,9 @@ fn a_batch_has_columns_of_time_and_filament() {
         assert!((number(row, "filament_g") - kilobytes("shell") - kilobytes("coupon") - 0.5).abs() < 1e-9);
         assert!(number(row, "filament_m") > 0.0);
     }
-    // The layer height changes what the slicer is told, the tendon's length nothing: two parts, twice.
+    // Each shell has its own label; the coupon is one, sliced once for each layer height and not for each variant.
     let asked = std::fs::read_to_string(folder.path().join("asked")).unwrap();
-    assert_eq!((rows.len(), asked.lines().count()), (4, 4), "{asked}");
+    assert_eq!((rows.len(), asked.lines().count()), (4, 6), "{asked}");
     // Without the option there are no such columns, and it is another batch.
     batch(None, "plain", &[]);
     assert!(table(&folder.path().join("plain")).iter().all(|row| !row.contains_key("print_minutes")));

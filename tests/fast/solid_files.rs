@@ -148,7 +148,8 @@ fn a_small_bed_takes_the_parts_on_several_plates() {
         .iter()
         .map(|p| p["name"].as_str().unwrap().to_owned())
         .collect();
-    (printed.sort(), parts.sort());
+    printed.sort();
+    parts.sort();
     assert_eq!(printed, parts);
     // With a larger bed the same folder holds one plate, and none of those before.
     done(folder.path(), &["-q", "generate", "three-double", "--out", "set"]);

@@ -57,8 +57,11 @@ mod tests {
     use pinswitch_solid::files::{BED_EDGE_MM, PART_GAP_MM};
     use pinswitch_solid::mesh::Point3;
 
-    /// Lower and upper corner of every part as it lies, by plate.
-    fn lying(text: &str) -> (Built, BTreeMap<usize, Vec<(String, Point3, Point3)>>) {
+    /// Name, lower and upper corner of a part as it lies.
+    type Lying = (String, Point3, Point3);
+
+    /// Every part as it lies, by plate.
+    fn lying(text: &str) -> (Built, BTreeMap<usize, Vec<Lying>>) {
         let built = Built::new(Design::new(read(text, "x.toml").unwrap().0).unwrap()).unwrap();
         let of = |plate: &Plate<'_>| {
             let corners = plate.parts.iter().map(|(part, place)| {
@@ -82,7 +85,8 @@ mod tests {
             assert!(plates.len() >= least && plates.len() <= least + 4, "{text}: {} plates", plates.len());
             let mut names: Vec<&str> = plates.values().flatten().map(|(name, ..)| name.as_str()).collect();
             let mut asked: Vec<&str> = built.printed().iter().map(|p| p.part().name.as_str()).collect();
-            (names.sort_unstable(), asked.sort_unstable());
+            names.sort_unstable();
+            asked.sort_unstable();
             assert_eq!(names, asked, "{text}");
             for parts in plates.values() {
                 for (i, (name, low, high)) in parts.iter().enumerate() {

@@ -27,7 +27,7 @@ pub(super) const FORMAT: Format =
 /// Pixels of the picture of the plate, across and up.
 const PLATE_PIXELS: (u32, u32) = (900, 675);
 /// Pixels of the picture of a step, across and up.
-const STEP_PIXELS: (u32, u32) = (640, 480);
+const STEP_PIXELS: (u32, u32) = (512, 384);
 
 fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
     let above = View { turn_deg: 0.0, rise_deg: 55.0 };

@@ -86,8 +86,7 @@ class Page {
     if (started?.file && !started.trouble) { this.state.begin({ values: started.values }); return; }
     const last = given ? null : await decodeHash(remembered().hash ?? '', this.state.fields);
     if (last?.parts) { this.state.begin(last.parts); say(WORDS.welcomeBack); return; }
-    const template = this.facts.templates.find((t) => t.name === FIRST) ?? this.facts.templates[0];
-    this.state.begin({ values: { ...template?.values } });
+    this.state.begin({ values: { ...this.published()?.values } });
   }
 
   async take(hash) {
@@ -124,6 +123,7 @@ class Page {
     try {
       const answer = await this.engine.ask({ ask: 'design', values, quality, model: model?.toml ?? null });
       if (answer.data) this.show(answer, quality);
+      else if (!this.data) await this.showPublished();
       showTrouble(answer.trouble, this.controls, this.state);
       this.embed.tell(this.state, answer.data, answer.trouble);
       if (quality === 'exact' && asked === this.asked) document.body.dataset.pending = 'false';
@@ -140,6 +140,14 @@ class Page {
       byId('busy').textContent = '';
     }
   }
+
+  // An address that cannot be built has no last good design: a published one stands there in grey.
+  async showPublished() {
+    const answer = await this.engine.ask({ ask: 'design', values: this.published()?.values ?? {}, quality: 'coarse', model: null, aside: true });
+    if (answer.data && !this.data) this.show(answer, 'coarse');
+  }
+
+  published() { return this.facts.templates.find((t) => t.name === FIRST) ?? this.facts.templates[0]; }
 
   show({ data, toml }, quality) {
     this.data = data;

@@ -192,7 +192,7 @@ class Assembly {
     points.unshift(straight(points[0], -1));
     points.push(straight(points[points.length - 1], 1));
     const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 160, contact.tendon_radius_mm, 12);
-    this.tendon = new THREE.Mesh(tube, new THREE.MeshStandardMaterial({ color: 0x3a4a5c, roughness: 0.6 }));
+    this.tendon = new THREE.Mesh(tube, new THREE.MeshStandardMaterial({ color: isDark() ? 0x8296ab : 0x3a4a5c, roughness: 0.6 }));
     this.group.add(this.tendon);
   }
 

@@ -73,7 +73,7 @@ class Handles {
       const x = chart.valToPos(load, 'x');
       const words = ask.threshold_n === null ? WORDS.thresholdNow(WORDS.newtons(load)) : WORDS.thresholdAsked(WORDS.newtons(load));
       this.line.style.left = `${x}px`;
-      this.tell(this.threshold, x, 0, words, load, ends.load, ask.threshold_n !== null);
+      this.tell(this.threshold, { x, y: 0, label: words, value: load, most: ends.load, isAsked: ask.threshold_n !== null });
       // The words stay on the plot, wherever the mark is.
       this.threshold.style.setProperty('--aside', `${clamp(0, 32 - x, chart.bbox.width / devicePixelRatio - x - 48)}px`);
     }
@@ -95,11 +95,13 @@ class Handles {
     wanted.forEach((f, i) => {
       const isAsked = ask.friction.length > 0;
       const words = WORDS.loadText(plain(f.load_n), plain(f.friction_n));
-      this.tell(this.diamonds[i], chart.valToPos(f.load_n, 'x'), chart.valToPos(f.friction_n, 'y'), isAsked ? WORDS.frictionAsked(WORDS.newtons(f.friction_n)) : '', f.friction_n, ends.friction, isAsked, words);
+      const label = isAsked ? WORDS.frictionAsked(WORDS.newtons(f.friction_n)) : '';
+      const [x, y] = [chart.valToPos(f.load_n, 'x'), chart.valToPos(f.friction_n, 'y')];
+      this.tell(this.diamonds[i], { x, y, label, value: f.friction_n, most: ends.friction, isAsked, words });
     });
   }
 
-  tell(element, x, y, label, value, most, isAsked, words = label) {
+  tell(element, { x, y, label, value, most, isAsked, words = label }) {
     element.style.left = `${x}px`;
     element.style.top = `${y}px`;
     element.dataset.label = label;

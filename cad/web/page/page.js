@@ -64,7 +64,11 @@ class Page {
     this.measured = new Measured(state, this.engine, this.curve);
     this.downloads = new Downloads(state, this.engine);
     this.embed = new Embed((hash) => this.take(hash), state);
-    const drop = new Drop({ table: (text, file) => this.measured.calibrate(text, file), configuration: (text, file) => this.open(text, file), model: (text, file) => this.measured.takeModel(text, file) });
+    const drop = new Drop({
+      table: (text, file) => this.measured.calibrate(text, file),
+      configuration: (text, file) => this.open(text, file),
+      model: (text, file) => this.measured.takeModel(text, file),
+    });
     this.measured.chosen = (files) => drop.files(files);
     this.templates();
     this.buttons();

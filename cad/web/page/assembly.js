@@ -229,8 +229,16 @@ class Assembly {
     this.camera.aspect = clientWidth / Math.max(clientHeight, 1);
     this.camera.updateProjectionMatrix();
     this.frame();
-    this.draw();
+    // At once: a canvas of another size is empty.
+    if (this.bodies) this.renderer.render(this.scene, this.camera);
   }
 
-  draw() { if (this.bodies) this.renderer.render(this.scene, this.camera); }
+  // Draws once before the next frame is shown, however many changes asked for it.
+  draw() {
+    if (this.drawing || !this.bodies) return;
+    this.drawing = requestAnimationFrame(() => {
+      this.drawing = 0;
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
 }

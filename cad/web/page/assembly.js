@@ -9,6 +9,7 @@ const FRONT = 0, BACK = 1, ALWAYS = 519, NOT_EQUAL = 517, INCREMENT = 34055, DEC
 const ROOM = 1.1;
 // So many points of a body are enough to see how far it reaches.
 const SAMPLES = 600;
+const SHARP = Math.cos(25 * Math.PI / 180);
 
 // Counts, where a body is cut, the faces seen from inside less those from outside: what is left over is cut material.
 function counting(geometry, side, operation, plane) {
@@ -28,6 +29,37 @@ function cap(colour) {
   const mesh = new THREE.Mesh(geometry, material);
   mesh.onAfterRender = (renderer) => renderer.clearStencil();
   return mesh;
+}
+
+// Edges whose two triangles turn by more than 25 degrees. Meshes of a set share their vertices, so that an edge is a pair
+// of indices; EdgesGeometry, which compares places as text, takes most of the time of a design.
+function sharpEdges(geometry) {
+  const places = geometry.getAttribute('position').array;
+  const index = geometry.index.array;
+  const count = places.length / 3;
+  const normals = new Float32Array(index.length);
+  for (let t = 0; t < index.length; t += 3) {
+    const [a, b, c] = [3 * index[t], 3 * index[t + 1], 3 * index[t + 2]];
+    const [ux, uy, uz, vx, vy, vz] = [places[b] - places[a], places[b + 1] - places[a + 1], places[b + 2] - places[a + 2],
+      places[c] - places[a], places[c + 1] - places[a + 1], places[c + 2] - places[a + 2]];
+    const [x, y, z] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    const length = Math.hypot(x, y, z) || 1;
+    normals.set([x / length, y / length, z / length], t);
+  }
+  const met = new Map();
+  const ends = [];
+  for (let i = 0; i < index.length; i += 1) {
+    const t = i - (i % 3);
+    const [a, b] = [index[i], index[t + ((i + 1) % 3)]];
+    const edge = Math.min(a, b) * count + Math.max(a, b);
+    const other = met.get(edge);
+    if (other === undefined) { met.set(edge, t); continue; }
+    const turn = normals[t] * normals[other] + normals[t + 1] * normals[other + 1] + normals[t + 2] * normals[other + 2];
+    if (turn < SHARP) for (const v of [a, b]) ends.push(places[3 * v], places[3 * v + 1], places[3 * v + 2]);
+  }
+  const lines = new THREE.BufferGeometry();
+  lines.setAttribute('position', new THREE.BufferAttribute(new Float32Array(ends), 3));
+  return lines;
 }
 
 class Assembly {
@@ -66,18 +98,16 @@ class Assembly {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(bytesOf(source.positions).buffer), 3));
       geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytesOf(source.triangles).buffer), 1));
-      const faceted = geometry.toNonIndexed();
-      faceted.computeVertexNormals();
       const material = new THREE.MeshStandardMaterial({
-        color: new THREE.Color(...body.colour.map((c) => c / 255)).convertSRGBToLinear(), side: THREE.DoubleSide,
+        color: new THREE.Color(...body.colour.map((c) => c / 255)).convertSRGBToLinear(), side: THREE.DoubleSide, flatShading: true,
         metalness: body.material === 'steel' ? 0.55 : 0.0, roughness: body.material === 'steel' ? 0.35 : 0.75,
         transparent: body.material === 'silicone', opacity: body.material === 'silicone' ? 0.78 : 1,
       });
-      const mesh = new THREE.Mesh(faceted, material);
-      const edges = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 25),
+      const mesh = new THREE.Mesh(geometry, material);
+      const edges = new THREE.LineSegments(sharpEdges(geometry),
         new THREE.LineBasicMaterial({ color: 0x1a2530, transparent: true, opacity: 0.45 }));
       // Two bodies are not counted together: each is counted, covered and forgotten before the next.
-      const counted = [counting(faceted, BACK, INCREMENT, this.plane), counting(faceted, FRONT, DECREMENT, this.plane)];
+      const counted = [counting(geometry, BACK, INCREMENT, this.plane), counting(geometry, FRONT, DECREMENT, this.plane)];
       counted.forEach((count) => { count.renderOrder = 2 * order + 1; });
       const cover = cap(material.color);
       cover.renderOrder = 2 * order + 2;
@@ -192,7 +222,7 @@ class Assembly {
     points.unshift(straight(points[0], -1));
     points.push(straight(points[points.length - 1], 1));
     const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 160, contact.tendon_radius_mm, 12);
-    this.tendon = new THREE.Mesh(tube, new THREE.MeshStandardMaterial({ color: 0x3a4a5c, roughness: 0.6 }));
+    this.tendon = new THREE.Mesh(tube, new THREE.MeshStandardMaterial({ color: isDark() ? 0x8296ab : 0x3a4a5c, roughness: 0.6 }));
     this.group.add(this.tendon);
   }
 
@@ -229,8 +259,16 @@ class Assembly {
     this.camera.aspect = clientWidth / Math.max(clientHeight, 1);
     this.camera.updateProjectionMatrix();
     this.frame();
-    this.draw();
+    // At once: a canvas of another size is empty.
+    if (this.bodies) this.renderer.render(this.scene, this.camera);
   }
 
-  draw() { if (this.bodies) this.renderer.render(this.scene, this.camera); }
+  // Draws once before the next frame is shown, however many changes asked for it.
+  draw() {
+    if (this.drawing || !this.bodies) return;
+    this.drawing = requestAnimationFrame(() => {
+      this.drawing = 0;
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
 }

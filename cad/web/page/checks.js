@@ -43,5 +43,5 @@ function showTrouble(trouble, controls, state) {
   host.append(text);
   const mending = mend();
   if (mending) host.append(mending);
-  host.append(button(WORDS.undo, () => state.undo(), { class: 'btn' }));
+  if (state.past.length) host.append(button(WORDS.undo, () => state.undo(), { class: 'btn' }));
 }

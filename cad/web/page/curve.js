@@ -65,7 +65,10 @@ class Curve {
       if (i === MEASURED) return { paths: () => null, points: { show: true, size: 11, width: 2, stroke: card, fill: colourOf('--amber') } };
       return { spanGaps: true, pxAlign: 0, points: { show: false }, stroke: line ? colourOf(line.colour) : 'transparent', width: line?.width, dash: line?.dash };
     });
-    const axis = (side) => ({ stroke: ink, grid: { stroke: grid, width: 1, show: side === 3 }, space: side === 3 ? 46 : 60, ticks: { show: false }, font: '12px system-ui, sans-serif', size: side === 3 ? 34 : 26, gap: 4, side });
+    const axis = (side) => ({
+      side, stroke: ink, grid: { stroke: grid, width: 1, show: side === 3 }, ticks: { show: false },
+      font: '12px system-ui, sans-serif', size: side === 3 ? 34 : 26, space: side === 3 ? 46 : 60, gap: 4,
+    });
     this.chart = new uPlot({
       ...this.room(), series, legend: { show: false }, cursor: { show: false }, padding: [26, 14, 0, 0],
       scales: { x: { time: false, range: () => [0, this.ends.load] }, y: { range: () => [0, this.ends.friction] } },

@@ -7,13 +7,15 @@ class Handles {
     curve.handles = this;
     this.threshold = this.grip('threshold', WORDS.thresholdHandle, (e) => this.pullThreshold(e), (d) => this.nudgeThreshold(d));
     this.line = make('i', undefined, { class: 'threshold-line', 'aria-hidden': 'true' });
+    // Where it switches now, once another load is asked for.
+    this.own = make('i', undefined, { class: 'threshold-line own', 'aria-hidden': 'true' });
     this.diamonds = [];
     state.addEventListener('change', () => curve.draw());
   }
 
   attach(over) {
     this.over = over;
-    over.append(this.line, this.threshold, ...this.diamonds);
+    over.append(this.own, this.line, this.threshold, ...this.diamonds);
   }
 
   grip(kind, name, pull, nudge) {
@@ -71,11 +73,17 @@ class Handles {
       const x = chart.valToPos(load, 'x');
       const words = ask.threshold_n === null ? WORDS.thresholdNow(WORDS.newtons(load)) : WORDS.thresholdAsked(WORDS.newtons(load));
       this.line.style.left = `${x}px`;
-      this.tell(this.threshold, x, 0, words, load, ends.load, ask.threshold_n !== null);
+      this.tell(this.threshold, { x, y: 0, label: words, value: load, most: ends.load, isAsked: ask.threshold_n !== null });
       // The words stay on the plot, wherever the mark is.
-      this.threshold.style.setProperty('--aside', `${clamp(0, 56 - x, chart.bbox.width / devicePixelRatio - x - 50)}px`);
+      this.threshold.style.setProperty('--aside', `${clamp(0, 32 - x, chart.bbox.width / devicePixelRatio - x - 48)}px`);
     }
     this.line.classList.toggle('asked', ask.threshold_n !== null);
+    const own = this.ownThreshold();
+    this.own.hidden = own === null || ask.threshold_n === null;
+    if (!this.own.hidden) {
+      this.own.style.left = `${chart.valToPos(own, 'x')}px`;
+      this.own.dataset.label = WORDS.thresholdOwn(WORDS.newtons(own));
+    }
     const wanted = this.frictions();
     while (this.diamonds.length > wanted.length) this.diamonds.pop().remove();
     while (this.diamonds.length < wanted.length) {
@@ -87,11 +95,13 @@ class Handles {
     wanted.forEach((f, i) => {
       const isAsked = ask.friction.length > 0;
       const words = WORDS.loadText(plain(f.load_n), plain(f.friction_n));
-      this.tell(this.diamonds[i], chart.valToPos(f.load_n, 'x'), chart.valToPos(f.friction_n, 'y'), isAsked ? WORDS.frictionAsked(WORDS.newtons(f.friction_n)) : '', f.friction_n, ends.friction, isAsked, words);
+      const label = isAsked ? WORDS.frictionAsked(WORDS.newtons(f.friction_n)) : '';
+      const [x, y] = [chart.valToPos(f.load_n, 'x'), chart.valToPos(f.friction_n, 'y')];
+      this.tell(this.diamonds[i], { x, y, label, value: f.friction_n, most: ends.friction, isAsked, words });
     });
   }
 
-  tell(element, x, y, label, value, most, isAsked, words = label) {
+  tell(element, { x, y, label, value, most, isAsked, words = label }) {
     element.style.left = `${x}px`;
     element.style.top = `${y}px`;
     element.dataset.label = label;

@@ -64,7 +64,11 @@ class Page {
     this.measured = new Measured(state, this.engine, this.curve);
     this.downloads = new Downloads(state, this.engine);
     this.embed = new Embed((hash) => this.take(hash), state);
-    const drop = new Drop({ table: (text, file) => this.measured.calibrate(text, file), configuration: (text, file) => this.open(text, file), model: (text, file) => this.measured.takeModel(text, file) });
+    const drop = new Drop({
+      table: (text, file) => this.measured.calibrate(text, file),
+      configuration: (text, file) => this.open(text, file),
+      model: (text, file) => this.measured.takeModel(text, file),
+    });
     this.measured.chosen = (files) => drop.files(files);
     this.templates();
     this.buttons();
@@ -86,8 +90,7 @@ class Page {
     if (started?.file && !started.trouble) { this.state.begin({ values: started.values }); return; }
     const last = given ? null : await decodeHash(remembered().hash ?? '', this.state.fields);
     if (last?.parts) { this.state.begin(last.parts); say(WORDS.welcomeBack); return; }
-    const template = this.facts.templates.find((t) => t.name === FIRST) ?? this.facts.templates[0];
-    this.state.begin({ values: { ...template?.values } });
+    this.state.begin({ values: { ...this.published()?.values } });
   }
 
   async take(hash) {
@@ -124,6 +127,7 @@ class Page {
     try {
       const answer = await this.engine.ask({ ask: 'design', values, quality, model: model?.toml ?? null });
       if (answer.data) this.show(answer, quality);
+      else if (!this.data) await this.showPublished();
       showTrouble(answer.trouble, this.controls, this.state);
       this.embed.tell(this.state, answer.data, answer.trouble);
       if (quality === 'exact' && asked === this.asked) document.body.dataset.pending = 'false';
@@ -140,6 +144,14 @@ class Page {
       byId('busy').textContent = '';
     }
   }
+
+  // An address that cannot be built has no last good design: a published one stands there in grey.
+  async showPublished() {
+    const answer = await this.engine.ask({ ask: 'design', values: this.published()?.values ?? {}, quality: 'coarse', model: null, aside: true });
+    if (answer.data && !this.data) this.show(answer, 'coarse');
+  }
+
+  published() { return this.facts.templates.find((t) => t.name === FIRST) ?? this.facts.templates[0]; }
 
   show({ data, toml }, quality) {
     this.data = data;

@@ -3,6 +3,9 @@
 // More grooves than this, and not each has its number.
 const NUMBERED = 24;
 
+// A place in the drawing, whose angles go from the top to the right.
+const point = (radius, angle) => [radius * Math.sin(angle), -radius * Math.cos(angle)];
+
 class Pins {
   constructor(host, state) {
     this.host = host;
@@ -48,31 +51,14 @@ class Pins {
   angle(i, { n, span }) { return (i - (n + 1) / 2) * span / n; }
 
   draw() {
-    const s = this.sizes();
-    this.s = s;
-    const point = (radius, angle) => [radius * Math.sin(angle), -radius * Math.cos(angle)];
-    const sector = (low, high) => {
-      const [a, b, c, d] = [point(high, -s.span / 2), point(high, s.span / 2), point(low, s.span / 2), point(low, -s.span / 2)];
-      const large = s.span > Math.PI ? 1 : 0;
-      return `M${a}A${high} ${high} 0 ${large} 1 ${b}L${c}A${low} ${low} 0 ${large} 0 ${d}Z`;
-    };
+    const s = this.s = this.sizes();
     const pins = this.pins();
-    const axis = s.contact + s.pin * 1.1 + s.rope;
-    const [l, r] = [point(axis, -s.wrap / 2), point(axis, s.wrap / 2)];
-    const free = 0.28 * s.contact;
-    const ends = [[l[0] - free * Math.cos(s.wrap / 2), l[1] + free * Math.sin(s.wrap / 2)], [r[0] + free * Math.cos(s.wrap / 2), r[1] + free * Math.sin(s.wrap / 2)]];
-    const reach = s.span > Math.PI ? s.contact : s.contact * Math.sin(s.span / 2);
-    const width = Math.max(reach, ends[1][0]) + 1.2;
-    const lowest = Math.max(-s.inner * Math.cos(Math.min(s.span / 2, Math.PI)), -s.contact * Math.cos(Math.min(s.span / 2, Math.PI)), ends[0][1]) + 1;
-    const top = -(axis + s.rope) - 0.6;
-    const drawing = svg('svg', { viewBox: `${-width} ${top} ${2 * width} ${lowest - top}`, role: 'group', 'aria-label': WORDS.pinsName, class: 'strip' });
-    drawing.append(svg('path', { d: sector(s.inner, s.shell), class: 'shell' }), svg('path', { d: sector(s.shell, s.contact), class: this.state.value('layout.substrate') === 'abs' ? 'shell' : 'layer' }));
-    drawing.append(svg('path', { d: `M${ends[0]}L${l}A${axis} ${axis} 0 ${s.wrap > Math.PI ? 1 : 0} 1 ${r}L${ends[1]}`, class: 'tendon', 'stroke-width': 2 * s.rope }));
+    const drawing = this.segment(s);
     this.marks = [];
-    for (let i = 1; i <= s.n; i += 1) drawing.append(this.groove(i, s, pins.includes(i), point));
+    for (let i = 1; i <= s.n; i += 1) drawing.append(this.groove(i, s, pins.includes(i)));
     this.carried = svg('circle', { r: s.pin, class: 'carried', visibility: 'hidden' });
     drawing.append(this.carried);
-    this.listen(drawing, point);
+    this.listen(drawing);
     const hadFocus = this.host.contains(document.activeElement);
     this.host.replaceChildren(drawing);
     if (hadFocus) this.marks[this.focused - 1]?.focus();
@@ -81,11 +67,38 @@ class Pins {
     byId('clear-pins').disabled = byId('mirror-pins').disabled = !pins.length;
   }
 
-  groove(i, s, hasPin, point) {
+  // Shell, layer and tendon, in a drawing that holds all of them.
+  segment(s) {
+    const sector = (low, high) => {
+      const [a, b, c, d] = [point(high, -s.span / 2), point(high, s.span / 2), point(low, s.span / 2), point(low, -s.span / 2)];
+      const large = s.span > Math.PI ? 1 : 0;
+      return `M${a}A${high} ${high} 0 ${large} 1 ${b}L${c}A${low} ${low} 0 ${large} 0 ${d}Z`;
+    };
+    const axis = s.contact + s.pin * 1.1 + s.rope;
+    const [l, r] = [point(axis, -s.wrap / 2), point(axis, s.wrap / 2)];
+    // What leaves the bed runs on straight.
+    const [along, down] = [0.28 * s.contact * Math.cos(s.wrap / 2), 0.28 * s.contact * Math.sin(s.wrap / 2)];
+    const ends = [[l[0] - along, l[1] + down], [r[0] + along, r[1] + down]];
+    const reach = s.span > Math.PI ? s.contact : s.contact * Math.sin(s.span / 2);
+    const width = Math.max(reach, ends[1][0]) + 1.2;
+    const lowest = Math.max(...[s.inner, s.contact].map((radius) => -radius * Math.cos(s.span / 2)), ends[0][1]) + 1;
+    const top = -(axis + s.rope) - 0.6;
+    const drawing = svg('svg', { viewBox: `${-width} ${top} ${2 * width} ${lowest - top}`, role: 'group', 'aria-label': WORDS.pinsName, class: 'strip' });
+    const bed = this.state.value('layout.substrate') === 'abs' ? 'shell' : 'layer';
+    const rope = `M${ends[0]}L${l}A${axis} ${axis} 0 ${s.wrap > Math.PI ? 1 : 0} 1 ${r}L${ends[1]}`;
+    drawing.append(svg('path', { d: sector(s.inner, s.shell), class: 'shell' }), svg('path', { d: sector(s.shell, s.contact), class: bed }),
+      svg('path', { d: rope, class: 'tendon', 'stroke-width': 2 * s.rope }));
+    return drawing;
+  }
+
+  groove(i, s, hasPin) {
     if (this.focused === null || this.focused > s.n) this.focused = this.pins()[0] ?? 1;
     const angle = this.angle(i, s);
     const [x, y] = point(s.contact, angle);
-    const mark = svg('g', { class: hasPin ? 'groove on' : 'groove', role: 'checkbox', 'aria-checked': hasPin, 'aria-label': WORDS.groove(i, hasPin), tabindex: i === this.focused ? 0 : -1, 'data-groove': i });
+    const mark = svg('g', {
+      class: hasPin ? 'groove on' : 'groove', 'data-groove': i, tabindex: i === this.focused ? 0 : -1,
+      role: 'checkbox', 'aria-checked': hasPin, 'aria-label': WORDS.groove(i, hasPin),
+    });
     mark.append(svg('circle', { cx: x, cy: y, r: s.pin * 1.75, class: 'halo' }), svg('circle', { cx: x, cy: y, r: s.pin, class: 'dot' }));
     if (s.n <= NUMBERED || i % 5 === 0 || i === 1) {
       const [tx, ty] = point((s.inner + s.shell) / 2, angle);
@@ -103,7 +116,7 @@ class Pins {
     return { groove, off: Math.hypot(x, y) - s.contact };
   }
 
-  listen(drawing, point) {
+  listen(drawing) {
     let from = null;
     let moved = false;
     draggable(drawing, {

@@ -1,6 +1,8 @@
 // What the person has chosen: values that differ from the defaults, a calibrated model, an ask; its history; its address.
 
 const HASH_VERSION = 1;
+// Characters of a packed model: a calibration takes some five thousand.
+const LONGEST_MODEL = 60000;
 const STORE = 'pinswitch.configurator.1';
 // Changes of one field in so short a time are one step back.
 const ONE_STEP_MS = 700;
@@ -88,8 +90,8 @@ function encodeHash(now) {
 function readValue(field, text) {
   if (field.kind === 'flag') return { true: true, false: false }[text];
   if (field.kind === 'list') {
-    const items = text.trim() === '' ? [] : text.split(',').map(Number);
-    return items.every(Number.isInteger) ? items : undefined;
+    const items = text.trim() === '' ? [] : text.split(',');
+    return items.every((item) => /^\d{1,9}$/.test(item)) ? items.map(Number) : undefined;
   }
   if (field.kind === 'number' || field.kind === 'whole') {
     const value = text.trim() === '' ? NaN : Number(text);
@@ -126,7 +128,7 @@ async function decodeHash(hash, fields) {
       if (read === undefined) wrong.push(name); else parts.values[name] = read;
     }
   }
-  if (unknown.length) said.push(WORDS.hash.unknown(unknown));
+  if (unknown.length) said.push(WORDS.hash.unknown(unknown.slice(0, 6)));
   if (wrong.length) said.push(WORDS.hash.wrong(wrong));
   if (said.length) said.push(WORDS.hash.rest);
   return { parts, said };
@@ -153,7 +155,10 @@ async function packModel(name, toml) {
 
 async function unpackModel(packed) {
   try {
-    const [name, text] = packed.split('~');
+    if (packed.length > LONGEST_MODEL) return null;
+    // A name may hold the sign itself, base64url does not.
+    const end = packed.lastIndexOf('~');
+    const [name, text] = [packed.slice(0, end), packed.slice(end + 1)];
     const bytes = bytesOf(text.replaceAll('-', '+').replaceAll('_', '/'));
     const toml = new TextDecoder('utf-8', { fatal: true }).decode(await throughStream(bytes, new DecompressionStream('deflate-raw')));
     return toml.length < 1e6 ? { name: decodeURIComponent(name), toml, packed } : null;

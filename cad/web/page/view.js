@@ -16,7 +16,7 @@ class View {
       this.fail();
     }
     for (const id of ['apart', 'turn', 'tilt', 'cut', 'cut-at']) byId(id).addEventListener('input', () => this.shape(id));
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { this.assembly?.edges(); this.assembly?.draw(); });
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { this.assembly?.edges(); this.load(this.load_n); });
   }
 
   fail() {

@@ -56,7 +56,7 @@ const WORDS = {
   axisLoad: 'load (N)', axisFriction: 'friction (N)',
   band: 'band of 95 %', measuredPoint: 'measured', kept: (name) => `kept: ${name}`, calibratedCurve: 'with your model', previewCurve: (n) => `design ${n}`,
   law: (law, source) => `Law of the curve, ${law}: ${source}.`,
-  thresholdNow: (n) => `switches at ${n}`, thresholdAsked: (n) => `asked: ${n}`, frictionAsked: (n) => `asked: ${n}`,
+  thresholdOwn: (n) => `now ${n}`, thresholdNow: (n) => `switches at ${n}`, thresholdAsked: (n) => `asked: ${n}`, frictionAsked: (n) => `asked: ${n}`,
   thresholdHandle: 'Load at which it should switch', frictionHandle: (i) => `Friction that is asked for, mark ${i}`,
   loadText: (load, friction) => `${load} N of load, ${friction} N of friction`,
   columns: { load: 'load (N)', eccentric: 'eccentric', concentric: 'concentric', friction: 'friction', low: 'low', high: 'high' },
@@ -93,7 +93,7 @@ const WORDS = {
 
   makingFiles: 'Making the files …', filesFail: 'The files were not made: ', saving: (name) => `Making ${name} …`, saved: (name) => `${name} is saved.`, noFiles: 'This design cannot be built, so that it has no files. Mend it first.',
   megabytes: (bytes) => (bytes < 1000 ? `${bytes} B` : bytes < 1e6 ? `${Math.round(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`),
-  kinds: { stl: 'Printed parts, one by one', '3mf': 'All parts on a plate', step: 'For CAD, exact', dxf: 'Drawings', svg: 'Drawings and figures', pdf: 'Drawings', glb: 'For viewers and web pages', png: 'Pictures', md: 'Guide', csv: 'Tables', json: 'Tables', html: 'Pages', ini: 'Printer', other: 'Other' },
+  kinds: { stl: 'Printed parts, one by one', '3mf': 'All parts on a plate', step: 'For CAD, exact', dxf: 'Drawings', svg: 'Drawings and figures', pdf: 'Drawings', glb: 'For viewers and web pages', png: 'Pictures', md: 'Guide', csv: 'Tables', json: 'Tables', html: 'Pages', ini: 'Printer', toml: 'Configuration', other: 'Other' },
 
   shared: 'The address is copied: it holds the whole design.', shareByHand: 'Copy the address of this page: it holds the whole design.',
   templateTaken: (name, lost) => (lost ? `${name}, as it ships. Undo brings your ${lost} changed ${lost === 1 ? 'value' : 'values'} back.` : `${name}, as it ships.`), printerTaken: (name) => `${name} set under your design.`,

@@ -248,7 +248,7 @@ mod tests {
     #[test]
     fn every_step_adds_something_and_keeps_what_is_there() {
         let full = built(
-            "[fasteners]\nkind = \"insert\"\ndowel_diameter_mm = 2.0\n[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 3.0\n",
+            "[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"insert\"\ndowel_diameter_mm = 2.0\n[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 3.0\n",
         );
         for number in 1..=ALL.len() {
             let bodies = stage_scene(&full, &ALL[..number]);

@@ -144,26 +144,14 @@ pub enum Shape {
     },
 }
 
-/// A shape on a channel; its size is the one constant.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Structure {
-    /// Where it lies.
-    pub covariate: Covariate,
-    /// What it acts on.
-    pub channel: Channel,
-    /// Its course along the covariate.
-    #[serde(flatten)]
-    pub form: Shape,
-}
-
-impl Structure {
-    /// Value of the shape at a point.
+impl Shape {
+    /// Its value at a point.
     pub fn value(&self, p: &Point) -> f64 {
         let flag = |b: bool| f64::from(u8::from(b));
         let wave = |share: f64, cycles: f64, quarter: u8| {
             (std::f64::consts::TAU * cycles * share + f64::from(quarter) * std::f64::consts::FRAC_PI_2).sin()
         };
-        match &self.form {
+        match self {
             Shape::TimeStep { at } => flag(p.time >= *at),
             Shape::TimeWindow { from, to } => flag(p.time >= *from && p.time < *to),
             Shape::TimePower { power } => p.time.powi(*power),
@@ -190,6 +178,25 @@ impl Structure {
             Shape::Descending => p.descending,
             Shape::DirectionLoad { power, unit_n } => p.sign * (p.load_n / unit_n).powi(*power),
         }
+    }
+}
+
+/// A shape on a channel; its size is the one constant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Structure {
+    /// Where it lies.
+    pub covariate: Covariate,
+    /// What it acts on.
+    pub channel: Channel,
+    /// Its course along the covariate.
+    #[serde(flatten)]
+    pub form: Shape,
+}
+
+impl Structure {
+    /// Value of the shape at a point.
+    pub fn value(&self, p: &Point) -> f64 {
+        self.form.value(p)
     }
 
     /// Acts on the contact with size `k`.

@@ -80,7 +80,7 @@ impl Design<'_> {
             columns.push(with.iter().zip(&without).map(|(w, o)| w - o).collect());
         }
         let weighed = Weighed::new(&data, self.noise);
-        columns.iter_mut().for_each(|column| weighed.whiten(column));
+        weighed.whiten_all(&mut columns);
         (data, columns)
     }
 }

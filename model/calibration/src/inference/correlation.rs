@@ -11,16 +11,22 @@ const MIN_LENGTH: usize = 5;
 /// Largest correlation considered.
 const MAX: f64 = 0.95;
 
-/// Whitens the values of one cell in place, given at unit variance: each keeps what its predecessor does not foretell.
+/// Whitens the rows of one cell in place, given at unit variance: each keeps what its predecessor does not foretell.
 /// A lost repetition leaves a gap, over which the correlation is `rho^gap`.
-pub(super) fn unchain(rho: f64, data: &Observations, cell: &[usize], values: &mut [f64]) {
+pub(super) fn unchain<const N: usize>(
+    rho: f64,
+    data: &Observations,
+    cell: &[usize],
+    values: &mut [[f64; N]],
+) {
     let rest = |phi: f64| (1.0 - phi * phi).sqrt().recip();
     let next = (rho, rest(rho));
     for i in (1..cell.len()).rev() {
         let gap = gap(data, cell, i);
         // Hardly any repetition is lost, and this is called for every column of every fit.
         let (phi, scale) = if gap == 1.0 { next } else { (rho.powf(gap), rest(rho.powf(gap))) };
-        values[i] = (values[i] - phi * values[i - 1]) * scale;
+        let before = values[cell[i - 1]];
+        values[cell[i]].iter_mut().zip(before).for_each(|(v, b)| *v = (*v - phi * b) * scale);
     }
 }
 

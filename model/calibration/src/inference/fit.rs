@@ -64,7 +64,7 @@ impl Slopes {
     /// Of a model that predicts `predicted`.
     pub(crate) fn new(model: &Model, weighed: &Weighed<'_>, predicted: &[f64]) -> Self {
         let mut columns = jacobian(model, weighed.data, predicted);
-        columns.iter_mut().for_each(|c| weighed.whiten(c));
+        weighed.whiten_all(&mut columns);
         let p = columns.len();
         let mut normal = DMatrix::zeros(p, p);
         for i in 0..p {

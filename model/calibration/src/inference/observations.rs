@@ -1,6 +1,9 @@
 //! A table ready for inference: points, readings, and how the rows are grouped.
 
+use std::sync::{Arc, OnceLock};
+
 use super::noise::Noise;
+use super::structures::Catalogue;
 use super::weighed::Weighed;
 use crate::median::median;
 use crate::table::{Frame, Labels, PlateauRow, Point};
@@ -47,6 +50,8 @@ pub struct Observations {
     pub specimens: Vec<Vec<usize>>,
     /// Series that are wrong as a whole and decide nothing.
     excluded: Vec<usize>,
+    /// The structures that its points could show, once somebody has asked.
+    catalogue: OnceLock<Arc<Catalogue>>,
 }
 
 /// A series in the order of time.
@@ -151,6 +156,7 @@ impl Observations {
             sessions: several(|l| &l.session),
             specimens: several(|l| &l.specimen),
             excluded: Vec::new(),
+            catalogue: OnceLock::new(),
         })
     }
 
@@ -201,7 +207,14 @@ impl Observations {
             sessions: among(&self.sessions),
             specimens: among(&self.specimens),
             excluded: self.excluded.iter().map(|s| new_series[*s]).filter(|s| *s != usize::MAX).collect(),
+            catalogue: OnceLock::new(),
         }
+    }
+
+    /// The structures that its points could show.
+    pub(crate) fn catalogue(&self, frame: &Frame) -> Arc<Catalogue> {
+        let known = self.catalogue.get_or_init(|| Arc::new(Catalogue::new(frame, &self.points)));
+        if known.frame == *frame { Arc::clone(known) } else { Arc::new(Catalogue::new(frame, &self.points)) }
     }
 
     /// Whether a row was not weighed down as an outlier by more than half.

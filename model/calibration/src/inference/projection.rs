@@ -1,5 +1,8 @@
 //! Projecting out columns: an orthonormal basis that grows column by column.
 
+use super::lanes::{LANES, Lanes};
+use super::weighed::Weighed;
+
 /// An orthonormal basis of the columns absorbed so far.
 #[derive(Clone, Debug)]
 pub(crate) struct Projection {
@@ -13,6 +16,17 @@ const INDEPENDENT: f64 = 1e-5;
 impl Projection {
     pub(crate) fn new(len: usize) -> Self {
         Self { len, basis: Vec::new() }
+    }
+
+    /// Of columns that are whitened first.
+    pub(crate) fn of_whitened(columns: &[Vec<f64>], len: usize, weighed: &Weighed<'_>) -> Self {
+        let mut white = columns.to_vec();
+        weighed.whiten_all(&mut white);
+        let mut projection = Self::new(len);
+        white.into_iter().for_each(|column| {
+            projection.absorb(column);
+        });
+        projection
     }
 
     /// Length of the columns.
@@ -52,6 +66,35 @@ impl Projection {
                 column.iter_mut().zip(axis).for_each(|(v, a)| *v -= share * a);
             }
         }
+    }
+
+    /// Removes from several columns what the basis explains.
+    pub(crate) fn remove_lanes(&self, lanes: &mut Lanes) {
+        let shares = self.shares(lanes);
+        for (axis, shares) in self.basis.iter().zip(&shares) {
+            for (values, a) in lanes.rows_mut().iter_mut().zip(axis) {
+                values.iter_mut().zip(shares).for_each(|(v, share)| *v -= a * share);
+            }
+        }
+    }
+
+    /// What of several columns lies along each direction.
+    pub(crate) fn shares(&self, lanes: &Lanes) -> Vec<[f64; LANES]> {
+        let mut shares = Vec::with_capacity(self.basis.len());
+        // Two directions at a time: as many sums as there are registers.
+        let mut pairs = self.basis.chunks_exact(2);
+        for pair in &mut pairs {
+            let (mut first, mut second) = ([0.0; LANES], [0.0; LANES]);
+            for ((values, a), b) in lanes.rows().iter().zip(&pair[0]).zip(&pair[1]) {
+                for lane in 0..LANES {
+                    first[lane] += a * values[lane];
+                    second[lane] += b * values[lane];
+                }
+            }
+            shares.extend([first, second]);
+        }
+        shares.extend(pairs.remainder().iter().map(|axis| lanes.dots(axis)));
+        shares
     }
 
     /// The directions.

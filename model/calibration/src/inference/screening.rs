@@ -4,28 +4,20 @@
 use super::fit::{Fit, jacobian};
 use super::form_tolerance::{BEND, bent_copies};
 use super::forward::Term;
+use super::lanes::{LANES, Lanes};
 use super::observations::Observations;
 use super::projection::{Projection, dot};
-use super::structures::{Group, structures_to_try};
+use super::structure_scores::least_squares;
 use super::weighed::Weighed;
-use crate::effects::{Channel, Covariate, Effect, Shape, Structure};
-
-/// What a wave's gain is reduced by, in whitened squares.
-const WAVE_PENALTY: f64 = 15.0;
-
-/// What a stretch of time's gain is reduced by: both its ends are free.
-const WINDOW_PENALTY: f64 = 8.0;
-
-/// Places where a stretch of time may begin or end.
-const WINDOW_ENDS: usize = 80;
+use crate::effects::Effect;
 
 /// A fitted model with its whitened residual and the directions its constants can take.
 pub(crate) struct Screen<'a> {
-    fitted: &'a Fit,
-    weighed: &'a Weighed<'a>,
-    basis: Projection,
-    residual: Vec<f64>,
-    predicted: Vec<f64>,
+    pub(super) fitted: &'a Fit,
+    pub(super) weighed: &'a Weighed<'a>,
+    pub(super) basis: Projection,
+    pub(super) residual: Vec<f64>,
+    pub(super) predicted: Vec<f64>,
     bent_gain: f64,
 }
 
@@ -54,19 +46,6 @@ pub(crate) struct EffectScore {
     pub(crate) trace_n: Vec<f64>,
 }
 
-/// Score of a structure.
-#[derive(Clone, Debug)]
-pub(crate) struct StructureScore {
-    /// Shapes that go together (a wave is a sine and a cosine).
-    pub(crate) group: Group,
-    /// Sizes to first order.
-    pub(crate) sizes: Vec<f64>,
-    /// Gain in whitened squares to first order, less the penalty of a wave.
-    pub(crate) gain: f64,
-    /// Contributions of the series to the score of the group's best direction; their squared sum is the gain.
-    pub(crate) by_series: Vec<f64>,
-}
-
 impl<'a> Screen<'a> {
     /// Scores on top of a fit.
     pub(crate) fn new(fitted: &'a Fit, weighed: &'a Weighed<'a>) -> Self {
@@ -90,8 +69,9 @@ impl<'a> Screen<'a> {
         let mut basis = Projection::new(rows + p + bent.len());
         let own =
             jacobian(model, data, &predicted).into_iter().zip(model.priors().iter().map(|prior| prior.sd));
-        for (j, (mut column, sd)) in own.chain(bent.into_iter().map(|b| (b, BEND))).enumerate() {
-            weighed.whiten(&mut column);
+        let (mut columns, sds): (Vec<_>, Vec<_>) = own.chain(bent.into_iter().map(|b| (b, BEND))).unzip();
+        weighed.whiten_all(&mut columns);
+        for (j, (mut column, sd)) in columns.into_iter().zip(sds).enumerate() {
             column.resize(basis.len(), 0.0);
             column[rows + j] = 1.0 / sd;
             basis.absorb(column);
@@ -108,7 +88,7 @@ impl<'a> Screen<'a> {
         Self { fitted, weighed, basis, residual, predicted, bent_gain }
     }
 
-    fn data(&self) -> &'a Observations {
+    pub(super) fn data(&self) -> &'a Observations {
         self.weighed.data
     }
 
@@ -117,15 +97,28 @@ impl<'a> Screen<'a> {
         self.bent_gain
     }
 
-    /// Whitens a column in newtons and removes what the model's constants can take over.
-    /// Returns it with the share of its length that is left.
-    fn visible(&self, mut column: Vec<f64>) -> (Vec<f64>, f64) {
-        self.weighed.whiten(&mut column);
-        let before = dot(&column, &column).sqrt();
-        column.resize(self.residual.len(), 0.0);
-        self.basis.remove(&mut column);
-        let after = dot(&column, &column).sqrt();
-        (column, if before > 0.0 { after / before } else { 0.0 })
+    /// Whitens columns in newtons and removes what the model's constants can take over.
+    /// Returns each with the share of its length that is left.
+    pub(super) fn all_visible(&self, columns: impl IntoIterator<Item = Vec<f64>>) -> Vec<(Vec<f64>, f64)> {
+        let mut columns = columns.into_iter();
+        let mut visible = Vec::new();
+        let mut lanes = Lanes::default();
+        loop {
+            let several: Vec<Vec<f64>> = columns.by_ref().take(LANES).collect();
+            if several.is_empty() {
+                return visible;
+            }
+            lanes.take(&several);
+            self.weighed.whiten_lanes(lanes.rows_mut());
+            let before = lanes.squares();
+            lanes.resize(self.residual.len());
+            self.basis.remove_lanes(&mut lanes);
+            let after = lanes.squares();
+            for lane in 0..several.len() {
+                let share = if before[lane] > 0.0 { (after[lane] / before[lane]).sqrt() } else { 0.0 };
+                visible.push((lanes.column(lane), share));
+            }
+        }
     }
 
     /// Scores of all effects that the model does not have, one per effect at its best shape.
@@ -146,11 +139,17 @@ impl<'a> Screen<'a> {
 
     fn effect(&self, effect: &'static dyn Effect) -> Option<EffectScore> {
         let mut best: Option<EffectScore> = None;
-        for start in effect.starts(&self.fitted.model.frame) {
-            let changed =
-                self.fitted.model.with_term(Term::Named(effect), &start).predict(&self.data().points);
-            let trace_n: Vec<f64> = changed.iter().zip(&self.predicted).map(|(c, p)| c - p).collect();
-            let (column, visible_share) = self.visible(trace_n.clone());
+        let starts = effect.starts(&self.fitted.model.frame);
+        let traces: Vec<Vec<f64>> = starts
+            .iter()
+            .map(|start| {
+                let changed =
+                    self.fitted.model.with_term(Term::Named(effect), start).predict(&self.data().points);
+                changed.iter().zip(&self.predicted).map(|(c, p)| c - p).collect()
+            })
+            .collect();
+        let visible = self.all_visible(traces.iter().cloned());
+        for ((start, trace_n), (column, visible_share)) in starts.into_iter().zip(traces).zip(visible) {
             let length2 = dot(&column, &column);
             let along = dot(&column, &self.residual);
             let scales = effect.description().scales;
@@ -188,183 +187,22 @@ impl<'a> Screen<'a> {
         best
     }
 
-    /// Scores of the whole catalogue of structures, best first.
-    pub(crate) fn structures(&self) -> Vec<StructureScore> {
-        let sensitivity = |channel: Channel| match channel {
-            Channel::Reading => vec![1.0; self.predicted.len()],
-            Channel::Drag => self.data().points.iter().map(|p| p.sign).collect(),
-            _ => {
-                let everywhere = Structure {
-                    covariate: Covariate::Load,
-                    channel,
-                    form: Shape::LoadPower { power: 0, unit_n: 1.0 },
-                };
-                let size = 1e-3;
-                let mut column = self
-                    .fitted
-                    .model
-                    .with_term(Term::Structure(everywhere), &[size])
-                    .predict(&self.data().points);
-                column.iter_mut().zip(&self.predicted).for_each(|(c, p)| *c = (*c - p) / size);
-                column
-            }
-        };
-        let channels = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone]
-            .map(|channel| (channel, sensitivity(channel)));
-        // The same shape is tried on several channels in a row.
-        let mut last: Vec<(Shape, Vec<f64>)> = Vec::new();
-        let mut scores: Vec<StructureScore> =
-            structures_to_try(&self.fitted.model.frame, &self.data().points)
-                .into_iter()
-                .filter_map(|group| {
-                    let columns: Vec<Vec<f64>> = group
-                        .iter()
-                        .filter_map(|structure| {
-                            let (_, along) = channels.iter().find(|(c, _)| *c == structure.channel)?;
-                            let known = last.iter().position(|(form, _)| *form == structure.form);
-                            let at = known.unwrap_or_else(|| {
-                                if last.len() > 1 {
-                                    last.remove(0);
-                                }
-                                let values = self.data().points.iter().map(|p| structure.value(p)).collect();
-                                last.push((structure.form.clone(), values));
-                                last.len() - 1
-                            });
-                            let column = last[at].1.iter().zip(along).map(|(v, s)| v * s).collect();
-                            let (column, visible) = self.visible(column);
-                            (visible > 0.02).then_some(column)
-                        })
-                        .collect();
-                    self.group(group, &columns)
-                })
-                .collect();
-        for (channel, along) in &channels[..3] {
-            scores.extend(self.best_window(*channel, along));
-        }
-        scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        scores
-    }
-
-    /// The best stretch of whole series, at another level than the rest: every pair of ends is tried, by sums over
-    /// the series, since whitening mixes the rows of a series only.
-    fn best_window(&self, channel: Channel, along: &[f64]) -> Option<StructureScore> {
-        let mut white = along.to_vec();
-        self.weighed.whiten(&mut white);
-        let mut begins = vec![f64::INFINITY; self.data().series];
-        for (row, series) in self.data().series_of.iter().enumerate() {
-            begins[*series] = begins[*series].min(self.data().points[row].time);
-        }
-        let mut order: Vec<usize> = (0..self.data().series).filter(|s| begins[*s].is_finite()).collect();
-        order.sort_by(|a, b| begins[*a].total_cmp(&begins[*b]));
-        // Ends at up to eighty places, so that thousands of series cost no more than some hundreds.
-        let ends: Vec<usize> = if order.len() <= WINDOW_ENDS {
-            (1..=order.len()).collect()
-        } else {
-            (1..=WINDOW_ENDS).map(|i| i * order.len() / WINDOW_ENDS).collect()
-        };
-        if self.weighed.noise.walk.is_any() {
-            return self.best_window_beside_a_walk(channel, along, &begins, &order, &ends);
-        }
-        let basis = self.basis.basis();
-        // Of each series: score, squared length, and the share of each direction of the basis.
-        let mut sums = vec![vec![0.0; 2 + basis.len()]; self.data().series];
-        for (row, series) in self.data().series_of.iter().enumerate() {
-            let sum = &mut sums[*series];
-            sum[0] += white[row] * self.residual[row];
-            sum[1] += white[row] * white[row];
-            for (s, axis) in sum[2..].iter_mut().zip(basis) {
-                *s += white[row] * axis[row];
-            }
-        }
-        let mut best: Option<(f64, f64, usize, usize)> = None;
-        for (i, from) in ends.iter().enumerate() {
-            let (from, mut done) = (*from, *from);
-            let mut total = vec![0.0; 2 + basis.len()];
-            // To the end of the session it would be a step, which stands in the catalogue.
-            for to in ends[i + 1..].iter().copied().filter(|to| *to < order.len()) {
-                for series in &order[done..to] {
-                    total.iter_mut().zip(&sums[*series]).for_each(|(t, s)| *t += s);
-                }
-                done = to;
-                let visible = total[1] - dot(&total[2..], &total[2..]);
-                if to - from < 2 || visible < 4e-4 * total[1] || visible < 1e-9 {
-                    continue;
-                }
-                let gain = total[0] * total[0] / visible - WINDOW_PENALTY;
-                if best.is_none_or(|b| gain > b.0) {
-                    best = Some((gain, total[0] / visible, from, to));
-                }
-            }
-        }
-        let (gain, size, from, to) = best?;
-        let group = vec![window(channel, begins[order[from]], begins[order[to]])];
-        let flipped = self.flipped_series();
-        let mut by_series = vec![0.0; flipped];
-        let (mut visible, mut scale) = (0.0, 1.0);
-        for series in order[from..to].iter().filter(|_| flipped > 0) {
-            by_series[*series] = sums[*series][0];
-            visible += sums[*series][1];
-        }
-        if visible > 0.0 {
-            scale = visible.sqrt().recip();
-        }
-        by_series.iter_mut().for_each(|v| *v *= scale);
-        Some(StructureScore { group, sizes: vec![size], gain, by_series })
-    }
-
-    /// The same where offsets wander, so that whitening carries a series into those after it: sums over steps that begin
-    /// at each end.
-    fn best_window_beside_a_walk(
-        &self,
-        channel: Channel,
-        along: &[f64],
-        begins: &[f64],
-        order: &[usize],
-        ends: &[usize],
-    ) -> Option<StructureScore> {
-        let data = self.data();
-        let step = |from: usize| {
-            let mut white = vec![0.0; along.len()];
-            for row in order[from..].iter().flat_map(|series| &data.series_rows[*series]) {
-                white[*row] = along[*row];
-            }
-            self.visible(white)
-        };
-        let ends: Vec<usize> = ends.iter().copied().filter(|end| *end < order.len()).collect();
-        let steps: Vec<(Vec<f64>, f64)> = ends.iter().map(|end| step(*end)).collect();
-        let score: Vec<f64> = steps.iter().map(|(column, _)| dot(column, &self.residual)).collect();
-        let length2: Vec<f64> = steps.iter().map(|(column, _)| dot(column, column)).collect();
-        let mut best: Option<(f64, f64, usize, usize)> = None;
-        for (i, (a, share)) in steps.iter().enumerate() {
-            for (j, (b, _)) in steps.iter().enumerate().skip(i + 1) {
-                let visible = length2[i] - 2.0 * dot(a, b) + length2[j];
-                if ends[j] - ends[i] < 2 || *share < 0.02 || visible < 1e-9 {
-                    continue;
-                }
-                let along = score[i] - score[j];
-                let gain = along * along / visible - WINDOW_PENALTY;
-                if best.is_none_or(|b| gain > b.0) {
-                    best = Some((gain, along / visible, i, j));
-                }
-            }
-        }
-        let (gain, size, i, j) = best?;
-        let column: Vec<f64> = steps[i].0.iter().zip(&steps[j].0).map(|(a, b)| a - b).collect();
-        let found = self.group(
-            vec![window(channel, begins[order[ends[i]]], begins[order[ends[j]]])],
-            std::slice::from_ref(&column),
-        )?;
-        Some(StructureScore { sizes: vec![size], gain, ..found })
-    }
-
     /// Gain of free offsets of each series, one per direction, for the series that are not excluded.
     pub(crate) fn series_offsets(&self) -> Vec<(usize, f64)> {
-        let mut columns = vec![Vec::new(); self.data().series];
-        for cell in &self.data().cells {
-            let Some(row) = cell.first().filter(|r| !self.data().is_excluded(**r)) else { continue };
+        let cells: Vec<&Vec<usize>> = self
+            .data()
+            .cells
+            .iter()
+            .filter(|cell| cell.first().is_some_and(|row| !self.data().is_excluded(*row)))
+            .collect();
+        let offsets = cells.iter().map(|cell| {
             let mut column = vec![0.0; self.predicted.len()];
             cell.iter().for_each(|r| column[*r] = 1.0);
-            columns[self.data().series_of[*row]].push(self.visible(column).0);
+            column
+        });
+        let mut columns = vec![Vec::new(); self.data().series];
+        for (cell, (column, _)) in cells.iter().zip(self.all_visible(offsets)) {
+            columns[self.data().series_of[cell[0]]].push(column);
         }
         columns
             .iter()
@@ -374,56 +212,6 @@ impl<'a> Screen<'a> {
             })
             .collect()
     }
-
-    /// Series whose signs are flipped: all, or none where there are so many that the noise is known without.
-    fn flipped_series(&self) -> usize {
-        const MOST: usize = 600;
-        Some(self.data().series).filter(|series| *series <= MOST).unwrap_or(0)
-    }
-
-    /// Least squares of the residual on one or two visible columns.
-    fn group(&self, group: Group, columns: &[Vec<f64>]) -> Option<StructureScore> {
-        if columns.len() != group.len() || columns.is_empty() {
-            return None;
-        }
-        let (gain, sizes) = least_squares(columns, &self.residual)?;
-        // A wave has two sizes, and there are hundreds of them at free frequencies: its gain must pay for both.
-        let gain = if group.len() > 1 { gain - WAVE_PENALTY } else { gain };
-        let flipped = self.flipped_series();
-        let mut by_series = vec![0.0; flipped];
-        let mut length2 = 0.0;
-        for (row, series) in self.data().series_of.iter().enumerate().filter(|_| flipped > 0) {
-            let value: f64 = columns.iter().zip(&sizes).map(|(c, k)| k * c[row]).sum();
-            by_series[*series] += value * self.residual[row];
-            length2 += value * value;
-        }
-        let scale = length2.sqrt().max(1e-12).recip();
-        by_series.iter_mut().for_each(|v| *v *= scale);
-        Some(StructureScore { group, sizes, gain, by_series })
-    }
-}
-
-/// A stretch of series, by the times at which its first one begins and the one after its last.
-fn window(channel: Channel, from: f64, to: f64) -> Structure {
-    let form = Shape::TimeWindow { from: from - 1e-9, to: to - 1e-9 };
-    Structure { covariate: Covariate::Time, channel, form }
-}
-
-/// Gain and sizes of one or two columns; `None` for none, or for one without length.
-fn least_squares(columns: &[Vec<f64>], residual: &[f64]) -> Option<(f64, Vec<f64>)> {
-    let first = columns.first()?;
-    let (a, u) = (dot(first, first), dot(first, residual));
-    if a < 1e-9 {
-        return None;
-    }
-    let Some(second) = columns.get(1) else { return Some((u * u / a, vec![u / a])) };
-    let (b, c, v) = (dot(first, second), dot(second, second), dot(second, residual));
-    let det = a * c - b * b;
-    if det < 1e-6 * a * c {
-        return Some((u * u / a, vec![u / a, 0.0]));
-    }
-    let (k, l) = ((c * u - b * v) / det, (a * v - b * u) / det);
-    Some((k * u + l * v, vec![k, l]))
 }
 
 #[cfg(test)]
@@ -487,33 +275,5 @@ mod tests {
         assert!(guarded.bent_gain() >= open.bent_gain());
         let gain = |screen: &Screen<'_>| score(screen.effects(), "load_cell_gain").gain;
         assert!(gain(&guarded) <= gain(&open) + 1e-6, "a guard never adds to what is left to explain");
-    }
-
-    #[test]
-    fn a_stretch_of_series_at_another_level_is_the_best_structure() {
-        let mut rows = session(4);
-        let (from, to) = (rows.len() / 3, rows.len() / 2);
-        let (first, last) = (rows[from].time_s, rows[to].time_s);
-        rows.iter_mut().filter(|r| (first..last).contains(&r.time_s)).for_each(|r| r.force_n += 0.4);
-        let (model, data) = observed(&rows);
-        let weighed = &Weighed::new(&data, Noise::constant(NOISE_N, 0.01));
-        let fitted = fit(&model, weighed);
-        let scores = Screen::new(&fitted, weighed).structures();
-        assert!(scores.windows(2).all(|w| w[0].gain >= w[1].gain));
-        let best = &scores[0].group[0];
-        assert_eq!((best.covariate, best.channel), (Covariate::Time, Channel::Reading));
-        assert!(matches!(best.form, Shape::TimeWindow { .. }), "{best:?}");
-        assert!((scores[0].sizes[0] - 0.4).abs() < 0.1, "{:?}", scores[0].sizes);
-    }
-
-    #[test]
-    fn two_columns_are_fitted_together() {
-        let (a, b) = (vec![1.0, 0.0, 1.0], vec![0.0, 2.0, 1.0]);
-        let residual: Vec<f64> = (0..3).map(|i| 3.0 * a[i] - 0.5 * b[i]).collect();
-        let (gain, sizes) = least_squares(&[a, b], &residual).unwrap();
-        assert!((sizes[0] - 3.0).abs() < 1e-12 && (sizes[1] + 0.5).abs() < 1e-12, "{sizes:?}");
-        assert!((gain - dot(&residual, &residual)).abs() < 1e-12);
-        assert_eq!(least_squares(&[], &residual), None);
-        assert_eq!(least_squares(&[vec![0.0; 3]], &residual), None);
     }
 }

@@ -3,6 +3,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::lanes::LANES;
+
 /// Draws; the smallest probability is one over their number.
 const DRAWS: usize = 999;
 /// Seed of the draws: the same table has the same probability.
@@ -20,20 +22,33 @@ pub(crate) fn family_probability(contributions: &[&[f64]]) -> f64 {
         })
         .collect();
     let series = scaled.first().map_or(0, Vec::len);
-    let largest = |signs: &[f64]| {
-        scaled.iter().map(|c| c.iter().zip(signs).map(|(v, s)| v * s).sum::<f64>().abs()).fold(0.0, f64::max)
-    };
-    let observed = largest(&vec![1.0; series]);
+    let observed = largest(&scaled, &vec![[1.0; LANES]; series])[0];
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
-    let mut signs = vec![1.0; series];
-    let mut as_large = 0;
-    for _ in 0..DRAWS {
-        signs.iter_mut().for_each(|s| *s = if random.random::<bool>() { 1.0 } else { -1.0 });
-        if largest(&signs) >= observed - 1e-12 {
-            as_large += 1;
+    let mut signs = vec![[1.0; LANES]; series];
+    let (mut as_large, mut drawn) = (0, 0);
+    while drawn < DRAWS {
+        let draws = LANES.min(DRAWS - drawn);
+        for draw in 0..draws {
+            signs.iter_mut().for_each(|s| s[draw] = if random.random::<bool>() { 1.0 } else { -1.0 });
         }
+        let found = largest(&scaled, &signs);
+        as_large += found[..draws].iter().map(|score| i32::from(*score >= observed - 1e-12)).sum::<i32>();
+        drawn += draws;
     }
     f64::from(as_large + 1) / (DRAWS + 1) as f64
+}
+
+/// The largest score of several draws of signs.
+fn largest(scaled: &[Vec<f64>], signs: &[[f64; LANES]]) -> [f64; LANES] {
+    let mut largest = [0.0f64; LANES];
+    for contributions in scaled {
+        let mut sums = [0.0; LANES];
+        for (value, signs) in contributions.iter().zip(signs) {
+            sums.iter_mut().zip(signs).for_each(|(sum, sign)| *sum += value * sign);
+        }
+        largest.iter_mut().zip(sums).for_each(|(most, sum)| *most = most.max(sum.abs()));
+    }
+    largest
 }
 
 #[cfg(test)]

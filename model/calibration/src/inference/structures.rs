@@ -31,6 +31,57 @@ fn follows(
     })
 }
 
+/// All structures that a table could show, with the course of each shape over its rows where that needs little memory:
+/// they are scored again and again while a table is searched.
+#[derive(Debug)]
+pub(crate) struct Catalogue {
+    /// The frame that it was made for.
+    pub(super) frame: Frame,
+    /// The structures.
+    pub(crate) groups: Vec<Group>,
+    /// Course of each structure of each group.
+    course_of: Vec<Vec<usize>>,
+    courses: Vec<Vec<f64>>,
+}
+
+/// Values of courses that are kept: some tens of megabytes.
+const MOST_KEPT: usize = 4_000_000;
+
+impl Catalogue {
+    /// Of a table of these points.
+    pub(super) fn new(frame: &Frame, points: &[Point]) -> Self {
+        let groups = structures_to_try(frame, points);
+        let (mut shapes, mut course_of): (Vec<&Shape>, Vec<Vec<usize>>) = (Vec::new(), Vec::new());
+        for group in &groups {
+            let mut of_group = Vec::new();
+            for structure in group {
+                // The same shape is tried on several channels in a row.
+                let near = shapes.iter().rev().take(2).position(|shape| **shape == structure.form);
+                let index = near.map_or(shapes.len(), |back| shapes.len() - 1 - back);
+                if near.is_none() {
+                    shapes.push(&structure.form);
+                }
+                of_group.push(index);
+            }
+            course_of.push(of_group);
+        }
+        let courses = if shapes.len() * points.len() > MOST_KEPT {
+            Vec::new()
+        } else {
+            shapes.iter().map(|shape| points.iter().map(|p| shape.value(p)).collect()).collect()
+        };
+        Self { frame: frame.clone(), course_of, courses, groups }
+    }
+
+    /// Course of one structure of a group over the points.
+    pub(super) fn values(&self, group: usize, place: usize, points: &[Point]) -> std::borrow::Cow<'_, [f64]> {
+        match self.courses.get(self.course_of[group][place]) {
+            Some(course) => course.into(),
+            None => points.iter().map(|p| self.groups[group][place].value(p)).collect::<Vec<_>>().into(),
+        }
+    }
+}
+
 /// All structures that a table of these points could show.
 pub(crate) fn structures_to_try(frame: &Frame, points: &[Point]) -> Vec<Group> {
     let mut groups = Vec::new();

@@ -3,10 +3,11 @@
 use super::fit::{Fit, fit};
 use super::forward::Term;
 use super::levels::Levels;
-use super::screening::{Screen, StructureScore};
+use super::screening::Screen;
 use super::search::{prune, search};
 use super::sign_flips::family_probability;
 use super::significance::{degrees_of_freedom, gain_at};
+use super::structure_scores::StructureScore;
 use super::weighed::Weighed;
 use crate::effects::Covariate;
 

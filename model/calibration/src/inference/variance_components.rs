@@ -75,12 +75,7 @@ fn inside(
     let mut last = Vec::new();
     for _ in 0..2 {
         let weighed = Weighed::new(data, noise);
-        let mut projection = Projection::new(residual_n.len());
-        for column in explainable {
-            let mut white = column.clone();
-            weighed.whiten(&mut white);
-            projection.absorb(white);
-        }
+        let projection = Projection::of_whitened(explainable, residual_n.len(), &weighed);
         let mut white = residual_n.to_vec();
         weighed.whiten(&mut white);
         projection.remove(&mut white);
@@ -127,12 +122,7 @@ struct Block {
 /// or series would be mixed.
 fn blocks(means: &Observations, noise: Noise, residual: &[f64], columns: &[Vec<f64>]) -> Vec<Block> {
     let weighed = Weighed::new(means, noise);
-    let mut projection = Projection::new(residual.len());
-    for column in columns {
-        let mut white = column.clone();
-        weighed.whiten(&mut white);
-        projection.absorb(white);
-    }
+    let projection = Projection::of_whitened(columns, residual.len(), &weighed);
     let mut white = residual.to_vec();
     weighed.whiten(&mut white);
     projection.remove(&mut white);
@@ -416,20 +406,14 @@ fn scatter_size(
     let mut theta = start * start;
     for _ in 0..ROUNDS {
         let weighed = Weighed::new(means, scatter.in_noise(noise, theta.sqrt()));
-        let mut projection = Projection::new(residual.len());
-        let whiten = |column: &[f64]| {
-            let mut white = column.to_vec();
-            weighed.whiten(&mut white);
-            white
-        };
-        for column in &columns {
-            projection.absorb(whiten(column));
-        }
-        let mut rest = whiten(&residual);
+        let projection = Projection::of_whitened(&columns, residual.len(), &weighed);
+        let mut rest = residual.clone();
+        weighed.whiten(&mut rest);
         projection.remove(&mut rest);
         let (mut found, mut expected) = (0.0, 0.0);
-        for group in &groups {
-            let mut white = whiten(group);
+        let mut white = groups.clone();
+        weighed.whiten_all(&mut white);
+        for mut white in white {
             projection.remove(&mut white);
             let expect = dot(&white, &white);
             found += dot(&white, &rest).powi(2);
@@ -536,12 +520,7 @@ impl Reliability {
     pub(crate) fn degrees(&self, data: &Observations, column_n: &[f64], length2: f64) -> f64 {
         let means = &self.means.observations;
         let weighed = Weighed::new(means, self.noise);
-        let mut projection = Projection::new(means.points.len());
-        for column in &self.own {
-            let mut white = column.clone();
-            weighed.whiten(&mut white);
-            projection.absorb(white);
-        }
+        let projection = Projection::of_whitened(&self.own, means.points.len(), &weighed);
         let mut white = self.means.mean_of(data, column_n);
         weighed.whiten(&mut white);
         projection.remove(&mut white);

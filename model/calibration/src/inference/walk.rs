@@ -122,18 +122,27 @@ impl Walk {
     }
 
     /// Replaces what lies along each cell's direction by its innovation.
-    pub(super) fn whiten(&self, data: &Observations, values: &mut [f64]) {
-        let mut state = [0.0; STATES];
+    pub(super) fn whiten<const N: usize>(&self, data: &Observations, values: &mut [[f64; N]]) {
+        let mut states = [[0.0; STATES]; N];
         for step in &self.steps {
-            if let Some(memory) = step.memory {
-                state = remembered(&state, memory);
-            }
             let cell = &data.cells[step.cell];
-            let value = self.along(cell, values);
-            let innovation = value - along(&state, &step.reach);
-            state.iter_mut().zip(&step.gain).for_each(|(s, g)| *s += g * innovation);
-            let change = innovation / step.variance.sqrt() - value;
-            cell.iter().for_each(|r| values[*r] += change * self.axis[*r]);
+            let mut change = [0.0; N];
+            for row in cell {
+                change.iter_mut().zip(&values[*row]).for_each(|(sum, v)| *sum += self.axis[*row] * v);
+            }
+            let sd = step.variance.sqrt();
+            for (state, change) in states.iter_mut().zip(&mut change) {
+                if let Some(memory) = step.memory {
+                    *state = remembered(state, memory);
+                }
+                let value = *change;
+                let innovation = value - along(state, &step.reach);
+                state.iter_mut().zip(&step.gain).for_each(|(s, g)| *s += g * innovation);
+                *change = innovation / sd - value;
+            }
+            for row in cell {
+                values[*row].iter_mut().zip(&change).for_each(|(v, c)| *v += c * self.axis[*row]);
+            }
         }
     }
 

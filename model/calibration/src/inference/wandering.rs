@@ -90,9 +90,9 @@ pub(super) fn wandering(
 fn restricted(weighed: &Weighed<'_>, residual: &[f64], columns: &[Vec<f64>]) -> f64 {
     let mut projection = Projection::new(residual.len());
     let mut log_det = weighed.shared_log_det();
-    for column in columns {
-        let mut white = column.clone();
-        weighed.whiten(&mut white);
+    let mut columns = columns.to_vec();
+    weighed.whiten_all(&mut columns);
+    for white in columns {
         // The determinant of the projection's own columns: what they lose of their length to those before.
         let mut rest = white.clone();
         projection.remove(&mut rest);

@@ -6,6 +6,7 @@
 //! `V` is whitened by one step of rank one after the other; the cost is linear in rows.
 
 use super::correlation::unchain;
+use super::lanes::{LANES, Lanes};
 use super::noise::{Noise, Part};
 use super::observations::Observations;
 use super::walk::Walk;
@@ -43,14 +44,30 @@ impl Shared {
     }
 
     /// A symmetric step: it is its own adjoint.
-    fn whiten(&self, data: &Observations, values: &mut [f64]) {
+    fn whiten<const N: usize>(&self, data: &Observations, values: &mut [[f64; N]]) {
         for (group, removed) in self.part.groups(data).iter().zip(&self.removed) {
             if *removed > 0.0 {
-                let sum: f64 = group.iter().map(|r| self.axis[*r] * values[*r]).sum();
-                let shift = removed * sum;
-                group.iter().for_each(|r| values[*r] -= shift * self.axis[*r]);
+                let along = group.iter().map(|r| (*r, self.axis[*r]));
+                remove_along(along, *removed, values);
             }
         }
+    }
+}
+
+/// Takes a share of what values have along a direction of unit length out of them, `v - removed a (a'v)`. The direction
+/// is given as rows with their places.
+fn remove_along<const N: usize>(
+    axis: impl Iterator<Item = (usize, f64)> + Clone,
+    removed: f64,
+    values: &mut [[f64; N]],
+) {
+    let mut sums = [0.0; N];
+    for (row, a) in axis.clone() {
+        sums.iter_mut().zip(&values[row]).for_each(|(sum, v)| *sum += a * v);
+    }
+    let shifts = sums.map(|sum| removed * sum);
+    for (row, a) in axis {
+        values[row].iter_mut().zip(&shifts).for_each(|(v, shift)| *v -= a * shift);
     }
 }
 
@@ -92,10 +109,8 @@ impl Carried {
     }
 
     /// A symmetric step: it is its own adjoint.
-    fn whiten(&self, values: &mut [f64]) {
-        let sum: f64 = self.axis.iter().map(|(row, a)| a * values[*row]).sum();
-        let shift = self.removed * sum;
-        self.axis.iter().for_each(|(row, a)| values[*row] -= shift * a);
+    fn whiten<const N: usize>(&self, values: &mut [[f64; N]]) {
+        remove_along(self.axis.iter().copied(), self.removed, values);
     }
 }
 
@@ -150,14 +165,31 @@ impl<'a> Weighed<'a> {
 
     /// Whitens one value per row in place, `V^-1/2 v`.
     pub(crate) fn whiten(&self, values: &mut [f64]) {
-        values.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
+        self.whiten_lanes(values.as_chunks_mut::<1>().0);
+    }
+
+    /// Whitens columns of one value per row in place, several in one go.
+    pub(crate) fn whiten_all(&self, columns: &mut [Vec<f64>]) {
+        let mut lanes = Lanes::default();
+        for several in columns.chunks_mut(LANES) {
+            if let [one] = several {
+                self.whiten(one);
+                continue;
+            }
+            lanes.take(several);
+            self.whiten_lanes(lanes.rows_mut());
+            lanes.give(several);
+        }
+    }
+
+    /// Whitens several values per row in place, lane by lane.
+    pub(crate) fn whiten_lanes<const N: usize>(&self, values: &mut [[f64; N]]) {
+        for (row, scale) in values.iter_mut().zip(&self.scale) {
+            row.iter_mut().for_each(|v| *v *= scale);
+        }
         if self.noise.correlation > 0.0 {
-            let mut along = Vec::new();
             for cell in &self.data.cells {
-                along.clear();
-                along.extend(cell.iter().map(|r| values[*r]));
-                unchain(self.noise.correlation, self.data, cell, &mut along);
-                cell.iter().zip(&along).for_each(|(r, v)| values[*r] = *v);
+                unchain(self.noise.correlation, self.data, cell, values);
             }
         }
         self.cells.iter().for_each(|cells| cells.whiten(self.data, values));
@@ -168,10 +200,11 @@ impl<'a> Weighed<'a> {
 
     /// `V^-1/2' v` of values that have no neighbours in a chain, as means of series have none.
     pub(crate) fn whiten_transposed(&self, mut values: Vec<f64>) -> Vec<f64> {
-        self.carried.iter().rev().for_each(|carried| carried.whiten(&mut values));
-        self.shared.iter().rev().for_each(|shared| shared.whiten(self.data, &mut values));
-        self.walk.iter().for_each(|walk| walk.whiten_transposed(self.data, &mut values));
-        self.cells.iter().for_each(|cells| cells.whiten(self.data, &mut values));
+        let lanes = values.as_chunks_mut::<1>().0;
+        self.carried.iter().rev().for_each(|carried| carried.whiten(lanes));
+        self.shared.iter().rev().for_each(|shared| shared.whiten(self.data, lanes));
+        self.walk.iter().for_each(|walk| walk.whiten_transposed(self.data, lanes.as_flattened_mut()));
+        self.cells.iter().for_each(|cells| cells.whiten(self.data, lanes));
         values.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
         values
     }

@@ -1,7 +1,7 @@
 //! The error to expect on a new session of the same rig: the whole procedure, from the noise to the names, is run
 //! without a fourth of the series, and judged on them.
 
-use crate::inference::{Levels, Model, Observations, Selection, Weighed, fit, select};
+use crate::inference::{Levels, Model, Observations, Selection, Weighed, fit, selected_model};
 
 /// Parts into which the series are dealt.
 const FOLDS: usize = 4;
@@ -47,8 +47,8 @@ fn part(
     if seen.points.len() < start.values().len() + 8 || hidden.points.is_empty() {
         return None;
     }
-    let found = select(start, &mut seen, levels);
-    let baseline = fit(&whole.baseline.model, &Weighed::new(&seen, found.noise));
+    let (found, noise) = selected_model(start, &mut seen, levels);
+    let baseline = fit(&whole.baseline.model, &Weighed::new(&seen, noise));
     let squares = |model: &Model| -> f64 {
         let predicted = model.predict(&hidden.points);
         predicted
@@ -61,7 +61,7 @@ fn part(
             })
             .sum()
     };
-    Some((squares(&baseline.model), squares(&found.augmented.model), readings))
+    Some((squares(&baseline.model), squares(&found), readings))
 }
 
 /// One result per part, on as many threads as there are processors.

@@ -7,8 +7,8 @@ use super::forward::Model;
 use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
+use super::reliability::Reliability;
 use super::significance::gain_at;
-use super::variance_components::Reliability;
 use super::weighed::Weighed;
 use crate::table::Point;
 
@@ -171,15 +171,12 @@ pub fn interval_half_widths(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<f64> {
     let predicted: Vec<f64> =
         weighed.data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let columns = jacobian(&fitted.model, weighed.data, &predicted);
-    let quantiles: Vec<f64> = (0..columns.len())
-        .map(|i| {
-            let others: Vec<Vec<f64>> =
-                columns.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, c)| c.clone()).collect();
-            let reliability = Reliability::new(weighed.data, weighed.noise, &others);
-            let information = 1.0 / covariance[(i, i)].max(1e-300);
-            gain_at(0.05, 1, reliability.degrees(weighed.data, &columns[i], information)).sqrt()
-        })
-        .collect();
+    let information: Vec<f64> = (0..columns.len()).map(|i| 1.0 / covariance[(i, i)].max(1e-300)).collect();
+    let quantiles: Vec<f64> =
+        Reliability::degrees_of_each(weighed.data, weighed.noise, &columns, &information)
+            .into_iter()
+            .map(|degrees| gain_at(0.05, 1, degrees).sqrt())
+            .collect();
     (0..covariance.nrows())
         .map(|i| quantiles[i] * covariance[(i, i)].max(0.0).sqrt() * fitted.model.value(i).1.abs())
         .collect()

@@ -3,9 +3,9 @@
 
 use super::fit::{Fit, jacobian};
 use super::projection::{Projection, dot};
+use super::reliability::Reliability;
 use super::screening::{EffectScore, Screen};
 use super::significance::gain_at;
-use super::variance_components::Reliability;
 use super::weighed::Weighed;
 use crate::effects::{Effect, Stage};
 

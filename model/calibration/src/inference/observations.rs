@@ -77,8 +77,17 @@ pub(crate) struct CellMeans {
 impl CellMeans {
     /// Means of a column of the whole table, weighed by the repetition noise.
     pub(crate) fn mean_of(&self, data: &Observations, column: &[f64]) -> Vec<f64> {
-        let mut white = column.to_vec();
-        Weighed::new(data, self.repetition).whiten(&mut white);
+        self.means_of(data, std::slice::from_ref(&column.to_vec())).pop().unwrap_or_default()
+    }
+
+    /// Means of several columns.
+    pub(crate) fn means_of(&self, data: &Observations, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut white = columns.to_vec();
+        Weighed::new(data, self.repetition).whiten_all(&mut white);
+        white.iter().map(|white| self.mean_of_white(data, white)).collect()
+    }
+
+    fn mean_of_white(&self, data: &Observations, white: &[f64]) -> Vec<f64> {
         self.cells
             .iter()
             .map(|cell| {

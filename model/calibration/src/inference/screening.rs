@@ -137,7 +137,8 @@ impl<'a> Screen<'a> {
             .collect()
     }
 
-    fn effect(&self, effect: &'static dyn Effect) -> Option<EffectScore> {
+    /// Score of one effect at its best shape.
+    pub(crate) fn effect(&self, effect: &'static dyn Effect) -> Option<EffectScore> {
         let mut best: Option<EffectScore> = None;
         let starts = effect.starts(&self.fitted.model.frame);
         let traces: Vec<Vec<f64>> = starts

@@ -3,10 +3,10 @@
 use super::fit::{Fit, fit, jacobian};
 use super::forward::Term;
 use super::levels::Levels;
+use super::reliability::Reliability;
 use super::screening::{EffectScore, Screen};
 use super::sign_flips::family_probability;
 use super::significance::{degrees_of_freedom, family_p_value, gain_at};
-use super::variance_components::Reliability;
 use super::weighed::Weighed;
 use crate::effects::Effect;
 
@@ -29,23 +29,21 @@ struct Extension {
     fitted: Fit,
 }
 
-/// Full fits of the most promising absent effects, best cost first.
+/// Full fits of the most promising absent effects among those scored, best cost first.
 fn extensions(
+    mut scores: Vec<EffectScore>,
     from: &Fit,
     weighed: &Weighed<'_>,
     least: f64,
     beyond_form: f64,
     most: usize,
 ) -> Vec<Extension> {
-    let mut scores = Screen::new(from, weighed).effects();
-    if !from.model.named_effects().is_empty() {
-        // What the names so far would explain by bending their own forms is not worth another name.
-        let guarded = Screen::guarded(from, weighed).effects();
-        scores.retain(|s| {
-            s.gain > beyond_form || guarded.iter().any(|g| g.effect.id() == s.effect.id() && g.gain > least)
-        });
-    }
     scores.retain(|s| s.gain > least);
+    if !from.model.named_effects().is_empty() && scores.iter().any(|s| s.gain <= beyond_form) {
+        // What the names so far would explain by bending their own forms is not worth another name.
+        let guarded = Screen::guarded(from, weighed);
+        scores.retain(|s| s.gain > beyond_form || guarded.effect(s.effect).is_some_and(|g| g.gain > least));
+    }
     scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     scores.truncate(most);
     let mut fits: Vec<_> = scores
@@ -89,7 +87,9 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
     if strongest < 3.0 * first && weighed.data.series >= 12 && flips(&scores) > levels.flips {
         return current;
     }
+    let mut scores = Some(scores);
     for _ in 0..4 {
+        let scores = scores.take().unwrap_or_else(|| Screen::new(&current, weighed).effects());
         let gained = bendable_gain(start, &current, weighed);
         let least = if current.model.named_effects().is_empty() {
             first
@@ -98,8 +98,9 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
         };
         // To first order alone: an effect that is not linear may gain more once fitted.
         let screened = if current.model.named_effects().is_empty() { 0.3 } else { 0.8 } * least;
-        let Some(best) =
-            extensions(&current, weighed, screened, levels.beyond_form * gained, FITTED).into_iter().next()
+        let Some(best) = extensions(scores, &current, weighed, screened, levels.beyond_form * gained, FITTED)
+            .into_iter()
+            .next()
         else {
             break;
         };
@@ -166,7 +167,8 @@ fn exchange(mut current: Fit, weighed: &Weighed<'_>, beyond_form: f64) -> Fit {
             if matches!(current.model.terms[i], Term::Named(_)) {
                 let without = fit(&current.model.without_term(i), weighed);
                 let id = current.model.terms[i].id();
-                for other in extensions(&without, weighed, 8.0, beyond_form, 4) {
+                let scores = Screen::new(&without, weighed).effects();
+                for other in extensions(scores, &without, weighed, 8.0, beyond_form, 4) {
                     if other.score.effect.id() != id && other.fitted.cost < current.cost - 1.0 {
                         better = Some(other.fitted);
                         break;

@@ -10,11 +10,12 @@ use super::limits::{SizeLimit, classes, limits};
 use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;
+use super::reliability::{NoiseFactors, Reliability};
 use super::screening::{EffectScore, Screen};
 use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
 use super::structure_scores::StructureScore;
 use super::unnamed::{Context, FoundStructure, with_structure};
-use super::variance_components::{NoiseFactors, Reliability, Scatter, estimate, shared_again};
+use super::variance_components::{Scatter, estimate, shared_again};
 use super::weighed::Weighed;
 use crate::effects::{Effect, Shape};
 
@@ -146,6 +147,19 @@ const MAX_EXCLUDED: usize = 3;
 /// Runs the whole search on a table. A series that is wrong as a whole is excluded, and the search begins
 /// again.
 pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
+    let chosen = choose(start, data, levels);
+    finish(chosen, data, levels)
+}
+
+/// The model that the whole search ends with, and its noise, without what is told about it.
+pub(crate) fn selected_model(start: &Model, data: &mut Observations, levels: Levels) -> (Model, Noise) {
+    let chosen = choose(start, data, levels);
+    let weighed = Weighed::new(data, chosen.noise);
+    (without_uncertain_names(chosen.augmented, &weighed).model, chosen.noise)
+}
+
+/// The explanation of a table.
+fn choose(start: &Model, data: &mut Observations, levels: Levels) -> Explanation {
     let guess = Noise::constant(0.1, 0.03);
     let rough = fit(start, &Weighed::new(data, guess));
     let sd = data.weigh_outliers(&rough.residual_n);
@@ -161,8 +175,7 @@ pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selecti
             data.exclude(series);
             continue;
         }
-        let chosen = against_scatter(free, data, levels);
-        return finish(chosen, data, levels);
+        return against_scatter(free, data, levels);
     }
 }
 

@@ -112,15 +112,20 @@ fn only_repetition(noise: Noise) -> Noise {
 }
 
 /// Per block of means that belong to one series: `P` and `P r`.
-struct Block {
-    members: Vec<usize>,
-    p: DMatrix<f64>,
-    pr: DVector<f64>,
+pub(super) struct Block {
+    pub(super) members: Vec<usize>,
+    pub(super) p: DMatrix<f64>,
+    pub(super) pr: DVector<f64>,
 }
 
 /// Blocks of the projected weight matrix over the means, exact within each series. `mounts` of the noise must be zero,
 /// or series would be mixed.
-fn blocks(means: &Observations, noise: Noise, residual: &[f64], columns: &[Vec<f64>]) -> Vec<Block> {
+pub(super) fn blocks(
+    means: &Observations,
+    noise: Noise,
+    residual: &[f64],
+    columns: &[Vec<f64>],
+) -> Vec<Block> {
     let weighed = Weighed::new(means, noise);
     let projection = Projection::of_whitened(columns, residual.len(), &weighed);
     let mut white = residual.to_vec();
@@ -156,7 +161,7 @@ fn blocks(means: &Observations, noise: Noise, residual: &[f64], columns: &[Vec<f
 
 /// Directions of the parts that series share, in the order of [`sizes`]: the means' own offset at zero load and its
 /// growth, one for each mean, then the series' offset, its growth, and its scale.
-fn directions(means: &Observations, block: &Block) -> [Vec<DVector<f64>>; 5] {
+pub(super) fn directions(means: &Observations, block: &Block) -> [Vec<DVector<f64>>; 5] {
     let k = block.members.len();
     let load = |i: usize| means.points[block.members[i]].load_n;
     let single = |i: usize, value: f64| DVector::from_fn(k, |j, _| if i == j { value } else { 0.0 });
@@ -170,7 +175,7 @@ fn directions(means: &Observations, block: &Block) -> [Vec<DVector<f64>>; 5] {
 }
 
 /// Variances of those parts.
-fn sizes(noise: Noise) -> [f64; 5] {
+pub(super) fn sizes(noise: Noise) -> [f64; 5] {
     [
         noise.series.constant_n.powi(2),
         noise.series.per_load.powi(2),
@@ -195,7 +200,7 @@ fn between(data: &Observations, residual_n: &[f64], explainable: &[Vec<f64>], no
     let noise = Noise { mount_scale: 0.0, walk: Wandering::default(), ..noise };
     let means = data.cell_means(noise);
     let residual = means.mean_of(data, residual_n);
-    let mut columns: Vec<Vec<f64>> = explainable.iter().map(|c| means.mean_of(data, c)).collect();
+    let mut columns = means.means_of(data, explainable);
     // Operators, sessions and specimens are few: each has its own level here.
     for groups in [&means.observations.operators, &means.observations.sessions] {
         columns.extend(groups.iter().map(|g| indicator(residual.len(), g, |_| 1.0)));
@@ -396,7 +401,7 @@ fn scatter_size(
     }
     let means = data.cell_means(noise);
     let residual = means.mean_of(data, residual_n);
-    let columns: Vec<Vec<f64>> = own.iter().map(|c| means.mean_of(data, c)).collect();
+    let columns = means.means_of(data, own);
     let means = &means.observations;
     let groups: Vec<Vec<f64>> = scatter
         .groups(means)
@@ -428,118 +433,4 @@ fn scatter_size(
         }
     }
     theta.sqrt().min(most)
-}
-
-/// How well the noise itself is known, to tell how many degrees of freedom stand behind a size
-/// (Satterthwaite's approximation).
-pub(crate) struct Reliability {
-    means: super::observations::CellMeans,
-    noise: Noise,
-    own: Vec<Vec<f64>>,
-    /// Inverse of the information on the variances that are not zero, with their places.
-    covariance: DMatrix<f64>,
-    places: Vec<usize>,
-}
-
-/// Factors by which the sizes of the noise's parts may be off, up or down, with 95 %; `None` for a part that is absent.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct NoiseFactors {
-    /// Of the offset of a series and direction.
-    pub cell: Option<f64>,
-    /// Of the offset of a series.
-    pub common: Option<f64>,
-    /// Of the friction scale of a series.
-    pub scale: Option<f64>,
-    /// Of the friction scale of a mount.
-    pub mount: Option<f64>,
-}
-
-impl Reliability {
-    /// How well the parts of the noise are known.
-    pub(crate) fn factors(&self) -> NoiseFactors {
-        let theta = sizes(self.noise);
-        // A standard deviation is a square root: half the relative error of the variance.
-        let of = |place: usize| {
-            let at = self.places.iter().position(|p| *p == place)?;
-            let relative = self.covariance[(at, at)].max(0.0).sqrt() / theta[place];
-            Some((1.96 * 0.5 * relative).exp())
-        };
-        let last = self.places.len();
-        let mount = self.noise.mount_scale;
-        NoiseFactors {
-            cell: of(1).or(of(0)),
-            common: of(3).or(of(2)),
-            scale: of(4),
-            mount: (mount > 0.0).then(|| {
-                (1.96 * 0.5 * self.covariance[(last, last)].max(0.0).sqrt() / (mount * mount)).exp()
-            }),
-        }
-    }
-
-    /// Of a noise, beside what the model's own columns take over.
-    pub(crate) fn new(data: &Observations, noise: Noise, own: &[Vec<f64>]) -> Self {
-        let means = data.cell_means(noise);
-        let own: Vec<Vec<f64>> = own.iter().map(|c| means.mean_of(data, c)).collect();
-        let local = Noise {
-            mount_scale: 0.0,
-            walk: Wandering::default(),
-            group_offset_n: 0.0,
-            specimen_scale: 0.0,
-            ..noise
-        };
-        let zeros = vec![0.0; means.observations.points.len()];
-        let blocks = blocks(&means.observations, local, &zeros, &own);
-        let theta = sizes(noise);
-        let places: Vec<usize> = (0..5).filter(|i| theta[*i] > 0.0).collect();
-        let mut information = DMatrix::zeros(places.len() + 1, places.len() + 1);
-        for block in &blocks {
-            let all = directions(&means.observations, block);
-            for (a, i) in places.iter().enumerate() {
-                for (b, j) in places.iter().enumerate() {
-                    for g in &all[*i] {
-                        for h in &all[*j] {
-                            information[(a, b)] += 0.5 * (&block.p * g).dot(h).powi(2);
-                        }
-                    }
-                }
-            }
-        }
-        // The mounts' scatter is known by their number, less one for each friction coefficient.
-        let last = places.len();
-        let mounts = (data.mounts.len() as f64 - 2.0).max(1.0);
-        information[(last, last)] =
-            if noise.mount_scale > 0.0 { 0.5 * mounts / noise.mount_scale.powi(4) } else { 1e30 };
-        let scale = DVector::from_fn(last + 1, |i, _| 1.0 / information[(i, i)].max(1e-300).sqrt());
-        let scaled = DMatrix::from_fn(last + 1, last + 1, |i, j| information[(i, j)] * scale[i] * scale[j]);
-        let inverse = scaled.try_inverse().unwrap_or_else(|| DMatrix::identity(last + 1, last + 1));
-        let covariance = DMatrix::from_fn(last + 1, last + 1, |i, j| inverse[(i, j)] * scale[i] * scale[j]);
-        Self { means, noise, own, covariance, places }
-    }
-
-    /// Degrees of freedom behind the size of a column in newtons, whose visible part has this squared length.
-    pub(crate) fn degrees(&self, data: &Observations, column_n: &[f64], length2: f64) -> f64 {
-        let means = &self.means.observations;
-        let weighed = Weighed::new(means, self.noise);
-        let projection = Projection::of_whitened(&self.own, means.points.len(), &weighed);
-        let mut white = self.means.mean_of(data, column_n);
-        weighed.whiten(&mut white);
-        projection.remove(&mut white);
-        let px = weighed.whiten_transposed(white);
-        let total = length2.max(1e-300);
-        let mut w = DVector::zeros(self.places.len() + 1);
-        for rows in &means.series_rows {
-            let block = Block { members: rows.clone(), p: DMatrix::zeros(0, 0), pr: DVector::zeros(0) };
-            let all = directions(means, &block);
-            let local = DVector::from_fn(rows.len(), |i, _| px[rows[i]]);
-            for (a, i) in self.places.iter().enumerate() {
-                w[a] += all[*i].iter().map(|g| g.dot(&local).powi(2)).sum::<f64>() / total;
-            }
-        }
-        let last = self.places.len();
-        for rows in &means.mounts {
-            w[last] += rows.iter().map(|r| means.friction_n[*r] * px[*r]).sum::<f64>().powi(2) / total;
-        }
-        let spread = (&self.covariance * &w).dot(&w);
-        (2.0 / spread.max(1e-6)).clamp(2.0, 1e6)
-    }
 }

@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let last = so_far(&arguments.tables, &calibration);
         calibration.report.sessions = sessions.into_iter().chain([last]).collect();
     }
-    let form = draw_form(&calibration);
+    let form = draw_form(&calibration.selection, &calibration.data);
     if let Some(form) = &form
         && let Some(first) = calibration.report.effects.iter_mut().find(|effect| effect.id == UNATTRIBUTED)
     {

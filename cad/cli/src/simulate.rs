@@ -11,7 +11,8 @@ use pinswitch_calibration::experiment::{RigLimits, read_runs, rows_of};
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_simulation::{
-    Case, Group, Plan, RawRun, Study, next_session, rehearse, run_case, simulate, simulate_rows, study_cases,
+    Case, FormStudy, Group, Plan, RawRun, Study, next_session, rehearse, run_case, run_form_case, simulate,
+    simulate_rows, study_cases,
 };
 use rayon::prelude::*;
 
@@ -75,6 +76,9 @@ pub(super) struct Arguments {
     /// In a study, ask for the error promised for a new session, too: five times the time.
     #[arg(long, requires = "study")]
     promises: bool,
+    /// In a study, draw the forms of what has no name, and let other sessions confirm or refute them.
+    #[arg(long, requires = "study", conflicts_with = "promises")]
+    forms: bool,
     /// In a study, only these kinds of rig: a group (nulls, singles, scattered, pairs, masks, confounded, outside) or a part of a name.
     #[arg(long, value_name = "GROUP|NAME", requires = "study")]
     only: Vec<String>,
@@ -206,17 +210,32 @@ fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
     cases.retain(|(_, case)| {
         arguments.only.is_empty() || arguments.only.iter().any(|word| case.is_meant_by(word))
     });
-    let mut study = Study::default();
+    if arguments.forms {
+        cases.retain(|(_, case)| case.group == Group::Outside);
+    }
+    let (mut study, mut forms) = (Study::default(), FormStudy::default());
     let first = arguments.first_seed;
     for (place, case) in cases {
         // One draw of noise must not decide of every kind of rig: each has seeds of its own.
         let own = first + SEEDS_PER_CASE * place;
+        if arguments.forms {
+            let outcomes: Vec<_> = (own..own + case.rigs(seeds))
+                .into_par_iter()
+                .filter_map(|s| run_form_case(&case, s, Levels::default()))
+                .collect();
+            log::info!("{:?} {}: {} rigs", case.protocol, case.name, outcomes.len());
+            forms.add(case, outcomes);
+            continue;
+        }
         let outcomes: Vec<_> = (own..own + case.rigs(seeds))
             .into_par_iter()
             .filter_map(|s| run_case(&case, s, Levels::default(), arguments.promises))
             .collect();
         log::info!("{:?} {}: {} rigs", case.protocol, case.name, outcomes.len());
         study.add(case, outcomes);
+    }
+    if arguments.forms {
+        return print(forms.table().as_bytes());
     }
     print(format!("{}\n{}\n{}", study.table(), study.groups(), study.summary()).as_bytes())
 }

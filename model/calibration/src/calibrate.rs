@@ -18,6 +18,7 @@ use crate::report::{
     ModelReport, NoisePart, Report, RivalReport, Verdict,
 };
 use crate::table::{Frame, PlateauRow};
+use crate::trial::trials;
 
 /// Why rows cannot be calibrated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -232,6 +233,7 @@ fn report(
         invisible: invisible(selection),
         never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
         bad_series: bad_series(rows, selection, weighed),
+        trials: trials(selection, data),
         sessions: Vec::new(),
         extrapolation: None,
     }

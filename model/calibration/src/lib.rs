@@ -47,6 +47,7 @@ pub mod table;
 #[cfg(test)]
 mod test_session;
 mod toml_text;
+mod trial;
 
 pub use aliasing::{Aliasing, aliasing};
 pub use calibrate::{Calibration, CalibrationError, calibrate, calibrate_among};
@@ -62,3 +63,4 @@ pub use report::{
     LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, Verdict,
 };
 pub use toml_text::toml_error;
+pub use trial::{CONFIRMED_P, TrialOutcome, TrialReport, trials};

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::aliasing::Aliasing;
 use crate::forms::FormReport;
 use crate::inference::{Noise, Selection};
+use crate::trial::TrialReport;
 
 /// What the data say about the paper's model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -286,6 +287,9 @@ pub struct Report {
     pub never_visible: Vec<String>,
     /// Series to look at: a mislabelled weight, a bad run.
     pub bad_series: Vec<BadSeries>,
+    /// What the table says of each effect of one's own; empty without any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub trials: Vec<TrialReport>,
     /// What was known after each of several tables, in their order; empty if there was one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sessions: Vec<SessionReport>,

@@ -43,4 +43,7 @@ pub use raw::{Faults, RawLog, RawRun};
 pub use rehearse::rehearse;
 pub use series_marks::{SeriesMark, SeriesMarks};
 pub use simulate::{Simulated, simulate, simulate_rows};
-pub use study::{Case, CaseOutcome, Group, Study, Truth, plan_of, run_case, study_cases};
+pub use study::{
+    Case, CaseOutcome, FormOutcome, FormStudy, Group, Study, Truth, plan_of, run_case, run_form_case,
+    study_cases,
+};

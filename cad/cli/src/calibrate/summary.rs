@@ -1,6 +1,6 @@
 //! What a calibration says on the terminal: a few lines, the rest stands in report.html.
 
-use pinswitch_calibration::{FormReport, Report, Verdict};
+use pinswitch_calibration::{FormReport, Report, TrialReport, Verdict};
 
 /// Series to check, open effects and columns that the terminal lists.
 const SHOWN: usize = 6;
@@ -18,6 +18,7 @@ pub(super) fn summary(report: &Report) -> String {
     text.push_str(&format!("verdict: {}\n", verdict(report)));
     text.push_str(&errors(report));
     text.push_str(&effects(report));
+    text.push_str(&trials(report));
     text.push_str(&noise(report));
     if !report.adequate {
         text.push_str("something is left: held-out series miss by more than the noise, see report.html\n");
@@ -98,6 +99,19 @@ fn effects(report: &Report) -> String {
         }
     }
     text
+}
+
+/// What the table says of each effect of one's own.
+fn trials(report: &Report) -> String {
+    let line = |trial: &TrialReport| {
+        let size = &trial.size;
+        let told = format!(
+            "here {:.4} [{:.4}, {:.4}] {} against {:.4} known before, p = {:.2e}",
+            size.value, size.ci95[0], size.ci95[1], size.unit, trial.start, trial.p_value
+        );
+        format!("  {} on trial: {}: {told}\n", trial.id, trial.outcome.as_str())
+    };
+    report.trials.iter().map(line).collect()
 }
 
 /// What a structure without a name looks like.

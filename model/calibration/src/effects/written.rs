@@ -79,7 +79,7 @@ impl Combine {
     pub fn as_str(self) -> &'static str {
         match self {
             Combine::Factor => "factor",
-            Combine::Sum => "sum",
+            Combine::Sum => "add",
         }
     }
 

@@ -123,6 +123,18 @@ fn along_a_share(x: &str, is_time: bool) -> Vec<Form> {
             forms.push(Form::new("bump", format!("a*exp(-(({x} - c)/w)^2)"), &constants));
         }
     }
+    // Another level between two ends.
+    for (i, width) in (0..18).flat_map(|i| [0.08, 0.15, 0.3].map(|width| (i, width))) {
+        let c = 0.05 + 0.05 * f64::from(i);
+        if c + width < 0.99 {
+            let level = format!("a*0.25*(1 + tanh(({x} - c)/0.004))*(1 - tanh(({x} - e)/0.004))");
+            forms.push(Form::new(
+                "level",
+                level,
+                &[("c", "1", c, (0.0, 1.0)), ("e", "1", c + width, (0.0, 1.0))],
+            ));
+        }
+    }
     forms.push(Form::new("ramp", format!("a*({x} - 0.5)"), &[]));
     forms.push(Form::new("power", format!("a*({x} - 0.5)^2"), &[]));
     for cycles in [0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0] {
@@ -215,10 +227,9 @@ fn conditions(frame: &Frame) -> Vec<Form> {
         let n = condition.pins.len();
         let silicone =
             f64::from(u8::from(condition.substrate == Some(pinswitch_friction::Substrate::Silicone)));
-        let turn = condition.turn_rad;
-        // Layouts of equally many pins differ in their turns or in nothing that a formula reads.
+        let uneven = condition.turn_unevenness();
         let of_layout =
-            format!("a*(abs(pin_count - {n}) < 0.5)*(abs(turn_per_pin_rad - {turn:.6}) < 0.0005)");
+            format!("a*(abs(pin_count - {n}) < 0.5)*(abs(turn_unevenness - {uneven:.5}) < 0.0005)");
         forms.push(Form::new("level", format!("{of_layout}*(abs(is_silicone - {silicone}) < 0.5)"), &[]));
         if n > 0 {
             forms.push(Form::new("level", of_layout, &[]));

@@ -10,10 +10,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::calibrate::Calibration;
 use crate::effects::{ActsOn, Covariate, EffectDefinition, OwnEffect, Vocabulary};
 use crate::held_out::held_out;
-use crate::inference::{EffectScore, Fit, Model, Screen, Term, Weighed, fit, interval_half_widths};
+use crate::inference::{
+    EffectScore, Fit, Model, Observations, Screen, Selection, Term, Weighed, fit, interval_half_widths,
+};
 use crate::report::Estimate;
 use library::{ALL, Candidate, FIRST, Form, acts_on_word, library};
 
@@ -39,7 +40,7 @@ pub struct FormRival {
 /// What a structure without a name looks like.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FormReport {
-    /// `level`, `step`, `ramp`, `sine`, `bump`, `dip`, `power`, `forgetting` or `memory`.
+    /// `level` (also between two ends), `step`, `ramp`, `sine`, `bump`, `dip`, `power`, `forgetting` or `memory`.
     pub shape: String,
     /// `friction`, `reading`, `wrap` or `threshold`.
     pub acts_on: String,
@@ -67,14 +68,15 @@ pub struct DrawnForm {
     pub report: FormReport,
     /// The same as an effect of one's own.
     pub definition: EffectDefinition,
+    /// The model with it in place of the shapes, on the rows that it was drawn from.
+    pub fitted: Fit,
 }
 
 /// Draws the form of the structure that a calibration found and could not name; `None` if it found none, or none of the
 /// library explains any of it.
-pub fn draw_form(calibration: &Calibration) -> Option<DrawnForm> {
-    let selection = &calibration.selection;
+pub fn draw_form(selection: &Selection, data: &Observations) -> Option<DrawnForm> {
     let covariate = selection.structure?.covariate;
-    let data = calibration.data.compacted();
+    let data = data.compacted();
     let weighed = Weighed::new(&data, selection.noise);
     let with_shapes = fit(&selection.augmented.model, &weighed);
     let mut bare = selection.augmented.model.clone();
@@ -132,6 +134,7 @@ pub fn draw_form(calibration: &Calibration) -> Option<DrawnForm> {
             rivals,
         },
         definition,
+        fitted: found.clone(),
     })
 }
 

@@ -29,6 +29,13 @@ pub struct Condition {
 }
 
 impl Condition {
+    /// How unevenly the tendon turns at the pins: the mean of `theta_i^1.5` over that of equal turns. 1 where all are equal,
+    /// zero without pins. It tells layouts of equally many pins apart.
+    pub fn turn_unevenness(&self) -> f64 {
+        let n = self.pins.len() as f64;
+        if self.turn_rad > 0.0 { self.ploughing / (n * self.turn_rad.powf(1.5)) } else { 0.0 }
+    }
+
     pub(crate) fn new(
         substrate: Option<Substrate>,
         pins: &[usize],

@@ -1,16 +1,19 @@
 //! The study of the calibrator: rigs of every kind with sizes, forms and noise drawn, and what it says of them.
 
 mod cases;
+mod form_study;
 mod masks;
 mod nulls;
 mod outcome;
 mod outside;
 mod said;
 mod summary;
+mod true_form;
 
 use std::collections::BTreeMap;
 
 pub use cases::{Case, Group, Truth, plan_of, study_cases};
+pub use form_study::{FormOutcome, FormStudy, run_form_case};
 pub use outcome::{CaseOutcome, run_case};
 
 use summary::{median_of, said};

@@ -141,7 +141,7 @@ fn shows_all(plan: &Plan, levels: Levels) -> Option<bool> {
 }
 
 /// Root mean square of prediction minus reading, in newtons.
-fn error_n(model: &Model, frame: &Frame, rows: &[PlateauRow]) -> Option<f64> {
+pub(super) fn error_n(model: &Model, frame: &Frame, rows: &[PlateauRow]) -> Option<f64> {
     let predicted = model.predict(&frame.points(rows)?);
     let sum: f64 = predicted.iter().zip(rows).map(|(p, r)| (p - r.force_n).powi(2)).sum();
     Some((sum / predicted.len().max(1) as f64).sqrt())

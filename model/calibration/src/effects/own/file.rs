@@ -13,6 +13,9 @@ use crate::effects::{ActsOn, Combine, Covariate, Side, Vocabulary};
 
 /// Name and version of the format.
 pub(super) const SCHEMA: &str = "pinswitch.effects/1";
+/// Words of `combine`. `sum` was written by earlier versions and is read as `add`.
+const COMBINE: [(&str, Combine); 3] =
+    [("factor", Combine::Factor), ("add", Combine::Sum), ("sum", Combine::Sum)];
 /// Most effects of a file.
 const MAX_EFFECTS: usize = 32;
 /// Most bytes of a file.
@@ -263,7 +266,7 @@ fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, OwnEffectErr
         side: table.word("side", &[Side::Switch, Side::Rig].map(|s| (s.as_str(), s)))?,
         covariate: table.word("covariate", &Covariate::ALL.map(|c| (c.as_str(), c)))?,
         acts_on: table.word("acts_on", &ActsOn::ALL.map(|a| (a.as_str(), a)))?,
-        combine: table.word("combine", &[Combine::Factor, Combine::Sum].map(|c| (c.as_str(), c)))?,
+        combine: table.word("combine", &COMBINE)?,
         formula: formula.to_owned(),
         one_sided: table.boolean("one_sided")?,
         confused_with,

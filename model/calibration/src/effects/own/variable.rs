@@ -59,7 +59,7 @@ const fn moving(
 pub(super) const TENSION: &str = "tension_n";
 
 /// All variables.
-pub(super) static VARIABLES: [Variable; 21] = [
+pub(super) static VARIABLES: [Variable; 22] = [
     fixed("load_n", "N", "load, with what effects on the load have changed", |m| m.load_n),
     fixed(TENSION, "N", "tension or reading so far; only where it acts on tension or reading", |m| {
         m.tension_n
@@ -81,6 +81,12 @@ pub(super) static VARIABLES: [Variable; 21] = [
     fixed("turn_per_pin_rad", "rad", "mean turn of the tendon at one pin; 0 without pins", |m| {
         m.condition.turn_rad
     }),
+    fixed(
+        "turn_unevenness",
+        "1",
+        "1 where the tendon turns equally at every pin, more where pins stand in groups; 0 without",
+        |m| m.condition.turn_unevenness(),
+    ),
     fixed("is_silicone", "1", "1 on silicone, also on a device, else 0", |m| {
         f64::from(u8::from(m.condition.substrate == Some(Substrate::Silicone)))
     }),

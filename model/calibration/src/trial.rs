@@ -1,0 +1,154 @@
+//! What a table says of each effect of one's own: whether it confirms the effect, refutes it, or cannot tell.
+//!
+//! The effect is put on trial alone, with its shape held where its definition starts it, so that nothing of the table went
+//! into what is asked: one question, one degree of freedom, no correction for a search.
+
+use serde::{Deserialize, Serialize};
+
+use crate::effects::EffectDefinition;
+use crate::inference::{
+    Observations, Reliability, Screen, Selection, Term, Weighed, family_p_value, fit, gain_at, jacobian,
+};
+use crate::report::Estimate;
+
+/// Probability by chance below which an effect counts as confirmed.
+pub const CONFIRMED_P: f64 = 0.01;
+/// Length of a trace in standard deviations below which the table does not see the effect.
+const LEAST_STRENGTH: f64 = 1e-6;
+
+/// What a table says of an effect that was known before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TrialOutcome {
+    /// It is there, in the direction of its start value: by chance with a probability below [`CONFIRMED_P`].
+    Confirmed,
+    /// It is not there at its start value: the interval of its size does not reach it, nor is it there by another size.
+    Refuted,
+    /// Neither: the table cannot tell, or shows another size than the start value.
+    Open,
+}
+
+impl TrialOutcome {
+    /// Its word.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            TrialOutcome::Confirmed => "confirmed",
+            TrialOutcome::Refuted => "refuted",
+            TrialOutcome::Open => "open",
+        }
+    }
+}
+
+/// The trial of one effect of one's own.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrialReport {
+    /// Its id.
+    pub id: String,
+    /// What the table says.
+    pub outcome: TrialOutcome,
+    /// Probability of such a gain by chance, of this one effect.
+    pub p_value: f64,
+    /// Its size with all shapes held at their start values.
+    pub size: Estimate,
+    /// The size that its definition starts from: that which was drawn, for a form.
+    pub start: f64,
+}
+
+/// The trials of all effects of one's own in the vocabulary of a selection, in the order in which they were read.
+pub fn trials(selection: &Selection, data: &Observations) -> Vec<TrialReport> {
+    let vocabulary = selection.augmented.model.vocabulary.clone();
+    let weighed = Weighed::new(data, selection.noise);
+    vocabulary.own().filter_map(|own| trial(own.definition(), selection, data, &weighed)).collect()
+}
+
+fn trial(
+    definition: &EffectDefinition,
+    selection: &Selection,
+    data: &Observations,
+    weighed: &Weighed<'_>,
+) -> Option<TrialReport> {
+    let mut model = selection.augmented.model.clone();
+    let effect = model.vocabulary.named(&definition.id)?;
+    // Shapes without a name would take over what is on trial, and so would names that it is a rival of; the others stay.
+    let is_rival_of = |id: &str| {
+        selection.effects.iter().any(|e| e.effect.id() == id && e.ids().contains(&definition.id.as_str()))
+    };
+    let stands_aside = |term: &Term| match term {
+        Term::Named(named) => is_rival_of(named.id()),
+        Term::Structure(_) => true,
+    };
+    while let Some(at) = model.terms.iter().position(stands_aside) {
+        model = model.without_term(at);
+    }
+    let without = fit(&model, weighed);
+    let score = Screen::new(&without, weighed).effect(effect).filter(|s| s.strength > LEAST_STRENGTH)?;
+    let predicted: Vec<f64> = data.force_n.iter().zip(&without.residual_n).map(|(y, r)| y - r).collect();
+    let own = jacobian(&without.model, data, &predicted);
+    let degrees =
+        Reliability::new(data, selection.noise, &own).degrees(data, &score.trace_n, score.strength.powi(2));
+    let (start, value) = (score.size, score.size * score.share);
+    let half = gain_at(0.05, 1, degrees).sqrt() * start.abs() / score.strength;
+    let p_value = family_p_value(score.gain, 1, degrees);
+    let size = definition.parameters.first()?;
+    Some(TrialReport {
+        id: definition.id.clone(),
+        outcome: outcome(start, value, half, p_value),
+        p_value,
+        size: Estimate { value, ci95: [value - half, value + half], unit: size.unit.clone() },
+        start,
+    })
+}
+
+fn outcome(start: f64, value: f64, half: f64, p_value: f64) -> TrialOutcome {
+    let (share, half) = (value / start, (half / start).abs());
+    if p_value < CONFIRMED_P && share > 0.0 {
+        TrialOutcome::Confirmed
+    } else if share + half < 1.0 {
+        TrialOutcome::Refuted
+    } else {
+        TrialOutcome::Open
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate_among;
+    use crate::effects::{Vocabulary, effect_named};
+    use crate::inference::Levels;
+    use crate::test_session::{session, session_with};
+
+    fn tried(rows: &[crate::table::PlateauRow], start: f64) -> TrialReport {
+        let text = format!(
+            "schema = \"pinswitch.effects/1\"\n[[effect]]\nid = \"mine\"\nside = \"rig\"\ncovariate = \"load\"\n\
+             acts_on = \"reading\"\ncombine = \"add\"\nformula = \"a\"\n\
+             parameters.a = {{ size = true, start = {start}, unit = \"N\" }}\n"
+        );
+        let vocabulary = Vocabulary::built_in().read(&text, "mine.toml").unwrap();
+        let report = calibrate_among(rows, &vocabulary, Levels::default()).unwrap().report;
+        report.trials[0].clone()
+    }
+
+    #[test]
+    fn what_is_there_is_confirmed_and_what_is_not_is_refuted() {
+        let offset = effect_named("load_cell_offset").unwrap();
+        let with = session_with(1, &[(Term::Named(offset), &[0.5])]);
+        let there = tried(&with, 0.5);
+        assert!(there.outcome == TrialOutcome::Confirmed && there.p_value < 1e-6, "{there:?}");
+        assert!(there.size.ci95[0] < 0.5 && 0.5 < there.size.ci95[1], "{there:?}");
+        let absent = tried(&session(2), 0.5);
+        assert!(absent.outcome == TrialOutcome::Refuted && absent.p_value > CONFIRMED_P, "{absent:?}");
+        // The other sign is another claim, and a claim too small to see stays open.
+        assert_ne!(tried(&with, -0.5).outcome, TrialOutcome::Confirmed);
+        assert_eq!(tried(&session(2), 1e-4).outcome, TrialOutcome::Open);
+    }
+
+    #[test]
+    fn an_outcome_is_decided_by_interval_and_chance() {
+        assert_eq!(outcome(0.1, 0.08, 0.03, 1e-4), TrialOutcome::Confirmed);
+        assert_eq!(outcome(-0.1, -0.08, 0.03, 1e-4), TrialOutcome::Confirmed);
+        assert_eq!(outcome(-0.1, 0.08, 0.03, 1e-4), TrialOutcome::Refuted);
+        assert_eq!(outcome(0.1, 0.01, 0.03, 0.5), TrialOutcome::Refuted);
+        assert_eq!(outcome(0.1, 0.05, 0.08, 0.2), TrialOutcome::Open);
+    }
+}

@@ -1,0 +1,154 @@
+//! What a disturbance truly is, as effects of one's own with only their sizes free: what a form that was drawn is held
+//! against.
+
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
+
+use pinswitch_calibration::effects::{
+    ActsOn, Combine, Covariate, EffectDefinition, OwnEffect, OwnParameter, Side, Vocabulary,
+};
+use pinswitch_calibration::table::Frame;
+
+use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
+
+/// The vocabulary with the true forms of a disturbance, and their ids; `None` where no formula can say it: an operator
+/// who comes and goes is no variable.
+pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vocabulary, Vec<String>)> {
+    let course = course(disturbance, frame)?;
+    let size = disturbance.size;
+    let parts = match (&disturbance.kind, disturbance.target) {
+        (Course::Swap { silicone, .. }, _) => vec![(ActsOn::MuPins, size), (ActsOn::MuSilicone, *silicone)],
+        (Course::Memory { .. }, _) | (_, DisturbanceTarget::Silicone) => vec![(ActsOn::MuSilicone, size)],
+        (_, DisturbanceTarget::Friction) => vec![(ActsOn::Mu, size)],
+        (_, DisturbanceTarget::Pins) => vec![(ActsOn::MuPins, size)],
+        (_, DisturbanceTarget::Reading) => vec![(ActsOn::Reading, size)],
+        (_, DisturbanceTarget::Drag) => vec![(ActsOn::Tension, size)],
+    };
+    let covariate = disturbance.covariates().first().copied().unwrap_or(Covariate::Time);
+    let effects: Option<Vec<OwnEffect>> = parts
+        .into_iter()
+        .enumerate()
+        .map(|(i, (acts_on, size))| {
+            let is_force = matches!(acts_on, ActsOn::Reading | ActsOn::Tension);
+            let direction = if acts_on == ActsOn::Tension { "direction*" } else { "" };
+            OwnEffect::new(EffectDefinition {
+                id: format!("truth_{i}"),
+                side: if is_force { Side::Rig } else { Side::Switch },
+                covariate,
+                acts_on,
+                combine: if is_force { Combine::Sum } else { Combine::Factor },
+                formula: format!("a*{direction}{course}"),
+                one_sided: false,
+                confused_with: Vec::new(),
+                experiment: String::new(),
+                parameters: vec![OwnParameter {
+                    name: "a".to_owned(),
+                    unit: if is_force { "N" } else { "1" }.to_owned(),
+                    start: size,
+                    bounds: None,
+                }],
+            })
+            .ok()
+        })
+        .collect();
+    let effects = effects?;
+    let ids = effects.iter().map(|e| e.definition().id.clone()).collect();
+    Some((Vocabulary::built_in().with(effects).ok()?, ids))
+}
+
+/// The course of a disturbance of size one, in the language of formulas.
+fn course(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
+    Some(match &disturbance.kind {
+        Course::Step { at, over } if *over > 0.0 => format!("min(1, max(0, (time - {at})/{over}))"),
+        Course::Step { at, .. } | Course::Swap { at, .. } => format!("(time >= {at})"),
+        Course::Window { from, to } => format!("(time >= {from})*(time < {to})"),
+        Course::TimeWave { cycles, phase } => format!("sin({}*time + {phase})", TAU * cycles),
+        Course::StrokeWave { cycles, phase, square } => {
+            let wave = format!("sin({}*stroke + {phase})", TAU * cycles);
+            if *square { format!("{FRAC_PI_4}*(2*({wave} > 0) - 1)") } else { wave }
+        }
+        Course::Spot { at, width, flat } => {
+            let inside = format!("(abs(stroke - {at}) <= {})", 0.5 * width);
+            if *flat { inside } else { format!("{inside}*cos({}*(stroke - {at}))", PI / width) }
+        }
+        Course::Resonance { speed_pct, width_pct } => {
+            format!("1/(1 + ((speed_pct - {speed_pct})/{width_pct})^2)")
+        }
+        Course::Layout { pins } => {
+            let condition = frame.conditions.iter().find(|c| c.pins == *pins)?;
+            format!(
+                "(abs(pin_count - {}) < 0.5)*(abs(turn_unevenness - {:.5}) < 0.0005)",
+                pins.len(),
+                condition.turn_unevenness()
+            )
+        }
+        Course::Memory { repetitions } => format!(
+            "(previous_load_n - load_n)/{:.6}*exp(-repetitions_so_far/{repetitions})",
+            frame.load_range_n.1
+        ),
+        Course::Operators { .. } => return None,
+    })
+}
+
+/// The shape of a disturbance in the words of a report: any of these is right. None where no shape is asked for.
+pub(super) fn true_shapes(disturbance: &Disturbance) -> &'static [&'static str] {
+    match disturbance.kind {
+        Course::Step { .. } | Course::Swap { .. } => &["step"],
+        Course::Window { .. } | Course::Layout { .. } => &["level"],
+        Course::TimeWave { .. } | Course::StrokeWave { .. } => &["sine"],
+        // A worn spot with sharp ends is another level between them.
+        Course::Spot { flat, .. } => {
+            if flat {
+                &["bump", "dip", "level"]
+            } else {
+                &["bump", "dip"]
+            }
+        }
+        Course::Resonance { .. } => &["bump", "dip"],
+        Course::Memory { .. } => &["memory"],
+        Course::Operators { .. } => &[],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::{Group, plan_of, study_cases};
+    use pinswitch_calibration::inference::{Model, Noise, Observations, Term, Weighed, fit};
+
+    /// The twin and the formula say the same: the true form leaves nothing of a rig that scatters hardly.
+    #[test]
+    fn a_true_form_leaves_nothing() {
+        for case in study_cases().into_iter().filter(|c| c.group == Group::Outside) {
+            let mut plan = plan_of(&case, 3);
+            plan.noise = crate::NoisePlan {
+                repetition_n: 0.01,
+                repetition_per_load: 0.0,
+                series_n: 0.001,
+                series_per_load: 0.0,
+                outlier_share: 0.0,
+                ..crate::NoisePlan::default()
+            };
+            let rows = crate::simulate(&plan).rows;
+            let frame = Frame::new(&rows);
+            let Some((vocabulary, ids)) = true_forms(&plan.disturbances[0], &frame) else { continue };
+            let data = Observations::new(&frame, &rows).unwrap();
+            let weighed = Weighed::new(&data, Noise::constant(0.02, 0.01));
+            let baseline = Model::baseline(frame).among(&vocabulary);
+            let before = fit(&baseline, &weighed);
+            let with = ids.iter().fold(before.model.clone(), |model, id| {
+                let effect = vocabulary.named(id).unwrap();
+                let start = effect.starts(&model.frame).remove(0);
+                model.with_term(Term::Named(effect), &start)
+            });
+            let after = fit(&with, &weighed);
+            let rms = |r: &[f64]| (r.iter().map(|v| v * v).sum::<f64>() / r.len() as f64).sqrt();
+            let (before, after) = (rms(&before.residual_n), rms(&after.residual_n));
+            assert!(
+                after < 0.06 || after < 0.2 * before,
+                "{} {:?}: {before} {after}",
+                case.name,
+                case.protocol
+            );
+        }
+    }
+}

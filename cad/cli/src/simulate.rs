@@ -11,8 +11,8 @@ use pinswitch_calibration::experiment::{RigLimits, read_runs, rows_of};
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_simulation::{
-    Case, FormStudy, Group, Plan, RawRun, Study, next_session, rehearse, run_case, run_form_case, simulate,
-    simulate_rows, study_cases,
+    Case, ExperimentStudy, FormStudy, Group, Plan, RawRun, Study, experiment_cases, next_session, rehearse,
+    run_case, run_experiment_case, run_form_case, simulate, simulate_rows, study_cases,
 };
 use rayon::prelude::*;
 
@@ -79,6 +79,9 @@ pub(super) struct Arguments {
     /// In a study, draw the forms of what has no name, and let other sessions confirm or refute them.
     #[arg(long, requires = "study", conflicts_with = "promises")]
     forms: bool,
+    /// In a study, propose a session where the paper's protocol leaves something open, make it, and calibrate both.
+    #[arg(long, requires = "study", conflicts_with_all = ["promises", "forms"])]
+    experiments: bool,
     /// In a study, only these kinds of rig: a group (nulls, singles, scattered, pairs, masks, confounded, outside) or a part of a name.
     #[arg(long, value_name = "GROUP|NAME", requires = "study")]
     only: Vec<String>,
@@ -195,9 +198,35 @@ fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputF
     Ok(files)
 }
 
-/// The confusion matrix over the kinds of rig asked for, and a row for each group of them.
+/// The confusion matrix over the kinds of rig asked for, and a row for each group of them; or another chapter's table.
 fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
-    let cases = study_cases();
+    if arguments.experiments {
+        let mut study = ExperimentStudy::default();
+        let run = |case: &Case, seed| run_experiment_case(case, seed, Levels::default());
+        each_case(arguments, seeds, experiment_cases(), run, |case, outcomes| study.add(case, outcomes))?;
+        return print(study.table().as_bytes());
+    }
+    if arguments.forms {
+        let mut study = FormStudy::default();
+        let cases = study_cases();
+        let run = |case: &Case, seed| run_form_case(case, seed, Levels::default());
+        each_case(arguments, seeds, cases, run, |case, outcomes| study.add(case, outcomes))?;
+        return print(study.table().as_bytes());
+    }
+    let mut study = Study::default();
+    let run = |case: &Case, seed| run_case(case, seed, Levels::default(), arguments.promises);
+    each_case(arguments, seeds, study_cases(), run, |case, outcomes| study.add(case, outcomes))?;
+    print(format!("{}\n{}\n{}", study.table(), study.groups(), study.summary()).as_bytes())
+}
+
+/// Runs the rigs of all kinds asked for, and hands on what became of each kind.
+fn each_case<T: Send>(
+    arguments: &Arguments,
+    seeds: u64,
+    cases: Vec<Case>,
+    run: impl Fn(&Case, u64) -> Option<T> + Sync,
+    mut add: impl FnMut(Case, Vec<T>),
+) -> Result<(), Failure> {
     for word in &arguments.only {
         if !cases.iter().any(|case| case.is_meant_by(word)) {
             let groups = Group::ALL.map(Group::as_str).join(", ");
@@ -206,36 +235,17 @@ fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
             )));
         }
     }
-    let mut cases: Vec<(u64, Case)> = (0..).zip(cases).collect();
-    cases.retain(|(_, case)| {
-        arguments.only.is_empty() || arguments.only.iter().any(|word| case.is_meant_by(word))
-    });
-    if arguments.forms {
-        cases.retain(|(_, case)| case.group == Group::Outside);
-    }
-    let (mut study, mut forms) = (Study::default(), FormStudy::default());
-    let first = arguments.first_seed;
-    for (place, case) in cases {
+    let is_asked_for = |case: &Case| {
+        let by_chapter = !arguments.forms || case.group == Group::Outside;
+        by_chapter && (arguments.only.is_empty() || arguments.only.iter().any(|word| case.is_meant_by(word)))
+    };
+    for (place, case) in (0..).zip(cases).filter(|(_, case)| is_asked_for(case)) {
         // One draw of noise must not decide of every kind of rig: each has seeds of its own.
-        let own = first + SEEDS_PER_CASE * place;
-        if arguments.forms {
-            let outcomes: Vec<_> = (own..own + case.rigs(seeds))
-                .into_par_iter()
-                .filter_map(|s| run_form_case(&case, s, Levels::default()))
-                .collect();
-            log::info!("{:?} {}: {} rigs", case.protocol, case.name, outcomes.len());
-            forms.add(case, outcomes);
-            continue;
-        }
-        let outcomes: Vec<_> = (own..own + case.rigs(seeds))
-            .into_par_iter()
-            .filter_map(|s| run_case(&case, s, Levels::default(), arguments.promises))
-            .collect();
+        let own = arguments.first_seed + SEEDS_PER_CASE * place;
+        let outcomes: Vec<T> =
+            (own..own + case.rigs(seeds)).into_par_iter().filter_map(|seed| run(&case, seed)).collect();
         log::info!("{:?} {}: {} rigs", case.protocol, case.name, outcomes.len());
-        study.add(case, outcomes);
+        add(case, outcomes);
     }
-    if arguments.forms {
-        return print(forms.table().as_bytes());
-    }
-    print(format!("{}\n{}\n{}", study.table(), study.groups(), study.summary()).as_bytes())
+    Ok(())
 }

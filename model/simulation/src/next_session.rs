@@ -28,16 +28,30 @@ pub fn next_session(plan: &Plan) -> Simulated {
 
 /// The plan of the later session.
 fn next_plan(plan: &Plan) -> Plan {
+    let next = later(plan);
+    let order = layouts(&protocol::rows(&next, &mut ChaCha8Rng::seed_from_u64(next.seed)));
+    with_constants_of(next, plan, &order)
+}
+
+/// The plan of a later session of a rig in which these rows are made.
+pub(crate) fn plan_for(plan: &Plan, rows: &[PlateauRow]) -> Plan {
+    with_constants_of(later(plan), plan, &layouts(rows))
+}
+
+/// The same rig with noise of its own.
+fn later(plan: &Plan) -> Plan {
     let mut next = plan.clone();
     // Far from the seeds that a study counts through.
     next.seed = plan.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x5EC0_4D5E_5510_4E37;
     next.noise.mislabelled_series = 0;
-    // Constants of layouts are listed in the order in which the layouts are measured, which may be another now.
-    let before = layouts(plan);
-    let places: Vec<usize> = layouts(&next)
-        .iter()
-        .map(|layout| before.iter().position(|b| b == layout).unwrap_or(usize::MAX))
-        .collect();
+    next
+}
+
+/// Constants of layouts are listed in the order in which the layouts are measured, which may be another now.
+fn with_constants_of(mut next: Plan, plan: &Plan, order: &[Vec<usize>]) -> Plan {
+    let before = layouts(&protocol::rows(plan, &mut ChaCha8Rng::seed_from_u64(plan.seed)));
+    let places: Vec<usize> =
+        order.iter().map(|layout| before.iter().position(|b| b == layout).unwrap_or(usize::MAX)).collect();
     let factors = &plan.constants.half_load_factor;
     next.constants.half_load_factor =
         places.iter().map(|i| factors.get(*i).copied().unwrap_or(1.0)).collect();
@@ -46,12 +60,11 @@ fn next_plan(plan: &Plan) -> Plan {
 }
 
 /// The layouts on silicone in the order in which they are measured.
-fn layouts(plan: &Plan) -> Vec<Vec<usize>> {
-    let switches = |row: &PlateauRow| row.substrate == Some(Substrate::Silicone) && !row.pins.is_empty();
+fn layouts(rows: &[PlateauRow]) -> Vec<Vec<usize>> {
     let mut found: Vec<Vec<usize>> = Vec::new();
-    for row in protocol::rows(plan, &mut ChaCha8Rng::seed_from_u64(plan.seed)) {
-        if switches(&row) && !found.contains(&row.pins) {
-            found.push(row.pins);
+    for row in rows.iter().filter(|r| r.substrate == Some(Substrate::Silicone) && !r.pins.is_empty()) {
+        if !found.contains(&row.pins) {
+            found.push(row.pins.clone());
         }
     }
     found

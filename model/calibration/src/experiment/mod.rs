@@ -165,6 +165,11 @@ pub fn propose(
     Ok(Proposal { schema: SCHEMA, minutes: (10.0 * spent).round() / 10.0, questions, unanswerable, runs })
 }
 
+/// The paper's protocol from its beginning, as far as it comes in so many minutes.
+pub fn paper_runs(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
+    paper_protocol(rig, minutes)
+}
+
 /// The model of a calibration with the contacts of the rig, and its noise.
 fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), ModelFileError> {
     let model = known.model.model(known.name)?;

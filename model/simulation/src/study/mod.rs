@@ -1,6 +1,7 @@
 //! The study of the calibrator: rigs of every kind with sizes, forms and noise drawn, and what it says of them.
 
 mod cases;
+mod experiment_study;
 mod form_study;
 mod masks;
 mod nulls;
@@ -13,6 +14,9 @@ mod true_form;
 use std::collections::BTreeMap;
 
 pub use cases::{Case, Group, Truth, plan_of, study_cases};
+pub use experiment_study::{
+    ExperimentOutcome, ExperimentStudy, Standing, experiment_cases, run_experiment_case,
+};
 pub use form_study::{FormOutcome, FormStudy, run_form_case};
 pub use outcome::{CaseOutcome, run_case};
 

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pinswitch_calibration::effects::{Vocabulary, own_effects_text};
-use pinswitch_calibration::inference::{Levels, UNATTRIBUTED};
+use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
-    Calibration, ModelFile, SessionReport, calibrate_among, calibrate_below, draw_form, explain_published,
+    Calibration, ModelFile, SessionReport, calibrate_among, calibrate_below, explain_published,
 };
 
 use super::own_effects::OwnEffects;
@@ -92,14 +92,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let last = so_far(&arguments.tables, &calibration);
         calibration.report.sessions = sessions.into_iter().chain([last]).collect();
     }
-    let form = draw_form(&calibration.selection, &calibration.data);
-    if let Some(form) = &form
-        && let Some(first) = calibration.report.effects.iter_mut().find(|effect| effect.id == UNATTRIBUTED)
-    {
-        first.form = Some(form.report.clone());
-    }
     let mut files = files(&table, &calibration, &name)?;
-    if let Some(form) = &form {
+    if let Some(form) = &calibration.form {
         let text = format!("{DISCOVERED}{}", own_effects_text([&form.definition]));
         files.insert(0, OutputFile { name: FORM.to_owned(), bytes: text.into_bytes() });
     } else {

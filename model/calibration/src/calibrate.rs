@@ -4,6 +4,7 @@ use pinswitch_friction::Substrate;
 
 use crate::aliasing::aliasing;
 use crate::effects::Vocabulary;
+use crate::forms::{DrawnForm, draw_form};
 use crate::held_out::held_out;
 use crate::inference::{
     CandidateEffect, Fit, FoundEffect, Levels, MOST_ROWS, Model, Noise, Observations, Rival, Selection, Term,
@@ -58,6 +59,8 @@ pub struct Calibration {
     pub selection: Selection,
     /// The rows as they were fitted.
     pub data: Observations,
+    /// The form of the structure that no effect explains, if there is any.
+    pub form: Option<DrawnForm>,
 }
 
 /// Rows beyond the baseline's constants without which any misfit would be many times a noise that nobody knows.
@@ -125,23 +128,54 @@ pub fn calibrate_among(
         whole.clone()
     };
     let mut selection = select(&start, &mut data, levels);
-    let promised = promise(&selection, &data, levels);
+    let mut form = drawn(&selection, &data);
+    let promised = promise(&selection, &data, levels, form.as_ref().is_some_and(|f| f.report.in_model));
     // What does not help on series that had no part in finding it is not kept.
     if promised.is_some_and(|p| p.augmented_n > p.baseline_n) && !selection.augmented.model.terms.is_empty() {
         selection = selection.without_findings(&data, levels);
+        form = None;
     }
     if data.points.len() == whole.points.len() {
         whole = data.clone();
     }
     let outliers = (0..whole.points.len()).filter(|i| !whole.is_sound(*i)).count();
-    let report = report(rows, &selection, &data, levels, promised, outliers);
+    let mut report = report(rows, &selection, &data, levels, promised, outliers);
+    if let Some(form) = &form {
+        tell_form(form, &mut report, &mut selection, &data);
+    }
     // What is told row by row is told of every row.
     for fitted in [&mut selection.baseline, &mut selection.augmented] {
         let predicted = fitted.model.predict(&whole.points);
         fitted.residual_n = whole.force_n.iter().zip(predicted).map(|(y, p)| y - p).collect();
     }
     let data = whole;
-    Ok(Calibration { report, selection, data })
+    Ok(Calibration { report, selection, data, form })
+}
+
+/// The form of what has no name. It goes into the model if it predicts held-out data no worse than the shapes do.
+fn drawn(selection: &Selection, data: &Observations) -> Option<DrawnForm> {
+    let mut form = draw_form(selection, data)?;
+    let weighed = Weighed::new(data, selection.noise);
+    let shapes_n = held_out(&selection.augmented.model, &weighed).both_n();
+    form.report.in_model = form.report.heldout_rmse_n <= shapes_n;
+    Some(form)
+}
+
+/// Tells a form beside the structure that it was drawn from, and puts it into the model if it belongs there.
+fn tell_form(form: &DrawnForm, report: &mut Report, selection: &mut Selection, data: &Observations) {
+    let in_model = form.report.in_model;
+    if in_model {
+        let weighed = Weighed::new(data, selection.noise);
+        selection.augmented = fit(&form.fitted.model, &weighed);
+        report.augmented = model_report(&selection.augmented, &weighed).0;
+    }
+    let after_n = report.augmented.heldout_rmse_n;
+    for effect in report.effects.iter_mut().filter(|_| in_model) {
+        effect.error_after_n = after_n;
+    }
+    if let Some(unnamed) = report.effects.iter_mut().find(|effect| effect.id == UNATTRIBUTED) {
+        unnamed.form = Some(form.report.clone());
+    }
 }
 
 /// A constant with its interval, which ends at the bounds of a shape.

@@ -1,6 +1,7 @@
 //! The error to expect on a new session of the same rig: the whole procedure, from the noise to the names, is run
 //! without a fourth of the series, and judged on them.
 
+use crate::forms::with_best_form;
 use crate::inference::{Levels, Model, Observations, Selection, Weighed, fit, selected_model};
 
 /// Parts into which the series are dealt.
@@ -18,10 +19,17 @@ pub(crate) struct Promise {
 }
 
 /// The promise for a table; `None` if a part of its series cannot fix the baseline.
-pub(crate) fn promise(whole: &Selection, data: &Observations, levels: Levels) -> Option<Promise> {
+///
+/// `with_form` says that the model takes a drawn form in place of shapes.
+pub(crate) fn promise(
+    whole: &Selection,
+    data: &Observations,
+    levels: Levels,
+    with_form: bool,
+) -> Option<Promise> {
     let known = &whole.baseline.model;
     let start = Model::baseline(known.frame.clone()).among(&known.vocabulary);
-    let parts = per_part(|left_out| part(left_out, &start, whole, data, levels));
+    let parts = per_part(|left_out| part(left_out, &start, whole, data, levels, with_form));
     let (mut baseline, mut augmented, mut rows) = (0.0, 0.0, 0.0);
     for (b, a, n) in parts.into_iter().flatten() {
         baseline += b;
@@ -39,6 +47,7 @@ fn part(
     whole: &Selection,
     data: &Observations,
     levels: Levels,
+    with_form: bool,
 ) -> Option<(f64, f64, f64)> {
     let fold = |row: usize| (data.series_of[row] * 7 / 3) % FOLDS;
     let mut seen = data.subset(|row| fold(row) != left_out);
@@ -47,7 +56,12 @@ fn part(
     if seen.points.len() < start.values().len() + 8 || hidden.points.is_empty() {
         return None;
     }
-    let (found, noise) = selected_model(start, &mut seen, levels);
+    let (mut found, noise, structure) = selected_model(start, &mut seen, levels);
+    if let Some(structure) = structure.filter(|_| with_form)
+        && let Some(with_form) = with_best_form(structure.covariate, &found, noise, &seen)
+    {
+        found = with_form;
+    }
     let baseline = fit(&whole.baseline.model, &Weighed::new(&seen, noise));
     let squares = |model: &Model| -> f64 {
         let predicted = model.predict(&hidden.points);

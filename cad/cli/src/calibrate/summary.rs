@@ -124,11 +124,12 @@ fn drawn(form: &FormReport) -> String {
     let rivals: Vec<String> = form.rivals.iter().map(|r| format!("{} on {}", r.shape, r.acts_on)).collect();
     let rivals = if rivals.is_empty() { String::new() } else { format!("; or {}", listed(&rivals)) };
     format!(
-        "    looks like a {} on {}: {}; {:.0} % of it{rivals}; see discovered.toml\n",
+        "    looks like a {} on {}: {}; {:.0} % of it{rivals}; {}; see discovered.toml\n",
         form.shape,
         form.acts_on,
         constants.join(", "),
-        100.0 * form.explains
+        100.0 * form.explains,
+        if form.in_model { "the model has it" } else { "the model keeps the smooth correction" }
     )
 }
 

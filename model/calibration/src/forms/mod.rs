@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::effects::{ActsOn, Covariate, EffectDefinition, OwnEffect, Vocabulary};
 use crate::held_out::held_out;
 use crate::inference::{
-    EffectScore, Fit, Model, Observations, Screen, Selection, Term, Weighed, fit, interval_half_widths,
+    EffectScore, Fit, Model, Noise, Observations, Screen, Selection, Term, Weighed, fit, interval_half_widths,
 };
 use crate::report::Estimate;
 use library::{ALL, Candidate, FIRST, Form, acts_on_word, library};
@@ -57,6 +57,8 @@ pub struct FormReport {
     /// Held-out error of the model with the form in place of the shapes, in newtons.
     #[serde(rename = "heldout_rmse_N")]
     pub heldout_rmse_n: f64,
+    /// Whether the model has the form, since it predicts held-out data no worse than the shapes do.
+    pub in_model: bool,
     /// Other forms that fit as well.
     pub rivals: Vec<FormRival>,
 }
@@ -75,25 +77,78 @@ pub struct DrawnForm {
 /// Draws the form of the structure that a calibration found and could not name; `None` if it found none, or none of the
 /// library explains any of it.
 pub fn draw_form(selection: &Selection, data: &Observations) -> Option<DrawnForm> {
-    let covariate = selection.structure?.covariate;
     let data = data.compacted();
     let weighed = Weighed::new(&data, selection.noise);
-    let with_shapes = fit(&selection.augmented.model, &weighed);
-    let mut bare = selection.augmented.model.clone();
+    let Best { first, found, rivals, explained, by_shapes } =
+        best(selection.structure?.covariate, &selection.augmented.model, &weighed)?;
+    let shape = shape_of(&first, &found);
+    let known = &selection.augmented.model.vocabulary;
+    let definition = named(&first, &found, selection.structure?.covariate, &shape, known);
+    let fitted = renamed(&found, &definition, known, &weighed)?;
+    let half_widths = interval_half_widths(&fitted, &weighed);
+    let at = fitted.model.term_offset(fitted.model.terms.len() - 1);
+    let values = fitted.model.values();
+    let parameters = definition.parameters.iter().enumerate().map(|(i, p)| {
+        let (value, half) = (values[at + i], half_widths[at + i]);
+        let (low, high) = p.bounds.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let ci95 = [(value - half).max(low), (value + half).min(high)];
+        (p.name.clone(), Estimate { value, ci95, unit: p.unit.clone() })
+    });
+    Some(DrawnForm {
+        report: FormReport {
+            shape,
+            acts_on: acts_on_word(first.definition.acts_on).to_owned(),
+            channel: first.definition.acts_on.as_str().to_owned(),
+            id: definition.id.clone(),
+            formula: definition.formula.clone(),
+            parameters: parameters.collect(),
+            explains: if by_shapes > 0.0 { (explained / by_shapes).min(1.0) } else { 1.0 },
+            heldout_rmse_n: held_out(&fitted.model, &weighed).both_n(),
+            in_model: false,
+            rivals,
+        },
+        definition,
+        fitted,
+    })
+}
+
+/// The model with the best form in place of the shapes along a covariate, for a prediction and nothing else.
+pub(crate) fn with_best_form(
+    covariate: Covariate,
+    with_shapes: &Model,
+    noise: Noise,
+    data: &Observations,
+) -> Option<Model> {
+    best(covariate, with_shapes, &Weighed::new(data, noise)).map(|best| best.found.model)
+}
+
+/// The best form of a structure.
+struct Best {
+    first: Candidate,
+    /// The model with it, and without the shapes.
+    found: Fit,
+    rivals: Vec<FormRival>,
+    /// Squares of the noise that it explains, and that the shapes do.
+    explained: f64,
+    by_shapes: f64,
+}
+
+fn best(covariate: Covariate, with_shapes: &Model, weighed: &Weighed<'_>) -> Option<Best> {
+    let with_shapes = fit(with_shapes, weighed);
+    let mut bare = with_shapes.model.clone();
     while let Some(at) = bare.terms.iter().position(|t| matches!(t, Term::Structure(_))) {
         bare = bare.without_term(at);
     }
-    let without = fit(&bare, &weighed);
-    let known = bare.vocabulary.clone();
+    let without = fit(&bare, weighed);
     let forms = library(covariate, &bare.frame);
     let on = |forms: &mut dyn Iterator<Item = &Form>, things: &[ActsOn]| -> Vec<Candidate> {
         let pairs = forms.flat_map(|form| things.iter().map(move |acts_on| (form, *acts_on)));
         pairs.enumerate().map(|(i, (form, acts_on))| form.on(acts_on, covariate, i)).collect()
     };
     let first = on(&mut forms.iter(), &FIRST);
-    let promising = promising(&ranked(&without, &weighed, &first)?);
+    let promising = promising(&ranked(&without, weighed, &first)?);
     let second = on(&mut promising.iter(), &ALL);
-    let best = best_of_each(&without, &weighed, &second)?;
+    let best = best_of_each(&without, weighed, &second)?;
     let (first, found) = best.first()?;
     let explained = without.cost - found.cost;
     let rivals = best
@@ -106,36 +161,29 @@ pub fn draw_form(selection: &Selection, data: &Observations) -> Option<DrawnForm
         })
         .filter(|rival| rival.worse_by <= RIVAL.max(RIVAL_SHARE * explained))
         .collect();
-    if explained <= 0.0 {
-        return None;
-    }
-    let shape = shape_of(first, found);
-    let definition = named(first, found, covariate, &shape, &known);
-    let half_widths = interval_half_widths(found, &weighed);
-    let at = found.model.term_offset(found.model.terms.len() - 1);
-    let values = found.model.values();
-    let parameters = definition.parameters.iter().enumerate().map(|(i, p)| {
-        let (value, half) = (values[at + i], half_widths[at + i]);
-        let (low, high) = p.bounds.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-        let ci95 = [(value - half).max(low), (value + half).min(high)];
-        (p.name.clone(), Estimate { value, ci95, unit: p.unit.clone() })
-    });
     let by_shapes = without.cost - with_shapes.cost;
-    Some(DrawnForm {
-        report: FormReport {
-            shape,
-            acts_on: acts_on_word(first.definition.acts_on).to_owned(),
-            channel: first.definition.acts_on.as_str().to_owned(),
-            id: definition.id.clone(),
-            formula: definition.formula.clone(),
-            parameters: parameters.collect(),
-            explains: if by_shapes > 0.0 { (explained / by_shapes).min(1.0) } else { 1.0 },
-            heldout_rmse_n: held_out(&found.model, &weighed).both_n(),
-            rivals,
-        },
-        definition,
-        fitted: found.clone(),
+    (explained > 0.0).then(|| Best {
+        first: (*first).clone(),
+        found: found.clone(),
+        rivals,
+        explained,
+        by_shapes,
     })
+}
+
+/// The same fit with the form under the name that it goes by, beside the effects that were known.
+fn renamed(
+    found: &Fit,
+    definition: &EffectDefinition,
+    known: &Vocabulary,
+    weighed: &Weighed<'_>,
+) -> Option<Fit> {
+    let last = found.model.terms.len().checked_sub(1)?;
+    let values = found.model.values().split_off(found.model.term_offset(last));
+    let vocabulary = known.with(vec![OwnEffect::new(definition.clone()).ok()?]).ok()?;
+    let effect = vocabulary.named(&definition.id)?;
+    let bare = found.model.without_term(last).among(&vocabulary);
+    Some(fit(&bare.with_term(Term::Named(effect), &values), weighed))
 }
 
 /// Candidates by what they would gain, with the model that has them all for its vocabulary.

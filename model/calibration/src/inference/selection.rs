@@ -151,11 +151,16 @@ pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selecti
     finish(chosen, data, levels)
 }
 
-/// The model that the whole search ends with, and its noise, without what is told about it.
-pub(crate) fn selected_model(start: &Model, data: &mut Observations, levels: Levels) -> (Model, Noise) {
+/// The model that the whole search ends with, its noise, and where it has structure without a name; without what is told
+/// about it.
+pub(crate) fn selected_model(
+    start: &Model,
+    data: &mut Observations,
+    levels: Levels,
+) -> (Model, Noise, Option<FoundStructure>) {
     let chosen = choose(start, data, levels);
     let weighed = Weighed::new(data, chosen.noise);
-    (without_uncertain_names(chosen.augmented, &weighed).model, chosen.noise)
+    (without_uncertain_names(chosen.augmented, &weighed).model, chosen.noise, chosen.structure)
 }
 
 /// The explanation of a table.

@@ -4,9 +4,7 @@
 use pinswitch_calibration::effects::{OwnEffect, Vocabulary};
 use pinswitch_calibration::inference::{Levels, Model, Observations, Term, Weighed, fit, select};
 use pinswitch_calibration::table::{Frame, PlateauRow};
-use pinswitch_calibration::{
-    CONFIRMED_P, Calibration, TrialOutcome, TrialReport, calibrate, draw_form, trials,
-};
+use pinswitch_calibration::{CONFIRMED_P, Calibration, TrialOutcome, TrialReport, calibrate, trials};
 
 use super::cases::{Case, Truth, plan_of};
 use super::outcome::error_n;
@@ -54,10 +52,9 @@ pub fn run_form_case(case: &Case, seed: u64, levels: Levels) -> Option<FormOutco
     let plan = plan_of(case, seed);
     let disturbance = plan.disturbances.first()?;
     let rows = simulate(&plan).rows;
-    let Calibration { selection, data, .. } = calibrate(&rows, levels).ok()?;
+    let Calibration { selection, data, form, .. } = calibrate(&rows, levels).ok()?;
     let frame = selection.baseline.model.frame.clone();
     let next = next_session(&plan).rows;
-    let form = draw_form(&selection, &data);
     let error = |model: &Model| error_n(model, &frame, &next);
     let place = selection.structure.map(|s| s.covariate);
     let judged = |rows: &[PlateauRow]| {

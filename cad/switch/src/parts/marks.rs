@@ -48,19 +48,10 @@ fn row_sets(side: &str, label: &str, is_right: bool) -> Vec<Vec<String>> {
         vec![label.to_owned(), with_side(&force)],
         vec![label.to_owned(), mark(side)],
         vec![mark(side), label.to_owned()],
-        in_lines(label, mark(side)),
         vec![with_side(&force)],
         vec![mark(side)],
         vec![side.to_owned()],
     ]
-}
-
-/// Marks as many lines as a narrow place takes: the label broken before its last `/`, then the mark.
-fn in_lines(label: &str, mark: String) -> Vec<String> {
-    match label.rfind('/').filter(|at| *at > 0) {
-        Some(at) => vec![label[..at].to_owned(), label[at..].to_owned(), mark],
-        None => vec![label.to_owned(), mark],
-    }
 }
 
 /// The largest letters in which all rows fit below each other, with the zone of each.
@@ -115,15 +106,6 @@ mod tests {
         assert_eq!(rows(pins, true).unwrap(), ["3x3/5", "1<R"]);
         let wide = &["layout.pins=[5, 8, 11]", "shell.outer_radius_mm=40", "shell.wall_mm=14"][..];
         assert_eq!(rows(wide, false).unwrap(), ["L 3x3/5", "LOAD>1"]);
-    }
-
-    #[test]
-    fn a_label_goes_into_two_lines_between_dowels() {
-        let narrow = &["layout.pins=[5, 8, 11]", "fasteners.dowel_diameter_mm=1"][..];
-        assert_eq!(rows(narrow, false).unwrap(), ["3x3", "/5", "L>1"]);
-        assert_eq!(rows(narrow, true).unwrap(), ["3x3", "/5", "1<R"]);
-        assert_eq!(in_lines("15x1/1", "L>1".to_owned()), ["15x1", "/1", "L>1"]);
-        assert_eq!(in_lines("/A", "L>1".to_owned()), ["/A", "L>1"]);
     }
 
     #[test]

@@ -14,14 +14,16 @@ const BASE_MARGIN_MM: f64 = 1.0;
 /// Largest shift of the ends of the base, as a share of its inner radius: beyond it the inner corners become edges of less
 /// than 45 degrees, which break off and are no wall.
 const BLUNT_SHARE: f64 = 0.65;
+/// What stays of the block at least where its inner radius grows, or the mould's wall if that is thinner, mm.
+const LEAST_BLOCK_MM: f64 = 3.0;
 
-/// Inner radius of the core, mm: that of the shell, or more where the corners of the base would be sharp and the core stays
-/// as thick as the mould's walls.
+/// Inner radius of the core, mm: that of the shell, or more where the corners of the base would be sharp.
 fn core_inner_mm(design: &Design, cavity: &Cavity) -> f64 {
     let wall_mm = design.configuration().mould.wall_mm;
     let shift = cavity.sector.end_shift_mm + wall_mm + BASE_MARGIN_MM;
     let blunt = BASE_MARGIN_MM + shift / BLUNT_SHARE;
-    design.inner_radius_mm().max(blunt.min(cavity.sector.inner_mm - wall_mm))
+    let block_mm = wall_mm.min(LEAST_BLOCK_MM);
+    design.inner_radius_mm().max(blunt.min(cavity.sector.inner_mm - block_mm))
 }
 
 /// The block that shapes the layer's smooth inner face; the ring's end walls rest on its face beyond the cavity.

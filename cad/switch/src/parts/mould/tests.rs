@@ -225,7 +225,9 @@ proptest! {
 
 #[test]
 fn a_base_with_thick_end_walls_has_no_sharp_corners() {
-    for set in [&["mould.wall_mm=5"][..], &["mould.wall_mm=5", "shell.wall_mm=11"], &["mould.wall_mm=6"]] {
+    for set in
+        [&["mould.wall_mm=8"][..], &["mould.wall_mm=5", "shell.wall_mm=11"], &["segment.end_margin_mm=5"]]
+    {
         let mut c = Configuration::default();
         set.iter().for_each(|a| assign(&mut c, a).unwrap());
         let design = Design::new(c).unwrap();

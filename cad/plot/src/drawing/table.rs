@@ -5,9 +5,6 @@ use super::draft::Draft;
 use super::geometry::{Extent, Point};
 use super::sheet::{Annotation, Layer};
 
-/// Height of a row, mm.
-const ROW_MM: f64 = 5.5;
-
 /// A table with a heading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
@@ -22,10 +19,13 @@ pub struct Table {
 }
 
 impl Table {
+    /// Height of a row, mm.
+    pub const ROW_MM: f64 = 5.5;
+
     /// Height on paper, mm.
     #[must_use]
     pub fn height_mm(&self) -> f64 {
-        ROW_MM * (self.rows.len() + 1) as f64
+        Self::ROW_MM * (self.rows.len() + 1) as f64
     }
 
     /// Width and height on paper, mm.
@@ -41,12 +41,13 @@ impl Table {
         let lines = draft.group();
         for (i, row) in std::iter::once(&headings).chain(&self.rows).enumerate() {
             let step = if self.reads_down { self.rows.len() - i } else { i };
-            let low = corner.y + ROW_MM * step as f64;
+            let low = corner.y + Self::ROW_MM * step as f64;
             let mut left = corner.x - width;
             for ((_, width_mm), content) in self.columns.iter().zip(row) {
-                let cell = Extent::between(Point::new(left, low), Point::new(left + width_mm, low + ROW_MM));
+                let cell =
+                    Extent::between(Point::new(left, low), Point::new(left + width_mm, low + Self::ROW_MM));
                 draft.rectangle(Layer::Thin, cell, lines);
-                let at = Point::new(left + 1.0, low + (ROW_MM - TEXT_MM) / 2.0);
+                let at = Point::new(left + 1.0, low + (Self::ROW_MM - TEXT_MM) / 2.0);
                 draft.lines_of_text(content, TEXT_MM, at, [width_mm - 2.0, TEXT_MM + 1.0]);
                 left += width_mm;
             }

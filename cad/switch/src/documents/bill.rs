@@ -14,6 +14,8 @@ const BOLT_LENGTHS_MM: [f64; 20] = [
 ];
 /// Bearing of the guide pulley.
 const BEARING: &str = "608";
+/// Screws of the sheath stop.
+pub const STOP_SCREWS: usize = 2;
 /// Width of a 608 bearing (ISO 15), and height of an M8 nut (ISO 4032), mm.
 const BEARING_MM: f64 = 7.0;
 const AXLE_NUT_MM: f64 = 6.8;
@@ -101,8 +103,11 @@ pub struct MountHardware {
     pub bearing: Option<&'static str>,
     /// Bolt through it.
     pub axle: Option<String>,
-    /// Screws and nuts of the sheath stop.
+    /// Screws and nuts of the sheath stop, in words.
     pub sheath_stop: Option<String>,
+    /// Thread and length of these screws, which are [`STOP_SCREWS`].
+    #[serde(skip)]
+    pub stop_screw: Option<String>,
 }
 
 /// The bill of materials of one set.
@@ -200,15 +205,18 @@ fn mount(design: &Design) -> Option<MountHardware> {
         format!("M8 x {} hexagon bolt (ISO 4017), washer and nut", length.unwrap_or(BOLT_LENGTHS_MM[19]))
     });
     let stack = c.mount.plate_mm - stop_recess().depth_mm + design.sheath_floor_mm() + STOP_SCREW.nut_mm[1];
-    let sheath = mounting.sheath.and_then(|_| {
-        Some(format!("2 screws {} x {} (ISO 4762) and nuts", STOP_SCREW.name, STOP_SCREW.at_least_mm(stack)?))
-    });
+    let stop_screw = mounting
+        .sheath
+        .and_then(|_| Some(format!("{} x {}", STOP_SCREW.name, STOP_SCREW.at_least_mm(stack)?)));
+    let sheath_stop =
+        stop_screw.as_ref().map(|screw| format!("{STOP_SCREWS} screws {screw} (ISO 4762) and nuts"));
     Some(MountHardware {
         holes: mounting.holes.len(),
         hole_diameter_mm: c.mount.hole_diameter_mm,
         bearing: mounting.axle.map(|_| BEARING),
         axle,
-        sheath_stop: sheath,
+        sheath_stop,
+        stop_screw,
     })
 }
 

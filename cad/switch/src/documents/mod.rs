@@ -6,7 +6,7 @@ mod manifest;
 mod plate_entry;
 mod print_entry;
 
-pub use bill::{Bill, bill_of_materials};
+pub use bill::{Bill, STOP_SCREWS, bill_of_materials};
 pub use friction_csv::friction_csv;
 pub use manifest::{
     BatchEntry, DerivedDimension, FileEntry, Manifest, PartEntry, SourceEntry, derived, toml_to_json,

@@ -249,7 +249,7 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
         let notes = manifest.parts.iter().filter(|p| p.name.starts_with("support")).flat_map(|p| &p.notes);
         notes.into_iter().any(|note| note.contains(&left_out(label)))
     };
-    let is_marked = !has_lost("L") && !has_lost("R");
+    let is_marked = c.label.engrave && !has_lost("L") && !has_lost("R");
     let marks = match (is_marked, has_lost(&design.label())) {
         (true, false) => {
             "Outside it says the layout. The load pulls on the side of groove 1: the arrow points there, and the `1` stands there."
@@ -257,12 +257,20 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
         (true, true) => {
             "The load pulls on the side of groove 1: the arrow outside points there, and the `1` stands there."
         }
+        (false, _) if !c.label.engrave => {
+            "The supports have no marks (`label.engrave = false`): the load pulls on the side of groove 1, which seen from outside the left support is on the right."
+        }
         (false, _) => {
             "There is no room for marks on the supports: the load pulls on the side of groove 1, which seen from outside the left support is on the right."
         }
     };
+    let covered = if is_marked && c.mount.kind != MountKind::None {
+        " The mounting plate covers them later: the same marks on the right support stay visible."
+    } else {
+        ""
+    };
     stages.push(Stage::LeftSupport);
-    steps.push(format!("Put the left support (L) on, its lip over the layer's edge. {marks}"));
+    steps.push(format!("Put the left support (L) on, its lip over the layer's edge. {marks}{covered}"));
     if bill.pins.number > 0 {
         let from = if is_marked { "counted from the `1`" } else { "counted from the load's side" };
         stages.push(Stage::Pins);
@@ -481,6 +489,24 @@ mod tests {
         assert!(single.contains("Fasten with 1 screw M3 x ") && single.contains("Cut 1 pin of"), "{single}");
         let words = ["pins", "screws", "dowels", "layers", "grooves", "holes", "nuts"];
         assert!(words.iter().all(|w| !single.contains(&format!(" 1 {w} "))), "{single}");
+    }
+
+    #[test]
+    fn the_widest_bridge_of_a_rig_is_told_with_its_place() {
+        let rig = guide("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n");
+        assert!(rig.contains("the pocket for the axle's bolt in rig-plate"), "{rig}");
+        assert!(!rig.contains("lower pins.diameter_mm"), "{rig}");
+    }
+
+    #[test]
+    fn marks_under_a_mounting_plate_are_told() {
+        let words = "The mounting plate covers them later";
+        let on = |kind: &str| guide(&format!("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"{kind}\"\n"));
+        assert!(["flange", "finger-link", "rig"].iter().all(|kind| on(kind).contains(words)));
+        assert!(!on("none").contains(words));
+        let unmarked = guide("[mount]\nkind = \"flange\"\n[label]\nengrave = false\n");
+        assert!(!unmarked.contains(words) && !unmarked.contains("the `1` stands there"), "{unmarked}");
+        assert!(unmarked.contains("The supports have no marks (`label.engrave = false`)"), "{unmarked}");
     }
 
     #[test]

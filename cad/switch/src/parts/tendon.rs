@@ -67,12 +67,19 @@ fn string(design: &Design) -> (Vec<Disc>, Vec<HullArc>, Vec<usize>) {
     (discs, arcs, pins)
 }
 
+/// What is shown of the tendon beyond the wrap, mm: on the load's side, and on the other. On the rig it runs on to the guide
+/// pulley.
+pub(crate) fn leads_mm(design: &Design) -> [f64; 2] {
+    let mount = &design.configuration().mount;
+    [if mount.kind == MountKind::Rig { mount.pulley_distance_mm } else { LEAD_MM }, LEAD_MM]
+}
+
 pub(super) fn tendon(design: &Design) -> Part {
     let radius = design.tendon_diameter_mm() / 2.0;
     let (discs, arcs, _) = string(design);
-    let is_rig = design.configuration().mount.kind == MountKind::Rig;
-    // On the rig it runs on to the guide pulley, on the load's side: at the largest direction.
-    let leads = [LEAD_MM, if is_rig { design.configuration().mount.pulley_distance_mm } else { LEAD_MM }];
+    let [load_side, other_side] = leads_mm(design);
+    // The load's side is at the largest direction.
+    let leads = [other_side, load_side];
     let mut solid = Solid::new();
     let mut below = None;
     for k in 0..SIDES / 2 {

@@ -2,7 +2,8 @@
 
 use super::Change::{Ease, Lower, Raise};
 use super::{Assessment, Inspection, Remedy, Rule, Severity, advise, require};
-use crate::config::MouldKind;
+use crate::config::{MouldKind, MountKind};
+use crate::design::axle_recess;
 use pinswitch_friction::Substrate;
 
 /// Least chamfer of a bottom edge.
@@ -11,6 +12,8 @@ const MIN_CHAMFER_MM: f64 = 0.02;
 const BED_MARGIN_MM: f64 = 3.0;
 /// Longest bridge that prints without sagging, mm (cad/doc/print-limits.md).
 const LONGEST_BRIDGE_MM: f64 = 10.0;
+/// Bridges that differ by less are one, mm.
+const SAME_BRIDGE_MM: f64 = 0.01;
 /// Gaps under this are closed by slicers, mm (cad/doc/print-limits.md).
 const MIN_GAP_MM: f64 = 0.1;
 /// Wall around a screw hole that holds well, mm.
@@ -136,11 +139,18 @@ fn slot_floor(i: &Inspection<'_>) -> Assessment {
 }
 
 fn bridges(i: &Inspection<'_>) -> Assessment {
+    let pocket_mm = 2.0 * axle_recess().radial_mm;
     i.widest_bridge_mm.map_or(Assessment::NotApplicable, |bridge| {
+        let is_pocket =
+            i.configuration().mount.kind == MountKind::Rig && (bridge - pocket_mm).abs() < SAME_BRIDGE_MM;
         check(
             bridge <= LONGEST_BRIDGE_MM,
             format!("ceilings of up to {bridge:.2} mm to bridge, up to {LONGEST_BRIDGE_MM} mm print well"),
-            "lower pins.diameter_mm or mould.key_diameter_mm",
+            if is_pocket {
+                "it is the skin over the pocket for the axle's bolt in rig-plate: let it sag, the bolt breaks it"
+            } else {
+                "lower pins.diameter_mm or mould.key_diameter_mm"
+            },
         )
     })
 }

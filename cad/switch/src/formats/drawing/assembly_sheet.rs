@@ -1,12 +1,13 @@
 //! The sheet of the assembly: assembled, from above, cut open, with balloons and the list of its parts.
 
+use super::assembly_front::front_lines;
 use super::body::{Body, Side};
 use super::elevation::{Elevation, elevation, joined, legible};
 use super::features::lettering;
-use super::layout::{Layout, Sizes, choices_of_assembly};
+use super::layout::{ABOVE_ASSEMBLY_MM, ABOVE_MM, Layout, Sizes, choices_of_assembly};
 use super::part_sheet::{CROWDED_MM, HATCH_MM, put_strokes, section_mark};
 use super::parts_list::{Item, items};
-use super::plan::{Place, Trace, draw, plan};
+use super::plan::{Place, Trace, draw};
 use super::section::Face;
 use super::words;
 use crate::built::Built;
@@ -59,7 +60,9 @@ pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, asked: Paper) -> 
         title,
         z_mm,
     };
-    choices_of_assembly(asked).into_iter().find_map(|(paper, scale)| assembly.attempt(paper, scale))
+    choices_of_assembly(asked)
+        .into_iter()
+        .find_map(|(paper, scale, columns)| assembly.attempt(paper, scale, columns))
 }
 
 /// Through the pin that lies nearest to the middle.
@@ -76,22 +79,34 @@ fn seen(bodies: &[(&Part, Pose)], lowest_mm: f64, side: Side) -> Vec<Body> {
 }
 
 impl Assembly<'_> {
-    fn attempt(&self, paper: Paper, scale: f64) -> Option<Sheet> {
+    fn attempt(&self, paper: Paper, scale: f64, columns: usize) -> Option<Sheet> {
         let title = TitleBlock { scale: Sheet::scale_text(scale), ..self.title.clone() };
         let projection = title.projection;
         let mut draft = Draft::new(paper, &title);
-        let table = self.table();
+        let (block, frame) = (draft.sheet().title_block, paper.frame());
+        let lists = self.lists(columns, block.height());
+        // The first list stands on the title block, the other beside both.
+        let list_mm = lists.iter().enumerate().fold(0.0f64, |most, (i, list)| {
+            most.max(list.height_mm() - if i == 0 { 0.0 } else { block.height() })
+        });
         let sizes = Sizes {
             front: self.front_extent(scale),
             depth_mm: (self.z_mm.1 - self.z_mm.0) * scale,
             detail_mm: 0.0,
             details: 0,
-            table_mm: table.height_mm() + 3.0,
+            above_mm: if columns == 1 { ABOVE_MM } else { ABOVE_ASSEMBLY_MM },
+            table_mm: list_mm + 3.0,
             beside_mm: [0.0, 0.0],
         };
         let layout = Layout::on(&draft, &sizes, projection)?;
-        let block = draft.sheet().title_block;
-        table.draw(&mut draft, Point::new(block.high.x, block.high.y));
+        for (i, list) in lists.iter().enumerate() {
+            let corner = if i == 0 {
+                Point::new(block.high.x, block.high.y)
+            } else {
+                Point::new(block.low.x, frame.low.y)
+            };
+            list.draw(&mut draft, corner);
+        }
         let cut_x = self.cut_x;
         let place = Place::straight(layout.front, scale);
         self.front(&mut draft, &place);
@@ -115,12 +130,11 @@ impl Assembly<'_> {
         let reach = self.design.contact_radius_mm() + self.design.tendon_diameter_mm();
         let axis = Point::new(0.0, 0.0);
         let mut extent = Extent::between(Point::new(0.0, reach * scale), Point::new(0.0, reach * scale));
-        for (part, _) in &self.bodies {
+        for (part, pose) in &self.bodies {
             let Some((low, high)) = part.solid.bounds() else { continue };
-            // A body may be turned half round: both sides count.
-            let far = low.x.abs().max(high.x.abs());
+            let (left, right) = if pose.flipped { (-high.x, -low.x) } else { (low.x, high.x) };
             extent = extent
-                .joined(Extent::between(Point::new(-far, low.y) * scale, Point::new(far, high.y) * scale));
+                .joined(Extent::between(Point::new(left, low.y) * scale, Point::new(right, high.y) * scale));
         }
         if extent.low.y > 0.0 && extent.low.y < 26.0 {
             extent.joined(Extent::between(axis, axis))
@@ -129,30 +143,11 @@ impl Assembly<'_> {
         }
     }
 
-    /// What lies on top, what it hides of shell, layer and pins, and the tendon.
+    /// What lies on top, what is seen of everything else but the other support and what is hidden of it, and the tendon.
     fn front(&self, draft: &mut Draft, place: &Place) {
-        let top = |(part, pose): &(&Part, Pose)| {
-            let high = part.solid.bounds().map_or((0.0, 0.0), |(low, high)| (low.z, high.z));
-            if pose.flipped { pose.z_mm - high.0 } else { pose.z_mm + high.1 }
-        };
-        let Some(nearest) = self.bodies.iter().max_by(|a, b| top(a).total_cmp(&top(b))) else { return };
+        let chamfer_mm = self.design.configuration().print.elephant_foot_mm;
+        let lines = front_lines(&self.bodies, self.z_mm.0, chamfer_mm);
         let view = draft.view("FRONT", place.origin, place.scale);
-        let chamfer = self.design.configuration().print.elephant_foot_mm;
-        let mut lines: Vec<(Layer, Trace)> = plan(&nearest.0.solid, nearest.1.flipped, chamfer)
-            .into_iter()
-            .filter(|(layer, _)| *layer != Layer::Hidden)
-            .collect();
-        for (part, pose) in &self.bodies {
-            if part.name == nearest.0.name || matches!(part.role, Role::Support { .. }) {
-                continue;
-            }
-            let of_part = plan(&part.solid, pose.flipped, chamfer).into_iter();
-            let hidden = of_part.filter(|(layer, trace)| {
-                *layer == Layer::Visible && !lines.iter().any(|(_, other)| is_same(other, trace))
-            });
-            let hidden: Vec<_> = hidden.map(|(_, trace)| (Layer::Hidden, trace)).collect();
-            lines.extend(hidden);
-        }
         draw(draft, &lines, place, view);
         let group = draft.group();
         for trace in self.tendon() {
@@ -232,10 +227,22 @@ impl Assembly<'_> {
         linear.place(draft)
     }
 
-    fn table(&self) -> Table {
+    /// The list of parts, in columns that end at the same height: the first stands on a title block `block_mm` high.
+    fn lists(&self, columns: usize, block_mm: f64) -> Vec<Table> {
+        let whole = self.list(&self.items);
+        let on_block = (whole.rows.len() as f64 - block_mm / Table::ROW_MM) / 2.0;
+        let first = on_block.ceil().max(0.0) as usize;
+        if columns == 1 || first == 0 || first >= self.items.len() {
+            return vec![whole];
+        }
+        let (head, tail) = self.items.split_at(first);
+        vec![self.list(head), self.list(tail)]
+    }
+
+    fn list(&self, items: &[Item]) -> Table {
         let columns =
             [("Item", 12.0), ("Qty", 12.0), ("Designation", 82.0), ("Part number", 44.0), ("Material", 30.0)];
-        let rows = self.items.iter().map(|i| {
+        let rows = items.iter().map(|i| {
             let item = i.number.to_string();
             vec![item, i.quantity.clone(), i.designation.clone(), i.part_number.clone(), i.material.clone()]
         });
@@ -313,21 +320,5 @@ impl Assembly<'_> {
                 corners.into_iter().map(move |p| place.at(Point2::new(sign * p.x, p.y)))
             })
             .collect()
-    }
-}
-
-/// Whether two lines of a view are one.
-fn is_same(a: &Trace, b: &Trace) -> bool {
-    let near = |p: Point2, q: Point2| (p - q).norm() < 1e-6;
-    match (a, b) {
-        (Trace::Line(a, b), Trace::Line(c, d)) => {
-            (near(*a, *c) && near(*b, *d)) || (near(*a, *d) && near(*b, *c))
-        }
-        (Trace::Circle(a, r), Trace::Circle(b, s)) => near(*a, *b) && (r - s).abs() < 1e-6,
-        (Trace::Arc(a), Trace::Arc(b)) => {
-            near(a.point_at(0.5, a.radius_mm), b.point_at(0.5, b.radius_mm))
-                && (a.radius_mm - b.radius_mm).abs() < 1e-6
-        }
-        _ => false,
     }
 }

@@ -32,6 +32,13 @@ enum Form {
 }
 
 impl Wanted {
+    /// The dimension among the notes, where it found no room beside its feature.
+    pub(super) fn in_words(&self) -> String {
+        let said = self.lines.join(", ");
+        // Some keys end in what is said, so that they are unique.
+        if self.key.ends_with(&said) { self.key.clone() } else { format!("{}: {said}", self.key) }
+    }
+
     pub(super) fn linear(linear: Linear) -> Self {
         Self { key: linear.key.clone(), lines: vec![linear.text.clone()], form: Form::Linear(linear) }
     }

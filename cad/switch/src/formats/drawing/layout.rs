@@ -7,7 +7,9 @@ const SCALES: [f64; 9] = [5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01];
 /// Left of the front view: room for what is written there, mm.
 const LEFT_MM: f64 = 38.0;
 /// Above the front view: room for angles and the mark of the section, mm.
-const ABOVE_MM: f64 = 36.0;
+pub(super) const ABOVE_MM: f64 = 36.0;
+/// The same without angles: room for the mark of the section and a balloon, mm.
+pub(super) const ABOVE_ASSEMBLY_MM: f64 = 22.0;
 /// Between the front view and the view below or above it, mm.
 const BETWEEN_MM: f64 = 17.0;
 /// Between the front view and the section, mm.
@@ -23,20 +25,22 @@ const AROUND_DETAIL_MM: (f64, f64) = (32.0, 26.0);
 const AROUND_TABLE_MM: f64 = 5.0;
 
 /// Sheets and scales in the order in which they are tried. A part that does not fit A4 at twice its size gets A3 for that,
-/// and then A4 before it is reduced.
+/// a small one whose dimensions find no room there A3 at five times its size, and the others A4 before they are reduced.
 pub(super) fn choices(asked: Paper) -> Vec<(Paper, f64)> {
     let on_a3 = SCALES.iter().map(|s| (Paper::A3, *s));
     if asked == Paper::A3 {
         return on_a3.collect();
     }
-    let first = [(Paper::A4, 5.0), (Paper::A4, 2.0), (Paper::A3, 2.0), (Paper::A4, 1.0)];
+    let first = [(Paper::A4, 5.0), (Paper::A4, 2.0), (Paper::A3, 2.0), (Paper::A3, 5.0), (Paper::A4, 1.0)];
     first.into_iter().chain(on_a3.filter(|(_, s)| *s <= 1.0)).collect()
 }
 
 /// The same for the assembly, which needs more room beside its list of parts, and less exactness: a larger scale comes first.
-pub(super) fn choices_of_assembly(asked: Paper) -> Vec<(Paper, f64)> {
-    let on_a4 = [(Paper::A4, 5.0), (Paper::A4, 2.0)].into_iter().filter(|_| asked == Paper::A4);
-    on_a4.chain(SCALES.iter().map(|s| (Paper::A3, *s))).collect()
+/// Last, the columns in which the list stands: before an assembly is reduced, its list goes into two.
+pub(super) fn choices_of_assembly(asked: Paper) -> Vec<(Paper, f64, usize)> {
+    let on_a4 = [(Paper::A4, 5.0, 1), (Paper::A4, 2.0, 1)].into_iter().filter(|_| asked == Paper::A4);
+    let columns = |scale: f64| if scale > 1.0 { 1..=1 } else { 1..=2 };
+    on_a4.chain(SCALES.iter().flat_map(|s| columns(*s).map(|n| (Paper::A3, *s, n)))).collect()
 }
 
 /// What is to be laid out: sizes on paper, mm.
@@ -49,7 +53,9 @@ pub(super) struct Sizes {
     /// Radius of the circle of a detail, and how many there are.
     pub(super) detail_mm: f64,
     pub(super) details: usize,
-    /// Height at the lower right that a table takes, mm.
+    /// Above the front view, mm.
+    pub(super) above_mm: f64,
+    /// Height over the title block that a table takes, mm.
     pub(super) table_mm: f64,
     /// Width and height of a table at the upper right, mm; 0 without one.
     pub(super) beside_mm: [f64; 2],
@@ -84,7 +90,7 @@ impl Layout {
         let wanted =
             LEFT_MM + width + BESIDE_MM + sizes.depth_mm + RIGHT_MM + detail_column.max(table_column);
         let spare_x = frame.width() - wanted;
-        let stack = ABOVE_MM + height + BETWEEN_MM + sizes.depth_mm + BELOW_MM;
+        let stack = sizes.above_mm + height + BETWEEN_MM + sizes.depth_mm + BELOW_MM;
         let spare_y = frame.high.y - floor - stack;
         let ceiling = frame.high.y - if table_high > 0.0 { table_high + AROUND_TABLE_MM } else { 0.0 };
         let details_fit =
@@ -96,13 +102,13 @@ impl Layout {
         let section_left = left + width + BESIDE_MM + (spare_x * 0.3).min(30.0);
         let (front_top, above_top) = match projection {
             Projection::First => {
-                let front_top = frame.high.y - ABOVE_MM - spare_y * 0.35;
+                let front_top = frame.high.y - sizes.above_mm - spare_y * 0.35;
                 (front_top, front_top - height - BETWEEN_MM - spare_y * 0.3)
             }
             // The view from above needs no room above it; the angles of the front view come between.
             Projection::Third => {
                 let above_top = frame.high.y - BELOW_MM - spare_y * 0.2;
-                (above_top - sizes.depth_mm - ABOVE_MM - spare_y * 0.3, above_top)
+                (above_top - sizes.depth_mm - sizes.above_mm - spare_y * 0.3, above_top)
             }
         };
         let front = Point::new(left - sizes.front.low.x, front_top - sizes.front.high.y);

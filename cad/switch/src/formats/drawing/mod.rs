@@ -1,5 +1,6 @@
 //! The drawing: one sheet of the assembly and one per part, as SVG, PDF and DXF (cad/doc/drawing.md).
 
+mod assembly_front;
 mod assembly_sheet;
 mod body;
 mod bore;

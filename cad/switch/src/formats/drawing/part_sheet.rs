@@ -8,7 +8,7 @@ use super::dimensions::{self, Wanted};
 use super::elevation::{Elevation, Stroke, elevation, joined, legible};
 use super::features::{Features, features, lettering};
 use super::hole_table;
-use super::layout::{Layout, Sizes, choices};
+use super::layout::{ABOVE_MM, Layout, Sizes, choices};
 use super::plan::{Place, Trace, draw, plan, within};
 use super::section::Face;
 use super::sides;
@@ -120,6 +120,7 @@ impl Subject<'_> {
             depth_mm: (self.high.z - self.low.z) * scale,
             detail_mm: reach,
             details: details.len(),
+            above_mm: ABOVE_MM,
             table_mm: 0.0,
             beside_mm: table.as_ref().map_or([0.0, 0.0], Table::size_mm),
         };
@@ -143,7 +144,7 @@ impl Subject<'_> {
             }
         }
         let mut notes = words::notes(self.design, self.part, &self.features, self.has_lettering());
-        notes.extend(written.iter().map(|w| format!("{}: {}", w.key, w.lines.join(", "))));
+        notes.extend(written.iter().map(Wanted::in_words));
         let room = draft.sheet().title_block.low.x - paper.frame().low.x - 6.0;
         draft.notes(&notes, room);
         let mut placed = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::words::{self, number};
 use crate::built::Built;
-use crate::documents::bill_of_materials;
+use crate::documents::{STOP_SCREWS, bill_of_materials};
 use crate::parts::{Part, Role};
 
 /// A row of the list.
@@ -78,11 +78,11 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
         bought(1, format!("Bearing {bearing}"), "");
     }
     let mount = bill.mount.as_ref();
-    for words in mount
-        .into_iter()
-        .flat_map(|m| [m.bearing.map(|b| format!("Bearing {b}")), m.axle.clone(), m.sheath_stop.clone()])
-    {
+    for words in mount.into_iter().flat_map(|m| [m.bearing.map(|b| format!("Bearing {b}")), m.axle.clone()]) {
         words.into_iter().for_each(|words| bought(1, words, ""));
+    }
+    if let Some(screw) = mount.and_then(|m| m.stop_screw.as_ref()) {
+        bought(STOP_SCREWS, format!("Screw {} with nut", screw.replace(" x ", " \u{d7} ")), "");
     }
     let tendon = format!(
         "Tendon \u{d8}{}, rope \u{d8}{}, {} long",
@@ -114,4 +114,28 @@ pub(super) fn designation(name: &str) -> String {
     let words = name.replace('-', " ");
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{Configuration, assign};
+    use crate::design::Design;
+
+    #[test]
+    fn a_row_counts_what_it_names() {
+        let mut c = Configuration::default();
+        for a in ["layout.pins=[5, 8, 11]", "mount.kind=rig", "tendon.sheath_diameter_mm=4"] {
+            assign(&mut c, a).unwrap();
+        }
+        let items = items(&Built::new(Design::new(c).unwrap()).unwrap());
+        let of = |words: &str| items.iter().filter(|i| i.designation.contains(words)).collect::<Vec<_>>();
+        let screws = of("Screw M3 \u{d7} ");
+        assert_eq!(screws.len(), 2, "{screws:?}");
+        assert!(
+            screws.iter().all(|i| i.quantity == "2" && i.designation.ends_with(" with nut")),
+            "{screws:?}"
+        );
+        assert!(items.iter().all(|i| !i.designation.starts_with(|c: char| c.is_ascii_digit())), "{items:?}");
+    }
 }

@@ -258,7 +258,8 @@ pub(super) fn notes(design: &Design, part: &Part, features: &Features, has_lette
     if let Some(copies) = features.copies {
         notes.push(format!("{} basins, all alike: dimensions stand at the first", copies.number));
     }
-    if features.axis_arcs.is_empty() && features.block.is_none() && !features.bores.is_empty() {
+    let is_plate = features.axis_arcs.is_empty() && features.block.is_none() && !features.is_round_body();
+    if is_plate && !features.bores.is_empty() {
         notes.push("Outline: straight lines that touch both arcs".to_owned());
     }
     if !features.axis_arcs.is_empty() {

@@ -11,7 +11,7 @@ use crate::design::Design;
 use crate::design::rules::{Check, checklist};
 use crate::documents::{Manifest, friction_csv};
 use crate::output::SetError;
-use crate::parts::{Material, Role};
+use crate::parts::{Material, Role, leads_mm};
 use crate::prediction::Prediction;
 use pinswitch_solid::mesh::{Mesh, Vector3};
 use pinswitch_solid::pose::Pose;
@@ -76,6 +76,8 @@ struct ContactStates {
     axis_radius_mm: f64,
     tendon_radius_mm: f64,
     half_wrap_rad: f64,
+    /// Beyond the wrap, on the load's side and on the other.
+    lead_mm: [f64; 2],
     z_mm: f64,
     #[serde(skip)]
     pin_depth_mm: Vec<Vec<f64>>,
@@ -215,6 +217,7 @@ fn contact_states(design: &Design) -> ContactStates {
         axis_radius_mm: bed.axis_radius_mm(),
         tendon_radius_mm: bed.tendon_radius_mm,
         half_wrap_rad: contact.wrap_rad() / 2.0,
+        lead_mm: leads_mm(design),
         z_mm: design.configuration().shell.width_mm / 2.0,
         pin_depth_mm,
     }

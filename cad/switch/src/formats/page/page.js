@@ -178,11 +178,13 @@ class Assembly {
       const radius = contact.axis_radius_mm + at(contact.load_n, contact.gap_mm.map((gaps) => gaps[i]), load);
       return new THREE.Vector3(radius * Math.sin(angle), radius * Math.cos(angle), contact.z_mm);
     });
-    const straight = (end, side) => end.clone().add(
-      new THREE.Vector3(side * Math.cos(contact.half_wrap_rad), -Math.sin(contact.half_wrap_rad), 0).multiplyScalar(14));
-    points.unshift(straight(points[0], -1));
-    points.push(straight(points[points.length - 1], 1));
-    const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 160, contact.tendon_radius_mm, 12);
+    const straight = (end, side, by) => end.clone().add(
+      new THREE.Vector3(side * Math.cos(contact.half_wrap_rad), -Math.sin(contact.half_wrap_rad), 0).multiplyScalar(by));
+    const [first, last] = [points[0], points[points.length - 1]];
+    // A point close by keeps the long ends straight.
+    points.unshift(straight(first, -1, contact.lead_mm[0]), straight(first, -1, 2));
+    points.push(straight(last, 1, 2), straight(last, 1, contact.lead_mm[1]));
+    const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 320, contact.tendon_radius_mm, 12);
     this.tendon = new THREE.Mesh(tube, new THREE.MeshStandardMaterial({ color: 0x3a4a5c, roughness: 0.6 }));
     this.group.add(this.tendon);
   }
@@ -280,10 +282,11 @@ function drawChart(data) {
 
 function table(head, rows) {
   const element = make('table');
-  const numeric = (cell) => typeof cell === 'number' || /^[-+\d.]/.test(String(cell));
+  // What a row is of stands on the left, whatever it begins with.
+  const numeric = (cell, i) => i > 0 && (typeof cell === 'number' || /^[-+\d.]/.test(String(cell)));
   const line = (cells, tag) => {
     const row = make('tr');
-    cells.forEach((cell) => row.append(make(tag, cell, { class: tag === 'td' && numeric(cell) ? 'n' : '', ...(tag === 'th' ? { scope: 'col' } : {}) })));
+    cells.forEach((cell, i) => row.append(make(tag, cell, { class: tag === 'td' && numeric(cell, i) ? 'n' : '', ...(tag === 'th' ? { scope: 'col' } : {}) })));
     return row;
   };
   element.append(make('thead'), make('tbody'));
@@ -331,7 +334,12 @@ function fillTables(data) {
   }
   if (bill.dowels) rows.push(['dowels', bill.dowels.number, `${bill.dowels.diameter_mm} x ${bill.dowels.length_mm} mm`]);
   if (bill.pulley_bearing) rows.push([`bearing ${bill.pulley_bearing}`, 1, 'for the guide pulley']);
-  for (const item of [bill.mount?.bearing, bill.mount?.axle, bill.mount?.sheath_stop]) if (item) rows.push([item, 1, 'for the mount']);
+  if (bill.mount?.bearing) rows.push([`bearing ${bill.mount.bearing}`, 1, 'for the guide pulley']);
+  if (bill.mount?.axle) rows.push([bill.mount.axle, 1, 'for the guide pulley']);
+  if (bill.mount?.sheath_stop) {
+    const [, number, words] = bill.mount.sheath_stop.match(/^(\d+) (.*)$/);
+    rows.push([words, Number(number), 'for the sheath stop']);
+  }
   byId('bill').replaceChildren(table(['item', 'quantity', 'size'], rows));
   byId('parts').replaceChildren(table(['part', 'mass (g)', 'volume (mm³)', 'triangles'],
     manifest.parts.map((p) => [p.name, p.mass_g.toFixed(2), p.volume_mm3.toFixed(2), p.mesh.triangles])));

@@ -11,11 +11,25 @@ use pinswitch_solid::solid::{Facing, Solid};
 
 /// The base reaches this far beyond what stands on it, mm.
 const BASE_MARGIN_MM: f64 = 1.0;
+/// Largest shift of the ends of the base, as a share of its inner radius: beyond it the inner corners become edges of less
+/// than 45 degrees, which break off and are no wall.
+const BLUNT_SHARE: f64 = 0.65;
+/// What stays of the block at least where its inner radius grows, or the mould's wall if that is thinner, mm.
+const LEAST_BLOCK_MM: f64 = 3.0;
+
+/// Inner radius of the core, mm: that of the shell, or more where the corners of the base would be sharp.
+fn core_inner_mm(design: &Design, cavity: &Cavity) -> f64 {
+    let wall_mm = design.configuration().mould.wall_mm;
+    let shift = cavity.sector.end_shift_mm + wall_mm + BASE_MARGIN_MM;
+    let blunt = BASE_MARGIN_MM + shift / BLUNT_SHARE;
+    let block_mm = wall_mm.min(LEAST_BLOCK_MM);
+    design.inner_radius_mm().max(blunt.min(cavity.sector.inner_mm - block_mm))
+}
 
 /// The block that shapes the layer's smooth inner face; the ring's end walls rest on its face beyond the cavity.
 fn core_sector(design: &Design, cavity: &Cavity) -> Sector {
     Sector {
-        inner_mm: design.inner_radius_mm(),
+        inner_mm: core_inner_mm(design, cavity),
         outer_mm: cavity.sector.inner_mm,
         end_shift_mm: cavity.sector.end_shift_mm + design.configuration().mould.wall_mm,
         ..cavity.sector
@@ -31,7 +45,7 @@ pub(in crate::parts) fn core(design: &Design) -> Result<Part, ConfigError> {
     let c = design.configuration();
     let cavity = Cavity::of(design);
     let base = plate_sector(design, &cavity).grown(
-        BASE_MARGIN_MM.min(design.inner_radius_mm() / 2.0),
+        BASE_MARGIN_MM.min(core_inner_mm(design, &cavity) / 2.0),
         BASE_MARGIN_MM,
         BASE_MARGIN_MM,
     );
@@ -46,7 +60,7 @@ pub(in crate::parts) fn core(design: &Design) -> Result<Part, ConfigError> {
     standing.push(foot);
     solid.cap(Facing::Up, deck, &standing);
     let zone = Zone::Arc {
-        inner_mm: design.inner_radius_mm(),
+        inner_mm: core_inner_mm(design, &cavity),
         outer_mm: cavity.sector.inner_mm,
         from_rad: -design.half_span_rad(),
         to_rad: design.half_span_rad(),

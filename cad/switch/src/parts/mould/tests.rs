@@ -9,6 +9,7 @@ use crate::design::Design;
 use crate::prediction::predicted_curve;
 use pinswitch_solid::mesh::{Mesh, Point3};
 use pinswitch_solid::profile::{ChordTolerance, polar};
+use pinswitch_solid::validity::{Expectation, examine};
 
 /// Sections and rays miss vertices, which lie at round numbers, by these shares.
 const SHARES: [f64; 5] = [0.0137, 0.2641, 0.5173, 0.7429, 0.9871];
@@ -218,6 +219,23 @@ proptest! {
                 let bound = part.solid.volume_bound_mm3(tolerance);
                 prop_assert!(off <= bound, "{}: {off} at {tolerance_mm}, bound {bound}", part.name);
             }
+        }
+    }
+}
+
+#[test]
+fn a_base_with_thick_end_walls_has_no_sharp_corners() {
+    for set in
+        [&["mould.wall_mm=8"][..], &["mould.wall_mm=5", "shell.wall_mm=11"], &["segment.end_margin_mm=5"]]
+    {
+        let mut c = Configuration::default();
+        set.iter().for_each(|a| assign(&mut c, a).unwrap());
+        let design = Design::new(c).unwrap();
+        for part in [super::split::core(&design), super::split::ring(&design), super::lid::lid(&design)] {
+            let part = part.unwrap();
+            let mesh = part.solid.mesh(design.tolerance()).unwrap();
+            let found = examine(&mesh, &Expectation { min_wall_mm: 0.4, ..Expectation::default() });
+            assert!(found.is_valid(), "{set:?}, {}: {:?}", part.name, found.faults);
         }
     }
 }

@@ -297,3 +297,41 @@ fn paper_grows_only_where_a_part_asks_for_it() {
     assert_eq!(paper("[drawing]\npaper = \"a3\"\n", "shell").0, "A3");
     assert_eq!(paper("[shell]\nouter_radius_mm = 140.0\nwall_mm = 9.0\n", "shell").0, "A3");
 }
+
+#[test]
+fn every_dimension_of_a_sheath_stop_is_drawn_and_round_parts_have_no_straight_lines() {
+    let built = built("[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 4.0\n").unwrap();
+    let sheets = sheets(&built);
+    let words = |name: &str| {
+        let sheet = sheets.iter().find(|s| s.name == name).unwrap();
+        let texts = sheet.entities.iter().filter_map(|e| match &e.shape {
+            Shape::Text(text) => Some(text.content.as_str()),
+            _ => None,
+        });
+        texts.collect::<Vec<_>>().join("|")
+    };
+    assert!(!words("sheath-stop").contains("from the left side"), "{}", words("sheath-stop"));
+    assert!(words("rig-plate").contains("straight lines"));
+    assert!(
+        !words("pulley-spacer").contains("straight lines")
+            && !words("guide-pulley").contains("straight lines")
+    );
+}
+
+#[test]
+fn a_rig_is_assembled_at_half_its_size_or_larger() {
+    for more in ["", "pulley_distance_mm = 100.0\n", "[tendon]\nsheath_diameter_mm = 4.0\n"] {
+        for projection in ["first", "third"] {
+            let text = format!(
+                "[drawing]\nprojection = \"{projection}\"\n[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n{more}"
+            );
+            let built = built(&text).unwrap();
+            let assembly = &sheets(&built)[0];
+            assert!(assembly.scale >= 0.5, "{text}: {}", assembly.scale);
+            // The list is whole, in one column or two.
+            let listed = assembly.annotations.iter().filter(|a| a.key == "bill of materials");
+            let rows = listed.filter(|a| !a.text.starts_with("Item")).count();
+            assert_eq!(rows, super::parts_list::items(&built).len(), "{text}");
+        }
+    }
+}

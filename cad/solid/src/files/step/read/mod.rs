@@ -12,7 +12,7 @@ use truck_meshalgo::prelude::{
 
 use crate::mesh::{Mesh, Point3};
 use crate::profile::ChordTolerance;
-use crate::validity::Fault;
+use crate::validity::{Expectation, Fault, examine};
 use entities::Entities;
 use placement::{Isometry, Placements};
 use readable::{table_of, unreadable};
@@ -117,9 +117,13 @@ pub fn read_step(text: &str, tolerance: ChordTolerance) -> Result<StepFile, Step
         }
         let meshed = catch_unwind(AssertUnwindSafe(|| {
             let shell = table.to_compressed_shell(holder).ok()?;
-            let meshed = shell.robust_triangulation(tolerance.mm() / unit_mm);
-            let untriangulated = meshed.faces.iter().filter(|face| face.surface.is_none()).count();
-            Some((shell.faces.len(), untriangulated, welded(&meshed.to_polygon(), unit_mm)))
+            let triangulated = |tolerance: f64| {
+                let meshed = shell.robust_triangulation(tolerance);
+                let untriangulated = meshed.faces.iter().filter(|face| face.surface.is_none()).count();
+                (untriangulated, welded(&meshed.to_polygon(), unit_mm))
+            };
+            let (untriangulated, mesh) = unfolded(tolerance.mm() / unit_mm, triangulated);
+            Some((shell.faces.len(), untriangulated, mesh))
         }));
         let (read, untriangulated, mesh) =
             meshed.map_err(|_| StepReadError::Truck)?.ok_or(StepReadError::Truck)?;
@@ -141,6 +145,30 @@ pub fn read_step(text: &str, tolerance: ChordTolerance) -> Result<StepFile, Step
 const FINEST: f64 = 1e-4;
 /// Distance below which corners are one, in the file's unit: truck's own.
 const WELD: f64 = 1e-6;
+
+/// The name of the fault that folds are.
+const FLIPPED: &str = "flipped facet";
+/// Shares of the tolerance at which a shell is triangulated until no facet is folded over.
+const FINER: [f64; 3] = [1.0, 0.4, 0.1];
+
+/// The triangles of a shell at the first tolerance at which none is folded over its neighbour; at the asked one, if they are at
+/// every. Truck divides a long and narrow twisted face finer across than its edges sag, so that facets beside them turn over: that
+/// is no fault of the file, and goes away where the edges are followed more closely.
+fn unfolded(tolerance: f64, triangulated: impl Fn(f64) -> (usize, Mesh)) -> (usize, Mesh) {
+    let is_folded = |mesh: &Mesh| {
+        let edges = Expectation { intersections: false, ..Expectation::default() };
+        examine(mesh, &edges).faults.iter().any(|fault| fault.check == FLIPPED)
+    };
+    let mut asked = None;
+    for share in FINER.into_iter().filter(|share| *share == 1.0 || share * tolerance >= FINEST) {
+        let found = triangulated(share * tolerance);
+        if !is_folded(&found.1) {
+            return found;
+        }
+        asked.get_or_insert(found);
+    }
+    asked.unwrap_or_else(|| triangulated(tolerance))
+}
 
 /// The triangles by position alone, in millimetres.
 fn welded(polygon: &PolygonMesh, unit_mm: f64) -> Mesh {

@@ -3,9 +3,8 @@
 use super::*;
 use crate::files::{StepPart, step_assembly, step_part};
 use crate::pose::Pose;
-use crate::profile::{Contour, Point2};
+use crate::profile::{Contour, Pen, Point2, polar};
 use crate::solid::Solid;
-use crate::validity::{Expectation, examine};
 
 fn fine() -> ChordTolerance {
     ChordTolerance::new(0.005).unwrap()
@@ -90,5 +89,37 @@ fn what_is_broken_is_named() {
     let dangling = format!("{}99999{}", &text[..shell], &text[end..]);
     let found = read_step(&dangling, fine()).unwrap();
     assert_eq!(found.faults[0].check, "reference");
+    assert!(!examine(&found.solids[0].mesh, &Expectation::default()).is_valid());
+}
+
+#[test]
+fn a_long_narrow_twisted_face_is_followed_without_folds() {
+    // A sector whose ends lie beside radial planes: its chamfer joins arcs over different angles.
+    let corner = |radius: f64, side: f64| polar(radius, side * (0.78 + (4.0 / radius).asin()));
+    let outline = Pen::at(corner(27.4, -1.0))
+        .line_to(corner(11.5, -1.0))
+        .arc_to(Point2::origin(), corner(11.5, 1.0), false)
+        .line_to(corner(27.4, 1.0))
+        .arc_to(Point2::origin(), corner(27.4, -1.0), true)
+        .close();
+    assert!(outline.area_mm2() > 0.0);
+    let solid = Solid::prism(&outline, &[], 0.0, 3.0, 0.2).unwrap();
+    let text = step_part(StepPart { name: "plate", solid: &solid });
+    assert!(text.contains("RATIONAL_B_SPLINE_SURFACE"));
+    let found = read_step(&text, ChordTolerance::new(0.01).unwrap()).unwrap();
+    let verdict = examine(&found.solids[0].mesh, &Expectation::default());
+    assert!(verdict.is_valid(), "{:?}", verdict.faults);
+    assert!((found.solids[0].mesh.volume_mm3() / solid.volume_mm3() - 1.0).abs() < 2e-3);
+}
+
+#[test]
+fn a_face_that_is_turned_over_stays_a_fault() {
+    let text = text();
+    let at = text.find("ADVANCED_FACE").unwrap();
+    let line_end = text[at..].find(';').unwrap() + at;
+    let face = &text[at..=line_end];
+    let turned =
+        if face.contains(".T.)") { face.replace(".T.)", ".F.)") } else { face.replace(".F.)", ".T.)") };
+    let found = read_step(&text.replacen(face, &turned, 1), fine()).unwrap();
     assert!(!examine(&found.solids[0].mesh, &Expectation::default()).is_valid());
 }

@@ -126,7 +126,7 @@ function draw() {
   body.replaceChildren(...rows.slice(0, shown).map(v => {
     const row = make("tr", undefined, { class: v.status + (v === chosen ? " chosen" : "") });
     columns.forEach(column => {
-      const kinds = [column.words && "words", column.title && "title", (column.title || column.links) && "whole"].filter(Boolean).join(" ");
+      const kinds = [column.words && "words", column.title && "title", column.links && "links", (column.title || column.links) && "whole"].filter(Boolean).join(" ");
       const cell = make("td", undefined, { class: kinds, ...(column.title || column.picture ? {} : { "data-name": column.name }) });
       if (column.picture) {
         const picture = column.picture(v);

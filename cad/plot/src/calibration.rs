@@ -69,10 +69,11 @@ impl Axis {
                 Self { is_count: true, ..plain("repetition", Box::new(|p| p.repetition)) }
             }
             Covariate::Position => plain("position (mm)", Box::new(move |p| p.position * stroke)),
-            Covariate::Speed => plain("speed (%)", Box::new(move |p| speed * p.log_speed.exp())),
-            Covariate::Dwell => {
-                plain("dwell (s)", Box::new(|p| pinswitch_friction::published::DWELL_S * p.log_dwell.exp()))
-            }
+            Covariate::Speed => plain("speed (%)", Box::new(move |p| speed * libm::exp(p.log_speed))),
+            Covariate::Dwell => plain(
+                "dwell (s)",
+                Box::new(|p| pinswitch_friction::published::DWELL_S * libm::exp(p.log_dwell)),
+            ),
             Covariate::Time => plain("time (h)", Box::new(move |p| p.time * session / 3600.0)),
             Covariate::Direction => named(
                 "direction",

@@ -221,7 +221,7 @@ fn second_axis(area: &Area<'_>, chart: &Chart<'_, '_>, right: f64, top: f64) -> 
     let label =
         TextStyle::from(("sans-serif", fine::<i32>(14)).into_font()).pos(Pos::new(HPos::Left, VPos::Center));
     for extra_pct in EXTRA_TICKS {
-        let difference_pct = 200.0 * (extra_pct / 100.0).ln_1p().sinh();
+        let difference_pct = 200.0 * libm::sinh(libm::log1p(extra_pct / 100.0));
         if difference_pct < top {
             let (x, y) = at(difference_pct);
             area.draw(&PathElement::new([(x, y), (x + fine::<i32>(5), y)], black))?;

@@ -17,6 +17,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![warn(clippy::disallowed_methods)]
+
 mod calibration;
 mod calibration_page;
 mod contact;

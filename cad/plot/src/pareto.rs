@@ -167,7 +167,10 @@ fn placed(points: &[(i32, i32)], across: (i32, i32), down: (i32, i32)) -> Vec<((
             (0..12).map(move |step| {
                 let angle = f64::from(step) * std::f64::consts::TAU / 12.0 - 0.8;
                 let radius = f64::from(unit) * (7.0 + 8.0 * f64::from(ring));
-                (ring, ((radius * angle.cos()).round() as i32, (radius * angle.sin()).round() as i32))
+                (
+                    ring,
+                    ((radius * libm::cos(angle)).round() as i32, (radius * libm::sin(angle)).round() as i32),
+                )
             })
         });
         let found =

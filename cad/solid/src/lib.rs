@@ -34,6 +34,8 @@
 //! `cad/doc/meshes.md` explains why a mesh is valid, and what each check proves; `cad/examples/own_part.rs` and
 //! `cad/examples/check_stl.rs` are programs to start from.
 
+#![warn(clippy::disallowed_methods)]
+
 pub mod files;
 pub mod mesh;
 mod parallel;

@@ -16,6 +16,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![warn(clippy::disallowed_methods)]
+
 pub mod ask;
 pub mod built;
 pub mod config;

@@ -136,7 +136,7 @@ impl Band {
             return self.half_width(above - 1);
         }
         let (from, to) = (self.load_n[above - 1], self.load_n[above]);
-        let share = (load_n / from).ln() / (to / from).ln();
+        let share = libm::log(load_n / from) / libm::log(to / from);
         let ((a, b), (c, d)) = (self.half_width(above - 1), self.half_width(above));
         (a + share * (c - a), b + share * (d - b))
     }
@@ -148,8 +148,8 @@ impl Band {
             logs.iter().zip(&self.load_n).map(move |(log, load)| (name.as_str(), *load, *log))
         });
         all.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))
-            .filter(|(_, _, log)| log.abs() > tolerance.ln())
-            .map(|(name, load, log)| (name, load, log.exp()))
+            .filter(|(_, _, log)| log.abs() > libm::log(tolerance))
+            .map(|(name, load, log)| (name, load, libm::exp(log)))
     }
 }
 
@@ -164,7 +164,7 @@ fn spaced(loads_n: &[f64]) -> Vec<f64> {
     if positive.len() <= LOADS {
         return positive;
     }
-    (0..LOADS).map(|i| from * (to / from).powf(i as f64 / (LOADS - 1) as f64)).collect()
+    (0..LOADS).map(|i| from * libm::pow(to / from, i as f64 / (LOADS - 1) as f64)).collect()
 }
 
 fn departure_source(departure: &Departure, loads: usize) -> BandSource {
@@ -174,7 +174,7 @@ fn departure_source(departure: &Departure, loads: usize) -> BandSource {
             // Where physics cannot say, a change counts in full.
             let effect =
                 departure.log_effect.get(i).copied().unwrap_or(departure.log_ratio / departure.unsure);
-            NORMAL_95 * (departure.unsure * effect).hypot(unknown)
+            NORMAL_95 * libm::hypot(departure.unsure * effect, unknown)
         })
         .collect();
     BandSource::even(departure.parameter, half)
@@ -182,7 +182,7 @@ fn departure_source(departure: &Departure, loads: usize) -> BandSource {
 
 fn beyond_loads(load_n: &[f64]) -> Option<BandSource> {
     let (from, to) = (published::lightest_load_n(), published::heaviest_load_n());
-    let beyond = |load: f64| (from / load).ln().max((load / to).ln()).max(0.0);
+    let beyond = |load: f64| libm::log(from / load).max(libm::log(load / to)).max(0.0);
     let half: Vec<f64> = load_n.iter().map(|load| NORMAL_95 * BEYOND_LOADS * beyond(*load)).collect();
     half.iter().any(|h| *h > 0.0).then(|| BandSource::even("loads beyond the tested ones", half))
 }
@@ -216,7 +216,7 @@ fn rivals(
         all.push(("a constant coefficient".to_owned(), load_n.iter().map(|l| l * at).collect()));
     }
     let logs = |friction: Vec<f64>| -> Vec<f64> {
-        let ratio = |(rival, own): (&f64, &f64)| (rival / own).ln();
+        let ratio = |(rival, own): (&f64, &f64)| libm::log(rival / own);
         friction.iter().zip(own).map(ratio).map(|log| if log.is_finite() { log } else { 0.0 }).collect()
     };
     Ok(all.into_iter().map(|(name, friction)| (name, logs(friction))).collect())
@@ -225,14 +225,14 @@ fn rivals(
 /// The rivals count where nothing was measured: not at all at the heaviest load of a measured condition, wholly far from
 /// it in load or in the contact.
 fn rival_source(rivals: &[(String, Vec<f64>)], load_n: &[f64], apart: f64) -> BandSource {
-    let far = |distance: f64, near: f64| -(-(distance / near).powi(2)).exp_m1();
+    let far = |distance: f64, near: f64| -libm::expm1(-(distance / near).powi(2));
     let contact = far(apart, NEAR_CONDITION);
     let side = |sign: f64| {
         load_n
             .iter()
             .enumerate()
             .map(|(i, load)| {
-                let load = far((load / published::heaviest_load_n()).ln(), NEAR_LOAD);
+                let load = far(libm::log(load / published::heaviest_load_n()), NEAR_LOAD);
                 let farthest = rivals.iter().map(|(_, logs)| sign * logs[i]).fold(0.0, f64::max);
                 (1.0 - (1.0 - load) * (1.0 - contact)) * farthest
             })

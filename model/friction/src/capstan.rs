@@ -34,12 +34,12 @@ impl Direction {
 ///
 /// `exponent` is the friction exponent `x = mu a` (dimensionless).
 pub fn capstan_tension_n(load_n: f64, exponent: f64, direction: Direction) -> f64 {
-    load_n * (direction.sign() * exponent).exp()
+    load_n * libm::exp(direction.sign() * exponent)
 }
 
 /// Friction in newtons as the paper plots it, `D = (F_c - F_e)/2 = F sinh(x)`.
 pub fn capstan_friction_n(load_n: f64, exponent: f64) -> f64 {
-    load_n * exponent.sinh()
+    load_n * libm::sinh(exponent)
 }
 
 #[cfg(test)]

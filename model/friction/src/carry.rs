@@ -64,18 +64,18 @@ impl Carry {
         let log_friction: Vec<f64> = there
             .iter()
             .zip(&here)
-            .map(|(a, b)| (a.friction_n / b.friction_n).ln())
+            .map(|(a, b)| libm::log(a.friction_n / b.friction_n))
             .map(|log| if log.is_finite() { log } else { 0.0 })
             .collect();
         let mut apart: f64 = departures.iter().map(|d| d.log_ratio.powi(2)).sum();
         if let (true, Some(a), Some(b)) =
             (moved, part.all_pins().mean_pitch_rad(), rig.all_pins().mean_pitch_rad())
         {
-            apart += (a / b).ln().powi(2);
+            apart += libm::log(a / b).powi(2);
         }
         let half_width = log_friction
             .iter()
-            .map(|log| NORMAL_95 * (UNSURE_CHANGE * log).hypot(UNKNOWN_CHANGE * apart.sqrt()))
+            .map(|log| NORMAL_95 * libm::hypot(UNSURE_CHANGE * log, UNKNOWN_CHANGE * apart.sqrt()))
             .collect();
         let threshold_factor = threshold_n(part, loads_n)? / threshold_n(rig, loads_n)?;
         Ok(Self { log_friction, threshold_factor, half_width, reasons })
@@ -94,7 +94,7 @@ impl Carry {
         friction_n: &[f64],
         silicone_share: &[f64],
     ) -> (Vec<f64>, Vec<f64>) {
-        let friction = friction_n.iter().zip(&self.log_friction).map(|(d, by)| d * by.exp()).collect();
+        let friction = friction_n.iter().zip(&self.log_friction).map(|(d, by)| d * libm::exp(*by)).collect();
         let ends = loads_n.first().zip(loads_n.last());
         let within = |load: f64| ends.map_or(load, |(from, to)| load.max(*from).min(*to));
         let share = loads_n
@@ -113,20 +113,20 @@ impl Carry {
         let (wanted, share) = self.applied(&curve.load_n, &curve.friction_n, &curve.silicone_share);
         for (i, &load) in curve.load_n.iter().enumerate() {
             let (down, up) = (
-                (curve.friction_n[i] / curve.band_low_n[i].max(1e-9)).ln().max(0.0),
-                (curve.band_high_n[i] / curve.friction_n[i].max(1e-9)).ln().max(0.0),
+                libm::log(curve.friction_n[i] / curve.band_low_n[i].max(1e-9)).max(0.0),
+                libm::log(curve.band_high_n[i] / curve.friction_n[i].max(1e-9)).max(0.0),
             );
             if load > 0.0 && curve.friction_n[i] > 0.0 {
                 let by = (wanted[i] / load).asinh() / (curve.friction_n[i] / load).asinh();
-                let exponent = |tension: f64| by * (tension / load).ln().abs();
+                let exponent = |tension: f64| by * libm::log(tension / load).abs();
                 curve.eccentric_n[i] =
                     capstan_tension_n(load, exponent(curve.eccentric_n[i]), Direction::Eccentric);
                 curve.concentric_n[i] =
                     capstan_tension_n(load, exponent(curve.concentric_n[i]), Direction::Concentric);
                 curve.friction_n[i] = (curve.concentric_n[i] - curve.eccentric_n[i]) / 2.0;
             }
-            curve.band_low_n[i] = curve.friction_n[i] * (-down.hypot(self.half_width[i])).exp();
-            curve.band_high_n[i] = curve.friction_n[i] * up.hypot(self.half_width[i]).exp();
+            curve.band_low_n[i] = curve.friction_n[i] * libm::exp(-libm::hypot(down, self.half_width[i]));
+            curve.band_high_n[i] = curve.friction_n[i] * libm::exp(libm::hypot(up, self.half_width[i]));
         }
         curve.silicone_share = share;
         curve.trust = Trust::Extrapolated;
@@ -147,7 +147,7 @@ fn threshold_n(contact: &Contact, loads_n: &[f64]) -> Result<f64, PhysicsError> 
     let (down, up, count) = THRESHOLDS;
     let (from, to) = (down * lightest, up * heaviest);
     let loads: Vec<f64> =
-        (0..count).map(|i| from * (to / from).powf(i as f64 / (count - 1) as f64)).collect();
+        (0..count).map(|i| from * libm::pow(to / from, i as f64 / (count - 1) as f64)).collect();
     let shares: Vec<f64> = PhysicsSwitch::new(contact, Constants::published())
         .states(&loads)?
         .iter()

@@ -53,7 +53,7 @@ impl FrictionCurve {
         let column = |f: fn(&SwitchState) -> f64| states.iter().map(f).collect::<Vec<_>>();
         let halves: Vec<(f64, f64)> = states.iter().map(|s| band.half_width_at(s.load_n)).collect();
         let edge = |log: fn(&(f64, f64)) -> f64| {
-            states.iter().zip(&halves).map(|(s, half)| s.friction_n * log(half).exp()).collect()
+            states.iter().zip(&halves).map(|(s, half)| s.friction_n * libm::exp(log(half))).collect()
         };
         Self {
             law,
@@ -186,7 +186,7 @@ mod tests {
         let (inside, beyond) = (predict(&c, &[49.6]), predict(&c, &[49.6, 120.0]));
         assert_eq!((inside.trust, beyond.trust), (Trust::Published, Trust::Extrapolated));
         assert!(beyond.reasons.iter().any(|r| r.contains("tested were")), "{:?}", beyond.reasons);
-        let width = |curve: &FrictionCurve, i: usize| (curve.band_high_n[i] / curve.band_low_n[i]).ln();
+        let width = |curve: &FrictionCurve, i: usize| libm::log(curve.band_high_n[i] / curve.band_low_n[i]);
         assert!(width(&beyond, 1) > width(&inside, 0) + 0.2);
     }
 

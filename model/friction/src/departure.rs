@@ -100,7 +100,10 @@ impl Departure {
                 format!("physics says it changes friction at {heaviest_n:.2} N by less than 0.05 %")
             }
             Some(effect) => {
-                format!("physics says {:+.1} % of friction at {heaviest_n:.2} N", 100.0 * effect.exp_m1())
+                format!(
+                    "physics says {:+.1} % of friction at {heaviest_n:.2} N",
+                    100.0 * libm::expm1(*effect)
+                )
             }
         };
         // As many digits as tell the two apart.
@@ -136,7 +139,7 @@ pub(crate) fn departures(contact: &Contact, loads_n: &[f64]) -> Vec<Departure> {
     }
     let logs = |contact: &Contact| -> Option<Vec<f64>> {
         let states = PhysicsSwitch::new(contact, Constants::published()).states(loads_n).ok()?;
-        Some(states.iter().map(|s| s.friction_n.ln()).collect())
+        Some(states.iter().map(|s| libm::log(s.friction_n)).collect())
     };
     let here = logs(contact);
     let mut all: Vec<Departure> = differing
@@ -159,7 +162,7 @@ pub(crate) fn departures(contact: &Contact, loads_n: &[f64]) -> Vec<Departure> {
                 unit: p.unit,
                 printed: p.printed,
                 unsure: p.unsure,
-                log_ratio: (value / published).ln(),
+                log_ratio: libm::log(value / published),
                 log_effect,
             }
         })
@@ -208,7 +211,7 @@ mod tests {
             assert_eq!(found.len(), 1, "{}", p.name);
             assert!(!is_published_rig(&moved), "{}", p.name);
             assert_eq!((found[0].parameter, found[0].log_effect.len()), (p.name, 2));
-            assert!((found[0].log_ratio - 1.05f64.ln()).abs() < 1e-9);
+            assert!((found[0].log_ratio - libm::log(1.05f64)).abs() < 1e-9);
             assert!(found[0].reason(49.671).starts_with(p.name), "{}", found[0].reason(49.671));
         }
     }

@@ -29,6 +29,8 @@
 //! environment; with the feature `parallel` the sweeps of [`layout_search`] run on all processors, with the same
 //! results. `model/doc/friction-laws.md` and `model/doc/physics.md` explain the laws with their sources.
 
+#![warn(clippy::disallowed_methods)]
+
 mod band;
 mod capstan;
 mod carry;

@@ -79,7 +79,7 @@ impl PaperSwitch {
 
 impl Switch for PaperSwitch {
     fn switched(&self, load_n: f64) -> f64 {
-        1.0 / (1.0 + (self.layout.threshold - self.reduced_load(load_n)).exp())
+        1.0 / (1.0 + libm::exp(self.layout.threshold - self.reduced_load(load_n)))
     }
 
     fn weight(&self) -> f64 {

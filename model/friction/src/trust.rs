@@ -124,17 +124,17 @@ pub(crate) fn layout_distance(contact: &Contact) -> (f64, f64) {
     }
     let angles = pins.angles_rad();
     let wrap = contact.wrap_rad();
-    let (log_count, pitch) = ((pins.count() as f64).ln(), pins.mean_pitch_rad().unwrap_or(wrap));
+    let (log_count, pitch) = (libm::log(pins.count() as f64), pins.mean_pitch_rad().unwrap_or(wrap));
     let gaps = angles.windows(2).map(|w| ((w[1] - w[0]) / pitch - 1.0).powi(2));
     let uneven = gaps.sum::<f64>() / (pins.count().max(2) - 1) as f64;
     let offset = (angles.iter().sum::<f64>() / pins.count() as f64 / (wrap / 2.0)).powi(2);
     let nearest = published::LAYOUTS
         .iter()
-        .map(|l| (log_count - (l.pins as f64).ln()).powi(2) + (pitch / l.pitch_rad()).ln().powi(2))
+        .map(|l| (log_count - libm::log(l.pins as f64)).powi(2) + libm::log(pitch / l.pitch_rad()).powi(2))
         .fold(f64::INFINITY, f64::min);
     let outside = |x: f64, from: f64, to: f64| (from - x).max(x - to).max(0.0);
     let (narrow, wide) = measured_pitches_rad();
-    let beyond = outside(log_count, 3f64.ln(), 6f64.ln()).powi(2)
-        + outside(pitch.ln(), narrow.ln(), wide.ln()).powi(2);
+    let beyond = outside(log_count, libm::log(3f64), libm::log(6f64)).powi(2)
+        + outside(libm::log(pitch), libm::log(narrow), libm::log(wide)).powi(2);
     ((nearest + uneven + offset).sqrt(), (beyond + uneven + offset).sqrt())
 }

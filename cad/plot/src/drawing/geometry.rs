@@ -21,13 +21,13 @@ impl Point {
     /// The unit vector at this angle, radians counter-clockwise from +x.
     #[must_use]
     pub fn towards(angle_rad: f64) -> Self {
-        Self::new(angle_rad.cos(), angle_rad.sin())
+        Self::new(libm::cos(angle_rad), libm::sin(angle_rad))
     }
 
     /// Its length, mm.
     #[must_use]
     pub fn length(self) -> f64 {
-        self.x.hypot(self.y)
+        libm::hypot(self.x, self.y)
     }
 
     /// The same direction with length 1; zero stays zero.
@@ -46,7 +46,7 @@ impl Point {
     /// Its angle, radians counter-clockwise from +x.
     #[must_use]
     pub fn angle_rad(self) -> f64 {
-        self.y.atan2(self.x)
+        libm::atan2(self.y, self.x)
     }
 }
 

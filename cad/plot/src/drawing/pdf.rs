@@ -80,7 +80,7 @@ fn draw(content: &mut Content, shape: &Shape) {
 fn arc(content: &mut Content, centre: Point, radius_mm: f64, start_rad: f64, sweep_rad: f64) {
     let number = (sweep_rad.abs() / std::f64::consts::FRAC_PI_2).ceil().max(1.0);
     let step = sweep_rad / number;
-    let handle = 4.0 / 3.0 * (step / 4.0).tan() * radius_mm;
+    let handle = 4.0 / 3.0 * libm::tan(step / 4.0) * radius_mm;
     let at = |angle: f64| centre + Point::towards(angle) * radius_mm;
     let from = at(start_rad);
     content.move_to(points(from.x), points(from.y));

@@ -130,7 +130,7 @@ fn view(data: &mut Vec<u8>, bytes: &[u8], target: u32) -> Value {
 fn look(material: &GlbMaterial<'_>) -> Value {
     let linear = |c: u8| {
         let share = f64::from(c) / 255.0;
-        let value = if share <= 0.040_45 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) };
+        let value = if share <= 0.040_45 { share / 12.92 } else { libm::pow((share + 0.055) / 1.055, 2.4) };
         (value * 1e6).round() / 1e6
     };
     let [red, green, blue] = material.colour.map(linear);

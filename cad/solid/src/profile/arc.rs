@@ -23,7 +23,7 @@ pub struct Arc {
 impl Arc {
     /// The arc about `centre` from `from` to `to`, counter-clockwise or clockwise, short of a full turn.
     pub fn between(centre: Point2, from: Point2, to: Point2, counter_clockwise: bool) -> Self {
-        let angle = |p: Point2| (p.y - centre.y).atan2(p.x - centre.x);
+        let angle = |p: Point2| libm::atan2(p.y - centre.y, p.x - centre.x);
         let start_rad = angle(from);
         let forward = (angle(to) - start_rad).rem_euclid(TAU);
         let sweep_rad = if counter_clockwise { forward } else { forward - TAU };
@@ -33,13 +33,13 @@ impl Arc {
     /// The point at `fraction` of the sweep, on a circle of `radius_mm` about the same centre.
     pub fn point_at(&self, fraction: f64, radius_mm: f64) -> Point2 {
         let angle = self.start_rad + self.sweep_rad * fraction;
-        self.centre + Vector2::new(angle.cos(), angle.sin()) * radius_mm
+        self.centre + Vector2::new(libm::cos(angle), libm::sin(angle)) * radius_mm
     }
 
     /// Unit tangent at `fraction` of the sweep.
     pub fn tangent_at(&self, fraction: f64) -> Vector2 {
         let angle = self.start_rad + self.sweep_rad * fraction;
-        Vector2::new(-angle.sin(), angle.cos()) * self.sweep_rad.signum()
+        Vector2::new(-libm::sin(angle), libm::cos(angle)) * self.sweep_rad.signum()
     }
 
     /// Length in millimetres.
@@ -49,7 +49,7 @@ impl Arc {
 
     /// Distance in millimetres between the arc and its single chord.
     pub fn sagitta_mm(&self) -> f64 {
-        self.radius_mm * (1.0 - (self.sweep_rad / 2.0).cos())
+        self.radius_mm * (1.0 - libm::cos(self.sweep_rad / 2.0))
     }
 
     /// Whether the arc passes the angle `angle_rad`.
@@ -76,9 +76,9 @@ impl Arc {
     pub(super) fn swept_with(&self, other: &Self) -> f64 {
         let [first, last] = self.turns_to_rad(other);
         let (middle, half) = (f64::midpoint(first, last), (last - first) / 2.0);
-        let sinc = if half.abs() < SAME_ANGLE_RAD { 1.0 } else { half.sin() / half };
+        let sinc = if half.abs() < SAME_ANGLE_RAD { 1.0 } else { libm::sin(half) / half };
         let moved = other.point_at(1.0, other.radius_mm) - other.point_at(0.0, other.radius_mm);
         self.centre.coords.perp(&moved)
-            + self.radius_mm * other.radius_mm * other.sweep_rad * middle.cos() * sinc
+            + self.radius_mm * other.radius_mm * other.sweep_rad * libm::cos(middle) * sinc
     }
 }

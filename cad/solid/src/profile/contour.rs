@@ -152,7 +152,7 @@ impl Contour {
         let chord = from.x * to.y - to.x * from.y;
         match &self.edges[i] {
             Edge::Line => chord,
-            Edge::Arc(a) => chord + a.radius_mm.powi(2) * (a.sweep_rad - a.sweep_rad.sin()),
+            Edge::Arc(a) => chord + a.radius_mm.powi(2) * (a.sweep_rad - libm::sin(a.sweep_rad)),
         }
     }
 
@@ -199,7 +199,7 @@ impl Contour {
             for quadrant in 0..4 {
                 let angle = f64::from(quadrant) * FRAC_PI_2;
                 if a.covers(angle) {
-                    let p = a.centre + Vector2::new(angle.cos(), angle.sin()) * a.radius_mm;
+                    let p = a.centre + Vector2::new(libm::cos(angle), libm::sin(angle)) * a.radius_mm;
                     low = Point2::new(low.x.min(p.x), low.y.min(p.y));
                     high = Point2::new(high.x.max(p.x), high.y.max(p.y));
                 }
@@ -222,7 +222,7 @@ impl Contour {
                 Edge::Arc(a) => {
                     let radial = point - a.centre;
                     let to_circle = (radial.norm() - a.radius_mm).abs();
-                    if a.covers(radial.y.atan2(radial.x)) { to_circle } else { to_ends }
+                    if a.covers(libm::atan2(radial.y, radial.x)) { to_circle } else { to_ends }
                 }
             }
         };

@@ -18,7 +18,7 @@ pub const FLAT_MM: f64 = 2e-4;
 fn straddling_radius_mm(arc: &Arc, chords: usize) -> f64 {
     let (r, n) = (arc.radius_mm, chords as f64);
     let half = arc.sweep_rad.abs() / (2.0 * n);
-    let s = (2.0 * half).sin();
+    let s = libm::sin(2.0 * half);
     let (a, b, c) = ((n - 2.0) * s, r * s, -2.0 * r * r * half * n);
     if chords == 2 { -c / (2.0 * b) } else { (-b + (b * b - a * c).sqrt()) / a }
 }
@@ -32,9 +32,9 @@ pub fn deviation_mm(arc: &Arc, chords: usize) -> f64 {
     let step = arc.sweep_rad.abs() / chords as f64;
     // Distance from the centre to a chord between radii p and q; the foot of the perpendicular may lie outside.
     let nearest = |p: f64| {
-        let length = (p * p + q * q - 2.0 * p * q * step.cos()).sqrt();
+        let length = (p * p + q * q - 2.0 * p * q * libm::cos(step)).sqrt();
         let foot_inside = (p - q).abs() * (p + q) <= length * length;
-        if foot_inside { p * q * step.sin() / length } else { p.min(q) }
+        if foot_inside { p * q * libm::sin(step) / length } else { p.min(q) }
     };
     let lowest = if chords > 2 { nearest(arc.radius_mm).min(nearest(q)) } else { nearest(arc.radius_mm) };
     (q - arc.radius_mm).abs().max((arc.radius_mm - lowest).abs())
@@ -79,7 +79,7 @@ impl Contour {
             .map(|i| {
                 let turn = self.turn_to_rad(other, i).min(FRAC_PI_2);
                 let (p, q) = (self.edge_mm(i), other.edge_mm(i));
-                let apart = p * q * turn.sin() / (p * p + q * q + 2.0 * p * q * turn.cos()).sqrt();
+                let apart = p * q * libm::sin(turn) / (p * p + q * q + 2.0 * p * q * libm::cos(turn)).sqrt();
                 ((apart / 6.0 / tolerance.mm()).ceil() as usize).max(1)
             })
             .collect()
@@ -155,7 +155,7 @@ mod tests {
     fn straddling_needs_fewer_chords_than_vertices_on_the_curve() {
         let arc = Arc { centre: Point2::origin(), radius_mm: 22.0, start_rad: 0.0, sweep_rad: 1.5 };
         let tolerance = ChordTolerance::new(0.01).unwrap();
-        let on_curve = (1.5 / (2.0 * (1.0 - 0.01 / 22.0f64).acos())).ceil() as usize;
+        let on_curve = (1.5 / (2.0 * libm::acos(1.0 - 0.01 / 22.0f64))).ceil() as usize;
         assert!(chords_for(&arc, tolerance) < on_curve);
     }
 }

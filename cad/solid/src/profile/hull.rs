@@ -37,7 +37,7 @@ pub struct HullArc {
 }
 
 fn direction(angle_rad: f64) -> Vector2 {
-    Vector2::new(angle_rad.cos(), angle_rad.sin())
+    Vector2::new(libm::cos(angle_rad), libm::sin(angle_rad))
 }
 
 /// Which disc is outermost from the direction `from_rad` counter-clockwise to `to_rad`, in order. Between two of them the
@@ -71,7 +71,7 @@ fn overtaken_rad(disc: &Disc, other: &Disc, after_rad: f64) -> Option<f64> {
         return None;
     }
     // `between · u` exceeds the difference of the radii from here on, for less than half a turn.
-    let begins = between.y.atan2(between.x) - share.acos();
+    let begins = libm::atan2(between.y, between.x) - libm::acos(share);
     let turned = (begins - after_rad - SAME_RAD).rem_euclid(TAU);
     Some(after_rad + SAME_RAD + turned)
 }

@@ -26,5 +26,5 @@ pub type Vector2 = nalgebra::Vector2<f64>;
 /// The point at `radius_mm` and `angle_rad` about the axis: angles run from +y toward +x
 /// (cad/doc/dimensions.md, "Frame and names").
 pub fn polar(radius_mm: f64, angle_rad: f64) -> Point2 {
-    Point2::new(radius_mm * angle_rad.sin(), radius_mm * angle_rad.cos())
+    Point2::new(radius_mm * libm::sin(angle_rad), radius_mm * libm::cos(angle_rad))
 }

@@ -149,7 +149,9 @@ mod tests {
         let cache = CapCache::new(1000);
         let octagon = |last: f64| -> Vec<Point2> {
             let around = (0..8).map(|i| f64::from(i) * std::f64::consts::FRAC_PI_4);
-            around.map(|a| Point2::new(a.cos(), a.sin()) * if a > 5.0 { last } else { 1.0 }).collect()
+            around
+                .map(|a| Point2::new(libm::cos(a), libm::sin(a)) * if a > 5.0 { last } else { 1.0 })
+                .collect()
         };
         let (round, cut) = (octagon(1.0), octagon(0.1));
         cache.triangles(&[&round], 0.0).unwrap();

@@ -221,7 +221,7 @@ impl Section {
 
 /// The point of `arc` in the direction `radial` from its centre, if it reaches there.
 fn on_arc(arc: &Arc, radial: Vector2) -> Option<Point2> {
-    arc.covers(radial.y.atan2(radial.x)).then(|| arc.centre + radial * arc.radius_mm)
+    arc.covers(libm::atan2(radial.y, radial.x)).then(|| arc.centre + radial * arc.radius_mm)
 }
 
 #[cfg(test)]

@@ -47,7 +47,7 @@ impl Solid {
         let (lower, upper) = (&self.rings[wall.lower.0], &self.rings[wall.upper.0]);
         let (p, q) = (lower.contour.perimeter_mm(), upper.contour.perimeter_mm());
         let inward = (lower.contour.corners()[0] - upper.contour.corners()[0]).norm();
-        (p + q) / 2.0 * (upper.z_mm - lower.z_mm).hypot(inward)
+        (p + q) / 2.0 * libm::hypot(upper.z_mm - lower.z_mm, inward)
     }
 
     fn caps_mm2(&self) -> f64 {
@@ -70,7 +70,8 @@ mod tests {
 
     /// A sector whose ends are parallel to the radial planes and lie `shift_mm` outside them.
     fn sector([inner_mm, outer_mm]: [f64; 2], half_rad: f64, shift_mm: f64) -> Contour {
-        let corner = |radius: f64, side: f64| polar(radius, side * (half_rad + (shift_mm / radius).asin()));
+        let corner =
+            |radius: f64, side: f64| polar(radius, side * (half_rad + libm::asin(shift_mm / radius)));
         Pen::at(corner(inner_mm, 1.0))
             .line_to(corner(outer_mm, 1.0))
             .arc_to(Point2::origin(), corner(outer_mm, -1.0), true)
@@ -119,7 +120,7 @@ mod tests {
     /// midway: it encloses more by what the summed slices can see.
     #[test]
     fn a_wall_between_arcs_over_other_angles_has_the_volume_that_it_encloses() {
-        let drafted_mm = 13.6 * 5f64.to_radians().tan();
+        let drafted_mm = 13.6 * libm::tan(5f64.to_radians());
         let half = 89.45f64.to_radians() / 2.0;
         let lower = sector([20.0, 22.0], half, 0.0);
         let upper = sector([20.0 - drafted_mm, 22.0], half, drafted_mm);
@@ -140,7 +141,7 @@ mod tests {
             )
         };
         let solid = frustum(square(0.0), square(turn), 3.0);
-        let exact = 3.0 * 8.0 / 6.0 * (2.0 + 4.0 * (turn / 2.0).cos().powi(2));
+        let exact = 3.0 * 8.0 / 6.0 * (2.0 + 4.0 * libm::cos(turn / 2.0).powi(2));
         assert!((solid.volume_mm3() / exact.abs() - 1.0).abs() < 1e-12, "{}", solid.volume_mm3());
         assert!((mesh_mm3(&solid, 1e-4) - exact).abs() <= 1e-4 * solid.surface_mm2());
     }

@@ -146,7 +146,7 @@ pub(super) fn winding(facets: impl Iterator<Item = [Point3; 3]>, point: Point3) 
             let [a, b, c] = corners.map(|p| p - point);
             let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
             let down = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
-            a.dot(&b.cross(&c)).atan2(down)
+            libm::atan2(a.dot(&b.cross(&c)), down)
         })
         .sum();
     half_angles / TAU

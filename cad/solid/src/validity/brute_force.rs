@@ -166,7 +166,7 @@ fn sheet(side: usize) -> Mesh {
         Point3::new(
             column + if row % 10.0 == 0.0 { 0.6 } else { 0.0 },
             row,
-            (row * 0.7).sin() + (column * 0.3).cos(),
+            libm::sin(row * 0.7) + libm::cos(column * 0.3),
         )
     };
     let squares = (0..side - 1).flat_map(|row| (0..side - 1).map(move |column| row * side + column));

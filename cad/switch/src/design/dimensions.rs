@@ -67,12 +67,12 @@ impl Dimensions {
 
     /// Chord between the centres of neighbouring grooves on the shell.
     pub fn groove_chord_mm(&self) -> f64 {
-        2.0 * self.shell_radius_mm() * (self.pitch_rad() / 2.0).sin()
+        2.0 * self.shell_radius_mm() * libm::sin(self.pitch_rad() / 2.0)
     }
 
     /// What stands between neighbouring grooves on the shell, where it is narrowest.
     pub fn land_mm(&self) -> f64 {
-        let half_chord = self.shell_radius_mm() * (self.pitch_deg().to_radians() / 2.0).sin();
+        let half_chord = self.shell_radius_mm() * libm::sin(self.pitch_deg().to_radians() / 2.0);
         2.0 * (half_chord - self.configuration.segment.groove_radius_mm)
     }
 

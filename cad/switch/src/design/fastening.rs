@@ -151,7 +151,7 @@ pub(crate) fn stop_recess() -> Recess {
 /// Pocket in the mounting plate for the head of the axle's bolt, which it keeps from turning.
 pub(crate) fn axle_recess() -> Recess {
     let radial_mm = (AXLE_HEAD_MM[0] + RECESS_PLAY_MM) / 2.0;
-    let along_mm = radial_mm / std::f64::consts::FRAC_PI_6.cos();
+    let along_mm = radial_mm / libm::cos(std::f64::consts::FRAC_PI_6);
     Recess { radial_mm, along_mm, depth_mm: AXLE_HEAD_MM[1] + HEAD_BELOW_MM, is_hexagon: true }
 }
 
@@ -167,7 +167,7 @@ impl Dimensions {
         };
         let nut_trap = thread.filter(|_| f.kind == FastenerKind::NutTrap).and_then(|t| {
             let flats = (t.nut_mm[0] + RECESS_PLAY_MM) / 2.0;
-            let along_mm = flats / std::f64::consts::FRAC_PI_6.cos();
+            let along_mm = flats / libm::cos(std::f64::consts::FRAC_PI_6);
             fits(Recess { radial_mm: flats, along_mm, depth_mm: f.nut_recess_mm, is_hexagon: true })
         });
         let has_mount = c.mount.kind != MountKind::None;
@@ -209,7 +209,7 @@ impl Dimensions {
 
     /// Whether a wall stays between the recesses of two neighbours.
     fn are_apart(&self, angles_rad: &[f64], recess: &Recess) -> bool {
-        let chord = 2.0 * self.fastener_radius_mm() * ((angles_rad[1] - angles_rad[0]) / 2.0).sin();
+        let chord = 2.0 * self.fastener_radius_mm() * libm::sin((angles_rad[1] - angles_rad[0]) / 2.0);
         chord + ROUNDING_MM >= 2.0 * recess.along_mm + self.rim_mm()
     }
 
@@ -252,7 +252,7 @@ impl Dimensions {
             && fastening.nut_trap.is_none();
         let thread = fastening.thread.filter(|_| is_lost)?;
         let flats = (thread.nut_mm[0] + RECESS_PLAY_MM) / 2.0;
-        let along_mm = flats / std::f64::consts::FRAC_PI_6.cos();
+        let along_mm = flats / libm::cos(std::f64::consts::FRAC_PI_6);
         self.recess_obstacle(&Recess {
             radial_mm: flats,
             along_mm,
@@ -361,11 +361,11 @@ impl Dimensions {
         let (own, taken) = (angles[1], self.fastener_along_mm());
         let clear = |other: &f64| {
             let needed = if *other == -own { 2.0 * radius } else { radius + taken };
-            2.0 * at * ((own - other).abs() / 2.0).sin() >= needed + rim
+            2.0 * at * libm::sin((own - other).abs() / 2.0) >= needed + rim
         };
-        let within = own.cos() > 0.0 || own < self.half_span_rad();
+        let within = libm::cos(own) > 0.0 || own < self.half_span_rad();
         let in_sector =
-            at * (self.half_span_rad() - own).min(1.5).sin() + self.shell_end_shift_mm() >= radius + rim;
+            at * libm::sin((self.half_span_rad() - own).min(1.5)) + self.shell_end_shift_mm() >= radius + rim;
         let deep = self.dowel_depth_mm() >= c.print.least_wall_mm;
         radial
             && within

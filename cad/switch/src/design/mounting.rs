@@ -144,8 +144,8 @@ impl Dimensions {
         let half = self.half_span_rad();
         let reach = self.support_radius_mm();
         let beside = m.rim_mm + m.hole_diameter_mm / 2.0;
-        let x = reach * half.min(std::f64::consts::FRAC_PI_2).sin() + self.shell_end_shift_mm() + beside;
-        let (low, high) = (self.inner_radius_mm() * half.cos(), reach);
+        let x = reach * libm::sin(half.min(std::f64::consts::FRAC_PI_2)) + self.shell_end_shift_mm() + beside;
+        let (low, high) = (self.inner_radius_mm() * libm::cos(half), reach);
         [[-x, low], [x, low], [-x, high], [x, high]].map(|[x, y]| Point2::new(x, y))
     }
 
@@ -153,7 +153,7 @@ impl Dimensions {
     fn link_bores(&self) -> [Point2; 2] {
         let m = &self.configuration().mount;
         let angle = m.bore_axis_deg.to_radians();
-        let along = Vector2::new(angle.cos(), angle.sin());
+        let along = Vector2::new(libm::cos(angle), libm::sin(angle));
         let middle = Point2::from(Vector2::new(-along.y, along.x) * m.bore_offset_mm);
         [middle - along * (m.bore_distance_mm / 2.0), middle + along * (m.bore_distance_mm / 2.0)]
     }

@@ -37,7 +37,7 @@ impl ModelError {
     pub fn applied(&self, curve: Curve, z: f64) -> (Curve, f64) {
         let side = if z > 0.0 { &self.up } else { &self.down };
         let threshold = if z > 0.0 { self.threshold_earlier } else { self.threshold_later };
-        (curve.scaled(side.iter().map(|sd| sd * z)), (-z * threshold).exp())
+        (curve.scaled(side.iter().map(|sd| sd * z)), libm::exp(-z * threshold))
     }
 }
 
@@ -79,13 +79,13 @@ pub trait Belief: Sync {
             let moved = self.curve(part, loads_n, &z)?;
             for (variance, (m, d)) in friction.iter_mut().zip(moved.friction_n.iter().zip(&middle.friction_n))
             {
-                *variance += if *d > 0.0 { (m / d).ln().powi(2) } else { 0.0 };
+                *variance += if *d > 0.0 { libm::log(m / d).powi(2) } else { 0.0 };
             }
-            threshold += (moved.switching().threshold_n / middle.switching().threshold_n).ln().powi(2);
+            threshold += libm::log(moved.switching().threshold_n / middle.switching().threshold_n).powi(2);
             all_moved.push(moved);
         }
         let beyond = |ratio: f64, constants: f64| {
-            let sd = if ratio.is_finite() && ratio > 1.0 { ratio.ln() / BAND_QUANTILE } else { 0.0 };
+            let sd = if ratio.is_finite() && ratio > 1.0 { libm::log(ratio) / BAND_QUANTILE } else { 0.0 };
             (sd * sd - constants).max(0.0).sqrt()
         };
         let side = |from: &[f64], to: &[f64]| -> Vec<f64> {
@@ -159,7 +159,7 @@ mod tests {
     }
 
     fn loads() -> Vec<f64> {
-        (0..20).map(|i| 3.0 * (50.0f64 / 3.0).powf(f64::from(i) / 19.0)).collect()
+        (0..20).map(|i| 3.0 * libm::pow(50.0f64 / 3.0, f64::from(i) / 19.0)).collect()
     }
 
     /// Constants and model error together are the band again.
@@ -170,9 +170,9 @@ mod tests {
         let Believed { error, middle, moved, .. } = belief.believed(&part, &loads).unwrap();
         let last = loads.len() - 1;
         let constants: f64 =
-            moved.iter().map(|m| (m.friction_n[last] / middle.friction_n[last]).ln().powi(2)).sum();
+            moved.iter().map(|m| libm::log(m.friction_n[last] / middle.friction_n[last]).powi(2)).sum();
         let sd = (constants + error.up[last].powi(2)).sqrt();
-        let band = (banded.band_high_n[last] / banded.friction_n[last]).ln() / BAND_QUANTILE;
+        let band = libm::log(banded.band_high_n[last] / banded.friction_n[last]) / BAND_QUANTILE;
         assert!((sd / band - 1.0).abs() < 0.01, "{sd} {band}");
     }
 

@@ -95,7 +95,7 @@ pub(super) fn blocked(
     let is_held = |m: &Move| {
         !space.varied.iter().any(|v| v.parameter == m.parameter) && !is_listed(trial.ask, m.parameter)
     };
-    let change = |m: &Move| (m.to / m.from).ln().abs();
+    let change = |m: &Move| libm::log(m.to / m.from).abs();
     moves.sort_by(|a, b| {
         (b.meets.cmp(&a.meets)).then_with(|| match a.meets {
             true => is_held(a).cmp(&is_held(b)).then(change(a).total_cmp(&change(b))),
@@ -144,7 +144,7 @@ fn together(trial: &Trial<'_>, nearest: &Configuration) -> Vec<Change> {
         return Vec::new();
     }
     let change = |p: &Parameter| Change { parameter: *p, from: p.value(nearest), to: p.value(&found) };
-    Parameter::ALL.iter().map(change).filter(|c| (c.to / c.from).ln().abs() > 0.005).collect()
+    Parameter::ALL.iter().map(change).filter(|c| libm::log(c.to / c.from).abs() > 0.005).collect()
 }
 
 /// Targets, and sizes where they are wishes, that `configuration` misses.
@@ -194,7 +194,7 @@ fn best_move(
         (least, most)
     };
     let tried = (0..=TRIED).filter_map(|i| {
-        let to = parameter.rounded(low * (high / low).powf(i as f64 / TRIED as f64), (low, high));
+        let to = parameter.rounded(low * libm::pow(high / low, i as f64 / TRIED as f64), (low, high));
         let mut moved = nearest.clone();
         parameter.set(&mut moved, to);
         if (to - from).abs() < 1e-9 || !is_predictable(&moved) {
@@ -206,7 +206,7 @@ fn best_move(
         printable.then_some((to, miss, moved))
     });
     // Of those that meet it, the one that changes least; otherwise the one that comes nearest.
-    let change = |to: f64| (to / from).ln().abs();
+    let change = |to: f64| libm::log(to / from).abs();
     let (to, miss, moved) =
         tried.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| change(a.0).total_cmp(&change(b.0))))?;
     let forbidden_by = forbidden(trial.ask, space, parameter, from, to)

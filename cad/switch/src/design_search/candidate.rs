@@ -45,7 +45,7 @@ impl<'a> Trial<'a> {
     pub(super) fn new(ask: &'a Ask, belief: &'a dyn Belief, range_n: (f64, f64), points: usize) -> Self {
         let (low, high) = ((range_n.0 / REACH).max(0.2), range_n.1 * REACH);
         let mut loads_n: Vec<f64> =
-            (0..LOADS).map(|i| low * (high / low).powf(i as f64 / (LOADS - 1) as f64)).collect();
+            (0..LOADS).map(|i| low * libm::pow(high / low, i as f64 / (LOADS - 1) as f64)).collect();
         loads_n.extend([range_n.0.max(low), range_n.1]);
         loads_n.extend(ask.targets.iter().filter_map(|t| match t.quantity {
             Quantity::Friction { load_n } => Some(load_n),
@@ -92,7 +92,7 @@ impl<'a> Trial<'a> {
     pub(super) fn shortfall(&self, configuration: &Configuration) -> Option<f64> {
         let targets = self.miss(&self.median(configuration)?);
         let sizes = self.missed_sizes(configuration);
-        Some(sizes.iter().map(|(_, size, most)| (size / most).ln()).fold(targets, f64::hypot))
+        Some(sizes.iter().map(|(_, size, most)| libm::log(size / most)).fold(targets, libm::hypot))
     }
 
     /// The part of a configuration on silicone; `None` if the tendon would not lie on all of its pins.
@@ -160,7 +160,7 @@ impl<'a> Trial<'a> {
     pub(super) fn miss(&self, values: &[f64]) -> f64 {
         let excess = |(t, v): (&Target, &f64)| {
             let outside = if t.quantity == Quantity::Threshold {
-                (self.range_n.0 / v).ln().max((v / self.range_n.1).ln()).max(0.0)
+                libm::log(self.range_n.0 / v).max(libm::log(v / self.range_n.1)).max(0.0)
             } else {
                 0.0
             };

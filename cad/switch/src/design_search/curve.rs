@@ -57,7 +57,7 @@ impl Curve {
         match share.iter().position(|s| *s >= 0.5) {
             Some(i) => {
                 let part = (0.5 - share[i - 1]) / (share[i] - share[i - 1]);
-                found(self.load_n[i - 1] * (self.load_n[i] / self.load_n[i - 1]).powf(part), true)
+                found(self.load_n[i - 1] * libm::pow(self.load_n[i] / self.load_n[i - 1], part), true)
             }
             None => found(heaviest * 0.5 / last.max(0.05), false),
         }
@@ -77,18 +77,18 @@ impl Curve {
     /// `d ln D / d ln F` around `load_n`.
     fn stiffness(&self, load_n: f64) -> f64 {
         let (first, last) = (self.load_n[0], self.load_n[self.load_n.len() - 1]);
-        let low = (load_n * (-STIFFNESS_HALF_SPAN).exp()).clamp(first, last);
-        let high = (load_n * STIFFNESS_HALF_SPAN.exp()).clamp(first, last);
+        let low = (load_n * libm::exp(-STIFFNESS_HALF_SPAN)).clamp(first, last);
+        let high = (load_n * libm::exp(STIFFNESS_HALF_SPAN)).clamp(first, last);
         if high <= low * 1.0001 {
             return 1.0;
         }
-        (self.friction_at(high) / self.friction_at(low)).ln() / (high / low).ln()
+        libm::log(self.friction_at(high) / self.friction_at(low)) / libm::log(high / low)
     }
 
     /// The same curve, its friction at each load times `exp(error)`.
     #[must_use]
     pub fn scaled(mut self, errors: impl Iterator<Item = f64>) -> Self {
-        self.friction_n.iter_mut().zip(errors).for_each(|(d, error)| *d *= error.exp());
+        self.friction_n.iter_mut().zip(errors).for_each(|(d, error)| *d *= libm::exp(error));
         self
     }
 }
@@ -104,7 +104,7 @@ fn interpolate(loads_n: &[f64], column: &[f64], load_n: f64) -> f64 {
     if load_n == l1 {
         return column[i];
     }
-    c0 * (c1 / c0).powf((load_n / l0).ln() / (l1 / l0).ln())
+    c0 * libm::pow(c1 / c0, libm::log(load_n / l0) / libm::log(l1 / l0))
 }
 
 #[cfg(test)]
@@ -114,7 +114,7 @@ mod tests {
     fn curve() -> Curve {
         let load_n: Vec<f64> = (0..40).map(|i| 2.0 * 1.1f64.powi(i)).collect();
         Curve {
-            friction_n: load_n.iter().map(|l| 0.01 * l.powf(1.5)).collect(),
+            friction_n: load_n.iter().map(|l| 0.01 * libm::pow(*l, 1.5)).collect(),
             silicone_share: load_n.iter().map(|l| l / (l + 20.0)).collect(),
             load_n,
         }
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn quantities_of_a_power_law() {
         let c = curve();
-        assert!((c.friction_at(33.3) - 0.01 * 33.3f64.powf(1.5)).abs() < 1e-9);
+        assert!((c.friction_at(33.3) - 0.01 * libm::pow(33.3f64, 1.5)).abs() < 1e-9);
         let switching = c.switching();
         assert!(switching.is_found && (switching.threshold_n - 20.0).abs() < 0.05, "{switching:?}");
         assert!((c.value(Quantity::Stiffness, (2.0, 50.0)) - 1.5).abs() < 1e-6);

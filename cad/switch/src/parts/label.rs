@@ -63,7 +63,7 @@ impl Zone {
             let at =
                 (middle.powi(2) - reach_mm.powi(2)).max(0.0).sqrt().clamp(inner_mm, outer_mm.max(inner_mm));
             let cosine = (at.powi(2) + middle.powi(2) - reach_mm.powi(2)) / (2.0 * at * middle);
-            let beside = cosine.clamp(-1.0, 1.0).acos();
+            let beside = libm::acos(cosine.clamp(-1.0, 1.0));
             angles.into_iter().filter(move |_| cosine < 1.0).map(move |a| (a - beside, a + beside))
         };
         let dowel = design.dowel_hole_radius_mm().unwrap_or(0.0);
@@ -254,7 +254,7 @@ fn oriented(contour: Contour, sense: Orientation) -> Contour {
 
 /// Drops points that nearly coincide with their neighbour.
 fn without_near_duplicates(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < MERGE_MM;
+    let near = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]) < MERGE_MM;
     let mut kept: Vec<[f64; 2]> = Vec::with_capacity(points.len());
     for p in points {
         if kept.last().is_none_or(|last| !near(*last, *p)) {

@@ -184,7 +184,7 @@ impl Part {
             thinnest.thickness_mm,
             2.0 * line_mm,
             at.coords.norm(),
-            at.x.atan2(at.y).to_degrees(),
+            libm::atan2(at.x, at.y).to_degrees(),
             thinnest.from_mm,
             thinnest.to_mm,
             match places.len() {

@@ -63,7 +63,7 @@ impl Sector {
 
     /// The point of an end face at `radius_mm`.
     pub(super) fn corner(&self, radius_mm: f64, end: End) -> Point2 {
-        let angle = self.half_span_rad + (self.end_shift_mm / radius_mm).clamp(-1.0, 1.0).asin();
+        let angle = self.half_span_rad + libm::asin((self.end_shift_mm / radius_mm).clamp(-1.0, 1.0));
         polar(radius_mm, if end == End::Positive { angle } else { -angle })
     }
 
@@ -210,7 +210,7 @@ pub(super) fn grooved_face(
 /// Half of the angle that a groove takes out of the circle it is centred on: `2 asin(g / 2R)`
 /// (cad/doc/dimensions.md, "Sections").
 pub(super) fn groove_half_angle_rad(groove_radius_mm: f64, radius_mm: f64) -> f64 {
-    2.0 * (groove_radius_mm / (2.0 * radius_mm)).asin()
+    2.0 * libm::asin(groove_radius_mm / (2.0 * radius_mm))
 }
 
 #[cfg(test)]

@@ -84,8 +84,8 @@ pub(super) fn tendon(design: &Design) -> Part {
     let mut below = None;
     for k in 0..SIDES / 2 {
         let angle = (f64::from(k) + 0.5) / f64::from(SIDES) * TAU;
-        let outline = strip(&discs, &arcs, leads, radius * angle.sin());
-        let ring = solid.ring(outline, -radius * angle.cos());
+        let outline = strip(&discs, &arcs, leads, radius * libm::sin(angle));
+        let ring = solid.ring(outline, -radius * libm::cos(angle));
         match below {
             None => solid.cap(Facing::Down, ring, &[]),
             Some(below) => solid.wall(below, ring),
@@ -101,8 +101,8 @@ pub(super) fn tendon(design: &Design) -> Part {
 
 /// What the string covers if it is twice `half_mm` wide, counter-clockwise.
 fn strip(discs: &[Disc], arcs: &[HullArc], leads_mm: [f64; 2], half_mm: f64) -> Contour {
-    let direction = |angle: f64| Vector2::new(angle.cos(), angle.sin());
-    let onward = |angle: f64| Vector2::new(-angle.sin(), angle.cos());
+    let direction = |angle: f64| Vector2::new(libm::cos(angle), libm::sin(angle));
+    let onward = |angle: f64| Vector2::new(-libm::sin(angle), libm::cos(angle));
     let at = |arc: &HullArc, angle: f64, by: f64| {
         discs[arc.disc].centre + direction(angle) * (discs[arc.disc].radius_mm + by)
     };

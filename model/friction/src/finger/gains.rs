@@ -80,7 +80,8 @@ impl Tensions {
             low: share(exponent * low),
             high: share(exponent * high),
         };
-        let (holding, pulling) = ((load_n / self.eccentric_n).ln(), (self.concentric_n / load_n).ln());
+        let (holding, pulling) =
+            (libm::log(load_n / self.eccentric_n), libm::log(self.concentric_n / load_n));
         Some(FingerPoint {
             load_n,
             holding_n: self.eccentric_n,
@@ -90,9 +91,9 @@ impl Tensions {
                 low: 2.0 * self.low_n / load_n,
                 high: 2.0 * self.high_n / load_n,
             },
-            extra_holding: scaled(holding, f64::exp_m1, load_n / self.eccentric_n - 1.0),
-            motor_mass_saved: scaled(holding, |x| -(-x).exp_m1(), 1.0 - self.eccentric_n / load_n),
-            concentric_penalty: scaled(pulling, f64::exp_m1, self.concentric_n / load_n - 1.0),
+            extra_holding: scaled(holding, libm::expm1, load_n / self.eccentric_n - 1.0),
+            motor_mass_saved: scaled(holding, |x| -libm::expm1(-x), 1.0 - self.eccentric_n / load_n),
+            concentric_penalty: scaled(pulling, libm::expm1, self.concentric_n / load_n - 1.0),
         })
     }
 }
@@ -174,11 +175,11 @@ mod tests {
             let exponent = |d: f64| (d / point.load_n).asinh();
             let (x, low) = (exponent(curve.friction_n[i + 1]), exponent(curve.band_low_n[i + 1]));
             assert!((x / (published::MU_SILICONE * wrap) - 1.0).abs() < 0.2);
-            assert!((point.force_difference.value - 2.0 * x.sinh()).abs() < 1e-12);
-            assert!((point.extra_holding.value - x.exp_m1()).abs() < 1e-12);
-            assert!((point.concentric_penalty.value - x.exp_m1()).abs() < 1e-12);
-            assert!((point.motor_mass_saved.value + (-x).exp_m1()).abs() < 1e-12);
-            assert!((point.extra_holding.low - low.exp_m1()).abs() < 1e-9);
+            assert!((point.force_difference.value - 2.0 * libm::sinh(x)).abs() < 1e-12);
+            assert!((point.extra_holding.value - libm::expm1(x)).abs() < 1e-12);
+            assert!((point.concentric_penalty.value - libm::expm1(x)).abs() < 1e-12);
+            assert!((point.motor_mass_saved.value + libm::expm1(-x)).abs() < 1e-12);
+            assert!((point.extra_holding.low - libm::expm1(low)).abs() < 1e-9);
             assert!(
                 (point.extra_holding.value - extra_holding_of(point.force_difference.value)).abs() < 1e-12
             );

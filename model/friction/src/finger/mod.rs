@@ -28,5 +28,5 @@ pub use motor::MotorSizing;
 /// assert_eq!(extra, ["4.6 %", "6.2 %"], "half of 9 to 12 %");
 /// ```
 pub fn extra_holding_of(force_difference: f64) -> f64 {
-    (force_difference / 2.0).asinh().exp_m1()
+    libm::expm1((force_difference / 2.0).asinh())
 }

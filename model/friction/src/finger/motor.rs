@@ -65,9 +65,9 @@ mod tests {
             Contact::new(Substrate::Silicone, PinPattern::default(), published::wrap_angle_rad()).unwrap();
         let loads: Vec<f64> = (1..=100).map(|i| 0.5 * f64::from(i)).collect();
         let motor = MotorSizing::of(&finger(&predict(&contact, &loads))).unwrap();
-        let x = (motor.holds_n / motor.tension_n).ln();
-        assert!((motor.pulls_n - motor.holds_n * (-2.0 * x).exp()).abs() < 1e-9);
-        assert!((motor.mass_saved.value + (-x).exp_m1()).abs() < 1e-12);
+        let x = libm::log(motor.holds_n / motor.tension_n);
+        assert!((motor.pulls_n - motor.holds_n * libm::exp(-2.0 * x)).abs() < 1e-9);
+        assert!((motor.mass_saved.value + libm::expm1(-x)).abs() < 1e-12);
         assert_eq!(MotorSizing::of(&[]), None);
     }
 }

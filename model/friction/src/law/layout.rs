@@ -49,12 +49,12 @@ fn layout_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, Law
     let law = law_of(contact)?;
     let factor = 1.0 + 2.0 * LayoutLaw::UNCERTAINTY;
     let (early, late) = (law.with_half_load_scaled(1.0 / factor), law.with_half_load_scaled(factor));
-    let log = |law: &LayoutLaw, load: f64| law.state(load, contact.wrap_rad()).friction_n.ln();
+    let log = |law: &LayoutLaw, load: f64| libm::log(law.state(load, contact.wrap_rad()).friction_n);
     let side = |moved: &LayoutLaw, sign: f64| {
         loads_n.iter().map(|&load| (sign * (log(moved, load) - log(&law, load))).max(0.0)).collect()
     };
     Ok(Uncertain {
-        friction_n: loads_n.iter().map(|&load| log(&law, load).exp()).collect(),
+        friction_n: loads_n.iter().map(|&load| libm::exp(log(&law, load))).collect(),
         sources: vec![
             BandSource { name: "half load".to_owned(), down: side(&late, -1.0), up: side(&early, 1.0) },
             BandSource::even(
@@ -104,11 +104,11 @@ impl ThresholdRule {
             let (from, to) = layout.reduced_load;
             let half_load = light + (layout.threshold - from) / (to - from) * (heavy - light);
             let unit = (layout.pins as f64 / (published::wrap_angle_rad() * layout.pitch_rad())).sqrt();
-            log_scale += (half_load / unit).ln();
+            log_scale += libm::log(half_load / unit);
             steepness += (to - from) / (heavy - light) * half_load;
         }
         let count = layouts.len() as f64;
-        (count > 0.0).then(|| Self { scale_n: (log_scale / count).exp(), steepness: steepness / count })
+        (count > 0.0).then(|| Self { scale_n: libm::exp(log_scale / count), steepness: steepness / count })
     }
 }
 
@@ -164,7 +164,7 @@ impl LayoutLaw {
 
 impl Switch for LayoutLaw {
     fn switched(&self, load_n: f64) -> f64 {
-        1.0 / (1.0 + (-self.steepness * (load_n / self.half_load_n - 1.0)).exp())
+        1.0 / (1.0 + libm::exp(-self.steepness * (load_n / self.half_load_n - 1.0)))
     }
 
     fn weight(&self) -> f64 {

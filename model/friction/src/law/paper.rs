@@ -71,15 +71,15 @@ fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawE
     let misses: Vec<f64> = match (contact.substrate(), contact.pins().count()) {
         (Substrate::Silicone, 0) => {
             let model = capstan_friction_n(heaviest, published::MU_SILICONE * wrap);
-            vec![(model / published::SILICONE_ALONE_MAX_N).ln()]
+            vec![libm::log(model / published::SILICONE_ALONE_MAX_N)]
         }
         (Substrate::Silicone, _) => LAYOUTS
             .iter()
-            .map(|l| (PaperSwitch::new(*l).state(heaviest, wrap).friction_n / l.device_max_n).ln())
+            .map(|l| libm::log(PaperSwitch::new(*l).state(heaviest, wrap).friction_n / l.device_max_n))
             .collect(),
         (Substrate::Abs, _) => {
             let model = capstan_friction_n(heaviest, published::MU_PINS * wrap);
-            LAYOUTS.iter().map(|l| (model / l.pins_max_n).ln()).collect()
+            LAYOUTS.iter().map(|l| libm::log(model / l.pins_max_n)).collect()
         }
     };
     let count = misses.len() as f64;

@@ -27,11 +27,19 @@ impl Constants {
 
     /// Natural logarithms, in which they are fitted: all are positive, and their errors are relative.
     pub fn logarithms(&self) -> Vector3<f64> {
-        Vector3::new(self.kappa_per_sqrt_n.ln(), self.mu_silicone.ln(), self.flush_force_n.ln())
+        Vector3::new(
+            libm::log(self.kappa_per_sqrt_n),
+            libm::log(self.mu_silicone),
+            libm::log(self.flush_force_n),
+        )
     }
 
     /// The constants of these logarithms.
     pub fn from_logarithms(at: &Vector3<f64>) -> Self {
-        Self { kappa_per_sqrt_n: at[0].exp(), mu_silicone: at[1].exp(), flush_force_n: at[2].exp() }
+        Self {
+            kappa_per_sqrt_n: libm::exp(at[0]),
+            mu_silicone: libm::exp(at[1]),
+            flush_force_n: libm::exp(at[2]),
+        }
     }
 }

@@ -177,7 +177,7 @@ impl PhysicsSwitch {
                     Vector3::new(
                         point.friction_per_exponent(|x| x.pins) / d,
                         point.friction_per_exponent(|x| x.silicone) / d,
-                        (stiffer.state.friction_n / d).ln() / STEP,
+                        libm::log(stiffer.state.friction_n / d) / STEP,
                     )
                 } else {
                     Vector3::zeros()

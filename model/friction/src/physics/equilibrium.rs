@@ -84,7 +84,7 @@ impl Supports<'_> {
         }
         // Both ends point along the tangents at the ends of the wrap, from which the nodes beyond turn away: a free string
         // with u' = 0 at the end of the wrap has u' = tan(m) (1 - u/Rc) at m beyond it.
-        let tilt = grid.reach_rad.tan();
+        let tilt = libm::tan(grid.reach_rad);
         for end in [0, n.saturating_sub(1)] {
             load[end] += tension_n[end] * tilt;
             a.diagonal[end] += tension_n[end] * tilt / rc;

@@ -137,7 +137,7 @@ impl Hypothesis {
         for contact_radius_mm in RADII_MM {
             let other = Self { bed: Bed { contact_radius_mm, ..self.bed }, ..*self };
             let chi_squared: f64 = other.at_radius()?.compared.iter().map(|c| c.chi_squared).sum();
-            likelihoods.push((-chi_squared / 2.0).exp());
+            likelihoods.push(libm::exp(-chi_squared / 2.0));
         }
         let mean = likelihoods.iter().sum::<f64>() / likelihoods.len() as f64;
         Ok(HypothesisFinding {
@@ -145,7 +145,7 @@ impl Hypothesis {
             constants: here.constants,
             rms: here.rms,
             compared: here.compared,
-            log_likelihood: mean.max(f64::MIN_POSITIVE).ln(),
+            log_likelihood: libm::log(mean.max(f64::MIN_POSITIVE)),
         })
     }
 
@@ -194,7 +194,7 @@ impl Hypothesis {
         fact(
             "three-single begins to switch after three-double",
             format!("{single:.1} N after {double:.1} N"),
-            ((single / double).ln() - ORDER_RATIO.ln()) / ORDER_SD,
+            (libm::log(single / double) - libm::log(ORDER_RATIO)) / ORDER_SD,
         );
         Ok(AtRadius { constants, rms: fitted.rms, compared })
     }
@@ -208,7 +208,7 @@ fn percent(share: f64) -> String {
 /// beforehand.
 pub fn weights(findings: &[HypothesisFinding]) -> Vec<f64> {
     let best = findings.iter().map(|f| f.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
-    let raw: Vec<f64> = findings.iter().map(|f| (f.log_likelihood - best).exp()).collect();
+    let raw: Vec<f64> = findings.iter().map(|f| libm::exp(f.log_likelihood - best)).collect();
     let sum: f64 = raw.iter().sum();
     raw.iter().map(|w| w / sum).collect()
 }

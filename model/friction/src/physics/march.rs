@@ -114,7 +114,7 @@ fn march(tendon: Slide<'_>, tension_n: &[f64], shape: Equilibrium) -> Result<(Sl
             next += 1;
         }
         // The tension at a node is that in the middle of what it carries.
-        let here = load_n * (direction.sign() * (log_ratio + rise / 2.0)).exp();
+        let here = load_n * libm::exp(direction.sign() * (log_ratio + rise / 2.0));
         log_ratio += rise;
         change = change.max((here / t - 1.0).abs());
         marched.push(here);
@@ -161,7 +161,7 @@ pub(super) fn polygon_turns_rad(pins_rad: &[f64], wrap_rad: f64) -> Vec<f64> {
 pub(super) fn pins_alone_exponent(turns_rad: &[f64], kappa: f64, load_n: f64, direction: Direction) -> f64 {
     turns_rad.iter().fold(0.0, |x, theta| {
         // T in the middle of the pin, by two steps of the fixed point; the rise is a few percent.
-        let middle = |rise: f64| load_n * (direction.sign() * (x + rise / 2.0)).exp();
+        let middle = |rise: f64| load_n * libm::exp(direction.sign() * (x + rise / 2.0));
         let plough = |t: f64| kappa * (t * theta).sqrt() * theta;
         let first = plough(middle(0.0));
         x + plough(middle(plough(middle(first))))

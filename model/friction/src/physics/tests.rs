@@ -75,7 +75,7 @@ fn one_uniform_material_gives_the_capstan() {
         let sliding = slid(supports, &constants, wrap, 30.0, direction);
         assert!((sliding.silicone_exponent - constants.mu_silicone * wrap).abs() < 1e-9);
         let bare = PhysicsSwitch::new(&device(PinPattern::default()), constants).states(&[30.0]).unwrap();
-        assert!((bare[0].concentric_n - 30.0 * (constants.mu_silicone * wrap).exp()).abs() < 1e-9);
+        assert!((bare[0].concentric_n - 30.0 * libm::exp(constants.mu_silicone * wrap)).abs() < 1e-9);
     }
 }
 
@@ -153,7 +153,7 @@ fn bands_cover_simulated_rigs() {
     let other = device(PinPattern::even(4, 0.25)).with_bed(bed);
     let (mut held, mut cases) = (0, 0);
     for _ in 0..40 {
-        let mut jitter = |sd: f64| (sd * random.sample::<f64, _>(StandardNormal)).exp();
+        let mut jitter = |sd: f64| libm::exp(sd * random.sample::<f64, _>(StandardNormal));
         let truth = Constants {
             kappa_per_sqrt_n: 0.0237 * jitter(0.2),
             mu_silicone: 0.234 * jitter(0.1),
@@ -175,7 +175,9 @@ fn bands_cover_simulated_rigs() {
             let measured = PhysicsSwitch::new(&other, truth).friction_n(load).unwrap() * jitter(0.05);
             let at = found.constants.logarithms();
             let log_friction = |at: Vector3<f64>| {
-                PhysicsSwitch::new(&other, Constants::from_logarithms(&at)).friction_n(load).unwrap().ln()
+                libm::log(
+                    PhysicsSwitch::new(&other, Constants::from_logarithms(&at)).friction_n(load).unwrap(),
+                )
             };
             let base = log_friction(at);
             let slope = Vector3::from_fn(|k, _| {
@@ -184,7 +186,7 @@ fn bands_cover_simulated_rigs() {
                 (log_friction(moved) - base) / 1e-3
             });
             let variance = (slope.transpose() * covariance * slope)[(0, 0)] + found.scatter.powi(2);
-            held += usize::from((measured.ln() - base).abs() <= 2.776 * variance.sqrt());
+            held += usize::from((libm::log(measured) - base).abs() <= 2.776 * variance.sqrt());
             cases += 1;
         }
     }
@@ -203,7 +205,7 @@ fn bands_follow_the_sensitivities() {
     for (i, load) in loads.iter().enumerate() {
         let at = Constants::published().logarithms();
         let log_friction = |at: &Vector3<f64>| {
-            PhysicsSwitch::new(&contact, Constants::from_logarithms(at)).friction_n(*load).unwrap().ln()
+            libm::log(PhysicsSwitch::new(&contact, Constants::from_logarithms(at)).friction_n(*load).unwrap())
         };
         let slope = Vector3::from_fn(|k, _| {
             let mut moved = at;
@@ -220,7 +222,7 @@ fn bands_follow_the_sensitivities() {
 fn maxima_left_out_lie_inside_their_bands() {
     let half = 2.776 * PUBLISHED_FIT.left_out_rms;
     for (name, error) in leave_one_condition_out(&Bed::published()).unwrap() {
-        assert!(error.ln_1p().abs() < 0.75 * half, "{name}: {error} of {half}");
+        assert!(libm::log1p(error).abs() < 0.75 * half, "{name}: {error} of {half}");
     }
 }
 
@@ -287,7 +289,7 @@ proptest! {
                 let pressed: f64 =
                     (0..grid.len()).map(|i| found.tension_n[i] * grid.share_mm[i] / rc * off(i)).sum();
                 let pulled: f64 = [0, grid.len() - 1]
-                    .map(|end| found.tension_n[end] * grid.reach_rad.tan() * off(end))
+                    .map(|end| found.tension_n[end] * libm::tan(grid.reach_rad) * off(end))
                     .iter()
                     .sum();
                 prop_assert!((carried / (pressed - pulled) - 1.0).abs() < 1e-4, "{carried} N carry {pressed} - {pulled} N");
@@ -374,12 +376,12 @@ proptest! {
         let friction = |factor: f64| {
             PhysicsSwitch::new(&moved(&angles, wrap, bed, which, factor), Constants::published()).friction_n(load)
         };
-        let whole = (friction(1.01)? / friction(1.0)?).ln().abs();
+        let whole = libm::log(friction(1.01)? / friction(1.0)?).abs();
         if whole > 0.02 {
             let mut before = friction(1.0)?;
             for part in 1..=20 {
-                let after = friction(1.01f64.powf(f64::from(part) / 20.0))?;
-                prop_assert!((after / before).ln().abs() < 0.25 * whole, "a jump at part {part} of {whole}");
+                let after = friction(libm::pow(1.01f64, f64::from(part) / 20.0))?;
+                prop_assert!(libm::log(after / before).abs() < 0.25 * whole, "a jump at part {part} of {whole}");
                 before = after;
             }
         }

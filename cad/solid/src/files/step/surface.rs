@@ -75,7 +75,7 @@ pub(super) fn wall_surface(
 fn cone(out: &mut Writer, (a, low): (&Arc, f64), (b, high): (&Arc, f64)) -> Id {
     let widens_upwards = b.radius_mm > a.radius_mm;
     let (narrow, z_mm, up) = if widens_upwards { (a, low, 1.0) } else { (b, high, -1.0) };
-    let half_angle = ((b.radius_mm - a.radius_mm).abs() / (high - low)).atan();
+    let half_angle = libm::atan((b.radius_mm - a.radius_mm).abs() / (high - low));
     let frame = out.placement(raised(narrow.centre, z_mm), Vector3::z() * up, Vector3::x());
     out.add(&format!("CONICAL_SURFACE('',{frame},{},{})", real(narrow.radius_mm), real(half_angle)))
 }
@@ -89,7 +89,7 @@ fn arc_poles(arc: &Arc, z_mm: f64, pieces: usize) -> Vec<(Point3, f64)> {
             if k % 2 == 0 {
                 (raised(arc.point_at(fraction, arc.radius_mm), z_mm), 1.0)
             } else {
-                (raised(arc.point_at(fraction, arc.radius_mm / half.cos()), z_mm), half.cos())
+                (raised(arc.point_at(fraction, arc.radius_mm / libm::cos(half)), z_mm), libm::cos(half))
             }
         })
         .collect()

@@ -79,8 +79,8 @@ impl Ends {
     }
 
     fn assess_gap(&self, half_span_rad: f64, changes: &'static [Change]) -> Assessment {
-        let half_rad = half_span_rad + (self.shift_mm / self.inner_mm).asin();
-        let most_rad = std::f64::consts::PI - (MIN_GAP_MM / 2.0 / self.inner_mm).min(1.0).asin();
+        let half_rad = half_span_rad + libm::asin(self.shift_mm / self.inner_mm);
+        let most_rad = std::f64::consts::PI - libm::asin((MIN_GAP_MM / 2.0 / self.inner_mm).min(1.0));
         require(half_rad <= most_rad, || {
             (format!("lets the ends meet behind the axis; {MIN_GAP_MM} mm must stay between them"), changes)
         })
@@ -198,11 +198,11 @@ fn gang_sides_mm(i: &Inspection<'_>) -> [f64; 2] {
     let (outer, half) = (i.contact_radius_mm() * scale + around, i.half_span_rad());
     let at_end = c.segment.end_margin_mm * scale + around;
     let more = c.mould.layers as f64 - 1.0;
-    let wide = 2.0 * outer * half.min(std::f64::consts::FRAC_PI_2).sin() + 2.0 * at_end;
-    let tall = outer - (c.shell.outer_radius_mm * scale - around) * half.cos() + at_end;
+    let wide = 2.0 * outer * libm::sin(half.min(std::f64::consts::FRAC_PI_2)) + 2.0 * at_end;
+    let tall = outer - (c.shell.outer_radius_mm * scale - around) * libm::cos(half) + at_end;
     let thick = c.silicone.thickness_mm * scale + 2.0 * around;
     if i.gang_nests() {
-        [wide, tall + more * (thick / half.cos()).min(tall)]
+        [wide, tall + more * (thick / libm::cos(half)).min(tall)]
     } else {
         [wide + more * wide, tall]
     }
@@ -254,11 +254,11 @@ fn keys_fit(i: &Inspection<'_>, diameter_mm: f64) -> bool {
     let radius = i.contact_radius_mm() * scale + keys::ring_wall_mm(&c.mould, diameter_mm) / 2.0;
     let wall = least_wall_mm(c, 1.0);
     let hole = diameter_mm / 2.0 + c.mould.clearance_mm;
-    let chord = |share: f64| 2.0 * radius * (share * i.half_span_rad() / 2.0).min(1.5).sin();
+    let chord = |share: f64| 2.0 * radius * libm::sin((share * i.half_span_rad() / 2.0).min(1.5));
     let between = keys::PLACES.windows(2).all(|two| chord(two[1] - two[0]) >= 2.0 * hole + wall);
     // The ends of the ring lie outside the radial planes.
     let shift = c.segment.end_margin_mm * scale + c.mould.wall_mm;
-    let at_end = |place: &f64| radius * ((1.0 - place.abs()) * i.half_span_rad()).min(1.5).sin() + shift;
+    let at_end = |place: &f64| radius * libm::sin(((1.0 - place.abs()) * i.half_span_rad()).min(1.5)) + shift;
     between && keys::PLACES.iter().all(|place| at_end(place) >= hole + wall)
 }
 

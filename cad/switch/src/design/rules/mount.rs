@@ -78,7 +78,7 @@ fn beside_stop_mm(hole: &Hole, stop: &SheathStop) -> f64 {
     let from = hole.centre - stop.start;
     let (along, across) = (from.dot(&stop.along), from.perp(&stop.along).abs());
     let out = [(along - stop.length_mm).max(-along).max(0.0), (across - stop.half_width_mm).max(0.0)];
-    out[0].hypot(out[1]) - hole.radius_mm
+    libm::hypot(out[0], out[1]) - hole.radius_mm
 }
 
 fn holes_clear_each_other(i: &Inspection<'_>) -> Assessment {

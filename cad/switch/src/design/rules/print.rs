@@ -63,7 +63,7 @@ fn parts_on_bed(i: &Inspection<'_>) -> Assessment {
         support => ("the supports", support),
     };
     let half = i.half_span_rad().min(std::f64::consts::FRAC_PI_2);
-    let width = 2.0 * reach * half.sin() + 2.0 * (i.shell_end_shift_mm() + c.mould.wall_mm);
+    let width = 2.0 * reach * libm::sin(half) + 2.0 * (i.shell_end_shift_mm() + c.mould.wall_mm);
     require(2.0 * reach <= c.print.bed_mm || width <= c.print.bed_mm, || {
         (
             format!("makes {part} {:.1} mm wide, on a bed of {} mm", width.min(2.0 * reach), c.print.bed_mm),

@@ -68,7 +68,7 @@ fn land(i: &Inspection<'_>) -> Assessment {
 /// The wall between the last groove and the end of the sector is half a land, plus the margin.
 fn end_walls(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
-    let left = c.shell.outer_radius_mm * i.half_pitch_rad().sin() + c.segment.end_margin_mm
+    let left = c.shell.outer_radius_mm * libm::sin(i.half_pitch_rad()) + c.segment.end_margin_mm
         - c.segment.groove_radius_mm;
     let least = least_wall_mm(c, 0.5);
     require(left >= least, || {

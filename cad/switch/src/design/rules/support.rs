@@ -50,7 +50,7 @@ fn slots_in_plate(i: &Inspection<'_>) -> Assessment {
 fn land_between_slots(i: &Inspection<'_>) -> Assessment {
     let (slot, wall) = (i.slot(), least_wall_mm(i.configuration(), 1.0));
     let half = slot.width_mm / 2.0;
-    let land = 2.0 * slot.inner_edge_mm() * (i.pitch_rad() / 2.0).sin() - 2.0 * half;
+    let land = 2.0 * slot.inner_edge_mm() * libm::sin(i.pitch_rad() / 2.0) - 2.0 * half;
     require(i.configuration().segment.grooves < 2 || land >= wall, || {
         (
             format!("leaves {land:.3} mm between neighbouring slots; {wall:.3} mm is the least"),
@@ -72,7 +72,7 @@ fn wall_beyond_slots(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     let slot = i.slot();
     let half = slot.width_mm / 2.0;
-    let end = slot.inner_edge_mm() * i.half_pitch_rad().sin() + i.shell_end_shift_mm() - half;
+    let end = slot.inner_edge_mm() * libm::sin(i.half_pitch_rad()) + i.shell_end_shift_mm() - half;
     let least = least_wall_mm(c, 0.5);
     require(end >= least, || {
         (
@@ -114,7 +114,8 @@ fn corner_fits(i: &Inspection<'_>, radius_mm: f64) -> bool {
     let c = i.configuration();
     let (half_span, shift) = (i.half_span_rad(), i.shell_end_shift_mm());
     // In the frame of an end: along its radial plane, and outwards across it. A slot has round ends.
-    let at = |mm: f64, rad: f64| [mm * (half_span - rad.abs()).cos(), -mm * (half_span - rad.abs()).sin()];
+    let at =
+        |mm: f64, rad: f64| [mm * libm::cos(half_span - rad.abs()), -mm * libm::sin(half_span - rad.abs())];
     let (across, reach) = (shift - radius_mm, i.support_radius_mm() - radius_mm);
     if reach <= across.abs() {
         return false;
@@ -130,10 +131,10 @@ fn corner_fits(i: &Inspection<'_>, radius_mm: f64) -> bool {
         let from = [point[0] - centre[0], point[1] - centre[1]];
         // Only beyond the centre both outwards and along the end is the outline the rounded corner.
         let is_beyond = from[0] > 0.0 && from[1] * centre[0] > from[0] * centre[1];
-        !is_beyond || from[0].hypot(from[1]) + room_mm <= radius_mm
+        !is_beyond || libm::hypot(from[0], from[1]) + room_mm <= radius_mm
     };
-    let ends_outside = centre[0].hypot(shift) >= i.inner_radius_mm() + least_wall_mm(c, 1.0);
-    let before_middle = half_span + (across / reach).asin() > 0.0;
+    let ends_outside = libm::hypot(centre[0], shift) >= i.inner_radius_mm() + least_wall_mm(c, 1.0);
+    let before_middle = half_span + libm::asin(across / reach) > 0.0;
     ends_outside && before_middle && slots.chain(holes).all(is_inside)
 }
 
@@ -250,10 +251,10 @@ fn holes_apart(i: &Inspection<'_>) -> Assessment {
     let (diameter, edge) = (c.fasteners.hole_diameter_mm, hole_edge_mm(i));
     let needed = diameter + edge;
     let angles = i.fastener_angles_rad();
-    let apart = |w: &[f64]| 2.0 * i.fastener_radius_mm() * ((w[1] - w[0]) / 2.0).sin();
+    let apart = |w: &[f64]| 2.0 * i.fastener_radius_mm() * libm::sin((w[1] - w[0]) / 2.0);
     let crowded = angles.windows(2).any(|w| w[1] <= w[0] || apart(w) < needed);
     let single = c.fasteners.count == 1
-        && i.fastener_radius_mm() * i.half_span_rad().min(1.5).sin() < needed / 2.0 + edge;
+        && i.fastener_radius_mm() * libm::sin(i.half_span_rad().min(1.5)) < needed / 2.0 + edge;
     require(!crowded && !single, || {
         (
             format!(

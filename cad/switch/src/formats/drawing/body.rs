@@ -52,7 +52,7 @@ impl Curve {
             Self::Line(a, b) => [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share],
             Self::Arc(c, r, start, sweep) => {
                 let angle = start + sweep * share;
-                [c[0] + r * angle.cos(), c[1] + r * angle.sin()]
+                [c[0] + r * libm::cos(angle), c[1] + r * libm::sin(angle)]
             }
         }
     }
@@ -62,12 +62,12 @@ impl Curve {
         match *self {
             Self::Line(a, b) => {
                 let d = [b[0] - a[0], b[1] - a[1]];
-                let length = d[0].hypot(d[1]).max(f64::MIN_POSITIVE);
+                let length = libm::hypot(d[0], d[1]).max(f64::MIN_POSITIVE);
                 [d[0] / length, d[1] / length]
             }
             Self::Arc(_, _, start, sweep) => {
                 let angle = start + sweep * share;
-                [-angle.sin() * sweep.signum(), angle.cos() * sweep.signum()]
+                [-libm::sin(angle) * sweep.signum(), libm::cos(angle) * sweep.signum()]
             }
         }
     }
@@ -132,7 +132,7 @@ impl Run {
                     Curve::Line(..) => Path::Line(a[other], (b[other] - a[other]) / (b[axis] - a[axis])),
                     Curve::Arc(c, r, start, sweep) => {
                         let middle = start + sweep * f64::midpoint(pair[0], pair[1]);
-                        let side = if axis == 0 { middle.sin() } else { middle.cos() };
+                        let side = if axis == 0 { libm::sin(middle) } else { libm::cos(middle) };
                         Path::Arc([c[axis], c[other]], *r, side.signum())
                     }
                 };
@@ -237,7 +237,7 @@ fn seen_contour(contour: &Contour, flipped: bool, side: Side) -> Vec<Curve> {
                 Edge::Arc(arc) => {
                     let centre = turn(arc.centre.x, arc.centre.y);
                     let start = turn(from.x, from.y);
-                    let angle = (start[1] - centre[1]).atan2(start[0] - centre[0]);
+                    let angle = libm::atan2(start[1] - centre[1], start[0] - centre[0]);
                     // A view keeps the sense of arcs unless it mirrors the plan.
                     let mirrors = flipped != (side == Side::Right);
                     let sweep = if mirrors { -arc.sweep_rad } else { arc.sweep_rad };

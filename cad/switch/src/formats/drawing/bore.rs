@@ -33,7 +33,7 @@ impl Stage {
     /// Half of its greatest width, mm: of a hexagon to a corner.
     fn reach_mm(&self) -> f64 {
         let widest = self.levels.iter().map(|l| l.1).fold(0.0, f64::max);
-        if self.is_hexagon { widest / FRAC_PI_6.cos() } else { widest }
+        if self.is_hexagon { widest / libm::cos(FRAC_PI_6) } else { widest }
     }
 
     fn is_like(&self, other: &Self) -> bool {
@@ -129,7 +129,7 @@ pub(super) fn hexagon(contour: &Contour) -> Option<(Point2, f64)> {
         let (from, to) = contour.ends(i);
         same((from - middle).norm(), radius) && same((to - from).norm(), radius)
     });
-    is_regular.then(|| (middle, radius * FRAC_PI_6.cos()))
+    is_regular.then(|| (middle, radius * libm::cos(FRAC_PI_6)))
 }
 
 /// What a bore is called, where `is_axial` parts say places about the pulley's axis.
@@ -166,7 +166,7 @@ fn is_fastener(design: &Design, part: &Part, centres: &[Point2]) -> bool {
         && centres.iter().all(|p| {
             let angles = design.fastener_angles_rad();
             same(p.coords.norm(), radius)
-                && angles.iter().any(|a| (p.x.abs().atan2(p.y) - a.abs()).abs() < 1e-6)
+                && angles.iter().any(|a| (libm::atan2(p.x.abs(), p.y) - a.abs()).abs() < 1e-6)
         })
 }
 
@@ -255,10 +255,10 @@ mod tests {
 
     #[test]
     fn only_regular_hexagons_are_hexagons() {
-        let at = |i: i32| Point2::new(2.0 * f64::from(i).cos(), 2.0 * f64::from(i).sin());
+        let at = |i: i32| Point2::new(2.0 * libm::cos(f64::from(i)), 2.0 * libm::sin(f64::from(i)));
         let corner = |i: i32| {
             let angle = f64::from(i) * std::f64::consts::FRAC_PI_3 + 0.3;
-            Point2::new(1.0 + 2.0 * angle.cos(), 2.0 * angle.sin())
+            Point2::new(1.0 + 2.0 * libm::cos(angle), 2.0 * libm::sin(angle))
         };
         let (middle, half) = hexagon(&Contour::polygon((0..6).map(corner).collect())).unwrap();
         assert!((middle - Point2::new(1.0, 0.0)).norm() < 1e-9 && (half - 3.0_f64.sqrt()).abs() < 1e-9);

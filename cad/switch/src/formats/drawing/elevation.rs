@@ -92,7 +92,7 @@ fn upright(lower: &Curve, a: f64, upper: &Curve, b: f64, wall: &super::body::Wal
         let mix = |a: f64, b: f64| a + (b - a) * share;
         [mix(foot[0], head[0]), mix(from, to), mix(foot[1], head[1])]
     };
-    Edge { at: Box::new(at), length_mm: (to - from).hypot(head[0] - foot[0]) }
+    Edge { at: Box::new(at), length_mm: libm::hypot(to - from, head[0] - foot[0]) }
 }
 
 /// Cuts an edge where it begins or ends to be seen.
@@ -232,7 +232,7 @@ pub(super) fn joined(strokes: &[Stroke], over: &[Stroke]) -> Vec<Stroke> {
 /// `strokes` without those that lie nearer than `apart_mm` beside a longer one, or one of `kept`, over most of their length:
 /// a black patch tells nobody anything.
 pub(super) fn legible(strokes: &[Stroke], kept: &[Stroke], apart_mm: f64) -> Vec<Stroke> {
-    let length = |s: &Stroke| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1]);
+    let length = |s: &Stroke| libm::hypot(s[1][0] - s[0][0], s[1][1] - s[0][1]);
     let reach = |axis: usize| {
         let ends = strokes.iter().flatten().map(|p| p[axis]);
         ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
@@ -268,7 +268,7 @@ pub(super) fn legible(strokes: &[Stroke], kept: &[Stroke], apart_mm: f64) -> Vec
 
 fn direction_of(stroke: &Stroke) -> Option<[f64; 2]> {
     let d = [stroke[1][0] - stroke[0][0], stroke[1][1] - stroke[0][1]];
-    let length = d[0].hypot(d[1]);
+    let length = libm::hypot(d[0], d[1]);
     if length < 1e-6 {
         return None;
     }
@@ -329,7 +329,7 @@ mod tests {
     }
 
     fn length(strokes: &[Stroke]) -> f64 {
-        strokes.iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum()
+        strokes.iter().map(|[a, b]| libm::hypot(a[0] - b[0], a[1] - b[1])).sum()
     }
 
     #[test]

@@ -217,7 +217,7 @@ fn arc_slot(contour: &Contour) -> Option<ArcSlot> {
     let outer = if a.radius_mm > b.radius_mm { a } else { b };
     Some(ArcSlot {
         radius_mm: cap.centre.coords.norm(),
-        half_rad: (cap.centre.x / cap.centre.coords.norm()).abs().asin(),
+        half_rad: libm::asin((cap.centre.x / cap.centre.coords.norm()).abs()),
         widths_mm: ((a.radius_mm - b.radius_mm).abs(), (a.radius_mm - b.radius_mm).abs()),
         edge: **outer,
     })
@@ -236,7 +236,7 @@ fn piece(contour: &Contour) -> Option<(f64, f64, f64, f64)> {
         .corners()
         .iter()
         .filter(|p| (p.coords.norm() - inner).abs() < SAME_MM)
-        .map(|p| p.x.atan2(p.y))
+        .map(|p| libm::atan2(p.x, p.y))
         .collect();
     let (from, to) =
         angles.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
@@ -370,7 +370,7 @@ impl Features {
         let along = (to - from).normalize();
         let is_end = [half_span_rad, -half_span_rad]
             .iter()
-            .any(|a| (along.x * a.cos() - along.y * a.sin()).abs() < 1e-6);
+            .any(|a| (along.x * libm::cos(*a) - along.y * libm::sin(*a)).abs() < 1e-6);
         if !is_end {
             self.straight.push((from, to));
             return;

@@ -36,7 +36,7 @@ impl Place {
 
     /// A point of the part on paper.
     pub(super) fn at(&self, p: Point2) -> Point {
-        let (d, (sin, cos)) = (p - self.about, self.turn_rad.sin_cos());
+        let (d, (sin, cos)) = (p - self.about, libm::sincos(self.turn_rad));
         self.origin + Point::new(d.x * cos - d.y * sin, d.x * sin + d.y * cos) * self.scale
     }
 
@@ -156,7 +156,7 @@ fn arc_within(arc: &Arc, centre: Point2, radius_mm: f64) -> Vec<Arc> {
             / (2.0 * distance * arc.radius_mm);
         if cosine.abs() < 1.0 {
             for side in [1.0, -1.0] {
-                let angle = to.y.atan2(to.x) + side * cosine.acos();
+                let angle = libm::atan2(to.y, to.x) + side * libm::acos(cosine);
                 let forward = ((angle - arc.start_rad) * arc.sweep_rad.signum()).rem_euclid(TAU);
                 shares.push(forward / arc.sweep_rad.abs());
             }

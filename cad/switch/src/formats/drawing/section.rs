@@ -138,7 +138,7 @@ mod tests {
         let hole = Contour::circle(Point2::origin(), 2.0).reversed();
         let washer = Solid::prism(&disc, &[hole], 0.0, 4.0, 0.0).unwrap();
         let face = Face::of(&Body::seen(&washer, Pose::upright(0.0), Side::Left), 0.0);
-        let length = |s: &[Stroke]| s.iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum::<f64>();
+        let length = |s: &[Stroke]| s.iter().map(|[a, b]| libm::hypot(a[0] - b[0], a[1] - b[1])).sum::<f64>();
         assert!((length(&face.outline()) - 2.0 * 14.0).abs() < 1e-4, "{:?}", face.outline());
         // Hatching of an area at a distance is as long as the area over the distance.
         let hatched = length(&face.hatch(0.01, true));

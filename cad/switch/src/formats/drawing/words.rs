@@ -30,7 +30,7 @@ pub(super) fn times(n: usize) -> String {
 
 /// The angle of a point about the axis, from +y toward +x.
 pub(super) fn angle_rad(p: Point2) -> f64 {
-    p.x.atan2(p.y)
+    libm::atan2(p.x, p.y)
 }
 
 /// First angle and step of angles that are evenly spaced; at least three.

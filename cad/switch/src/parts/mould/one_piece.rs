@@ -19,7 +19,7 @@ const HALVINGS: usize = 40;
 /// Floor, inner wall, ribs and end walls shape the layer, which must lie on the shell over its whole width: they stay
 /// upright, and silicone peels from them. What the basin holds is cut off: only its walls may lean.
 fn lean_mm(m: &MouldTable) -> f64 {
-    m.overfill_mm * m.draft_deg.to_radians().tan()
+    m.overfill_mm * libm::tan(m.draft_deg.to_radians())
 }
 
 /// How far the tray reaches beyond the cavity, mm.

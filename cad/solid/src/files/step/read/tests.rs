@@ -95,7 +95,7 @@ fn what_is_broken_is_named() {
 #[test]
 fn a_long_narrow_twisted_face_is_followed_without_folds() {
     // A sector whose ends lie beside radial planes: its chamfer joins arcs over different angles.
-    let corner = |radius: f64, side: f64| polar(radius, side * (0.78 + (4.0 / radius).asin()));
+    let corner = |radius: f64, side: f64| polar(radius, side * (0.78 + libm::asin(4.0 / radius)));
     let outline = Pen::at(corner(27.4, -1.0))
         .line_to(corner(11.5, -1.0))
         .arc_to(Point2::origin(), corner(11.5, 1.0), false)

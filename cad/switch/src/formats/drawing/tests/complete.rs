@@ -63,7 +63,7 @@ impl Reader<'_> {
         }
         if self.is_axial {
             self.need("radius of a place", &[at.coords.norm()]);
-            let angle = at.x.atan2(at.y).to_degrees();
+            let angle = libm::atan2(at.x, at.y).to_degrees();
             let is_stepped = texts(self.sheet).iter().any(|t| t.contains(" \u{d7} ") && t.contains('\u{b0}'));
             if !is_stepped {
                 self.need("angle of a place", &[angle]);

@@ -85,7 +85,7 @@ fn near(measured: f64, wanted: f64, what: &str) {
 
 /// Angles about the axis of points, ascending, degrees from +y toward +x.
 fn angles(points: &[(f64, f64)]) -> Vec<f64> {
-    let mut all: Vec<f64> = points.iter().map(|(x, y)| x.atan2(*y).to_degrees()).collect();
+    let mut all: Vec<f64> = points.iter().map(|(x, y)| libm::atan2(*x, *y).to_degrees()).collect();
     all.sort_by(f64::total_cmp);
     all
 }
@@ -111,7 +111,7 @@ fn contains(levels: &[f64], wanted: f64, what: &str) {
 fn shell(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value) {
     let front = &blocks["SHELL_FRONT"];
     let arcs: Vec<&Entity> = front.iter().filter(|e| e.is("ARC", "VISIBLE")).collect();
-    let about_axis = |e: &&&Entity| e.centre().0.hypot(e.centre().1) < 1e-6;
+    let about_axis = |e: &&&Entity| libm::hypot(e.centre().0, e.centre().1) < 1e-6;
     let grooves: Vec<&&Entity> = arcs.iter().filter(|e| !about_axis(e) && e.sweep() > 120.0).collect();
     near(grooves.len() as f64, listed(manifest, "segment.grooves"), "number of grooves");
     let centres: Vec<(f64, f64)> = grooves.iter().map(|e| e.centre()).collect();
@@ -119,7 +119,7 @@ fn shell(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value) {
     for groove in grooves {
         near(groove.number(40), listed(manifest, "segment.groove_radius_mm"), "groove radius");
         near(
-            groove.centre().0.hypot(groove.centre().1),
+            libm::hypot(groove.centre().0, groove.centre().1),
             listed(manifest, "shell.outer_radius_mm"),
             "groove centres",
         );
@@ -140,7 +140,7 @@ fn shell(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value) {
     for hole in holes {
         near(2.0 * hole.number(40), listed(manifest, "fasteners.hole_diameter_mm"), "hole");
         near(
-            hole.centre().0.hypot(hole.centre().1),
+            libm::hypot(hole.centre().0, hole.centre().1),
             listed(manifest, "fastener_radius"),
             "radius of the holes",
         );
@@ -156,7 +156,7 @@ fn support(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value, name: &str)
     let ends: Vec<&Entity> =
         front.iter().filter(|e| e.is("ARC", "VISIBLE") && (e.sweep() - 180.0).abs() < 1e-6).collect();
     assert!(!ends.is_empty() && ends.len().is_multiple_of(2));
-    let radius = |e: &&Entity| e.centre().0.hypot(e.centre().1);
+    let radius = |e: &&Entity| libm::hypot(e.centre().0, e.centre().1);
     let outermost = ends.iter().map(radius).fold(0.0, f64::max);
     let innermost = ends.iter().map(radius).fold(f64::INFINITY, f64::min);
     near(outermost, listed(manifest, "contact_radius"), "outer centres of the slots");

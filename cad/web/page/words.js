@@ -102,6 +102,7 @@ const WORDS = {
   published: 'Published', printers: 'Printers',
 
   hash: {
+    older: (v) => `The address is of version ${v}, which there never was: versions begin with 1.`,
     newer: (v) => `The address is of version ${v}, newer than this page (1).`,
     broken: 'The address holds no design, or is cut off. The page starts with a published one.',
     unknown: (names) => `The address names ${names.join(', ')}, which this version does not have.`,

@@ -1,0 +1,85 @@
+//! The configurator in a real browser, driven as a person would drive it (`tests/browser`), with `pinswitch view` and with
+//! the module; its downloads are those of the command line, byte for byte.
+//!
+//! Needs chromium, node, and puppeteer-core and axe-core in `/tmp/pinswitch-browser`, where `.ci/run` puts them. The module
+//! is that of the site in `PINSWITCH_SITE`, a folder that `cad/web/build` made; without it, the test makes one where Rust can
+//! compile to WebAssembly.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::harness::{browser, pinswitch, repository, say_skipped};
+
+const TOOLS: &str = "/tmp/pinswitch-browser";
+/// Exit code of `cad/web/build` where nothing can compile to WebAssembly.
+const NO_WEBASSEMBLY: i32 = 3;
+/// Lines of a table that a calibration takes a moment for.
+const LINES: usize = 300;
+
+/// The folder of a site with its module, or why there is none.
+fn site(folder: &Path) -> Result<PathBuf, String> {
+    if let Some(site) = std::env::var_os("PINSWITCH_SITE") {
+        return Ok(std::env::current_dir().unwrap().join(site));
+    }
+    let built = Command::new(repository("cad/web/build")).arg(folder).output().unwrap();
+    let said = String::from_utf8_lossy(&built.stderr);
+    match built.status.code() {
+        Some(0) => Ok(folder.to_owned()),
+        Some(NO_WEBASSEMBLY) => Err(said.trim().to_owned()),
+        code => panic!("cad/web/build ended with {code:?}: {said}"),
+    }
+}
+
+/// A table of plateaus of a rig with one effect.
+fn table(folder: &Path) -> PathBuf {
+    let made = pinswitch(
+        folder,
+        &["-q", "simulate", "--randomised", "--effect", "coating_ploughing=0.024", "--out", "rig"],
+    );
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    let text = std::fs::read_to_string(folder.join("rig/plateaus.csv")).unwrap();
+    let short = folder.join("plateaus.csv");
+    std::fs::write(&short, text.lines().take(LINES).collect::<Vec<_>>().join("\n")).unwrap();
+    short
+}
+
+#[test]
+fn the_configurator_does_in_a_browser_what_a_person_asks() {
+    let Some(browser) = browser() else {
+        return say_skipped("no chromium here; Debian's package is called chromium");
+    };
+    if !Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success()) {
+        return say_skipped("no node here; Debian's package is called nodejs");
+    }
+    if !["puppeteer-core", "axe-core"]
+        .iter()
+        .all(|name| Path::new(TOOLS).join("node_modules").join(name).is_dir())
+    {
+        return say_skipped(
+            "puppeteer-core and axe-core are not in /tmp/pinswitch-browser; .ci/run installs them",
+        );
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let site = site(&folder.path().join("site"))
+        .inspect_err(|reason| say_skipped(&format!("the module is not tried, the server is: {reason}")));
+    let job = serde_json::json!({
+        "binary": env!("CARGO_BIN_EXE_pinswitch"),
+        "browser": browser_path(browser),
+        "tools": TOOLS,
+        "table": table(folder.path()),
+        "pictures": repository("out/configurator"),
+        "site": site.ok(),
+    });
+    let file = folder.path().join("job.json");
+    std::fs::write(&file, job.to_string()).unwrap();
+    let run = Command::new("node").arg(repository("tests/browser/run.mjs")).arg(&file).output().unwrap();
+    let said = String::from_utf8_lossy(&run.stdout);
+    println!("{said}{}", String::from_utf8_lossy(&run.stderr));
+    assert!(run.status.success(), "the configurator does not do what it should: {said}");
+}
+
+/// Where the browser is, since node looks nothing up.
+fn browser_path(name: &str) -> PathBuf {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).map(|folder| folder.join(name)).find(|file| file.is_file()).unwrap()
+}

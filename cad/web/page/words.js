@@ -81,7 +81,7 @@ const WORDS = {
   removeFriction: (i) => `Remove friction ${i}`, designName: (i) => `Design ${i}`, askFor: 'likely that a made part does what was asked',
   forgetThreshold: 'Ask for no threshold',
 
-  calibrating: (file) => `Fitting the model to ${file} …`,
+  calibrating: (file, s) => `Fitting the model to ${file}, ${s} s. Thousands of rows take half a minute and more; the page stays yours meanwhile.`,
   calibrated: (before, after, promise) => `Held-out error ${before} N before, ${after} N after; a new session: ${promise} N.`,
   effects: (names) => `Effects: ${names.join(', ')}.`,
   modelTaken: 'The design uses your calibrated model. The address carries it, and is long.', modelName: (file) => `model from ${file}`,

@@ -29,7 +29,7 @@ const PHOTOGRAPHED: [(&str, &str, &str); 2] = [
     ("calibration.png", "calibrated/report.html", "985,1167"),
 ];
 /// The photograph of the configurator, and the size of its window.
-const CONFIGURATOR: (&str, &str) = ("configurator.png", "1200,740");
+const CONFIGURATOR: (&str, &str) = ("configurator.png", "1200,620");
 /// Hashes of the pages that were photographed.
 const PAGES: &str = "photographed-pages.sha256";
 

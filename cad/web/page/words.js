@@ -9,7 +9,7 @@ const WORDS = {
   layouts: 'Layouts', moreTemplates: 'More', undo: 'Undo', redo: 'Redo', share: 'Share', open: 'Open a file', download: 'Download',
   parameters: 'Parameters', close: 'Close',
   find: 'Find a parameter', changedOnly: 'Changed only', noField: 'No parameter has these words.',
-  intro: 'A tendon runs over steel pins in soft silicone. Light loads touch only the pins; heavier ones sink them, the tendon meets silicone, and friction rises.',
+  intro: 'A tendon runs over steel pins in silicone. As load grows, the pins sink, the tendon meets silicone, and friction rises.',
   assembly: 'Assembly', apart: 'Pull apart', cut: 'Cut open', cutAt: 'Cut at', turn: 'Turn', tilt: 'Tilt', show: 'Show', look: 'View',
   assemblyName: 'The assembly in three dimensions. Drag to turn, wheel or pinch to zoom; under View, sliders do the same from the keyboard.',
   curve: 'Friction over load', load: 'Load', rivals: 'Other laws', keep: 'Keep to compare', letGo: 'Forget the kept',

@@ -1,12 +1,14 @@
 //! The pictures of README and the documents are what the program draws today.
 //!
-//! `PINSWITCH_ACCEPT=1 cargo test --test fast pictures` makes all of them again; the two photographs of pages need
+//! `PINSWITCH_ACCEPT=1 cargo test --test fast pictures` makes all of them again; the three photographs of pages need
 //! chromium. Without it the test compares drawings byte for byte, and photographs by the hash of the page they show.
 
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
 
-use crate::harness::{browser, done, repository, sha256};
+use crate::harness::{binary, browser, done, repository, sha256};
 
 /// A picture in `cad/doc`, and the file of a run that it is.
 const DRAWN: [(&str, &str); 10] = [
@@ -26,10 +28,12 @@ const PHOTOGRAPHED: [(&str, &str, &str); 2] = [
     ("page.png", "out/three-double/report.html", "1200,1225"),
     ("calibration.png", "calibrated/report.html", "985,1167"),
 ];
+/// The photograph of the configurator, and the size of its window.
+const CONFIGURATOR: (&str, &str) = ("configurator.png", "1200,620");
 /// Hashes of the pages that were photographed.
 const PAGES: &str = "photographed-pages.sha256";
 
-fn photograph(page: &Path, picture: &Path, size: &str) {
+fn photograph(address: &str, picture: &Path, size: &str) {
     let chromium = browser().expect("photographs need chromium; Debian's package is called chromium");
     let profile = tempfile::tempdir().unwrap();
     let done = Command::new(chromium)
@@ -49,10 +53,46 @@ fn photograph(page: &Path, picture: &Path, size: &str) {
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .args(["--virtual-time-budget=6000", &format!("--window-size={size}")])
         .arg(format!("--screenshot={}", picture.display()))
-        .arg(format!("file://{}", page.display()))
+        .arg(address)
         .output()
         .unwrap();
     assert!(done.status.success() && picture.exists(), "{}", String::from_utf8_lossy(&done.stderr));
+}
+
+/// `pinswitch view`, ended with the test.
+struct Served {
+    child: Child,
+    host: String,
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Served {
+    fn start() -> Self {
+        let mut command = binary();
+        command.args(["view", "three-double", "--port", "0"]).stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut child = command.spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
+        let host = line.trim().strip_prefix("http://").unwrap().to_owned();
+        Self { child, host }
+    }
+
+    /// The page of the configurator.
+    fn configurator(&self) -> Vec<u8> {
+        let mut stream = TcpStream::connect(&self.host).unwrap();
+        // HTTP 1.0: the answer ends with the connection, and comes in one piece.
+        write!(stream, "GET /configure HTTP/1.0\r\nHost: {}\r\n\r\n", self.host).unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        let body = answer.windows(4).position(|end| end == b"\r\n\r\n").unwrap() + 4;
+        answer.split_off(body)
+    }
 }
 
 #[test]
@@ -80,16 +120,22 @@ fn pictures_are_what_the_program_draws() {
             );
         }
     }
-    let pages: String = PHOTOGRAPHED
+    let mut pages: String = PHOTOGRAPHED
         .iter()
         .map(|(picture, page, size)| {
             let page = folder.path().join(page);
             if accept {
-                photograph(&page, &documents.join(picture), size);
+                photograph(&format!("file://{}", page.display()), &documents.join(picture), size);
             }
             format!("{}  {picture}\n", sha256(&std::fs::read(page).unwrap()))
         })
         .collect();
+    let served = Served::start();
+    let (picture, size) = CONFIGURATOR;
+    if accept {
+        photograph(&format!("http://{}/configure", served.host), &documents.join(picture), size);
+    }
+    pages.push_str(&format!("{}  {picture}\n", sha256(&served.configurator())));
     if accept {
         std::fs::write(documents.join(PAGES), pages).unwrap();
     } else {

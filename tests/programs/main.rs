@@ -7,6 +7,7 @@
 mod harness;
 
 mod bucket;
+mod configurator;
 mod judges;
 mod page;
 mod recipes;

@@ -7,7 +7,9 @@ use pinswitch_friction::{
     Contact, FrictionCurve, Law, Trust, capstan_friction_n, published, published_points,
 };
 
+use super::legend::{Legend, Measures};
 use super::scale::{drawn_size, fine, shown_at_size};
+use super::text_size::Svg;
 
 /// A piece of a dashed line in the legend.
 type DashedSample = DashedPathElement<std::vec::IntoIter<(i32, i32)>, u32>;
@@ -59,13 +61,14 @@ fn draw(
     curve: &FrictionCurve,
     others: &[FrictionCurve],
 ) -> Result<(), Box<dyn std::error::Error>> {
-    let root = SVGBackend::with_string(svg, drawn_size(SIZE)).into_drawing_area();
+    let root = Svg::with_string(svg, drawn_size(SIZE)).into_drawing_area();
     root.fill(&WHITE)?;
     let highest_load = curve.load_n.last().copied().unwrap_or(1.0) * 1.03;
     let limit = |mu: f64, load: f64| capstan_friction_n(load, mu * contact.wrap_rad());
     let points = published_points(contact);
     let measured = points.iter().filter_map(|p| p.friction_n).fold(0.0, f64::max);
     let top = curve.band_high_n.iter().copied().fold(limit(published::MU_SILICONE, highest_load), f64::max);
+    let mut legend = Legend::default();
     let mut chart = ChartBuilder::on(&root)
         .margin(fine::<u32>(14))
         .caption(format!("{name}: friction over load"), ("sans-serif", fine::<i32>(19)))
@@ -89,15 +92,13 @@ fn draw(
     let upper = curve.load_n.iter().copied().zip(curve.band_high_n.iter().copied());
     let lower = curve.load_n.iter().copied().zip(curve.band_low_n.iter().copied());
     let band: Vec<_> = upper.chain(lower.rev()).collect();
-    chart
-        .draw_series(std::iter::once(Polygon::new(band, CURVE.mix(0.18))))?
-        .label(format!("band ({})", trust_label(curve.trust)))
-        .legend(|(x, y)| {
-            Rectangle::new(
-                [(x, y - fine::<i32>(5)), (x + fine::<i32>(22), y + fine::<i32>(5))],
-                CURVE.mix(0.18).filled(),
-            )
-        });
+    chart.draw_series(std::iter::once(Polygon::new(band, CURVE.mix(0.18))))?;
+    legend.line(format!("band ({})", trust_label(curve.trust)), |(x, y)| {
+        Rectangle::new(
+            [(x, y - fine::<i32>(5)), (x + fine::<i32>(22), y + fine::<i32>(5))],
+            CURVE.mix(0.18).filled(),
+        )
+    });
 
     for (mu, colour, label) in [
         (published::MU_SILICONE, SILICONE, "silicone alone (capstan)"),
@@ -107,54 +108,41 @@ fn draw(
             let load = highest_load * f64::from(i) / f64::from(LIMIT_POINTS);
             (load, limit(mu, load))
         });
-        chart
-            .draw_series(dashed(line.collect(), LIMIT_DASHES, colour))?
-            .label(label)
-            .legend(move |at| dashed_sample(at, LIMIT_DASHES, colour));
+        chart.draw_series(dashed(line.collect(), LIMIT_DASHES, colour))?;
+        legend.line(label, move |at| dashed_sample(at, LIMIT_DASHES, colour));
     }
 
     for other in others {
         let place = Law::predictive().position(|law| law == other.law).unwrap_or_default();
         let colour = OTHERS[place % OTHERS.len()];
         let line = other.load_n.iter().copied().zip(other.friction_n.iter().copied());
-        chart
-            .draw_series(LineSeries::new(line, colour.stroke_width(fine(1))))?
-            .label(format!("{}, for comparison", other.law.title()))
-            .legend(move |(x, y)| {
-                PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(1)))
-            });
+        chart.draw_series(LineSeries::new(line, colour.stroke_width(fine(1))))?;
+        legend.line(format!("{}, for comparison", other.law.title()), move |(x, y)| {
+            PathElement::new([(x, y), (x + fine::<i32>(22), y)], colour.stroke_width(fine(1)))
+        });
     }
 
     let line: Vec<_> = curve.load_n.iter().copied().zip(curve.friction_n.iter().copied()).collect();
-    chart
-        .draw_series(LineSeries::new(line, CURVE.stroke_width(fine(3))))?
-        .label(curve.law.title())
-        .legend(|(x, y)| PathElement::new([(x, y), (x + fine::<i32>(22), y)], CURVE.stroke_width(fine(3))));
+    chart.draw_series(LineSeries::new(line, CURVE.stroke_width(fine(3))))?;
+    legend.line(curve.law.title(), |(x, y)| {
+        PathElement::new([(x, y), (x + fine::<i32>(22), y)], CURVE.stroke_width(fine(3)))
+    });
 
     let maxima: Vec<_> = points.iter().filter_map(|p| Some((p.load_n, p.friction_n?))).collect();
     if !maxima.is_empty() {
-        chart
-            .draw_series(maxima.iter().map(|p| Circle::new(*p, fine::<i32>(5), BLACK.filled())))?
-            .label("published maximum (measured)")
-            .legend(|(x, y)| Circle::new((x + fine::<i32>(11), y), fine::<i32>(5), BLACK.filled()));
+        chart.draw_series(maxima.iter().map(|p| Circle::new(*p, fine::<i32>(5), BLACK.filled())))?;
+        legend.line("published maximum (measured)", |(x, y)| {
+            Circle::new((x + fine::<i32>(11), y), fine::<i32>(5), BLACK.filled())
+        });
     }
     for onset in points.iter().filter(|p| p.friction_n.is_none()) {
         let load = onset.load_n;
         let line = vec![(load, 0.0), (load, top)];
-        chart
-            .draw_series(dashed(line, ONSET_DASHES, BLACK))?
-            .label(format!("published onset, {load:.2} N"))
-            .legend(|at| dashed_sample(at, ONSET_DASHES, BLACK));
+        chart.draw_series(dashed(line, ONSET_DASHES, BLACK))?;
+        legend.line(format!("published onset, {load:.2} N"), |at| dashed_sample(at, ONSET_DASHES, BLACK));
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .margin(fine::<i32>(10))
-        .legend_area_size(fine::<u32>(26))
-        .background_style(WHITE.mix(0.9))
-        .border_style(BLACK.mix(0.3).stroke_width(fine(1)))
-        .label_font(("sans-serif", fine::<i32>(14)))
-        .draw()?;
+    let measures = Measures { margin: fine(10), samples: fine(26), font: fine(14), border: fine(1) };
+    legend.draw(&chart.plotting_area().strip_coord_spec(), measures)?;
     root.present()?;
     Ok(())
 }

@@ -27,11 +27,13 @@ mod finger;
 mod friction;
 mod front;
 pub mod html;
+mod legend;
 mod log;
 mod pareto;
 mod published_page;
 mod run_sheet;
 mod scale;
+mod text_size;
 
 pub use calibration::{Plot, PlotFailure, plots};
 pub use calibration_page::page;

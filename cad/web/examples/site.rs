@@ -9,16 +9,19 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use pinswitch_web::page::configurator_html;
+use pinswitch_web::page::{LIBRARIES, Packed, configurator_html};
+use pinswitch_web::slim::slim;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
     let [module, folder] = arguments.as_slice() else {
         return Err("give the module and the folder of the site".into());
     };
+    let slim = slim(&std::fs::read(module)?, &LIBRARIES)
+        .ok_or_else(|| format!("{} is no module", module.display()))?;
     let mut packed = GzEncoder::new(Vec::new(), Compression::best());
-    packed.write_all(&std::fs::read(module)?)?;
-    let module = STANDARD.encode(packed.finish()?);
+    packed.write_all(&slim.bytes)?;
+    let module = Packed { base64: STANDARD.encode(packed.finish()?), holes: slim.holes };
     std::fs::create_dir_all(folder)?;
     let page = folder.join("index.html");
     std::fs::write(&page, configurator_html(Some(&module)))?;

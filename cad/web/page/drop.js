@@ -1,13 +1,12 @@
 // Files that are dropped on the page or chosen: what each is, and what cannot be read.
 
 const MEGA = 1e6;
-// A table of plateaus of a long campaign has some ten thousand lines of 80 bytes.
-const LARGEST_TABLE = 5 * MEGA;
 const LARGEST_CONFIGURATION = MEGA;
 
 class Drop {
-  constructor({ table: takeTable, configuration, model }) {
-    Object.assign(this, { takeTable, configuration, model });
+  // Tables of at most `largestTable_mb` are taken: the engine's bound.
+  constructor({ table: takeTable, configuration, model, largestTable_mb }) {
+    Object.assign(this, { takeTable, configuration, model, largestTable_mb });
     byId('open').addEventListener('click', () => byId('open-file').click());
     byId('open-file').addEventListener('change', (event) => { this.files(event.target.files); event.target.value = ''; });
     let depth = 0;
@@ -33,7 +32,7 @@ class Drop {
     const mega = (file.size / MEGA).toFixed(1);
     if (!kind) return this.refuse(WORDS.foreign(file.name));
     if (file.size === 0) return this.refuse(WORDS.empty(file.name));
-    if (kind === 'table' && file.size > LARGEST_TABLE) return this.refuse(WORDS.tooLarge(file.name, mega, LARGEST_TABLE / MEGA));
+    if (kind === 'table' && file.size > this.largestTable_mb * MEGA) return this.refuse(WORDS.tooLarge(file.name, mega, this.largestTable_mb));
     if (kind === 'toml' && file.size > LARGEST_CONFIGURATION) return this.refuse(WORDS.tooLargeConfiguration(file.name, mega));
     let text;
     try { text = await file.text(); } catch { return this.refuse(WORDS.unreadable(file.name)); }

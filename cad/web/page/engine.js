@@ -22,7 +22,7 @@ class WorkerLane {
     URL.revokeObjectURL(address);
     this.worker.onmessage = (event) => this.answered(event.data);
     this.worker.onerror = (event) => { event.preventDefault(); this.answered({ fatal: event.message ?? '' }); };
-    this.worker.postMessage({ module: this.module() });
+    this.worker.postMessage(this.module());
   }
 
   ask(request, newest) {
@@ -102,8 +102,11 @@ class ServerLane {
 
 class Engine {
   constructor() {
-    const module = byId('module').textContent.trim();
-    const lane = () => (module ? new WorkerLane(byId('worker').textContent, () => bytesOf(module).buffer) : new ServerLane());
+    const element = byId('module');
+    const module = element.textContent.trim();
+    // Libraries of this page that the module holds, too: left out of it, and put back where `three:PLACE` says.
+    const holes = element.dataset.holes.split(' ').filter(Boolean).map((hole) => hole.split(':')).map(([id, place]) => [Number(place), byId(id).textContent]);
+    const lane = () => (module ? new WorkerLane(byId('worker').textContent, () => ({ module: bytesOf(module).buffer, holes })) : new ServerLane());
     // What takes seconds has a lane of its own, so that pins still move.
     this.quick = lane();
     this.slow = lane();

@@ -20,10 +20,14 @@ class Measured {
   }
 
   async calibrate(csv, file) {
-    this.tell([WORDS.calibrating(file)]);
+    const began = performance.now();
+    const tick = () => this.tell([WORDS.calibrating(file, Math.round((performance.now() - began) / 1000))]);
+    tick();
+    // Seldom, since each is read aloud.
+    const clock = setInterval(tick, 5000);
     byId('measured').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
     try {
-      const answer = await this.engine.ask({ ask: 'calibrate', csv, file });
+      const answer = await this.engine.ask({ ask: 'calibrate', csv, file }).finally(() => clearInterval(clock));
       const digits = (v) => (v < 0.1 ? v.toFixed(4) : v.toFixed(2));
       const errors = answer.before_n === null || answer.after_n === null ? [] : [WORDS.calibrated(digits(answer.before_n), digits(answer.after_n), digits(answer.promise_n ?? answer.after_n))];
       this.tell([answer.words, ...errors, ...(answer.effects?.length ? [WORDS.effects(answer.effects)] : [])], WORDS.verdicts[answer.verdict] ?? answer.verdict);

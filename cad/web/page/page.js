@@ -68,6 +68,7 @@ class Page {
       table: (text, file) => this.measured.calibrate(text, file),
       configuration: (text, file) => this.open(text, file),
       model: (text, file) => this.measured.takeModel(text, file),
+      largestTable_mb: facts.largest_table_mb,
     });
     this.measured.chosen = (files) => drop.files(files);
     this.templates();

@@ -109,6 +109,7 @@ async function decodeHash(hash, fields) {
   const given = new Map(pairs);
   const said = [];
   if (!/^\d+$/.test(given.get('v') ?? '')) return { broken: true, said: [WORDS.hash.broken] };
+  if (Number(given.get('v')) < 1) said.push(WORDS.hash.older(given.get('v')));
   if (Number(given.get('v')) > HASH_VERSION) said.push(WORDS.hash.newer(given.get('v')));
   given.delete('v');
   const parts = { values: {}, model: null, ask: { threshold_n: null, friction: [] } };

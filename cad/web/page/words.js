@@ -9,6 +9,7 @@ const WORDS = {
   layouts: 'Layouts', moreTemplates: 'More', undo: 'Undo', redo: 'Redo', share: 'Share', open: 'Open a file', download: 'Download',
   parameters: 'Parameters', close: 'Close',
   find: 'Find a parameter', changedOnly: 'Changed only', noField: 'No parameter has these words.',
+  intro: 'A tendon runs over steel pins in silicone. As load grows, the pins sink, the tendon meets silicone, and friction rises.',
   assembly: 'Assembly', apart: 'Pull apart', cut: 'Cut open', cutAt: 'Cut at', turn: 'Turn', tilt: 'Tilt', show: 'Show', look: 'View',
   assemblyName: 'The assembly in three dimensions. Drag to turn, wheel or pinch to zoom; under View, sliders do the same from the keyboard.',
   curve: 'Friction over load', load: 'Load', rivals: 'Other laws', keep: 'Keep to compare', letGo: 'Forget the kept',
@@ -80,7 +81,7 @@ const WORDS = {
   removeFriction: (i) => `Remove friction ${i}`, designName: (i) => `Design ${i}`, askFor: 'likely that a made part does what was asked',
   forgetThreshold: 'Ask for no threshold',
 
-  calibrating: (file) => `Fitting the model to ${file} …`,
+  calibrating: (file, s) => `Fitting the model to ${file}, ${s} s. Thousands of rows take half a minute and more; the page stays yours meanwhile.`,
   calibrated: (before, after, promise) => `Held-out error ${before} N before, ${after} N after; a new session: ${promise} N.`,
   effects: (names) => `Effects: ${names.join(', ')}.`,
   modelTaken: 'The design uses your calibrated model. The address carries it, and is long.', modelName: (file) => `model from ${file}`,
@@ -102,6 +103,7 @@ const WORDS = {
   published: 'Published', printers: 'Printers',
 
   hash: {
+    older: (v) => `The address is of version ${v}, which there never was: versions begin with 1.`,
     newer: (v) => `The address is of version ${v}, newer than this page (1).`,
     broken: 'The address holds no design, or is cut off. The page starts with a published one.',
     unknown: (names) => `The address names ${names.join(', ')}, which this version does not have.`,

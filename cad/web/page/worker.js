@@ -1,5 +1,5 @@
 'use strict';
-// The engine in a worker. First `{module}`, then `{question}` after `{question}`; each is answered with `{json}` or
+// The engine in a worker. First `{module, holes}`, then `{question}` after `{question}`; each is answered with `{json}` or
 // `{bytes}`, with `{trap}` if the module stopped on it, or with `{fatal}` if there is no module that could answer.
 
 let ready = null;
@@ -21,8 +21,11 @@ function stubs(module) {
   return all;
 }
 
-async function started(bytes) {
-  const module = await WebAssembly.compile(await unpacked(bytes));
+async function started(packed, holes) {
+  const bytes = new Uint8Array(await unpacked(packed));
+  // What the page holds, too, was left out of the module.
+  for (const [place, text] of holes) bytes.set(new TextEncoder().encode(text), place);
+  const module = await WebAssembly.compile(bytes);
   return (await WebAssembly.instantiate(module, stubs(module))).exports;
 }
 
@@ -41,7 +44,7 @@ function ask({ memory, room, answer, free }, question) {
 
 onmessage = async ({ data }) => {
   if (data.module) {
-    ready = started(data.module);
+    ready = started(data.module, data.holes);
     // Told with the first question.
     ready.catch(() => {});
     return;

@@ -8,8 +8,9 @@ use serde::Serialize;
 
 use crate::Answer;
 
-/// Largest table that is read, in bytes: some hundred thousand rows, for which a browser computes minutes.
-const LARGEST: usize = 20 << 20;
+/// Largest table that is read, in megabytes: some hundred thousand rows, for which a browser computes minutes.
+pub(crate) const LARGEST_MB: usize = 20;
+const LARGEST: usize = LARGEST_MB * 1_000_000;
 
 /// What the table says.
 #[derive(Serialize)]
@@ -35,8 +36,8 @@ fn said(csv: &str, file: &str) -> Result<Said, String> {
     if csv.len() > LARGEST {
         return Err(format!(
             "{file}: {} MB are more than the {} MB that a page can work on; use `pinswitch calibrate {file}`",
-            csv.len() >> 20,
-            LARGEST >> 20
+            csv.len() / 1_000_000,
+            LARGEST_MB
         ));
     }
     let table = PlateauTable::read(csv.as_bytes(), file).map_err(|e| e.to_string())?;

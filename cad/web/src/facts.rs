@@ -7,6 +7,7 @@ use pinswitch_switch::templates::{TEMPLATES, TemplateKind};
 use serde::Serialize;
 use toml_edit::Value;
 
+use crate::calibration::LARGEST_MB;
 use crate::request::Values;
 use crate::values::values;
 
@@ -17,6 +18,8 @@ pub(crate) struct Facts {
     fields: Vec<Field>,
     templates: Vec<TemplateFact>,
     formats: Vec<FormatFact>,
+    /// Largest table of plateaus that is read, in megabytes.
+    largest_table_mb: usize,
 }
 
 /// One field of a configuration.
@@ -80,6 +83,7 @@ pub(crate) fn facts() -> Facts {
                 default: format.inclusion == Inclusion::Default,
             })
             .collect(),
+        largest_table_mb: LARGEST_MB,
     }
 }
 

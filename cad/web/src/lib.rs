@@ -25,6 +25,7 @@ mod module;
 pub mod page;
 mod request;
 mod search;
+pub mod slim;
 mod trouble;
 mod values;
 

@@ -31,9 +31,27 @@ const SCRIPTS: [&str; 20] = [
     include_str!("../page/page.js"),
 ];
 
-/// The page, with the WebAssembly module in base64; without one it asks the server that it came from.
+/// A module that is packed into the page.
+#[derive(Clone, Debug, Default)]
+pub struct Packed {
+    /// The module, in base64, packed with gzip.
+    pub base64: String,
+    /// Where the page's libraries go into it, by [`LIBRARIES`]; `None` for one that it does not hold.
+    pub holes: Vec<Option<usize>>,
+}
+
+/// Libraries of the page that stand in the module, too.
+pub const LIBRARIES: [&str; 2] = [THREE, UPLOT];
+
+/// The page, with the WebAssembly module; without one it asks the server that it came from.
 #[must_use]
-pub fn configurator_html(module: Option<&str>) -> String {
+pub fn configurator_html(module: Option<&Packed>) -> String {
+    // Places in the module, by the names of the page's elements.
+    let holes: Vec<String> = module.map_or_else(Vec::new, |module| {
+        let named = ["three", "uplot"].iter().zip(&module.holes);
+        named.filter_map(|(name, place)| Some(format!("{name}:{}", (*place)?))).collect()
+    });
+    let holes = holes.join(" ");
     let (script, policy) = (SCRIPTS.concat(), configurator_policy());
     filled(HTML, |place| match place {
         "CSS" => Some(CSS.into()),
@@ -42,7 +60,8 @@ pub fn configurator_html(module: Option<&str>) -> String {
         "UPLOT" => Some(UPLOT.into()),
         "JS" => Some(script.as_str().into()),
         "WORKER" => Some(WORKER.into()),
-        "MODULE" => Some(module.unwrap_or_default().into()),
+        "MODULE" => Some(module.map_or("", |module| module.base64.as_str()).into()),
+        "HOLES" => Some(holes.as_str().into()),
         "POLICY" => Some(policy.as_str().into()),
         _ => None,
     })
@@ -62,9 +81,11 @@ mod tests {
 
     #[test]
     fn every_place_of_the_page_is_filled() {
-        let page = configurator_html(Some("AGFzbQ=="));
+        let module = Packed { base64: "AGFzbQ==".to_owned(), holes: vec![Some(7), None] };
+        let page = configurator_html(Some(&module));
+        assert!(page.contains("id=\"module\" data-holes=\"three:7\">AGFzbQ==<"));
         assert!(page.contains(&configurator_policy()) && page.contains("AGFzbQ=="));
-        for place in ["CSS", "UPLOT_CSS", "THREE", "UPLOT", "JS", "WORKER", "MODULE", "POLICY"] {
+        for place in ["CSS", "UPLOT_CSS", "THREE", "UPLOT", "JS", "WORKER", "HOLES", "MODULE", "POLICY"] {
             assert!(HTML.contains(&format!("{{{{{place}}}}}")), "{place} stands nowhere");
             assert!(!page.contains(&format!("{{{{{place}}}}}")), "{place} is left");
         }

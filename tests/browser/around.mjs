@@ -1,0 +1,55 @@
+// What is around the page: another page that embeds it, or the file that `pinswitch view` follows.
+
+import { readFileSync, writeFileSync } from 'node:fs';
+import { START } from './design.mjs';
+
+// The server forbids to be framed, since its page can write a file; a site may be.
+export async function embedded(visit, site) {
+  if (!site.file) {
+    await visit.open(`${site.address}?embed${START}`);
+    visit.findings.check('?embed leaves the header out', !(await visit.shown('header')));
+    return;
+  }
+  await visit.open(`${site.origin}/around.html`, { settles: false });
+  const hears = (what, test, ...given) => visit.check(what, test, ...given);
+  await hears('a page around hears of the first design', () => heard.some((m) => m.type === 'pinswitch-state' && m.version === 1 && m.friction_n > 0));
+  const say = (message) => visit.page.evaluate((m) => { heard.length = 0; frames[0].postMessage(m, '*'); }, message);
+  await say({ type: 'pinswitch-set', values: { 'layout.pins': [3, 8, 13] } });
+  await hears('values go in, and the state comes out', () => heard.some((m) => String(m.values?.['layout.pins']) === '3,8,13' && m.hash.includes('layout.pins=3,8,13')));
+  await say({ type: 'pinswitch-set', hash: '#v=1&layout.pins=7,9' });
+  await hears('an address goes in', () => heard.some((m) => String(m.values?.['layout.pins']) === '7,9' && m.trust));
+  await say({ type: 'pinswitch-set', values: { 'segment.grooves': 40 } });
+  await hears('trouble comes out in words', () => heard.some((m) => /segment\.grooves/.test(m.trouble)));
+  await say({ type: 'pinswitch-set', values: { nonsense: 1 } });
+  await say({ type: 'something-else', values: { 'layout.pins': [1] } });
+  const frame = visit.page.frames()[1];
+  visit.findings.check('?embed leaves the header out', await frame.$eval('header', (e) => !e.checkVisibility()));
+  await frame.evaluate(() => { heardBy = window; postMessage({ type: 'pinswitch-set', values: { 'layout.pins': [1] } }, '*'); }).catch(() => {});
+  visit.findings.check('the page itself, or another, sets nothing', !(await frame.evaluate(() => location.hash)).includes('layout.pins=1&'));
+}
+
+// The file is followed while others edit it, and written when asked: comments stay.
+export async function followedFile(visit, site, { anotherView }) {
+  if (site.file) return;
+  const own = await anotherView('followed.toml', '# Mine.\n[layout]\npins = [5, 8, 11] # three\n');
+  try {
+    await visit.open(own.address);
+    await visit.focus('[data-groove="5"]');
+    await visit.page.keyboard.press('ArrowRight');
+    await visit.page.keyboard.press('Space');
+    await visit.addressHas('layout.pins=5,6,8,11');
+    await visit.settled();
+    await visit.click('#save');
+    await visit.check('saving is told', () => /Saved to followed\.toml/.test(document.querySelector('#said').textContent));
+    const text = readFileSync(own.followed, 'utf8');
+    visit.findings.check('values are written back, comments stay', text === '# Mine.\n[layout]\npins = [5, 6, 8, 11] # three\n', text);
+    writeFileSync(own.followed, text.replace('[5, 6, 8, 11]', '[6, 10]'));
+    await visit.addressHas('layout.pins=6,10');
+    await visit.settled();
+    await visit.click('#undo');
+    await visit.addressHas('layout.pins=5,6,8,11');
+    await visit.settled();
+  } finally {
+    await own.end();
+  }
+}

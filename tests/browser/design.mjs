@@ -1,0 +1,210 @@
+// Designing: pins, templates, every kind of control, undo, the address, and a kept curve.
+
+export const START = '#v=1&layout.pins=4,8,12';
+
+const dot = (groove) => `[data-groove="${groove}"] .dot`;
+const checked = (groove) => `[data-groove="${groove}"][aria-checked="true"]`;
+
+async function middle(visit, selector) {
+  const element = await visit.page.waitForSelector(selector);
+  await element.evaluate((e) => e.scrollIntoView({ block: 'center' }));
+  const { x, y, width, height } = await element.boundingBox();
+  return [x + width / 2, y + height / 2];
+}
+
+async function drag(visit, from, to) {
+  const { mouse } = visit.page;
+  await mouse.move(...from);
+  await mouse.down();
+  await mouse.move((from[0] + to[0]) / 2, (from[1] + to[1]) / 2);
+  await mouse.move(...to);
+  await mouse.up();
+}
+
+export async function pinsByMouse(visit, site) {
+  await visit.open(site.address + START);
+  await visit.page.mouse.click(...await middle(visit, dot(9)));
+  await visit.addressHas('layout.pins=4,8,9,12');
+  await visit.page.mouse.click(...await middle(visit, dot(8)));
+  await visit.addressHas('layout.pins=4,9,12');
+  await drag(visit, await middle(visit, dot(9)), await middle(visit, dot(7)));
+  await visit.addressHas('layout.pins=4,7,12');
+  await drag(visit, await middle(visit, dot(7)), await middle(visit, dot(12)));
+  await visit.addressHas('layout.pins=4,7,12');
+  await visit.click('#mirror-pins');
+  await visit.addressHas('layout.pins=4,9,12');
+  await visit.settled();
+  await visit.check('what is drawn has the pins', (pin) => document.querySelector(pin) !== null, checked(9));
+  await visit.click('#clear-pins');
+  await visit.check('without pins the tendon lies bare', () => document.querySelector('#pins-say').textContent === 'No pins');
+  await visit.settled();
+}
+
+export async function pinsByKeys(visit, site) {
+  await visit.open(site.address + START);
+  const { keyboard } = visit.page;
+  await visit.focus('[data-groove="4"]');
+  await keyboard.press('ArrowRight');
+  await keyboard.press('Space');
+  await visit.addressHas('layout.pins=4,5,8,12');
+  await keyboard.down('Shift');
+  await keyboard.press('ArrowRight');
+  await keyboard.press('ArrowRight');
+  await keyboard.press('ArrowRight');
+  await keyboard.up('Shift');
+  await visit.addressHas('layout.pins=4,8,9,12');
+  await visit.check('the focus goes with the pin', () => document.activeElement.dataset.groove === '9');
+  await keyboard.press('Delete');
+  await visit.addressHas('layout.pins=4,8,12');
+  await keyboard.press('Home');
+  await keyboard.press('Enter');
+  await visit.addressHas('layout.pins=1,4,8,12');
+  await keyboard.press('Tab');
+  await visit.check('one stop of the focus order holds all grooves', () => !document.activeElement.dataset.groove);
+  await visit.settled();
+}
+
+export async function templates(visit, site) {
+  await visit.open(site.address + START);
+  const names = await visit.page.$$eval('#chips button', (chips) => chips.map((c) => c.textContent));
+  visit.findings.check('published layouts are one click away', ['three-double', 'six-single'].every((n) => names.includes(n)), names);
+  await visit.click(`#chips button:nth-child(${names.indexOf('six-single') + 1})`);
+  await visit.settled();
+  await visit.check('the template is shown', () => document.querySelector('#name').textContent === 'six-single' && document.querySelector('#chips [aria-pressed=true]').textContent === 'six-single');
+  await visit.click('#more > summary');
+  const printer = await visit.page.evaluateHandle(() => [...document.querySelectorAll('#template-list button')].find((b) => b.textContent.startsWith('printer-')));
+  await printer.click();
+  await visit.settled();
+  await visit.check('a printer goes under the design', () => location.hash.includes('print.') && document.querySelector('#name').textContent.startsWith('six-single'));
+}
+
+export async function parameters(visit, site, { facts }) {
+  await visit.open(site.address + START);
+  const shown = await visit.page.$$eval('#fields .field', (fields) => fields.length);
+  visit.findings.check('every field of the table has a control', shown === facts.fields.length, `${shown} of ${facts.fields.length}`);
+  const wordless = await visit.page.$$eval('#fields input, #fields select', (all) => all.filter((e) => !e.labels?.length && !e.getAttribute('aria-label')).map((e) => e.id));
+  visit.findings.check('every control has a name', wordless.length === 0, wordless);
+  await visit.type('#f-silicone-thickness_mm', '2.5');
+  await visit.addressHas('silicone.thickness_mm=2.5');
+  await visit.settled();
+  await visit.page.$eval('#f-silicone-thickness_mm-field input[type=range]', (e) => { e.value = 700; e.dispatchEvent(new Event('input', { bubbles: true })); });
+  await visit.addressLacks('silicone.thickness_mm=2.5');
+  await visit.addressHas('silicone.thickness_mm=');
+  await visit.click('#f-silicone-thickness_mm-field [aria-label^="Reset"]');
+  await visit.addressLacks('silicone.thickness_mm');
+  await visit.click('#f-silicone-thickness_mm-field [aria-label^="About"]');
+  await visit.check('reason, range, default and origin are told', () => /Range: .*Default: .*(published|chosen|assumed)/.test(document.querySelector('#f-silicone-thickness_mm-about').textContent));
+  await visit.type('#find', 'engrave');
+  await visit.check('a search narrows the list', () => [...document.querySelectorAll('#fields .field')].filter((f) => f.checkVisibility()).length < 8);
+  await visit.click('#f-label-engrave');
+  await visit.addressHas('label.engrave=');
+  await visit.type('#find', ' ');
+  await visit.click('#only-changed');
+  await visit.check('what was changed is shown alone', () => [...document.querySelectorAll('#fields .field')].filter((f) => f.checkVisibility()).length === 2);
+  await visit.click('#only-changed');
+  await visit.page.$eval('#f-fasteners-kind', (e) => { e.closest('details').open = true; });
+  await visit.page.select('#f-fasteners-kind', 'insert');
+  await visit.addressHas('fasteners.kind=insert');
+  await visit.settled();
+}
+
+export async function outOfBounds(visit, site) {
+  await visit.open(site.address + START);
+  const before = await visit.text('#friction-words');
+  await visit.type('#f-segment-grooves', '40');
+  await visit.check('the error stands at the control', () => !document.querySelector('#f-segment-grooves-error').hidden && document.querySelector('#f-segment-grooves').getAttribute('aria-invalid') === 'true');
+  await visit.settled();
+  await visit.check('above the view it is told, too, with a remedy', () => /lower it to|raise/.test(document.querySelector('#trouble').textContent));
+  visit.findings.check('the last good part stays, in grey', await visit.text('#friction-words') === before && await visit.page.$eval('body', (b) => b.classList.contains('stale')));
+  await visit.click('#download');
+  await visit.check('what cannot be built has no files, and says so', () => /cannot be built/.test(document.querySelector('#files-say').textContent) && document.querySelector('#zip').disabled);
+  await visit.click('#files-close');
+  await visit.click('#f-segment-grooves-error .mend');
+  await visit.settled();
+  await visit.check('its button mends it', () => document.querySelector('#trouble').hidden && !document.body.classList.contains('stale') && document.querySelector('#f-segment-grooves-error').hidden);
+  await visit.type('#f-shell-wall_mm', '1e9');
+  await visit.check('a value out of its range is told', () => /to|range|most/.test(document.querySelector('#f-shell-wall_mm-error').textContent));
+  await visit.settled();
+  await visit.type('#f-segment-grooves', '7.5');
+  await visit.check('what is no whole number is told at once', () => document.querySelector('#f-segment-grooves-error').textContent === 'A whole number goes here.');
+}
+
+export async function undoAndRedo(visit, site) {
+  await visit.open(site.address + START);
+  visit.findings.check('at first there is nothing to undo', await visit.page.$eval('#undo', (b) => b.disabled) && await visit.page.$eval('#redo', (b) => b.disabled));
+  await visit.click('#mirror-pins');
+  await visit.focus('[data-groove="4"]');
+  await visit.page.keyboard.press('Delete');
+  await visit.addressHas('layout.pins=8,12');
+  await visit.type('#f-silicone-thickness_mm', '3');
+  await visit.addressHas('silicone.thickness_mm=3');
+  await visit.click('#undo');
+  await visit.addressLacks('silicone.thickness_mm');
+  await visit.click('#undo');
+  await visit.addressHas('layout.pins=4,8,12');
+  await visit.click('#redo');
+  await visit.addressHas('layout.pins=8,12');
+  await visit.focus('#share');
+  await visit.page.keyboard.down('Control');
+  await visit.page.keyboard.press('z');
+  await visit.addressHas('layout.pins=4,8,12');
+  await visit.page.keyboard.press('y');
+  await visit.page.keyboard.up('Control');
+  await visit.addressHas('layout.pins=8,12');
+  await visit.settled();
+}
+
+export async function address(visit, site) {
+  const hash = '#v=1&layout.pins=3,8,13&label.text=a%20b%2Cc&silicone.thickness_mm=2.5&ask.threshold_n=24&ask.friction=40:8.5';
+  await visit.open(site.address + hash);
+  await visit.page.reload();
+  await visit.settled();
+  for (const part of ['layout.pins=3,8,13', 'label.text=a b,c', 'silicone.thickness_mm=2.5', 'ask.threshold_n=24', 'ask.friction=40:8.5']) await visit.addressHas(part);
+  visit.findings.check('an address that is whole needs no words', !(await visit.shown('#notice')), await visit.text('#notice'));
+  await visit.page.goto(`${site.address}#v=1&layout.pins=7,9`);
+  await visit.addressHas('layout.pins=7,9');
+  await visit.addressLacks('thickness_mm');
+  await visit.settled();
+  // Without an address, the last visit goes on.
+  if (site.name === 'module') {
+    await visit.open(site.address);
+    await visit.addressHas('layout.pins=7,9');
+  }
+}
+
+const LINKS = {
+  'cut off': ['#layout.pi', /holds no design|cut off/], 'no words at all': ['#%%%', /holds no design/], 'of a later version': ['#v=9&layout.pins=6,10', /version 9, newer/],
+  'of no version that there was': ['#v=0&layout.pins=6,10', /version 0/],
+  'with a field that went': ['#v=1&shell.colour=red&layout.pins=6,10', /shell\.colour.*does not have.*rest was taken/s],
+  'with a value of the wrong kind': ['#v=1&shell.wall_mm=thick&layout.pins=6,10', /shell\.wall_mm.*cannot be.*rest was taken/s],
+  'with a model that is cut off': ['#v=1&layout.pins=6,10&model=mine.toml~eJyrVkrL', /model that is cut off/],
+  'with a value out of its range': ['#v=1&shell.wall_mm=1e9', /shell|wall/i],
+};
+
+export async function links(visit, site) {
+  for (const [kind, [hash, words]] of Object.entries(LINKS)) {
+    await visit.open(site.address + hash);
+    const said = await visit.text('#notice') + await visit.text('#trouble');
+    visit.findings.check(`a link ${kind} is explained`, words.test(said), said);
+    visit.findings.check(`after a link ${kind} a part is shown`, Number(await visit.page.$eval('body', (b) => b.dataset.generation)) > 0);
+    if (/layout.pins/.test(hash)) await visit.addressHas('layout.pins=6,10');
+  }
+}
+
+export async function compare(visit, site) {
+  await visit.open(site.address + START);
+  const legend = () => visit.text('#legend');
+  await visit.click('#keep');
+  visit.findings.check('a kept curve is named', (await legend()).includes('kept: '), await legend());
+  await visit.type('#f-silicone-thickness_mm', '5');
+  await visit.settled();
+  const both = await visit.picture('#chart');
+  visit.findings.check('it stays beside the next design', (await legend()).includes('4, 8, 12'), await legend());
+  await visit.page.reload();
+  await visit.settled();
+  visit.findings.check('it outlives a reload', (await legend()).includes('4, 8, 12'));
+  await visit.click('#keep');
+  visit.findings.check('it can be let go', !(await legend()).includes('kept: ') && await visit.picture('#chart') !== both);
+  await visit.click('#rivals');
+  visit.findings.check('other laws are drawn when asked for', /layout|paper/.test(await legend()), await legend());
+}

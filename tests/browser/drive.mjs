@@ -1,0 +1,149 @@
+// A browser that is driven, and what must hold of every visit: no error is logged, and nothing is asked of anywhere else.
+
+import { createRequire } from 'node:module';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+const PATIENCE_MS = 60_000;
+// Nothing but this machine can be reached, whatever a page asks for.
+const FLAGS = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+  '--hide-scrollbars', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb', '--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost'];
+
+// puppeteer-core and axe-core, from where `.ci/run` puts them.
+export function tools(folder) {
+  const require = createRequire(join(folder, 'node_modules', 'x.js'));
+  return { puppeteer: require('puppeteer-core'), axe: require.resolve('axe-core/axe.min.js') };
+}
+
+// What held and what did not; `name` is that of the scenario that looked.
+export class Findings {
+  constructor() { this.held = 0; this.failed = []; this.scenario = ''; }
+
+  check(what, holds, found = '') {
+    if (holds) { this.held += 1; return true; }
+    this.failed.push(`${this.scenario}: ${what}${found === '' ? '' : ` (found ${String(found).slice(0, 400)})`}`);
+    return false;
+  }
+}
+
+export class Browser {
+  static async start({ tools: folder, executable, flags = [] }) {
+    const browser = new Browser();
+    browser.tools = tools(folder);
+    browser.profile = mkdtempSync(join(tmpdir(), 'pinswitch-browser-'));
+    browser.real = await browser.tools.puppeteer.launch({ executablePath: executable, headless: true, userDataDir: browser.profile, args: [...FLAGS, ...flags] });
+    return browser;
+  }
+
+  async end() {
+    await this.real.close();
+    rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
+  }
+}
+
+// One page in a context of its own: no other visit's storage.
+export class Visit {
+  static async begin(browser, { width = 1440, height = 900, dark = false, findings, allowed = [], context, before }) {
+    const visit = new Visit();
+    Object.assign(visit, { browser, findings, allowed, problems: [], foreign: [] });
+    visit.context = context ?? await browser.real.createBrowserContext();
+    visit.page = await visit.context.newPage();
+    const { page } = visit;
+    page.setDefaultTimeout(PATIENCE_MS);
+    page.on('console', (message) => { if (message.type() === 'error') visit.problems.push(message.text()); });
+    page.on('pageerror', (error) => visit.problems.push(String(error?.stack ?? error)));
+    page.on('request', (request) => visit.asked(request.url()));
+    await visit.look(width, height, dark);
+    if (before) await page.evaluateOnNewDocument(before);
+    return visit;
+  }
+
+  asked(url) {
+    const isOwn = ['blob:', 'data:', 'about:', 'file:'].some((scheme) => url.startsWith(scheme)) || url.startsWith(this.home ?? 'none');
+    if (!isOwn) this.foreign.push(url);
+  }
+
+  async look(width, height, dark) {
+    await this.page.setViewport({ width, height });
+    await this.page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: dark ? 'dark' : 'light' }, { name: 'prefers-reduced-motion', value: 'reduce' }]);
+  }
+
+  // Opens an address and waits for the design that it holds.
+  async open(address, { settles = true } = {}) {
+    this.home = address.startsWith('http') ? new URL(address).origin : 'file://';
+    // An address that differs in its fragment only would not be loaded again.
+    if (this.page.url().split('#')[0] === address.split('#')[0]) await this.page.goto('about:blank');
+    await this.page.goto(address);
+    if (settles) await this.settled();
+  }
+
+  // Until the exact answer for the present values is there, shown or refused.
+  async settled() {
+    await this.page.waitForFunction(() => document.body.dataset.ready === 'true' && document.body.dataset.pending === 'false');
+  }
+
+  async until(condition, ...given) {
+    return this.page.waitForFunction(condition, {}, ...given).then(() => true, () => false);
+  }
+
+  async check(what, condition, ...given) {
+    const holds = await this.until(condition, ...given);
+    return this.findings.check(what, holds, holds ? '' : await this.page.evaluate(() => `${decodeURIComponent(location.hash)} ${document.querySelector('#notice').innerText} ${document.querySelector('#trouble').innerText}`));
+  }
+
+  // The address says this, as a person would read it.
+  async addressHas(part) {
+    return this.check(`the address has ${part}`, (text) => decodeURIComponent(location.hash).includes(text), part);
+  }
+  async addressLacks(part) {
+    return this.check(`the address has no ${part}`, (text) => !decodeURIComponent(location.hash).includes(text), part);
+  }
+
+  async text(selector) { return this.page.$eval(selector, (e) => e.textContent); }
+  async shown(selector) { return this.page.$eval(selector, (e) => e.checkVisibility()); }
+  async click(selector) { await (await this.page.waitForSelector(selector, { visible: true })).click(); }
+
+  // Drawings take the focus, too.
+  async focus(selector) { await this.page.$eval(selector, (e) => e.focus()); }
+
+  // Moves a slider or a box as a hand would: the value, and the event of it.
+  async slide(selector, value) {
+    await this.page.$eval(selector, (e, to) => { e.value = to; e.dispatchEvent(new Event('input', { bubbles: true })); }, value);
+  }
+
+  async type(selector, value) {
+    const element = await this.page.waitForSelector(selector, { visible: true });
+    await element.evaluate((e) => { if (e.closest('details')) e.closest('details').open = true; e.scrollIntoView({ block: 'center' }); e.focus(); e.select(); });
+    await this.page.keyboard.type(String(value));
+    await element.evaluate((e) => e.dispatchEvent(new Event('change', { bubbles: true })));
+  }
+
+  // Lets a file fall on the page; `content` is text, or a number of bytes.
+  async drop(name, content) {
+    await this.page.evaluate((file, inside) => {
+      const parts = typeof inside === 'number' ? [new Uint8Array(inside).fill(48)] : [inside];
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File(parts, file));
+      for (const type of ['dragenter', 'dragover', 'drop']) document.body.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+    }, name, content);
+  }
+
+  // What a person sees there, to be compared.
+  async picture(selector) {
+    // Two frames: what was asked for is drawn in the next.
+    await this.page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    return (await this.page.$(selector)).screenshot({ encoding: 'base64' });
+  }
+
+  // Ends the visit; what was logged or asked for elsewhere is a failure, but for what the scenario provoked.
+  async end({ keepsContext = false } = {}) {
+    const errors = this.page.url().startsWith('about:') ? '0' : await this.page.evaluate(() => document.body.dataset.errors).catch(() => '0');
+    const problems = this.problems.filter((text) => !this.allowed.some((pattern) => pattern.test(text)));
+    this.findings.check('no error is logged', problems.length === 0, problems.join('; '));
+    this.findings.check('no error is uncaught', errors === '0' || errors === undefined, errors);
+    this.findings.check('nothing is asked of elsewhere', this.foreign.length === 0, this.foreign.join(' '));
+    await this.page.close();
+    if (!keepsContext) await this.context.close();
+  }
+}

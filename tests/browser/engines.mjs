@@ -1,0 +1,39 @@
+// What the page is opened from: a folder behind a plain file server, or `pinswitch view`.
+
+import { spawn } from 'node:child_process';
+import { createServer } from 'node:http';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { createInterface } from 'node:readline';
+
+// Serves texts by their path, as any file server would: no header that the page could lean on.
+export async function served(files) {
+  const server = createServer((request, response) => {
+    const content = files[request.url.split(/[?#]/)[0]];
+    response.writeHead(content === undefined ? 404 : 200, { 'content-type': 'text/html; charset=utf-8' });
+    response.end(content ?? '');
+  });
+  await new Promise((done) => server.listen(0, '127.0.0.1', done));
+  return { origin: `http://127.0.0.1:${server.address().port}`, end: () => new Promise((done) => { server.closeAllConnections(); server.close(done); }) };
+}
+
+// The page of a site with its module, and pages that are broken as transport may break them.
+export async function moduleSite(folder) {
+  const page = readFileSync(join(folder, 'index.html'), 'utf8');
+  const inModule = (change) => page.replace(/(<script type="text\/plain" id="module">)([^<]*)/, (_, tag, text) => tag + change(text));
+  const around = '<!doctype html><title>around</title><script>window.heard = []; addEventListener("message", (e) => heard.push(e.data));</script><iframe src="/?embed" width="1200" height="800"></iframe>';
+  const server = await served({ '/': page, '/cut.html': inModule((text) => text.slice(0, text.length / 2)), '/none.html': inModule(() => ''), '/around.html': around });
+  return { name: 'module', address: `${server.origin}/`, origin: server.origin, file: `file://${join(folder, 'index.html')}`, end: server.end };
+}
+
+// `pinswitch view`, with the file that it follows.
+export async function viewSite(binary, folder, configuration) {
+  const child = spawn(binary, ['view', configuration, '--port', '0'], { cwd: folder, stdio: ['ignore', 'pipe', 'ignore'] });
+  const lines = createInterface({ input: child.stdout });
+  const origin = await new Promise((done, fail) => {
+    lines.once('line', done);
+    child.once('exit', (code) => fail(new Error(`pinswitch view ended with ${code}`)));
+  });
+  const ended = new Promise((done) => child.once('exit', done));
+  return { name: 'server', address: `${origin}/configure`, origin, followed: join(folder, configuration), end: () => { child.kill(); return ended; } };
+}

@@ -1,0 +1,93 @@
+// What is seen: the assembly and its sliders, three widths, two schemes, and what axe-core finds.
+
+import { START } from './design.mjs';
+
+export async function assembly(visit, site) {
+  await visit.open(site.address + START);
+  let last = await visit.picture('#view');
+  const moves = async (what, act) => {
+    await act();
+    const now = await visit.picture('#view');
+    visit.findings.check(what, now !== last);
+    last = now;
+  };
+  const reading = await visit.text('#friction-words');
+  await moves('the load slider sinks the pins', () => visit.slide('#load', 0));
+  visit.findings.check('the load slider reads the curve', await visit.text('#friction-words') !== reading);
+  await moves('the parts come apart', () => visit.slide('#apart', 1));
+  await visit.slide('#apart', 0);
+  last = await visit.picture('#view');
+  await moves('the assembly is cut open', () => visit.click('#cut'));
+  await visit.click('#look > summary');
+  await moves('the cut moves', () => visit.slide('#cut-at', 0.3));
+  await moves('it turns', () => visit.slide('#turn', 120));
+  await moves('it tilts', () => visit.slide('#tilt', -20));
+  await moves('a body can be hidden', () => visit.page.$eval('#bodies input', (e) => e.click()));
+  await visit.page.keyboard.press('Escape');
+  const box = await (await visit.page.$('#view canvas')).boundingBox();
+  const { mouse } = visit.page;
+  await moves('it is turned by hand', async () => {
+    await mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await mouse.down();
+    await mouse.move(box.x + box.width / 2 + 90, box.y + box.height / 2 + 30, { steps: 4 });
+    await mouse.up();
+  });
+  const facts = await visit.page.evaluate(() => ['#checks li', '#bill dt', '#parts tbody tr', '#bed svg .outline'].map((s) => document.querySelectorAll(s).length));
+  visit.findings.check('checks, bill, volumes and print bed are filled', facts.every((n) => n > 2), facts);
+}
+
+const WIDTHS = { phone: [375, 812], tablet: [820, 1180], desk: [1440, 900] };
+
+export async function widths(visit, site, { pictures }) {
+  await visit.open(site.address + START);
+  for (const [name, [width, height]] of Object.entries(WIDTHS)) {
+    for (const dark of [false, true]) {
+      await visit.look(width, height, dark);
+      const scheme = dark ? 'dark' : 'light';
+      const wide = await visit.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+      visit.findings.check(`nothing is wider than a ${name}`, wide <= 0, wide);
+      const hero = await visit.page.evaluate(() => ['#view canvas', '#chart canvas', '#pins svg'].every((s) => document.querySelector(s).getBoundingClientRect().width > 200));
+      visit.findings.check(`assembly, curve and pins have room on a ${name}`, hero);
+      await visit.picture('body');
+      await visit.page.screenshot({ path: `${pictures}/${site.name}-${name}-${scheme}.png` });
+    }
+  }
+}
+
+// States of the page that a person meets, each with what brings it about and what ends it.
+const STATES = {
+  'at rest': [async () => {}, async () => {}],
+  'with reasons': [(v) => v.click('#trust'), (v) => v.click('#trust')],
+  'with templates': [(v) => v.click('#more > summary'), (v) => v.page.keyboard.press('Escape')],
+  'with the view menu': [(v) => v.click('#look > summary'), (v) => v.page.keyboard.press('Escape')],
+  'with files': [async (v) => { await v.click('#download'); await v.page.waitForSelector('#file-list button'); }, (v) => v.click('#files-close')],
+  'with trouble': [async (v) => { await v.page.evaluate(() => { location.hash = '#v=1&segment.grooves=40'; }); await v.page.waitForSelector('#trouble:not([hidden])'); },
+    async (v) => { await v.click('#trouble .mend'); await v.page.waitForSelector('#trouble[hidden]'); }],
+};
+
+async function violations(visit) {
+  await visit.page.evaluate(() => new Promise((done) => setTimeout(done, 50)));
+  return visit.page.evaluate(async () => (await axe.run(document, { resultTypes: ['violations'] })).violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target.join(' ')).slice(0, 3).join(', ')}`));
+}
+
+export async function accessible(visit, site) {
+  for (const [name, dark] of [['desk', false], ['desk', true], ['phone', false], ['phone', true]]) {
+    await visit.look(...WIDTHS[name], dark);
+    await visit.open(site.address + START);
+    // As the debugger evaluates it: the page's policy lets no script in.
+    await visit.page.evaluate(visit.browser.axeText);
+    const judge = async (state) => {
+      const found = await violations(visit);
+      visit.findings.check(`axe-core finds nothing on a ${dark ? 'dark' : 'light'} ${name} ${state}`, found.length === 0, found.join('; '));
+    };
+    for (const [state, [begin, end]] of Object.entries(STATES)) {
+      await begin(visit);
+      await judge(state);
+      await end(visit);
+    }
+    if (name !== 'phone') continue;
+    await visit.click('#parameters');
+    await visit.page.waitForSelector('#find', { visible: true });
+    await judge('with parameters');
+  }
+}

@@ -1,0 +1,85 @@
+// Drives the configurator in a real browser, with `pinswitch view` and with the module: node run.mjs JOB.json, where the job
+// names `binary` (pinswitch), `browser`, `tools` (a folder with puppeteer-core and axe-core), `table` (a table of plateaus),
+// `pictures` (a folder for screenshots) and, where there is one, `site` (the folder that cad/web/build made). Exit code 1
+// if anything did not hold; `only` runs the scenarios whose names hold it.
+
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { Browser, Findings, Visit } from './drive.mjs';
+import { moduleSite, viewSite } from './engines.mjs';
+import * as around from './around.mjs';
+import * as design from './design.mjs';
+import * as downloads from './downloads.mjs';
+import * as look from './look.mjs';
+import * as tables from './tables.mjs';
+import * as trouble from './trouble.mjs';
+
+const job = JSON.parse(readFileSync(process.argv[2], 'utf8'));
+const scratch = mkdtempSync(join(tmpdir(), 'pinswitch-job-'));
+const findings = new Findings();
+
+// A page that a double click opened: from a file, without any server.
+async function fromFile(visit, site) {
+  if (!site.file) return;
+  await visit.open(site.file + design.START);
+  await visit.click('#mirror-pins');
+  await visit.settled();
+  findings.check('a file that was opened by a double click works', (await visit.text('#friction-words')).includes('of load'));
+}
+
+function scenarios() {
+  const all = { fromFile, ...design, ...look, ...tables, ...trouble, ...around, ...downloads };
+  return Object.entries(all).filter(([name, act]) => typeof act === 'function' && name.includes(job.only ?? ''));
+}
+
+async function factsOf(site) {
+  const { origin } = site;
+  const response = await fetch(`${origin}/answer`, { method: 'POST', headers: { origin }, body: '{"ask": "facts"}' });
+  return response.json();
+}
+
+async function drive(browser, site, given) {
+  for (const [name, act] of scenarios()) {
+    findings.scenario = `${site.name}, ${name}`;
+    const began = performance.now();
+    const visit = await Visit.begin(browser, { findings });
+    try {
+      await act(visit, site, given);
+    } catch (problem) {
+      findings.check('it came to its end', false, problem.stack);
+    }
+    await visit.end();
+    console.log(`${findings.scenario}: ${((performance.now() - began) / 1000).toFixed(1)} s`);
+  }
+}
+
+async function main() {
+  mkdirSync(job.pictures, { recursive: true });
+  const view = (name, text = '[layout]\npins = [5, 8, 11]\n') => {
+    writeFileSync(join(scratch, name), text);
+    return viewSite(job.binary, scratch, name);
+  };
+  const server = await view('mine.toml');
+  const facts = await factsOf(server);
+  const browser = await Browser.start({ tools: job.tools, executable: job.browser });
+  browser.axeText = readFileSync(browser.tools.axe, 'utf8');
+  const given = { binary: job.binary, executable: job.browser, tools: job.tools, pictures: job.pictures, table: readFileSync(job.table, 'utf8'), facts, findings, scratch, anotherView: view };
+  try {
+    await drive(browser, server, given);
+    if (job.site) {
+      const site = await moduleSite(job.site);
+      await drive(browser, site, given);
+      await site.end();
+    }
+  } finally {
+    await browser.end();
+    await server.end();
+    rmSync(scratch, { recursive: true, force: true });
+  }
+  for (const failure of findings.failed) console.log(`FAILED ${failure}`);
+  console.log(`${findings.held} held, ${findings.failed.length} failed`);
+  return findings.failed.length === 0 && findings.held > 0 ? 0 : 1;
+}
+
+process.exitCode = await main();

@@ -1,0 +1,59 @@
+// Asking backwards, and measurements of one's own.
+
+import { START } from './design.mjs';
+
+export async function search(visit, site) {
+  await visit.open(site.address + START);
+  await visit.click('#search');
+  await visit.check('a search without an ask says what to do', () => /Say first/.test(document.querySelector('#ask-says').textContent));
+  // The mark on the plot is pulled, by hand and by key.
+  const grip = await (await visit.page.$('.grip.threshold')).boundingBox();
+  const { mouse } = visit.page;
+  await mouse.move(grip.x + grip.width / 2, grip.y + grip.height / 2);
+  await mouse.down();
+  await mouse.move(grip.x + 40, grip.y + 8, { steps: 3 });
+  await mouse.up();
+  await visit.addressHas('ask.threshold_n=');
+  await visit.type('#ask-threshold', '24');
+  await visit.addressHas('ask.threshold_n=24');
+  await visit.focus('.grip.diamond');
+  await visit.page.keyboard.press('ArrowUp');
+  await visit.addressHas('ask.friction=');
+  await visit.click('#ask-frictions .tiny');
+  await visit.addressLacks('ask.friction');
+  await visit.click('#search');
+  await visit.page.waitForSelector('#designs .design');
+  const cards = await visit.page.$$eval('.design', (all) => all.map((c) => Number(/(\d+) % likely/.exec(c.textContent)?.[1])));
+  visit.findings.check('the best designs come as cards, the most probable first', cards.length > 1 && cards.every((p, i) => p >= 0 && p <= 100 && (i === 0 || p <= cards[i - 1])), cards);
+  await visit.page.hover('.design:nth-child(2)');
+  await visit.check('a card shows its curve', () => /design 2/.test(document.querySelector('#legend').textContent));
+  const pins = await visit.page.$eval('.design:nth-child(2)', (card) => /pins \[([\d, ]+)\]/.exec(card.textContent)[1].replaceAll(' ', ''));
+  await visit.click('.design:nth-child(2) button');
+  await visit.settled();
+  await visit.check('one click takes a design', (taken) => document.querySelector('#pins-say').textContent.replaceAll(' ', '') === `Pinsin${taken}`, pins);
+  await visit.click('#found-close');
+  await visit.check('the cards go', () => document.querySelector('#found').hidden);
+}
+
+export async function calibration(visit, site, { table }) {
+  await visit.open(site.address + '#v=1&layout.pins=5,8,11');
+  const published = await visit.text('#friction-words');
+  await visit.drop('plateaus.csv', table);
+  // While the model is fitted, the page stays its visitor's.
+  await visit.focus('#apart');
+  await visit.page.waitForSelector('#take-model:not([hidden])', { timeout: 60_000 });
+  const verdict = await visit.text('#verdict');
+  visit.findings.check('a table gets a verdict', /^Attributed/.test(verdict) && /Held-out error .* before/.test(verdict) && /coating_ploughing/.test(verdict), verdict);
+  await visit.check('its curve stands beside the design', () => /with your model/.test(document.querySelector('#legend').textContent));
+  await visit.click('#take-model');
+  await visit.check('the model is in the design', (before) => /your model/.test(document.querySelector('#trust').textContent) && document.querySelector('#friction-words').textContent !== before, published);
+  await visit.settled();
+  await visit.addressHas('model=plateaus.csv~');
+  const words = await visit.text('#friction-words');
+  await visit.page.reload();
+  await visit.settled();
+  visit.findings.check('the address carries the model', await visit.text('#friction-words') === words);
+  await visit.click('#drop-model');
+  await visit.check('it can be given back', (before) => document.querySelector('#friction-words').textContent === before, published);
+  await visit.settled();
+}

@@ -63,4 +63,4 @@ pub use report::{
     LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, Verdict,
 };
 pub use toml_text::toml_error;
-pub use trial::{CONFIRMED_P, TrialOutcome, TrialReport, trials};
+pub use trial::{CERTAIN_P, CONFIRMED_P, CONFIRMED_SHARE, TrialOutcome, TrialReport, trials};

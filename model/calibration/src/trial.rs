@@ -11,8 +11,13 @@ use crate::inference::{
 };
 use crate::report::Estimate;
 
-/// Probability by chance below which an effect counts as confirmed.
+/// Probability by chance below which an effect counts as confirmed, if it has at least [`CONFIRMED_SHARE`] of its start
+/// value.
 pub const CONFIRMED_P: f64 = 0.01;
+/// Share of its start value that chance rarely makes where the effect is absent.
+pub const CONFIRMED_SHARE: f64 = 0.5;
+/// Probability by chance below which an effect counts as confirmed whatever its size.
+pub const CERTAIN_P: f64 = 1e-5;
 /// Length of a trace in standard deviations below which the table does not see the effect.
 const LEAST_STRENGTH: f64 = 1e-6;
 
@@ -20,11 +25,12 @@ const LEAST_STRENGTH: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TrialOutcome {
-    /// It is there, in the direction of its start value: by chance with a probability below [`CONFIRMED_P`].
+    /// It is there, in the direction of its start value: by chance with a probability below [`CONFIRMED_P`] and at least half
+    /// as large, or below [`CERTAIN_P`].
     Confirmed,
-    /// It is not there at its start value: the interval of its size does not reach it, nor is it there by another size.
+    /// It is not there at its start value: the interval of its size does not reach it, and it is not confirmed.
     Refuted,
-    /// Neither: the table cannot tell, or shows another size than the start value.
+    /// Neither: the table cannot tell.
     Open,
 }
 
@@ -101,7 +107,8 @@ fn trial(
 
 fn outcome(start: f64, value: f64, half: f64, p_value: f64) -> TrialOutcome {
     let (share, half) = (value / start, (half / start).abs());
-    if p_value < CONFIRMED_P && share > 0.0 {
+    let is_large = share >= CONFIRMED_SHARE && p_value < CONFIRMED_P;
+    if is_large || (share > 0.0 && p_value < CERTAIN_P) {
         TrialOutcome::Confirmed
     } else if share + half < 1.0 {
         TrialOutcome::Refuted
@@ -148,6 +155,10 @@ mod tests {
         assert_eq!(outcome(0.1, 0.08, 0.03, 1e-4), TrialOutcome::Confirmed);
         assert_eq!(outcome(-0.1, -0.08, 0.03, 1e-4), TrialOutcome::Confirmed);
         assert_eq!(outcome(-0.1, 0.08, 0.03, 1e-4), TrialOutcome::Refuted);
+        // Chance makes a little of everything: once in some hundred tables with a probability below 0.01.
+        assert_eq!(outcome(0.163, 0.077, 0.051, 3.5e-3), TrialOutcome::Refuted);
+        assert_eq!(outcome(0.163, 0.077, 0.09, 3.5e-3), TrialOutcome::Open);
+        assert_eq!(outcome(0.163, 0.077, 0.01, 1e-12), TrialOutcome::Confirmed);
         assert_eq!(outcome(0.1, 0.01, 0.03, 0.5), TrialOutcome::Refuted);
         assert_eq!(outcome(0.1, 0.05, 0.08, 0.2), TrialOutcome::Open);
     }

@@ -85,6 +85,8 @@ pub fn draw_form(selection: &Selection, data: &Observations) -> Option<DrawnForm
     let known = &selection.augmented.model.vocabulary;
     let definition = named(&first, &found, selection.structure?.covariate, &shape, known);
     let fitted = renamed(&found, &definition, known, &weighed)?;
+    // Its constants are those that are told.
+    let definition = named(&first, &fitted, selection.structure?.covariate, &shape, known);
     let half_widths = interval_half_widths(&fitted, &weighed);
     let at = fitted.model.term_offset(fitted.model.terms.len() - 1);
     let values = fitted.model.values();

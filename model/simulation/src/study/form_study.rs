@@ -133,7 +133,7 @@ impl FormStudy {
     /// A row for each kind, and one for all, in Markdown.
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "| protocol | rig | rigs | right place | right shape | later session, model / true form | form / true form | confirmed (p < 0.01) | refuted where absent | p >= 0.01 where absent |\n|---|---|---|---|---|---|---|---|---|---|\n",
+            "| protocol | rig | rigs | right place | right shape | later session, model / true form | form / true form | confirmed by a later session | refuted where absent | p >= 0.01 where absent |\n|---|---|---|---|---|---|---|---|---|---|\n",
         );
         for (case, outcomes) in &self.outcomes {
             let protocol = format!("{:?}", case.protocol).to_lowercase();

@@ -1,6 +1,6 @@
 //! The real binary, end to end: what README shows, what the files hold, and that every run writes the same bytes.
 
-use crate::harness::{done, files, json, pinswitch, printed, repository, sha256};
+use crate::harness::{done, ended, files, json, pinswitch, printed, repository, sha256};
 use serde_json::Value;
 
 #[test]
@@ -270,4 +270,25 @@ fn check_names_what_is_wrong() {
     assert_eq!(check(&["check", "set/shell.stl", "--bodies", "2"]).0, Some(1));
     let verdict = json(folder.path(), &["check", "set/shell.stl", "--json"]);
     assert_eq!(verdict[0]["valid"], true);
+}
+
+#[test]
+fn a_study_of_nothing_is_refused_with_what_there_is() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, words) in [
+        (
+            &["--study", "1", "--forms", "--only", "singles"][..],
+            "--only singles: no kind of rig of this chapter has this in its name; its groups are outside",
+        ),
+        (
+            &["--study", "1", "--only", "no-such-rig"],
+            "its groups are confounded, masks, nulls, outside, pairs, scattered, singles",
+        ),
+        (&["--study", "0"], "0 is not in 1..=400"),
+        (&["--study", "1", "--first-seed", "18446744073709551615"], "18446744073709551615 is not in"),
+    ] {
+        let (code, said) = ended(folder.path(), &[&["simulate"], arguments].concat());
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains(words), "{said}");
+    }
 }

@@ -3,12 +3,11 @@
 //! `PINSWITCH_ACCEPT=1 cargo test --test fast pictures` makes all of them again; the three photographs of pages need
 //! chromium. Without it the test compares drawings byte for byte, and photographs by the hash of the page they show.
 
-use std::io::{BufRead, BufReader, Read, Write};
-use std::net::TcpStream;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 
-use crate::harness::{binary, browser, done, repository, sha256};
+use crate::harness::preview::Preview;
+use crate::harness::{browser, done, repository, sha256};
 
 /// A picture in `cad/doc`, and the file of a run that it is.
 const DRAWN: [(&str, &str); 10] = [
@@ -59,42 +58,6 @@ fn photograph(address: &str, picture: &Path, size: &str) {
     assert!(done.status.success() && picture.exists(), "{}", String::from_utf8_lossy(&done.stderr));
 }
 
-/// `pinswitch view`, ended with the test.
-struct Served {
-    child: Child,
-    host: String,
-}
-
-impl Drop for Served {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-impl Served {
-    fn start() -> Self {
-        let mut command = binary();
-        command.args(["view", "three-double", "--port", "0"]).stdout(Stdio::piped()).stderr(Stdio::null());
-        let mut child = command.spawn().unwrap();
-        let mut line = String::new();
-        BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
-        let host = line.trim().strip_prefix("http://").unwrap().to_owned();
-        Self { child, host }
-    }
-
-    /// The page of the configurator.
-    fn configurator(&self) -> Vec<u8> {
-        let mut stream = TcpStream::connect(&self.host).unwrap();
-        // HTTP 1.0: the answer ends with the connection, and comes in one piece.
-        write!(stream, "GET /configure HTTP/1.0\r\nHost: {}\r\n\r\n", self.host).unwrap();
-        let mut answer = Vec::new();
-        stream.read_to_end(&mut answer).unwrap();
-        let body = answer.windows(4).position(|end| end == b"\r\n\r\n").unwrap() + 4;
-        answer.split_off(body)
-    }
-}
-
 #[test]
 fn pictures_are_what_the_program_draws() {
     let folder = tempfile::tempdir().unwrap();
@@ -130,12 +93,12 @@ fn pictures_are_what_the_program_draws() {
             format!("{}  {picture}\n", sha256(&std::fs::read(page).unwrap()))
         })
         .collect();
-    let served = Served::start();
+    let served = Preview::start(folder.path(), "three-double");
     let (picture, size) = CONFIGURATOR;
     if accept {
         photograph(&format!("http://{}/configure", served.host), &documents.join(picture), size);
     }
-    pages.push_str(&format!("{}  {picture}\n", sha256(&served.configurator())));
+    pages.push_str(&format!("{}  {picture}\n", sha256(served.get("/configure").as_bytes())));
     if accept {
         std::fs::write(documents.join(PAGES), pages).unwrap();
     } else {

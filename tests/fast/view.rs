@@ -1,71 +1,10 @@
 //! The preview answers its own page, within bounds, and shows whole files only.
 
-use std::io::{Read, Write};
-use std::net::TcpStream;
-use std::path::Path;
-use std::process::{Child, Stdio};
+use std::io::Write;
 use std::time::Duration;
 
-use crate::harness::{binary, done};
-
-/// A running preview, ended with the test.
-struct Preview {
-    child: Child,
-    address: String,
-}
-
-impl Drop for Preview {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-impl Preview {
-    fn start(folder: &Path, config: &str) -> Self {
-        let mut command = binary();
-        command.args(["view", config, "--port", "0"]).current_dir(folder);
-        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
-        let mut line = Vec::new();
-        let stdout = child.stdout.as_mut().unwrap();
-        let mut byte = [0];
-        while stdout.read_exact(&mut byte).is_ok() && byte[0] != b'\n' {
-            line.push(byte[0]);
-        }
-        let address = String::from_utf8(line).unwrap().replace("http://", "");
-        Self { child, address }
-    }
-
-    fn connect(&self) -> TcpStream {
-        let stream = TcpStream::connect(&self.address).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
-        stream
-    }
-
-    /// The answer to a request with this line and these headers.
-    fn ask(&self, line: &str, headers: &str) -> String {
-        let mut stream = self.connect();
-        // It may be refused before it was sent whole.
-        let _ = write!(stream, "{line} HTTP/1.1\r\n{headers}\r\n");
-        let mut answer = Vec::new();
-        let _ = stream.read_to_end(&mut answer);
-        String::from_utf8_lossy(&answer).into_owned()
-    }
-
-    fn host(&self) -> String {
-        format!("Host: {}\r\n", self.address)
-    }
-
-    fn state(&self, after: u64) -> serde_json::Value {
-        let answer = self.ask(&format!("GET /state?after={after}"), &self.host());
-        serde_json::from_str(answer.split_once("\r\n\r\n").unwrap().1).unwrap()
-    }
-
-    /// Threads of the process, where the system tells.
-    fn threads(&self) -> usize {
-        std::fs::read_dir(format!("/proc/{}/task", self.child.id())).map_or(0, Iterator::count)
-    }
-}
+use crate::harness::done;
+use crate::harness::preview::Preview;
 
 #[test]
 fn the_preview_answers_its_own_page_only() {

@@ -2,6 +2,8 @@
 
 #![allow(dead_code)]
 
+pub(crate) mod preview;
+
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::io::Write;

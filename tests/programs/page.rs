@@ -1,11 +1,10 @@
 //! The page in a real browser, where one is installed: it renders, its controls work, and nothing is logged as an error.
 
 use crate::harness::browser;
-use std::io::{Read, Write};
-use std::net::TcpStream;
+use crate::harness::preview::Preview;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Instant;
 
 /// Moves every control and leaves what it found in the title.
 const EXERCISE: &str = r#"<script>
@@ -115,53 +114,6 @@ fn the_page_works_in_a_browser() {
             &[flag, &format!("--screenshot={}", picture.display())],
         );
         assert!(std::fs::metadata(&picture).unwrap().len() > 30_000, "{mode}: an empty picture");
-    }
-}
-
-/// A running preview, ended with the test.
-struct Preview {
-    child: Child,
-    address: String,
-}
-
-impl Drop for Preview {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-impl Preview {
-    fn start(folder: &Path, config: &str) -> Self {
-        let mut child = crate::harness::binary()
-            .args(["view", config, "--port", "0"])
-            .current_dir(folder)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut line = Vec::new();
-        let stdout = child.stdout.as_mut().unwrap();
-        let mut byte = [0];
-        while stdout.read_exact(&mut byte).is_ok() && byte[0] != b'\n' {
-            line.push(byte[0]);
-        }
-        let address = String::from_utf8(line).unwrap().replace("http://", "");
-        Self { child, address }
-    }
-
-    fn get(&self, path: &str) -> String {
-        let mut stream = TcpStream::connect(&self.address).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
-        // HTTP 1.0: the answer ends with the connection, and comes in one piece.
-        write!(stream, "GET {path} HTTP/1.0\r\nHost: {}\r\n\r\n", self.address).unwrap();
-        let mut answer = String::new();
-        stream.read_to_string(&mut answer).unwrap();
-        answer.split_once("\r\n\r\n").map(|(_, body)| body.to_owned()).unwrap()
-    }
-
-    fn state(&self, after: u64) -> serde_json::Value {
-        serde_json::from_str(&self.get(&format!("/state?after={after}"))).unwrap()
     }
 }
 

@@ -68,10 +68,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "SEED", conflicts_with = "study", value_parser = clap::value_parser!(u64).range(..=MAX_SEED))]
     seed: Option<u64>,
     /// Calibrate this many rigs of every kind and print what was said of them.
-    #[arg(long, value_name = "SEEDS", conflicts_with_all = ["plan", "out"])]
+    #[arg(long, value_name = "SEEDS", conflicts_with_all = ["plan", "out"], value_parser = clap::value_parser!(u64).range(1..=MOST_SEEDS))]
     study: Option<u64>,
     /// In a study, the first seed; others than those a level was tuned on give a fair figure.
-    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "study")]
+    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "study", value_parser = clap::value_parser!(u64).range(..=MAX_FIRST_SEED))]
     first_seed: u64,
     /// In a study, ask for the error promised for a new session, too: five times the time.
     #[arg(long, requires = "study")]
@@ -91,6 +91,10 @@ pub(super) struct Arguments {
 const MAX_SEED: u64 = i64::MAX as u64;
 /// Seeds from one kind of rig of a study to the next.
 const SEEDS_PER_CASE: u64 = 1000;
+/// Most seeds of a kind: the oldest kinds without effect take two and a half rigs for each, all from their own thousand.
+const MOST_SEEDS: u64 = 400;
+/// Largest first seed; the seeds of all kinds follow it.
+const MAX_FIRST_SEED: u64 = MAX_SEED - 1_000_000;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(seeds) = arguments.study {
@@ -203,43 +207,46 @@ fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
     if arguments.experiments {
         let mut study = ExperimentStudy::default();
         let run = |case: &Case, seed| run_experiment_case(case, seed, Levels::default());
-        each_case(arguments, seeds, experiment_cases(), run, |case, outcomes| study.add(case, outcomes))?;
+        let cases = (0..).zip(experiment_cases()).collect();
+        each_case(arguments, seeds, cases, run, |case, outcomes| study.add(case, outcomes))?;
         return print(study.table().as_bytes());
     }
+    let numbered = (0..).zip(study_cases());
     if arguments.forms {
         let mut study = FormStudy::default();
-        let cases = study_cases();
+        let cases = numbered.filter(|(_, case)| case.group == Group::Outside).collect();
         let run = |case: &Case, seed| run_form_case(case, seed, Levels::default());
         each_case(arguments, seeds, cases, run, |case, outcomes| study.add(case, outcomes))?;
         return print(study.table().as_bytes());
     }
     let mut study = Study::default();
     let run = |case: &Case, seed| run_case(case, seed, Levels::default(), arguments.promises);
-    each_case(arguments, seeds, study_cases(), run, |case, outcomes| study.add(case, outcomes))?;
+    each_case(arguments, seeds, numbered.collect(), run, |case, outcomes| study.add(case, outcomes))?;
     print(format!("{}\n{}\n{}", study.table(), study.groups(), study.summary()).as_bytes())
 }
 
-/// Runs the rigs of all kinds asked for, and hands on what became of each kind.
+/// Runs the rigs of the chapter's kinds that are asked for, each with its place among all, and hands on what became of them.
 fn each_case<T: Send>(
     arguments: &Arguments,
     seeds: u64,
-    cases: Vec<Case>,
+    cases: Vec<(u64, Case)>,
     run: impl Fn(&Case, u64) -> Option<T> + Sync,
     mut add: impl FnMut(Case, Vec<T>),
 ) -> Result<(), Failure> {
     for word in &arguments.only {
-        if !cases.iter().any(|case| case.is_meant_by(word)) {
-            let groups = Group::ALL.map(Group::as_str).join(", ");
+        if !cases.iter().any(|(_, case)| case.is_meant_by(word)) {
+            let mut groups: Vec<&str> = cases.iter().map(|(_, case)| case.group.as_str()).collect();
+            groups.sort_unstable();
+            groups.dedup();
             return Err(Failure::bad_input(format!(
-                "--only {word}: no kind of rig has this in its name; the groups are {groups}"
+                "--only {word}: no kind of rig of this chapter has this in its name; its groups are {}",
+                groups.join(", ")
             )));
         }
     }
-    let is_asked_for = |case: &Case| {
-        let by_chapter = !arguments.forms || case.group == Group::Outside;
-        by_chapter && (arguments.only.is_empty() || arguments.only.iter().any(|word| case.is_meant_by(word)))
-    };
-    for (place, case) in (0..).zip(cases).filter(|(_, case)| is_asked_for(case)) {
+    let is_asked_for =
+        |case: &Case| arguments.only.is_empty() || arguments.only.iter().any(|word| case.is_meant_by(word));
+    for (place, case) in cases.into_iter().filter(|(_, case)| is_asked_for(case)) {
         // One draw of noise must not decide of every kind of rig: each has seeds of its own.
         let own = arguments.first_seed + SEEDS_PER_CASE * place;
         let outcomes: Vec<T> =

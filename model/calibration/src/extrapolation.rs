@@ -1,11 +1,12 @@
 //! Fitted at low loads, judged at higher ones.
 
-use crate::calibrate::{BAD_READING_SD, Calibration, CalibrationError, calibrate_among};
+use crate::calibrate::{Calibration, CalibrationError, calibrate_among};
 use crate::effects::Vocabulary;
 use crate::inference::{Levels, Model};
 use crate::median::median;
 use crate::report::Extrapolation;
 use crate::table::PlateauRow;
+use crate::telling::BAD_READING_SD;
 
 /// Calibrates on loads up to a share of the highest one and judges both models on the rest.
 ///

@@ -44,6 +44,7 @@ mod published_maxima;
 mod report;
 pub mod segmentation;
 pub mod table;
+mod telling;
 #[cfg(test)]
 mod test_session;
 mod toml_text;

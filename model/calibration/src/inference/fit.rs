@@ -78,6 +78,11 @@ impl Slopes {
         Self { columns, normal }
     }
 
+    /// Products of the sensitivities with a whitened column.
+    pub(crate) fn along(&self, white: &[f64]) -> DVector<f64> {
+        DVector::from_iterator(self.columns.len(), self.columns.iter().map(|column| dot(column, white)))
+    }
+
     /// Half the gradient of the cost, downhill.
     fn gradient(&self, model: &Model, white: &[f64]) -> DVector<f64> {
         DVector::from_fn(self.columns.len(), |i, _| {

@@ -186,8 +186,8 @@ impl Model {
     }
 
     /// Index of the first constant of a term.
-    pub(crate) fn term_offset(&self, index: usize) -> usize {
-        self.baseline_len() + self.terms[..index].iter().map(Term::constants).sum::<usize>()
+    pub fn term_offset(&self, index: usize) -> usize {
+        self.baseline_len() + self.terms.iter().take(index).map(Term::constants).sum::<usize>()
     }
 
     /// Number of the baseline's constants.

@@ -2,10 +2,13 @@
 //!
 //! How the steps hang together, and how well they work, stands in `model/doc/naming-an-effect.md`.
 
+mod against_scatter;
+mod averaged_intervals;
 mod baseline;
 mod compaction;
 mod correlation;
 mod evidence;
+mod explanation;
 mod fit;
 mod form_tolerance;
 mod forward;
@@ -17,6 +20,7 @@ mod noise;
 mod observations;
 mod projection;
 mod reliability;
+mod rivals;
 mod screening;
 mod search;
 mod selection;
@@ -31,6 +35,7 @@ mod walk;
 mod wandering;
 mod weighed;
 
+pub use averaged_intervals::averaged_intervals;
 pub(crate) use compaction::MOST_ROWS;
 pub(crate) use fit::jacobian;
 pub use fit::{Fit, coordinate_covariance, fit, interval_half_widths, prediction_sd_n};

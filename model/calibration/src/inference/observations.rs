@@ -77,7 +77,9 @@ pub(crate) struct CellMeans {
 impl CellMeans {
     /// Means of a column of the whole table, weighed by the repetition noise.
     pub(crate) fn mean_of(&self, data: &Observations, column: &[f64]) -> Vec<f64> {
-        self.means_of(data, std::slice::from_ref(&column.to_vec())).pop().unwrap_or_default()
+        let mut white = column.to_vec();
+        Weighed::new(data, self.repetition).whiten(&mut white);
+        self.mean_of_white(data, &white)
     }
 
     /// Means of several columns.

@@ -1,23 +1,22 @@
 //! Which effects a table shows, their rivals, and what no name explains.
 
+use super::against_scatter::against_scatter;
 use super::baseline::{explainable, fit_baseline};
-use super::evidence::evidence;
+use super::explanation::{Explanation, explain};
 use super::fit::{Fit, fit, interval_half_widths, jacobian};
 use super::forward::{Model, Term};
-use super::isolation::isolated_series;
 use super::levels::Levels;
 use super::limits::{SizeLimit, classes, limits};
 use super::noise::Noise;
 use super::observations::Observations;
-use super::projection::dot;
 use super::reliability::{NoiseFactors, Reliability};
-use super::screening::{EffectScore, Screen};
-use super::search::{VISIBLE_SHARE, bendable_gain, flips, possible, search};
-use super::structure_scores::StructureScore;
-use super::unnamed::{Context, FoundStructure, with_structure};
-use super::variance_components::{Scatter, estimate, shared_again};
+use super::rivals::{candidates, found_effects};
+use super::screening::Screen;
+use super::search::{VISIBLE_SHARE, flips};
+use super::unnamed::FoundStructure;
+use super::variance_components::estimate;
 use super::weighed::Weighed;
-use crate::effects::{Effect, Shape};
+use crate::effects::Effect;
 
 /// An effect that explains what a named one explains as well.
 #[derive(Clone, Debug)]
@@ -139,11 +138,6 @@ impl Selection {
     }
 }
 
-/// Gain, in whitened squares, below which a shape is not worth a look.
-const MIN_SHAPE_GAIN: f64 = 9.0;
-/// Series that may be excluded; more than these are no accidents.
-const MAX_EXCLUDED: usize = 3;
-
 /// Runs the whole search on a table. A series that is wrong as a whole is excluded, and the search begins
 /// again.
 pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
@@ -182,231 +176,6 @@ fn choose(start: &Model, data: &mut Observations, levels: Levels) -> Explanation
         }
         return against_scatter(free, data, levels);
     }
-}
-
-/// One explanation of a table at one noise.
-#[derive(Clone)]
-struct Explanation {
-    baseline: Fit,
-    augmented: Fit,
-    structure: Option<FoundStructure>,
-    structure_gain: f64,
-    structures_tried: usize,
-    noise: Noise,
-    /// A series that is wrong as a whole and must be left out first.
-    isolated: Option<usize>,
-}
-
-impl Explanation {
-    /// Shapes without a name; the sine and the cosine of a wave are one.
-    fn shapes(&self) -> usize {
-        let is_one = |term: &&Term| match term {
-            Term::Structure(s) => {
-                !matches!(s.form, Shape::TimeWave { quarter: 1, .. } | Shape::PositionWave { quarter: 1, .. })
-            }
-            Term::Named(_) => false,
-        };
-        self.augmented.model.terms.iter().filter(is_one).count()
-    }
-
-    fn names(&self) -> usize {
-        self.augmented.model.named_effects().len()
-    }
-
-    /// Minus twice the logarithm of its posterior probability, up to a constant: the evidence, and for each thing
-    /// believed how many there were to choose from.
-    fn toll(&self, data: &Observations) -> f64 {
-        let choices = 2.0 * (self.augmented.model.vocabulary.count() as f64).ln() * self.names() as f64;
-        let shapes = 2.0 * (self.structures_tried.max(1) as f64).ln() * self.shapes() as f64;
-        let scatter: f64 = Scatter::ALL.iter().map(|s| s.cost(self.noise, data)).sum();
-        evidence(&self.augmented, &Weighed::new(data, self.noise)) + choices + shapes + scatter
-    }
-}
-
-/// Evidence by which believing less may be behind and still be searched for.
-const WORTH_A_SEARCH: f64 = 25.0;
-
-impl Explanation {
-    /// The explanations that believe one thing less, or nothing.
-    fn with_less(&self) -> impl Iterator<Item = Explanation> {
-        let terms = &self.augmented.model.terms;
-        let bare = (0..terms.len()).rev().fold(self.augmented.model.clone(), |m, i| m.without_term(i));
-        let named = (0..terms.len())
-            .filter(|i| matches!(terms[*i], Term::Named(_)))
-            .map(|i| (self.augmented.model.without_term(i), self.structure));
-        let shapeless = (0..terms.len())
-            .rev()
-            .filter(|i| matches!(terms[*i], Term::Structure(_)))
-            .fold(self.augmented.model.clone(), |m, i| m.without_term(i));
-        [(bare, None), (shapeless, None)].into_iter().chain(named).map(|(model, structure)| Explanation {
-            augmented: Fit { model, ..self.augmented.clone() },
-            structure,
-            ..self.clone()
-        })
-    }
-
-    /// The same things believed at another noise.
-    fn at(&self, data: &Observations, noise: Noise) -> Explanation {
-        let augmented = fit(&self.augmented.model, &Weighed::new(data, noise));
-        Explanation { augmented, noise, ..self.clone() }
-    }
-}
-
-/// Names and structure at a noise, which is estimated again once something is explained.
-fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> Explanation {
-    let mut noise = noise;
-    let mut weighed = Weighed::new(data, noise);
-    let mut baseline = fit_baseline(start, &weighed);
-    let mut found = search(&baseline, &weighed, levels);
-    if !found.model.terms.is_empty() {
-        let before = noise;
-        noise = estimate(data, &found.residual_n, &explainable(&found, data), noise);
-        noise = Scatter::ALL.iter().fold(noise, |n, scatter| scatter.taken_from(before, n));
-        weighed = Weighed::new(data, noise);
-        baseline = fit(&baseline.model, &weighed);
-        found = search(&baseline, &weighed, levels);
-    }
-    // A shape that some series follow looks like scatter of the series as long as it is not in the model.
-    let (sharper, mut left) = sharper_noise(&found, data, noise);
-    if let Some(sharper) = sharper {
-        noise = sharper;
-        weighed = Weighed::new(data, noise);
-        baseline = fit(&baseline.model, &weighed);
-        found = fit(&found.model, &weighed);
-        left = Screen::new(&found, &weighed).structures();
-    }
-    let explained = bendable_gain(&baseline, &found, &weighed);
-    let open = Screen::new(&found, &weighed);
-    let guarded = Screen::guarded(&found, &weighed);
-    let beyond = left.first().is_some_and(|s| s.gain > levels.beyond_form * explained);
-    if !found.model.named_effects().is_empty() && !beyond {
-        left = guarded.structures();
-    }
-    let isolated = (data.excluded_series() < MAX_EXCLUDED)
-        .then(|| {
-            let structure = left.first().map_or(0.0, |s| s.gain);
-            let effect = open.effects().iter().map(|s| s.gain).fold(structure, f64::max);
-            isolated_series(&open, data, effect)
-        })
-        .flatten();
-    let (structure_gain, structures_tried) = (left.first().map_or(0.0, |s| s.gain), left.len());
-    let (augmented, structure) = if isolated.is_some() {
-        (found.clone(), None)
-    } else {
-        let bent = guarded.bent_gain();
-        Context { weighed: &weighed, levels, explained }.with_unnamed(&baseline, found.clone(), &left, bent)
-    };
-    Explanation { baseline, augmented, structure, structure_gain, structures_tried, noise, isolated }
-}
-
-/// Evidence that a shape must gain beside the choice among all shapes before it changes the noise.
-const MIN_EVIDENCE: f64 = 6.0;
-
-/// The noise beside the best shape of each covariate, if one of them makes the table more probable than the noise does
-/// without it; and the scores of all shapes.
-fn sharper_noise(found: &Fit, data: &Observations, noise: Noise) -> (Option<Noise>, Vec<StructureScore>) {
-    let weighed = Weighed::new(data, noise);
-    let screen = Screen::new(found, &weighed);
-    let shapes = screen.structures();
-    let choice = 2.0 * (shapes.len().max(1) as f64).ln() + MIN_EVIDENCE;
-    let mut best = (evidence(found, &weighed) - choice, None);
-    let mut covariates = Vec::new();
-    let columns = explainable(found, data);
-    for score in shapes.iter().filter(|s| s.gain > MIN_SHAPE_GAIN) {
-        let covariate = score.group[0].covariate;
-        if covariates.contains(&covariate) {
-            continue;
-        }
-        covariates.push(covariate);
-        let with = with_structure(found, score, &weighed);
-        let own = &with.model.terms[found.model.terms.len()..];
-        let mut columns = columns.clone();
-        let predicted: Vec<f64> = data.force_n.iter().zip(&with.residual_n).map(|(y, r)| y - r).collect();
-        let all = jacobian(&with.model, data, &predicted);
-        columns.extend(all.into_iter().rev().take(own.len()));
-        let sharper = shared_again(data, &with.residual_n, &columns, noise);
-        let weighed = Weighed::new(data, sharper);
-        let toll = evidence(&fit(&with.model, &weighed), &weighed);
-        if toll < best.0 {
-            best = (toll, Some(sharper));
-        }
-    }
-    (best.1, shapes)
-}
-
-/// Whether scatter from mount to mount, or offsets that wander from series to series, explain a table as well as what
-/// was believed without them. Their groups are few, so that no variance is known well: they compete as explanations.
-fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Explanation {
-    let beside = |scatter: Scatter, fitted: &Fit, noise| {
-        let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
-        let own = jacobian(&fitted.model, data, &predicted);
-        scatter.estimated(data, &fitted.residual_n, &own, noise)
-    };
-    // What is believed is kept, and the scatter beside it estimated.
-    let with_scatter = |explanation: Explanation| {
-        let noise = Scatter::ALL
-            .iter()
-            .fold(explanation.noise, |noise, scatter| beside(*scatter, &explanation.augmented, noise));
-        if noise == explanation.noise {
-            return explanation;
-        }
-        let weighed = Weighed::new(data, noise);
-        let baseline = fit(&explanation.baseline.model, &weighed);
-        let augmented = fit(&explanation.augmented.model, &weighed);
-        let with = Explanation { baseline, augmented, noise, ..explanation.clone() };
-        if with.toll(data) < explanation.toll(data) { with } else { explanation }
-    };
-    if free.augmented.model.terms.is_empty() {
-        return with_scatter(free);
-    }
-    let bare = |noise| Scatter::ALL.iter().fold(noise, |n, scatter| scatter.left_out(n));
-    let alone = Scatter::ALL.map(|scatter| beside(scatter, &free.baseline, bare(free.noise)));
-    let mut best = with_scatter(free);
-    for found in alone {
-        let noise = Scatter::ALL.iter().fold(best.noise, |n, scatter| scatter.taken_from(found, n));
-        if noise == bare(noise) {
-            continue;
-        }
-        // The search is only worth its time if believing less than now comes near.
-        let toll = best.toll(data);
-        if !best.with_less().any(|less| less.at(data, noise).toll(data) < toll + WORTH_A_SEARCH) {
-            continue;
-        }
-        let other = explain(&best.baseline.model, data, noise, levels);
-        let other = with_scatter(other);
-        if other.toll(data) < best.toll(data) {
-            best = other;
-        }
-    }
-    // Names were preferred to shapes before it was known that they need scatter beside them.
-    if best.names() > 0 && best.noise != bare(best.noise) {
-        let shape = shape_alone(&best, data, levels).map(with_scatter);
-        best = shape.filter(|shape| shape.toll(data) < best.toll(data)).unwrap_or(best);
-    }
-    best
-}
-
-/// The best shape alone, with the noise that is beside it and without scatter: what stands against names that need
-/// scatter beside them.
-fn shape_alone(named: &Explanation, data: &Observations, levels: Levels) -> Option<Explanation> {
-    let bare = Scatter::ALL.iter().fold(named.noise, |n, scatter| scatter.left_out(n));
-    let baseline = fit(&named.baseline.model, &Weighed::new(data, bare));
-    let (sharper, shapes) = sharper_noise(&baseline, data, bare);
-    let noise = sharper?;
-    let weighed = Weighed::new(data, noise);
-    let baseline = fit(&baseline.model, &weighed);
-    let left = Screen::new(&baseline, &weighed).structures();
-    let context = Context { weighed: &weighed, levels, explained: 0.0 };
-    let (augmented, structure) = context.with_unnamed(&baseline, baseline.clone(), &left, 0.0);
-    Some(Explanation {
-        baseline,
-        augmented,
-        structure: Some(structure?),
-        structure_gain: left.first().map_or(0.0, |s| s.gain),
-        structures_tried: shapes.len(),
-        noise,
-        isolated: None,
-    })
 }
 
 /// A model without the names whose sizes may as well be zero.
@@ -451,68 +220,6 @@ fn finish(mut chosen: Explanation, data: &Observations, levels: Levels) -> Selec
         augmented: chosen.augmented,
         noise: chosen.noise,
     }
-}
-
-/// Gain and rivals of each named effect of a model.
-fn found_effects(augmented: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Vec<FoundEffect> {
-    let mut found = Vec::new();
-    for (index, term) in augmented.model.terms.iter().enumerate() {
-        let Term::Named(effect) = term else { continue };
-        let without = fit(&augmented.model.without_term(index), weighed);
-        let gain = without.cost - augmented.cost;
-        let bends = f64::from(u8::from(effect.description().bends));
-        let margin = levels.rival.max(levels.rival_share * gain * bends);
-        let mut rivals = rivals(*effect, gain, &without, augmented.cost, weighed);
-        rivals.retain(|r| r.worse_by < margin);
-        found.push(FoundEffect { effect: *effect, term: index, gain, rivals });
-    }
-    found
-}
-
-/// Effects fitted in place of one that gained `gain`: to the model `without` it, compared with the `cost` with it.
-fn rivals(
-    effect: &'static dyn Effect,
-    gain: f64,
-    without: &Fit,
-    cost: f64,
-    weighed: &Weighed<'_>,
-) -> Vec<Rival> {
-    let scores = Screen::new(without, weighed).effects();
-    let own = scores.iter().find(|s| s.effect.id() == effect.id()).map(|s| s.column.clone());
-    let mut others: Vec<_> = scores.into_iter().filter(|s| s.effect.id() != effect.id()).collect();
-    others.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    others.retain(|s| s.gain > 0.3 * gain);
-    others.truncate(4);
-    others
-        .into_iter()
-        .filter_map(|score| {
-            let other = fit(&without.model.with_term(Term::Named(score.effect), &score.start), weighed);
-            possible(score.effect, &other).then(|| {
-                let cosine = own.as_ref().map_or(0.0, |own| {
-                    (dot(own, &score.column) / (dot(own, own) * dot(&score.column, &score.column)).sqrt())
-                        .abs()
-                });
-                Rival { effect: score.effect, worse_by: other.cost - cost, cosine }
-            })
-        })
-        .collect()
-}
-
-/// Every effect of the catalogue, by its score over the baseline.
-fn candidates(scores: &[EffectScore], augmented: &Fit, weighed: &Weighed<'_>) -> Vec<CandidateEffect> {
-    let left = Screen::new(augmented, weighed).effects();
-    let mut candidates: Vec<_> = scores
-        .iter()
-        .map(|score| CandidateEffect {
-            effect: score.effect,
-            gain: score.gain,
-            gain_left: left.iter().find(|l| l.effect.id() == score.effect.id()).map(|l| l.gain),
-            visible_share: score.visible_share,
-            strength: score.strength,
-        })
-        .collect();
-    candidates.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    candidates
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 use pinswitch_calibration::inference::{
-    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, VISIBLE, Weighed, degrees_of_freedom,
-    expected_gain, family_p_value, interval_half_widths, probability_found, select,
+    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, VISIBLE, Weighed, averaged_intervals,
+    degrees_of_freedom, expected_gain, family_p_value, probability_found, select,
 };
 use pinswitch_calibration::table::{Frame, PlateauRow, PlateauTable};
 use pinswitch_calibration::{Verdict, calibrate};
@@ -44,6 +44,8 @@ pub struct CaseOutcome {
     /// For each size of a true effect in the form of `model/doc/effect-catalogue.md`: whether its 95 % interval holds
     /// it.
     pub covered: Vec<bool>,
+    /// For each name that is attributed, and whose size is free: whether its 95 % interval holds zero. None should.
+    pub across_zero: Vec<bool>,
     /// Largest gain over the vocabulary on top of the baseline, in whitened squares.
     pub largest_gain: f64,
     /// Its probability by chance.
@@ -77,6 +79,7 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels, promised: bool) -> Optio
     let (exact, honest) = said.judged(case, &plan);
     let largest_gain = found.candidates.first().map_or(0.0, |c| c.gain);
     let degrees = degrees_of_freedom(&data, found.baseline.model.values().len());
+    let reaches = averaged_intervals(&found.augmented, &Weighed::new(&data, found.noise));
     Some(CaseOutcome {
         verdict,
         fresh_n: [error_n(baseline, &frame, fresh)?, error_n(augmented, &frame, fresh)?],
@@ -90,7 +93,8 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels, promised: bool) -> Optio
         open: named.is_empty() && left_open(&plan, &found),
         visible: shows_all(&plan, levels)?,
         extras: said.extras(case),
-        covered: covered(&plan, &found, &data),
+        covered: covered(&plan, &found, &reaches),
+        across_zero: across_zero(verdict, &found, &reaches),
         largest_gain,
         p_value: family_p_value(largest_gain, CATALOGUE.len(), degrees),
         structure_gain: found.structure_gain,
@@ -148,8 +152,7 @@ pub(super) fn error_n(model: &Model, frame: &Frame, rows: &[PlateauRow]) -> Opti
 }
 
 /// Whether the interval of each true size holds it. Other forms than the fitter's have other sizes.
-fn covered(plan: &Plan, found: &Selection, data: &Observations) -> Vec<bool> {
-    let widths = interval_half_widths(&found.augmented, &Weighed::new(data, found.noise));
+fn covered(plan: &Plan, found: &Selection, reaches: &[[f64; 2]]) -> Vec<bool> {
     let (names, values) = (found.augmented.model.names(), found.augmented.model.values());
     plan.effects
         .iter()
@@ -157,7 +160,23 @@ fn covered(plan: &Plan, found: &Selection, data: &Observations) -> Vec<bool> {
         .filter_map(|e| {
             let parameter = effect_named(&e.id)?.parameters().first()?;
             let at = names.iter().position(|(n, _)| *n == format!("{}.{}", e.id, parameter.name))?;
-            Some((values[at] - e.values.first()?).abs() <= widths[at])
+            let (truth, [below, above]) = (e.values.first()?, reaches[at]);
+            Some((values[at] - below..=values[at] + above).contains(truth))
+        })
+        .collect()
+}
+
+/// Whether the interval of each attributed name holds zero; of those whose size starts at zero.
+fn across_zero(verdict: Verdict, found: &Selection, reaches: &[[f64; 2]]) -> Vec<bool> {
+    let (model, values) = (&found.augmented.model, found.augmented.model.values());
+    found
+        .effects
+        .iter()
+        .filter(|named| verdict == Verdict::Attributed && named.effect.description().scales)
+        .filter(|named| named.effect.parameters().first().is_some_and(|p| p.bounds.is_none()))
+        .map(|named| {
+            let at = model.term_offset(named.term);
+            (values[at] - reaches[at][0]..=values[at] + reaches[at][1]).contains(&0.0)
         })
         .collect()
 }

@@ -42,7 +42,20 @@ impl Study {
         let all: Vec<bool> = self.of(|_| true).iter().flat_map(|o| o.covered.iter().copied()).collect();
         if !all.is_empty() {
             let held = all.iter().filter(|c| **c).count();
-            lines.push(format!("95 % intervals that hold the true size: {held} of {}", all.len()));
+            let percent = 100.0 * held as f64 / all.len() as f64;
+            lines.push(format!(
+                "95 % intervals that hold the true size: {held} of {} ({percent:.1} %)",
+                all.len()
+            ));
+        }
+        let attributed: Vec<bool> =
+            self.of(|_| true).iter().flat_map(|o| o.across_zero.iter().copied()).collect();
+        if !attributed.is_empty() {
+            let across = attributed.iter().filter(|a| **a).count();
+            lines.push(format!(
+                "attributed sizes whose interval holds zero: {across} of {}",
+                attributed.len()
+            ));
         }
         let mut promises: Vec<f64> = self.of(|_| true).iter().filter_map(|o| o.promise_ratio).collect();
         promises.sort_by(f64::total_cmp);
@@ -180,6 +193,7 @@ mod tests {
             largest_gain: 0.0,
             p_value: 1.0,
             structure_gain: 0.0,
+            across_zero: Vec::new(),
             excluded: 0,
         }
     }

@@ -1,0 +1,88 @@
+//! What is believed against scatter that would explain a table as well.
+
+use super::explanation::{Explanation, explain, sharper_noise};
+use super::fit::{Fit, fit, jacobian};
+use super::levels::Levels;
+use super::observations::Observations;
+use super::screening::Screen;
+use super::unnamed::Context;
+use super::variance_components::Scatter;
+use super::weighed::Weighed;
+
+/// Evidence by which believing less may be behind and still be searched for.
+const WORTH_A_SEARCH: f64 = 25.0;
+
+/// Whether scatter from mount to mount, or offsets that wander from series to series, explain a table as well as what
+/// was believed without them. Their groups are few, so that no variance is known well: they compete as explanations.
+pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Explanation {
+    let beside = |scatter: Scatter, fitted: &Fit, noise| {
+        let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
+        let own = jacobian(&fitted.model, data, &predicted);
+        scatter.estimated(data, &fitted.residual_n, &own, noise)
+    };
+    // What is believed is kept, and the scatter beside it estimated.
+    let with_scatter = |explanation: Explanation| {
+        let noise = Scatter::ALL
+            .iter()
+            .fold(explanation.noise, |noise, scatter| beside(*scatter, &explanation.augmented, noise));
+        if noise == explanation.noise {
+            return explanation;
+        }
+        let weighed = Weighed::new(data, noise);
+        let baseline = fit(&explanation.baseline.model, &weighed);
+        let augmented = fit(&explanation.augmented.model, &weighed);
+        let with = Explanation { baseline, augmented, noise, ..explanation.clone() };
+        if with.toll(data) < explanation.toll(data) { with } else { explanation }
+    };
+    if free.augmented.model.terms.is_empty() {
+        return with_scatter(free);
+    }
+    let bare = |noise| Scatter::ALL.iter().fold(noise, |n, scatter| scatter.left_out(n));
+    let alone = Scatter::ALL.map(|scatter| beside(scatter, &free.baseline, bare(free.noise)));
+    let mut best = with_scatter(free);
+    for found in alone {
+        let noise = Scatter::ALL.iter().fold(best.noise, |n, scatter| scatter.taken_from(found, n));
+        if noise == bare(noise) {
+            continue;
+        }
+        // The search is only worth its time if believing less than now comes near.
+        let toll = best.toll(data);
+        if !best.with_less().any(|less| less.at(data, noise).toll(data) < toll + WORTH_A_SEARCH) {
+            continue;
+        }
+        let other = explain(&best.baseline.model, data, noise, levels);
+        let other = with_scatter(other);
+        if other.toll(data) < best.toll(data) {
+            best = other;
+        }
+    }
+    // Names were preferred to shapes before it was known that they need scatter beside them.
+    if best.names() > 0 && best.noise != bare(best.noise) {
+        let shape = shape_alone(&best, data, levels).map(with_scatter);
+        best = shape.filter(|shape| shape.toll(data) < best.toll(data)).unwrap_or(best);
+    }
+    best
+}
+
+/// The best shape alone, with the noise that is beside it and without scatter: what stands against names that need
+/// scatter beside them.
+fn shape_alone(named: &Explanation, data: &Observations, levels: Levels) -> Option<Explanation> {
+    let bare = Scatter::ALL.iter().fold(named.noise, |n, scatter| scatter.left_out(n));
+    let baseline = fit(&named.baseline.model, &Weighed::new(data, bare));
+    let (sharper, shapes) = sharper_noise(&baseline, data, bare);
+    let noise = sharper?;
+    let weighed = Weighed::new(data, noise);
+    let baseline = fit(&baseline.model, &weighed);
+    let left = Screen::new(&baseline, &weighed).structures();
+    let context = Context { weighed: &weighed, levels, explained: 0.0 };
+    let (augmented, structure) = context.with_unnamed(&baseline, baseline.clone(), &left, 0.0);
+    Some(Explanation {
+        baseline,
+        augmented,
+        structure: Some(structure?),
+        structure_gain: left.first().map_or(0.0, |s| s.gain),
+        structures_tried: shapes.len(),
+        noise,
+        isolated: None,
+    })
+}

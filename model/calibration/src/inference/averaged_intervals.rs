@@ -1,0 +1,146 @@
+//! Intervals that know of what may be missing: an effect that the data neither show nor exclude moves the constants of the
+//! model that it is missing from. They are averaged over the model and those with one effect more (Bayesian model
+//! averaging; Hoeting, Madigan, Raftery and Volinsky 1999).
+
+use nalgebra::DVector;
+use statrs::distribution::{ContinuousCDF, Normal};
+
+use super::fit::{Fit, Slopes, interval_half_widths};
+use super::screening::{EffectScore, Screen};
+use super::weighed::Weighed;
+
+/// Quantile of the normal law that 95 % intervals reach to on either side.
+const NORMAL_95: f64 = 1.96;
+/// What 95 % intervals leave out on either side.
+const TAIL: f64 = 0.025;
+/// Half-widths between which a quantile is looked for; nothing beyond is told.
+const FURTHEST: f64 = 50.0;
+
+/// An effect more: how probable it is against none, and what it does to the coordinates.
+struct OneMore {
+    /// Its posterior odds against the model as it is.
+    odds: f64,
+    /// Shifts of the coordinates, where the effect has its most probable size.
+    shift: DVector<f64>,
+    /// Their standard deviations by what is open about its size.
+    shift_sd: DVector<f64>,
+}
+
+/// 95 % intervals of all constants about their values, in the constants' own units: how far below and above the value
+/// they reach.
+///
+/// With one effect more of size `s` the constants move by `-(J' V^-1 J)^-1 J' V^-1 x s`, where `x` is its trace per unit
+/// of size. The odds of an effect are the ratio of the marginal likelihoods (linear in `s`, whose prior is normal, as wide
+/// as the sizes that are typical) over the number of effects in the vocabulary: one of them is thought as probable as none.
+pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> {
+    let half_widths = interval_half_widths(fitted, weighed);
+    let predicted: Vec<f64> =
+        weighed.data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
+    let slopes = Slopes::new(&fitted.model, weighed, &predicted);
+    let Some(solver) = slopes.normal.clone().cholesky() else {
+        return half_widths.into_iter().map(|half| [half, half]).collect();
+    };
+    let choices = fitted.model.vocabulary.count().max(1) as f64;
+    let others: Vec<OneMore> = Screen::new(fitted, weighed)
+        .effects()
+        .iter()
+        .filter_map(|score| {
+            let mut trace = score.trace_n.clone();
+            weighed.whiten(&mut trace);
+            one_more(score, choices, -solver.solve(&slopes.along(&trace)))
+        })
+        .collect();
+    half_widths
+        .into_iter()
+        .enumerate()
+        .map(|(i, half)| {
+            // Coordinates move as the constants do, to first order; signs with them.
+            let unit = fitted.model.value(i).1;
+            let parts: Vec<[f64; 3]> = std::iter::once([1.0, 0.0, half / NORMAL_95])
+                .chain(others.iter().map(|other| {
+                    let sd = (half / NORMAL_95).hypot(other.shift_sd[i] * unit);
+                    [other.odds, other.shift[i] * unit, sd]
+                }))
+                .collect();
+            let reach = |side: f64| {
+                let mirrored: Vec<[f64; 3]> = parts.iter().map(|[w, m, sd]| [*w, side * m, *sd]).collect();
+                quantile_above(&mirrored, half)
+            };
+            [reach(-1.0), reach(1.0)]
+        })
+        .collect()
+}
+
+/// The effect of a score as one more; `None` for what the data cannot show or physics does not allow.
+fn one_more(score: &EffectScore, choices: f64, shift_at_size: DVector<f64>) -> Option<OneMore> {
+    let told = score.effect.description();
+    if score.strength < 1e-6 {
+        return None;
+    }
+    if !told.scales || told.parameters.is_empty() {
+        // There or not: nothing is open about its size.
+        let odds = (0.5 * score.gain).exp() / choices;
+        let shift_sd = DVector::zeros(shift_at_size.len());
+        return Some(OneMore { odds, shift: shift_at_size, shift_sd });
+    }
+    if told.one_sided && score.share * score.size < 0.0 {
+        return None;
+    }
+    // In shares of the size at which the trace was taken.
+    let typical = told.study.largest().filter(|size| *size > 0.0 && score.size != 0.0);
+    let prior_sd = typical.map_or(1.0, |size| (size / score.size).abs());
+    let ratio = (prior_sd * score.strength).powi(2);
+    let kept = ratio / (1.0 + ratio);
+    let odds = (0.5 * (kept * score.gain - ratio.ln_1p())).exp() / choices;
+    let share_sd = kept.sqrt() / score.strength;
+    Some(OneMore {
+        odds,
+        shift: &shift_at_size * (kept * score.share),
+        shift_sd: shift_at_size.abs() * share_sd,
+    })
+}
+
+/// How far above zero a mixture of normal laws (odds, mean, standard deviation) leaves [`TAIL`]; never less than zero.
+fn quantile_above(parts: &[[f64; 3]], half: f64) -> f64 {
+    let total: f64 = parts.iter().map(|part| part[0]).sum();
+    if !total.is_finite() || half <= 0.0 {
+        return half.max(0.0);
+    }
+    let beyond = |at: f64| -> f64 {
+        let share = |[odds, mean, sd]: &[f64; 3]| {
+            odds * Normal::new(*mean, *sd).map_or_else(|_| f64::from(u8::from(*mean > at)), |law| law.sf(at))
+        };
+        parts.iter().map(share).sum::<f64>() / total
+    };
+    let (mut low, mut high) = (0.0, FURTHEST * half);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if beyond(middle) > TAIL { low = middle } else { high = middle }
+    }
+    high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn alone_a_model_keeps_its_interval() {
+        assert!((quantile_above(&[[1.0, 0.0, 1.0]], 1.96) - 1.96).abs() < 1e-3);
+    }
+
+    #[test]
+    fn what_may_be_missing_widens_the_side_that_it_would_move_to() {
+        let parts = [[1.0, 0.0, 1.0], [0.25, 4.0, 1.0]];
+        let mirrored = parts.map(|[w, m, sd]| [w, -m, sd]);
+        let (above, below) = (quantile_above(&parts, 1.96), quantile_above(&mirrored, 1.96));
+        // A fifth of the mixture stands at 4: an eighth of it lies beyond 4 + 1.15.
+        assert!((above - 5.15).abs() < 0.01, "{above}");
+        assert!(below < 1.96 && below > 1.8, "{below}");
+    }
+
+    #[test]
+    fn an_interval_holds_its_own_value_however_probable_another_model_is() {
+        assert!(quantile_above(&[[1.0, 0.0, 1.0], [1e6, -10.0, 1.0]], 1.96) < 1e-9);
+    }
+}

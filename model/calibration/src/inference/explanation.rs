@@ -1,0 +1,173 @@
+//! One explanation of a table at one noise: names, then structure without a name, then the noise beside them again.
+
+use super::baseline::{explainable, fit_baseline};
+use super::evidence::evidence;
+use super::fit::{Fit, fit, jacobian};
+use super::forward::{Model, Term};
+use super::isolation::isolated_series;
+use super::levels::Levels;
+use super::noise::Noise;
+use super::observations::Observations;
+use super::screening::Screen;
+use super::search::{bendable_gain, search};
+use super::structure_scores::StructureScore;
+use super::unnamed::{Context, FoundStructure, with_structure};
+use super::variance_components::{Scatter, estimate, shared_again};
+use super::weighed::Weighed;
+use crate::effects::Shape;
+
+/// Gain, in whitened squares, below which a shape is not worth a look.
+const MIN_SHAPE_GAIN: f64 = 9.0;
+/// Series that may be excluded; more than these are no accidents.
+const MAX_EXCLUDED: usize = 3;
+
+/// One explanation of a table at one noise.
+#[derive(Clone)]
+pub(super) struct Explanation {
+    pub(super) baseline: Fit,
+    pub(super) augmented: Fit,
+    pub(super) structure: Option<FoundStructure>,
+    pub(super) structure_gain: f64,
+    pub(super) structures_tried: usize,
+    pub(super) noise: Noise,
+    /// A series that is wrong as a whole and must be left out first.
+    pub(super) isolated: Option<usize>,
+}
+
+impl Explanation {
+    /// Shapes without a name; the sine and the cosine of a wave are one.
+    fn shapes(&self) -> usize {
+        let is_one = |term: &&Term| match term {
+            Term::Structure(s) => {
+                !matches!(s.form, Shape::TimeWave { quarter: 1, .. } | Shape::PositionWave { quarter: 1, .. })
+            }
+            Term::Named(_) => false,
+        };
+        self.augmented.model.terms.iter().filter(is_one).count()
+    }
+
+    pub(super) fn names(&self) -> usize {
+        self.augmented.model.named_effects().len()
+    }
+
+    /// Minus twice the logarithm of its posterior probability, up to a constant: the evidence, and for each thing
+    /// believed how many there were to choose from.
+    pub(super) fn toll(&self, data: &Observations) -> f64 {
+        let choices = 2.0 * (self.augmented.model.vocabulary.count() as f64).ln() * self.names() as f64;
+        let shapes = 2.0 * (self.structures_tried.max(1) as f64).ln() * self.shapes() as f64;
+        let scatter: f64 = Scatter::ALL.iter().map(|s| s.cost(self.noise, data)).sum();
+        evidence(&self.augmented, &Weighed::new(data, self.noise)) + choices + shapes + scatter
+    }
+}
+
+impl Explanation {
+    /// The explanations that believe one thing less, or nothing.
+    pub(super) fn with_less(&self) -> impl Iterator<Item = Explanation> {
+        let terms = &self.augmented.model.terms;
+        let bare = (0..terms.len()).rev().fold(self.augmented.model.clone(), |m, i| m.without_term(i));
+        let named = (0..terms.len())
+            .filter(|i| matches!(terms[*i], Term::Named(_)))
+            .map(|i| (self.augmented.model.without_term(i), self.structure));
+        let shapeless = (0..terms.len())
+            .rev()
+            .filter(|i| matches!(terms[*i], Term::Structure(_)))
+            .fold(self.augmented.model.clone(), |m, i| m.without_term(i));
+        [(bare, None), (shapeless, None)].into_iter().chain(named).map(|(model, structure)| Explanation {
+            augmented: Fit { model, ..self.augmented.clone() },
+            structure,
+            ..self.clone()
+        })
+    }
+
+    /// The same things believed at another noise.
+    pub(super) fn at(&self, data: &Observations, noise: Noise) -> Explanation {
+        let augmented = fit(&self.augmented.model, &Weighed::new(data, noise));
+        Explanation { augmented, noise, ..self.clone() }
+    }
+}
+
+/// Names and structure at a noise, which is estimated again once something is explained.
+pub(super) fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> Explanation {
+    let mut noise = noise;
+    let mut weighed = Weighed::new(data, noise);
+    let mut baseline = fit_baseline(start, &weighed);
+    let mut found = search(&baseline, &weighed, levels);
+    if !found.model.terms.is_empty() {
+        let before = noise;
+        noise = estimate(data, &found.residual_n, &explainable(&found, data), noise);
+        noise = Scatter::ALL.iter().fold(noise, |n, scatter| scatter.taken_from(before, n));
+        weighed = Weighed::new(data, noise);
+        baseline = fit(&baseline.model, &weighed);
+        found = search(&baseline, &weighed, levels);
+    }
+    // A shape that some series follow looks like scatter of the series as long as it is not in the model.
+    let (sharper, mut left) = sharper_noise(&found, data, noise);
+    if let Some(sharper) = sharper {
+        noise = sharper;
+        weighed = Weighed::new(data, noise);
+        baseline = fit(&baseline.model, &weighed);
+        found = fit(&found.model, &weighed);
+        left = Screen::new(&found, &weighed).structures();
+    }
+    let explained = bendable_gain(&baseline, &found, &weighed);
+    let open = Screen::new(&found, &weighed);
+    let guarded = Screen::guarded(&found, &weighed);
+    let beyond = left.first().is_some_and(|s| s.gain > levels.beyond_form * explained);
+    if !found.model.named_effects().is_empty() && !beyond {
+        left = guarded.structures();
+    }
+    let isolated = (data.excluded_series() < MAX_EXCLUDED)
+        .then(|| {
+            let structure = left.first().map_or(0.0, |s| s.gain);
+            let effect = open.effects().iter().map(|s| s.gain).fold(structure, f64::max);
+            isolated_series(&open, data, effect)
+        })
+        .flatten();
+    let (structure_gain, structures_tried) = (left.first().map_or(0.0, |s| s.gain), left.len());
+    let (augmented, structure) = if isolated.is_some() {
+        (found.clone(), None)
+    } else {
+        let bent = guarded.bent_gain();
+        Context { weighed: &weighed, levels, explained }.with_unnamed(&baseline, found.clone(), &left, bent)
+    };
+    Explanation { baseline, augmented, structure, structure_gain, structures_tried, noise, isolated }
+}
+
+/// Evidence that a shape must gain beside the choice among all shapes before it changes the noise.
+const MIN_EVIDENCE: f64 = 6.0;
+
+/// The noise beside the best shape of each covariate, if one of them makes the table more probable than the noise does
+/// without it; and the scores of all shapes.
+pub(super) fn sharper_noise(
+    found: &Fit,
+    data: &Observations,
+    noise: Noise,
+) -> (Option<Noise>, Vec<StructureScore>) {
+    let weighed = Weighed::new(data, noise);
+    let screen = Screen::new(found, &weighed);
+    let shapes = screen.structures();
+    let choice = 2.0 * (shapes.len().max(1) as f64).ln() + MIN_EVIDENCE;
+    let mut best = (evidence(found, &weighed) - choice, None);
+    let mut covariates = Vec::new();
+    let columns = explainable(found, data);
+    for score in shapes.iter().filter(|s| s.gain > MIN_SHAPE_GAIN) {
+        let covariate = score.group[0].covariate;
+        if covariates.contains(&covariate) {
+            continue;
+        }
+        covariates.push(covariate);
+        let with = with_structure(found, score, &weighed);
+        let own = &with.model.terms[found.model.terms.len()..];
+        let mut columns = columns.clone();
+        let predicted: Vec<f64> = data.force_n.iter().zip(&with.residual_n).map(|(y, r)| y - r).collect();
+        let all = jacobian(&with.model, data, &predicted);
+        columns.extend(all.into_iter().rev().take(own.len()));
+        let sharper = shared_again(data, &with.residual_n, &columns, noise);
+        let weighed = Weighed::new(data, sharper);
+        let toll = evidence(&fit(&with.model, &weighed), &weighed);
+        if toll < best.0 {
+            best = (toll, Some(sharper));
+        }
+    }
+    (best.1, shapes)
+}

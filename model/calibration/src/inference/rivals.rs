@@ -1,0 +1,77 @@
+//! What is told of each effect of the vocabulary: the gain and the rivals of those that are named, and how the others score.
+
+use super::fit::{Fit, fit};
+use super::forward::Term;
+use super::levels::Levels;
+use super::projection::dot;
+use super::screening::{EffectScore, Screen};
+use super::search::possible;
+use super::selection::{CandidateEffect, FoundEffect, Rival};
+use super::weighed::Weighed;
+use crate::effects::Effect;
+
+/// Gain and rivals of each named effect of a model.
+pub(super) fn found_effects(augmented: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Vec<FoundEffect> {
+    let mut found = Vec::new();
+    for (index, term) in augmented.model.terms.iter().enumerate() {
+        let Term::Named(effect) = term else { continue };
+        let without = fit(&augmented.model.without_term(index), weighed);
+        let gain = without.cost - augmented.cost;
+        let bends = f64::from(u8::from(effect.description().bends));
+        let margin = levels.rival.max(levels.rival_share * gain * bends);
+        let mut rivals = rivals(*effect, gain, &without, augmented.cost, weighed);
+        rivals.retain(|r| r.worse_by < margin);
+        found.push(FoundEffect { effect: *effect, term: index, gain, rivals });
+    }
+    found
+}
+
+/// Effects fitted in place of one that gained `gain`: to the model `without` it, compared with the `cost` with it.
+fn rivals(
+    effect: &'static dyn Effect,
+    gain: f64,
+    without: &Fit,
+    cost: f64,
+    weighed: &Weighed<'_>,
+) -> Vec<Rival> {
+    let scores = Screen::new(without, weighed).effects();
+    let own = scores.iter().find(|s| s.effect.id() == effect.id()).map(|s| s.column.clone());
+    let mut others: Vec<_> = scores.into_iter().filter(|s| s.effect.id() != effect.id()).collect();
+    others.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    others.retain(|s| s.gain > 0.3 * gain);
+    others.truncate(4);
+    others
+        .into_iter()
+        .filter_map(|score| {
+            let other = fit(&without.model.with_term(Term::Named(score.effect), &score.start), weighed);
+            possible(score.effect, &other).then(|| {
+                let cosine = own.as_ref().map_or(0.0, |own| {
+                    (dot(own, &score.column) / (dot(own, own) * dot(&score.column, &score.column)).sqrt())
+                        .abs()
+                });
+                Rival { effect: score.effect, worse_by: other.cost - cost, cosine }
+            })
+        })
+        .collect()
+}
+
+/// Every effect of the catalogue, by its score over the baseline.
+pub(super) fn candidates(
+    scores: &[EffectScore],
+    augmented: &Fit,
+    weighed: &Weighed<'_>,
+) -> Vec<CandidateEffect> {
+    let left = Screen::new(augmented, weighed).effects();
+    let mut candidates: Vec<_> = scores
+        .iter()
+        .map(|score| CandidateEffect {
+            effect: score.effect,
+            gain: score.gain,
+            gain_left: left.iter().find(|l| l.effect.id() == score.effect.id()).map(|l| l.gain),
+            visible_share: score.visible_share,
+            strength: score.strength,
+        })
+        .collect();
+    candidates.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    candidates
+}

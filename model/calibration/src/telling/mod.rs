@@ -1,0 +1,90 @@
+//! From a selection to its report: verdict, effects, rivals, blind spots, errors before and after.
+
+mod absent;
+mod bad_series;
+mod effects;
+mod model;
+mod noise;
+
+use crate::aliasing::aliasing;
+use crate::held_out::{HeldOut, held_out};
+use crate::inference::{Levels, Observations, Selection, Weighed, averaged_intervals, interval_half_widths};
+use crate::promise::Promise;
+use crate::report::{DataSummary, Report, Verdict};
+use crate::table::PlateauRow;
+use crate::trial::trials;
+
+use absent::{NEVER_VISIBLE, candidates, invisible, limits};
+use bad_series::bad_series;
+use effects::effects;
+use noise::{is_adequate, noise_parts};
+
+pub(crate) use bad_series::BAD_READING_SD;
+pub(crate) use model::model_report;
+
+/// What is told beside a selection.
+pub(crate) struct Told {
+    /// The levels that it was made with.
+    pub(crate) levels: Levels,
+    /// The error that a new session is promised.
+    pub(crate) promised: Option<Promise>,
+    /// Rows weighed down as outliers.
+    pub(crate) outliers: usize,
+    /// Held-out errors of the model with all that was found.
+    pub(crate) held: HeldOut,
+}
+
+/// The report of a selection.
+pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations, told: Told) -> Report {
+    let Told { levels, promised, outliers, held } = told;
+    let noise = selection.noise;
+    let weighed = &Weighed::new(data, noise);
+    let bare = if selection.augmented.model.terms.is_empty() {
+        held
+    } else {
+        held_out(&selection.baseline.model, weighed)
+    };
+    // The paper's model is told as if nothing could be missing from it: that is what the other is compared with.
+    let baseline = model_report(&selection.baseline, weighed, bare, |fitted, weighed| {
+        interval_half_widths(fitted, weighed).into_iter().map(|half| [half, half]).collect()
+    });
+    let augmented = model_report(&selection.augmented, weighed, held, averaged_intervals);
+    let after_n = held.both_n();
+    let effects = effects(selection, weighed, after_n, &augmented);
+    let promise_n = promised.map(|p| if effects.is_empty() { p.baseline_n } else { p.augmented_n });
+    Report {
+        schema: "pinswitch.calibration/1".to_owned(),
+        data: DataSummary {
+            rows: rows.len(),
+            series: data.series,
+            conditions: selection.baseline.model.frame.conditions.len(),
+            outliers,
+        },
+        verdict: Verdict::of(selection),
+        noise_floor_n: noise.floor_n(data),
+        noise,
+        noise_parts: noise_parts(selection, data),
+        adequate: is_adequate(augmented.heldout_series_rmse_n, noise.floor_n(data), data),
+        promise_n,
+        promise_baseline_n: promised.map(|p| p.baseline_n),
+        limits: limits(selection),
+        classes: selection
+            .classes
+            .iter()
+            .map(|class| class.iter().map(|id| (*id).to_owned()).collect())
+            .collect(),
+        aliasing: aliasing(rows),
+        ignored_columns: Vec::new(),
+        baseline,
+        augmented,
+        candidates: candidates(selection, data, levels),
+        effects,
+        family_probability: selection.family_probability,
+        invisible: invisible(selection),
+        never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
+        bad_series: bad_series(rows, selection, weighed),
+        trials: trials(selection, data),
+        sessions: Vec::new(),
+        extrapolation: None,
+    }
+}

@@ -1,0 +1,80 @@
+//! `pinswitch view`, asked as a browser would ask it.
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::Duration;
+
+use super::binary;
+
+/// A running preview, ended with the test.
+pub(crate) struct Preview {
+    child: Child,
+    /// Host and port.
+    pub(crate) address: String,
+}
+
+impl Drop for Preview {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Preview {
+    /// Of a configuration, in `folder`.
+    pub(crate) fn start(folder: &Path, config: &str) -> Self {
+        let mut command = binary();
+        command.args(["view", config, "--port", "0"]).current_dir(folder);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut line = Vec::new();
+        let stdout = child.stdout.as_mut().unwrap();
+        let mut byte = [0];
+        while stdout.read_exact(&mut byte).is_ok() && byte[0] != b'\n' {
+            line.push(byte[0]);
+        }
+        let address = String::from_utf8(line).unwrap().replace("http://", "");
+        Self { child, address }
+    }
+
+    pub(crate) fn connect(&self) -> TcpStream {
+        let stream = TcpStream::connect(&self.address).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
+        stream
+    }
+
+    /// The answer to a request with this line and these headers.
+    pub(crate) fn ask(&self, line: &str, headers: &str) -> String {
+        let mut stream = self.connect();
+        // It may be refused before it was sent whole.
+        let _ = write!(stream, "{line} HTTP/1.1\r\n{headers}\r\n");
+        let mut answer = Vec::new();
+        let _ = stream.read_to_end(&mut answer);
+        String::from_utf8_lossy(&answer).into_owned()
+    }
+
+    pub(crate) fn host(&self) -> String {
+        format!("Host: {}\r\n", self.address)
+    }
+
+    /// What stands at a path.
+    pub(crate) fn get(&self, path: &str) -> String {
+        let mut stream = self.connect();
+        // HTTP 1.0: the answer ends with the connection, and comes in one piece.
+        write!(stream, "GET {path} HTTP/1.0\r\n{}\r\n", self.host()).unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        answer.split_once("\r\n\r\n").map(|(_, body)| body.to_owned()).unwrap()
+    }
+
+    /// What is shown after a version.
+    pub(crate) fn state(&self, after: u64) -> serde_json::Value {
+        serde_json::from_str(&self.get(&format!("/state?after={after}"))).unwrap()
+    }
+
+    /// Threads of the process, where the system tells.
+    pub(crate) fn threads(&self) -> usize {
+        std::fs::read_dir(format!("/proc/{}/task", self.child.id())).map_or(0, Iterator::count)
+    }
+}

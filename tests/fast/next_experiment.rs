@@ -99,6 +99,16 @@ fn a_form_drawn_from_one_session_is_confirmed_by_another_and_refuted_by_one_with
     let form = json(&path.join("first/report.json"))["effects"][0]["form"].clone();
     assert_eq!((&form["shape"], &form["acts_on"]), (&"step".into(), &"friction".into()), "{form}");
     let id = form["id"].as_str().unwrap();
+    // Whether it comes again is the first thing to ask of another session; what it was drawn from does not answer that.
+    done(path, &["-q", "experiment", "first", "--minutes", "240", "--out", "plan"]);
+    let plan = json(&path.join("plan/experiment.json"));
+    let asked = plan["questions"].as_array().unwrap().iter().find(|q| q["between"][0] == id);
+    assert!(asked.is_some_and(|q| q["resolved_probability"].as_f64() > Some(0.9)), "{plan}");
+    // The step came after three hours: an hour cannot show it, and says so.
+    done(path, &["-q", "experiment", "first", "--minutes", "60", "--out", "short"]);
+    let short = json(&path.join("short/experiment.json"));
+    let never = short["unanswerable"].as_array().unwrap().iter().find(|q| q["between"][0] == id).unwrap();
+    assert!(never["why"].as_str().unwrap().contains("more --minutes may help"), "{never}");
     let discovered = ["--effects", "first/discovered.toml"];
     let confirmed =
         [&["-q", "calibrate", "step/plateaus-next.csv"], &discovered[..], &["--out", "second"]].concat();
@@ -115,4 +125,28 @@ fn a_form_drawn_from_one_session_is_confirmed_by_another_and_refuted_by_one_with
     // A folder is not left with the form of an earlier calibration.
     done(path, &["-q", "calibrate", "none/plateaus.csv", "--out", "first"]);
     assert!(!path.join("first/discovered.toml").exists());
+}
+
+/// Curves go to the heaviest load of the paper, whatever was recorded.
+#[test]
+fn loads_that_curves_need_and_nobody_recorded_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    done(path, &["-q", "simulate", "--out", "whole"]);
+    let table = std::fs::read_to_string(path.join("whole/plateaus.csv")).unwrap();
+    let at = table.lines().next().unwrap().split(',').position(|c| c == "load_N").unwrap();
+    let is_light = |line: &&str| line.split(',').nth(at).unwrap().parse::<f64>().is_ok_and(|n| n < 26.0);
+    let light: Vec<&str> = table.lines().take(1).chain(table.lines().skip(1).filter(is_light)).collect();
+    std::fs::write(path.join("light.csv"), light.join("\n")).unwrap();
+    let asked = |table: &str, folder: &str| {
+        done(path, &["-q", "calibrate", table, "--out", folder]);
+        done(path, &["-q", "experiment", folder, "--minutes", "60", "--out", "plan"]);
+        let plan = json(&path.join("plan/experiment.json"));
+        let of = |q: &&Value| q["between"][0].as_str().unwrap().starts_with("friction_above_");
+        plan["questions"].as_array().unwrap().iter().find(of).cloned()
+    };
+    let question = asked("light.csv", "few").unwrap();
+    let chance = |key: &str| question[key].as_f64().unwrap();
+    assert!(chance("resolved_probability") > 0.2 && chance("by_repeating") < 0.05, "{question}");
+    assert_eq!(asked("whole/plateaus.csv", "all"), None);
 }

@@ -96,7 +96,7 @@ fn pictures_are_what_the_program_draws() {
     let served = Preview::start(folder.path(), "three-double");
     let (picture, size) = CONFIGURATOR;
     if accept {
-        photograph(&format!("http://{}/configure", served.host), &documents.join(picture), size);
+        photograph(&format!("http://{}/configure", served.address), &documents.join(picture), size);
     }
     pages.push_str(&format!("{}  {picture}\n", sha256(served.get("/configure").as_bytes())));
     if accept {

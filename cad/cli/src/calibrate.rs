@@ -53,7 +53,7 @@ const DISCOVERED: &str =
 ";
 
 /// Its file.
-const FORM: &str = "discovered.toml";
+pub(super) const FORM: &str = "discovered.toml";
 
 /// Removes the form that an earlier calibration drew into the folder: it is none of this one. A file of one's own stays.
 fn forget_form(folder: &Path) {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use pinswitch_calibration::effects::Vocabulary;
 use pinswitch_calibration::experiment::{ExperimentError, Known, Proposal, RigLimits, propose, write_runs};
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
@@ -10,6 +11,7 @@ use pinswitch_calibration::{ModelFile, Report};
 use pinswitch_plot::run_sheet;
 use pinswitch_switch::output::OutputFile;
 
+use super::calibrate::FORM;
 use super::own_effects::OwnEffects;
 use super::{Failure, print, print_json};
 use crate::input::{read_file, read_text_file};
@@ -70,7 +72,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let table = PlateauTable::read(read_file(&path)?.as_slice(), &path.display().to_string())
         .map_err(Failure::bad_input)?;
     let name = folder.display().to_string();
-    let vocabulary = arguments.own.vocabulary()?;
+    let vocabulary = with_form(arguments.own.vocabulary()?, folder, &report)?;
     let known =
         Known { report: &report, model: &model, rows: &table.rows, vocabulary: &vocabulary, name: &name };
     let proposal = propose(known, &rig, arguments.minutes, Levels::default()).map_err(|e| match e {
@@ -95,6 +97,16 @@ fn report(folder: &Path) -> Result<Report, Failure> {
     serde_json::from_str(&text).map_err(|e| {
         Failure::bad_input(format!("{}: {e}; give the folder as `calibrate` wrote it", path.display()))
     })
+}
+
+/// A vocabulary with the form that the calibration drew, if it drew one.
+fn with_form(vocabulary: Vocabulary, folder: &Path, report: &Report) -> Result<Vocabulary, Failure> {
+    let mut forms = report.effects.iter().filter_map(|found| found.form.as_ref());
+    if !forms.any(|form| vocabulary.named(&form.id).is_none()) {
+        return Ok(vocabulary);
+    }
+    let path = folder.join(FORM);
+    vocabulary.read(&read_text_file(&path)?, &path.display().to_string()).map_err(Failure::bad_input)
 }
 
 /// A probability in percent: nothing is certain.

@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::effects::Effect;
-use crate::inference::{Model, Noise, Observations, Term, Weighed, jacobian};
+use crate::inference::{CONSEQUENCE, Model, Noise, Observations, Term, Weighed, jacobian};
 use crate::table::PlateauRow;
 
 /// A column beside those of the model's own constants: what an effect adds to the readings, at one size.
@@ -20,6 +20,14 @@ pub(super) enum Trace {
         effect: &'static dyn Effect,
         /// Its constants.
         values: Vec<f64>,
+    },
+    /// What friction would be off by at loads beyond those recorded: nothing at the first load, and in proportion to
+    /// what is beyond it [`CONSEQUENCE`] of the friction at the second.
+    Beyond {
+        /// Highest load recorded.
+        from_n: f64,
+        /// Load up to which friction is asked for.
+        to_n: f64,
     },
 }
 
@@ -75,6 +83,12 @@ impl Design<'_> {
                 Trace::Found { term } => (predicted.clone(), model.without_term(*term).predict(&data.points)),
                 Trace::Absent { effect, values } => {
                     (model.with_term(Term::Named(*effect), values).predict(&data.points), predicted.clone())
+                }
+                Trace::Beyond { from_n, to_n } => {
+                    let share = |load_n: f64| CONSEQUENCE * ((load_n - from_n) / (to_n - from_n)).max(0.0);
+                    let off = data.points.iter().zip(&data.friction_n).map(|(p, f)| share(p.load_n) * f);
+                    columns.push(off.collect());
+                    continue;
                 }
             };
             columns.push(with.iter().zip(&without).map(|(w, o)| w - o).collect());

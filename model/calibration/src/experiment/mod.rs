@@ -19,7 +19,7 @@ use serde::Serialize;
 pub use rig::{RigError, RigLimits};
 pub use runs::{PlannedRun, RunsError, contact_words, read_runs, rows_of, write_runs};
 
-use crate::effects::Vocabulary;
+use crate::effects::{Covariate, Vocabulary};
 use crate::inference::{Levels, Model, Noise};
 use crate::model_file::{ModelFile, ModelFileError};
 use crate::report::Report;
@@ -125,11 +125,12 @@ pub fn propose(
         design.of(known.rows).map(|data| data + design.priors())
     };
     of_rows(&[]).ok_or_else(foreign)?;
-    let agenda = Agenda::of(known.report, &model, levels, |traces| {
+    let highest_n = known.rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
+    let agenda = Agenda::of(known.report, &model, highest_n, levels, |traces| {
         of_rows(traces).unwrap_or_else(|| DMatrix::zeros(0, 0))
     });
     let design = Design { model: &model, noise, traces: &agenda.traces };
-    let data = of_rows(&agenda.traces).ok_or_else(foreign)?;
+    let data = agenda.before(of_rows(&agenda.traces).ok_or_else(foreign)?);
     let all = candidates(&model, rig, &agenda);
     let shortest = all.iter().map(|c| c.minutes(std::iter::empty(), rig)).fold(f64::INFINITY, f64::min);
     if shortest > minutes {
@@ -161,7 +162,7 @@ pub fn propose(
         })
         .collect();
     questions.sort_by(|a, b| b.resolved_probability.total_cmp(&a.resolved_probability));
-    let unanswerable = closed.iter().map(|q| unanswerable(q, &everything)).collect();
+    let unanswerable = closed.iter().map(|q| unanswerable(q, &everything, &agenda, minutes)).collect();
     Ok(Proposal { schema: SCHEMA, minutes: (10.0 * spent).round() / 10.0, questions, unanswerable, runs })
 }
 
@@ -220,18 +221,24 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
     runs
 }
 
-fn unanswerable(question: &Question, everything: &DMatrix<f64>) -> Unanswerable {
+fn unanswerable(
+    question: &Question,
+    everything: &DMatrix<f64>,
+    agenda: &Agenda,
+    minutes: f64,
+) -> Unanswerable {
     let [of, or] = &question.between;
     let most = 100.0 * question.probability(everything);
-    let why = if or == NONE {
-        format!(
-            "every run that this rig can make, all together, would show {of} with a probability of {most:.0} %"
-        )
+    let does = if or == NONE { format!("show {of}") } else { format!("tell {of} from {or}") };
+    // What comes with time may come later than a short session lasts.
+    let within = if agenda.lies_along(of, Covariate::Time) {
+        format!("; none is later than {minutes:.0} minutes into its session, and more --minutes may help")
     } else {
-        format!(
-            "every run that this rig can make, all together, would tell {of} from {or} with a probability of {most:.0} %"
-        )
+        String::new()
     };
+    let why = format!(
+        "every run that this rig can make, all together, would {does} with a probability of {most:.0} %{within}"
+    );
     Unanswerable { between: question.between.clone(), why }
 }
 

@@ -1,12 +1,15 @@
 //! Questions that a calibration leaves open, and how probably given information answers them.
 
+use std::collections::BTreeMap;
+
 use nalgebra::DMatrix;
+use pinswitch_friction::published;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::information::{Projected, Trace};
 use crate::effects::{Covariate, Effect, Side};
 use crate::inference::{Levels, Model, Term};
-use crate::report::Report;
+use crate::report::{Estimate, Report};
 
 /// What an answer says no to.
 pub(super) const NONE: &str = "none";
@@ -16,6 +19,8 @@ pub(super) const NONE: &str = "none";
 const SEEN: f64 = 16.0;
 /// How much less an effect counts that nobody suspects.
 const UNSUSPECTED: f64 = 0.3;
+/// Share of the loads of a curve up to which data must reach, so that it needs no carrying on.
+const COVERED: f64 = 0.9;
 /// Largest size of a rival, in units of the size at which a fit of it starts: beyond it, no rig is that wrong.
 const LARGEST_SHARE: f64 = 30.0;
 
@@ -106,6 +111,8 @@ pub(super) struct Agenda {
     pub(super) questions: Vec<Question>,
     pub(super) traces: Vec<Trace>,
     pub(super) effects: Vec<&'static dyn Effect>,
+    /// Columns of which only data to come may tell: what was drawn from the data so far is not confirmed by them.
+    ahead: Vec<usize>,
 }
 
 impl Agenda {
@@ -125,10 +132,11 @@ impl Agenda {
         Some((model.values().len() + at, size))
     }
 
-    /// Everything that a report leaves open. `known` gives the information of the data so far, once the columns stand.
+    /// Everything that a report leaves open, of rows up to a load of `highest_n`. `known` gives the information of the data so far, once the columns stand.
     pub(super) fn of(
         report: &Report,
         model: &Model,
+        highest_n: f64,
         levels: Levels,
         known: impl Fn(&[Trace]) -> DMatrix<f64>,
     ) -> Self {
@@ -161,7 +169,7 @@ impl Agenda {
             let Some(effect) = model.vocabulary.named(&limit.id) else { continue };
             let Some((column, start)) = agenda.absent(effect, model) else { continue };
             let size = if effect.parameters().is_empty() { 1.0 } else { limit.typical / start };
-            agenda.ask_whether(effect, column, size, &own, 1.0);
+            agenda.ask_whether(effect.id(), column, size, &own, 1.0);
         }
         for invisible in &report.invisible {
             let Some(effect) = model.vocabulary.named(&invisible.id) else { continue };
@@ -169,9 +177,11 @@ impl Agenda {
             let asked = agenda.questions.iter().any(|q| q.between[0] == invisible.id);
             if effect.description().side == Side::Switch && !asked {
                 let Some((column, _)) = agenda.absent(effect, model) else { continue };
-                agenda.ask_whether(effect, column, 1.0, &own, UNSUSPECTED);
+                agenda.ask_whether(effect.id(), column, 1.0, &own, UNSUSPECTED);
             }
         }
+        agenda.ask_again(report, model);
+        agenda.ask_beyond(highest_n, &own);
         if pairs.is_empty() {
             return agenda;
         }
@@ -184,7 +194,7 @@ impl Agenda {
             let left = Projected::new(&information, &base);
             let share = left.covariance(other, column) / left.covariance(other, other).max(1e-12);
             let with_other: Vec<usize> = base.iter().copied().chain([other]).collect();
-            let sure = surely(found);
+            let sure = surely(&found.parameters);
             let ways = vec![
                 Way { truth: column, size: sure, nuisance: with_other },
                 Way {
@@ -204,20 +214,65 @@ impl Agenda {
         agenda
     }
 
-    fn ask_whether(
-        &mut self,
-        effect: &'static dyn Effect,
-        column: usize,
-        size: f64,
-        own: &[usize],
-        weight: f64,
-    ) {
+    /// Whether the form of what has no name will be seen again.
+    fn ask_again(&mut self, report: &Report, model: &Model) {
+        for form in report.effects.iter().filter_map(|found| found.form.as_ref()) {
+            let Some(effect) = model.vocabulary.named(&form.id) else { continue };
+            let term = model.terms.iter().position(|t| matches!(t, Term::Named(e) if e.id() == effect.id()));
+            let trace = match term {
+                Some(term) => Trace::Found { term },
+                None => {
+                    let Some(values) = effect.starts(&model.frame).into_iter().next() else { continue };
+                    Trace::Absent { effect, values }
+                }
+            };
+            // The form in the model, or the shapes that it was drawn from, would take it over.
+            let stands_for_it = |t: usize| Some(t) == term || matches!(model.terms[t], Term::Structure(_));
+            let for_it: Vec<usize> = (0..model.terms.len())
+                .filter(|t| stands_for_it(*t))
+                .flat_map(|t| (0..model.terms[t].constants()).map(move |i| model.term_offset(t) + i))
+                .collect();
+            let base: Vec<usize> = (0..model.values().len()).filter(|i| !for_it.contains(i)).collect();
+            let column = model.values().len() + self.traces.len();
+            self.traces.push(trace);
+            self.effects.push(effect);
+            self.ahead.push(column);
+            self.ask_whether(effect.id(), column, surely(&form.parameters), &base, 1.0);
+        }
+    }
+
+    /// Whether friction beyond the loads recorded is what the model predicts, where curves and designs go beyond them.
+    fn ask_beyond(&mut self, highest_n: f64, own: &[usize]) {
+        let to_n = published::heaviest_load_n();
+        if highest_n > COVERED * to_n {
+            return;
+        }
+        let column = own.len() + self.traces.len();
+        self.traces.push(Trace::Beyond { from_n: highest_n, to_n });
+        self.ask_whether(&format!("friction_above_{highest_n:.0}_N"), column, 1.0, own, 1.0);
+    }
+
+    /// What is known before any data to come.
+    pub(super) fn before(&self, mut information: DMatrix<f64>) -> DMatrix<f64> {
+        for column in &self.ahead {
+            information.row_mut(*column).fill(0.0);
+            information.column_mut(*column).fill(0.0);
+        }
+        information
+    }
+
+    fn ask_whether(&mut self, id: &str, column: usize, size: f64, own: &[usize], weight: f64) {
         self.questions.push(Question {
-            between: [effect.id().to_owned(), NONE.to_owned()],
+            between: [id.to_owned(), NONE.to_owned()],
             ways: vec![Way { truth: column, size, nuisance: own.to_vec() }],
             needed: SEEN,
             weight,
         });
+    }
+
+    /// Whether an effect that is asked about lies along this covariate.
+    pub(super) fn lies_along(&self, id: &str, covariate: Covariate) -> bool {
+        self.effects.iter().any(|e| e.id() == id && e.description().covariate == covariate)
     }
 
     /// Whether an answer may lie along this covariate.
@@ -228,8 +283,8 @@ impl Agenda {
 
 /// Share of an effect's estimated size that is there with a probability of five in six: a plan must not stand on a size
 /// that was overestimated.
-fn surely(found: &crate::report::EffectReport) -> f64 {
-    let size = found.parameters.values().find(|p| p.value.abs() > 0.0);
+fn surely(parameters: &BTreeMap<String, Estimate>) -> f64 {
+    let size = parameters.values().find(|p| p.value.abs() > 0.0);
     size.map_or(1.0, |p| {
         let sd = (p.ci95[1] - p.ci95[0]).abs() / (2.0 * 1.96);
         (1.0 - sd / p.value.abs()).clamp(0.5, 1.0)

@@ -40,8 +40,9 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
     );
     // The rig that has the effect makes them.
     done(path, &[&["-q", "simulate"], &runs[..], &truth, &["--seed", "5", "--out", "second"]].concat());
-    let said =
-        printed(path, &["-q", "calibrate", "first/plateaus.csv", "second/plateaus.csv", "--out", "joined"]);
+    let both =
+        ["-q", "calibrate", "first/plateaus.csv", "second/plateaus.csv", "--plan", "next", "--out", "joined"];
+    let said = printed(path, &both);
     assert!(said.starts_with("from first/plateaus.csv: inconclusive"), "{said}");
     let report = json(&path.join("joined/report.json"));
     assert_eq!(
@@ -53,6 +54,20 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
     assert!(low < 0.2 && 0.2 < high && high - low < 0.1, "{size}");
     let sessions = report["sessions"].as_array().unwrap();
     assert_eq!((sessions.len(), &sessions[1]["verdict"]), (2, &"attributed".into()));
+    // What was expected is held against what came: what is sure to be settled is.
+    let answers = sessions[1]["asked"]["questions"].as_array().unwrap();
+    let answer = |id: &str| &answers.iter().find(|q| q["between"][0] == id).unwrap()["answer"];
+    assert_eq!(
+        (answer("rate_dependence"), answer("dwell_relaxation")),
+        (&"found".into(), &"excluded".into())
+    );
+    assert!(
+        answers.iter().all(|q| q["resolved_probability"].as_f64() < Some(0.9) || q["answer"] != "open"),
+        "{answers:?}"
+    );
+    assert!(said.contains("second/plateaus.csv answers "), "{said}");
+    let page = std::fs::read_to_string(path.join("joined/report.html")).unwrap();
+    assert!(page.contains("rate_dependence or none (99 %): <b>found</b>"));
 }
 
 #[test]
@@ -62,6 +77,8 @@ fn what_a_plan_cannot_be_made_of_is_one_error() {
     std::fs::create_dir(path.join("empty")).unwrap();
     std::fs::create_dir(path.join("other")).unwrap();
     std::fs::write(path.join("other/report.json"), "{}").unwrap();
+    let plan = r#"{"schema": "x/1", "minutes": 1.0, "questions": []}"#;
+    std::fs::write(path.join("other/experiment.json"), plan).unwrap();
     std::fs::write(path.join("rig.toml"), "loads_g = []").unwrap();
     std::fs::write(path.join("runs.csv"), "series,substrate\n1,glass\n").unwrap();
     for (arguments, words) in [
@@ -71,6 +88,12 @@ fn what_a_plan_cannot_be_made_of_is_one_error() {
         ("experiment other --minutes 0 --out next", "minutes"),
         ("experiment other --minutes nan --out next", "minutes"),
         ("simulate --runs runs.csv --out x", "runs.csv: column 'pins' is missing"),
+        ("calibrate runs.csv --plan other --out x", "--plan is given 1 times and 0 tables follow the first"),
+        ("calibrate runs.csv runs.csv --plan empty --out x", "empty/experiment.json: cannot read"),
+        (
+            "calibrate runs.csv runs.csv --plan other --out x",
+            "other/experiment.json: schema = \"x/1\" is not",
+        ),
     ] {
         let arguments: Vec<_> = ["-q"].into_iter().chain(arguments.split(' ')).collect();
         let (code, said) = ended(path, &arguments);

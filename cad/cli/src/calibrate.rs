@@ -7,14 +7,16 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pinswitch_calibration::effects::{Vocabulary, own_effects_text};
+use pinswitch_calibration::experiment::SCHEMA;
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
-    Calibration, ModelFile, SessionReport, calibrate_among, calibrate_below, explain_published,
+    Asked, Calibration, ModelFile, SessionReport, calibrate_among, calibrate_below, explain_published,
 };
 
 use super::own_effects::OwnEffects;
 use super::{Failure, print};
+use crate::input::read_text_file;
 use crate::write::write_set;
 use pinswitch_plot::{UNEXPLAINED, page, plots, published_page, published_plot};
 use pinswitch_switch::output::OutputFile;
@@ -27,7 +29,8 @@ use waiting::Waiting;
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch calibrate plateaus.csv --out calibration
-  pinswitch calibrate plateaus.csv --effects mine.toml --out calibration")]
+  pinswitch calibrate plateaus.csv --effects mine.toml --out calibration
+  pinswitch calibrate first.csv second.csv --plan next --out joined")]
 pub(super) struct Arguments {
     /// The plateau table (CSV, one row per repetition); several are sessions of one rig, each with offsets, drift and
     /// mounts of its own.
@@ -42,6 +45,10 @@ pub(super) struct Arguments {
     /// Fit only loads up to this percentage of the highest one and judge both models on the rest.
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..100))]
     fit_below: Option<u8>,
+    /// The folder that `experiment` wrote, by whose runs the second table was recorded: its questions are told with what came of
+    /// them. Give another for the third table, and so on.
+    #[arg(long, value_name = "DIR", conflicts_with = "published")]
+    plan: Vec<PathBuf>,
     #[command(flatten)]
     own: OwnEffects,
 }
@@ -69,9 +76,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return published(&arguments.out);
     }
     let vocabulary = arguments.own.vocabulary()?;
+    let plans = plans(arguments)?;
     let (mut table, name) = joined(&arguments.tables)?;
     let sessions = match arguments.tables.split_last() {
-        Some((_, before)) if !before.is_empty() => before_the_last(before, &vocabulary)?,
+        Some((_, before)) if !before.is_empty() => before_the_last(before, &plans, &vocabulary)?,
         _ => Vec::new(),
     };
     let waiting = Waiting::new(table.rows.len());
@@ -89,7 +97,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut calibration = calibration.map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
     calibration.report.ignored_columns = table.ignored_columns();
     if !sessions.is_empty() {
-        let last = so_far(&arguments.tables, &calibration);
+        let last = so_far(&arguments.tables, &plans, &table, &calibration);
         calibration.report.sessions = sessions.into_iter().chain([last]).collect();
     }
     let mut files = files(&table, &calibration, &name)?;
@@ -123,21 +131,66 @@ fn joined(paths: &[PathBuf]) -> Result<(PlateauTable, String), Failure> {
 }
 
 /// What was known after each table but the last.
-fn before_the_last(paths: &[PathBuf], vocabulary: &Vocabulary) -> Result<Vec<SessionReport>, Failure> {
+fn before_the_last(
+    paths: &[PathBuf],
+    plans: &[Asked],
+    vocabulary: &Vocabulary,
+) -> Result<Vec<SessionReport>, Failure> {
     let until = |count: usize| {
         let paths = &paths[..count];
         let (table, name) = joined(paths)?;
         let found = calibrate_among(&table.rows, vocabulary, Levels::default())
             .map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
-        Ok(so_far(paths, &found))
+        Ok(so_far(paths, plans, &table, &found))
     };
     (1..=paths.len()).map(until).collect()
 }
 
-/// What a calibration says after these tables.
-fn so_far(paths: &[PathBuf], calibration: &Calibration) -> SessionReport {
+/// What a calibration says after these tables, the last of them recorded by a plan.
+fn so_far(
+    paths: &[PathBuf],
+    plans: &[Asked],
+    table: &PlateauTable,
+    calibration: &Calibration,
+) -> SessionReport {
     let last = paths.last().map_or_else(String::new, |path| path.display().to_string());
-    SessionReport::after(last, &calibration.report)
+    let highest_n = table.rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
+    let plan = paths.len().checked_sub(2).and_then(|nth| plans.get(nth)).cloned();
+    SessionReport {
+        asked: plan.map(|asked| asked.answered(&calibration.report, highest_n)),
+        ..SessionReport::after(last, &calibration.report)
+    }
+}
+
+/// What the tables after the first were recorded for.
+fn plans(arguments: &Arguments) -> Result<Vec<Asked>, Failure> {
+    let (plans, later) = (&arguments.plan, arguments.tables.len().saturating_sub(1));
+    if plans.len() > later {
+        return Err(Failure::bad_input(format!(
+            "--plan is given {} times and {later} tables follow the first; give the tables in order, and a plan for each after it at most",
+            plans.len()
+        )));
+    }
+    plans.iter().map(|folder| plan(folder)).collect()
+}
+
+/// What the plan in a folder asks.
+fn plan(folder: &Path) -> Result<Asked, Failure> {
+    #[derive(serde::Deserialize)]
+    struct PlanFile {
+        schema: String,
+        #[serde(flatten)]
+        asked: Asked,
+    }
+    let path = folder.join("experiment.json");
+    let refused = |problem: String| {
+        Failure::bad_input(format!("{}: {problem}; give the folder as `experiment` wrote it", path.display()))
+    };
+    let plan: PlanFile = serde_json::from_str(&read_text_file(&path)?).map_err(|e| refused(e.to_string()))?;
+    if plan.schema != SCHEMA {
+        return Err(refused(format!("schema = \"{}\" is not {SCHEMA}", plan.schema)));
+    }
+    Ok(plan.asked)
 }
 
 /// The loop on the paper's own numbers.

@@ -25,6 +25,7 @@
 //! the effects and `model/doc/naming-an-effect.md` how one is named.
 
 mod aliasing;
+mod asked;
 mod beyond_range;
 mod calibrate;
 pub mod effects;
@@ -51,6 +52,7 @@ mod toml_text;
 mod trial;
 
 pub use aliasing::{Aliasing, aliasing};
+pub use asked::{Answer, Asked, AskedQuestion};
 pub use calibrate::{Calibration, CalibrationError, calibrate, calibrate_among};
 pub use extrapolation::calibrate_below;
 pub use forms::{DrawnForm, FormReport, FormRival, draw_form};

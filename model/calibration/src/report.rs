@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::aliasing::Aliasing;
+use crate::asked::Asked;
 use crate::forms::FormReport;
 use crate::inference::{Noise, Selection};
 use crate::trial::TrialReport;
@@ -303,6 +304,9 @@ pub struct Report {
 pub struct SessionReport {
     /// The table that came last.
     pub table: String,
+    /// What the runs of this table were proposed for, if a plan was given, and what came of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub asked: Option<Asked>,
     /// Rows up to here.
     pub rows: usize,
     /// The verdict.
@@ -324,6 +328,7 @@ impl SessionReport {
         };
         Self {
             table,
+            asked: None,
             rows: report.data.rows,
             verdict: report.verdict,
             effects: report.effects.iter().map(ids).collect(),

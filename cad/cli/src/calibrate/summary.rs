@@ -1,6 +1,6 @@
 //! What a calibration says on the terminal: a few lines, the rest stands in report.html.
 
-use pinswitch_calibration::{FormReport, Report, TrialReport, Verdict};
+use pinswitch_calibration::{FormReport, Report, SessionReport, TrialReport, Verdict};
 
 /// Series to check, open effects and columns that the terminal lists.
 const SHOWN: usize = 6;
@@ -13,8 +13,12 @@ pub(super) fn summary(report: &Report) -> String {
         .iter()
         .take(before)
         .enumerate()
-        .map(|(i, s)| format!("{} {}: {}\n", if i == 0 { "from" } else { "with" }, s.table, s.words()))
+        .map(|(i, s)| {
+            let word = if i == 0 { "from" } else { "with" };
+            format!("{}{word} {}: {}\n", asked(s), s.table, s.words())
+        })
         .collect();
+    text.extend(report.sessions.last().map(asked));
     text.push_str(&format!("verdict: {}\n", verdict(report)));
     text.push_str(&errors(report));
     text.push_str(&effects(report));
@@ -30,6 +34,18 @@ pub(super) fn summary(report: &Report) -> String {
     text.push_str(&extrapolation(report));
     text.push_str(&bad_series(report));
     text
+}
+
+/// How much of what a session was made for it answers.
+fn asked(session: &SessionReport) -> String {
+    session.asked.as_ref().map_or_else(String::new, |plan| {
+        format!(
+            "{} answers {} of the {} questions it was made for\n",
+            session.table,
+            plan.settled(),
+            plan.questions.len()
+        )
+    })
 }
 
 fn verdict(report: &Report) -> String {

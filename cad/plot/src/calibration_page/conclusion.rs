@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use pinswitch_calibration::{EffectReport, Report, Verdict};
+use pinswitch_calibration::{Asked, AskedQuestion, EffectReport, Report, Verdict};
 
 use super::super::html::escape;
 use super::limits::{open_limits, possible, typical};
@@ -27,6 +27,7 @@ fn story(report: &Report) -> String {
                     on a new session</th></tr>"
         .to_owned();
     for session in &report.sessions {
+        html.push_str(&session.asked.as_ref().map_or_else(String::new, asked));
         let _ = write!(
             html,
             "<tr><td>{}</td><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td></tr>",
@@ -38,6 +39,21 @@ fn story(report: &Report) -> String {
     }
     html.push_str("</table>\n");
     html
+}
+
+/// What a session was made for, how probably it was to be answered, and what came of it.
+fn asked(plan: &Asked) -> String {
+    let told = |q: &AskedQuestion| {
+        let percent = (100.0 * q.resolved_probability).clamp(1.0, 99.0);
+        let words = format!("{} or {} ({percent:.0} %)", q.between[0], q.between[1]);
+        format!("<li>{}: <b>{}</b></li>", escape(&words), q.answer.as_str())
+    };
+    let questions: String = plan.questions.iter().map(told).collect();
+    format!(
+        "<tr><td colspan=\"4\">asked for in {:.0} minutes, with the probability of an answer that was expected, and what \
+         came of it:<ul>{questions}</ul></td></tr>",
+        plan.minutes
+    )
 }
 
 /// The verdict, with what would settle what it leaves open.

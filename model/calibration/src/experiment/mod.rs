@@ -26,12 +26,13 @@ use crate::report::Report;
 use crate::table::{PlateauRow, Sweep};
 use candidates::{Candidate, candidates, paper_protocol};
 use information::{Design, Trace};
-use question::{Agenda, NONE, Question};
+use question::{Agenda, Question};
+pub(crate) use question::{COVERED, FRICTION_ABOVE, NONE};
 use search::Search;
 use shortlist::Shortlist;
 
 /// Name and version of `experiment.json`.
-const SCHEMA: &str = "pinswitch.experiment/1";
+pub const SCHEMA: &str = "pinswitch.experiment/1";
 /// Probability below which all that a rig can do does not answer a question.
 const ANSWERABLE: f64 = 0.5;
 

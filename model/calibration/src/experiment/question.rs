@@ -12,7 +12,10 @@ use crate::inference::{Levels, Model, Term};
 use crate::report::{Estimate, Report};
 
 /// What an answer says no to.
-pub(super) const NONE: &str = "none";
+pub(crate) const NONE: &str = "none";
+
+/// How the question for loads beyond those recorded begins.
+pub(crate) const FRICTION_ABOVE: &str = "friction_above_";
 
 /// Gain, in squares of the noise, by which an effect is seen and told from none: four standard deviations, as for what
 /// counts as visible at all.
@@ -20,7 +23,7 @@ const SEEN: f64 = 16.0;
 /// How much less an effect counts that nobody suspects.
 const UNSUSPECTED: f64 = 0.3;
 /// Share of the loads of a curve up to which data must reach, so that it needs no carrying on.
-const COVERED: f64 = 0.9;
+pub(crate) const COVERED: f64 = 0.9;
 /// Largest size of a rival, in units of the size at which a fit of it starts: beyond it, no rig is that wrong.
 const LARGEST_SHARE: f64 = 30.0;
 
@@ -249,7 +252,7 @@ impl Agenda {
         }
         let column = own.len() + self.traces.len();
         self.traces.push(Trace::Beyond { from_n: highest_n, to_n });
-        self.ask_whether(&format!("friction_above_{highest_n:.0}_N"), column, 1.0, own, 1.0);
+        self.ask_whether(&format!("{FRICTION_ABOVE}{highest_n:.0}_N"), column, 1.0, own, 1.0);
     }
 
     /// What is known before any data to come.

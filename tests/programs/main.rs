@@ -8,6 +8,7 @@ mod harness;
 
 mod bucket;
 mod configurator;
+mod gltf;
 mod judges;
 mod page;
 mod recipes;

@@ -1,0 +1,40 @@
+//! Khronos' own validator judges `assembly.glb`, where node and `gltf-validator` are.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::harness::{done, repository, say_skipped};
+
+/// Where `.ci/run` puts the validator.
+const VALIDATOR: &str = "/tmp/pinswitch-gltf/node_modules/gltf-validator";
+
+#[test]
+fn the_assembly_is_gltf_without_an_error_or_a_warning() {
+    if !Path::new(VALIDATOR).is_dir() {
+        return say_skipped("gltf-validator is not in /tmp/pinswitch-gltf; .ci/run puts it there");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let rig = "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n";
+    let finger =
+        "[layout]\npins = [6, 8, 10]\n[mount]\nkind = \"finger-link\"\n[fasteners]\nkind = \"insert\"\n";
+    let mut made = vec![];
+    for (name, text) in [("rig.toml", rig), ("finger.toml", finger)] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        let set = name.trim_end_matches(".toml");
+        done(folder.path(), &["-q", "generate", name, "--format", "glb", "--out", set]);
+        made.push(folder.path().join(set).join("assembly.glb"));
+    }
+    // The judge itself is judged: a file that is cut off must not pass.
+    let broken = folder.path().join("broken.glb");
+    std::fs::write(&broken, &std::fs::read(&made[0]).unwrap()[..2000]).unwrap();
+    let judge = |file: &Path| {
+        let script = repository("tests/programs/gltf.cjs");
+        let output = Command::new("node").arg(script).arg(VALIDATOR).arg(file).output().unwrap();
+        (output.status.success(), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    for file in &made {
+        let (is_valid, said) = judge(file);
+        assert!(is_valid, "{}: {said}", file.display());
+    }
+    assert!(!judge(&broken).0, "a broken file passes");
+}

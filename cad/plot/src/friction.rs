@@ -168,3 +168,44 @@ fn trust_label(trust: Trust) -> &'static str {
         Trust::Extrapolated => "extrapolated: a guess",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pinswitch_friction::physics::Bed;
+    use pinswitch_friction::{PinPattern, Substrate, predict};
+
+    fn drawn(contact: &Contact) -> String {
+        let curve = predict(contact, &[5.0, 15.0, 30.0, 49.0]);
+        friction_svg("mine", contact, &curve, &[]).unwrap()
+    }
+
+    /// The words stand for numbers of the paper: on anything that the paper did not measure they would be a lie.
+    #[test]
+    fn nothing_is_called_published_that_the_paper_did_not_measure() {
+        let layout = &published::LAYOUTS[1];
+        let even = |pitch| PinPattern::even(layout.pins, pitch);
+        let of = |substrate, pins, wrap| Contact::new(substrate, pins, wrap).unwrap();
+        let (pitch, wrap) = (layout.pitch_rad(), published::wrap_angle_rad());
+        let measured = of(Substrate::Silicone, even(pitch), wrap);
+        let svg = drawn(&measured);
+        assert!(svg.contains("published onset, 15.31 N") && svg.contains("published maximum"), "{svg}");
+        let bed = Bed::published();
+        let others = [
+            of(Substrate::Abs, even(0.95 * pitch), wrap),
+            of(Substrate::Silicone, even(1.02 * pitch), wrap),
+            of(Substrate::Silicone, even(pitch), 1.05 * wrap),
+            measured.clone().with_bed(Bed { modulus_mpa: 0.9 * bed.modulus_mpa, ..bed }),
+            measured.clone().with_bed(Bed { layer_mm: 1.1 * bed.layer_mm, ..bed }),
+            measured.clone().with_bed(Bed { pin_diameter_mm: 0.95 * bed.pin_diameter_mm, ..bed }),
+            measured.clone().with_bed(Bed { contact_radius_mm: 1.05 * bed.contact_radius_mm, ..bed }),
+            measured.with_unmodelled(vec!["tendon.rope".to_owned()]),
+        ];
+        for (nth, contact) in others.iter().enumerate() {
+            assert!(!drawn(contact).contains("published"), "contact {nth} of {}", others.len());
+        }
+        // Pins on ABS switch nothing: there is a maximum, and no onset.
+        let abs = drawn(&of(Substrate::Abs, even(pitch), wrap));
+        assert!(abs.contains("published maximum") && !abs.contains("published onset"), "{abs}");
+    }
+}

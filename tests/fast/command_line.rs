@@ -292,3 +292,35 @@ fn a_study_of_nothing_is_refused_with_what_there_is() {
         assert!(said.contains(words), "{said}");
     }
 }
+
+#[test]
+fn a_rig_has_the_noise_of_a_calibration() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    std::fs::write(path.join("noisy.toml"), "[noise]\nrepetition_N = 0.3\nseries_scale = 0.04\n").unwrap();
+    done(path, &["-q", "simulate", "noisy.toml", "--out", "noisy"]);
+    done(path, &["-q", "calibrate", "noisy/plateaus.csv", "--out", "calibration"]);
+    done(path, &["-q", "simulate", "--noise", "calibration/model.toml", "--out", "same"]);
+    let plan = std::fs::read_to_string(path.join("same/plan.toml")).unwrap();
+    let noise = |key: &str| -> f64 {
+        let line = plan.lines().find_map(|line| line.strip_prefix(key)?.trim().strip_prefix('='));
+        line.unwrap().trim().parse().unwrap()
+    };
+    assert!((noise("repetition_N") - 0.3).abs() < 0.03, "{plan}");
+    assert!((noise("series_scale") - 0.04).abs() < 0.015, "{plan}");
+    // What such noise hides is not promised.
+    std::fs::write(path.join("plan.toml"), "layouts = []\nrepetitions = [4, 4]\nrepetitions_spread = 0\n")
+        .unwrap();
+    let told = |more: &[&str]| -> u64 {
+        let json: Value = serde_json::from_str(&printed(
+            path,
+            &[&["power", "plan.toml", "--runs", "1", "--json"], more].concat(),
+        ))
+        .unwrap();
+        json.as_array().unwrap().iter().map(|p| p["named"].as_u64().unwrap()).sum()
+    };
+    let (quiet, loud) = (told(&[]), told(&["--noise", "calibration/model.toml"]));
+    assert!(loud < quiet, "{loud} of {quiet}");
+    let (code, said) = ended(path, &["power", "plan.toml", "--noise", "plan.toml"]);
+    assert!(code == Some(2) && said.contains("plan.toml"), "{said}");
+}

@@ -1,23 +1,30 @@
 //! `pinswitch power PLAN.toml`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use pinswitch_calibration::ModelFile;
 use pinswitch_calibration::inference::Levels;
-use pinswitch_simulation::{Plan, power};
+use pinswitch_simulation::{NoisePlan, Plan, power};
 
 use super::own_effects::OwnEffects;
 use super::{Failure, print, print_json};
+use crate::input::read_text_file;
 
 /// Tell before any measurement which effects of which size a planned experiment could see and tell apart.
 #[derive(Args, Debug)]
-#[command(after_help = "Example: pinswitch power plan.toml --runs 5")]
+#[command(after_help = "Examples:
+  pinswitch power plan.toml --runs 5
+  pinswitch power plan.toml --noise calibration/model.toml")]
 pub(super) struct Arguments {
     /// The plan, as for `simulate`; each effect is put into it in turn.
     plan: PathBuf,
     /// Simulated experiments per effect and size.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=1000))]
     runs: u64,
+    /// The model.toml of a calibration whose noise the rig has, instead of the plan's.
+    #[arg(long, value_name = "TOML")]
+    noise: Option<PathBuf>,
     /// Print JSON instead of a table.
     #[arg(long)]
     json: bool,
@@ -27,9 +34,13 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.plan.display().to_string();
-    let text = crate::input::read_text_file(&arguments.plan)?;
+    let text = read_text_file(&arguments.plan)?;
     let vocabulary = arguments.own.vocabulary()?;
-    let plan = Plan::parse_among(&text, &name, &vocabulary).map_err(Failure::bad_input)?;
+    let mut plan = Plan::parse_among(&text, &name, &vocabulary).map_err(Failure::bad_input)?;
+    if let Some(model) = &arguments.noise {
+        plan.noise = noise_of(model)?;
+        plan.check(&name).map_err(Failure::bad_input)?;
+    }
     let all = power(&plan, arguments.runs, Levels::default());
     if arguments.json {
         return print_json(&all);
@@ -53,4 +64,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     print(table.as_bytes())
+}
+
+/// The noise that a calibration found.
+pub(super) fn noise_of(model: &Path) -> Result<NoisePlan, Failure> {
+    let name = model.display().to_string();
+    let file = ModelFile::parse(&read_text_file(model)?, &name).map_err(Failure::bad_input)?;
+    Ok(NoisePlan::of_rig(file.noise()))
 }

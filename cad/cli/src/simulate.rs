@@ -17,6 +17,7 @@ use pinswitch_simulation::{
 use rayon::prelude::*;
 
 use super::own_effects::OwnEffects;
+use super::power::noise_of;
 use super::{Failure, print};
 use crate::input::read_text_file;
 use crate::write::write_set;
@@ -61,6 +62,9 @@ pub(super) struct Arguments {
     /// With --runs: a model.toml is the rig, with its constants, effects and noise.
     #[arg(long, value_name = "TOML", requires = "runs", conflicts_with_all = ["plan", "effects", "randomised"])]
     model: Option<PathBuf>,
+    /// The model.toml of a calibration whose noise the rig has, instead of the plan's.
+    #[arg(long, value_name = "TOML", conflicts_with_all = ["model", "study"])]
+    noise: Option<PathBuf>,
     /// With --runs: the rig that they were planned for, if it is not the paper's.
     #[arg(long, value_name = "TOML", requires = "runs")]
     rig: Option<PathBuf>,
@@ -164,6 +168,9 @@ fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
     };
     plan.vocabulary = vocabulary;
     plan.seed = arguments.seed.unwrap_or(plan.seed);
+    if let Some(model) = &arguments.noise {
+        plan.noise = noise_of(model)?;
+    }
     for effect in &arguments.effects {
         let (id, values) = effect.split_once('=').unwrap_or((effect, ""));
         let values: Result<Vec<f64>, _> =

@@ -3,10 +3,11 @@
 use super::explanation::{Explanation, explain, sharper_noise};
 use super::fit::{Fit, fit, jacobian};
 use super::levels::Levels;
+use super::noise::Noise;
 use super::observations::Observations;
 use super::screening::Screen;
 use super::unnamed::Context;
-use super::variance_components::Scatter;
+use super::variance_components::{Scatter, shared_again};
 use super::weighed::Weighed;
 
 /// Evidence by which believing less may be behind and still be searched for.
@@ -21,18 +22,23 @@ pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Le
         scatter.estimated(data, &fitted.residual_n, &own, noise)
     };
     // What is believed is kept, and the scatter beside it estimated.
-    let with_scatter = |explanation: Explanation| {
-        let noise = Scatter::ALL
-            .iter()
-            .fold(explanation.noise, |noise, scatter| beside(*scatter, &explanation.augmented, noise));
-        if noise == explanation.noise {
-            return explanation;
-        }
+    let at = |explanation: &Explanation, noise| {
         let weighed = Weighed::new(data, noise);
         let baseline = fit(&explanation.baseline.model, &weighed);
         let augmented = fit(&explanation.augmented.model, &weighed);
-        let with = Explanation { baseline, augmented, noise, ..explanation.clone() };
-        if with.toll(data) < explanation.toll(data) { with } else { explanation }
+        Explanation { baseline, augmented, noise, ..explanation.clone() }
+    };
+    let with_scatter = |explanation: Explanation| {
+        let noises = [explanation.noise, beside_own(&explanation, data)]
+            .map(|noise| Scatter::ALL.iter().fold(noise, |n, s| beside(*s, &explanation.augmented, n)));
+        let mut best = explanation.clone();
+        for noise in noises.into_iter().filter(|noise| *noise != explanation.noise) {
+            let with = at(&explanation, noise);
+            if with.toll(data) < best.toll(data) {
+                best = with;
+            }
+        }
+        best
     };
     if free.augmented.model.terms.is_empty() {
         return with_scatter(free);
@@ -62,6 +68,17 @@ pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Le
         best = shape.filter(|shape| shape.toll(data) < best.toll(data)).unwrap_or(best);
     }
     best
+}
+
+/// What series share beside the model's own columns alone. Before anything was searched for, all that might explain the
+/// table was taken out first, or a missing effect would have been called noise; so many columns leave little to tell the
+/// friction scale of the series by, which is then taken for that of their mounts.
+fn beside_own(explanation: &Explanation, data: &Observations) -> Noise {
+    let fitted = &explanation.augmented;
+    let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
+    let own = jacobian(&fitted.model, data, &predicted);
+    let bare = Scatter::ALL.iter().fold(explanation.noise, |noise, scatter| scatter.left_out(noise));
+    shared_again(data, &fitted.residual_n, &own, bare)
 }
 
 /// The best shape alone, with the noise that is beside it and without scatter: what stands against names that need

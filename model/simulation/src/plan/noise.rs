@@ -1,5 +1,6 @@
 //! The noise of a synthetic rig.
 
+use pinswitch_calibration::inference::Noise;
 use serde::{Deserialize, Serialize};
 
 /// Noise of the synthetic rig.
@@ -76,6 +77,68 @@ impl Default for NoisePlan {
             series_common_per_load: 0.0,
             series_walk: 0.0,
             resolution_n: 0.0,
+        }
+    }
+}
+
+impl NoisePlan {
+    /// The noise that a calibration found on a rig, part by part, for rigs like it.
+    ///
+    /// Offsets that wander in part do so whole here, with less memory: their correlation from series to series is kept. A
+    /// part that groups of rows share (sessions, operators, specimens) is left out: a plan has one of each. What a
+    /// calibration does not estimate (outliers, lost rows, uneven noise, steps of the cell) is absent.
+    pub fn of_rig(noise: Noise) -> Self {
+        let walk = noise.walk;
+        // Sizes of the offsets' parts are shares of what they are as a whole.
+        let wanders = |share: f64| {
+            if walk.correlation > 0.0 && share > 0.0 { (walk.white.hypot(share), share) } else { (1.0, 0.0) }
+        };
+        let ((direction, moving), (common, _)) = (wanders(walk.direction), wanders(walk.common));
+        Self {
+            repetition_n: noise.repetition.constant_n,
+            repetition_per_load: noise.repetition.per_load,
+            series_n: direction * noise.series.constant_n,
+            series_per_load: direction * noise.series.per_load,
+            outlier_share: 0.0,
+            autocorrelation: noise.correlation,
+            series_scale: noise.series_scale,
+            mount_scale: noise.mount_scale,
+            series_common_n: common * noise.series_common.constant_n,
+            series_common_per_load: common * noise.series_common.per_load,
+            series_walk: walk.correlation * (moving / direction).powi(2),
+            ..Self::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pinswitch_calibration::inference::{Levels, Model, Observations, select};
+    use pinswitch_calibration::table::Frame;
+
+    use crate::plan::Plan;
+    use crate::simulate::simulate;
+
+    /// A rig made by the noise that was found on another has that noise: what is planned by it is planned for that rig.
+    #[test]
+    fn the_noise_that_was_found_is_found_again_on_a_rig_made_by_it() {
+        let found = |plan: &Plan| {
+            let rows = simulate(plan).rows;
+            let frame = Frame::new(&rows);
+            let mut data = Observations::new(&frame, &rows).unwrap();
+            select(&Model::baseline(frame), &mut data, Levels::default()).noise
+        };
+        let noise =
+            NoisePlan { series_scale: 0.03, repetition_n: 0.12, series_n: 0.08, ..NoisePlan::default() };
+        let first = found(&Plan { seed: 11, noise, ..Plan::default() });
+        let again = found(&Plan { seed: 12, noise: NoisePlan::of_rig(first), ..Plan::default() });
+        for (name, a, b, factor) in [
+            ("repetition", first.repetition.at(20.0), again.repetition.at(20.0), 1.1),
+            ("series", first.series.at(20.0), again.series.at(20.0), 1.5),
+            ("scale", first.series_scale, again.series_scale, 1.5),
+        ] {
+            assert!(a / b < factor && b / a < factor, "{name}: {a} and {b}");
         }
     }
 }

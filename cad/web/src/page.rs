@@ -1,7 +1,7 @@
 //! The page of the configurator: one file with everything in it, which a file server or a double click opens.
 
 use pinswitch_plot::html::{filled, policy};
-use pinswitch_switch::formats::page::{THREE, UPLOT, UPLOT_CSS};
+use pinswitch_switch::formats::page::{ASSEMBLY, THREE, UPLOT, UPLOT_CSS};
 
 const HTML: &str = include_str!("../page/configurator.html");
 const CSS: &str = include_str!("../page/configurator.css");
@@ -15,7 +15,7 @@ const SCRIPTS: [&str; 20] = [
     include_str!("../page/engine.js"),
     include_str!("../page/controls.js"),
     include_str!("../page/pins.js"),
-    include_str!("../page/assembly.js"),
+    ASSEMBLY,
     include_str!("../page/view.js"),
     include_str!("../page/scales.js"),
     include_str!("../page/curve.js"),

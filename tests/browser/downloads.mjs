@@ -1,9 +1,10 @@
 // Downloads are those of the command line, byte for byte.
 
-import { spawnSync } from 'node:child_process';
+import { execFile } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { promisify } from 'node:util';
 import { inflateRawSync } from 'node:zlib';
 
 // Twelve configurations that differ in what they have, by the address.
@@ -54,15 +55,23 @@ async function downloading(visit, folder) {
 const made = new Map();
 function byCommandLine(binary, scratch, name, toml) {
   const key = hash(toml);
-  if (!made.has(key)) {
-    const folder = mkdtempSync(join(scratch, 'set-'));
-    writeFileSync(join(folder, `${name}.toml`), toml);
-    const { status, stderr } = spawnSync(binary, ['-q', 'generate', `${name}.toml`, '--format', 'all', '--out', '.'], { cwd: folder });
-    if (status !== 0) throw new Error(`pinswitch generate ${name}.toml: ${stderr}`);
-    made.set(key, new Map(readdirSync(folder).map((file) => [file, hash(readFileSync(join(folder, file)))])));
-    rmSync(folder, { recursive: true });
-  }
+  if (!made.has(key)) made.set(key, generated(binary, mkdtempSync(join(scratch, 'set-')), name, toml));
   return made.get(key);
+}
+
+async function generated(binary, folder, name, toml) {
+  writeFileSync(join(folder, `${name}.toml`), toml);
+  await promisify(execFile)(binary, ['-q', 'generate', `${name}.toml`, '--format', 'all', '--out', '.'], { cwd: folder });
+  const files = new Map(readdirSync(folder).map((file) => [file, hash(readFileSync(join(folder, file)))]));
+  rmSync(folder, { recursive: true });
+  return files;
+}
+
+// Opens the page with a configuration, or changes the address of the page that is open.
+async function turnTo(visit, site, configuration, name) {
+  if (visit.page.url().startsWith('about:')) await visit.open(`${site.address}#v=1&${configuration}`);
+  else await visit.page.evaluate((hash) => { location.hash = hash; }, `v=1&${configuration}`);
+  await visit.page.waitForFunction((now) => document.querySelector('#name').textContent === now && document.body.dataset.pending === 'false', {}, name);
 }
 
 export async function downloads(visit, site, { binary, scratch, findings }) {
@@ -71,14 +80,14 @@ export async function downloads(visit, site, { binary, scratch, findings }) {
   const wait = await downloading(visit, folder);
   for (const [i, configuration] of CONFIGURATIONS.entries()) {
     const name = /switch\.name=(\w+)/.exec(configuration)[1];
-    await visit.open(`${site.address}#v=1&${configuration}`);
+    await turnTo(visit, site, configuration, name);
     await visit.click('#download');
     await visit.page.waitForSelector('#file-list button', { timeout: 60_000 });
     await visit.click('#toml');
     const toml = await wait(`${name}.toml`);
     await visit.click('#zip');
     const files = unpacked(await wait(`${name}.zip`));
-    const line = byCommandLine(binary, scratch, name, toml);
+    const line = await byCommandLine(binary, scratch, name, toml);
     const own = new Map([...files].map(([file, bytes]) => [file, hash(bytes)]));
     const differ = [...new Set([...line.keys(), ...own.keys()])].filter((file) => line.get(file) !== own.get(file));
     findings.check(`the files of ${name} have the names of the command line's`, own.size > 20 && [...line.keys()].every((file) => own.has(file)), [...own.keys()]);

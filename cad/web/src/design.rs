@@ -17,6 +17,8 @@ use crate::values::configuration;
 
 /// Chord tolerance of what is only looked at, in millimetres.
 const COARSE_MM: f64 = 0.05;
+/// Points of a curve that is only looked at.
+const COARSE_POINTS: usize = 26;
 /// What a model dropped on the page is called in errors.
 const MODEL: &str = "the calibrated model";
 
@@ -42,6 +44,7 @@ fn shown(asked: &Asked, quality: Quality) -> Result<(PageData, String), Trouble>
     let mut seen = exact;
     if quality == Quality::Coarse {
         seen.mesh.chord_tolerance_mm = seen.mesh.chord_tolerance_mm.max(COARSE_MM);
+        seen.friction.points = seen.friction.points.min(COARSE_POINTS);
     }
     let (built, prediction) = built(seen, asked.model.as_deref())?;
     let formats = named(&["stl"]).map_err(Trouble::general)?;

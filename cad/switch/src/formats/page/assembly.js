@@ -318,9 +318,9 @@ class Assembly {
     if (this.isCompiled) this.renderer.render(this.scene, this.camera);
   }
 
-  // Lets the programs of the graphics card be compiled beside the page, which answers meanwhile; draws from then on.
+  // Lets the programs of the graphics card be compiled beside the page, where it can; draws from then on.
   async compile() {
-    await this.renderer.compileAsync(this.scene, this.camera);
+    if (this.renderer.extensions.has('KHR_parallel_shader_compile')) await this.renderer.compileAsync(this.scene, this.camera);
     this.isCompiled = true;
     this.draw();
   }

@@ -6,7 +6,11 @@ let ready = null;
 // The module comes packed with XZ, since the page is downloaded whole.
 async function unpacked(bytes) {
   const { XzReadableStream } = self['xz-decompress'];
-  return new Response(new XzReadableStream(new Blob([bytes]).stream())).arrayBuffer();
+  try {
+    return await new Response(new XzReadableStream(new Blob([bytes]).stream())).arrayBuffer();
+  } catch {
+    throw new Error('the page was not loaded whole: load it again');
+  }
 }
 
 // What the module needs of a host is nothing. Libraries in it name functions of browsers that it never calls.

@@ -196,11 +196,12 @@ class Assembly {
     this.frame();
   }
 
-  // Points of what is shown, in the assembly; of large meshes not all, since neighbours say the same.
+  // Points of the bodies that are shown, in the assembly; of large meshes not all, since neighbours say the same. The tendon
+  // leads out of the picture.
   *points() {
-    for (const node of this.group.children) {
+    for (const node of this.bodies) {
       if (!node.visible) continue;
-      const mesh = node.isMesh ? node : node.children[0];
+      const [mesh] = node.children;
       const { array } = mesh.geometry.getAttribute('position');
       const step = 3 * Math.max(1, Math.floor(array.length / 3 / SAMPLES));
       for (let i = 0; i < array.length; i += step) yield new THREE.Vector3(array[i], array[i + 1], array[i + 2]).applyMatrix4(mesh.matrixWorld);

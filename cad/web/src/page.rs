@@ -5,7 +5,8 @@ use pinswitch_switch::formats::page::{ASSEMBLY, THREE, UPLOT, UPLOT_CSS};
 
 const HTML: &str = include_str!("../page/configurator.html");
 const CSS: &str = include_str!("../page/configurator.css");
-const WORKER: &str = concat!(include_str!("../page/xz-decompress.min.js"), "\n", include_str!("../page/worker.js"));
+const WORKER: &str =
+    concat!(include_str!("../page/xz-decompress.min.js"), "\n", include_str!("../page/worker.js"));
 
 /// The page's own scripts, in the order in which they are read.
 const SCRIPTS: [&str; 20] = [

@@ -1,7 +1,7 @@
 // Drives the configurator in a real browser, with `pinswitch view` and with the module: node run.mjs JOB.json, where the job
 // names `binary` (pinswitch), `browser`, `tools` (a folder with puppeteer-core and axe-core), `table` (a table of plateaus),
 // `pictures` (a folder for screenshots) and, where there is one, `site` (the folder that cad/web/build made). Exit code 1
-// if anything did not hold; `only` runs the scenarios whose names hold it.
+// if anything did not hold; `only` runs the scenarios whose names hold one of its words.
 
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -29,7 +29,7 @@ async function fromFile(visit, site, { findings }) {
 
 function scenarios() {
   const all = { fromFile, ...design, ...look, ...tables, ...trouble, ...around, ...downloads };
-  return Object.entries(all).filter(([name, act]) => typeof act === 'function' && name.includes(job.only ?? ''));
+  return Object.entries(all).filter(([name, act]) => typeof act === 'function' && (job.only ?? '').split(' ').some((word) => name.includes(word)));
 }
 
 async function factsOf(site) {

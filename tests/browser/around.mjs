@@ -49,7 +49,10 @@ export async function followedFile(visit, site, { anotherView }) {
     await visit.click('#undo');
     await visit.addressHas('layout.pins=5,6,8,11');
     await visit.settled();
+    visit.findings.check('no error was caught by the page while it followed', (await visit.page.$eval('body', (b) => b.dataset.errors)) === '0');
   } finally {
+    // The page is left first: it waits for the next change of the file, and would tell that the server went.
+    await visit.page.goto('about:blank');
     await own.end();
   }
 }

@@ -20,8 +20,8 @@ export async function served(files) {
 // The page of a site with its module, and pages that are broken as transport may break them.
 export async function moduleSite(folder) {
   const page = readFileSync(join(folder, 'index.html'), 'utf8');
-  const inModule = (change) => page.replace(/(<script type="text\/plain" id="module">)([^<]*)/, (_, tag, text) => tag + change(text));
-  const around = '<!doctype html><title>around</title><script>window.heard = []; addEventListener("message", (e) => heard.push(e.data));</script><iframe src="/?embed" width="1200" height="800"></iframe>';
+  const inModule = (change) => page.replace(/(<script type="text\/plain" id="module"[^>]*>)([^<]*)/, (_, tag, text) => tag + change(text));
+  const around = '<!doctype html><title>around</title><link rel="icon" href="data:,"><script>window.heard = []; addEventListener("message", (e) => heard.push(e.data));</script><iframe src="/?embed" width="1200" height="800"></iframe>';
   const server = await served({ '/': page, '/cut.html': inModule((text) => text.slice(0, text.length / 2)), '/none.html': inModule(() => ''), '/around.html': around });
   return { name: 'module', address: `${server.origin}/`, origin: server.origin, file: `file://${join(folder, 'index.html')}`, end: server.end };
 }

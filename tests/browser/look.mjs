@@ -71,11 +71,11 @@ async function violations(visit) {
 }
 
 export async function accessible(visit, site) {
+  await visit.open(site.address + START);
+  // As the debugger evaluates it: the page's policy lets no script in.
+  await visit.page.evaluate(visit.browser.axeText);
   for (const [name, dark] of [['desk', false], ['desk', true], ['phone', false], ['phone', true]]) {
     await visit.look(...WIDTHS[name], dark);
-    await visit.open(site.address + START);
-    // As the debugger evaluates it: the page's policy lets no script in.
-    await visit.page.evaluate(visit.browser.axeText);
     const judge = async (state) => {
       const found = await violations(visit);
       visit.findings.check(`axe-core finds nothing on a ${dark ? 'dark' : 'light'} ${name} ${state}`, found.length === 0, found.join('; '));
@@ -89,5 +89,6 @@ export async function accessible(visit, site) {
     await visit.click('#parameters');
     await visit.page.waitForSelector('#find', { visible: true });
     await judge('with parameters');
+    await visit.click('#sheet-close');
   }
 }

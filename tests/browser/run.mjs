@@ -1,7 +1,7 @@
 // Drives the configurator in a real browser, with `pinswitch view` and with the module: node run.mjs JOB.json, where the job
 // names `binary` (pinswitch), `browser`, `tools` (a folder with puppeteer-core and axe-core), `table` (a table of plateaus),
 // `pictures` (a folder for screenshots) and, where there is one, `site` (the folder that cad/web/build made). Exit code 1
-// if anything did not hold; `only` runs the scenarios whose names hold it.
+// if anything did not hold; `only` runs the scenarios whose names hold one of its words.
 
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -17,10 +17,9 @@ import * as trouble from './trouble.mjs';
 
 const job = JSON.parse(readFileSync(process.argv[2], 'utf8'));
 const scratch = mkdtempSync(join(tmpdir(), 'pinswitch-job-'));
-const findings = new Findings();
 
 // A page that a double click opened: from a file, without any server.
-async function fromFile(visit, site) {
+async function fromFile(visit, site, { findings }) {
   if (!site.file) return;
   await visit.open(site.file + design.START);
   await visit.click('#mirror-pins');
@@ -30,7 +29,7 @@ async function fromFile(visit, site) {
 
 function scenarios() {
   const all = { fromFile, ...design, ...look, ...tables, ...trouble, ...around, ...downloads };
-  return Object.entries(all).filter(([name, act]) => typeof act === 'function' && name.includes(job.only ?? ''));
+  return Object.entries(all).filter(([name, act]) => typeof act === 'function' && (job.only ?? '').split(' ').some((word) => name.includes(word)));
 }
 
 async function factsOf(site) {
@@ -39,7 +38,12 @@ async function factsOf(site) {
   return response.json();
 }
 
-async function drive(browser, site, given) {
+// All scenarios with one engine, in a browser of their own; what they found.
+async function drive(site, shared) {
+  const findings = new Findings();
+  const given = { ...shared, findings };
+  const browser = await Browser.start({ tools: job.tools, executable: job.browser });
+  browser.axeText = readFileSync(browser.tools.axe, 'utf8');
   for (const [name, act] of scenarios()) {
     findings.scenario = `${site.name}, ${name}`;
     const began = performance.now();
@@ -52,6 +56,8 @@ async function drive(browser, site, given) {
     await visit.end();
     console.log(`${findings.scenario}: ${((performance.now() - began) / 1000).toFixed(1)} s`);
   }
+  await browser.end();
+  return findings;
 }
 
 async function main() {
@@ -62,24 +68,17 @@ async function main() {
   };
   const server = await view('mine.toml');
   const facts = await factsOf(server);
-  const browser = await Browser.start({ tools: job.tools, executable: job.browser });
-  browser.axeText = readFileSync(browser.tools.axe, 'utf8');
-  const given = { binary: job.binary, executable: job.browser, tools: job.tools, pictures: job.pictures, table: readFileSync(job.table, 'utf8'), facts, findings, scratch, anotherView: view };
-  try {
-    await drive(browser, server, given);
-    if (job.site) {
-      const site = await moduleSite(job.site);
-      await drive(browser, site, given);
-      await site.end();
-    }
-  } finally {
-    await browser.end();
-    await server.end();
-    rmSync(scratch, { recursive: true, force: true });
-  }
-  for (const failure of findings.failed) console.log(`FAILED ${failure}`);
-  console.log(`${findings.held} held, ${findings.failed.length} failed`);
-  return findings.failed.length === 0 && findings.held > 0 ? 0 : 1;
+  const shared = { binary: job.binary, executable: job.browser, tools: job.tools, pictures: job.pictures, table: readFileSync(job.table, 'utf8'), facts, scratch, anotherView: view };
+  const sites = [server, ...(job.site ? [await moduleSite(job.site)] : [])];
+  // Pages wait for their visitors most of the time: both engines are tried at once.
+  const findings = await Promise.all(sites.map((site) => drive(site, shared)));
+  await Promise.all(sites.map((site) => site.end()));
+  rmSync(scratch, { recursive: true, force: true });
+  const failed = findings.flatMap((found) => found.failed);
+  const held = findings.reduce((sum, found) => sum + found.held, 0);
+  for (const failure of failed) console.log(`FAILED ${failure}`);
+  console.log(`${held} held, ${failed.length} failed`);
+  return failed.length === 0 && held > 0 ? 0 : 1;
 }
 
 process.exitCode = await main();

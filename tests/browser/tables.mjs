@@ -2,11 +2,15 @@
 
 import { START } from './design.mjs';
 
+// A search or a calibration takes seconds, and more on a machine that does other things.
+const SLOW_MS = 120_000;
+
 export async function search(visit, site) {
   await visit.open(site.address + START);
   await visit.click('#search');
   await visit.check('a search without an ask says what to do', () => /Say first/.test(document.querySelector('#ask-says').textContent));
   // The mark on the plot is pulled, by hand and by key.
+  await visit.page.$eval('.grip.threshold', (e) => e.scrollIntoView({ block: 'center' }));
   const grip = await (await visit.page.$('.grip.threshold')).boundingBox();
   const { mouse } = visit.page;
   await mouse.move(grip.x + grip.width / 2, grip.y + grip.height / 2);
@@ -22,7 +26,7 @@ export async function search(visit, site) {
   await visit.click('#ask-frictions .tiny');
   await visit.addressLacks('ask.friction');
   await visit.click('#search');
-  await visit.page.waitForSelector('#designs .design');
+  await visit.page.waitForSelector('#designs .design', { timeout: SLOW_MS });
   const cards = await visit.page.$$eval('.design', (all) => all.map((c) => Number(/(\d+) % likely/.exec(c.textContent)?.[1])));
   visit.findings.check('the best designs come as cards, the most probable first', cards.length > 1 && cards.every((p, i) => p >= 0 && p <= 100 && (i === 0 || p <= cards[i - 1])), cards);
   await visit.page.hover('.design:nth-child(2)');
@@ -41,7 +45,7 @@ export async function calibration(visit, site, { table }) {
   await visit.drop('plateaus.csv', table);
   // While the model is fitted, the page stays its visitor's.
   await visit.focus('#apart');
-  await visit.page.waitForSelector('#take-model:not([hidden])', { timeout: 60_000 });
+  await visit.page.waitForSelector('#take-model:not([hidden])', { timeout: SLOW_MS });
   const verdict = await visit.text('#verdict');
   visit.findings.check('a table gets a verdict', /^Attributed/.test(verdict) && /Held-out error .* before/.test(verdict) && /coating_ploughing/.test(verdict), verdict);
   await visit.check('its curve stands beside the design', () => /with your model/.test(document.querySelector('#legend').textContent));

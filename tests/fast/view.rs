@@ -79,9 +79,11 @@ fn the_configurator_asks_and_saves_into_the_file_that_is_followed() {
     assert_eq!(saved, r#"{"saved":"mine.toml"}"#);
     let now = std::fs::read_to_string(folder.path().join("mine.toml")).unwrap();
     let wanted = text.replace("[5, 8, 11]", "[5, 11]").replace("width_mm = 14", "width_mm = 12.5");
-    // The name that the file lent is written, since a page may have changed it.
-    let named = now.replace("\n[switch]\nname = \"mine\"\n", "");
-    assert_eq!(named, wanted, "{now}");
+    assert_eq!(now, wanted, "the name that the file lent stays with the file");
+    values["switch.name"] = "other".into();
+    asked(&preview, "/save", &serde_json::json!({ "values": values }).to_string());
+    let now = std::fs::read_to_string(folder.path().join("mine.toml")).unwrap();
+    assert_eq!(now, format!("{wanted}\n[switch]\nname = \"other\"\n"));
     for bad in ["", "{}", r#"{"values": {"shell.width_mm": 1e9}}"#, r#"{"values": {"x": 1}}"#] {
         assert!(asked(&preview, "/save", bad).contains("error"), "{bad}");
         assert!(asked(&preview, "/answer", bad).contains("error"), "{bad}");

@@ -22,9 +22,6 @@ const button = (text, act, attributes = {}) => {
   return element;
 };
 
-const bytesOf = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-const isDark = () => matchMedia('(prefers-color-scheme: dark)').matches;
-const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 // Calls once, when nothing has called for `pause_ms`.
@@ -34,14 +31,6 @@ function later(act, pause_ms) {
     clearTimeout(timer);
     timer = setTimeout(() => act(...given), pause_ms);
   };
-}
-
-// A column's value at `x`, linear between its points.
-function at(xs, ys, x) {
-  let i = xs.findIndex((v) => v >= x);
-  if (i < 0) i = xs.length - 1;
-  if (i === 0) return ys[0];
-  return ys[i - 1] + (ys[i] - ys[i - 1]) * (x - xs[i - 1]) / (xs[i] - xs[i - 1]);
 }
 
 // A number as one would write it: no digits that say nothing.

@@ -1,14 +1,16 @@
-'use strict';
-// The engine in a worker. First `{module, holes}`, then `{question}` after `{question}`; each is answered with `{json}` or
+// The engine in a worker, behind `xz-decompress.min.js`. First `{module, holes}`, then `{question}` after `{question}`; each is answered with `{json}` or
 // `{bytes}`, with `{trap}` if the module stopped on it, or with `{fatal}` if there is no module that could answer.
 
 let ready = null;
 
-// The module comes packed with gzip, since the page is downloaded whole.
+// The module comes packed with XZ, since the page is downloaded whole.
 async function unpacked(bytes) {
-  const [first, second] = new Uint8Array(bytes, 0, 2);
-  if (first !== 0x1f || second !== 0x8b) return bytes;
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+  const { XzReadableStream } = self['xz-decompress'];
+  try {
+    return await new Response(new XzReadableStream(new Blob([bytes]).stream())).arrayBuffer();
+  } catch {
+    throw new Error('the page was not loaded whole: load it again');
+  }
 }
 
 // What the module needs of a host is nothing. Libraries in it name functions of browsers that it never calls.

@@ -4,7 +4,7 @@ use pinswitch_calibration::ModelFile;
 use pinswitch_switch::built::Built;
 use pinswitch_switch::config::{Configuration, to_toml};
 use pinswitch_switch::design::Design;
-use pinswitch_switch::formats::{named, page::PageData};
+use pinswitch_switch::formats::page::PageData;
 use pinswitch_switch::output::{BuildError, SetError};
 use pinswitch_switch::prediction::Prediction;
 use pinswitch_switch::set::Set;
@@ -17,6 +17,8 @@ use crate::values::configuration;
 
 /// Chord tolerance of what is only looked at, in millimetres.
 const COARSE_MM: f64 = 0.05;
+/// Points of a curve that is only looked at.
+const COARSE_POINTS: usize = 26;
 /// What a model dropped on the page is called in errors.
 const MODEL: &str = "the calibrated model";
 
@@ -42,10 +44,11 @@ fn shown(asked: &Asked, quality: Quality) -> Result<(PageData, String), Trouble>
     let mut seen = exact;
     if quality == Quality::Coarse {
         seen.mesh.chord_tolerance_mm = seen.mesh.chord_tolerance_mm.max(COARSE_MM);
+        seen.friction.points = seen.friction.points.min(COARSE_POINTS);
     }
     let (built, prediction) = built(seen, asked.model.as_deref())?;
-    let formats = named(&["stl"]).map_err(Trouble::general)?;
-    let set = Set::new(&built, &prediction, &formats).map_err(trouble)?;
+    // What is looked at needs no files, which take longer than the parts.
+    let set = Set::new(&built, &prediction, &[]).map_err(trouble)?;
     Ok((PageData::new(&built, &prediction, &set.manifest, Some(1)), toml))
 }
 

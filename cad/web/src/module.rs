@@ -3,7 +3,8 @@
 //! The page asks for `room(length)`, writes its question there as UTF-8, and calls `answer(place, length)`. That gives the
 //! place of twelve bytes, little-endian: the kind (0 JSON, 1 bytes of a file), the length and the place of the content,
 //! which stay until `free` or the next question.
-#![allow(unsafe_code)]
+// The page calls these, which the compiler does not see.
+#![allow(unsafe_code, unreachable_pub)]
 
 use std::cell::RefCell;
 

@@ -1,11 +1,12 @@
 //! The page of the configurator: one file with everything in it, which a file server or a double click opens.
 
 use pinswitch_plot::html::{filled, policy};
-use pinswitch_switch::formats::page::{THREE, UPLOT, UPLOT_CSS};
+use pinswitch_switch::formats::page::{ASSEMBLY, THREE, UPLOT, UPLOT_CSS};
 
 const HTML: &str = include_str!("../page/configurator.html");
 const CSS: &str = include_str!("../page/configurator.css");
-const WORKER: &str = include_str!("../page/worker.js");
+const WORKER: &str =
+    concat!(include_str!("../page/xz-decompress.min.js"), "\n", include_str!("../page/worker.js"));
 
 /// The page's own scripts, in the order in which they are read.
 const SCRIPTS: [&str; 20] = [
@@ -15,7 +16,7 @@ const SCRIPTS: [&str; 20] = [
     include_str!("../page/engine.js"),
     include_str!("../page/controls.js"),
     include_str!("../page/pins.js"),
-    include_str!("../page/assembly.js"),
+    ASSEMBLY,
     include_str!("../page/view.js"),
     include_str!("../page/scales.js"),
     include_str!("../page/curve.js"),
@@ -34,7 +35,7 @@ const SCRIPTS: [&str; 20] = [
 /// A module that is packed into the page.
 #[derive(Clone, Debug, Default)]
 pub struct Packed {
-    /// The module, in base64, packed with gzip.
+    /// The module, packed with XZ, in base64.
     pub base64: String,
     /// Where the page's libraries go into it, by [`LIBRARIES`]; `None` for one that it does not hold.
     pub holes: Vec<Option<usize>>,
@@ -59,7 +60,7 @@ pub fn configurator_html(module: Option<&Packed>) -> String {
         "THREE" => Some(THREE.into()),
         "UPLOT" => Some(UPLOT.into()),
         "JS" => Some(script.as_str().into()),
-        "WORKER" => Some(WORKER.into()),
+        "WORKER" => Some(if module.is_some() { WORKER } else { "" }.into()),
         "MODULE" => Some(module.map_or("", |module| module.base64.as_str()).into()),
         "HOLES" => Some(holes.as_str().into()),
         "POLICY" => Some(policy.as_str().into()),

@@ -5,11 +5,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use http_body_util::{BodyExt, Limited};
 use hyper::body::{Bytes, Incoming};
-use pinswitch_switch::config::rewritten;
+use pinswitch_switch::config::{read, rewritten};
 use pinswitch_web::{Answer, Engine, Values, configuration};
 use serde::Deserialize;
 
 use crate::input::read_text_file;
+use crate::source::lent_name;
 use crate::write::write_back;
 
 /// Largest question: a table that is too large is refused by the engine, with what to do instead.
@@ -65,8 +66,13 @@ impl Configurator {
         let file = self.file.as_ref().ok_or("no file is followed: start `pinswitch view FILE`")?;
         let name = file.display().to_string();
         let saved: Saved = serde_json::from_slice(question).map_err(|e| e.to_string())?;
-        let configuration = configuration(&saved.values).map_err(|e| e.to_string())?;
+        let mut configuration = configuration(&saved.values).map_err(|e| e.to_string())?;
         let text = read_text_file(file).map_err(|e| e.message().to_owned())?;
+        let (before, places) = read(&text, &name).map_err(|e| e.to_string())?;
+        // The name that the file lent the set is no value that somebody chose.
+        if !places.sets("switch.name") && configuration.switch.name == lent_name(&name) {
+            configuration.switch.name = before.switch.name;
+        }
         let text = rewritten(&text, &name, &configuration).map_err(|e| e.to_string())?;
         write_back(file, text.as_bytes()).map_err(|e| e.to_string())?;
         Ok(name)

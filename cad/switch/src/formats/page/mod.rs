@@ -30,7 +30,9 @@ fn make(built: &Built, prediction: &Prediction, manifest: &Manifest) -> Result<V
 
 const HTML: &str = include_str!("page.html");
 const CSS: &str = include_str!("page.css");
-const JS: &str = include_str!("page.js");
+const JS: &str = concat!("'use strict';\n", include_str!("assembly.js"), include_str!("page.js"));
+/// The assembly in three dimensions: scripts that the configurator has, too.
+pub const ASSEMBLY: &str = include_str!("assembly.js");
 // Vendored builds, see vendor.md.
 /// three.js, as vendored.
 pub const THREE: &str = include_str!("three.min.js");

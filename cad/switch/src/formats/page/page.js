@@ -1,5 +1,4 @@
-'use strict';
-// The page of one set: what is shown comes from the JSON in #data; a live preview replaces it through `update`.
+// The page of one set: what is shown comes from the JSON in #data; a live preview replaces it through `update`. `assembly.js` stands before it.
 
 const byId = (id) => document.getElementById(id);
 const errors = [];
@@ -12,221 +11,6 @@ const make = (tag, text, attributes = {}) => {
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
   return element;
 };
-// All pins are shown or hidden together.
-const groupOf = (name) => (/^pin-\d+$/.test(name) ? 'pins' : name);
-const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-const dark = () => matchMedia('(prefers-color-scheme: dark)').matches;
-
-// A column's value at `x`, linear between its points.
-function at(xs, ys, x) {
-  let i = xs.findIndex((v) => v >= x);
-  if (i < 0) i = xs.length - 1;
-  if (i === 0) return ys[0];
-  return ys[i - 1] + (ys[i] - ys[i - 1]) * (x - xs[i - 1]) / (xs[i] - xs[i - 1]);
-}
-
-// ---- the assembly -------------------------------------------------------------------------------------------------
-
-// Constants of three.js that its build for this page leaves out.
-const FRONT = 0, BACK = 1, ALWAYS = 519, NOT_EQUAL = 517, INCREMENT = 34055, DECREMENT = 34056;
-// Room around what is shown, as a share of it.
-const ROOM = 1.06;
-
-// Counts, where a body is cut, the faces seen from inside less those from outside: what is left over is cut material.
-function counting(geometry, side, operation, plane) {
-  const material = new THREE.MeshStandardMaterial({ side, clippingPlanes: [plane], depthWrite: false, depthTest: false, colorWrite: false,
-    stencilWrite: true, stencilFunc: ALWAYS, stencilFail: operation, stencilZFail: operation, stencilZPass: operation });
-  return new THREE.Mesh(geometry, material);
-}
-
-// The cut face: a square in the plane, drawn where material was counted, before the next body is.
-function cap(colour) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
-  geometry.setAttribute('normal', new THREE.BufferAttribute(new Float32Array([0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]), 3));
-  geometry.setIndex(new THREE.BufferAttribute(new Uint32Array([0, 1, 2, 0, 2, 3]), 1));
-  const material = new THREE.MeshStandardMaterial({ color: colour.clone().multiplyScalar(0.72), side: THREE.DoubleSide, roughness: 0.9,
-    stencilWrite: true, stencilRef: 0, stencilFunc: NOT_EQUAL });
-  const mesh = new THREE.Mesh(geometry, material);
-  mesh.onAfterRender = (renderer) => renderer.clearStencil();
-  return mesh;
-}
-
-class Assembly {
-  constructor(host) {
-    this.host = host;
-    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, stencil: true });
-    this.renderer.localClippingEnabled = true;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    host.replaceChildren(this.renderer.domElement);
-    this.scene = new THREE.Scene();
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x707880, 1.6));
-    const sun = new THREE.DirectionalLight(0xffffff, 2.2);
-    sun.position.set(40, 70, 90);
-    this.scene.add(sun);
-    this.camera = new THREE.PerspectiveCamera(28, 1, 1, 2000);
-    this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
-    this.controls.addEventListener('change', () => this.draw());
-    this.plane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0);
-    this.group = new THREE.Group();
-    this.covers = new THREE.Group();
-    this.scene.add(this.group, this.covers);
-    new ResizeObserver(() => this.resize()).observe(host);
-  }
-
-  load(data, hidden) {
-    this.group.clear();
-    this.covers.clear();
-    this.data = data;
-    this.bodies = data.bodies.map((body, order) => {
-      const source = data.meshes[body.mesh];
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(bytesOf(source.positions).buffer), 3));
-      geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytesOf(source.triangles).buffer), 1));
-      const faceted = geometry.toNonIndexed();
-      faceted.computeVertexNormals();
-      const material = new THREE.MeshStandardMaterial({
-        color: new THREE.Color(...body.colour.map((c) => c / 255)).convertSRGBToLinear(), side: THREE.DoubleSide,
-        metalness: body.material === 'steel' ? 0.55 : 0.0, roughness: body.material === 'steel' ? 0.35 : 0.75,
-        transparent: body.material === 'silicone', opacity: body.material === 'silicone' ? 0.78 : 1,
-      });
-      const mesh = new THREE.Mesh(faceted, material);
-      const edges = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 25),
-        new THREE.LineBasicMaterial({ color: 0x1a2530, transparent: true, opacity: 0.45 }));
-      // Two bodies are not counted together: each is counted, covered and forgotten before the next.
-      const counted = [counting(faceted, BACK, INCREMENT, this.plane), counting(faceted, FRONT, DECREMENT, this.plane)];
-      counted.forEach((count) => { count.renderOrder = 2 * order + 1; });
-      const cover = cap(material.color);
-      cover.renderOrder = 2 * order + 2;
-      mesh.renderOrder = edges.renderOrder = 2 * data.bodies.length + 3;
-      const node = new THREE.Group();
-      node.add(mesh, edges, ...counted);
-      node.userData = { body, cover, counted, materials: [material, edges.material], home: new THREE.Matrix4().fromArray(body.matrix) };
-      this.covers.add(cover);
-      node.matrixAutoUpdate = false;
-      node.matrix.copy(node.userData.home);
-      node.visible = !hidden.has(groupOf(body.name));
-      this.group.add(node);
-      return node;
-    });
-    this.tendon = undefined;
-    this.group.updateMatrixWorld(true);
-    const box = new THREE.Box3().setFromObject(this.group);
-    this.reach = box.getSize(new THREE.Vector3()).length();
-    this.low = box.min.z;
-    this.high = box.max.z;
-  }
-
-  aim(turn, tilt) {
-    const [a, b] = [turn, tilt].map((degrees) => degrees * Math.PI / 180);
-    this.towards = new THREE.Vector3(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b));
-    this.frame();
-  }
-
-  // Moves the camera along its way so that all that is shown fills the picture.
-  frame() {
-    if (!this.bodies || !this.towards) return;
-    const all = new THREE.Box3();
-    const boxes = this.group.children.filter((node) => node.visible).map((node) => new THREE.Box3().setFromObject(node));
-    boxes.forEach((box) => all.union(box));
-    if (all.isEmpty()) return;
-    const middle = all.getCenter(new THREE.Vector3());
-    const right = new THREE.Vector3(0, 1, 0).cross(this.towards).normalize();
-    const up = this.towards.clone().cross(right);
-    const height = Math.tan(this.camera.fov * Math.PI / 360);
-    let distance = 0;
-    for (const { min, max } of boxes) {
-      for (let i = 0; i < 8; i += 1) {
-        const corner = new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z).sub(middle);
-        const aside = Math.max(Math.abs(corner.dot(right)) / (height * this.camera.aspect), Math.abs(corner.dot(up)) / height);
-        distance = Math.max(distance, corner.dot(this.towards) + aside * ROOM);
-      }
-    }
-    this.camera.far = 10 * distance + 10 * this.reach;
-    this.camera.updateProjectionMatrix();
-    this.camera.position.copy(this.towards).multiplyScalar(distance).add(middle);
-    this.controls.target.copy(middle);
-    this.controls.update();
-    this.draw();
-  }
-
-  // Pins sink and the tendon follows; everything moves along its way out by `apart`.
-  pose(load, apart) {
-    const moved = this.apart !== apart;
-    this.apart = apart;
-    for (const node of this.bodies) {
-      const { body, home } = node.userData;
-      const way = new THREE.Vector3(...body.explode_offset).multiplyScalar(apart);
-      if (body.sink) {
-        const depth = at(this.data.contact.load_n, body.sink.depth_mm, load);
-        way.add(new THREE.Vector3(body.sink.towards[0], body.sink.towards[1], 0).multiplyScalar(depth));
-      }
-      node.matrix.makeTranslation(way.x, way.y, way.z).multiply(home);
-      node.matrixWorldNeedsUpdate = true;
-    }
-    this.lay(load, apart);
-    this.group.updateMatrixWorld(true);
-    if (moved) this.frame();
-    this.draw();
-  }
-
-  lay(load, apart) {
-    const contact = this.data.contact;
-    if (this.tendon) { this.group.remove(this.tendon); this.tendon.geometry.dispose(); this.tendon = undefined; }
-    if (!contact.angle_rad.length || apart > 0.02 || this.tendonHidden) return;
-    const points = contact.angle_rad.map((angle, i) => {
-      const radius = contact.axis_radius_mm + at(contact.load_n, contact.gap_mm.map((gaps) => gaps[i]), load);
-      return new THREE.Vector3(radius * Math.sin(angle), radius * Math.cos(angle), contact.z_mm);
-    });
-    const straight = (end, side, by) => end.clone().add(
-      new THREE.Vector3(side * Math.cos(contact.half_wrap_rad), -Math.sin(contact.half_wrap_rad), 0).multiplyScalar(by));
-    const [first, last] = [points[0], points[points.length - 1]];
-    // A point close by keeps the long ends straight.
-    points.unshift(straight(first, -1, contact.lead_mm[0]), straight(first, -1, 2));
-    points.push(straight(last, 1, 2), straight(last, 1, contact.lead_mm[1]));
-    const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 320, contact.tendon_radius_mm, 12);
-    this.tendon = new THREE.Mesh(tube, new THREE.MeshStandardMaterial({ color: 0x3a4a5c, roughness: 0.6 }));
-    this.group.add(this.tendon);
-  }
-
-  cut(on, share) {
-    // A hair beside the faces that lie at a share: a face in the plane would flicker.
-    const z = this.low + (this.high - this.low) * share + 1.3e-3;
-    this.plane.constant = z;
-    const planes = on ? [this.plane] : [];
-    for (const node of this.bodies) {
-      const { materials, counted, cover } = node.userData;
-      materials.forEach((m) => { m.clippingPlanes = planes; m.needsUpdate = true; });
-      counted.forEach((count) => { count.visible = on; });
-      cover.visible = on && node.visible;
-      cover.position.set(0, 0, z);
-      cover.scale.setScalar(4 * this.reach);
-    }
-    this.isCut = on;
-    this.draw();
-  }
-
-  show(name, visible) {
-    if (name === 'tendon') { this.tendonHidden = !visible; if (this.tendon) this.tendon.visible = visible; }
-    for (const node of this.bodies) {
-      if (groupOf(node.userData.body.name) !== name) continue;
-      node.visible = visible;
-      node.userData.cover.visible = visible && this.isCut;
-    }
-    this.draw();
-  }
-
-  resize() {
-    const { clientWidth, clientHeight } = this.host;
-    this.renderer.setSize(clientWidth, clientHeight);
-    this.camera.aspect = clientWidth / Math.max(clientHeight, 1);
-    this.camera.updateProjectionMatrix();
-    this.frame();
-    this.draw();
-  }
-
-  draw() { if (this.bodies) this.renderer.render(this.scene, this.camera); }
-}
 
 // ---- the curve ----------------------------------------------------------------------------------------------------
 
@@ -238,8 +22,8 @@ let shownLoad = 0;
 
 function drawChart(data) {
   const { curve, other_laws: others, published } = data;
-  const ink = dark() ? '#e8ecf1' : '#1c2430';
-  const grid = dark() ? '#333c47' : '#e3e6ea';
+  const ink = isDark() ? '#e8ecf1' : '#1c2430';
+  const grid = isDark() ? '#333c47' : '#e3e6ea';
   // uPlot wants one axis of loads: those of the curve; other laws and measured points are put on it.
   const loads = [...new Set([...curve.load_n, ...published.map((p) => p.load_n)])].sort((a, b) => a - b);
   const inside = (xs, ys) => loads.map((x) => (x < xs[0] - 1e-9 || x > xs[xs.length - 1] + 1e-9 ? null : at(xs, ys, x)));
@@ -249,7 +33,7 @@ function drawChart(data) {
     { label: 'band, low', stroke: 'transparent' },
     { label: `band (${curve.trust})`, stroke: 'transparent' },
     ...others.map((other, i) => ({ label: other.law, stroke: OTHER_COLOURS[i % OTHER_COLOURS.length], width: 1.2, dash: [6, 4] })),
-    { label: 'measured', stroke: COLOURS.measured, paths: () => null, points: { show: true, size: 13, width: 2, stroke: dark() ? '#14181d' : '#fff', fill: COLOURS.measured } },
+    { label: 'measured', stroke: COLOURS.measured, paths: () => null, points: { show: true, size: 13, width: 2, stroke: isDark() ? '#14181d' : '#fff', fill: COLOURS.measured } },
   ].map((s) => ({ spanGaps: true, points: { show: false }, ...s }));
   if (!published.length) { series.pop(); }
   const columns = [loads, inside(curve.load_n, curve.friction_n), inside(curve.load_n, curve.band_low_n), inside(curve.load_n, curve.band_high_n),
@@ -270,7 +54,7 @@ function drawChart(data) {
       u.ctx.fillStyle = COLOURS.main;
       u.ctx.fill();
       u.ctx.lineWidth = 2 * devicePixelRatio;
-      u.ctx.strokeStyle = dark() ? '#14181d' : '#fff';
+      u.ctx.strokeStyle = isDark() ? '#14181d' : '#fff';
       u.ctx.stroke();
     }] },
   }, columns, byId('chart'));

@@ -1,5 +1,24 @@
-// The assembly in three dimensions, with cut faces that are filled. The class of the report page (cad/switch/src/formats/page/page.js),
-// which also forgets what it has shown: a configurator shows hundreds.
+// The assembly in three dimensions, with cut faces that are filled: of report.html, which shows one, and of the configurator
+// (cad/web/page), which shows hundreds. Needs three.js as THREE; the data is that of `PageData`.
+
+// Bytes of a text in base64.
+function bytesOf(base64) {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i += 1) bytes[i] = text.charCodeAt(i);
+  return bytes;
+}
+
+const isDark = () => matchMedia('(prefers-color-scheme: dark)').matches;
+const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
+
+// A column's value at `x`, linear between its points.
+function at(xs, ys, x) {
+  let i = xs.findIndex((v) => v >= x);
+  if (i < 0) i = xs.length - 1;
+  if (i === 0) return ys[0];
+  return ys[i - 1] + (ys[i] - ys[i - 1]) * (x - xs[i - 1]) / (xs[i] - xs[i - 1]);
+}
 
 // All pins are shown or hidden together.
 const groupOf = (name) => (/^pin-\d+$/.test(name) ? 'pins' : name);
@@ -11,21 +30,24 @@ const ROOM = 1.1;
 const SAMPLES = 600;
 const SHARP = Math.cos(25 * Math.PI / 180);
 
-// Counts, where a body is cut, the faces seen from inside less those from outside: what is left over is cut material.
-function counting(geometry, side, operation, plane) {
-  const material = new THREE.MeshStandardMaterial({ side, clippingPlanes: [plane], depthWrite: false, depthTest: false, colorWrite: false,
+// What counts, where a body is cut, the faces seen from inside less those from outside: what is left over is cut material.
+// Nothing is seen of it, so that it needs no light: that of lines will do.
+function counting(side, operation, plane) {
+  return new THREE.LineBasicMaterial({ side, clippingPlanes: [plane], depthWrite: false, depthTest: false, colorWrite: false,
     stencilWrite: true, stencilFunc: ALWAYS, stencilFail: operation, stencilZFail: operation, stencilZPass: operation });
-  return new THREE.Mesh(geometry, material);
 }
 
-// The cut face: a square in the plane, drawn where material was counted, before the next body is.
-function cap(colour) {
+// A square in the cutting plane.
+function square() {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
   geometry.setAttribute('normal', new THREE.BufferAttribute(new Float32Array([0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]), 3));
   geometry.setIndex(new THREE.BufferAttribute(new Uint32Array([0, 1, 2, 0, 2, 3]), 1));
-  const material = new THREE.MeshStandardMaterial({ color: colour.clone().multiplyScalar(0.72), side: THREE.DoubleSide, roughness: 0.9,
-    stencilWrite: true, stencilRef: 0, stencilFunc: NOT_EQUAL });
+  return geometry;
+}
+
+// The cut face: drawn where material was counted, before the next body is.
+function cap(geometry, material) {
   const mesh = new THREE.Mesh(geometry, material);
   mesh.onAfterRender = (renderer) => renderer.clearStencil();
   return mesh;
@@ -83,6 +105,11 @@ class Assembly {
       this.turned?.(Math.atan2(this.towards.x, this.towards.z), Math.asin(clamp(this.towards.y, -1, 1)));
     });
     this.plane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0);
+    // Materials by what they are of. They outlive what is shown: a graphics card compiles a program for each kind, and forgets
+    // it with the last material of that kind.
+    this.materials = new Map();
+    this.square = square();
+    this.counted = [counting(BACK, INCREMENT, this.plane), counting(FRONT, DECREMENT, this.plane)];
     this.group = new THREE.Group();
     this.covers = new THREE.Group();
     this.scene.add(this.group, this.covers);
@@ -98,23 +125,18 @@ class Assembly {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(bytesOf(source.positions).buffer), 3));
       geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytesOf(source.triangles).buffer), 1));
-      const material = new THREE.MeshStandardMaterial({
-        color: new THREE.Color(...body.colour.map((c) => c / 255)).convertSRGBToLinear(), side: THREE.DoubleSide, flatShading: true,
-        metalness: body.material === 'steel' ? 0.55 : 0.0, roughness: body.material === 'steel' ? 0.35 : 0.75,
-        transparent: body.material === 'silicone', opacity: body.material === 'silicone' ? 0.78 : 1,
-      });
+      const { material, cut } = this.coat(body);
       const mesh = new THREE.Mesh(geometry, material);
-      const edges = new THREE.LineSegments(sharpEdges(geometry),
-        new THREE.LineBasicMaterial({ color: 0x1a2530, transparent: true, opacity: 0.45 }));
+      const edges = new THREE.LineSegments(sharpEdges(geometry), this.ink());
       // Two bodies are not counted together: each is counted, covered and forgotten before the next.
-      const counted = [counting(geometry, BACK, INCREMENT, this.plane), counting(geometry, FRONT, DECREMENT, this.plane)];
+      const counted = this.counted.map((count) => new THREE.Mesh(geometry, count));
       counted.forEach((count) => { count.renderOrder = 2 * order + 1; });
-      const cover = cap(material.color);
+      const cover = cap(this.square, cut);
       cover.renderOrder = 2 * order + 2;
       mesh.renderOrder = edges.renderOrder = 2 * data.bodies.length + 3;
       const node = new THREE.Group();
       node.add(mesh, edges, ...counted);
-      node.userData = { body, cover, counted, materials: [material, edges.material], home: new THREE.Matrix4().fromArray(body.matrix) };
+      node.userData = { body, cover, counted, materials: [material, this.ink()], home: new THREE.Matrix4().fromArray(body.matrix) };
       this.covers.add(cover);
       node.matrixAutoUpdate = false;
       node.matrix.copy(node.userData.home);
@@ -132,11 +154,32 @@ class Assembly {
     if (!before || Math.abs(this.reach / before - 1) > 0.08) this.apart = undefined;
   }
 
+  kept(kind, material) {
+    if (!this.materials.has(kind)) this.materials.set(kind, material());
+    return this.materials.get(kind);
+  }
+
+  // The materials of a body, and of its cut face.
+  coat({ material: of, colour }) {
+    const [isSteel, isSilicone] = [of === 'steel', of === 'silicone'];
+    const shade = () => new THREE.Color(...colour.map((c) => c / 255)).convertSRGBToLinear();
+    return {
+      // Bodies are closed, and filled where they are cut: nobody sees them from inside.
+      material: this.kept(`${of} ${colour}`, () => new THREE.MeshStandardMaterial({
+        color: shade(), side: FRONT, flatShading: true, metalness: isSteel ? 0.55 : 0.0, roughness: isSteel ? 0.35 : 0.75, transparent: isSilicone, opacity: isSilicone ? 0.78 : 1,
+      })),
+      cut: this.kept(`cut ${colour}`, () => new THREE.MeshStandardMaterial({
+        color: shade().multiplyScalar(0.72), side: THREE.DoubleSide, roughness: 0.9, stencilWrite: true, stencilRef: 0, stencilFunc: NOT_EQUAL,
+      })),
+    };
+  }
+
+  // The material of edges.
+  ink() { return this.kept('ink', () => new THREE.LineBasicMaterial({ transparent: true, opacity: 0.45 })); }
+
   // Lets what is shown go, with its memory on the graphics card.
   forget() {
-    const dispose = (object) => { object.geometry?.dispose(); object.material?.dispose(); };
-    this.group.traverse(dispose);
-    this.covers.traverse(dispose);
+    this.group.traverse((object) => object.geometry?.dispose());
     this.group.clear();
     this.covers.clear();
     this.tendon = undefined;
@@ -144,7 +187,7 @@ class Assembly {
 
   // Edges are dark on a light page and light on a dark one.
   edges() {
-    for (const node of this.bodies) node.userData.materials[1].color.set(isDark() ? 0x0a0e13 : 0x1a2530);
+    this.ink().color.set(isDark() ? 0x0a0e13 : 0x1a2530);
   }
 
   aim(turn, tilt) {
@@ -153,11 +196,12 @@ class Assembly {
     this.frame();
   }
 
-  // Points of what is shown, in the assembly; of large meshes not all, since neighbours say the same.
+  // Points of the bodies that are shown, in the assembly; of large meshes not all, since neighbours say the same. The tendon
+  // leads out of the picture.
   *points() {
-    for (const node of this.group.children) {
+    for (const node of this.bodies) {
       if (!node.visible) continue;
-      const mesh = node.isMesh ? node : node.children[0];
+      const [mesh] = node.children;
       const { array } = mesh.geometry.getAttribute('position');
       const step = 3 * Math.max(1, Math.floor(array.length / 3 / SAMPLES));
       for (let i = 0; i < array.length; i += step) yield new THREE.Vector3(array[i], array[i + 1], array[i + 2]).applyMatrix4(mesh.matrixWorld);
@@ -193,6 +237,7 @@ class Assembly {
   pose(load, apart) {
     const moved = this.apart !== apart;
     this.apart = apart;
+    this.load_n = load;
     for (const node of this.bodies) {
       const { body, home } = node.userData;
       const way = new THREE.Vector3(...body.explode_offset).multiplyScalar(apart);
@@ -206,23 +251,30 @@ class Assembly {
     this.lay(load, apart);
     this.group.updateMatrixWorld(true);
     if (moved) this.frame();
+    // With the tendon, everything is there that has to be compiled for.
+    this.compiling ??= this.compile();
     this.draw();
   }
 
+  // The tendon over the pins; away while the parts are.
   lay(load, apart) {
     const contact = this.data.contact;
-    if (this.tendon) { this.group.remove(this.tendon); this.tendon.geometry.dispose(); this.tendon.material.dispose(); this.tendon = undefined; }
+    if (this.tendon) { this.group.remove(this.tendon); this.tendon.geometry.dispose(); this.tendon = undefined; }
     if (!contact.angle_rad.length || apart > 0.02 || this.tendonHidden) return;
     const points = contact.angle_rad.map((angle, i) => {
       const radius = contact.axis_radius_mm + at(contact.load_n, contact.gap_mm.map((gaps) => gaps[i]), load);
       return new THREE.Vector3(radius * Math.sin(angle), radius * Math.cos(angle), contact.z_mm);
     });
-    const straight = (end, side) => end.clone().add(
-      new THREE.Vector3(side * Math.cos(contact.half_wrap_rad), -Math.sin(contact.half_wrap_rad), 0).multiplyScalar(14));
-    points.unshift(straight(points[0], -1));
-    points.push(straight(points[points.length - 1], 1));
-    const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 160, contact.tendon_radius_mm, 12);
-    this.tendon = new THREE.Mesh(tube, new THREE.MeshStandardMaterial({ color: isDark() ? 0x8296ab : 0x3a4a5c, roughness: 0.6 }));
+    const straight = (end, side, by) => end.clone().add(
+      new THREE.Vector3(side * Math.cos(contact.half_wrap_rad), -Math.sin(contact.half_wrap_rad), 0).multiplyScalar(by));
+    const [first, last] = [points[0], points[points.length - 1]];
+    // A point close by keeps the long ends straight.
+    points.unshift(straight(first, -1, contact.lead_mm[0]), straight(first, -1, 2));
+    points.push(straight(last, 1, 2), straight(last, 1, contact.lead_mm[1]));
+    const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 240, contact.tendon_radius_mm, 10);
+    const rope = this.kept('rope', () => new THREE.MeshStandardMaterial({ roughness: 0.6 }));
+    rope.color.set(isDark() ? 0x8296ab : 0x3a4a5c);
+    this.tendon = new THREE.Mesh(tube, rope);
     this.group.add(this.tendon);
   }
 
@@ -233,7 +285,11 @@ class Assembly {
     const planes = on ? [this.plane] : [];
     for (const node of this.bodies) {
       const { materials, counted, cover } = node.userData;
-      materials.forEach((m) => { m.clippingPlanes = planes; m.needsUpdate = true; });
+      for (const m of materials) {
+        if (m.clippingPlanes?.length === planes.length) continue;
+        m.clippingPlanes = planes;
+        m.needsUpdate = true;
+      }
       counted.forEach((count) => { count.visible = on; });
       cover.visible = on && node.visible;
       cover.position.set(0, 0, z);
@@ -244,7 +300,7 @@ class Assembly {
   }
 
   show(name, visible) {
-    if (name === 'tendon') { this.tendonHidden = !visible; if (this.tendon) this.tendon.visible = visible; }
+    if (name === 'tendon') { this.tendonHidden = !visible; this.lay(this.load_n, this.apart); }
     for (const node of this.bodies) {
       if (groupOf(node.userData.body.name) !== name) continue;
       node.visible = visible;
@@ -260,12 +316,19 @@ class Assembly {
     this.camera.updateProjectionMatrix();
     this.frame();
     // At once: a canvas of another size is empty.
-    if (this.bodies) this.renderer.render(this.scene, this.camera);
+    if (this.isCompiled) this.renderer.render(this.scene, this.camera);
+  }
+
+  // Lets the programs of the graphics card be compiled beside the page, where it can; draws from then on.
+  async compile() {
+    if (this.renderer.extensions.has('KHR_parallel_shader_compile')) await this.renderer.compileAsync(this.scene, this.camera);
+    this.isCompiled = true;
+    this.draw();
   }
 
   // Draws once before the next frame is shown, however many changes asked for it.
   draw() {
-    if (this.drawing || !this.bodies) return;
+    if (this.drawing || !this.isCompiled) return;
     this.drawing = requestAnimationFrame(() => {
       this.drawing = 0;
       this.renderer.render(this.scene, this.camera);

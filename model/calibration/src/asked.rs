@@ -13,7 +13,7 @@ use crate::trial::TrialOutcome;
 pub enum Answer {
     /// One of the two is believed, alone.
     Found,
-    /// It is not there, at a size of consequence.
+    /// It is not there, at the size that was asked about, or at any of consequence.
     Excluded,
     /// The load was recorded, and nothing along it is left.
     Recorded,
@@ -38,6 +38,9 @@ impl Answer {
 pub struct AskedQuestion {
     /// What it lay between: two ids, or an id and `none`.
     pub between: [String; 2],
+    /// Of an effect against none, the size that was asked about, in the unit of its first constant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<f64>,
     /// Probability that was expected of an answer.
     pub resolved_probability: f64,
     /// What came of it.
@@ -63,7 +66,7 @@ impl Asked {
     #[must_use]
     pub fn answered(mut self, report: &Report, highest_n: f64) -> Self {
         for question in &mut self.questions {
-            question.answer = answer(&question.between, report, highest_n);
+            question.answer = answer(question, report, highest_n);
         }
         self
     }
@@ -74,7 +77,8 @@ impl Asked {
     }
 }
 
-fn answer([of, or]: &[String; 2], report: &Report, highest_n: f64) -> Answer {
+fn answer(question: &AskedQuestion, report: &Report, highest_n: f64) -> Answer {
+    let [of, or] = &question.between;
     if let Some(trial) = report.trials.iter().find(|trial| trial.id == *of) {
         return match trial.outcome {
             TrialOutcome::Confirmed => Answer::Found,
@@ -93,6 +97,11 @@ fn answer([of, or]: &[String; 2], report: &Report, highest_n: f64) -> Answer {
     if is_alone(of) || is_alone(or) {
         return Answer::Found;
     }
-    let is_seen = report.limits.iter().any(|limit| limit.id == *of && limit.excluded);
-    if or == NONE && !is_named(of) && is_seen { Answer::Excluded } else { Answer::Open }
+    // As large as it was asked about, which may be more than what is of consequence.
+    let is_smaller = |low: f64, high: f64| question.size.is_some_and(|size| low > -size && high < size);
+    let is_out = report
+        .limits
+        .iter()
+        .any(|limit| limit.id == *of && (limit.excluded || is_smaller(limit.low, limit.high)));
+    if or == NONE && !is_named(of) && is_out { Answer::Excluded } else { Answer::Open }
 }

@@ -41,6 +41,9 @@ const ANSWERABLE: f64 = 0.5;
 pub struct QuestionOutlook {
     /// What it lies between: two ids, or an id and `none`.
     pub between: [String; 2],
+    /// Of an effect against none, the size that is asked about, in the unit of its first constant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size: Option<f64>,
     /// Probability that the data of so far and of these runs answer it.
     pub resolved_probability: f64,
     /// The same for the paper's protocol repeated for as many minutes.
@@ -158,6 +161,7 @@ pub fn propose(
         .iter()
         .map(|q| QuestionOutlook {
             between: q.between.clone(),
+            size: q.size,
             resolved_probability: rounded(q.probability(&with_runs)),
             by_repeating: rounded(q.probability(&repeated)),
         })

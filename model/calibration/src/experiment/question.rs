@@ -32,6 +32,8 @@ const LARGEST_SHARE: f64 = 30.0;
 pub(super) struct Question {
     /// Ids: the one believed or suspected, and the other or `none`.
     pub(super) between: [String; 2],
+    /// Size of an effect that is asked about, in the unit of its first constant; none where there is no such size.
+    pub(super) size: Option<f64>,
     /// Each way to ask it: if one is true, by how much does the other fit worse.
     ways: Vec<Way>,
     /// Squares by which the wrong one must fit worse.
@@ -173,14 +175,16 @@ impl Agenda {
             let Some((column, start)) = agenda.absent(effect, model) else { continue };
             let size = if effect.parameters().is_empty() { 1.0 } else { limit.typical / start };
             agenda.ask_whether(effect.id(), column, size, &own, 1.0);
+            agenda.of_size(limit.typical);
         }
         for invisible in &report.invisible {
             let Some(effect) = model.vocabulary.named(&invisible.id) else { continue };
             // What stays in the rig does not change the curve of a part.
             let asked = agenda.questions.iter().any(|q| q.between[0] == invisible.id);
             if effect.description().side == Side::Switch && !asked {
-                let Some((column, _)) = agenda.absent(effect, model) else { continue };
+                let Some((column, start)) = agenda.absent(effect, model) else { continue };
                 agenda.ask_whether(effect.id(), column, 1.0, &own, UNSUSPECTED);
+                agenda.of_size(start);
             }
         }
         agenda.ask_again(report, model);
@@ -209,6 +213,7 @@ impl Agenda {
             let Trace::Absent { effect, .. } = &agenda.traces[other - own.len()] else { continue };
             agenda.questions.push(Question {
                 between: [found.id.clone(), effect.id().to_owned()],
+                size: None,
                 ways,
                 needed: levels.rival,
                 weight: 1.0,
@@ -264,9 +269,17 @@ impl Agenda {
         information
     }
 
+    /// Tells the size that the last question is about.
+    fn of_size(&mut self, size: f64) {
+        if let Some(question) = self.questions.last_mut() {
+            question.size = Some(size.abs());
+        }
+    }
+
     fn ask_whether(&mut self, id: &str, column: usize, size: f64, own: &[usize], weight: f64) {
         self.questions.push(Question {
             between: [id.to_owned(), NONE.to_owned()],
+            size: None,
             ways: vec![Way { truth: column, size, nuisance: own.to_vec() }],
             needed: SEEN,
             weight,

@@ -172,13 +172,13 @@ impl ExperimentStudy {
 fn row(name: &str, outcomes: &[&ExperimentOutcome]) -> String {
     let count = |of: &dyn Fn(&ExperimentOutcome) -> bool| outcomes.iter().filter(|o| of(o)).count();
     format!(
-        "| {name} | {} | {} | {} | {} | {} | {:.0} |\n",
+        "| {name} | {} | {} | {} | {} | {} | {} |\n",
         outcomes.len(),
         count(&|o| o.first == Standing::Alone),
         count(&|o| o.first == Standing::Open),
         count(&|o| o.proposed == Some(Standing::Alone)),
         count(&|o| o.repeated == Some(Standing::Alone)),
-        super::summary::median_of(outcomes.iter().filter(|o| o.proposed.is_some()).map(|o| o.minutes))
+        super::summary::median_told(outcomes.iter().filter(|o| o.proposed.is_some()).map(|o| o.minutes), 0)
     )
 }
 

@@ -8,7 +8,7 @@ use pinswitch_calibration::{CONFIRMED_P, Calibration, TrialOutcome, TrialReport,
 
 use super::cases::{Case, Truth, plan_of};
 use super::outcome::error_n;
-use super::summary::median_of;
+use super::summary::median_told;
 use super::true_form::{true_forms, true_shapes};
 use crate::disturbance::Disturbance;
 use crate::next_session::next_session;
@@ -146,18 +146,22 @@ impl FormStudy {
 }
 
 fn row(protocol: &str, name: &str, outcomes: &[&FormOutcome]) -> String {
-    let of = |values: Vec<bool>| format!("{} of {}", values.iter().filter(|v| **v).count(), values.len());
+    // Of two operators no shape is asked.
+    let of = |values: Vec<bool>| match values.len() {
+        0 => String::new(),
+        all => format!("{} of {all}", values.iter().filter(|v| **v).count()),
+    };
     let shapes = outcomes.iter().filter_map(|o| o.shape_is_right).collect();
     let drawn = |o: &&FormOutcome| Some(o.next_n[2]? / o.truth_n?.max(1e-9));
     let again = outcomes.iter().filter_map(|o| o.again.as_ref());
     let absent = || outcomes.iter().filter_map(|o| o.absent.as_ref());
     format!(
-        "| {protocol} | {name} | {} | {} | {} | {:.2} | {:.2} | {} | {} | {} |\n",
+        "| {protocol} | {name} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
         outcomes.len(),
         outcomes.iter().filter(|o| o.place_is_right).count(),
         of(shapes),
-        median_of(outcomes.iter().filter_map(|o| o.over_truth())),
-        median_of(outcomes.iter().filter_map(drawn)),
+        median_told(outcomes.iter().filter_map(|o| o.over_truth()), 2),
+        median_told(outcomes.iter().filter_map(drawn), 2),
         of(again.map(|t| t.outcome == TrialOutcome::Confirmed).collect()),
         of(absent().map(|t| t.outcome == TrialOutcome::Refuted).collect()),
         of(absent().map(|t| t.p_value >= CONFIRMED_P).collect()),

@@ -156,6 +156,12 @@ pub(super) fn median_of(values: impl Iterator<Item = f64>) -> f64 {
     if values.is_empty() { f64::NAN } else { median(&mut values) }
 }
 
+/// The median with so many digits after the point; nothing without values.
+pub(super) fn median_told(values: impl Iterator<Item = f64>, digits: usize) -> String {
+    let median = median_of(values);
+    if median.is_nan() { String::new() } else { format!("{median:.digits$}") }
+}
+
 /// Percentage of the outcomes for which something holds, with their number.
 fn share(outcomes: &[&CaseOutcome], holds: impl Fn(&CaseOutcome) -> bool) -> String {
     let count = outcomes.iter().filter(|o| holds(o)).count();

@@ -22,13 +22,15 @@ addEventListener('load', () => setTimeout(() => {
   const home = shell();
   set('explode', 1);
   seen.apart = shell() !== home;
-  // Pulled apart, all of it is in the picture.
-  seen.framed = assembly.group.children.every((node) => {
-    const { min, max } = new THREE.Box3().setFromObject(node);
-    return [0, 1, 2, 3, 4, 5, 6, 7].every((i) => {
-      const corner = new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z).project(assembly.camera);
-      return Math.abs(corner.x) <= 1 && Math.abs(corner.y) <= 1;
-    });
+  // Pulled apart, every corner of every mesh is in the picture, which is drawn before the next frame: the camera stands by now.
+  assembly.camera.updateMatrixWorld();
+  seen.framed = assembly.group.children.every(({ children: [mesh] }) => {
+    const { array } = mesh.geometry.getAttribute('position');
+    for (let i = 0; i < array.length; i += 3) {
+      const corner = new THREE.Vector3(array[i], array[i + 1], array[i + 2]).applyMatrix4(mesh.matrixWorld).project(assembly.camera);
+      if (Math.abs(corner.x) > 1 || Math.abs(corner.y) > 1) return false;
+    }
+    return array.length > 0;
   });
   const eye = assembly.camera.position.x;
   set('turn', 120); set('tilt', -20);

@@ -1,6 +1,5 @@
 //! What the page shows of a design.
 
-use pinswitch_calibration::ModelFile;
 use pinswitch_switch::built::Built;
 use pinswitch_switch::config::{Configuration, to_toml};
 use pinswitch_switch::design::Design;
@@ -10,7 +9,7 @@ use pinswitch_switch::prediction::Prediction;
 use pinswitch_switch::set::Set;
 use serde::Serialize;
 
-use crate::calibrated_curve::calibrated_curve;
+use crate::predicted::Predicted;
 use crate::request::{Asked, Quality};
 use crate::trouble::Trouble;
 use crate::values::configuration;
@@ -19,8 +18,6 @@ use crate::values::configuration;
 const COARSE_MM: f64 = 0.05;
 /// Points of a curve that is only looked at.
 const COARSE_POINTS: usize = 26;
-/// What a model dropped on the page is called in errors.
-const MODEL: &str = "the calibrated model";
 
 /// A design as the page shows it, or what is wrong with it.
 #[derive(Debug, Serialize)]
@@ -31,14 +28,18 @@ pub(crate) struct Shown {
 }
 
 /// The data of a design, its configuration as text, or its trouble.
-pub(crate) fn answer(asked: &Asked, quality: Quality) -> Shown {
-    match shown(asked, quality) {
+pub(crate) fn answer(kept: &mut Option<Predicted>, asked: &Asked, quality: Quality) -> Shown {
+    match shown(kept, asked, quality) {
         Ok((data, toml)) => Shown { data: Some(data), toml: Some(toml), trouble: None },
         Err(trouble) => Shown { data: None, toml: None, trouble: Some(trouble) },
     }
 }
 
-fn shown(asked: &Asked, quality: Quality) -> Result<(PageData, String), Trouble> {
+fn shown(
+    kept: &mut Option<Predicted>,
+    asked: &Asked,
+    quality: Quality,
+) -> Result<(PageData, String), Trouble> {
     let exact = configuration(&asked.values)?;
     let toml = to_toml(&exact);
     let mut seen = exact;
@@ -46,26 +47,21 @@ fn shown(asked: &Asked, quality: Quality) -> Result<(PageData, String), Trouble>
         seen.mesh.chord_tolerance_mm = seen.mesh.chord_tolerance_mm.max(COARSE_MM);
         seen.friction.points = seen.friction.points.min(COARSE_POINTS);
     }
-    let (built, prediction) = built(seen, asked.model.as_deref())?;
+    let (built, prediction) = built(kept, seen, asked.model.as_deref())?;
     // What is looked at needs no files, which take longer than the parts.
     let set = Set::new(&built, &prediction, &[]).map_err(trouble)?;
     Ok((PageData::new(&built, &prediction, &set.manifest, Some(1)), toml))
 }
 
-/// The parts of a configuration and the curve, by the published constants or by a calibrated model.
+/// The parts of a configuration and the curve, by the published constants or by a calibrated model; the curve that is `kept`
+/// where it is the same.
 pub(crate) fn built(
+    kept: &mut Option<Predicted>,
     configuration: Configuration,
     model: Option<&str>,
 ) -> Result<(Built, Prediction), Trouble> {
     let design = Design::new(configuration)?;
-    let prediction = match model {
-        Some(text) => {
-            let model = ModelFile::parse(text, MODEL).map_err(Trouble::general)?;
-            let curve = calibrated_curve(&design, &model, MODEL).map_err(Trouble::general)?;
-            Prediction::with_curve(&design, curve)
-        }
-        None => Prediction::of(&design),
-    };
+    let prediction = Predicted::of(kept, &design, model)?;
     let built = Built::new(design).map_err(|e| trouble(e.into()))?;
     Ok((built, prediction))
 }

@@ -12,6 +12,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::design::{built, trouble};
+use crate::predicted::Predicted;
 use crate::request::Asked;
 use crate::trouble::Trouble;
 use crate::values::configuration;
@@ -34,7 +35,7 @@ impl Engine {
     /// An answer from the files of a design, made anew only where it is another one.
     pub(crate) fn files(&mut self, design: &Asked, of: impl FnOnce(&Made) -> Answer) -> Answer {
         if self.made.as_ref().is_none_or(|made| made.design != *design) {
-            match Made::new(design) {
+            match Made::new(&mut self.predicted, design) {
                 Ok(made) => self.made = Some(made),
                 Err(trouble) => return Answer::json(&serde_json::json!({ "trouble": trouble })),
             }
@@ -46,10 +47,10 @@ impl Engine {
 impl Made {
     /// Every file that `pinswitch generate NAME.toml --format all --out .` writes beside a `NAME.toml` with this
     /// configuration, and that file.
-    fn new(design: &Asked) -> Result<Self, Trouble> {
+    fn new(kept: &mut Option<Predicted>, design: &Asked) -> Result<Self, Trouble> {
         let configuration = configuration(&design.values)?;
         let own = OutputFile::new(format!("{}.toml", configuration.switch.name), to_toml(&configuration));
-        let (built, prediction) = built(configuration, design.model.as_deref())?;
+        let (built, prediction) = built(kept, configuration, design.model.as_deref())?;
         let formats = named(&[ALL]).map_err(Trouble::general)?;
         let set = Set::new(&built, &prediction, &formats).map_err(trouble)?;
         let set = set.made_from(SourceEntry::new(own.name.clone())).map_err(trouble)?;

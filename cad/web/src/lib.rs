@@ -23,6 +23,7 @@ mod files;
 #[cfg(target_arch = "wasm32")]
 mod module;
 pub mod page;
+mod predicted;
 mod request;
 mod search;
 pub mod slim;
@@ -30,6 +31,7 @@ mod trouble;
 mod values;
 
 use files::Made;
+use predicted::Predicted;
 use request::Request;
 use serde::Serialize;
 
@@ -57,10 +59,12 @@ impl Answer {
     }
 }
 
-/// Answers questions, one at a time; keeps the files of the last design, since several are asked for in a row.
+/// Answers questions, one at a time; keeps the files of the last design, since several are asked for in a row, and its curve,
+/// since most changes leave it as it is.
 #[derive(Debug, Default)]
 pub struct Engine {
     made: Option<Made>,
+    predicted: Option<Predicted>,
 }
 
 impl Engine {
@@ -72,7 +76,9 @@ impl Engine {
         };
         match request {
             Request::Facts => Answer::json(&facts::facts()),
-            Request::Design { design, quality } => Answer::json(&design::answer(&design, quality)),
+            Request::Design { design, quality } => {
+                Answer::json(&design::answer(&mut self.predicted, &design, quality))
+            }
             Request::Open { toml, file } => Answer::json(&values::opened(&toml, &file)),
             Request::Files { design } => self.files(&design, |made| made.list()),
             Request::File { design, name } => self.files(&design, |made| made.file(&name)),

@@ -3,6 +3,8 @@
 //! Distances are those between the exact lines and arcs of the profile, at every height at which both walls stand; no
 //! mesh and no sampling takes part. So one rule finds every thin place of every part, whatever its form.
 
+use std::borrow::Cow;
+
 use super::{Solid, Wall};
 use crate::profile::{Arc, Contour, Edge, Point2, Vector2};
 
@@ -29,6 +31,8 @@ pub struct ThinPlace {
 struct Face {
     wall: usize,
     edge: usize,
+    /// Of a wall that stands upright, the edge as it is at every height.
+    upright: Option<Section>,
     low: Point2,
     high: Point2,
     from_mm: f64,
@@ -36,6 +40,7 @@ struct Face {
 }
 
 /// An edge at one height, with the directions of its neighbours where they meet.
+#[derive(Clone)]
 struct Section {
     from: Point2,
     to: Point2,
@@ -72,10 +77,12 @@ impl Solid {
         let mut all = Vec::new();
         for (wall, Wall { lower, upper }) in self.walls.iter().enumerate() {
             let (lower, upper) = (&self.rings[lower.0], &self.rings[upper.0]);
+            let is_upright = lower.contour == upper.contour;
             for edge in 0..lower.contour.edges().len() {
                 let (a, b) = (lower.contour.edge_bounds(edge), upper.contour.edge_bounds(edge));
                 let (low, high) = (a.0.inf(&b.0), a.1.sup(&b.1));
-                all.push(Face { wall, edge, low, high, from_mm: lower.z_mm, to_mm: upper.z_mm });
+                let upright = is_upright.then(|| self.edge_at(wall, edge, 0.0));
+                all.push(Face { wall, edge, upright, low, high, from_mm: lower.z_mm, to_mm: upper.z_mm });
             }
         }
         all
@@ -84,15 +91,11 @@ impl Solid {
     /// What is between two faces over the heights at which both stand, if it is thin.
     fn between(&self, a: &Face, b: &Face, from_mm: f64, to_mm: f64, under_mm: f64) -> Option<ThinPlace> {
         let at = |z_mm: f64| {
-            let (a, b) = (self.edge_at(a, z_mm), self.edge_at(b, z_mm));
+            let (a, b) = (self.face_at(a, z_mm), self.face_at(b, z_mm));
             nearest(&a, &b)
         };
-        let upright = |f: &Face| {
-            let Wall { lower, upper } = self.walls[f.wall];
-            self.rings[lower.0].contour == self.rings[upper.0].contour
-        };
         let below = at(from_mm);
-        let above = if upright(a) && upright(b) { below } else { at(to_mm) };
+        let above = if a.upright.is_some() && b.upright.is_some() { below } else { at(to_mm) };
         let thickness = |place: Option<(f64, Point2)>| place.map_or(f64::INFINITY, |p| p.0);
         let (thickness_mm, middle) = if thickness(above) < thickness(below) { above? } else { below? };
         // Of a wall that leans, the mean tells whether it is higher than thick; where one end faces nothing, it is.
@@ -101,14 +104,24 @@ impl Solid {
         (thickness_mm < under_mm && !is_step).then_some(ThinPlace { thickness_mm, middle, from_mm, to_mm })
     }
 
-    fn edge_at(&self, face: &Face, z_mm: f64) -> Section {
+    fn face_at<'a>(&self, face: &'a Face, z_mm: f64) -> Cow<'a, Section> {
+        if let Some(section) = &face.upright {
+            return Cow::Borrowed(section);
+        }
         let Wall { lower, upper } = self.walls[face.wall];
         let (lower, upper) = (&self.rings[lower.0], &self.rings[upper.0]);
         let share = (z_mm - lower.z_mm) / (upper.z_mm - lower.z_mm);
-        let n = lower.contour.edges().len();
-        let edge = |i: usize| edge_between(&lower.contour, &upper.contour, i, share);
-        let (from, to, arc) = edge(face.edge);
-        let (before, after) = (edge((face.edge + n - 1) % n), edge((face.edge + 1) % n));
+        Cow::Owned(self.edge_at(face.wall, face.edge, share))
+    }
+
+    /// An edge of a wall at a share of the way up.
+    fn edge_at(&self, wall: usize, edge: usize, share: f64) -> Section {
+        let Wall { lower, upper } = self.walls[wall];
+        let (lower, upper) = (&self.rings[lower.0].contour, &self.rings[upper.0].contour);
+        let n = lower.edges().len();
+        let at = |i: usize| edge_between(lower, upper, i % n, share);
+        let (from, to, arc) = at(edge);
+        let (before, after) = (at(edge + n - 1), at(edge + 1));
         Section { from, to, arc, before: tangent(&before, 1.0), after: tangent(&after, 0.0) }
     }
 }

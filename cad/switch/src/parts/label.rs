@@ -12,6 +12,8 @@ use pinswitch_solid::solid::{RingId, Solid};
 const ROUND_RAD: f64 = 0.5;
 /// Letters smaller than this are not legible in a print, mm.
 const MIN_HEIGHT_MM: f64 = 1.5;
+/// Steps in which smaller letters are tried, mm.
+const STEP_MM: f64 = 0.1;
 /// Wall between a letter and the edge of its zone, mm.
 pub(super) const EDGE_MM: f64 = 0.5;
 /// Width of a letter over its height.
@@ -50,13 +52,14 @@ impl Zone {
         Self::Flat { middle, length_mm, height_mm }
     }
 
-    /// The widest free stretch of the shell's wall between the fasteners, inside `outer_mm`.
-    pub(super) fn between_fasteners(design: &Design, outer_mm: f64) -> Self {
-        Self::between_holes(design, design.shell_hole_mm(), design.inner_radius_mm(), outer_mm)
-    }
-
-    /// The widest stretch of a band between two radii into which no fastener that takes `fastener_mm`, and no dowel reaches.
-    pub(super) fn between_holes(design: &Design, fastener_mm: f64, inner_mm: f64, outer_mm: f64) -> Self {
+    /// The stretches of a band between two radii into which no fastener that takes `fastener_mm`, and no dowel reaches; from
+    /// left to right.
+    pub(super) fn between_holes(
+        design: &Design,
+        fastener_mm: f64,
+        inner_mm: f64,
+        outer_mm: f64,
+    ) -> Vec<Self> {
         let (middle, half) = (design.fastener_radius_mm(), design.half_span_rad());
         // The widest that a round hole is within the band: where a line from the axis touches it, or at the band's edge.
         let taken = |angles: Vec<f64>, reach_mm: f64| {
@@ -73,11 +76,19 @@ impl Zone {
         holes.sort_by(|a, b| a.0.total_cmp(&b.0));
         let from = std::iter::once(-half).chain(holes.iter().map(|h| h.1));
         let to = holes.iter().map(|h| h.0).chain([half]);
-        let widest = from.zip(to).fold((0.0, 0.0), |best: (f64, f64), gap| {
-            // Equal gaps: the first, whatever the rounding.
-            if gap.1 - gap.0 > best.1 - best.0 + 1e-9 { gap } else { best }
-        });
-        Self::Arc { inner_mm, outer_mm, from_rad: widest.0, to_rad: widest.1 }
+        from.zip(to)
+            .filter(|(from_rad, to_rad)| to_rad > from_rad)
+            .map(|(from_rad, to_rad)| Self::Arc { inner_mm, outer_mm, from_rad, to_rad })
+            .collect()
+    }
+
+    /// The widest of several zones; of equals the first, whatever the rounding.
+    pub(super) fn widest(zones: &[Self]) -> Option<Self> {
+        let wide = |zone: &Self| match *zone {
+            Self::Flat { length_mm, .. } => length_mm,
+            Self::Arc { from_rad, to_rad, .. } => to_rad - from_rad,
+        };
+        zones.iter().copied().reduce(|best, zone| if wide(&zone) > wide(&best) + 1e-9 { zone } else { best })
     }
 
     /// The zone mirrored in the y axis.
@@ -131,9 +142,59 @@ impl Zone {
     }
 }
 
-/// Engraves the design's label into the face at `top_mm`.
-pub(super) fn engrave(solid: &mut Solid, design: &Design, zone: &Zone, top_mm: f64) -> Engraving {
-    engrave_text(solid, design, &design.label(), zone, top_mm)
+/// Engraves the design's label into the face at `top_mm`, into the first of several choices of zones that holds it: in the
+/// widest of the zones, or else from one to the next.
+pub(super) fn engrave(solid: &mut Solid, design: &Design, choices: &[Vec<Zone>], top_mm: f64) -> Engraving {
+    let text = design.label();
+    for zones in choices {
+        let whole = Zone::widest(zones).map(|zone| engrave_text(solid, design, &text, &zone, top_mm));
+        if let Some(engraved) = whole.filter(|whole| whole.note.is_none()) {
+            return engraved;
+        }
+        let laid = sizes_mm(design)
+            .filter(|_| has_floor(design, top_mm))
+            .find_map(|size_mm| Some((size_mm, broken(design, &text, zones, size_mm)?)));
+        if let Some((size_mm, pieces)) = laid {
+            let rings = pieces
+                .iter()
+                .flat_map(|(piece, zone)| pockets(solid, design, piece, zone, size_mm, top_mm))
+                .collect();
+            return Engraving { rings, note: None, lines: vec![text] };
+        }
+    }
+    Engraving::none(Some(left_out(&text)))
+}
+
+/// `text` broken between letters so that each piece fits its zone in letters of `size_mm`: it runs on behind a hole. The
+/// pieces in their order, as full as the zones allow.
+pub(super) fn broken(
+    design: &Design,
+    text: &str,
+    zones: &[Zone],
+    size_mm: f64,
+) -> Option<Vec<(String, Zone)>> {
+    let mut rest: Vec<char> = text.chars().collect();
+    let mut pieces = Vec::new();
+    for zone in zones {
+        let fits = |n: &usize| {
+            let piece: String = rest[..*n].iter().collect();
+            largest_mm(design, &piece, zone).is_some_and(|largest| largest >= size_mm - SAME_MM)
+        };
+        if let Some(n) = (1..=rest.len()).rev().find(fits) {
+            pieces.push((rest.drain(..n).collect(), *zone));
+        }
+    }
+    rest.is_empty().then_some(pieces)
+}
+
+/// Sizes of letters that are tried, the configured one first, the least that is legible last.
+pub(super) fn sizes_mm(design: &Design) -> impl Iterator<Item = f64> + use<> {
+    let (height, least) = (design.configuration().label.height_mm, least_height_mm(design));
+    let steps = ((height - least) / STEP_MM + SAME_MM).floor();
+    std::iter::successors(Some(0.0), move |step: &f64| (*step < steps).then_some(step + 1.0))
+        .map(move |step| height - step * STEP_MM)
+        .filter(move |size| *size >= least - SAME_MM)
+        .chain((height >= least - SAME_MM).then_some(least))
 }
 
 /// Engraves `text` as large as configured, smaller where the zone is small, or not at all with a note.
@@ -148,13 +209,35 @@ pub(super) fn engrave_text(
     if !c.label.engrave {
         return Engraving::none(None);
     }
-    let size = largest_mm(design, text, zone).filter(|_| top_mm - c.label.depth_mm >= c.print.least_wall_mm);
+    let size = largest_mm(design, text, zone).filter(|_| has_floor(design, top_mm));
     let Some(size) = size else { return Engraving::none(Some(left_out(text))) };
-    let rings = shapes(design, text, zone, size)
+    Engraving {
+        rings: pockets(solid, design, text, zone, size, top_mm),
+        note: None,
+        lines: vec![text.to_owned()],
+    }
+}
+
+/// Whether letters in the face at `top_mm` leave a floor that prints.
+fn has_floor(design: &Design, top_mm: f64) -> bool {
+    let c = design.configuration();
+    top_mm - c.label.depth_mm >= c.print.least_wall_mm
+}
+
+/// The letters of `text` as pockets in the face at `top_mm`; their rings are holes in the cap there.
+fn pockets(
+    solid: &mut Solid,
+    design: &Design,
+    text: &str,
+    zone: &Zone,
+    size_mm: f64,
+    top_mm: f64,
+) -> Vec<RingId> {
+    let floor_mm = top_mm - design.configuration().label.depth_mm;
+    shapes(design, text, zone, size_mm)
         .into_iter()
-        .map(|(outline, islands)| solid.pocket(&outline, &islands, top_mm - c.label.depth_mm, top_mm))
-        .collect();
-    Engraving { rings, note: None, lines: vec![text.to_owned()] }
+        .map(|(outline, islands)| solid.pocket(&outline, &islands, floor_mm, top_mm))
+        .collect()
 }
 
 /// Engraves `text` in letters of `size_mm` into the face on the bed, to be read from below; its rings are holes in the
@@ -287,6 +370,26 @@ mod tests {
             assert!(shapes.len() <= 1 || ":=".contains(letter), "{letter}: {}", shapes.len());
         }
     }
+    #[test]
+    fn a_text_is_broken_between_letters_in_the_order_of_its_zones() {
+        let design = Design::new(Configuration::default()).unwrap();
+        let c = design.configuration();
+        let gap = c.label.stroke_mm + c.print.least_wall_mm;
+        let long = |letters: f64| {
+            letters * (c.label.height_mm * ASPECT + gap) - gap + c.label.stroke_mm + 2.0 * EDGE_MM + 0.01
+        };
+        let zones = [long(3.0), 1.0, long(2.0)].map(|wide| Zone::flat(Point2::origin(), wide, 8.0));
+        let broken = |text: &str| {
+            let pieces = broken(&design, text, &zones, c.label.height_mm)?;
+            Some(pieces.into_iter().map(|(piece, _)| piece).collect::<Vec<_>>())
+        };
+        assert_eq!(broken("3x3/5").unwrap(), ["3x3", "/5"][..]);
+        assert_eq!(broken("3x3").unwrap(), ["3x3"]);
+        assert_eq!(broken("3x3/5 and more"), None);
+        let sizes: Vec<f64> = sizes_mm(&design).collect();
+        assert!(sizes.windows(2).all(|w| w[0] >= w[1]) && sizes[0] == design.configuration().label.height_mm);
+    }
+
     #[test]
     fn every_letter_leaves_walls_that_print() {
         let design = Design::new(Configuration::default()).unwrap();

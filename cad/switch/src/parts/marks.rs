@@ -1,12 +1,14 @@
 //! Marks on the outer faces of the supports, which stay visible: which side it is, which layout, where groove 1 is and
 //! where the load pulls (cad/doc/dimensions.md, "Label").
 
-use super::label::{EDGE_MM, Engraving, SAME_MM, Zone, engrave_below, largest_mm, least_height_mm, left_out};
+use super::label::{
+    EDGE_MM, Engraving, SAME_MM, Zone, broken, engrave_below, largest_mm, left_out, sizes_mm,
+};
 use crate::design::Design;
 use pinswitch_solid::solid::Solid;
 
-/// Steps in which smaller letters are tried, mm.
-const STEP_MM: f64 = 0.1;
+/// Pieces of the text of one row, with the zone of each.
+type Row = Vec<(String, Zone)>;
 
 /// Engraves the marks of a support into its face on the bed.
 pub(super) fn engrave_marks(solid: &mut Solid, design: &Design, is_right: bool) -> Engraving {
@@ -20,19 +22,30 @@ pub(super) fn engrave_marks(solid: &mut Solid, design: &Design, is_right: bool) 
     if c.support.plate_mm - c.label.depth_mm < least_floor {
         return Engraving::none(Some(left_out(side)));
     }
-    let wanted = row_sets(side, &design.label(), is_right);
-    let found = wanted.iter().find_map(|rows| Some((rows, fitted(design, rows)?)));
-    let Some((rows, (size, zones))) = found else {
+    let label = design.label();
+    let wanted = row_sets(side, &label, is_right);
+    let is_whole = |rows: &&Vec<String>| rows.concat().contains(&label);
+    // A label that runs on behind a hole is better than none.
+    let in_one = |rows: &Vec<String>| fitted(design, rows, in_one_piece);
+    let in_pieces = |rows: &Vec<String>| fitted(design, rows, in_several_pieces);
+    let Some((rows, (size, laid))) = find(wanted.iter().filter(is_whole), in_one)
+        .or_else(|| find(wanted.iter().filter(is_whole), in_pieces))
+        .or_else(|| find(wanted.iter(), in_one))
+    else {
         return Engraving::none(Some(left_out(side)));
     };
-    let rings = rows
-        .iter()
-        .zip(&zones)
-        .flat_map(|(row, zone)| engrave_below(solid, design, row, zone, size))
-        .collect();
-    let is_whole = rows.concat().contains(&design.label());
-    let note = (!is_whole).then(|| left_out(&design.label()));
+    let pieces = laid.iter().flatten();
+    let rings = pieces.flat_map(|(text, zone)| engrave_below(solid, design, text, zone, size)).collect();
+    let note = (!is_whole(&rows)).then(|| left_out(&label));
     Engraving { rings, note, lines: rows.clone() }
+}
+
+/// The first of the sets that can be laid out, with how.
+fn find<'a, T>(
+    mut sets: impl Iterator<Item = &'a Vec<String>>,
+    lay: impl Fn(&Vec<String>) -> Option<T>,
+) -> Option<(&'a Vec<String>, T)> {
+    sets.find_map(|rows| Some((rows, lay(rows)?)))
 }
 
 /// Rows from the outside inward, the fullest set first. Groove 1 is on the load's side, to which the arrow points: seen
@@ -54,36 +67,44 @@ fn row_sets(side: &str, label: &str, is_right: bool) -> Vec<Vec<String>> {
     ]
 }
 
-/// The largest letters in which all rows fit below each other, with the zone of each.
-fn fitted(design: &Design, rows: &[String]) -> Option<(f64, Vec<Zone>)> {
-    let c = design.configuration();
-    let stroke = c.label.stroke_mm;
+/// The largest letters in which all rows fit below each other, with the pieces of each as `lay` puts them into the zones
+/// between the holes.
+fn fitted(
+    design: &Design,
+    rows: &[String],
+    lay: impl Fn(&Design, &str, &[Zone], f64) -> Option<Row>,
+) -> Option<(f64, Vec<Row>)> {
+    let stroke = design.configuration().label.stroke_mm;
     let (inner, outer) = (design.inner_radius_mm(), design.slot().inner_edge_mm());
     let reach = design.fastener_along_mm();
-    let least = least_height_mm(design);
-    let steps = ((c.label.height_mm - least) / STEP_MM + SAME_MM).floor();
-    // From the configured height down, the least included.
-    let sizes = std::iter::successors(Some(0.0), |step: &f64| (*step < steps).then_some(step + 1.0))
-        .map(|step| c.label.height_mm - step * STEP_MM)
-        .filter(|size| *size >= least - SAME_MM)
-        .chain((c.label.height_mm >= least - SAME_MM).then_some(least));
-    for size in sizes {
+    sizes_mm(design).find_map(|size| {
         // Rows share the wall between them.
         let pitch = size + stroke + EDGE_MM;
-        let zone = |i: usize| {
+        let laid = |(i, row): (usize, &String)| {
             let top = outer - i as f64 * pitch;
-            (top - pitch - EDGE_MM > inner)
-                .then(|| Zone::between_holes(design, reach, top - pitch - EDGE_MM, top))
+            let bottom = top - pitch - EDGE_MM;
+            (bottom > inner).then(|| Zone::between_holes(design, reach, bottom, top)).and_then(|mut zones| {
+                // Read from below, the right is on the left.
+                zones.reverse();
+                lay(design, row, &zones, size)
+            })
         };
-        let zones: Option<Vec<Zone>> = (0..rows.len()).map(zone).collect();
-        let fits = |(row, zone): (&String, &Zone)| {
-            largest_mm(design, row, zone).is_some_and(|s| s >= size - SAME_MM)
-        };
-        if let Some(zones) = zones.filter(|zones| rows.iter().zip(zones).all(fits)) {
-            return Some((size, zones));
-        }
-    }
-    None
+        let laid: Option<Vec<Row>> = rows.iter().enumerate().map(laid).collect();
+        Some((size, laid?))
+    })
+}
+
+/// The text in the widest zone.
+fn in_one_piece(design: &Design, text: &str, zones: &[Zone], size_mm: f64) -> Option<Row> {
+    let zones: Vec<Zone> = zones.iter().rev().copied().collect();
+    let zone = Zone::widest(&zones)?;
+    let fits = largest_mm(design, text, &zone).is_some_and(|largest| largest >= size_mm - SAME_MM);
+    fits.then(|| vec![(text.to_owned(), zone)])
+}
+
+/// The text in one zone, or from one zone to the next.
+fn in_several_pieces(design: &Design, text: &str, zones: &[Zone], size_mm: f64) -> Option<Row> {
+    in_one_piece(design, text, zones, size_mm).or_else(|| broken(design, text, zones, size_mm))
 }
 
 #[cfg(test)]
@@ -96,7 +117,8 @@ mod tests {
         assignments.iter().for_each(|a| assign(&mut c, a).unwrap());
         let design = Design::new(c).unwrap();
         let side = if is_right { "R" } else { "L" };
-        row_sets(side, &design.label(), is_right).into_iter().find(|rows| fitted(&design, rows).is_some())
+        let sets = row_sets(side, &design.label(), is_right);
+        sets.into_iter().find(|rows| fitted(&design, rows, in_one_piece).is_some())
     }
 
     #[test]

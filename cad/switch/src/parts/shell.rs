@@ -1,6 +1,6 @@
 //! The rigid shell: a grooved sector of an annulus with fastener holes (cad/doc/dimensions.md, "Shell").
 
-use super::label::{Zone, engrave};
+use super::label::{EDGE_MM, Zone, engrave};
 use super::sector::Stops;
 use super::{Part, Pose, Role, Sector, fastening, offset_error};
 use crate::config::ConfigError;
@@ -52,6 +52,17 @@ fn outline(design: &Design) -> Contour {
     }
 }
 
+/// Where the label may go: on one line between the holes, or on two, the upper one outside.
+fn label_zones(design: &Design) -> [Vec<Zone>; 2] {
+    let groove_mm = design.configuration().segment.groove_radius_mm;
+    let (inner, outer) = (design.inner_radius_mm(), design.shell_radius_mm() - groove_mm);
+    let band = |from, to| Zone::between_holes(design, design.shell_hole_mm(), from, to);
+    // Letters keep clear of the edges of their line, so that two lines share what is between them.
+    let middle = f64::midpoint(inner, outer);
+    let (above, below) = (middle - EDGE_MM / 2.0, middle + EDGE_MM / 2.0);
+    [band(inner, outer), [band(above, outer), band(inner, below)].concat()]
+}
+
 pub(super) fn shell(design: &Design) -> Result<Part, ConfigError> {
     let c = design.configuration();
     let (width, chamfer) = (c.shell.width_mm, c.print.elephant_foot_mm);
@@ -64,8 +75,7 @@ pub(super) fn shell(design: &Design) -> Result<Part, ConfigError> {
     bottoms.extend(dowel_bottoms);
     tops.extend(dowel_tops);
     solid.cap(Facing::Down, bottom, &bottoms);
-    let zone = Zone::between_fasteners(design, design.shell_radius_mm() - c.segment.groove_radius_mm);
-    let engraved = engrave(&mut solid, design, &zone, width);
+    let engraved = engrave(&mut solid, design, &label_zones(design), width);
     tops.extend(engraved.rings);
     solid.cap(Facing::Up, top, &tops);
     let mut part = Part::new("shell", Role::Shell, solid, Some(Pose::upright(0.0)));
@@ -77,4 +87,34 @@ pub(super) fn shell(design: &Design) -> Result<Part, ConfigError> {
         );
     }
     Ok(part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::built::Built;
+    use crate::config::{Configuration, assign};
+
+    /// Wide holes leave no stretch of the wall for the whole label: it goes on two lines, whose letters leave walls.
+    #[test]
+    fn a_label_goes_on_two_lines_where_one_does_not_hold_it() {
+        let mut c = Configuration::default();
+        let assignments = [
+            "layout.pins=[5, 8, 11]",
+            "shell.width_mm=20.0",
+            "fasteners.kind=insert",
+            "fasteners.hole_diameter_mm=4.5",
+            "fasteners.end_distance_mm=4.0",
+        ];
+        assignments.iter().for_each(|a| assign(&mut c, a).unwrap());
+        let design = Design::new(c).unwrap();
+        let [one, two] = label_zones(&design);
+        assert!(one.len() == 3 && two.len() >= 4, "{one:?}, {two:?}");
+        let part = shell(&design).unwrap();
+        assert_eq!(part.engraved, ["3x3/5"]);
+        assert_eq!(part.notes, Vec::<String>::new());
+        let thin = part.thin_places(&design);
+        assert!(thin.iter().all(|place| place.to_mm - place.from_mm > 2.0), "{thin:?}");
+        Built::new(design).unwrap();
+    }
 }

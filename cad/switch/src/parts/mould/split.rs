@@ -65,7 +65,7 @@ pub(in crate::parts) fn core(design: &Design) -> Result<Part, ConfigError> {
         from_rad: -design.half_span_rad(),
         to_rad: design.half_span_rad(),
     };
-    let engraved = engrave(&mut solid, design, &zone, top);
+    let engraved = engrave(&mut solid, design, &[vec![zone]], top);
     solid.cap(Facing::Up, head, &engraved.rings);
     let mut part = Part::new("mould-core", Role::Mould, solid, None);
     part.tool_pose = Some(Pose::upright(0.0));

@@ -27,10 +27,6 @@ pub(crate) const COVERED: f64 = 0.9;
 /// Largest size of a rival, in units of the size at which a fit of it starts: beyond it, no rig is that wrong.
 const LARGEST_SHARE: f64 = 30.0;
 
-/// Worth of telling an effect that was found from its rivals, in units of an effect that is only not excluded: one of the two is
-/// true of this rig, and in its curves.
-const RIVALS: f64 = 10.0;
-
 /// Two explanations between which the data could not decide.
 #[derive(Clone, Debug)]
 pub(super) struct Question {
@@ -220,7 +216,7 @@ impl Agenda {
                 size: None,
                 ways,
                 needed: levels.rival,
-                weight: RIVALS,
+                weight: 1.0,
             });
         }
         agenda

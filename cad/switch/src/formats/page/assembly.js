@@ -28,8 +28,8 @@ const FRONT = 0, BACK = 1, ALWAYS = 519, NOT_EQUAL = 517, INCREMENT = 34055, DEC
 const ROOM = 1.1;
 // So many points of a body are enough to see how far it reaches.
 const SAMPLES = 600;
-// Without a graphics card the processor fills every pixel: few while something moves, and many once it has stood still so long.
-const QUICK_RATIO = 0.5, STILL_RATIO = 2, STILL_MS = 700;
+// Without a graphics card the processor fills every pixel: few while something moves, and all once it has stood still so long.
+const QUICK_RATIO = 0.5, STILL_MS = 700;
 const SHARP = Math.cos(25 * Math.PI / 180);
 
 // What counts, where a body is cut, the faces seen from inside less those from outside: what is left over is cut material.
@@ -99,10 +99,10 @@ class Assembly {
   constructor(host) {
     this.host = host;
     this.isSlow = isWithoutCard();
-    // Many pixels for one are smoothed without more.
-    this.renderer = new THREE.WebGLRenderer({ antialias: !this.isSlow, alpha: true, stencil: true });
+    this.still_ratio = Math.min(devicePixelRatio, 2);
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, stencil: true });
     this.renderer.localClippingEnabled = true;
-    this.renderer.setPixelRatio(this.isSlow ? QUICK_RATIO : Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(this.isSlow ? QUICK_RATIO : this.still_ratio);
     host.replaceChildren(this.renderer.domElement);
     this.scene = new THREE.Scene();
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x707880, 1.6));
@@ -349,12 +349,12 @@ class Assembly {
     });
   }
 
-  // Draws with few pixels now, and with many when nothing has moved for a while.
+  // Draws with few pixels now, and with all when nothing has moved for a while.
   refine() {
     clearTimeout(this.refining);
     if (this.renderer.getPixelRatio() !== QUICK_RATIO) this.renderer.setPixelRatio(QUICK_RATIO);
     this.refining = setTimeout(() => {
-      this.renderer.setPixelRatio(STILL_RATIO);
+      this.renderer.setPixelRatio(this.still_ratio);
       this.renderer.render(this.scene, this.camera);
     }, STILL_MS);
   }

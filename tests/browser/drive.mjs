@@ -102,7 +102,18 @@ export class Visit {
 
   async text(selector) { return this.page.$eval(selector, (e) => e.textContent); }
   async shown(selector) { return this.page.$eval(selector, (e) => e.checkVisibility()); }
-  async click(selector) { await (await this.page.waitForSelector(selector, { visible: true })).click(); }
+  // An answer of the engine may draw what is clicked anew between finding and clicking it: then the new one is clicked.
+  async click(selector) {
+    for (let tries = 1; ; tries += 1) {
+      const element = await this.page.waitForSelector(selector, { visible: true });
+      try {
+        await element.click();
+        return;
+      } catch (problem) {
+        if (tries === 3 || !/detached/.test(problem.message)) throw problem;
+      }
+    }
+  }
 
   // Drawings take the focus, too.
   async focus(selector) { await this.page.$eval(selector, (e) => e.focus()); }

@@ -139,8 +139,16 @@ impl<'a> Screen<'a> {
 
     /// Score of one effect at its best shape.
     pub(crate) fn effect(&self, effect: &'static dyn Effect) -> Option<EffectScore> {
+        self.best_of(effect, effect.starts(&self.fitted.model.frame))
+    }
+
+    /// Score of one effect at this shape and no other: one question, where the best of several shapes is several.
+    pub(crate) fn effect_at(&self, effect: &'static dyn Effect, start: Vec<f64>) -> Option<EffectScore> {
+        self.best_of(effect, vec![start])
+    }
+
+    fn best_of(&self, effect: &'static dyn Effect, starts: Vec<Vec<f64>>) -> Option<EffectScore> {
         let mut best: Option<EffectScore> = None;
-        let starts = effect.starts(&self.fitted.model.frame);
         let traces: Vec<Vec<f64>> = starts
             .iter()
             .map(|start| {

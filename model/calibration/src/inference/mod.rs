@@ -53,6 +53,6 @@ pub use selection::{CandidateEffect, FoundEffect, Rival, Selection, select};
 pub(crate) use significance::gain_at;
 pub use significance::{degrees_of_freedom, family_p_value};
 pub use unnamed::FoundStructure;
-pub use visibility::{VISIBLE, expected_gain, probability_found};
+pub use visibility::{VISIBLE, expected_gain, probability_found, probability_structure_found};
 pub use walk::Wandering;
 pub use weighed::Weighed;

@@ -37,8 +37,18 @@ pub fn expected_gain(model: &Model, weighed: &Weighed<'_>, change_n: &[f64]) -> 
 /// assert!(found(2.0) < 0.05 && found(60.0) > VISIBLE);
 /// ```
 pub fn probability_found(expected_gain: f64, levels: Levels, tried: usize, degrees: f64) -> f64 {
-    let (middle, bound) =
-        (expected_gain.max(0.0).sqrt(), gain_at(levels.first_p, tried, degrees).max(0.0).sqrt());
+    probability_beyond(gain_at(levels.first_p, tried, degrees), expected_gain)
+}
+
+/// The same at the level of structure without a name, over so many shapes.
+pub fn probability_structure_found(expected_gain: f64, levels: Levels, tried: usize, degrees: f64) -> f64 {
+    let chance = gain_at(levels.structure_p, tried.max(1), degrees);
+    probability_beyond(levels.structure.max(chance), expected_gain)
+}
+
+/// Probability that a gain whose expectation is that much reaches a bound: of the square of a normal number.
+fn probability_beyond(bound: f64, expected_gain: f64) -> f64 {
+    let (middle, bound) = (expected_gain.max(0.0).sqrt(), bound.max(0.0).sqrt());
     let normal = Normal::standard();
     normal.sf(bound - middle) + normal.cdf(-bound - middle)
 }
@@ -79,6 +89,8 @@ mod tests {
         let levels = Levels::default();
         let bound = gain_at(levels.first_p, 21, 60.0);
         assert!((probability_found(bound, levels, 21, 60.0) - 0.5).abs() < 1e-3);
+        let shape = levels.structure.max(gain_at(levels.structure_p, 300, 60.0));
+        assert!((probability_structure_found(shape, levels, 300, 60.0) - 0.5).abs() < 1e-3);
         let by_chance = probability_found(0.0, levels, 21, 60.0);
         assert!(by_chance < levels.first_p / 21.0 * 1.1, "{by_chance}");
     }

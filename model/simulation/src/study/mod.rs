@@ -8,6 +8,7 @@ mod nulls;
 mod outcome;
 mod outside;
 mod said;
+mod shown;
 mod summary;
 mod true_form;
 

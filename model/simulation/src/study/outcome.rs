@@ -2,19 +2,18 @@
 
 use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 use pinswitch_calibration::inference::{
-    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, VISIBLE, Weighed, averaged_intervals,
-    degrees_of_freedom, expected_gain, family_p_value, probability_found, select,
+    FoundEffect, Levels, Model, Observations, Selection, UNATTRIBUTED, Weighed, averaged_intervals,
+    degrees_of_freedom, family_p_value, select,
 };
 use pinswitch_calibration::table::{Frame, PlateauRow, PlateauTable};
 use pinswitch_calibration::{Verdict, calibrate};
 
 use super::cases::{Case, plan_of};
 use super::said::Said;
+use super::shown::shows_all;
 use crate::next_session::next_session;
-use crate::plan::{EffectPlan, Plan};
-use crate::series_marks::SeriesMarks;
+use crate::plan::Plan;
 use crate::simulate::simulate;
-use crate::twin::readings;
 
 /// What the calibrator said of one rig.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,11 +32,10 @@ pub struct CaseOutcome {
     pub exact: bool,
     /// Whether every true effect is named or among the rivals, and nothing else stands alone.
     pub honest: bool,
-    /// Whether it named nothing and left every true effect possible: within its limits, or told as one that the session
-    /// cannot show.
+    /// Whether it said nothing beside the truth and left every true effect possible that it did not name: within its
+    /// limits, or told as one that the session cannot show.
     pub open: bool,
-    /// Whether the session could show every true effect: generalised least squares, told the noise of the same rig
-    /// without them, would find each alone with a probability of at least [`VISIBLE`]. True without effects.
+    /// Whether the session could show all that is true of the rig: [`shows_all`].
     pub visible: bool,
     /// What it said beside the truth.
     pub extras: Vec<String>,
@@ -90,8 +88,8 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels, promised: bool) -> Optio
             .map(|promise_n| promise_n / next_n[1].max(1e-9)),
         exact,
         honest,
-        open: named.is_empty() && left_open(&plan, &found),
-        visible: shows_all(&plan, levels)?,
+        open: said.extras(case).is_empty() && left_open(&plan, &found),
+        visible: shows_all(&plan, &simulated.marks, levels)?,
         extras: said.extras(case),
         covered: covered(&plan, &found, &reaches),
         across_zero: across_zero(verdict, &found, &reaches),
@@ -103,10 +101,11 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels, promised: bool) -> Optio
     })
 }
 
-/// Whether every true effect is left possible: told as invisible, or within the limits of its size (one of consequence
-/// where its form has another size).
+/// Whether every true effect that is not named is left possible: told as invisible, or within the limits of its size (one
+/// of consequence where its form has another size).
 fn left_open(plan: &Plan, found: &Selection) -> bool {
-    plan.effects.iter().all(|e| {
+    let is_named = |id: &str| found.effects.iter().any(|named| named.ids().contains(&id));
+    plan.effects.iter().filter(|e| !is_named(&e.id)).all(|e| {
         let hidden = found.invisible().any(|candidate| candidate.effect.id() == e.id);
         hidden
             || found.limits.iter().filter(|limit| limit.effect.id() == e.id).any(|limit| {
@@ -117,31 +116,6 @@ fn left_open(plan: &Plan, found: &Selection) -> bool {
                 }
             })
     })
-}
-
-/// Whether a session of this plan could show each of its effects. The noise is that of the same rig without them.
-fn shows_all(plan: &Plan, levels: Levels) -> Option<bool> {
-    if plan.effects.is_empty() {
-        return Some(true);
-    }
-    let quiet = Plan { effects: Vec::new(), ..plan.clone() };
-    let simulated = simulate(&quiet);
-    let rows = &simulated.rows;
-    let frame = Frame::new(rows);
-    let mut data = Observations::new(&frame, rows)?;
-    let alone = select(&Model::baseline(frame), &mut data, levels);
-    let weighed = Weighed::new(&data, alone.noise);
-    let degrees = degrees_of_freedom(&data, alone.baseline.model.values().len());
-    let readings = |effects: Vec<EffectPlan>| {
-        readings(&Plan { effects, ..quiet.clone() }, rows, &SeriesMarks::default())
-    };
-    let without = readings(Vec::new());
-    Some(plan.effects.iter().all(|effect| {
-        let with = readings(vec![effect.clone()]);
-        let change_n: Vec<f64> = with.iter().zip(&without).map(|(a, b)| a - b).collect();
-        let gain = expected_gain(&alone.baseline.model, &weighed, &change_n);
-        probability_found(gain, levels, CATALOGUE.len(), degrees) >= VISIBLE
-    }))
 }
 
 /// Root mean square of prediction minus reading, in newtons.

@@ -79,8 +79,8 @@ impl Study {
 /// The figures of one group.
 fn in_words(group: Group, outcomes: &[&CaseOutcome]) -> Vec<String> {
     let (exact, honest) = (share(outcomes, |o| o.exact), share(outcomes, |o| o.exact || o.honest));
+    let visible: Vec<&CaseOutcome> = outcomes.iter().filter(|o| o.visible).copied().collect();
     let named = |what: &str| {
-        let visible: Vec<&CaseOutcome> = outcomes.iter().filter(|o| o.visible).copied().collect();
         vec![
             format!("{what} named exactly: {exact}"),
             format!("... of those that the session could show: {}", share(&visible, |o| o.exact)),
@@ -111,6 +111,10 @@ fn in_words(group: Group, outcomes: &[&CaseOutcome]) -> Vec<String> {
         ],
         Group::Outside => vec![
             format!("outside the vocabulary, unattributed with the right covariate: {honest}"),
+            format!(
+                "... of those that the session could show beside mounts that differ: {}",
+                share(&visible, |o| o.exact || o.honest)
+            ),
             format!("outside the vocabulary, no name beside it: {exact}"),
         ],
     }

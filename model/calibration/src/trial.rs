@@ -5,9 +5,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::effects::EffectDefinition;
+use crate::effects::{Effect, EffectDefinition};
 use crate::inference::{
-    Observations, Reliability, Screen, Selection, Term, Weighed, family_p_value, fit, gain_at, jacobian,
+    Model, Observations, Reliability, Screen, Selection, Term, Weighed, coordinate_covariance,
+    family_p_value, fit, gain_at, jacobian,
 };
 use crate::report::Estimate;
 
@@ -87,17 +88,19 @@ fn trial(
         model = model.without_term(at);
     }
     let without = fit(&model, weighed);
-    let claimed = definition.parameters.iter().map(|p| p.start).collect();
-    let score =
-        Screen::new(&without, weighed).effect_at(effect, claimed).filter(|s| s.strength > LEAST_STRENGTH)?;
+    let claimed: Vec<f64> = definition.parameters.iter().map(|p| p.start).collect();
+    let score = Screen::new(&without, weighed)
+        .effect_at(effect, claimed.clone())
+        .filter(|s| s.strength > LEAST_STRENGTH)?;
     let predicted: Vec<f64> = data.force_n.iter().zip(&without.residual_n).map(|(y, r)| y - r).collect();
     let own = jacobian(&without.model, data, &predicted);
     let degrees =
         Reliability::new(data, selection.noise, &own).degrees(data, &score.trace_n, score.strength.powi(2));
-    let (start, value) = (score.size, score.size * score.share);
-    let half = gain_at(0.05, 1, degrees).sqrt() * start.abs() / score.strength;
+    let (value, sd) = size_as_claimed(&without.model, effect, &claimed, weighed)?;
+    let half = gain_at(0.05, 1, degrees).sqrt() * sd;
     let p_value = family_p_value(score.gain, 1, degrees);
     let size = definition.parameters.first()?;
+    let start = size.start;
     Some(TrialReport {
         id: definition.id.clone(),
         outcome: outcome(start, value, half, p_value),
@@ -105,6 +108,25 @@ fn trial(
         size: Estimate { value, ci95: [value - half, value + half], unit: size.unit.clone() },
         start,
     })
+}
+
+/// The first size of an effect whose shapes are held as claimed, and its standard deviation: fitted, since what friction
+/// does is in proportion to no coefficient. `None` where the fit leaves the numbers.
+fn size_as_claimed(
+    without: &Model,
+    effect: &'static dyn Effect,
+    claimed: &[f64],
+    weighed: &Weighed<'_>,
+) -> Option<(f64, f64)> {
+    let with = without.with_term(Term::Named(effect), claimed);
+    let at = with.term_offset(without.terms.len());
+    let sizes = effect.parameters().iter().filter(|p| p.bounds.is_none()).count();
+    let free: Vec<usize> = (0..at + sizes).collect();
+    let fitted = fit(&with.frozen_except(&free), weighed);
+    let (value, slope) = fitted.model.value(at);
+    let variance = coordinate_covariance(&fitted, weighed)[(at, at)];
+    let told = (value, slope.abs() * variance.max(0.0).sqrt());
+    (fitted.cost.is_finite() && told.0.is_finite() && told.1.is_finite()).then_some(told)
 }
 
 fn outcome(start: f64, value: f64, half: f64, p_value: f64) -> TrialOutcome {
@@ -138,12 +160,20 @@ mod tests {
         start: f64,
         shapes: &str,
     ) -> TrialReport {
-        let text = format!(
+        let text = file(covariate, "reading\"\ncombine = \"add", formula, start, "N") + shapes;
+        tried_in(rows, &text)
+    }
+
+    fn file(covariate: &str, acts_on: &str, formula: &str, start: f64, unit: &str) -> String {
+        format!(
             "schema = \"pinswitch.effects/1\"\n[[effect]]\nid = \"mine\"\nside = \"rig\"\ncovariate = \"{covariate}\"\n\
-             acts_on = \"reading\"\ncombine = \"add\"\nformula = \"{formula}\"\n\
-             parameters.a = {{ size = true, start = {start}, unit = \"N\" }}\n{shapes}"
-        );
-        let vocabulary = Vocabulary::built_in().read(&text, "mine.toml").unwrap();
+             acts_on = \"{acts_on}\"\nformula = \"{formula}\"\n\
+             parameters.a = {{ size = true, start = {start}, unit = \"{unit}\" }}\n"
+        )
+    }
+
+    fn tried_in(rows: &[crate::table::PlateauRow], file: &str) -> TrialReport {
+        let vocabulary = Vocabulary::built_in().read(file, "mine.toml").unwrap();
         let report = calibrate_among(rows, &vocabulary, Levels::default()).unwrap().report;
         report.trials[0].clone()
     }
@@ -160,6 +190,21 @@ mod tests {
         // The other sign is another claim, and a claim too small to see stays open.
         assert_ne!(tried(&with, -0.5).outcome, TrialOutcome::Confirmed);
         assert_eq!(tried(&session(2), 1e-4).outcome, TrialOutcome::Open);
+    }
+
+    /// Forces are in proportion to no coefficient of friction: an effect five times as large as claimed is told as large
+    /// as it is.
+    #[test]
+    fn the_size_of_a_large_effect_does_not_depend_on_the_size_claimed() {
+        let friction = |start| file("position", "mu\"\ncombine = \"factor", "a*stroke", start, "1");
+        let vocabulary = Vocabulary::built_in().read(&friction(0.5), "mine.toml").unwrap();
+        for seed in 1..=3 {
+            let rows = session_with(seed, &[(Term::Named(vocabulary.named("mine").unwrap()), &[0.5])]);
+            let [known, small] = [0.5, 0.1].map(|start| tried_in(&rows, &friction(start)));
+            let [low, high] = small.size.ci95;
+            assert!((known.size.value / small.size.value - 1.0).abs() < 0.01, "{known:?} {small:?}");
+            assert!((0.5 / small.size.value - 1.0).abs() < 0.1 && low < high, "{small:?}");
+        }
     }
 
     /// The claim is the shape that was drawn. Whether its constants may move when it is fitted is another matter: the best

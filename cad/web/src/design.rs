@@ -9,7 +9,7 @@ use pinswitch_switch::prediction::Prediction;
 use pinswitch_switch::set::Set;
 use serde::Serialize;
 
-use crate::predicted::Predicted;
+use crate::predicted::Predictions;
 use crate::request::{Asked, Quality};
 use crate::trouble::Trouble;
 use crate::values::configuration;
@@ -28,18 +28,14 @@ pub(crate) struct Shown {
 }
 
 /// The data of a design, its configuration as text, or its trouble.
-pub(crate) fn answer(kept: &mut Option<Predicted>, asked: &Asked, quality: Quality) -> Shown {
+pub(crate) fn answer(kept: &mut Predictions, asked: &Asked, quality: Quality) -> Shown {
     match shown(kept, asked, quality) {
         Ok((data, toml)) => Shown { data: Some(data), toml: Some(toml), trouble: None },
         Err(trouble) => Shown { data: None, toml: None, trouble: Some(trouble) },
     }
 }
 
-fn shown(
-    kept: &mut Option<Predicted>,
-    asked: &Asked,
-    quality: Quality,
-) -> Result<(PageData, String), Trouble> {
+fn shown(kept: &mut Predictions, asked: &Asked, quality: Quality) -> Result<(PageData, String), Trouble> {
     let exact = configuration(&asked.values)?;
     let toml = to_toml(&exact);
     let mut seen = exact;
@@ -56,12 +52,12 @@ fn shown(
 /// The parts of a configuration and the curve, by the published constants or by a calibrated model; the curve that is `kept`
 /// where it is the same.
 pub(crate) fn built(
-    kept: &mut Option<Predicted>,
+    kept: &mut Predictions,
     configuration: Configuration,
     model: Option<&str>,
 ) -> Result<(Built, Prediction), Trouble> {
     let design = Design::new(configuration)?;
-    let prediction = Predicted::of(kept, &design, model)?;
+    let prediction = kept.of(&design, model)?;
     let built = Built::new(design).map_err(|e| trouble(e.into()))?;
     Ok((built, prediction))
 }

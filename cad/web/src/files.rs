@@ -12,7 +12,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::design::{built, trouble};
-use crate::predicted::Predicted;
+use crate::predicted::Predictions;
 use crate::request::Asked;
 use crate::trouble::Trouble;
 use crate::values::configuration;
@@ -47,7 +47,7 @@ impl Engine {
 impl Made {
     /// Every file that `pinswitch generate NAME.toml --format all --out .` writes beside a `NAME.toml` with this
     /// configuration, and that file.
-    fn new(kept: &mut Option<Predicted>, design: &Asked) -> Result<Self, Trouble> {
+    fn new(kept: &mut Predictions, design: &Asked) -> Result<Self, Trouble> {
         let configuration = configuration(&design.values)?;
         let own = OutputFile::new(format!("{}.toml", configuration.switch.name), to_toml(&configuration));
         let (built, prediction) = built(kept, configuration, design.model.as_deref())?;

@@ -31,7 +31,7 @@ mod trouble;
 mod values;
 
 use files::Made;
-use predicted::Predicted;
+use predicted::Predictions;
 use request::Request;
 use serde::Serialize;
 
@@ -64,7 +64,7 @@ impl Answer {
 #[derive(Debug, Default)]
 pub struct Engine {
     made: Option<Made>,
-    predicted: Option<Predicted>,
+    predicted: Predictions,
 }
 
 impl Engine {

@@ -1,5 +1,5 @@
-//! The curve of the last design, kept: most changes of a design leave its contact as it is, and the curve takes longer than
-//! any other step.
+//! The curves of the last design, kept: most changes of a design leave its contact as it is, and a curve takes longer than
+//! any other step. There are two of them, since a page asks for a coarse curve while something moves, and for all of it after.
 
 use pinswitch_calibration::ModelFile;
 use pinswitch_friction::Contact;
@@ -12,9 +12,20 @@ use crate::trouble::Trouble;
 /// What a model dropped on the page is called in errors.
 const MODEL: &str = "the calibrated model";
 
+/// Curves that are kept.
+const KEPT: usize = 2;
+
+/// The last predictions, the latest one last.
+#[derive(Debug, Default)]
+pub(crate) struct Predictions {
+    kept: Vec<Predicted>,
+    #[cfg(test)]
+    made: usize,
+}
+
 /// A prediction with all that it was made from.
 #[derive(Debug)]
-pub(crate) struct Predicted {
+struct Predicted {
     contact: Contact,
     /// A calibrated model looks for the grooves of the rig that it was measured on.
     layout: (Vec<usize>, usize),
@@ -23,24 +34,24 @@ pub(crate) struct Predicted {
     prediction: Prediction,
 }
 
-impl Predicted {
-    /// The prediction of `design`, by the published constants or by a calibrated model: the kept one, if it was made from
+impl Predictions {
+    /// The prediction of `design`, by the published constants or by a calibrated model: a kept one, if it was made from
     /// the same.
-    pub(crate) fn of(
-        kept: &mut Option<Self>,
-        design: &Design,
-        model: Option<&str>,
-    ) -> Result<Prediction, Trouble> {
+    pub(crate) fn of(&mut self, design: &Design, model: Option<&str>) -> Result<Prediction, Trouble> {
         let configuration = design.configuration();
         let layout = (configuration.layout.pins.clone(), configuration.segment.grooves);
         let loads_n = loads_n(design);
-        if let Some(kept) = kept.as_ref().filter(|kept| {
+        let is_same = |kept: &Predicted| {
             kept.contact == *design.contact()
                 && kept.layout == layout
                 && kept.loads_n == loads_n
                 && kept.model.as_deref() == model
-        }) {
-            return Ok(kept.prediction.clone());
+        };
+        if let Some(at) = self.kept.iter().position(is_same) {
+            let kept = self.kept.remove(at);
+            let prediction = kept.prediction.clone();
+            self.kept.push(kept);
+            return Ok(prediction);
         }
         let prediction = match model {
             Some(text) => {
@@ -50,7 +61,14 @@ impl Predicted {
             }
             None => Prediction::of(design),
         };
-        *kept = Some(Self {
+        #[cfg(test)]
+        {
+            self.made += 1;
+        }
+        if self.kept.len() == KEPT {
+            self.kept.remove(0);
+        }
+        self.kept.push(Predicted {
             contact: design.contact().clone(),
             layout,
             loads_n,
@@ -75,8 +93,8 @@ mod tests {
             assign(&mut c, "friction.points=3").unwrap();
             c
         };
-        let mut kept = None;
-        Predicted::of(&mut kept, &Design::new(base()).unwrap(), None).unwrap();
+        let mut kept = Predictions::default();
+        kept.of(&Design::new(base()).unwrap(), None).unwrap();
         let (mut same, mut other) = (0, 0);
         for parameter in Configuration::PARAMETERS {
             let value = (parameter.get)(&base()).to_string();
@@ -88,13 +106,38 @@ mod tests {
                 }
                 let Ok(design) = Design::new(changed) else { continue };
                 let fresh = Prediction::of(&design);
-                let before = kept.as_ref().map(|k| k.prediction.curve.clone());
-                let told = Predicted::of(&mut kept, &design, None).unwrap();
+                let before = kept.made;
+                let told = kept.of(&design, None).unwrap();
                 assert_eq!(told.curve, fresh.curve, "{} = {new}", parameter.path());
                 assert_eq!(told.others, fresh.others, "{} = {new}", parameter.path());
-                *(if before.as_ref() == Some(&told.curve) { &mut same } else { &mut other }) += 1;
+                *(if before == kept.made { &mut same } else { &mut other }) += 1;
             }
         }
-        assert!(same > 40 && other > 10, "{same} left the curve as it was, {other} did not");
+        assert!(same > 40 && other > 10, "{same} took a kept curve, {other} were made");
+    }
+
+    /// As a page asks: coarse while something moves, exact after, and coarse again.
+    #[test]
+    fn coarse_and_exact_curves_do_not_drive_each_other_out() {
+        let design = |points: u32, wall: &str| {
+            let mut c = Configuration::default();
+            assign(&mut c, &format!("friction.points={points}")).unwrap();
+            assign(&mut c, &format!("shell.wall_mm={wall}")).unwrap();
+            Design::new(c).unwrap()
+        };
+        let mut kept = Predictions::default();
+        for wall in ["6.0", "6.5", "7.0"] {
+            for points in [5, 11, 5] {
+                let told = kept.of(&design(points, wall), None).unwrap();
+                assert_eq!(told.curve, Prediction::of(&design(points, wall)).curve);
+            }
+        }
+        assert_eq!(kept.made, 2);
+        let mut pins = Configuration::default();
+        assign(&mut pins, "layout.pins=[4, 10]").unwrap();
+        assign(&mut pins, "friction.points=5").unwrap();
+        let pins = Design::new(pins).unwrap();
+        assert_eq!(kept.of(&pins, None).unwrap().curve, Prediction::of(&pins).curve);
+        assert_eq!((kept.made, kept.kept.len()), (3, KEPT));
     }
 }

@@ -96,7 +96,13 @@ fn trial(
     let own = jacobian(&without.model, data, &predicted);
     let degrees =
         Reliability::new(data, selection.noise, &own).degrees(data, &score.trace_n, score.strength.powi(2));
-    let (value, sd) = size_as_claimed(&without.model, effect, &claimed, weighed)?;
+    let sizes = definition.parameters.iter().filter(|p| p.bounds.is_none()).count();
+    let (value, sd) = if sizes == 1 {
+        size_as_claimed(&without.model, effect, &claimed, weighed)?
+    } else {
+        // Of several sizes the claim is their ratio, too: one factor for all, to first order.
+        (score.size * score.share, score.size.abs() / score.strength)
+    };
     let half = gain_at(0.05, 1, degrees).sqrt() * sd;
     let p_value = family_p_value(score.gain, 1, degrees);
     let size = definition.parameters.first()?;
@@ -110,8 +116,8 @@ fn trial(
     })
 }
 
-/// The first size of an effect whose shapes are held as claimed, and its standard deviation: fitted, since what friction
-/// does is in proportion to no coefficient. `None` where the fit leaves the numbers.
+/// The one size of an effect whose shapes are held as claimed, and its standard deviation: fitted, since what friction
+/// does is in proportion to no coefficient. `None` where the fit leaves the numbers, or the table does not know the size.
 fn size_as_claimed(
     without: &Model,
     effect: &'static dyn Effect,
@@ -120,13 +126,12 @@ fn size_as_claimed(
 ) -> Option<(f64, f64)> {
     let with = without.with_term(Term::Named(effect), claimed);
     let at = with.term_offset(without.terms.len());
-    let sizes = effect.parameters().iter().filter(|p| p.bounds.is_none()).count();
-    let free: Vec<usize> = (0..at + sizes).collect();
+    let free: Vec<usize> = (0..=at).collect();
     let fitted = fit(&with.frozen_except(&free), weighed);
     let (value, slope) = fitted.model.value(at);
     let variance = coordinate_covariance(&fitted, weighed)[(at, at)];
-    let told = (value, slope.abs() * variance.max(0.0).sqrt());
-    (fitted.cost.is_finite() && told.0.is_finite() && told.1.is_finite()).then_some(told)
+    let is_known = fitted.cost.is_finite() && value.is_finite() && variance.is_finite() && variance > 0.0;
+    is_known.then(|| (value, slope.abs() * variance.sqrt()))
 }
 
 fn outcome(start: f64, value: f64, half: f64, p_value: f64) -> TrialOutcome {
@@ -205,6 +210,24 @@ mod tests {
             assert!((known.size.value / small.size.value - 1.0).abs() < 0.01, "{known:?} {small:?}");
             assert!((0.5 / small.size.value - 1.0).abs() < 0.1 && low < high, "{small:?}");
         }
+    }
+
+    /// What the table cannot show of an effect is not confirmed by what it shows of the rest.
+    #[test]
+    fn several_sizes_are_tried_in_the_ratio_that_was_claimed() {
+        let text = |a: f64, b: f64| {
+            file("position", "reading\"\ncombine = \"add", "a*ln(dwell_s/3) + b*(stroke - 0.5)", a, "N")
+                + &format!("parameters.b = {{ size = true, start = {b}, unit = \"N\" }}\n")
+        };
+        let vocabulary = Vocabulary::built_in().read(&text(0.1, 0.4), "mine.toml").unwrap();
+        let rows = session_with(1, &[(Term::Named(vocabulary.named("mine").unwrap()), &[0.0, 0.4])]);
+        let there = tried_in(&rows, &text(0.1, 0.4));
+        assert_eq!(there.outcome, TrialOutcome::Confirmed, "{there:?}");
+        // One factor for both sizes: the interval is that of the factor, and no wider than the size.
+        let [low, high] = there.size.ci95;
+        assert!(low < 0.1 && 0.1 < high && high - low < 0.05, "{there:?}");
+        let other_way = tried_in(&rows, &text(0.1, -0.4));
+        assert_ne!(other_way.outcome, TrialOutcome::Confirmed, "{other_way:?}");
     }
 
     /// The claim is the shape that was drawn. Whether its constants may move when it is fitted is another matter: the best

@@ -1,14 +1,9 @@
 //! Marks on the outer faces of the supports, which stay visible: which side it is, which layout, where groove 1 is and
 //! where the load pulls (cad/doc/dimensions.md, "Label").
 
-use super::label::{
-    EDGE_MM, Engraving, SAME_MM, Zone, broken, engrave_below, largest_mm, left_out, sizes_mm,
-};
+use super::label::{EDGE_MM, Engraving, SAME_MM, Zone, engrave_below, largest_mm, left_out, sizes_mm};
 use crate::design::Design;
 use pinswitch_solid::solid::Solid;
-
-/// Pieces of the text of one row, with the zone of each.
-type Row = Vec<(String, Zone)>;
 
 /// Engraves the marks of a support into its face on the bed.
 pub(super) fn engrave_marks(solid: &mut Solid, design: &Design, is_right: bool) -> Engraving {
@@ -24,28 +19,28 @@ pub(super) fn engrave_marks(solid: &mut Solid, design: &Design, is_right: bool) 
     }
     let label = design.label();
     let wanted = row_sets(side, &label, is_right);
-    let is_whole = |rows: &&Vec<String>| rows.concat().contains(&label);
-    // A label that runs on behind a hole is better than none.
-    let in_one = |rows: &Vec<String>| fitted(design, rows, in_one_piece);
-    let in_pieces = |rows: &Vec<String>| fitted(design, rows, in_several_pieces);
-    let Some((rows, (size, laid))) = find(wanted.iter().filter(is_whole), in_one)
-        .or_else(|| find(wanted.iter().filter(is_whole), in_pieces))
-        .or_else(|| find(wanted.iter(), in_one))
-    else {
+    let Some((rows, (size, laid))) = chosen_rows(design, &wanted, &label) else {
         return Engraving::none(Some(left_out(side)));
     };
-    let pieces = laid.iter().flatten();
-    let rings = pieces.flat_map(|(text, zone)| engrave_below(solid, design, text, zone, size)).collect();
-    let note = (!is_whole(&rows)).then(|| left_out(&label));
+    let placed = rows.iter().zip(&laid);
+    let rings = placed.flat_map(|(text, zone)| engrave_below(solid, design, text, zone, size)).collect();
+    let note = (!has_label(rows, &label)).then(|| left_out(&label));
     Engraving { rings, note, lines: rows.clone() }
 }
 
-/// The first of the sets that can be laid out, with how.
-fn find<'a, T>(
-    mut sets: impl Iterator<Item = &'a Vec<String>>,
-    lay: impl Fn(&Vec<String>) -> Option<T>,
-) -> Option<(&'a Vec<String>, T)> {
-    sets.find_map(|rows| Some((rows, lay(rows)?)))
+fn has_label(rows: &[String], label: &str) -> bool {
+    rows.iter().any(|row| row.contains(label))
+}
+
+/// The fullest of the sets that can be laid out, with the label if one can, and how.
+fn chosen_rows<'a>(
+    design: &Design,
+    wanted: &'a [Vec<String>],
+    label: &str,
+) -> Option<(&'a Vec<String>, (f64, Vec<Zone>))> {
+    let lay = |rows: &'a Vec<String>| Some((rows, fitted(design, rows)?));
+    let labelled = wanted.iter().filter(|rows| has_label(rows, label));
+    labelled.chain(wanted).find_map(lay)
 }
 
 /// Rows from the outside inward, the fullest set first. Groove 1 is on the load's side, to which the arrow points: seen
@@ -67,13 +62,8 @@ fn row_sets(side: &str, label: &str, is_right: bool) -> Vec<Vec<String>> {
     ]
 }
 
-/// The largest letters in which all rows fit below each other, with the pieces of each as `lay` puts them into the zones
-/// between the holes.
-fn fitted(
-    design: &Design,
-    rows: &[String],
-    lay: impl Fn(&Design, &str, &[Zone], f64) -> Option<Row>,
-) -> Option<(f64, Vec<Row>)> {
+/// The largest letters in which all rows fit below each other, each between two holes; with the zone of each.
+fn fitted(design: &Design, rows: &[String]) -> Option<(f64, Vec<Zone>)> {
     let stroke = design.configuration().label.stroke_mm;
     let (inner, outer) = (design.inner_radius_mm(), design.slot().inner_edge_mm());
     let reach = design.fastener_along_mm();
@@ -83,28 +73,13 @@ fn fitted(
         let laid = |(i, row): (usize, &String)| {
             let top = outer - i as f64 * pitch;
             let bottom = top - pitch - EDGE_MM;
-            (bottom > inner).then(|| Zone::between_holes(design, reach, bottom, top)).and_then(|mut zones| {
-                // Read from below, the right is on the left.
-                zones.reverse();
-                lay(design, row, &zones, size)
-            })
+            let zones = (bottom > inner).then(|| Zone::between_holes(design, reach, bottom, top))?;
+            let zone = Zone::widest(&zones)?;
+            largest_mm(design, row, &zone).is_some_and(|largest| largest >= size - SAME_MM).then_some(zone)
         };
-        let laid: Option<Vec<Row>> = rows.iter().enumerate().map(laid).collect();
+        let laid: Option<Vec<Zone>> = rows.iter().enumerate().map(laid).collect();
         Some((size, laid?))
     })
-}
-
-/// The text in the widest zone.
-fn in_one_piece(design: &Design, text: &str, zones: &[Zone], size_mm: f64) -> Option<Row> {
-    let zones: Vec<Zone> = zones.iter().rev().copied().collect();
-    let zone = Zone::widest(&zones)?;
-    let fits = largest_mm(design, text, &zone).is_some_and(|largest| largest >= size_mm - SAME_MM);
-    fits.then(|| vec![(text.to_owned(), zone)])
-}
-
-/// The text in one zone, or from one zone to the next.
-fn in_several_pieces(design: &Design, text: &str, zones: &[Zone], size_mm: f64) -> Option<Row> {
-    in_one_piece(design, text, zones, size_mm).or_else(|| broken(design, text, zones, size_mm))
 }
 
 #[cfg(test)]
@@ -117,8 +92,8 @@ mod tests {
         assignments.iter().for_each(|a| assign(&mut c, a).unwrap());
         let design = Design::new(c).unwrap();
         let side = if is_right { "R" } else { "L" };
-        let sets = row_sets(side, &design.label(), is_right);
-        sets.into_iter().find(|rows| fitted(&design, rows, in_one_piece).is_some())
+        let (label, sets) = (design.label(), row_sets(side, &design.label(), is_right));
+        Some(chosen_rows(&design, &sets, &label)?.0.clone())
     }
 
     #[test]

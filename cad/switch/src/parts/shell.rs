@@ -94,6 +94,7 @@ mod tests {
     use super::*;
     use crate::built::Built;
     use crate::config::{Configuration, assign};
+    use crate::parts::label::{broken, sizes_mm};
 
     /// Wide holes leave no stretch of the wall for the whole label: it goes on two lines, whose letters leave walls.
     #[test]
@@ -110,6 +111,9 @@ mod tests {
         let design = Design::new(c).unwrap();
         let [one, two] = label_zones(&design);
         assert!(one.len() == 3 && two.len() >= 4, "{one:?}, {two:?}");
+        let laid = |zones: &[Zone]| sizes_mm(&design).find_map(|mm| broken(&design, "3x3/5", zones, mm));
+        assert!(laid(&one).is_none(), "no size of letters stands on one line");
+        assert!(laid(&two).is_some_and(|pieces| pieces.len() > 1));
         let part = shell(&design).unwrap();
         assert_eq!(part.engraved, ["3x3/5"]);
         assert_eq!(part.notes, Vec::<String>::new());

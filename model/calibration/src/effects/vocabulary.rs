@@ -117,4 +117,12 @@ impl Vocabulary {
     pub fn count(&self) -> usize {
         self.acting.len()
     }
+
+    /// How many candidates a search tries: one of one's own counts once for each place that its shapes are tried at, since
+    /// the best of many places gains more by chance than one. The built-in ones count once; what chance makes of them and
+    /// their shapes is held against rigs without effect (`model/doc/calibration.md`).
+    pub fn tries(&self) -> usize {
+        let places: usize = self.own().map(|own| own.starts().len()).sum();
+        self.count() - self.own.len() + places
+    }
 }

@@ -201,7 +201,10 @@ impl Agenda {
             let left = Projected::new(&information, &base);
             let share = left.covariance(other, column) / left.covariance(other, other).max(1e-12);
             let with_other: Vec<usize> = base.iter().copied().chain([other]).collect();
-            let sure = surely(&found.parameters);
+            let sure = match &model.terms[term] {
+                Term::Named(effect) => surely(*effect, &found.parameters),
+                Term::Structure(_) => 1.0,
+            };
             let ways = vec![
                 Way { truth: column, size: sure, nuisance: with_other },
                 Way {
@@ -245,7 +248,7 @@ impl Agenda {
             self.traces.push(trace);
             self.effects.push(effect);
             self.ahead.push(column);
-            self.ask_whether(effect.id(), column, surely(&form.parameters), &base, 1.0);
+            self.ask_whether(effect.id(), column, surely(effect, &form.parameters), &base, 1.0);
         }
     }
 
@@ -299,10 +302,29 @@ impl Agenda {
 
 /// Share of an effect's estimated size that is there with a probability of five in six: a plan must not stand on a size
 /// that was overestimated.
-fn surely(parameters: &BTreeMap<String, Estimate>) -> f64 {
-    let size = parameters.values().find(|p| p.value.abs() > 0.0);
-    size.map_or(1.0, |p| {
+fn surely(effect: &dyn Effect, parameters: &BTreeMap<String, Estimate>) -> f64 {
+    let size = effect.parameters().first().and_then(|size| parameters.get(size.name));
+    size.filter(|p| p.value.abs() > 0.0).map_or(1.0, |p| {
         let sd = (p.ci95[1] - p.ci95[0]).abs() / (2.0 * 1.96);
         (1.0 - sd / p.value.abs()).clamp(0.5, 1.0)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::effect_named;
+
+    #[test]
+    fn it_is_the_size_that_must_be_sure_and_no_shape() {
+        let of = |value: f64, half: f64| Estimate {
+            value,
+            ci95: [value - half, value + half],
+            unit: "1".to_owned(),
+        };
+        let saturation = effect_named("substrate_saturation").unwrap();
+        let told = |k, h| surely(saturation, &BTreeMap::from([("k".to_owned(), k), ("h".to_owned(), h)]));
+        assert!(told(of(0.15, 0.015), of(0.5, 5.0)) > 0.94);
+        assert!(told(of(0.15, 0.3), of(0.5, 0.01)) <= 0.5);
+    }
 }

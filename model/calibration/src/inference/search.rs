@@ -72,14 +72,14 @@ fn is_beyond_chance(
     let own = jacobian(&from.model, data, &predicted);
     let degrees =
         Reliability::new(data, weighed.noise, &own).degrees(data, &score.trace_n, score.strength.powi(2));
-    family_p_value(gain, from.model.vocabulary.count(), degrees) <= levels.first_p
+    family_p_value(gain, from.model.vocabulary.tries(), degrees) <= levels.first_p
 }
 
 /// Adds named effects while each gains enough, then drops and exchanges.
 pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit {
     let mut current = start.clone();
     let degrees = degrees_of_freedom(weighed.data, start.model.coordinates.len());
-    let first = gain_at(levels.first_p, start.model.vocabulary.count(), degrees);
+    let first = gain_at(levels.first_p, start.model.vocabulary.tries(), degrees);
     let scores = Screen::new(start, weighed).effects();
     let strongest = scores.iter().map(|s| s.gain).fold(0.0, f64::max);
     // A weak candidate that a few series carry alone is no effect, whatever the noise model says. With few series

@@ -27,10 +27,21 @@ pub(crate) struct StructureScore {
     pub(crate) group: Group,
     /// Sizes to first order.
     pub(crate) sizes: Vec<f64>,
-    /// Gain in whitened squares to first order, less the penalty of a wave.
+    /// Gain in whitened squares to first order, less the penalty.
     pub(crate) gain: f64,
     /// Contributions of the series to the score of the group's best direction; their squared sum is the gain.
     pub(crate) by_series: Vec<f64>,
+}
+
+impl StructureScore {
+    /// What its gain is reduced by: a wave pays for two sizes and a free frequency, a stretch of time for its ends.
+    pub(super) fn penalty(&self) -> f64 {
+        match self.group.as_slice() {
+            [Structure { form: Shape::TimeWindow { .. }, .. }] => WINDOW_PENALTY,
+            [_] => 0.0,
+            _ => WAVE_PENALTY,
+        }
+    }
 }
 
 /// Inner products of one or two visible columns with each other and with the residual.

@@ -21,7 +21,7 @@ const REPLACED_SHARE: f64 = 0.15;
 pub struct FoundStructure {
     /// Where it lies.
     pub covariate: Covariate,
-    /// What its first shape gains, in whitened squares.
+    /// What its first shape gains, in whitened squares, less what its free ends or frequency gain by chance.
     pub gain: f64,
 }
 
@@ -89,7 +89,7 @@ impl Context<'_> {
         let gain = found.cost - with.cost;
         (gain > least).then(|| {
             let pruned = prune(with, self.weighed, self.levels.further, 0);
-            (pruned, FoundStructure { covariate: score.group[0].covariate, gain })
+            (pruned, FoundStructure { covariate: score.group[0].covariate, gain: gain - score.penalty() })
         })
     }
 
@@ -116,7 +116,10 @@ impl Context<'_> {
         let extended = search(&with, weighed, levels);
         let pruned = prune(extended, weighed, levels.further, 0);
         if so_far.as_ref().is_none_or(|(b, _)| penalty(&pruned) < penalty(b)) {
-            Some((pruned, FoundStructure { covariate: score.group[0].covariate, gain }))
+            Some((
+                pruned,
+                FoundStructure { covariate: score.group[0].covariate, gain: gain - score.penalty() },
+            ))
         } else {
             so_far
         }
@@ -204,7 +207,7 @@ mod tests {
         assert!(context.on_top_of(&baseline, best, best.gain + 1.0).is_none());
         let (with, structure) = context.on_top_of(&baseline, best, 0.5 * best.gain).unwrap();
         assert_eq!(structure.covariate, best.group[0].covariate);
-        assert!((baseline.cost - with.cost - structure.gain).abs() < 1e-9);
+        assert!((baseline.cost - with.cost - best.penalty() - structure.gain).abs() < 1e-9);
         let (kept, none) = context.with_unnamed(&baseline, baseline.clone(), &scores, 0.0);
         assert!(none.is_none() && kept.model.terms.is_empty(), "noise alone is no structure");
     }

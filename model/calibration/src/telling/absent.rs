@@ -78,7 +78,7 @@ pub(super) fn candidates(selection: &Selection, data: &Observations, levels: Lev
         .iter()
         .map(|candidate| {
             let p_value =
-                family_p_value(candidate.gain, selection.baseline.model.vocabulary.count(), degrees);
+                family_p_value(candidate.gain, selection.baseline.model.vocabulary.tries(), degrees);
             CandidateReport {
                 id: candidate.effect.id().to_owned(),
                 gain: candidate.gain.max(0.0),

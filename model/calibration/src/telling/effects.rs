@@ -37,7 +37,7 @@ fn named_report(
         covariate: told.covariate.as_str().to_owned(),
         side: Some(told.side.as_str().to_owned()),
         formula: found.effect.cited_formula(),
-        p_value: family_p_value(found.gain, selection.baseline.model.vocabulary.count(), degrees),
+        p_value: family_p_value(found.gain, selection.baseline.model.vocabulary.tries(), degrees),
         parameters: told
             .parameters
             .iter()

@@ -85,6 +85,28 @@ impl OwnEffect {
         &self.definition
     }
 
+    /// The start, and the same with the shapes elsewhere within their bounds: a formula that is not linear in a shape must
+    /// not be missed because its fit began on the wrong side.
+    pub(super) fn starts(&self) -> Vec<Vec<f64>> {
+        let parameters = &self.definition.parameters;
+        let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
+        let mut all = vec![start.clone()];
+        let shapes: Vec<(usize, (f64, f64))> =
+            parameters.iter().enumerate().filter_map(|(i, p)| Some((i, p.bounds?))).collect();
+        // All places of two shapes together; of more, one at a time.
+        for (nth, (i, bounds)) in shapes.iter().enumerate() {
+            let before = if shapes.len() == 2 && nth == 1 { all.clone() } else { vec![start.clone()] };
+            for from in before {
+                for share in PLACES {
+                    let mut moved = from.clone();
+                    moved[*i] = between(*bounds, share);
+                    all.push(moved);
+                }
+            }
+        }
+        all
+    }
+
     /// The effect for as long as the program runs: descriptions are shared freely by reference, so that those made while it
     /// runs are never freed. What they take is bounded by the size of the files read.
     pub(super) fn leaked(self) -> &'static LeakedEffect {
@@ -189,26 +211,8 @@ impl Effect for LeakedEffect {
         self.description
     }
 
-    /// The start, and the same with the shapes elsewhere within their bounds: a formula that is not linear in a shape must
-    /// not be missed because its fit began on the wrong side.
     fn starts(&self, _frame: &Frame) -> Vec<Vec<f64>> {
-        let parameters = &self.own.definition.parameters;
-        let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
-        let mut all = vec![start.clone()];
-        let shapes: Vec<(usize, (f64, f64))> =
-            parameters.iter().enumerate().filter_map(|(i, p)| Some((i, p.bounds?))).collect();
-        // All places of two shapes together; of more, one at a time.
-        for (nth, (i, bounds)) in shapes.iter().enumerate() {
-            let before = if shapes.len() == 2 && nth == 1 { all.clone() } else { vec![start.clone()] };
-            for from in before {
-                for share in PLACES {
-                    let mut moved = from.clone();
-                    moved[*i] = between(*bounds, share);
-                    all.push(moved);
-                }
-            }
-        }
-        all
+        self.own.starts()
     }
 
     fn on_contact(&self, k: &[f64], point: &Point, condition: &Condition, state: &mut ContactState) {

@@ -5,6 +5,9 @@ use super::label::{EDGE_MM, Engraving, SAME_MM, Zone, engrave_below, largest_mm,
 use crate::design::Design;
 use pinswitch_solid::solid::Solid;
 
+/// Height of all letters in millimetres, and the zone of each row.
+type Laid = (f64, Vec<Zone>);
+
 /// Engraves the marks of a support into its face on the bed.
 pub(super) fn engrave_marks(solid: &mut Solid, design: &Design, is_right: bool) -> Engraving {
     let c = design.configuration();
@@ -37,7 +40,7 @@ fn chosen_rows<'a>(
     design: &Design,
     wanted: &'a [Vec<String>],
     label: &str,
-) -> Option<(&'a Vec<String>, (f64, Vec<Zone>))> {
+) -> Option<(&'a Vec<String>, Laid)> {
     let lay = |rows: &'a Vec<String>| Some((rows, fitted(design, rows)?));
     let labelled = wanted.iter().filter(|rows| has_label(rows, label));
     labelled.chain(wanted).find_map(lay)
@@ -63,7 +66,7 @@ fn row_sets(side: &str, label: &str, is_right: bool) -> Vec<Vec<String>> {
 }
 
 /// The largest letters in which all rows fit below each other, each between two holes; with the zone of each.
-fn fitted(design: &Design, rows: &[String]) -> Option<(f64, Vec<Zone>)> {
+fn fitted(design: &Design, rows: &[String]) -> Option<Laid> {
     let stroke = design.configuration().label.stroke_mm;
     let (inner, outer) = (design.inner_radius_mm(), design.slot().inner_edge_mm());
     let reach = design.fastener_along_mm();

@@ -35,7 +35,9 @@ pub struct CaseOutcome {
     /// Whether it said nothing beside the truth and left every true effect possible that it did not name: within its
     /// limits, or told as one that the session cannot show.
     pub open: bool,
-    /// Whether the session could show all that is true of the rig: [`shows_all`].
+    /// Whether the session could show all that is true of the rig: generalised least squares, told the noise, would find
+    /// each effect beside the others, and a disturbance beside mounts that differ, with a probability of at least
+    /// [`VISIBLE`](pinswitch_calibration::inference::VISIBLE).
     pub visible: bool,
     /// What it said beside the truth.
     pub extras: Vec<String>,

@@ -32,6 +32,12 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
     done(path, &["-q", "experiment", "calibration", "--minutes", "60", "--out", "again"]);
     let bytes = |name: &str| std::fs::read(path.join(name)).unwrap();
     assert_eq!(bytes("next/next-runs.csv"), bytes("again/next-runs.csv"));
+    // A cell that no load fits is no want of minutes.
+    std::fs::write(path.join("tiny.toml"), "cell_limit_n = 0.1\n").unwrap();
+    let (code, said) =
+        ended(path, &["-q", "experiment", "calibration", "--rig", "tiny.toml", "--out", "none"]);
+    assert!(code == Some(2) && said.contains("tiny.toml: cell_limit_n = 0.1: at every load"), "{said}");
+    assert!(!said.contains("minutes") && !path.join("none").exists(), "{said}");
     let runs = ["--runs", "next/next-runs.csv"];
     done(
         path,

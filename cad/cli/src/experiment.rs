@@ -77,6 +77,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Known { report: &report, model: &model, rows: &table.rows, vocabulary: &vocabulary, name: &name };
     let proposal = propose(known, &rig, arguments.minutes, Levels::default()).map_err(|e| match e {
         ExperimentError::NoTime { .. } => Failure::bad_input(format!("--minutes: {e}")),
+        ExperimentError::CellTooSmall { .. } => {
+            let file = arguments.rig.as_ref().map_or_else(String::new, |rig| format!("{}: ", rig.display()));
+            Failure::bad_input(format!("{file}{e}"))
+        }
         other => Failure::bad_input(other),
     })?;
     let mut json = serde_json::to_vec_pretty(&proposal).map_err(Failure::failed)?;

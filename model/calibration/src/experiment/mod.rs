@@ -85,6 +85,14 @@ pub enum ExperimentError {
     /// Rows and model are not of one calibration.
     #[error("{0}: its rows are not those that model.toml was fitted to; calibrate again")]
     Rows(String),
+    /// No run is possible at any length.
+    #[error(
+        "cell_limit_n = {limit_n}: at every load, on every layout of the rig, the cell would read more than it, less a tenth to spare; raise it, or list lighter weights"
+    )]
+    CellTooSmall {
+        /// Force at which the rig's cell ends, in newtons.
+        limit_n: f64,
+    },
     /// Not one run fits.
     #[error(
         "no run fits into {minutes} minutes on this rig, the shortest takes {shortest:.1}; give more --minutes, or mend rig.toml"
@@ -115,7 +123,7 @@ pub struct Known<'a> {
 /// Proposes runs of at most so many minutes. What is asked of them is empty if the report leaves nothing open.
 ///
 /// # Errors
-/// [`ExperimentError`] if report, model and rows do not belong together, or there is no time for a single run.
+/// [`ExperimentError`] if report, model and rows do not belong together, or a single run does not fit the cell or the time.
 pub fn propose(
     known: Known<'_>,
     rig: &RigLimits,
@@ -136,6 +144,9 @@ pub fn propose(
     let design = Design { model: &model, noise, traces: &agenda.traces };
     let data = agenda.before(of_rows(&agenda.traces).ok_or_else(foreign)?);
     let all = candidates(&model, rig, &agenda);
+    if all.is_empty() {
+        return Err(ExperimentError::CellTooSmall { limit_n: rig.cell_limit_n });
+    }
     let shortest = all.iter().map(|c| c.minutes(std::iter::empty(), rig)).fold(f64::INFINITY, f64::min);
     if shortest > minutes {
         return Err(ExperimentError::NoTime { minutes, shortest });

@@ -2,6 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use pinswitch_solid::files::BED_EDGE_MM;
+
 use crate::config::{Configuration, SlotKind, Slots};
 
 /// Grid to which pins are cut, mm.
@@ -99,6 +101,13 @@ impl Dimensions {
     /// How far the ends of shell and supports lie outside the radial planes of the span.
     pub fn shell_end_shift_mm(&self) -> f64 {
         self.configuration.segment.end_margin_mm + self.stop_reach_mm()
+    }
+
+    /// Side of a print bed below which there is no use in asking whether the parts fit: the chord of the shell's outer face
+    /// and the free edges. Every part but the coupon is longer than that.
+    pub fn least_bed_mm(&self) -> f64 {
+        let half = self.half_span_rad().min(FRAC_PI_2);
+        2.0 * self.configuration.shell.outer_radius_mm * libm::sin(half) + 2.0 * BED_EDGE_MM
     }
 
     /// Angles of all groove centres, ascending.

@@ -207,6 +207,7 @@ impl<'a> Trial<'a> {
         let mut on_silicone = configuration.clone();
         on_silicone.layout.substrate = Substrate::Silicone;
         is_accepted(on_silicone)
+            && lacking_bed_mm(configuration).is_none()
             && (self.has_soft_sizes
                 || self.sizes(configuration).into_iter().all(|(_, size, most)| size <= most + 1e-9))
     }
@@ -218,6 +219,10 @@ impl<'a> Trial<'a> {
         if let Err(e) = Design::new(on_silicone) {
             return Some(e.to_string());
         }
+        if let Some(needed_mm) = lacking_bed_mm(configuration) {
+            let bed_mm = configuration.print.bed_mm;
+            return Some(format!("print.bed_mm = {bed_mm} mm: the shell alone needs {needed_mm:.1} mm"));
+        }
         if self.has_soft_sizes {
             return None;
         }
@@ -228,6 +233,13 @@ impl<'a> Trial<'a> {
             format!("{field} = {most} mm: {what} {size:.2} mm")
         })
     }
+}
+
+/// The bed that the shell needs, where it has none so large. Whether all parts fit is asked of what is proposed, since it
+/// takes longer than a step of a search may.
+fn lacking_bed_mm(c: &Configuration) -> Option<f64> {
+    let needed_mm = Dimensions::new(c.clone()).least_bed_mm();
+    (needed_mm > c.print.bed_mm).then_some(needed_mm)
 }
 
 /// Width of the assembled switch: the shell between its two supports.

@@ -14,6 +14,7 @@ use super::sensitivity::{Sensitivity, sensitivities};
 use crate::ask::{Parameter, Quantity, Target};
 use crate::config::Configuration;
 use crate::design::Design;
+use crate::parts::can_be_printed;
 
 /// One target and what the proposal has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -72,7 +73,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
     let mut configuration = configuration.clone();
     configuration.layout.substrate = pinswitch_friction::Substrate::Silicone;
     configuration.layout.pins.sort_unstable();
-    let design = Design::new(configuration.clone()).ok()?;
+    let design = Design::new(configuration.clone()).ok().filter(can_be_printed)?;
     let part = trial.part(&configuration)?;
     let curve = trial.belief.curve(&part, &trial.loads_n, &vec![0.0; trial.belief.constants()])?;
     let settled = trial.settled(&part, &curve);

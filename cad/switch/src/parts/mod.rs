@@ -25,6 +25,7 @@ use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Contour, OffsetError, polar};
 use pinswitch_solid::solid::Solid;
 
+pub(crate) use bed::can_be_printed;
 pub use bed::fit_on_bed;
 pub(crate) use label::left_out;
 pub use layer::silicone_layer;

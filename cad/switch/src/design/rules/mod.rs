@@ -14,6 +14,7 @@ mod support;
 use super::Dimensions;
 use crate::config::{ConfigError, Configuration};
 
+pub(crate) use remedy::ways_out;
 pub use remedy::{Change, Remedy};
 
 /// What chamfers on both sides leave of a wall on the bed.

@@ -6,7 +6,6 @@ use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, requi
 use crate::config::MouldKind;
 use crate::parts::{keys, tray};
 use pinswitch_friction::Substrate;
-use pinswitch_solid::files::BED_EDGE_MM;
 
 /// Largest shift of a sector's ends, as a share of its inner radius: beyond it they miss the circle.
 const LARGEST_SHIFT: f64 = 0.9;
@@ -24,7 +23,6 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "mould.key_diameter_mm", severity: Severity::Error, assess: keys_apart },
     Rule { field: "mould.key_height_mm", severity: Severity::Error, assess: keys_in_ring },
     Rule { field: "mould.layers", severity: Severity::Error, assess: gang_in_one_piece },
-    Rule { field: "mould.layers", severity: Severity::Error, assess: gang_on_bed },
     Rule { field: "mould.draft_deg", severity: Severity::Warning, assess: draft_without_basin },
     Rule { field: "friction.load_min_n", severity: Severity::Error, assess: load_range },
 ];
@@ -186,38 +184,6 @@ fn gang_in_one_piece(i: &Inspection<'_>) -> Assessment {
         (
             format!("asks for {} layers at once, which only the one-piece mould casts", c.mould.layers),
             &[Lower("mould.layers"), Set("mould.kind", "\"one-piece\"")],
-        )
-    })
-}
-
-/// Sides of the block for a gang, mm, from above.
-fn gang_sides_mm(i: &Inspection<'_>) -> [f64; 2] {
-    let c = i.configuration();
-    let scale = 1.0 / (1.0 - c.mould.shrinkage_pct / 100.0);
-    let around = tray::around_mm(&c.mould);
-    let (outer, half) = (i.contact_radius_mm() * scale + around, i.half_span_rad());
-    let at_end = c.segment.end_margin_mm * scale + around;
-    let more = c.mould.layers as f64 - 1.0;
-    let wide = 2.0 * outer * libm::sin(half.min(std::f64::consts::FRAC_PI_2)) + 2.0 * at_end;
-    let tall = outer - (c.shell.outer_radius_mm * scale - around) * libm::cos(half) + at_end;
-    let thick = c.silicone.thickness_mm * scale + 2.0 * around;
-    if i.gang_nests() {
-        [wide, tall + more * (thick / libm::cos(half)).min(tall)]
-    } else {
-        [wide + more * wide, tall]
-    }
-}
-
-fn gang_on_bed(i: &Inspection<'_>) -> Assessment {
-    let c = i.configuration();
-    if c.mould.layers < 2 || !has_tray(i) {
-        return Assessment::NotApplicable;
-    }
-    let [wide, tall] = gang_sides_mm(i);
-    require(wide.max(tall) + 2.0 * BED_EDGE_MM <= c.print.bed_mm, || {
-        (
-            format!("makes a mould of {wide:.0} by {tall:.0} mm on a bed of {} mm", c.print.bed_mm),
-            &[Lower("mould.layers"), Raise("print.bed_mm")],
         )
     })
 }

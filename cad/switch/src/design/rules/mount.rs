@@ -6,8 +6,6 @@ use crate::config::MountKind;
 use crate::design::fastening::{HEAD_BELOW_MM, axle_recess, stop_recess};
 use crate::design::mounting::{Hole, PULLEY_AIR_MM, PULLEY_RADIUS_MM, SheathStop};
 use crate::design::{pulley_outer_mm, pulley_width_mm};
-use pinswitch_solid::files::BED_EDGE_MM;
-use pinswitch_solid::profile::hull;
 
 /// Least wall between two holes of the plate.
 const HOLE_WALL_MM: f64 = 1.0;
@@ -23,7 +21,6 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "mount.kind", severity: Severity::Error, assess: holes_clear_each_other },
     Rule { field: "mount.pulley_distance_mm", severity: Severity::Error, assess: pulley_beside_switch },
     Rule { field: "mount.kind", severity: Severity::Error, assess: pulley_over_plate },
-    Rule { field: "mount.kind", severity: Severity::Error, assess: plate_on_bed },
     Rule { field: "mount.plate_mm", severity: Severity::Error, assess: heads_within_plate },
 ];
 
@@ -128,28 +125,6 @@ fn pulley_over_plate(i: &Inspection<'_>) -> Assessment {
         (
             format!("leaves {spacer:.2} mm between plate and pulley; {LEAST_PIECE_MM} mm is the least"),
             &[Raise("shell.width_mm"), Raise("support.plate_mm"), Lower("tendon.rope_diameter_mm"), NO_MOUNT],
-        )
-    })
-}
-
-fn plate_on_bed(i: &Inspection<'_>) -> Assessment {
-    let Some(mounting) = i.mounting() else { return Assessment::NotApplicable };
-    let bed = i.configuration().print.bed_mm;
-    let side = hull(&mounting.discs).map_or(0.0, |outline| {
-        let (low, high) = outline.bounds();
-        (high.x - low.x).max(high.y - low.y)
-    });
-    require(side + 2.0 * BED_EDGE_MM <= bed, || {
-        (
-            format!(
-                "makes a plate that is {side:.1} mm long, on a bed of {bed} mm with {BED_EDGE_MM} mm free along each edge"
-            ),
-            &[
-                Lower("mount.bore_distance_mm"),
-                Lower("mount.pulley_distance_mm"),
-                Raise("print.bed_mm"),
-                NO_MOUNT,
-            ],
         )
     })
 }

@@ -1,15 +1,12 @@
 //! Rules of the printer: what it can make, what it makes well, and what a person should look at.
 
-use super::Change::{Ease, Lower, Raise};
+use super::Change::{Lower, Raise};
 use super::{Assessment, Inspection, Remedy, Rule, Severity, advise, require};
-use crate::config::{MouldKind, MountKind};
+use crate::config::MountKind;
 use crate::design::axle_recess;
-use pinswitch_friction::Substrate;
 
 /// Least chamfer of a bottom edge.
 const MIN_CHAMFER_MM: f64 = 0.02;
-/// Space beyond the mould's outer wall that its keys and the plate's margin take on the bed.
-const BED_MARGIN_MM: f64 = 3.0;
 /// Longest bridge that prints without sagging, mm (cad/doc/print-limits.md).
 const LONGEST_BRIDGE_MM: f64 = 10.0;
 /// Bridges that differ by less are one, mm.
@@ -21,7 +18,6 @@ const GOOD_RIM_MM: f64 = 1.0;
 
 pub(super) const RULES: &[Rule] = &[
     Rule { field: "print.elephant_foot_mm", severity: Severity::Error, assess: chamfer_prints },
-    Rule { field: "print.bed_mm", severity: Severity::Error, assess: parts_on_bed },
     Rule { field: "label.stroke_mm", severity: Severity::Warning, assess: label_stroke },
     Rule { field: "print.layer_mm", severity: Severity::Warning, assess: layers_per_groove },
     Rule { field: "print.line_mm", severity: Severity::Checklist, assess: line_of_nozzle },
@@ -49,32 +45,6 @@ fn chamfer_prints(i: &Inspection<'_>) -> Assessment {
         (
             format!("is too small to print; the least is {MIN_CHAMFER_MM} mm, or 0 for no chamfer"),
             &[Raise("print.elephant_foot_mm"), Lower("print.elephant_foot_mm")],
-        )
-    })
-}
-
-/// An estimate before anything is built; the parts themselves are asked by `parts::fit_on_bed`.
-fn parts_on_bed(i: &Inspection<'_>) -> Assessment {
-    let c = i.configuration();
-    let has_mould = c.mould.kind != MouldKind::None && c.layout.substrate == Substrate::Silicone;
-    let mould = i.contact_radius_mm() + c.mould.wall_mm + c.mould.key_diameter_mm + BED_MARGIN_MM;
-    let (part, reach) = match i.support_radius_mm() {
-        support if has_mould && mould > support => ("the mould", mould),
-        support => ("the supports", support),
-    };
-    let half = i.half_span_rad().min(std::f64::consts::FRAC_PI_2);
-    let width = 2.0 * reach * libm::sin(half) + 2.0 * (i.shell_end_shift_mm() + c.mould.wall_mm);
-    require(2.0 * reach <= c.print.bed_mm || width <= c.print.bed_mm, || {
-        (
-            format!("makes {part} {:.1} mm wide, on a bed of {} mm", width.min(2.0 * reach), c.print.bed_mm),
-            &[
-                Raise("print.bed_mm"),
-                Lower("shell.outer_radius_mm"),
-                Lower("segment.span_deg"),
-                Ease("segment.end_margin_mm"),
-                Ease("shell.stop_mm"),
-                Ease("mould.wall_mm"),
-            ],
         )
     })
 }

@@ -160,6 +160,22 @@ fn advice(
     (subject, alternatives(found.iter().map(|t| t.words(subject)).collect()), settings)
 }
 
+/// What `changes` mend that no rule knows, each by the value nearest to the present one that `fits`: in words, with `field`
+/// as what is spoken of, and as the values of the first way. No words where none of them does.
+pub(crate) fn ways_out(
+    field: &str,
+    c: &Configuration,
+    changes: &[Change],
+    fits: &dyn Fn(&Configuration) -> bool,
+) -> (String, Vec<(String, String)>) {
+    let mut found: Vec<Tried> =
+        changes.iter().filter_map(|change| tried(*change, c, &|d| fits(d.configuration()))).collect();
+    found.truncate(NAMED);
+    let first = found.first().map(std::slice::from_ref).unwrap_or_default();
+    let settings = settings(first);
+    (alternatives(found.iter().map(|t| t.words(field)).collect()), settings)
+}
+
 /// The rule's own field, unless it has its default and another that was set can mend it: that one stands in a file.
 fn subject(rule: &Rule, c: &Configuration, found: &[Tried]) -> &'static str {
     if departs(c, rule.field) {

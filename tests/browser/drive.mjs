@@ -110,7 +110,7 @@ export class Visit {
         await element.click();
         return;
       } catch (problem) {
-        if (tries === 3 || !/detached/.test(problem.message)) throw problem;
+        if (tries === 3 || !/detached|not clickable/.test(problem.message)) throw problem;
       }
     }
   }
@@ -142,8 +142,9 @@ export class Visit {
 
   // What a person sees there, to be compared.
   async picture(selector) {
-    // Two frames: what was asked for is drawn in the next.
+    // Two frames: what was asked for is drawn in the next. The assembly may be drawn roughly first.
     await this.page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    await this.page.waitForFunction(() => (document.getElementById('view').dataset.drawn ?? 'finely') === 'finely');
     return (await this.page.$(selector)).screenshot({ encoding: 'base64' });
   }
 

@@ -53,11 +53,13 @@ async function change(page, [path, value]) {
     const { dataset } = document.body;
     const input = document.getElementById(`f-${field.replace('.', '-')}`);
     if (Number(input.value) === to) return null;
-    const before = `${dataset.generation} ${document.getElementById('trouble').textContent}`;
+    const before = dataset.asked;
     const began = performance.now();
     input.value = to;
     input.dispatchEvent(new Event('input', { bubbles: true }));
-    while (`${dataset.generation} ${document.getElementById('trouble').textContent}` === before) {
+    if (dataset.asked === before) return null;
+    // Not the exact answer to the change before, which may come first.
+    while (dataset.answered !== dataset.asked) {
       if (performance.now() - began > 5000) return null;
       await new Promise((done) => { const { port1, port2 } = new MessageChannel(); port1.onmessage = () => { port1.close(); done(); }; port2.postMessage(0); });
     }

@@ -13,7 +13,7 @@ function fault(message) {
   showNotice(WORDS.fault(message));
 }
 document.body.dataset.errors = 0;
-document.body.dataset.generation = 0;
+document.body.dataset.generation = document.body.dataset.asked = document.body.dataset.answered = 0;
 addEventListener('error', (event) => { if (!/ResizeObserver/.test(event.message)) fault(event.message); });
 addEventListener('unhandledrejection', (event) => fault(String(event.reason?.message ?? event.reason)));
 
@@ -116,6 +116,7 @@ class Page {
     // A mark of the ask changes no part.
     if (asked === this.asked) return;
     this.asked = asked;
+    document.body.dataset.asked = Number(document.body.dataset.asked) + 1;
     this.design('coarse');
     this.exactly();
   }
@@ -123,6 +124,7 @@ class Page {
   async design(quality) {
     const { values, model } = this.state.now;
     const asked = this.asked;
+    const question = document.body.dataset.asked;
     document.body.dataset.pending = 'true';
     const slow = setTimeout(() => { byId('busy').textContent = WORDS.working; }, 300);
     try {
@@ -130,6 +132,7 @@ class Page {
       if (answer.data) this.show(answer, quality);
       else if (!this.data) await this.showPublished();
       showTrouble(answer.trouble, this.controls, this.state);
+      document.body.dataset.answered = question;
       this.embed.tell(this.state, answer.data, answer.trouble);
       if (quality === 'exact' && asked === this.asked) document.body.dataset.pending = 'false';
       if (this.isGone) { this.isGone = false; showNotice(''); }

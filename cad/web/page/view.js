@@ -21,6 +21,7 @@ class View {
 
   fail() {
     this.assembly = undefined;
+    delete byId('view').dataset.drawn;
     byId('view').replaceChildren(make('p', WORDS.noWebgl, { class: 'instead' }));
     byId('view-tools').hidden = true;
     document.body.dataset.still = 'true';

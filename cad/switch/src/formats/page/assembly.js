@@ -342,10 +342,13 @@ class Assembly {
   // Draws once before the next frame is shown, however many changes asked for it.
   draw() {
     if (this.drawing || !this.isCompiled) return;
+    // Told for those who compare pictures: what is drawn roughly is drawn once more.
+    this.host.dataset.drawn = 'roughly';
     this.drawing = requestAnimationFrame(() => {
       this.drawing = 0;
       if (this.isSlow) this.refine();
       this.renderer.render(this.scene, this.camera);
+      if (!this.isSlow) this.host.dataset.drawn = 'finely';
     });
   }
 
@@ -356,6 +359,7 @@ class Assembly {
     this.refining = setTimeout(() => {
       this.renderer.setPixelRatio(this.still_ratio);
       this.renderer.render(this.scene, this.camera);
+      this.host.dataset.drawn = 'finely';
     }, STILL_MS);
   }
 }

@@ -62,10 +62,13 @@ pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Le
             best = other;
         }
     }
-    // Names were preferred to shapes before it was known that they need scatter beside them.
+    // Names were preferred to shapes before it was known that they need scatter beside them. What they gain by bending
+    // their forms speaks for no shape: a half wave along the stroke is what `stroke_position` may look like.
     if best.names() > 0 && best.noise != bare(best.noise) {
+        let bent_gain = Screen::guarded(&best.augmented, &Weighed::new(data, best.noise)).bent_gain();
+        let least = best.toll(data) - bent_gain;
         let shape = shape_alone(&best, data, levels).map(with_scatter);
-        best = shape.filter(|shape| shape.toll(data) < best.toll(data)).unwrap_or(best);
+        best = shape.filter(|shape| shape.toll(data) < least).unwrap_or(best);
     }
     best
 }

@@ -226,6 +226,9 @@ pub struct LimitReport {
     pub high: f64,
     /// Size that changes friction, or the reading, by 5 % somewhere in the table.
     pub typical: f64,
+    /// Constants of its shape at which these sizes are told, by their names.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub shape: BTreeMap<String, f64>,
     /// Unit of the size.
     #[serde(default)]
     pub unit: String,

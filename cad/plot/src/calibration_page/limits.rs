@@ -206,6 +206,7 @@ mod tests {
             low,
             high,
             typical: 0.2,
+            shape: std::collections::BTreeMap::new(),
             unit: "N".to_owned(),
             one_sided: id == "guide_drag",
             experiment: "vary it".to_owned(),

@@ -126,3 +126,33 @@ impl Vocabulary {
         self.count() - self.own.len() + places
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An effect of one's own whose formula has this many shapes with bounds.
+    fn with_shapes(shapes: usize) -> String {
+        let names = ["c", "d", "e"];
+        let sum: String = names[..shapes].iter().map(|name| format!(" * (1 + {name} * stroke)")).collect();
+        let mut text = format!(
+            "schema = \"pinswitch.effects/1\"\n[[effect]]\nid = \"own_{shapes}\"\nside = \"switch\"\ncovariate = \"position\"\nacts_on = \"mu\"\n\
+             combine = \"factor\"\nformula = \"k{sum}\"\nparameters.k = {{ size = true, start = 0.1, unit = \"1\" }}\n"
+        );
+        for name in &names[..shapes] {
+            text += &format!("parameters.{name} = {{ start = 0.5, low = 0, high = 1, unit = \"1\" }}\n");
+        }
+        text
+    }
+
+    #[test]
+    fn one_of_one_s_own_counts_once_for_each_place_it_is_tried_at() {
+        let built_in = Vocabulary::built_in();
+        assert_eq!(built_in.tries(), built_in.count());
+        let more =
+            |shapes| built_in.read(&with_shapes(shapes), "own.toml").unwrap().tries() - built_in.tries();
+        assert_eq!([more(0), more(1), more(2), more(3)], [1, 4, 16, 10]);
+        let two = built_in.read(&with_shapes(0), "a.toml").unwrap().read(&with_shapes(1), "b.toml").unwrap();
+        assert_eq!((two.count(), two.tries()), (built_in.count() + 2, built_in.tries() + 5));
+    }
+}

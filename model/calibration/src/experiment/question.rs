@@ -9,7 +9,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use super::information::{Projected, Trace};
 use crate::effects::{Covariate, Effect, Side};
 use crate::inference::{Levels, Model, Term};
-use crate::report::{Estimate, Report};
+use crate::report::{Estimate, LimitReport, Report};
 
 /// What an answer says no to.
 pub(crate) const NONE: &str = "none";
@@ -121,23 +121,21 @@ pub(super) struct Agenda {
 }
 
 impl Agenda {
-    /// Column of an effect that the model does not have, at the size at which its fit starts.
-    fn absent(&mut self, effect: &'static dyn Effect, model: &Model) -> Option<(usize, f64)> {
-        let values = effect.starts(&model.frame).into_iter().next()?;
-        let size = values.first().copied().unwrap_or(1.0);
-        let known = self
-            .traces
-            .iter()
-            .position(|t| matches!(t, Trace::Absent { effect: e, .. } if e.id() == effect.id()));
+    /// Column of an effect that the model does not have, with these constants.
+    fn absent(&mut self, effect: &'static dyn Effect, values: Vec<f64>, model: &Model) -> usize {
+        let known = self.traces.iter().position(|trace| {
+            matches!(trace, Trace::Absent { effect: e, values: v } if e.id() == effect.id() && *v == values)
+        });
         let at = known.unwrap_or_else(|| {
             self.traces.push(Trace::Absent { effect, values });
             self.effects.push(effect);
             self.traces.len() - 1
         });
-        Some((model.values().len() + at, size))
+        model.values().len() + at
     }
 
-    /// Everything that a report leaves open, of rows up to a load of `highest_n`. `known` gives the information of the data so far, once the columns stand.
+    /// Everything that a report leaves open, of rows up to a load of `highest_n`. `known` gives the information of the data
+    /// so far, once the columns stand.
     pub(super) fn of(
         report: &Report,
         model: &Model,
@@ -164,17 +162,18 @@ impl Agenda {
             }
             for rival in &found.rivals {
                 if let Some(effect) = model.vocabulary.named(&rival.id)
-                    && let Some((other, _)) = agenda.absent(effect, model)
+                    && let Some(values) = start(effect, model)
                 {
+                    let other = agenda.absent(effect, values, model);
                     pairs.push((found, term, column, other));
                 }
             }
         }
         for limit in report.limits.iter().filter(|limit| !limit.excluded) {
             let Some(effect) = model.vocabulary.named(&limit.id) else { continue };
-            let Some((column, start)) = agenda.absent(effect, model) else { continue };
-            let size = if effect.parameters().is_empty() { 1.0 } else { limit.typical / start };
-            agenda.ask_whether(effect.id(), column, size, &own, 1.0);
+            let Some(values) = of_consequence(effect, limit, model) else { continue };
+            let column = agenda.absent(effect, values, model);
+            agenda.ask_whether(effect.id(), column, 1.0, &own, 1.0);
             agenda.of_size(limit.typical);
         }
         for invisible in &report.invisible {
@@ -182,9 +181,11 @@ impl Agenda {
             // What stays in the rig does not change the curve of a part.
             let asked = agenda.questions.iter().any(|q| q.between[0] == invisible.id);
             if effect.description().side == Side::Switch && !asked {
-                let Some((column, start)) = agenda.absent(effect, model) else { continue };
+                let Some(values) = start(effect, model) else { continue };
+                let size = values.first().copied().unwrap_or(1.0);
+                let column = agenda.absent(effect, values, model);
                 agenda.ask_whether(effect.id(), column, 1.0, &own, UNSUSPECTED);
-                agenda.of_size(start);
+                agenda.of_size(size);
             }
         }
         agenda.ask_again(report, model);
@@ -233,7 +234,7 @@ impl Agenda {
             let trace = match term {
                 Some(term) => Trace::Found { term },
                 None => {
-                    let Some(values) = effect.starts(&model.frame).into_iter().next() else { continue };
+                    let Some(values) = start(effect, model) else { continue };
                     Trace::Absent { effect, values }
                 }
             };
@@ -298,6 +299,26 @@ impl Agenda {
     pub(super) fn asks_along(&self, covariate: Covariate) -> bool {
         self.effects.iter().any(|effect| effect.description().covariate == covariate)
     }
+}
+
+/// The constants at which a fit of an effect starts.
+fn start(effect: &dyn Effect, model: &Model) -> Option<Vec<f64>> {
+    effect.starts(&model.frame).into_iter().next()
+}
+
+/// The constants of an effect that a report could not exclude: the size that would matter, in the shape at which that size
+/// was told. Reports of earlier versions tell no shape; its start stands in for it.
+fn of_consequence(effect: &dyn Effect, limit: &LimitReport, model: &Model) -> Option<Vec<f64>> {
+    let mut values = start(effect, model)?;
+    for (value, parameter) in values.iter_mut().zip(effect.parameters()) {
+        if let Some(told) = limit.shape.get(parameter.name) {
+            *value = *told;
+        }
+    }
+    if let Some(size) = values.first_mut() {
+        *size = limit.typical;
+    }
+    Some(values)
 }
 
 /// Share of an effect's estimated size that is there with a probability of five in six: a plan must not stand on a size

@@ -1,6 +1,6 @@
 //! `rig.toml`: what a rig can do, and what its time costs.
 
-use pinswitch_friction::{Substrate, published};
+use pinswitch_friction::{Substrate, excerpt, published};
 use serde::{Deserialize, Serialize};
 
 use crate::toml_text::{place_of, toml_error};
@@ -104,8 +104,14 @@ impl RigLimits {
             inside(low, least, most) && inside(high, low, most)
         };
         let loads = &self.loads_g;
-        if loads.is_empty() || loads.len() > MOST || loads.iter().any(|g| !inside(*g, 0.0, 1e6)) {
-            return Some(("loads_g", format!("{loads:?}"), "1 to 40 weights of 0 to 1000000 g"));
+        if loads.is_empty() || loads.len() > MOST {
+            return Some(("loads_g", format!("{} weights", loads.len()), "1 to 40 of them"));
+        }
+        if let Some(weight) = loads.iter().find(|g| !inside(**g, 0.0, 1e6)) {
+            return Some(("loads_g", weight.to_string(), "0 to 1000000 g"));
+        }
+        if let Some(weight) = repeated(loads) {
+            return Some(("loads_g", format!("{weight}, given twice,"), "one entry a weight"));
         }
         if !pair(self.speeds_pct, 0.1, 1000.0) {
             return Some((
@@ -126,12 +132,15 @@ impl RigLimits {
                 && grooves.is_sorted_by(|a, b| a < b)
                 && grooves.iter().all(|g| (1..=published::GROOVES).contains(g))
         };
-        if self.layouts.len() > MOST || !self.layouts.iter().all(is_layout) {
-            return Some((
-                "layouts",
-                format!("{:?}", self.layouts),
-                "up to 40 lists of grooves 1..15, ascending",
-            ));
+        if self.layouts.len() > MOST {
+            return Some(("layouts", format!("{} layouts", self.layouts.len()), "up to 40 of them"));
+        }
+        if let Some(layout) = self.layouts.iter().find(|layout| !is_layout(layout)) {
+            let told = excerpt(&format!("{layout:?}"), 60);
+            return Some(("layouts", told, "lists of grooves 1..15, ascending"));
+        }
+        if let Some(layout) = repeated(&self.layouts) {
+            return Some(("layouts", format!("{layout:?}, given twice,"), "one entry a layout"));
         }
         if !self.silicone && self.layouts.is_empty() {
             return Some((
@@ -177,6 +186,11 @@ impl RigLimits {
     }
 }
 
+/// The first entry that stands in a list before.
+fn repeated<T: PartialEq>(all: &[T]) -> Option<&T> {
+    all.iter().enumerate().find(|(i, entry)| all[..*i].contains(entry)).map(|(_, entry)| entry)
+}
+
 fn distinct(values: [f64; 3]) -> Vec<f64> {
     let mut all = values.to_vec();
     all.dedup();
@@ -191,7 +205,10 @@ mod tests {
     fn a_rig_says_what_it_cannot_be() {
         assert_eq!(RigLimits::parse("", "rig.toml").unwrap(), RigLimits::default());
         for (text, words) in [
-            ("loads_g = []", "rig.toml:1: loads_g = [] is outside 1 to 40 weights"),
+            ("loads_g = []", "rig.toml:1: loads_g = 0 weights is outside 1 to 40 of them"),
+            ("loads_g = [100, -5, 200]", "rig.toml:1: loads_g = -5 is outside 0 to 1000000 g"),
+            ("loads_g = [100, 200, 100]", "loads_g = 100, given twice,"),
+            ("layouts = [[5, 8], [3], [5, 8]]", "layouts = [5, 8], given twice,"),
             ("silicone = true\nspeeds_pct = [70, 40]", "rig.toml:2: speeds_pct"),
             ("dwells_s = [0.0, 3.0]", "dwells_s"),
             ("layouts = [[16]]", "grooves 1..15"),

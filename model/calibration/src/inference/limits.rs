@@ -15,10 +15,12 @@ pub const CONSEQUENCE: f64 = 0.05;
 pub const ALIKE: f64 = 0.95;
 
 /// Sizes of an absent effect that the data do not exclude.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct SizeLimit {
     /// The effect.
     pub effect: &'static dyn Effect,
+    /// Constants of its shape at which these sizes are told: those of its starts that the data speak for most.
+    pub shape: Vec<f64>,
     /// Ends of the 95 % interval of its size, in the unit of its first constant; of an effect without constants, in
     /// shares of the effect. An effect that cannot be negative has none below zero; a limit of the cell ends at the
     /// highest one that was tried.
@@ -70,6 +72,7 @@ pub(super) fn limits(
             let middle = size * score.share;
             Some(SizeLimit {
                 effect: score.effect,
+                shape: score.start.get(1..).unwrap_or_default().to_vec(),
                 interval: allowed(score.effect, [middle - half, middle + half]),
                 typical: size.abs() * CONSEQUENCE / largest_share(score, &predicted, weighed).max(1e-12),
             })
@@ -113,7 +116,8 @@ fn range_limit(
     while low > 0.3 * highest && !beyond_chance(low * RANGE_STEP) {
         low *= RANGE_STEP;
     }
-    Some(SizeLimit { effect, interval: [low, highest], typical: highest * (1.0 - CONSEQUENCE) })
+    let typical = highest * (1.0 - CONSEQUENCE);
+    Some(SizeLimit { effect, shape: Vec::new(), interval: [low, highest], typical })
 }
 
 /// Largest share of the friction (of the reading, for what acts on it or against the motion) that a trace changes.

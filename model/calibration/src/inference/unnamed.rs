@@ -205,9 +205,14 @@ mod tests {
         let scores = Screen::new(&baseline, weighed).structures();
         let best = &scores[0];
         assert!(context.on_top_of(&baseline, best, best.gain + 1.0).is_none());
-        let (with, structure) = context.on_top_of(&baseline, best, 0.5 * best.gain).unwrap();
+        let (_, structure) = context.on_top_of(&baseline, best, 0.5 * best.gain).unwrap();
         assert_eq!(structure.covariate, best.group[0].covariate);
-        assert!((baseline.cost - with.cost - best.penalty() - structure.gain).abs() < 1e-9);
+        for penalty in [0.0, 8.0, 15.0] {
+            let score = scores.iter().find(|s| s.penalty() == penalty).unwrap();
+            let (_, structure) = context.on_top_of(&baseline, score, -1e6).unwrap();
+            let fitted = with_structure(&baseline, score, weighed);
+            assert!((baseline.cost - fitted.cost - penalty - structure.gain).abs() < 1e-9, "{score:?}");
+        }
         let (kept, none) = context.with_unnamed(&baseline, baseline.clone(), &scores, 0.0);
         assert!(none.is_none() && kept.model.terms.is_empty(), "noise alone is no structure");
     }

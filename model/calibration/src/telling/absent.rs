@@ -15,6 +15,14 @@ pub(super) fn limits(selection: &Selection) -> Vec<LimitReport> {
             low: limit.interval[0],
             high: limit.interval[1],
             typical: limit.typical,
+            shape: limit
+                .effect
+                .parameters()
+                .iter()
+                .skip(1)
+                .zip(&limit.shape)
+                .map(|(parameter, value)| (parameter.name.to_owned(), *value))
+                .collect(),
             unit: limit.effect.parameters().first().map_or("1", |p| p.unit).to_owned(),
             one_sided: limit.effect.description().one_sided,
             experiment: limit.effect.description().experiment.to_owned(),

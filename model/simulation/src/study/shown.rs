@@ -18,10 +18,10 @@ const MOUNTS_WITHOUT_ALARM: f64 = 0.04;
 
 /// Whether a session of this plan could show each of its effects and disturbances. Generalised least squares are told the
 /// noise of the same rig without any of them and the course of what they look for, and of the other effects which there
-/// are, but no size. They would have to find each with a probability of at least [`VISIBLE`] at the calibrator's level of a first name, or
-/// of a shape. It asks more of a further name, so that it may miss what is called visible here; a disturbance must be found
-/// beside mounts that may differ as much as those of rigs of which nothing may be said. True of a plan without
-/// either.
+/// are, but no size. They would have to find each with a probability of at least [`VISIBLE`] at the calibrator's level of
+/// a first name, or of a shape. It asks more of a further name, so that it may miss what is called visible here; a
+/// disturbance must be found beside mounts that may differ as much as those of rigs of which nothing may be said. True of
+/// a plan without either.
 pub(super) fn shows_all(plan: &Plan, marks: &SeriesMarks, levels: Levels) -> Option<bool> {
     if plan.effects.is_empty() && plan.disturbances.is_empty() {
         return Some(true);

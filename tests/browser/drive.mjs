@@ -8,7 +8,7 @@ import { join } from 'node:path';
 const PATIENCE_MS = 30_000;
 // Nothing but this machine can be reached, whatever a page asks for.
 const FLAGS = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
-  '--hide-scrollbars', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb', '--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost'];
+  '--hide-scrollbars', '--enable-unsafe-swiftshader', '--force-color-profile=srgb', '--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost'];
 
 // puppeteer-core and axe-core, from where `.ci/run` puts them.
 export function tools(folder) {

@@ -15,7 +15,7 @@ use crate::trouble::Trouble;
 use crate::values::configuration;
 
 /// Chord tolerance of what is only looked at, in millimetres.
-const COARSE_MM: f64 = 0.05;
+const COARSE_MM: f64 = 0.1;
 /// Points of a curve that is only looked at.
 const COARSE_POINTS: usize = 26;
 

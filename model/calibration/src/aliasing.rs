@@ -1,5 +1,7 @@
 //! Covariates that move together in a table: what lies in one of them may as well lie in the other.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::table::PlateauRow;
@@ -12,7 +14,8 @@ const TOGETHER: f64 = 0.95;
 pub struct Aliasing {
     /// Their names.
     pub covariates: [String; 2],
-    /// Their correlation, of the values or of their ranks, whichever is larger in size.
+    /// Their correlation, of the values or of their ranks, whichever is larger in size. Between the condition, which has no
+    /// order, and another one: the correlation ratio, with as many degrees of freedom less as there are conditions.
     pub correlation: f64,
 }
 
@@ -49,7 +52,45 @@ pub fn aliasing(rows: &[PlateauRow]) -> Vec<Aliasing> {
             }
         }
     }
+    let conditions = conditions(rows);
+    for (name, values, _) in &values {
+        let correlation = correlation_ratio(&conditions, values);
+        if correlation > TOGETHER {
+            found.push(Aliasing { covariates: ["condition".to_owned(), (*name).to_owned()], correlation });
+        }
+    }
     found
+}
+
+/// The number of each row's condition.
+fn conditions(rows: &[PlateauRow]) -> Vec<usize> {
+    let mut numbers = BTreeMap::new();
+    rows.iter()
+        .map(|r| {
+            let next = numbers.len();
+            *numbers.entry((r.substrate.map(|s| s as u8), r.pins.as_slice())).or_insert(next)
+        })
+        .collect()
+}
+
+/// How well the group of a row tells its value: `sqrt(1 - V_within/V_all)` of the unbiased variances, so that many small
+/// groups tell nothing by chance; zero where the value does not vary. (Kelley's epsilon, 1935.)
+fn correlation_ratio(group: &[usize], values: &[f64]) -> f64 {
+    let groups = group.iter().max().map_or(0, |most| most + 1);
+    let (mut sum, mut count) = (vec![0.0; groups], vec![0.0; groups]);
+    for (g, v) in group.iter().zip(values) {
+        sum[*g] += v;
+        count[*g] += 1.0;
+    }
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n.max(1.0);
+    let within: f64 = group.iter().zip(values).map(|(g, v)| (v - sum[*g] / count[*g]).powi(2)).sum();
+    let all: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    let free = n - groups as f64;
+    if groups < 2 || free <= 0.0 || all <= 0.0 {
+        return 0.0;
+    }
+    (1.0 - (within / free) / (all / (n - 1.0))).max(0.0).sqrt()
 }
 
 /// Correlation of the ranks of two columns.
@@ -93,12 +134,35 @@ mod tests {
     #[test]
     fn speed_that_follows_the_load_is_told_and_independent_speed_is_not() {
         let mut rows = session(1);
+        // Conditions follow each other in this session; here they do not.
+        rows.iter_mut().enumerate().for_each(|(i, r)| r.time_s = ((i * 7919) % 1009) as f64);
         assert!(aliasing(&rows).is_empty(), "{:?}", aliasing(&rows));
         rows.iter_mut().for_each(|r| r.speed_pct = 40.0 + r.load_n.powi(3) * 1e-4);
         let found = aliasing(&rows);
         assert_eq!(found.len(), 1, "{found:?}");
         assert_eq!(found[0].covariates, ["load", "speed"]);
         assert!(found[0].correlation > 0.999, "as ranks they are one");
+    }
+
+    #[test]
+    fn conditions_that_follow_each_other_move_with_time() {
+        let rows = session(1);
+        let found = aliasing(&rows);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].covariates, ["condition", "time"]);
+        // Five equal stretches: 1 - 1/25 of the variance lies between them.
+        assert!((found[0].correlation - 0.96f64.sqrt()).abs() < 1e-3, "{found:?}");
+    }
+
+    #[test]
+    fn groups_of_one_row_tell_nothing() {
+        let values: Vec<f64> = (0..40).map(|i| f64::from((i * 17) % 41)).collect();
+        let alone: Vec<usize> = (0..40).collect();
+        assert_eq!(correlation_ratio(&alone, &values), 0.0);
+        let pairs: Vec<usize> = (0..40).map(|i| i / 2).collect();
+        assert!(correlation_ratio(&pairs, &values) < 0.6, "by chance");
+        assert_eq!(correlation_ratio(&[0; 40], &values), 0.0);
+        assert_eq!(correlation_ratio(&pairs, &[1.0; 40]), 0.0);
     }
 
     #[test]

@@ -90,7 +90,7 @@ fn what_a_plan_cannot_be_made_of_is_one_error() {
     for (arguments, words) in [
         ("experiment empty --out next", "empty/report.json: cannot read"),
         ("experiment other --out next", "other/report.json: missing field"),
-        ("experiment other --rig rig.toml --out next", "rig.toml:1: loads_g = [] is outside"),
+        ("experiment other --rig rig.toml --out next", "rig.toml:1: loads_g = 0 weights is outside"),
         ("experiment other --minutes 0 --out next", "minutes"),
         ("experiment other --minutes nan --out next", "minutes"),
         ("simulate --runs runs.csv --out x", "runs.csv: column 'pins' is missing"),

@@ -62,7 +62,10 @@ const REFUSED: [(&str, &[&str]); 29] = [
     ),
     ("[mould]\nkey_height_mm = 10.0", &["my.toml:2: mould.key_height_mm = 10", "may be", "lower it to"]),
     ("[friction]\nload_min_n = 60", &["friction.load_min_n = 60", "load_max_n = 49.671"]),
-    ("[print]\nbed_mm = 50\n[shell]\nouter_radius_mm = 60", &["print.bed_mm = 50 is too small for mould-core", "raise it to 107.787"]),
+    (
+        "[print]\nbed_mm = 50\n[shell]\nouter_radius_mm = 60",
+        &["print.bed_mm = 50 is too small for mould-core", "raise it to 107.787"],
+    ),
     (
         "[print]\nbed_mm = 55",
         &["print.bed_mm = 55 is too small for coupon", "54.5 x", "raise it to 60.5", "parts.coupon"],

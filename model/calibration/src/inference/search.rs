@@ -35,13 +35,14 @@ fn extensions(
     from: &Fit,
     weighed: &Weighed<'_>,
     least: f64,
+    beyond_form: f64,
     most: usize,
 ) -> Vec<Extension> {
     scores.retain(|s| s.gain > least);
-    if !from.model.named_effects().is_empty() {
+    if !from.model.named_effects().is_empty() && scores.iter().any(|s| s.gain <= beyond_form) {
         // What the names so far would explain by bending their own forms is not worth another name.
         let guarded = Screen::guarded(from, weighed);
-        scores.retain(|s| guarded.effect(s.effect).is_some_and(|g| g.gain > least));
+        scores.retain(|s| s.gain > beyond_form || guarded.effect(s.effect).is_some_and(|g| g.gain > least));
     }
     scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     scores.truncate(most);
@@ -97,7 +98,10 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
         };
         // To first order alone: an effect that is not linear may gain more once fitted.
         let screened = if current.model.named_effects().is_empty() { 0.3 } else { 0.8 } * least;
-        let Some(best) = extensions(scores, &current, weighed, screened, FITTED).into_iter().next() else {
+        let Some(best) = extensions(scores, &current, weighed, screened, levels.beyond_form * gained, FITTED)
+            .into_iter()
+            .next()
+        else {
             break;
         };
         let gain = current.cost - best.fitted.cost;
@@ -105,7 +109,7 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
             break;
         }
         current = best.fitted;
-        current = exchange(current, weighed);
+        current = exchange(current, weighed, levels.beyond_form * gained);
         current = prune(current, weighed, levels.further.max(levels.further_share * gained), 1);
     }
     current
@@ -153,7 +157,7 @@ pub(super) fn prune(mut current: Fit, weighed: &Weighed<'_>, least: f64, keep: u
 }
 
 /// Replaces a named effect by another one that fits better in its place.
-fn exchange(mut current: Fit, weighed: &Weighed<'_>) -> Fit {
+fn exchange(mut current: Fit, weighed: &Weighed<'_>, beyond_form: f64) -> Fit {
     if current.model.named_effects().len() < 2 {
         return current;
     }
@@ -164,7 +168,7 @@ fn exchange(mut current: Fit, weighed: &Weighed<'_>) -> Fit {
                 let without = fit(&current.model.without_term(i), weighed);
                 let id = current.model.terms[i].id();
                 let scores = Screen::new(&without, weighed).effects();
-                for other in extensions(scores, &without, weighed, 8.0, 4) {
+                for other in extensions(scores, &without, weighed, 8.0, beyond_form, 4) {
                     if other.score.effect.id() != id && other.fitted.cost < current.cost - 1.0 {
                         better = Some(other.fitted);
                         break;

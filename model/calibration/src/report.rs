@@ -190,11 +190,31 @@ pub struct BadSeries {
     pub series: String,
     /// `eccentric` or `concentric`.
     pub direction: String,
-    /// Mean residual in newtons, or the worst reading's where one reading alone is wrong.
+    /// Mean residual in newtons, or the worst reading's where single readings are wrong and the others are not.
     #[serde(rename = "offset_N")]
     pub offset_n: f64,
     /// In standard deviations.
     pub standard_deviations: f64,
+    /// The repetition of the worst reading; absent where the series is off as a whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repetition: Option<u32>,
+    /// How many readings are off in that way; absent where the series is off as a whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub readings: Option<usize>,
+}
+
+impl BadSeries {
+    /// Where to look, in words: the series and direction, or the reading in it.
+    pub fn place(&self) -> String {
+        let series = format!("series {} {}", self.series, self.direction);
+        match (self.repetition, self.readings.unwrap_or(1)) {
+            (Some(repetition), 1) => format!("repetition {repetition} of {series}"),
+            (Some(repetition), n) => {
+                format!("{n} readings of {series}, the worst at repetition {repetition}")
+            }
+            (None, _) => series,
+        }
+    }
 }
 
 /// One part of the noise with its size.

@@ -201,8 +201,10 @@ fn bad_series(report: &Report) -> String {
     let mut text = String::new();
     for bad in report.bad_series.iter().take(SHOWN) {
         text.push_str(&format!(
-            "  check series {} {}: off by {:+.3} N ({:+.1} standard deviations)\n",
-            bad.series, bad.direction, bad.offset_n, bad.standard_deviations
+            "  check {}: off by {:+.3} N ({:+.1} standard deviations)\n",
+            bad.place(),
+            bad.offset_n,
+            bad.standard_deviations
         ));
     }
     if let Some(more) = report.bad_series.len().checked_sub(SHOWN).filter(|n| *n > 0) {

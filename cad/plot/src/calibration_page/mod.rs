@@ -56,13 +56,14 @@ fn data(report: &Report) -> String {
         );
     }
     if !report.bad_series.is_empty() {
-        html.push_str("<p>Series to look at (mislabelled weight, bad run); they decide nothing:</p><ul>");
+        html.push_str(
+            "<p>To look at (mislabelled weight, bad run, slipped reading); they decide nothing:</p><ul>",
+        );
         for bad in &report.bad_series {
             let _ = write!(
                 html,
-                "<li>series {} {}: off by {} ({} standard deviations)</li>",
-                escape(&bad.series),
-                bad.direction,
+                "<li>{}: off by {} ({} standard deviations)</li>",
+                escape(&bad.place()),
                 newtons(bad.offset_n),
                 number(bad.standard_deviations, 1)
             );

@@ -11,8 +11,12 @@ pub struct Levels {
     pub further: f64,
     /// Least gain of a further one as a share of the first one's gain: below it, it may stem from the form.
     pub further_share: f64,
-    /// A gain above this share of the first one's is more than the form of an effect can bend.
+    /// A gain above this share of the first one's is more than the form of an effect can bend, if it is also above
+    /// `beyond_small`.
     pub beyond_form: f64,
+    /// A gain below this may always stem from the form: a first effect of a few dozen squares is itself known so badly
+    /// that its form may be off by half of it.
+    pub beyond_small: f64,
     /// A rival fits worse by less than this.
     pub rival: f64,
     /// ... or by less than this share of what the effect explains.
@@ -27,6 +31,13 @@ pub struct Levels {
     pub outright: f64,
 }
 
+impl Levels {
+    /// The gain above which a further name needs no comparison with bent forms, where those before it gained `gained`.
+    pub(super) fn beyond_bending(&self, gained: f64) -> f64 {
+        self.beyond_small.max(self.beyond_form * gained)
+    }
+}
+
 impl Default for Levels {
     fn default() -> Self {
         Self {
@@ -35,6 +46,7 @@ impl Default for Levels {
             further: 18.0,
             further_share: 0.001,
             beyond_form: 0.08,
+            beyond_small: 200.0,
             rival: 9.0,
             rival_share: 0.002,
             structure: 26.0,

@@ -98,7 +98,7 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
         };
         // To first order alone: an effect that is not linear may gain more once fitted.
         let screened = if current.model.named_effects().is_empty() { 0.3 } else { 0.8 } * least;
-        let Some(best) = extensions(scores, &current, weighed, screened, levels.beyond_form * gained, FITTED)
+        let Some(best) = extensions(scores, &current, weighed, screened, levels.beyond_bending(gained), FITTED)
             .into_iter()
             .next()
         else {
@@ -109,7 +109,7 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
             break;
         }
         current = best.fitted;
-        current = exchange(current, weighed, levels.beyond_form * gained);
+        current = exchange(current, weighed, levels.beyond_bending(gained));
         current = prune(current, weighed, levels.further.max(levels.further_share * gained), 1);
     }
     current

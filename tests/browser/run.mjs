@@ -9,6 +9,7 @@ import { join } from 'node:path';
 import { Browser, Findings, Visit } from './drive.mjs';
 import { moduleSite, viewSite } from './engines.mjs';
 import * as around from './around.mjs';
+import * as belongs from './belongs.mjs';
 import * as design from './design.mjs';
 import * as downloads from './downloads.mjs';
 import * as look from './look.mjs';
@@ -28,7 +29,7 @@ async function fromFile(visit, site, { findings }) {
 }
 
 function scenarios() {
-  const all = { fromFile, ...design, ...look, ...tables, ...trouble, ...around, ...downloads };
+  const all = { fromFile, ...design, ...look, ...tables, ...trouble, ...around, ...belongs, ...downloads };
   return Object.entries(all).filter(([name, act]) => typeof act === 'function' && (job.only ?? '').split(' ').some((word) => name.includes(word)));
 }
 

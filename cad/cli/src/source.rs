@@ -107,7 +107,7 @@ impl Source {
         })?;
         let (mut configuration, places) = read_over(base, text, file).map_err(Failure::bad_input)?;
         if !places.sets("switch.name") {
-            configuration.switch.name = lent_name(file);
+            configuration.switch.name = Name::lent_by(file);
         }
         for assignment in &self.assignments {
             assign(&mut configuration, assignment).map_err(Failure::bad_input)?;
@@ -222,11 +222,6 @@ fn from_folder(file: &Path, folder: &Path) -> PathBuf {
     }
     let up = folder.components().skip(shared).map(|_| Component::ParentDir);
     up.chain(file.components().skip(shared)).collect()
-}
-
-/// The name of a set whose configuration names none: that of its file.
-pub(super) fn lent_name(file: &str) -> Name {
-    Name::cleaned(&stem(file))
 }
 
 fn stem(file: &str) -> String {

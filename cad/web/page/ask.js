@@ -4,12 +4,12 @@ class Ask {
   constructor(state, engine, curve, handles) {
     Object.assign(this, { state, engine, curve, handles });
     const threshold = byId('ask-threshold');
-    threshold.addEventListener('input', () => this.handles.ask({ threshold_n: Number(threshold.value) > 0 ? Number(threshold.value) : null }, 'ask.threshold'));
+    this.box(threshold, (value) => this.handles.ask({ threshold_n: value }, 'ask.threshold'), () => this.state.now.ask.threshold_n);
     byId('ask-no-threshold').addEventListener('click', () => { this.handles.ask({ threshold_n: null }); threshold.focus(); });
     byId('add-friction').addEventListener('click', () => this.add());
     for (const id of ['search', 'search-here']) byId(id).addEventListener('click', () => this.search());
     byId('found-close').addEventListener('click', () => this.close());
-    byId('stop').addEventListener('click', () => this.engine.stopSlow());
+    byId('stop').addEventListener('click', () => this.engine.stop('search'));
     state.addEventListener('change', () => this.show());
     this.show();
   }
@@ -22,12 +22,34 @@ class Ask {
     this.handles.ask({ friction: [...friction, { load_n: Number(load_n.toFixed(1)), friction_n: Number(friction_n.toFixed(2)) }] });
   }
 
+  // A box of newtons: what cannot be asked is told while it is written, and gone once the box is left.
+  box(input, take, now) {
+    const tell = (words) => {
+      byId('ask-says').hidden = !words;
+      byId('ask-says').textContent = words;
+      if (words) input.setAttribute('aria-invalid', 'true'); else input.removeAttribute('aria-invalid');
+    };
+    input.addEventListener('input', () => {
+      const [text, value] = [input.value.trim(), Number(input.value)];
+      if (text !== '' && isAsked(value)) { tell(''); take(value); return; }
+      // An empty box of the threshold asks for none; an empty friction waits for its number.
+      if (text === '' && !input.validity.badInput && input.id === 'ask-threshold') { tell(''); take(null); return; }
+      tell(WORDS.notAsked(MOST_ASKED_N));
+    });
+    input.addEventListener('blur', () => {
+      if (!input.hasAttribute('aria-invalid')) return;
+      tell('');
+      input.value = now() ?? '';
+    });
+  }
+
   show() {
+    this.age();
     const { threshold_n, friction } = this.state.now.ask;
     const input = byId('ask-threshold');
     if (document.activeElement !== input) input.value = threshold_n ?? '';
     byId('ask-no-threshold').hidden = threshold_n === null;
-    byId('add-friction').hidden = friction.length >= 4;
+    byId('add-friction').hidden = friction.length >= MOST_FRICTIONS;
     byId('search-here').hidden = threshold_n === null && !friction.length;
     const rows = byId('ask-frictions');
     while (rows.children.length > friction.length) rows.lastChild.remove();
@@ -42,7 +64,7 @@ class Ask {
     const box = (word, key) => {
       const label = make('label', word);
       const input = make('input', undefined, { type: 'number', min: 0, step: key === 'load_n' ? 0.5 : 0.1, inputmode: 'decimal' });
-      input.addEventListener('input', () => { if (Number(input.value) > 0) this.handles.setFriction(i, { ...this.state.now.ask.friction[i], [key]: Number(input.value) }); });
+      this.box(input, (value) => this.handles.setFriction(i, { ...this.state.now.ask.friction[i], [key]: value }), () => this.state.now.ask.friction[i]?.[key]);
       label.append(input, make('span', WORDS.units.n, { class: 'unit' }));
       return label;
     };
@@ -52,7 +74,7 @@ class Ask {
   }
 
   async search() {
-    const { ask, values } = this.state.now;
+    const { ask, values, model } = this.state.now;
     const isEmpty = ask.threshold_n === null && !ask.friction.length;
     byId('ask-says').hidden = !isEmpty;
     byId('ask-says').textContent = isEmpty ? WORDS.searchNothing : '';
@@ -61,25 +83,41 @@ class Ask {
     byId('found').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
     byId('search').disabled = byId('search-here').disabled = true;
     byId('stop').hidden = false;
+    this.searched = null;
+    byId('found').classList.add('old');
     const began = performance.now();
     const tick = () => { byId('search-says').textContent = WORDS.searching(Math.round((performance.now() - began) / 1000)); };
     tick();
     const clock = setInterval(tick, 1000);
     try {
-      const answer = await this.engine.ask({ ask: 'search', values, threshold_n: ask.threshold_n, friction: ask.friction, most: 6 });
+      const answer = await this.engine.ask({ ask: 'search', values, threshold_n: ask.threshold_n, friction: ask.friction, most: 6, model: model?.toml ?? null });
+      this.searched = { says: answer.words + (model ? WORDS.searchedWith(model.name) : ''), of: this.question(ask, values, model) };
       this.found(answer.designs);
-      byId('search-says').textContent = answer.words;
     } catch (problem) {
       byId('search-says').textContent = problem instanceof Stale ? WORDS.stopped : problem.message;
     } finally {
       clearInterval(clock);
       byId('search').disabled = byId('search-here').disabled = false;
       byId('stop').hidden = true;
+      this.age();
     }
   }
 
+  // What a search was made for: all but the pins, which it looks for.
+  question(ask, { 'layout.pins': _, ...values }, model) { return JSON.stringify([ask, values, model?.packed ?? null]); }
+
+  // Says of cards whether they answer what is asked now.
+  age() {
+    if (!this.searched || byId('search').disabled) return;
+    const { ask, values, model } = this.state.now;
+    const isOld = this.searched.of !== this.question(ask, values, model);
+    byId('found').classList.toggle('old', isOld);
+    byId('search-says').textContent = isOld ? WORDS.searchedBefore : this.searched.says;
+  }
+
   close() {
-    this.engine.stopSlow();
+    this.engine.stop('search');
+    this.searched = null;
     this.curve.further('preview', null);
     byId('found').hidden = true;
     byId('search').focus();
@@ -100,7 +138,10 @@ class Ask {
     const has = WORDS.designHas(design.threshold_n === null ? null : design.threshold_n.toFixed(1), design.friction_n === null ? null : design.friction_n.toFixed(2));
     const take = button(WORDS.take, () => {
       this.curve.further('preview', null);
-      this.state.change({ values: { ...design.values } });
+      // What the search does not vary stays as it is now.
+      const { 'layout.pins': _, ...values } = this.state.now.values;
+      const pins = design.values['layout.pins'];
+      this.state.change({ values: pins ? { ...values, 'layout.pins': pins } : values });
       say(WORDS.designTaken);
     }, { class: 'btn', 'aria-label': `${WORDS.take}: ${WORDS.designName(i + 1)}` });
     card.append(head, bar, make('p', design.words), make('p', has, { class: 'dim' }), take);

@@ -43,5 +43,6 @@ function showTrouble(trouble, controls, state) {
   host.append(text);
   const mending = mend();
   if (mending) host.append(mending);
+  if (!field && state.now.model) host.append(button(WORDS.dropModel, () => state.change({ model: null }), { class: 'btn mend' }));
   if (state.past.length) host.append(button(WORDS.undo, () => state.undo(), { class: 'btn' }));
 }

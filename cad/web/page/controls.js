@@ -73,6 +73,12 @@ class Control {
       this.input = make('input', undefined, { ...own, type: 'text', maxlength: 200, spellcheck: 'false', autocomplete: 'off' });
       this.input.addEventListener('change', () => this.typed());
     }
+    // What is no value is gone once the box is left: the design has the former.
+    this.input.addEventListener('blur', () => {
+      if (!this.isOwn) return;
+      this.show();
+      say(WORDS.stays(this.name, shownValue(this.state.value(this.field.path))));
+    });
   }
 
   addSlider() {
@@ -89,22 +95,30 @@ class Control {
     if (kind === 'text') { this.take(this.input.value); return; }
     if (kind === 'list') {
       const items = text.replace(/^\[|\]$/g, '').split(/[\s,;]+/).filter(Boolean).map(Number);
-      if (items.every(Number.isInteger)) this.take([...new Set(items)].sort((a, b) => a - b)); else this.complain(WORDS.notList);
+      if (items.every(Number.isInteger)) this.take([...new Set(items)].sort((a, b) => a - b)); else this.complainOfText(WORDS.notList);
       return;
     }
     const value = Number(text);
-    if (text === '' || !Number.isFinite(value)) this.complain(WORDS.notNumber);
-    else if (kind === 'whole' && !Number.isInteger(value)) this.complain(WORDS.notWhole);
+    if (text === '' || !Number.isFinite(value)) this.complainOfText(WORDS.notNumber);
+    else if (kind === 'whole' && !Number.isInteger(value)) this.complainOfText(WORDS.notWhole);
     else this.take(value);
   }
 
   take(value) {
     this.complain('');
+    this.isOwn = false;
     this.state.set(this.field.path, value);
+  }
+
+  // Of what is written in the box and is no value, so that the state does not have it.
+  complainOfText(words) {
+    this.complain(words);
+    this.isOwn = true;
   }
 
   // Shows what the state holds; not over what somebody is just writing.
   show() {
+    if (this.isOwn) { this.isOwn = false; this.complain(''); }
     const value = this.state.value(this.field.path);
     const changed = this.state.isChanged(this.field.path);
     this.element.classList.toggle('changed', changed);

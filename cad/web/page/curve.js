@@ -24,8 +24,9 @@ class Curve {
     this.kept = remembered().kept ?? null;
   }
 
-  show(data) {
+  show(data, values) {
     this.data = data;
+    this.values = values;
     const loads = data.curve.load_n;
     const slider = byId('load');
     [slider.min, slider.max] = [loads[0], loads.at(-1)];
@@ -43,7 +44,7 @@ class Curve {
 
   keep() {
     if (this.kept) this.kept = null;
-    else if (this.data) this.kept = { name: `${this.data.manifest.name} ${shownValue(this.state.value('layout.pins'))}`, curve: this.data.curve };
+    else if (this.data) this.kept = { name: `${this.data.manifest.name} ${shownValue(this.values['layout.pins'] ?? this.state.fields.get('layout.pins').default)}`, curve: this.data.curve };
     remember({ ...remembered(), kept: this.kept });
     this.draw();
   }

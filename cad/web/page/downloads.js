@@ -7,33 +7,59 @@ class Downloads {
     byId('download').addEventListener('click', () => this.open());
     byId('files-close').addEventListener('click', () => this.dialog.close());
     byId('zip').addEventListener('click', () => this.fetch({ ask: 'zip' }, `${this.name()}.zip`, 'application/zip'));
-    byId('toml').addEventListener('click', () => save(`${this.name()}.toml`, this.toml, 'application/toml'));
+    byId('toml').addEventListener('click', () => this.configuration());
   }
 
-  // What the last design that can be built was: its name and its configuration.
-  show(data, toml) {
+  // What the last design that can be built was called. Under the open dialog the list follows the design.
+  show(data) {
     this.title = data.manifest.name;
-    this.toml = toml;
+    this.refresh();
   }
 
+  refresh() {
+    const { values, model } = this.state.now;
+    const isListed = this.listed && this.listed.values === values && this.listed.model === model && !this.isStale();
+    if (this.dialog.open && !isListed) this.ask();
+  }
+
+  isStale() { return document.body.classList.contains('stale') || !this.title; }
   name() { return this.title ?? 'switch'; }
   asked() { return { values: this.state.now.values, model: this.state.now.model?.toml ?? null }; }
 
   async open() {
-    const cannot = document.body.classList.contains('stale') || !this.toml;
     this.dialog.showModal();
+    await this.ask();
+  }
+
+  async ask() {
+    const cannot = this.isStale();
+    const { values, model } = this.state.now;
+    this.listed = cannot ? null : { values, model };
     byId('file-list').replaceChildren();
     byId('zip').disabled = byId('toml').disabled = cannot;
-    byId('files-say').textContent = cannot ? WORDS.noFiles : WORDS.makingFiles;
-    if (cannot) return;
+    byId('files-say').textContent = cannot ? (document.body.classList.contains('gone') ? WORDS.serverGone : WORDS.noFiles) : WORDS.makingFiles;
     const turn = this.turn = (this.turn ?? 0) + 1;
+    if (cannot) return;
     try {
       const { files } = await this.engine.ask({ ask: 'files', ...this.asked() });
       if (turn !== this.turn) return;
       this.list(files);
       byId('files-say').textContent = '';
     } catch (problem) {
-      if (!(problem instanceof Stale)) byId('files-say').textContent = WORDS.filesFail + problem.message;
+      if (!(problem instanceof Stale) && turn === this.turn) byId('files-say').textContent = WORDS.filesFail + problem.message;
+    }
+  }
+
+  // The configuration of the design as it is now, though the page may still be showing the one before.
+  async configuration() {
+    try {
+      const { toml, data, trouble } = await this.engine.ask({ ask: 'design', values: this.state.now.values, quality: 'coarse', aside: true });
+      if (trouble) throw new EngineError(troubleWords(trouble), 'refused');
+      save(`${data.manifest.name}.toml`, toml, 'application/toml');
+      byId('files-say').textContent = WORDS.saved(`${data.manifest.name}.toml`);
+    } catch (problem) {
+      if (!(problem instanceof EngineError)) throw problem;
+      byId('files-say').textContent = WORDS.filesFail + problem.message;
     }
   }
 

@@ -60,9 +60,13 @@ class WorkerLane {
   // Ends the worker with what it does; the next question starts another.
   end() { this.worker?.terminate(); this.worker = null; }
 
-  stop() {
+  // Ends questions of this kind, waiting or under way, and no others.
+  stop(kind) {
+    this.waiting.filter((q) => q.request.ask === kind).forEach((q) => q.reject(new Stale()));
+    this.waiting = this.waiting.filter((q) => q.request.ask !== kind);
+    if (this.asked?.request.ask !== kind) return;
     this.end();
-    this.asked?.reject(new Stale());
+    this.asked.reject(new Stale());
     this.asked = null;
     this.next();
   }
@@ -70,7 +74,7 @@ class WorkerLane {
 
 // The server answers many at once; here too only the newest design counts.
 class ServerLane {
-  constructor() { this.turn = {}; this.stopping = new AbortController(); }
+  constructor() { this.turn = {}; this.stopping = {}; }
 
   async ask(request, newest) {
     const turn = newest && (this.turn[newest] = (this.turn[newest] ?? 0) + 1);
@@ -84,7 +88,7 @@ class ServerLane {
   }
 
   async post(request) {
-    const { signal } = this.stopping;
+    const { signal } = (this.stopping[request.ask] ??= new AbortController());
     let response;
     try {
       response = await fetch('answer', { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(request), signal });
@@ -97,7 +101,7 @@ class ServerLane {
     return isJson ? response.json() : response.arrayBuffer();
   }
 
-  stop() { this.stopping.abort(); this.stopping = new AbortController(); }
+  stop(kind) { this.stopping[kind]?.abort(); delete this.stopping[kind]; }
 }
 
 class Engine {
@@ -114,7 +118,7 @@ class Engine {
 
   // The answer; an EngineError in words if there is none, Stale if a newer design was asked for meanwhile.
   async ask(request) {
-    const isSlow = ['search', 'files', 'file', 'zip', 'calibrate'].includes(request.ask);
+    const isSlow = ['search', 'files', 'file', 'zip', 'calibrate', 'model'].includes(request.ask);
     const newest = request.ask === 'design' && !request.aside ? 'design' : undefined;
     const { aside: _, ...question } = request;
     const answer = await (isSlow ? this.slow : this.quick).ask(question, newest);
@@ -124,5 +128,5 @@ class Engine {
     return answer;
   }
 
-  stopSlow() { this.slow.stop(); }
+  stop(kind) { this.slow.stop(kind); }
 }

@@ -7,6 +7,7 @@ class Measured {
     byId('choose-table').addEventListener('click', () => byId('table-file').click());
     byId('take-model').addEventListener('click', () => this.take());
     byId('drop-model').addEventListener('click', () => this.state.change({ model: null }));
+    this.again = later(() => this.preview(), CALM_MS);
     state.addEventListener('change', () => this.show());
     this.show();
   }
@@ -16,7 +17,9 @@ class Measured {
     byId('model-used').hidden = !model;
     byId('model-words').textContent = model ? `${WORDS.modelName(model.name)}. ${WORDS.modelTaken}` : '';
     byId('take-model').hidden = !this.found || model?.toml === this.found.toml;
-    if (model) this.curve.further('calibrated', null);
+    // The curve of another design would be none of this one's.
+    if (this.curve.calibrated && (model || this.curve.calibrated.of !== this.state.now.values)) this.curve.further('calibrated', null);
+    if (this.found && !model) this.again();
   }
 
   async calibrate(csv, file) {
@@ -33,18 +36,29 @@ class Measured {
       this.tell([answer.words, ...errors, ...(answer.effects?.length ? [WORDS.effects(answer.effects)] : [])], WORDS.verdicts[answer.verdict] ?? answer.verdict);
       this.found = answer.model ? { name: file, toml: answer.model } : null;
       this.show();
-      if (this.found) await this.preview();
     } catch (problem) {
-      if (!(problem instanceof Stale)) this.tell([problem.message], undefined, true);
+      this.tell([problem instanceof Stale ? WORDS.stopped : problem.message], undefined, !(problem instanceof Stale));
     }
   }
 
   // The curve of the design by the model just found, beside the one that is shown.
   async preview() {
-    const { values } = this.state.now;
-    const { data, trouble } = await this.engine.ask({ ask: 'design', values, quality: 'coarse', model: this.found.toml, aside: true });
-    if (data) this.curve.further('calibrated', { curve: data.curve });
-    else if (trouble) byId('verdict').append(make('p', troubleWords(trouble), { class: 'error' }));
+    const { found } = this;
+    const { values, model } = this.state.now;
+    if (!found || model) return;
+    let answer;
+    try {
+      answer = await this.engine.ask({ ask: 'design', values, quality: 'coarse', model: found.toml, aside: true });
+    } catch (problem) {
+      // An engine that is gone is told where the design itself is asked for.
+      if (problem instanceof EngineError || problem instanceof Stale) return;
+      throw problem;
+    }
+    if (found !== this.found || values !== this.state.now.values || this.state.now.model) return;
+    const { data, trouble } = answer;
+    if (data) this.curve.further('calibrated', { curve: data.curve, of: values });
+    byId('model-not').hidden = !trouble;
+    byId('model-not').textContent = trouble ? troubleWords(trouble) : '';
   }
 
   async take() {
@@ -53,6 +67,14 @@ class Measured {
 
   // A model.toml of an earlier calibration.
   async takeModel(toml, file) {
+    try {
+      const { trouble } = await this.engine.ask({ ask: 'model', toml, file });
+      if (trouble) throw new EngineError(troubleWords(trouble), 'refused');
+    } catch (problem) {
+      if (problem instanceof EngineError) showNotice(WORDS.notOpened(file) + problem.message);
+      else if (!(problem instanceof Stale)) throw problem;
+      return;
+    }
     this.tell([WORDS.opened(file)]);
     this.found = { name: file, toml };
     await this.take();

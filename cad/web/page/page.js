@@ -17,14 +17,14 @@ document.body.dataset.generation = document.body.dataset.asked = document.body.d
 addEventListener('error', (event) => { if (!/ResizeObserver/.test(event.message)) fault(event.message); });
 addEventListener('unhandledrejection', (event) => fault(String(event.reason?.message ?? event.reason)));
 
-// A line above the view: about an address, a file, the engine. `act` is what could be done.
-function showNotice(words, act) {
+// A line above the view: about an address, a file, the engine. `acts` are what could be done.
+function showNotice(words, ...acts) {
   const host = byId('notice');
   host.hidden = !words;
   host.replaceChildren();
   if (!words) return;
   host.append(make('p', words));
-  if (act) host.append(act);
+  host.append(...acts);
   host.append(button('×', () => showNotice(''), { class: 'tiny', 'aria-label': WORDS.close }));
 }
 
@@ -129,9 +129,11 @@ class Page {
     const slow = setTimeout(() => { byId('busy').textContent = WORDS.working; }, 300);
     try {
       const answer = await this.engine.ask({ ask: 'design', values, quality, model: model?.toml ?? null });
-      if (answer.data) this.show(answer, quality);
+      if (answer.data) this.show(answer, quality, values);
       else if (!this.data) await this.showPublished();
+      document.body.classList.remove('gone');
       showTrouble(answer.trouble, this.controls, this.state);
+      this.downloads.refresh();
       document.body.dataset.answered = question;
       this.embed.tell(this.state, answer.data, answer.trouble);
       if (quality === 'exact' && asked === this.asked) document.body.dataset.pending = 'false';
@@ -141,6 +143,8 @@ class Page {
       if (!(problem instanceof EngineError)) throw problem;
       this.isGone = problem.kind === 'gone';
       document.body.classList.add('stale');
+      document.body.classList.toggle('gone', this.isGone);
+      this.downloads.refresh();
       showNotice(problem.message, button(WORDS.retry, () => this.design('exact')));
       if (asked === this.asked) document.body.dataset.pending = 'false';
     } finally {
@@ -151,20 +155,21 @@ class Page {
 
   // An address that cannot be built has no last good design: a published one stands there in grey.
   async showPublished() {
-    const answer = await this.engine.ask({ ask: 'design', values: this.published()?.values ?? {}, quality: 'coarse', model: null, aside: true });
-    if (answer.data && !this.data) this.show(answer, 'coarse');
+    const values = this.published()?.values ?? {};
+    const answer = await this.engine.ask({ ask: 'design', values, quality: 'coarse', model: null, aside: true });
+    if (answer.data && !this.data) this.show(answer, 'coarse', values);
   }
 
   published() { return this.facts.templates.find((t) => t.name === FIRST) ?? this.facts.templates[0]; }
 
-  show({ data, toml }, quality) {
+  show({ data }, quality, values) {
     this.data = data;
     this.markTemplate();
     this.view.show(data);
-    this.curve.show(data);
+    this.curve.show(data, values);
     showChecks(data);
     showBill(data);
-    this.downloads.show(data, toml);
+    this.downloads.show(data);
     const { dataset } = document.body;
     dataset.generation = Number(dataset.generation) + 1;
     dataset.quality = quality;
@@ -215,8 +220,12 @@ class Page {
   takeTemplate(template) {
     const { values } = this.state.now;
     if (template.kind === 'printer') {
-      this.state.change({ values: { ...values, ...template.values } });
-      say(WORDS.printerTaken(template.name));
+      // Under the design, as a preset of the command line: what a person has set stays. What another printer has set goes.
+      const printers = this.facts.templates.filter((t) => t.kind === 'printer');
+      const own = Object.fromEntries(Object.entries(values).filter(([path, value]) => !printers.some((t) => path in t.values && sameValue(t.values[path], value))));
+      const kept = Object.keys(template.values).filter((path) => path in own);
+      this.state.change({ values: { ...template.values, ...own } });
+      say(WORDS.printerTaken(template.name, kept.map((path) => fieldName(this.state.fields.get(path)))));
       return;
     }
     const isOfTemplates = (path) => this.facts.templates.some((t) => t.kind === 'published' && path in t.values);
@@ -244,7 +253,7 @@ class Page {
     byId('curve-table').addEventListener('toggle', () => this.curve.data && this.curve.words());
     addEventListener('keydown', (event) => {
       if (event.key === 'Escape') { this.sheet(false); byId('more').open = byId('look').open = false; }
-      if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+      if (!(event.ctrlKey || event.metaKey) || event.altKey || byId('files').open) return;
       const key = event.key.toLowerCase();
       // In a text that is being written, the browser's own undo.
       if (event.target.matches?.('input[type=text], input[type=search]')) return;

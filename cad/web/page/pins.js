@@ -64,7 +64,9 @@ class Pins {
     if (hadFocus) this.marks[this.focused - 1]?.focus();
     byId('pins-say').textContent = WORDS.pinsIn(pins);
     byId('pins-of').textContent = pins.length ? WORDS.pinsOf(pins.length, s.n) : WORDS.bare;
-    byId('clear-pins').disabled = byId('mirror-pins').disabled = !pins.length;
+    byId('clear-pins').disabled = !pins.length;
+    // A pin beyond the last groove, which is refused, has no other side.
+    byId('mirror-pins').disabled = !pins.length || pins.some((i) => i > this.grooves());
   }
 
   // Shell, layer and tendon, in a drawing that holds all of them.

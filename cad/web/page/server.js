@@ -22,8 +22,29 @@ class Served {
     this.file = started.file;
     byId('save').textContent = WORDS.saveTo(this.file);
     byId('save').hidden = false;
+    const values = this.state.withoutDefaults(started.values);
+    // What the page knows of the file: its stamp, of this visit or of the last one.
+    const { seen } = remembered();
+    const isSame = sameValue(values, this.state.now.values);
+    this.stamp = isSame || (seen?.file === this.file && seen.stamp === started.stamp) ? started.stamp : '';
+    this.know(this.stamp);
     if (started.trouble) showNotice(started.trouble);
+    else if (!this.stamp) showNotice(WORDS.fileDiffers(this.file), this.showButton(values, started.stamp));
     this.follow(started.version);
+  }
+
+  // The file as the page has last shown or written it. Where it is another one by then, saving asks first.
+  know(stamp) {
+    this.stamp = stamp;
+    if (stamp) remember({ ...remembered(), seen: { file: this.file, stamp } });
+  }
+
+  showButton(values, stamp) {
+    return button(WORDS.showFile(this.file), () => {
+      this.state.change({ values });
+      this.know(stamp);
+      showNotice('');
+    });
   }
 
   // Takes the file's values whenever it was changed beside the page; Undo goes back to before.
@@ -36,7 +57,9 @@ class Served {
           if (next.version === version) continue;
           version = next.version;
           showNotice(next.trouble ?? '');
-          if (next.values && !next.trouble && !sameValue(this.state.withoutDefaults(next.values), this.state.now.values)) {
+          if (next.trouble || !next.values || next.stamp === this.stamp) continue;
+          this.know(next.stamp);
+          if (!sameValue(this.state.withoutDefaults(next.values), this.state.now.values)) {
             this.state.change({ values: next.values });
             say(WORDS.fileChanged(this.file));
           }
@@ -48,11 +71,24 @@ class Served {
     }
   }
 
-  async save() {
+  // Saves over the file with this stamp, and over no other.
+  async save(stamp = this.stamp) {
+    const { values, model } = this.state.now;
     try {
-      const response = await fetch('save', { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify({ values: this.state.now.values }) });
-      const { saved, error } = await response.json();
-      if (saved) say(WORDS.savedTo(saved)); else showNotice(WORDS.notSaved(this.file) + error);
+      const response = await fetch('save', { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify({ values, stamp }) });
+      const { saved, stamp: written, differs, error } = await response.json();
+      if (saved) {
+        this.know(written);
+        showNotice('');
+        say(model ? WORDS.savedWithoutModel(saved) : WORDS.savedTo(saved));
+      } else if (differs) {
+        const names = [...this.state.fields.keys()].filter((path) => !sameValue(differs.values[path] ?? null, values[path] ?? null));
+        if (!names.length) { await this.save(differs.stamp); return; }
+        const over = button(WORDS.saveOver, () => this.save(differs.stamp));
+        showNotice(WORDS.fileNewer(this.file, names.slice(0, 6).map((path) => fieldName(this.state.fields.get(path)))), this.showButton(differs.values, differs.stamp), over);
+      } else {
+        showNotice(WORDS.notSaved(this.file) + error);
+      }
     } catch {
       showNotice(WORDS.notSaved(this.file) + WORDS.serverGone);
     }

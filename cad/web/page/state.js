@@ -6,6 +6,10 @@ const LONGEST_MODEL = 60000;
 const STORE = 'pinswitch.configurator.1';
 // Changes of one field in so short a time are one step back.
 const ONE_STEP_MS = 700;
+// Frictions that can be asked for at once, and loads and frictions that can, in newtons.
+const MOST_FRICTIONS = 4;
+const MOST_ASKED_N = 1000;
+const isAsked = (value) => Number.isFinite(value) && value > 0 && value <= MOST_ASKED_N;
 const sameValue = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
 class State extends EventTarget {
@@ -108,6 +112,7 @@ async function decodeHash(hash, fields) {
   const pairs = text.split('&').map((pair) => [pair.slice(0, pair.indexOf('=')), pair.slice(pair.indexOf('=') + 1)]).filter(([name]) => name);
   const given = new Map(pairs);
   const said = [];
+  const twice = [...given.keys()].filter((name) => pairs.filter(([other]) => other === name).length > 1);
   if (!/^\d+$/.test(given.get('v') ?? '')) return { broken: true, said: [WORDS.hash.broken] };
   if (Number(given.get('v')) < 1) said.push(WORDS.hash.older(given.get('v')));
   if (Number(given.get('v')) > HASH_VERSION) said.push(WORDS.hash.newer(given.get('v')));
@@ -129,18 +134,23 @@ async function decodeHash(hash, fields) {
       if (read === undefined) wrong.push(name); else parts.values[name] = read;
     }
   }
+  if (parts.ask.friction.length > MOST_FRICTIONS) {
+    said.push(WORDS.hash.manyFrictions(MOST_FRICTIONS));
+    parts.ask.friction.length = MOST_FRICTIONS;
+  }
   if (unknown.length) said.push(WORDS.hash.unknown(unknown.slice(0, 6)));
   if (wrong.length) said.push(WORDS.hash.wrong(wrong));
   if (said.length) said.push(WORDS.hash.rest);
+  if (twice.length) said.push(WORDS.hash.twice(twice.map((name) => name.slice(0, 60))));
   return { parts, said };
 }
 
 function readAsk(ask, name, text) {
   const numbers = text.split(',').map((item) => item.split(':').map(Number));
-  if (!numbers.flat().every((v) => Number.isFinite(v) && v > 0)) return false;
+  if (!numbers.flat().every(isAsked)) return false;
   if (name === 'ask.threshold_n') { [[ask.threshold_n]] = numbers; return true; }
   if (!numbers.every((pair) => pair.length === 2)) return false;
-  ask.friction = numbers.slice(0, 4).map(([load_n, friction_n]) => ({ load_n, friction_n }));
+  ask.friction = numbers.map(([load_n, friction_n]) => ({ load_n, friction_n }));
   return true;
 }
 

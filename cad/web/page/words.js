@@ -39,6 +39,7 @@ const WORDS = {
   about: (name) => `About ${name}`,
   aboutField: (f, shown) => `${f.reason}. Range: ${f.range}. Default: ${shown}, ${f.origin}.`,
   slider: (name) => `${name}, slider`,
+  stays: (name, value) => `${name} stays ${value}.`,
   notNumber: 'This is no number.', notWhole: 'A whole number goes here.', notList: 'Groove numbers go here, with commas: 5, 8, 11.',
   setTo: (name, value) => `Set ${name} to ${value}`,
 
@@ -76,7 +77,8 @@ const WORDS = {
   bedSays: (beds, bed, fits) => (fits ? `Outlines of the printed parts, to scale, on ${beds === 1 ? 'a bed' : `${beds} beds`} of ${bed} mm.` : `Not all parts lie on one bed of ${bed} mm: print them in turns.`),
   bedPart: (name, x, y) => `${name}, ${x} by ${y} mm`, bedName: (n, bed) => `Outlines of ${n} printed parts on a bed of ${bed} mm`,
 
-  searching: (s) => `Looking for designs, ${s} s. The page stays yours meanwhile.`, searchNothing: 'Say first where it should switch or how much friction it should make.',
+  searching: (s) => `Looking for designs, ${s} s. The page stays yours meanwhile.`, searchedWith: (name) => `; by the ${WORDS.modelName(name)}`, searchedBefore: 'Found for the design and the wishes as they were before your last change. Find designs again for what you ask now.',
+  notAsked: (most) => `A number above 0 and up to ${most} N goes here.`, searchNothing: 'Say first where it should switch or how much friction it should make.',
   stopped: 'Stopped.', likely: (p) => `${p} % likely`, designHas: (t, f) => [t === null ? '' : `switches at ${t} N`, f === null ? '' : `${f} N at the heaviest load`].filter(Boolean).join(', '),
   removeFriction: (i) => `Remove friction ${i}`, designName: (i) => `Design ${i}`, askFor: 'likely that a made part does what was asked',
   forgetThreshold: 'Ask for no threshold',
@@ -97,7 +99,7 @@ const WORDS = {
   kinds: { stl: 'Printed parts, one by one', '3mf': 'All parts on a plate', step: 'For CAD, exact', dxf: 'Drawings', svg: 'Drawings and figures', pdf: 'Drawings', glb: 'For viewers and web pages', png: 'Pictures', md: 'Guide', csv: 'Tables', json: 'Tables', html: 'Pages', ini: 'Printer', toml: 'Configuration', other: 'Other' },
 
   shared: 'The address is copied: it holds the whole design.', shareByHand: 'Copy the address of this page: it holds the whole design.',
-  templateTaken: (name, lost) => (lost ? `${name}, as it ships. Undo brings your ${lost} changed ${lost === 1 ? 'value' : 'values'} back.` : `${name}, as it ships.`), printerTaken: (name) => `${name} set under your design.`,
+  templateTaken: (name, lost) => (lost ? `${name}, as it ships. Undo brings your ${lost} changed ${lost === 1 ? 'value' : 'values'} back.` : `${name}, as it ships.`), printerTaken: (name, kept) => `${name} set under your design.${kept.length ? ` Your own stays: ${kept.join(', ')}.` : ''}`,
   opened: (file) => `${file} is open.`, notOpened: (file) => `${file} could not be opened: `, designTaken: 'Taken. Undo brings the former back.',
   welcomeBack: 'Went on where you left off.',
   published: 'Published', printers: 'Printers',
@@ -109,10 +111,15 @@ const WORDS = {
     unknown: (names) => `The address names ${names.join(', ')}, which this version does not have.`,
     wrong: (names) => `The address gives ${names.join(', ')} a value that cannot be.`,
     rest: 'The rest was taken.',
+    twice: (names) => `The address gives ${names.join(', ')} twice: the last one counts.`,
+    manyFrictions: (most) => `The address asks for more than ${most} frictions: the first ${most} were taken.`,
     model: 'The address holds a calibrated model that is cut off. The published constants are used.',
   },
 
   saveTo: (file) => `Save to ${file}`, savedTo: (file) => `Saved to ${file}.`, notSaved: (file) => `${file} was not saved: `, fileChanged: (file) => `${file} was changed: its values are shown. Undo goes back.`,
+  fileDiffers: (file) => `The page shows a design of its address, and ${file} has other values now.`,
+  fileNewer: (file, names) => `${file} was not saved: it has been changed since this page last read it (${names.join(', ')}).`,
+  showFile: (file) => `Show ${file}`, saveOver: 'Save over it', savedWithoutModel: (file) => `Saved to ${file}, which holds no model: keep your model.toml, and make the parts with --model.`,
 
   starting: 'Starting the engine …', working: 'Working …',
   engineMissing: 'This copy of the page holds no engine, and no server answers. Open it with: pinswitch view',

@@ -50,7 +50,7 @@ fn rig_grooves(pins: &[usize], grooves: usize) -> Option<Vec<usize>> {
 ///
 /// # Errors
 /// [`ContactError`] if nothing touches there.
-pub fn rig_contact(part: &Contact, pins: &[usize]) -> Result<Contact, ContactError> {
+pub(crate) fn rig_contact(part: &Contact, pins: &[usize]) -> Result<Contact, ContactError> {
     let middle = (published::GROOVES as f64 + 1.0) / 2.0;
     let pitch_rad = published::GROOVE_PITCH_DEG.to_radians();
     let angles = pins.iter().map(|pin| (*pin as f64 - middle) * pitch_rad).collect();

@@ -7,6 +7,7 @@ use pinswitch_calibration::{ModelFile, SessionReport, calibrate_among};
 use serde::Serialize;
 
 use crate::Answer;
+use crate::trouble::Trouble;
 
 /// Largest table that is read, in megabytes: some hundred thousand rows, for which a browser computes minutes.
 pub(crate) const LARGEST_MB: usize = 20;
@@ -25,6 +26,19 @@ struct Said {
     effects: Vec<String>,
     /// The text of `model.toml`.
     model: String,
+}
+
+/// Whether a text is a calibrated model, or what is wrong with it.
+#[derive(Debug, Serialize)]
+pub(crate) struct CheckedModel {
+    is_model: bool,
+    trouble: Option<Trouble>,
+}
+
+/// Checks a model before a design uses it; `file` names it in errors.
+pub(crate) fn checked_model(text: &str, file: &str) -> CheckedModel {
+    let trouble = ModelFile::parse(text, file).err().map(Trouble::general);
+    CheckedModel { is_model: trouble.is_none(), trouble }
 }
 
 /// Calibrates the table; `file` names it in errors.

@@ -16,6 +16,7 @@
 //! ```
 
 mod calibrated_curve;
+mod calibrated_switch;
 mod calibration;
 mod design;
 mod facts;
@@ -35,7 +36,8 @@ use predicted::Predictions;
 use request::Request;
 use serde::Serialize;
 
-pub use calibrated_curve::{calibrated_curve, rig_contact};
+pub use calibrated_curve::calibrated_curve;
+pub use calibrated_switch::CalibratedSwitch;
 pub use request::Values;
 pub use values::{configuration, values};
 
@@ -84,6 +86,7 @@ impl Engine {
             Request::File { design, name } => self.files(&design, |made| made.file(&name)),
             Request::Zip { design } => self.files(&design, Made::zip),
             Request::Search(wanted) => search::answer(&wanted),
+            Request::Model { toml, file } => Answer::json(&calibration::checked_model(&toml, &file)),
             Request::Calibrate { csv, file } => calibration::answer(&csv, &file),
         }
     }

@@ -10,7 +10,7 @@ use crate::calibrated_curve::calibrated_curve;
 use crate::trouble::Trouble;
 
 /// What a model dropped on the page is called in errors.
-const MODEL: &str = "the calibrated model";
+pub(crate) const MODEL: &str = "the calibrated model";
 
 /// Curves that are kept.
 const KEPT: usize = 2;

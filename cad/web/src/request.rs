@@ -41,6 +41,8 @@ pub(crate) enum Request {
     },
     /// Designs that do what is wanted.
     Search(Wanted),
+    /// Whether the text of a calibrated model is one.
+    Model { toml: String, file: String },
     /// What a table of measured plateaus says.
     Calibrate { csv: String, file: String },
 }
@@ -78,6 +80,9 @@ pub(crate) struct Wanted {
     /// Friction at loads.
     #[serde(default)]
     pub(crate) friction: Vec<FrictionAt>,
+    /// The text of a calibrated model, instead of the published constants.
+    #[serde(default)]
+    pub(crate) model: Option<String>,
     /// How many designs at the most.
     #[serde(default = "six")]
     pub(crate) most: usize,

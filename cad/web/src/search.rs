@@ -1,13 +1,20 @@
 //! Designs that do what the handles on the plot ask for.
 
+use pinswitch_calibration::ModelFile;
 use pinswitch_friction::FrictionCurve;
+use pinswitch_friction::published::GROOVES;
 use pinswitch_switch::ask::{Ask, DEFAULT_WITHIN, Quantity, Target, Vary, Wish};
 use pinswitch_switch::design::Design;
-use pinswitch_switch::design_search::{Options, Proposal, PublishedPhysics, Silent, load_range_n, search};
+use pinswitch_switch::design_search::{
+    Belief, Options, Proposal, PublishedPhysics, Silent, load_range_n, search,
+};
 use pinswitch_switch::prediction::predicted_curve;
 use serde::Serialize;
 
 use crate::Answer;
+use crate::calibrated_curve::calibrated_curve;
+use crate::calibrated_switch::CalibratedSwitch;
+use crate::predicted::MODEL;
 use crate::request::{Values, Wanted};
 use crate::trouble::Trouble;
 use crate::values::{configuration, values};
@@ -57,16 +64,33 @@ fn found(wanted: &Wanted) -> Result<Found, Trouble> {
     ask.check().map_err(Trouble::general)?;
     ask.check_loads(load_range_n(base.configuration(), &ask)).map_err(Trouble::general)?;
     let options = Options { best: wanted.most.clamp(1, MOST), ..QUICK };
-    let found = search(&base, &ask, &PublishedPhysics::default(), options, &Silent);
+    let model = wanted.model.as_deref().map(|text| ModelFile::parse(text, MODEL)).transpose();
+    let model = model.map_err(Trouble::general)?;
+    let grooves = base.configuration().segment.grooves;
+    if model.is_some() && grooves != GROOVES {
+        return Err(Trouble::general(format!(
+            "segment.grooves = {grooves}: a calibrated switch is known by the {GROOVES} grooves of its rig; set {GROOVES}, or go \
+             back to the published constants"
+        )));
+    }
+    let published = PublishedPhysics::default();
+    let calibrated = model.clone().map(|model| CalibratedSwitch::new(model, MODEL.to_owned()));
+    let belief: &dyn Belief = calibrated.as_ref().map_or(&published, |switch| switch);
+    let found = search(&base, &ask, belief, options, &Silent);
     let mut words = format!("{} patterns, {} curves computed", found.patterns, found.tried);
     if found.blocked.is_some() {
         words.push_str("; none does all of it by the best guess: this is the nearest");
     }
-    Ok(Found { designs: found.proposals.iter().filter_map(card).collect(), words })
+    let designs = found.proposals.iter().filter_map(|proposal| card(proposal, model.as_ref())).collect();
+    Ok(Found { designs, words })
 }
 
-fn card(proposal: &Proposal) -> Option<Card> {
+fn card(proposal: &Proposal, model: Option<&ModelFile>) -> Option<Card> {
     let design = Design::new(proposal.configuration.clone()).ok()?;
+    let curve = match model {
+        Some(model) => calibrated_curve(&design, model, MODEL).ok()?,
+        None => predicted_curve(&design),
+    };
     let threshold = proposal.threshold_n.map_or("no switching".to_owned(), |n| format!("threshold {n:.1} N"));
     Some(Card {
         values: values(&proposal.configuration),
@@ -77,7 +101,7 @@ fn card(proposal: &Proposal) -> Option<Card> {
         probability: proposal.probability.all,
         threshold_n: proposal.threshold_n,
         friction_n: proposal.friction_n,
-        curve: predicted_curve(&design),
+        curve,
     })
 }
 

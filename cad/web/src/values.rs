@@ -1,7 +1,7 @@
 //! Between the values of the page and configurations.
 
 use pinswitch_switch::config::parameter::Parameter;
-use pinswitch_switch::config::{ConfigError, Configuration, assign, read};
+use pinswitch_switch::config::{ConfigError, Configuration, Name, assign, read};
 use pinswitch_switch::documents::toml_to_json;
 use serde::Serialize;
 
@@ -55,7 +55,12 @@ pub(crate) fn opened(text: &str, file: &str) -> Opened {
         return Opened { values: None, trouble: Some(trouble) };
     }
     match read(text, file) {
-        Ok((configuration, _)) => Opened { values: Some(values(&configuration)), trouble: None },
+        Ok((mut configuration, places)) => {
+            if !places.sets("switch.name") {
+                configuration.switch.name = Name::lent_by(file);
+            }
+            Opened { values: Some(values(&configuration)), trouble: None }
+        }
         Err(error) => Opened { values: None, trouble: Some(error.into()) },
     }
 }

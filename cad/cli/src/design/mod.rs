@@ -1,20 +1,19 @@
 //! `pinswitch design`: from an ask to configurations.
 
-mod calibrated;
 mod flags;
 mod progress;
 mod words;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use pinswitch_calibration::ModelFile;
 use pinswitch_friction::layout_search::LayoutCandidate;
 use serde::Serialize;
 
 use super::source::Source;
 use super::{Failure, print, print_json};
 use crate::write::write_set;
-use calibrated::CalibratedSwitch;
 use flags::AskFlags;
 use pinswitch_friction::published::GROOVES;
 use pinswitch_plot::{AskedRegion, pareto_svg};
@@ -24,6 +23,7 @@ use pinswitch_switch::design_search::{
     Belief, Blocked, Found, Options, Proposal, PublishedPhysics, load_range_n, search,
 };
 use pinswitch_switch::output::OutputFile;
+use pinswitch_web::CalibratedSwitch;
 use progress::Bar;
 
 /// Find switches that do what you ask: pins, grooves, silicone.
@@ -104,7 +104,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
              out --model"
         )));
     }
-    let calibrated = arguments.model.as_deref().map(CalibratedSwitch::read).transpose()?;
+    let calibrated = arguments.model.as_deref().map(calibrated_switch).transpose()?;
     let published = PublishedPhysics::default();
     let belief: &dyn Belief = match &calibrated {
         Some(calibrated) => calibrated,
@@ -147,6 +147,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         )),
         None => Ok(()),
     }
+}
+
+fn calibrated_switch(path: &Path) -> Result<CalibratedSwitch, Failure> {
+    let name = path.display().to_string();
+    let text = crate::input::read_text_file(path)?;
+    let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
+    Ok(CalibratedSwitch::new(file, name))
 }
 
 fn options(arguments: &Arguments) -> Result<Options, Failure> {

@@ -12,6 +12,8 @@ use super::{Arguments, build};
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// How long a file stays the same before it counts as saved: an editor that truncates and writes is done by then.
 const QUIET: Duration = Duration::from_millis(300);
+/// How long a file may be missing because an editor is saving it.
+const MISSING_QUIET: Duration = Duration::from_secs(2);
 /// How long a file that looks cut short may be one that is being saved.
 const CUT_SHORT_QUIET: Duration = Duration::from_secs(2);
 
@@ -21,21 +23,28 @@ struct Watched {
     shown: Vec<u8>,
     seen: Vec<u8>,
     since: Instant,
+    /// Whether it was there when it was last read.
+    is_there: bool,
 }
 
 impl Watched {
     /// A file with these bytes, which are shown.
     fn new(shown: Vec<u8>, now: Instant) -> Self {
-        Self { seen: shown.clone(), shown, since: now }
+        Self { seen: shown.clone(), shown, since: now, is_there: true }
     }
 
     /// Takes what is read at `now`; whether it is whole, quiet and new.
     fn is_settled(&mut self, read: Option<Vec<u8>>, now: Instant) -> bool {
         // A file that is missing for a moment is one that an editor is saving.
         let Some(read) = read else {
-            self.since = now;
+            if self.is_there {
+                (self.is_there, self.since) = (false, now);
+            }
             return false;
         };
+        if !self.is_there {
+            (self.is_there, self.since) = (true, now);
+        }
         if self.seen != read {
             (self.seen, self.since) = (read, now);
             return false;
@@ -46,6 +55,15 @@ impl Watched {
         }
         self.shown.clone_from(&self.seen);
         true
+    }
+
+    /// Whether the file is gone for longer than a save takes. What comes in its place is then shown, whatever it is.
+    fn is_lost(&mut self, now: Instant) -> bool {
+        let is_lost = !self.is_there && now.duration_since(self.since) >= MISSING_QUIET;
+        if is_lost {
+            self.shown.clear();
+        }
+        is_lost
     }
 }
 
@@ -69,11 +87,18 @@ fn ends_within(read: &[u8], shown: &[u8]) -> bool {
 /// Rebuilds whenever the file has changed and settled; ends with the program. `shown` is what its page was built from.
 pub(super) fn follow(states: &watch::Sender<State>, arguments: &Arguments, file: &Path, shown: Vec<u8>) {
     let mut watched = Watched::new(shown, Instant::now());
+    let mut is_lost = false;
     loop {
         std::thread::sleep(POLL_INTERVAL);
         if !watched.is_settled(std::fs::read(file).ok(), Instant::now()) {
+            let is_told = is_lost;
+            is_lost = watched.is_lost(Instant::now());
+            if is_lost && !is_told {
+                tell(states, format!("{}: the file is gone; the last good state stays", file.display()));
+            }
             continue;
         }
+        is_lost = false;
         let next = states.borrow().version + 1;
         let built = if watched.shown.trim_ascii().is_empty() {
             // Valid as a configuration, since everything has a default; but nobody means that.
@@ -82,23 +107,26 @@ pub(super) fn follow(states: &watch::Sender<State>, arguments: &Arguments, file:
             // From the bytes that are known to be whole: another save may be under way.
             let design = arguments.source.design_from(watched.shown.clone());
             design
-                .and_then(|design| build(arguments, design, next))
+                .and_then(|design| build(arguments, design, next, &watched.shown))
                 .map_err(|failure| failure.message().to_owned())
         };
-        states.send_modify(|state| {
-            state.version = next;
-            match built {
-                Ok(built) => {
-                    *state = built;
-                    log::info!("rebuilt");
-                }
-                Err(message) => {
-                    log::warn!("{message}");
-                    state.trouble = Some(message);
-                }
+        match built {
+            Ok(built) => {
+                states.send_replace(built);
+                log::info!("rebuilt");
             }
-        });
+            Err(message) => tell(states, message),
+        }
     }
+}
+
+/// Tells what is wrong with the file, beside the last good state.
+fn tell(states: &watch::Sender<State>, message: String) {
+    log::warn!("{message}");
+    states.send_modify(|state| {
+        state.version += 1;
+        state.trouble = Some(message);
+    });
 }
 
 #[cfg(test)]
@@ -145,6 +173,19 @@ mod tests {
                 [false, false, false, true]
             );
         }
+    }
+
+    #[test]
+    fn a_file_that_stays_away_is_lost_and_shown_again_once_it_is_back() {
+        let begun = Instant::now();
+        let at = |ms: u64| begun + Duration::from_millis(ms);
+        let mut watched = Watched::new(b"a = 1\n".to_vec(), begun);
+        assert!(!watched.is_settled(None, at(100)) && !watched.is_lost(at(100)));
+        assert!(!watched.is_settled(None, at(1900)) && !watched.is_lost(at(1900)));
+        assert!(!watched.is_settled(None, at(2200)) && watched.is_lost(at(2200)));
+        let same = || Some(b"a = 1\n".to_vec());
+        assert!(!watched.is_settled(same(), at(2300)) && !watched.is_lost(at(2300)));
+        assert!(watched.is_settled(same(), at(2700)), "it is there again, as it was");
     }
 
     #[test]

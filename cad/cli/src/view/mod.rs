@@ -9,6 +9,7 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 
 use clap::Args;
+use sha2::{Digest, Sha256};
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 
@@ -54,7 +55,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some((bytes, _)) => arguments.source.design_from(bytes.clone()),
         None => arguments.source.design(),
     };
-    let (sender, states) = watch::channel(build(arguments, design?, 1)?);
+    let (sender, states) =
+        watch::channel(build(arguments, design?, 1, followed.as_ref().map_or(&[], |(bytes, _)| bytes))?);
     let configurator = Configurator::new(followed.as_ref().map(|(_, file)| file.clone()));
     // Kept to the end, also where there is no file to follow: pages that wait are not sent away.
     let sender = Arc::new(sender);
@@ -81,8 +83,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// What is shown of a design.
-fn build(arguments: &Arguments, design: Design, version: u64) -> Result<State, Failure> {
+/// What is shown of a design that was read from these bytes.
+fn build(arguments: &Arguments, design: Design, version: u64, bytes: &[u8]) -> Result<State, Failure> {
     let prediction = arguments.law.prediction(&design)?;
     let built = Built::new(design).map_err(Failure::bad_input)?;
     let formats = named(&["stl"]).map_err(Failure::failed)?;
@@ -93,5 +95,11 @@ fn build(arguments: &Arguments, design: Design, version: u64) -> Result<State, F
     let values = values(built.design().configuration());
     let values = serde_json::to_string(&values).map_err(Failure::failed)?;
     let data = data.json().map_err(Failure::failed)?;
-    Ok(State { version, data: data.into(), page: page.into(), values: values.into(), trouble: None })
+    let stamp = stamp(bytes).into();
+    Ok(State { version, stamp, data: data.into(), page: page.into(), values: values.into(), trouble: None })
+}
+
+/// What tells the content of a file from any other.
+fn stamp(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -100,7 +100,7 @@ impl Site {
             return self.response(refusal.0, "text/plain; charset=utf-8", refusal.1);
         }
         let query = request.uri().query().unwrap_or_default();
-        let version = query.strip_prefix("after=").and_then(|v| v.parse().ok()).unwrap_or(0);
+        let known = query.strip_prefix("after=").unwrap_or_default();
         match path.as_str() {
             "/" => {
                 let page = Arc::clone(&self.states.borrow().page);
@@ -124,8 +124,8 @@ impl Site {
                 };
                 let states = self.states.clone();
                 let state = match path.as_str() {
-                    "/state" => after(states, version, LONG_POLL_TIMEOUT).await,
-                    _ => values_after(states, version, LONG_POLL_TIMEOUT, &self.configurator.file()).await,
+                    "/state" => after(states, known.parse().unwrap_or(0), LONG_POLL_TIMEOUT).await,
+                    _ => values_after(states, known, LONG_POLL_TIMEOUT, &self.configurator.file()).await,
                 };
                 self.response(StatusCode::OK, "application/json", state)
             }

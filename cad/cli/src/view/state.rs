@@ -9,6 +9,8 @@ use tokio::sync::watch;
 #[derive(Clone, Debug, Default)]
 pub(super) struct State {
     pub(super) version: u64,
+    /// SHA-256 of the file that it was read from: a configurator tells by it whether the file is the one that it knows.
+    pub(super) stamp: Arc<str>,
     /// JSON of the page's data.
     pub(super) data: Arc<str>,
     pub(super) page: Arc<str>,
@@ -18,6 +20,11 @@ pub(super) struct State {
 }
 
 impl State {
+    /// What differs from that of any other state, of another run of the server, too.
+    fn token(&self) -> String {
+        format!("{}-{}", self.version, self.stamp)
+    }
+
     /// JSON for a page that shows `version`.
     fn since(&self, version: u64) -> String {
         let data = if self.version > version && self.trouble.is_none() { &*self.data } else { "null" };
@@ -26,18 +33,23 @@ impl State {
     }
 }
 
-/// Waits for the state after `version`, with a timeout; gives its version, values and trouble as JSON, for a configurator
-/// that follows `file`.
+/// Waits for a state other than that with the token `known`, with a timeout; gives its token, stamp, values and trouble as
+/// JSON, for a configurator that follows `file`. The server may have been started anew since, with another file.
 pub(super) async fn values_after(
     mut states: watch::Receiver<State>,
-    version: u64,
+    known: &str,
     timeout: Duration,
     file: &serde_json::Value,
 ) -> String {
-    let _ = tokio::time::timeout(timeout, states.wait_for(|state| state.version > version)).await;
+    let _ = tokio::time::timeout(timeout, states.wait_for(|state| state.token() != known)).await;
     let state = states.borrow();
     let trouble = serde_json::to_string(&state.trouble).unwrap_or_else(|_| "null".to_owned());
-    format!(r#"{{"version":{},"values":{},"file":{file},"trouble":{trouble}}}"#, state.version, state.values)
+    format!(
+        r#"{{"version":"{}","stamp":"{}","values":{},"file":{file},"trouble":{trouble}}}"#,
+        state.token(),
+        state.stamp,
+        state.values
+    )
 }
 
 /// The JSON of the state after `version`; waits for it, with a timeout.

@@ -57,6 +57,15 @@ impl Name {
         Self(if is_name(&clean) { clean } else { NAMELESS.to_owned() })
     }
 
+    /// The name that a file lends to a set whose configuration names none: that of the file, without folder and ending.
+    #[must_use]
+    pub fn lent_by(file: &str) -> Self {
+        let name = file.rsplit(['/', std::path::MAIN_SEPARATOR]).next().unwrap_or(file);
+        Self::cleaned(
+            name.rsplit_once('.').map_or(name, |(stem, _)| if stem.is_empty() { name } else { stem }),
+        )
+    }
+
     /// The name as text.
     #[must_use]
     pub fn as_str(&self) -> &str {

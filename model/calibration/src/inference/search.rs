@@ -98,9 +98,10 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
         };
         // To first order alone: an effect that is not linear may gain more once fitted.
         let screened = if current.model.named_effects().is_empty() { 0.3 } else { 0.8 } * least;
-        let Some(best) = extensions(scores, &current, weighed, screened, levels.beyond_bending(gained), FITTED)
-            .into_iter()
-            .next()
+        let Some(best) =
+            extensions(scores, &current, weighed, screened, levels.beyond_bending(gained), FITTED)
+                .into_iter()
+                .next()
         else {
             break;
         };

@@ -28,7 +28,11 @@ pub enum TableError {
         session: String,
     },
     /// A column is absent from the header.
-    #[error("{file}, line 1: column '{column}' is missing; the header must name {}", COLUMNS.join(", "))]
+    #[error(
+        "{file}, line 1: column '{column}' is missing; the header must name {}; a raw log becomes such a table by \
+         `pinswitch segment`",
+        COLUMNS.join(", ")
+    )]
     MissingColumn {
         /// File name as given.
         file: String,

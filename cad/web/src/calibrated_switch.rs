@@ -1,36 +1,29 @@
 //! Belief in a calibrated switch: the curve of `model.toml` with its band and covariance, carried to other dimensions by
 //! the physics, as `generate --model` carries it.
 
-use std::path::Path;
 use std::sync::Mutex;
 
 use pinswitch_calibration::ModelFile;
 use pinswitch_friction::{Carry, Contact, FrictionCurve, Substrate};
-
-use crate::Failure;
 use pinswitch_switch::design_search::{Belief, Curve, Part};
-use pinswitch_web::rig_contact;
+
+use crate::calibrated_curve::rig_contact;
 
 /// Changes that are kept: one part is asked for many times, with other constants.
 const KEPT: usize = 24;
 
 /// A calibrated switch.
-pub(super) struct CalibratedSwitch {
+#[derive(Debug)]
+pub struct CalibratedSwitch {
     file: ModelFile,
     name: String,
     recent: Mutex<Vec<(Contact, Vec<f64>, Carry)>>,
 }
 
 impl CalibratedSwitch {
-    /// Reads `model.toml`.
-    ///
-    /// # Errors
-    /// [`Failure::BadInput`] names file and fault.
-    pub(super) fn read(path: &Path) -> Result<Self, Failure> {
-        let name = path.display().to_string();
-        let text = crate::input::read_text_file(path)?;
-        let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
-        Ok(Self { file, name, recent: Mutex::default() })
+    /// The switch of a model, called `name` in errors.
+    pub fn new(file: ModelFile, name: String) -> Self {
+        Self { file, name, recent: Mutex::default() }
     }
 
     /// The change from the same grooves of the rig to `part`, remembered.

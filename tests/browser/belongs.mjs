@@ -92,6 +92,7 @@ export async function textThatIsNoValue(visit, site) {
   await visit.type('#f-segment-grooves', '15');
   await visit.settled();
   await visit.click('#add-friction');
+  await visit.addressHas('ask.friction=');
   await visit.type('#ask-frictions input', '-3');
   await visit.check('what cannot be asked is told', () => /above 0/.test(document.querySelector('#ask-says').textContent));
   const asked = await visit.page.evaluate(() => /ask\.friction=[\d.]+:([\d.]+)/.exec(decodeURIComponent(location.hash))[1]);

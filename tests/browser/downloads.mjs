@@ -59,9 +59,9 @@ function byCommandLine(binary, scratch, name, toml) {
   return made.get(key);
 }
 
-async function generated(binary, folder, name, toml) {
+async function generated(binary, folder, name, toml, options = []) {
   writeFileSync(join(folder, `${name}.toml`), toml);
-  await promisify(execFile)(binary, ['-q', 'generate', `${name}.toml`, '--format', 'all', '--out', '.'], { cwd: folder });
+  await promisify(execFile)(binary, ['-q', 'generate', `${name}.toml`, '--format', 'all', '--out', '.', ...options], { cwd: folder });
   const files = new Map(readdirSync(folder).map((file) => [file, hash(readFileSync(join(folder, file)))]));
   rmSync(folder, { recursive: true });
   return files;
@@ -95,6 +95,31 @@ export async function downloads(visit, site, { binary, scratch, findings }) {
     if (i === 0) await oneByOne(visit, wait, own, findings);
     await visit.click('#files-close');
   }
+}
+
+// With a calibrated model, too.
+export async function downloadsByAModel(visit, site, { binary, scratch, findings, table }) {
+  const folder = join(scratch, `modelled-${site.name}`);
+  mkdirSync(folder);
+  const wait = await downloading(visit, folder);
+  const rig = mkdtempSync(join(scratch, 'rig-'));
+  writeFileSync(join(rig, 'plateaus.csv'), table);
+  await promisify(execFile)(binary, ['-q', 'calibrate', 'plateaus.csv', '--out', 'rig'], { cwd: rig });
+  const model = join(rig, 'rig', 'model.toml');
+  await visit.open(`${site.address}#v=1&layout.pins=4,9,12&silicone.thickness_mm=2.5&switch.name=modelled`);
+  await visit.drop('model.toml', readFileSync(model, 'utf8'));
+  await visit.check('the model is in the design', () => /your model/.test(document.querySelector('#trust').textContent));
+  await visit.settled();
+  await visit.click('#download');
+  await visit.page.waitForSelector('#file-list button', { timeout: 60_000 });
+  await visit.click('#toml');
+  const toml = await wait('modelled.toml');
+  await visit.click('#zip');
+  const own = new Map([...unpacked(await wait('modelled.zip'))].map(([file, bytes]) => [file, hash(bytes)]));
+  const line = await generated(binary, mkdtempSync(join(scratch, 'set-')), 'modelled', toml, ['--model', model]);
+  const differ = [...new Set([...line.keys(), ...own.keys()])].filter((file) => line.get(file) !== own.get(file));
+  findings.check(`${own.size} files by a model are those of the command line`, own.size > 20 && differ.length === 0, differ.join(' '));
+  await visit.click('#files-close');
 }
 
 // Chromium drops what a page saves beyond ten files a second; no hand is so fast.

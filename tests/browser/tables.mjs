@@ -1,5 +1,9 @@
 // Asking backwards, and measurements of one's own.
 
+import { execFile } from 'node:child_process';
+import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { promisify } from 'node:util';
 import { START } from './design.mjs';
 
 // A search or a calibration takes seconds, and more on a machine that does other things.
@@ -39,7 +43,15 @@ export async function search(visit, site) {
   await visit.check('the cards go', () => document.querySelector('#found').hidden);
 }
 
-export async function calibration(visit, site, { table }) {
+// The model that the command line fits to a table.
+async function byCommandLine(binary, scratch, table) {
+  const folder = mkdtempSync(join(scratch, 'fit-'));
+  writeFileSync(join(folder, 'plateaus.csv'), table);
+  await promisify(execFile)(binary, ['-q', 'calibrate', 'plateaus.csv', '--out', 'fit'], { cwd: folder });
+  return readFileSync(join(folder, 'fit', 'model.toml'), 'utf8');
+}
+
+export async function calibration(visit, site, { table, binary, scratch }) {
   await visit.open(site.address + '#v=1&layout.pins=5,8,11');
   const published = await visit.text('#friction-words');
   await visit.drop('plateaus.csv', table);
@@ -53,6 +65,9 @@ export async function calibration(visit, site, { table }) {
   await visit.check('the model is in the design', (before) => /your model/.test(document.querySelector('#trust').textContent) && document.querySelector('#friction-words').textContent !== before, published);
   await visit.settled();
   await visit.addressHas('model=plateaus.csv~');
+  // One of the page's own functions reads the model out of the address.
+  const model = await visit.page.evaluate(async () => (await unpackModel(location.hash.split('model=')[1])).toml);
+  visit.findings.check('the model is that of the command line, byte for byte', model === await byCommandLine(binary, scratch, table));
   const words = await visit.text('#friction-words');
   await visit.page.reload();
   await visit.settled();

@@ -24,6 +24,8 @@
 //! reads a clock or the environment. `model/doc/file-formats.md` describes the files, `model/doc/effect-catalogue.md`
 //! the effects and `model/doc/naming-an-effect.md` how one is named.
 
+#![warn(clippy::disallowed_methods)]
+
 mod aliasing;
 mod asked;
 mod beyond_range;

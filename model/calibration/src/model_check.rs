@@ -105,7 +105,7 @@ pub(crate) fn walk_to_offset(file: &mut toml::Table) -> Result<bool, Flaw> {
     };
     let offset = noise.entry("series_common").or_insert_with(|| none().into());
     if let Some(toml::Value::Float(constant_n)) = offset.get_mut("constant_n") {
-        *constant_n = constant_n.hypot(size_n);
+        *constant_n = libm::hypot(*constant_n, size_n);
     }
     Ok(true)
 }

@@ -299,7 +299,7 @@ impl ModelFile {
         let (low, high) = self.frame.load_range_n;
         for (sd, point) in sd.iter_mut().zip(&points) {
             let beyond = (point.load_n - high).max(low - point.load_n).max(0.0);
-            *sd = sd.hypot(self.beyond_range * beyond);
+            *sd = libm::hypot(*sd, self.beyond_range * beyond);
         }
         if let Some(row) = predicted.iter().zip(&sd).position(|(n, sd)| !n.is_finite() || !sd.is_finite()) {
             return Err(ModelFileError::of(file)(Flaw {
@@ -357,7 +357,7 @@ mod tests {
         let earlier =
             |walk: &str| format!("{before}\n{after}").replace("[noise]\n", &format!("[noise]\n{walk}\n"));
         assert_eq!(sd_n(&earlier("walk_N = 0.0")), sd_n(&text));
-        assert!((sd_n(&earlier("walk_N = 0.2")) / sd_n(&text).hypot(0.2) - 1.0).abs() < 1e-9);
+        assert!((sd_n(&earlier("walk_N = 0.2")) / libm::hypot(sd_n(&text), 0.2) - 1.0).abs() < 1e-9);
         for walk in ["walk_N = -0.2", "walk_N = \"much\""] {
             let error = ModelFile::parse(&earlier(walk), "model.toml").unwrap_err().to_string();
             assert!(error.contains("noise.walk_N = ") && error.contains("out of bounds"), "{error}");

@@ -66,8 +66,8 @@ fn maxima() -> Vec<Maximum> {
 /// `ln` of the factor on the published thresholds.
 fn predict(kind: Pins, at: &[f64], maximum: &Maximum, scale_free: bool) -> f64 {
     let switched = |layout: &PublishedLayout| {
-        let factor = if scale_free { at[2].exp() } else { 1.0 };
-        1.0 / (1.0 + (layout.threshold * factor - layout.reduced_load.1).exp())
+        let factor = if scale_free { libm::exp(at[2]) } else { 1.0 };
+        1.0 / (1.0 + libm::exp(layout.threshold * factor - layout.reduced_load.1))
     };
     predict_switched(kind, at, maximum, switched)
 }
@@ -81,9 +81,9 @@ fn predict_switched(
 ) -> f64 {
     let load = published::heaviest_load_n();
     let wrap = published::wrap_angle_rad();
-    let silicone = load * (published::MU_SILICONE * at[0].exp() * wrap).sinh();
+    let silicone = load * libm::sinh(published::MU_SILICONE * libm::exp(at[0]) * wrap);
     let Some(layout) = maximum.layout.map(|i| published::LAYOUTS[i]) else { return silicone };
-    let pins = load * pins_exponent(kind, at[1].exp(), &layout, load, wrap).sinh();
+    let pins = load * libm::sinh(pins_exponent(kind, libm::exp(at[1]), &layout, load, wrap));
     if maximum.substrate == Substrate::Abs {
         return pins;
     }
@@ -152,7 +152,7 @@ pub fn explain_published() -> Vec<Explanation> {
             let others = fit(kind, &data, |m| m.layout != Some(layout));
             let unknown = data.iter().filter(|m| m.layout == Some(layout));
             left_out.extend(unknown.map(|m| {
-                predict_switched(kind, &others, m, |l| switched_by_others(layout, l, others[2].exp()))
+                predict_switched(kind, &others, m, |l| switched_by_others(layout, l, libm::exp(others[2])))
                     / m.friction_n
                     - 1.0
             }));
@@ -160,9 +160,9 @@ pub fn explain_published() -> Vec<Explanation> {
         all.push(Explanation {
             id,
             constants: vec![
-                (name, typical * at[1].exp()),
-                ("mu_s", published::MU_SILICONE * at[0].exp()),
-                ("factor on F_thr", at[2].exp()),
+                (name, typical * libm::exp(at[1])),
+                ("mu_s", published::MU_SILICONE * libm::exp(at[0])),
+                ("factor on F_thr", libm::exp(at[2])),
             ],
             rms_pct: rms(&errors),
             left_out_rms_pct: Some(rms(&left_out)),

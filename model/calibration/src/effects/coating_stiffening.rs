@@ -46,6 +46,6 @@ impl Effect for CoatingStiffening {
     }
 
     fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
-        state.mu_pins *= (1.0 + k[0] * (state.load_n / REFERENCE_LOAD_N).powf(k[1])).max(0.0);
+        state.mu_pins *= (1.0 + k[0] * libm::pow(state.load_n / REFERENCE_LOAD_N, k[1])).max(0.0);
     }
 }

@@ -43,7 +43,7 @@ impl ContactState {
         let x_silicone = self.mu_silicone * self.wrap_rad * self.exponent_factor;
         let drag = d * self.drag_n;
         if condition.device.is_some() {
-            let (rise_p, rise_s) = (f * (d * x_pins).exp_m1(), f * (d * x_silicone).exp_m1());
+            let (rise_p, rise_s) = (f * libm::expm1(d * x_pins), f * libm::expm1(d * x_silicone));
             let w = condition.weight;
             let mut switched = self.switched(f);
             let rise = |s: f64| (1.0 + w) * (1.0 - s) * rise_p + (1.0 - w) * s * rise_s;
@@ -54,22 +54,22 @@ impl ContactState {
             }
             f + rise(switched) + d * self.adhesion_n * switched + drag
         } else if condition.substrate == Some(Substrate::Abs) {
-            f + f * (d * x_pins).exp_m1() + drag
+            f + f * libm::expm1(d * x_pins) + drag
         } else {
-            f + f * (d * x_silicone).exp_m1() + d * self.adhesion_n + drag
+            f + f * libm::expm1(d * x_silicone) + d * self.adhesion_n + drag
         }
     }
 
     /// `S = 1/(1 + exp(-s (F/F_half - 1)))` (`model/doc/friction-laws.md`).
     pub fn switched(&self, load_n: f64) -> f64 {
-        1.0 / (1.0 + (-self.steepness * (load_n / self.half_load_n - 1.0)).exp())
+        1.0 / (1.0 + libm::exp(-self.steepness * (load_n / self.half_load_n - 1.0)))
     }
 }
 
 /// Mean of `F exp(x phi/a)` over the wrap in newtons: `F (r - 1)/ln r` with `r = T/F`.
 fn mean_tension_n(load_n: f64, ratio: f64) -> f64 {
     let ratio = ratio.max(1e-3);
-    let x = ratio.ln();
+    let x = libm::log(ratio);
     if x.abs() < 1e-6 { load_n * (1.0 + x / 2.0) } else { load_n * (ratio - 1.0) / x }
 }
 

@@ -54,6 +54,6 @@ impl Effect for RunIn {
 
     fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
         let share = if point.sign > 0.0 { k[2] } else { 1.0 };
-        state.mu_silicone *= (1.0 + share * k[0] * (-(point.repetition - 1.0) / k[1]).exp()).max(0.0);
+        state.mu_silicone *= (1.0 + share * k[0] * libm::exp(-(point.repetition - 1.0) / k[1])).max(0.0);
     }
 }

@@ -149,7 +149,9 @@ impl Shape {
     pub fn value(&self, p: &Point) -> f64 {
         let flag = |b: bool| f64::from(u8::from(b));
         let wave = |share: f64, cycles: f64, quarter: u8| {
-            (std::f64::consts::TAU * cycles * share + f64::from(quarter) * std::f64::consts::FRAC_PI_2).sin()
+            libm::sin(
+                std::f64::consts::TAU * cycles * share + f64::from(quarter) * std::f64::consts::FRAC_PI_2,
+            )
         };
         match self {
             Shape::TimeStep { at } => flag(p.time >= *at),
@@ -157,13 +159,13 @@ impl Shape {
             Shape::TimePower { power } => p.time.powi(*power),
             Shape::TimeWave { cycles, quarter } => wave(p.time, *cycles, *quarter),
             Shape::PositionWave { cycles, quarter } => wave(p.position, *cycles, *quarter),
-            Shape::PositionBump { at, width } => (-0.5 * ((p.position - at) / width).powi(2)).exp(),
+            Shape::PositionBump { at, width } => libm::exp(-0.5 * ((p.position - at) / width).powi(2)),
             Shape::PositionPower { power } => (2.0 * p.position - 1.0).powi(*power),
             Shape::SpeedLevel { log_speed, half_width } => {
                 flag((p.log_speed - log_speed).abs() <= *half_width)
             }
             Shape::SpeedBump { log_speed, width } => {
-                (-0.5 * ((p.log_speed - log_speed) / width).powi(2)).exp()
+                libm::exp(-0.5 * ((p.log_speed - log_speed) / width).powi(2))
             }
             Shape::SpeedPower { power } => p.log_speed.powi(*power),
             Shape::DwellLevel { log_dwell } => flag((p.log_dwell - log_dwell).abs() < 0.02),
@@ -173,8 +175,10 @@ impl Shape {
                 flag(p.condition == *condition) * (p.load_n / unit_n).powi(*power)
             }
             Shape::ConditionIs { conditions } => flag(conditions.contains(&p.condition)),
-            Shape::Repetition { r0 } => (-(p.repetition - 1.0) / r0).exp(),
-            Shape::Memory { r0, unit_n } => (p.previous_load_n - p.load_n) / unit_n * (-p.through / r0).exp(),
+            Shape::Repetition { r0 } => libm::exp(-(p.repetition - 1.0) / r0),
+            Shape::Memory { r0, unit_n } => {
+                (p.previous_load_n - p.load_n) / unit_n * libm::exp(-p.through / r0)
+            }
             Shape::Descending => p.descending,
             Shape::DirectionLoad { power, unit_n } => p.sign * (p.load_n / unit_n).powi(*power),
         }
@@ -257,16 +261,19 @@ impl Structure {
             }
             Shape::PositionPower { power } => format!("a course along the stroke to the power {power}"),
             Shape::SpeedLevel { log_speed, .. } => {
-                format!("another level at a speed of {:.0} %", frame.reference_speed_pct * log_speed.exp())
+                format!(
+                    "another level at a speed of {:.0} %",
+                    frame.reference_speed_pct * libm::exp(*log_speed)
+                )
             }
             Shape::SpeedBump { log_speed, width } => format!(
                 "a resonance at a speed of {:.0} %, {:.0} % wide",
-                frame.reference_speed_pct * log_speed.exp(),
+                frame.reference_speed_pct * libm::exp(*log_speed),
                 200.0 * width
             ),
             Shape::SpeedPower { power } => format!("a course with ln(speed) to the power {power}"),
             Shape::DwellLevel { log_dwell } => {
-                format!("another level at a dwell of {:.2} s", published::DWELL_S * log_dwell.exp())
+                format!("another level at a dwell of {:.2} s", published::DWELL_S * libm::exp(*log_dwell))
             }
             Shape::LoadLevel { load_n, .. } => format!("another level at a load of {load_n:.1} N"),
             Shape::LoadPower { power, .. } => format!("a course with load to the power {power}"),

@@ -51,7 +51,7 @@ impl Effect for SubstrateSaturation {
     fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
         let f = (state.load_n / REFERENCE_LOAD_N).max(1e-3);
         // h = 0: the power law with n = 1 - k; h = 1: the hyperbola. Between them the exponents add.
-        let power = f.powf(-k[0] * (1.0 - k[1]));
+        let power = libm::pow(f, -k[0] * (1.0 - k[1]));
         let hyperbola = 1.0 / (1.0 + k[0] * k[1] * f).max(0.05);
         state.mu_silicone *= power * hyperbola;
     }

@@ -45,8 +45,8 @@ impl Effect for WearDrift {
     }
 
     fn on_contact(&self, k: &[f64], point: &Point, _: &Condition, state: &mut ContactState) {
-        let settled = -(-1.0 / k[1]).exp_m1();
-        let factor = (1.0 + k[0] * -(-point.travel / k[1]).exp_m1() / settled).max(0.0);
+        let settled = -libm::expm1(-1.0 / k[1]);
+        let factor = (1.0 + k[0] * -libm::expm1(-point.travel / k[1]) / settled).max(0.0);
         state.mu_pins *= factor;
         state.mu_silicone *= factor;
         state.extra_exponent_pins *= factor;

@@ -24,7 +24,7 @@ fn worth(questions: &[Question], information: &DMatrix<f64>) -> f64 {
     let mut projections = Projections::of(information);
     questions
         .iter()
-        .map(|q| q.weight * (1.0 + (q.squares_of(&mut projections) / q.needed).clamp(0.0, ENOUGH)).ln())
+        .map(|q| q.weight * libm::log(1.0 + (q.squares_of(&mut projections) / q.needed).clamp(0.0, ENOUGH)))
         .sum()
 }
 
@@ -104,7 +104,7 @@ impl Search<'_> {
         let all = chosen.iter().fold(known.clone(), |sum, c| sum + &self.information[*c]);
         let without = &all - &self.information[chosen[place]];
         let loss = |q: &Question| {
-            let of = |information| (1.0 + q.squares(information) / q.needed).ln();
+            let of = |information| libm::log(1.0 + q.squares(information) / q.needed);
             of(&all) - of(&without)
         };
         self.questions.iter().max_by(|a, b| loss(a).total_cmp(&loss(b)))

@@ -58,7 +58,7 @@ pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> 
             let unit = fitted.model.value(i).1;
             let parts: Vec<[f64; 3]> = std::iter::once([1.0, 0.0, half / NORMAL_95])
                 .chain(others.iter().map(|other| {
-                    let sd = (half / NORMAL_95).hypot(other.shift_sd[i] * unit);
+                    let sd = libm::hypot(half / NORMAL_95, other.shift_sd[i] * unit);
                     [other.odds, other.shift[i] * unit, sd]
                 }))
                 .collect();
@@ -79,7 +79,7 @@ fn one_more(score: &EffectScore, choices: f64, shift_at_size: DVector<f64>) -> O
     }
     if !told.scales || told.parameters.is_empty() {
         // There or not: nothing is open about its size.
-        let odds = (0.5 * score.gain).exp() / choices;
+        let odds = libm::exp(0.5 * score.gain) / choices;
         let shift_sd = DVector::zeros(shift_at_size.len());
         return Some(OneMore { odds, shift: shift_at_size, shift_sd });
     }
@@ -91,7 +91,7 @@ fn one_more(score: &EffectScore, choices: f64, shift_at_size: DVector<f64>) -> O
     let prior_sd = typical.map_or(1.0, |size| (size / score.size).abs());
     let ratio = (prior_sd * score.strength).powi(2);
     let kept = ratio / (1.0 + ratio);
-    let odds = (0.5 * (kept * score.gain - ratio.ln_1p())).exp() / choices;
+    let odds = libm::exp(0.5 * (kept * score.gain - libm::log1p(ratio))) / choices;
     let share_sd = kept.sqrt() / score.strength;
     Some(OneMore {
         odds,

@@ -13,7 +13,7 @@ pub(super) fn fit_baseline(model: &Model, weighed: &Weighed<'_>) -> Fit {
         let mut other = best.model.clone();
         for device in 0..other.frame.devices() {
             let [half_load, _] = Model::device_constants(device);
-            other.coordinates[half_load] += factor.ln();
+            other.coordinates[half_load] += libm::log(factor);
         }
         let other = fit(&other, weighed);
         if other.cost < best.cost {

@@ -24,7 +24,7 @@ pub(super) fn unchain<const N: usize>(
     for i in (1..cell.len()).rev() {
         let gap = gap(data, cell, i);
         // Hardly any repetition is lost, and this is called for every column of every fit.
-        let (phi, scale) = if gap == 1.0 { next } else { (rho.powf(gap), rest(rho.powf(gap))) };
+        let (phi, scale) = if gap == 1.0 { next } else { (libm::pow(rho, gap), rest(libm::pow(rho, gap))) };
         let before = values[cell[i - 1]];
         values[cell[i]].iter_mut().zip(before).for_each(|(v, b)| *v = (*v - phi * b) * scale);
     }

@@ -15,8 +15,8 @@ const PRIOR_N: f64 = 0.5;
 /// a size twenty times the typical with four hundred squares, which then decide between two explanations of the same
 /// friction that differ in nothing but what is typical of them.
 fn size_toll(size: f64, typical: f64) -> f64 {
-    let beside_bell = 2.0 * std::f64::consts::PI.ln() - std::f64::consts::TAU.ln();
-    beside_bell + 2.0 * (size / typical).powi(2).ln_1p()
+    let beside_bell = 2.0 * libm::log(std::f64::consts::PI) - libm::log(std::f64::consts::TAU);
+    beside_bell + 2.0 * libm::log1p((size / typical).powi(2))
 }
 
 /// Minus twice the logarithm of the marginal likelihood, up to a constant of the table: whitened squares, `ln det V` of
@@ -32,15 +32,15 @@ pub(super) fn evidence(fitted: &Fit, weighed: &Weighed<'_>) -> f64 {
             a[(i, i)] += sd.powi(-2);
             cost += size_toll(fitted.model.value(i).0, *sd);
         }
-        cost += 2.0 * sd.min(prior.sd).ln();
+        cost += 2.0 * libm::log(sd.min(prior.sd));
     }
     // The determinant of the scaled matrix, so that constants of any unit can be told.
     let n = a.nrows();
     let scale: Vec<f64> = (0..n).map(|i| a[(i, i)].max(1e-300).sqrt()).collect();
     let scaled = nalgebra::DMatrix::from_fn(n, n, |i, j| a[(i, j)] / (scale[i] * scale[j]));
     let log_det =
-        scaled.cholesky().map_or(0.0, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
-    cost + log_det + 2.0 * scale.iter().map(|s| s.ln()).sum::<f64>()
+        scaled.cholesky().map_or(0.0, |c| 2.0 * c.l().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>());
+    cost + log_det + 2.0 * scale.iter().map(|s| libm::log(*s)).sum::<f64>()
 }
 
 /// Standard deviation of each constant's coordinate before any data; for sizes, which are fitted without a prior, what

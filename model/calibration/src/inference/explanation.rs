@@ -53,8 +53,8 @@ impl Explanation {
     /// Minus twice the logarithm of its posterior probability, up to a constant: the evidence, and for each thing
     /// believed how many there were to choose from.
     pub(super) fn toll(&self, data: &Observations) -> f64 {
-        let choices = 2.0 * (self.augmented.model.vocabulary.count() as f64).ln() * self.names() as f64;
-        let shapes = 2.0 * (self.structures_tried.max(1) as f64).ln() * self.shapes() as f64;
+        let choices = 2.0 * libm::log(self.augmented.model.vocabulary.count() as f64) * self.names() as f64;
+        let shapes = 2.0 * libm::log(self.structures_tried.max(1) as f64) * self.shapes() as f64;
         let scatter: f64 = Scatter::ALL.iter().map(|s| s.cost(self.noise, data)).sum();
         evidence(&self.augmented, &Weighed::new(data, self.noise)) + choices + shapes + scatter
     }
@@ -146,7 +146,7 @@ pub(super) fn sharper_noise(
     let weighed = Weighed::new(data, noise);
     let screen = Screen::new(found, &weighed);
     let shapes = screen.structures();
-    let choice = 2.0 * (shapes.len().max(1) as f64).ln() + MIN_EVIDENCE;
+    let choice = 2.0 * libm::log(shapes.len().max(1) as f64) + MIN_EVIDENCE;
     let mut best = (evidence(found, &weighed) - choice, None);
     let mut covariates = Vec::new();
     let columns = explainable(found, data);

@@ -46,7 +46,7 @@ pub(crate) fn bent_copies(model: &Model, data: &Observations, predicted: &[f64])
             }
             Covariate::Repetition => {
                 for settled in [1.0, 5.0] {
-                    push(&|p| (-(p.repetition - 1.0) / settled).exp());
+                    push(&|p| libm::exp(-(p.repetition - 1.0) / settled));
                 }
             }
             Covariate::Speed => push(&|p| 5.0 * p.log_speed),

@@ -102,8 +102,8 @@ impl Model {
     /// The paper's model at the published constants and the layout law (`model/doc/friction-laws.md`).
     pub fn baseline(frame: Frame) -> Self {
         let mut priors = vec![
-            Prior { mean: published::MU_PINS.ln(), sd: PRIOR_LOG_MU },
-            Prior { mean: published::MU_SILICONE.ln(), sd: PRIOR_LOG_MU },
+            Prior { mean: libm::log(published::MU_PINS), sd: PRIOR_LOG_MU },
+            Prior { mean: libm::log(published::MU_SILICONE), sd: PRIOR_LOG_MU },
         ];
         for condition in frame.conditions.iter().filter(|c| c.device.is_some()) {
             let n = condition.pins.len() as f64;
@@ -114,14 +114,14 @@ impl Model {
                 condition.wrap_rad
             };
             let half = LayoutLaw::half_load_at_n(n, pitch, condition.wrap_rad);
-            priors.push(Prior { mean: half.ln(), sd: PRIOR_LOG_HALF_LOAD });
-            priors.push(Prior { mean: LayoutLaw::STEEPNESS.ln(), sd: PRIOR_LOG_STEEPNESS });
+            priors.push(Prior { mean: libm::log(half), sd: PRIOR_LOG_HALF_LOAD });
+            priors.push(Prior { mean: libm::log(LayoutLaw::STEEPNESS), sd: PRIOR_LOG_STEEPNESS });
         }
         let mut plain = vec![usize::MAX; frame.conditions.len()];
         for (i, condition) in frame.conditions.iter().enumerate() {
             if condition.substrate.is_none() {
                 plain[i] = priors.len();
-                priors.push(Prior { mean: 0.3f64.ln(), sd: 1.5 });
+                priors.push(Prior { mean: libm::log(0.3f64), sd: 1.5 });
             }
         }
         let coordinates = priors.iter().map(|p| p.mean).collect();
@@ -234,7 +234,7 @@ impl Model {
     pub(crate) fn value(&self, index: usize) -> (f64, f64) {
         let coordinate = self.coordinates[index];
         if index < self.baseline_len() {
-            return (coordinate.exp(), coordinate.exp());
+            return (libm::exp(coordinate), libm::exp(coordinate));
         }
         let mut at = self.baseline_len();
         for term in &self.terms {
@@ -269,7 +269,7 @@ impl Model {
         let bounds: Vec<_> = self.terms.iter().flat_map(Term::bounds).collect();
         for (i, value) in values.iter().enumerate() {
             self.coordinates[i] =
-                if i < base { value.max(1e-12).ln() } else { to_coordinate(*value, bounds[i - base]) };
+                if i < base { libm::log(value.max(1e-12)) } else { to_coordinate(*value, bounds[i - base]) };
         }
         true
     }
@@ -386,9 +386,9 @@ impl Model {
                     return f64::from(u8::from(condition.substrate == Some(Substrate::Silicone)));
                 };
                 let [half_load, steepness] = Self::device_constants(d).map(|i| values[i]);
-                let s = 1.0 / (1.0 + (-steepness * (p.load_n / half_load - 1.0)).exp());
-                let silicone = (1.0 - condition.weight) * s * (values[1] * condition.wrap_rad).sinh();
-                let pins = (1.0 + condition.weight) * (1.0 - s) * (values[0] * condition.wrap_rad).sinh();
+                let s = 1.0 / (1.0 + libm::exp(-steepness * (p.load_n / half_load - 1.0)));
+                let silicone = (1.0 - condition.weight) * s * libm::sinh(values[1] * condition.wrap_rad);
+                let pins = (1.0 + condition.weight) * (1.0 - s) * libm::sinh(values[0] * condition.wrap_rad);
                 silicone / (silicone + pins).max(1e-300)
             })
             .collect()
@@ -457,14 +457,14 @@ impl Model {
 fn to_coordinate(value: f64, bounds: Option<(f64, f64)>) -> f64 {
     bounds.map_or(value, |(least, most)| {
         let share = ((value - least) / (most - least)).clamp(1e-4, 1.0 - 1e-4);
-        (share / (1.0 - share)).ln()
+        libm::log(share / (1.0 - share))
     })
 }
 
 /// Value and slope of a bounded constant at its coordinate.
 fn from_coordinate(coordinate: f64, bounds: Option<(f64, f64)>) -> (f64, f64) {
     bounds.map_or((coordinate, 1.0), |(least, most)| {
-        let share = 1.0 / (1.0 + (-coordinate).exp());
+        let share = 1.0 / (1.0 + libm::exp(-coordinate));
         (least + (most - least) * share, (most - least) * share * (1.0 - share))
     })
 }

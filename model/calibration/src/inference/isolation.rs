@@ -28,7 +28,7 @@ pub(crate) fn cell_deviation(fitted: &Fit, weighed: &Weighed<'_>, cell: usize) -
     let load = data.cell_load_n[cell];
     let friction_n = rows.first().map_or(0.0, |r| data.friction_n[*r]);
     let shared = Noise { repetition: Spread::default(), ..noise }.at(load, friction_n);
-    (mean, (noise.repetition.at(load) / count.sqrt()).hypot(shared))
+    (mean, libm::hypot(noise.repetition.at(load) / count.sqrt(), shared))
 }
 
 /// The series whose own offsets explain what is left better than any effect or structure does, if there is one: a bad

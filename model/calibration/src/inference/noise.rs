@@ -21,7 +21,7 @@ pub struct Spread {
 impl Spread {
     /// Standard deviation at a load, in newtons.
     pub fn at(self, load_n: f64) -> f64 {
-        self.constant_n.hypot(self.per_load * load_n)
+        libm::hypot(self.constant_n, self.per_load * load_n)
     }
 
     /// Fits both to squares that scatter about the variance, by least squares relative to it. A square counts
@@ -123,20 +123,25 @@ impl Noise {
         if !self.walk.is_any() {
             return 0.0;
         }
-        (self.walk.common * self.series_common.at(load_n)).hypot(self.walk.direction * self.series.at(load_n))
+        libm::hypot(
+            self.walk.common * self.series_common.at(load_n),
+            self.walk.direction * self.series.at(load_n),
+        )
     }
 
     /// Standard deviation in newtons of one reading about the model, where friction changes by `friction_n` newtons
     /// when its exponent grows by one part in one.
     pub fn at(self, load_n: f64, friction_n: f64) -> f64 {
-        let scale = self.series_scale.hypot(self.mount_scale).hypot(self.specimen_scale);
-        self.repetition
-            .at(load_n)
-            .hypot(self.white() * self.series.at(load_n))
-            .hypot(self.white() * self.series_common.at(load_n))
-            .hypot(self.wandering_n(load_n))
-            .hypot(self.group_offset_n)
-            .hypot(scale * friction_n)
+        let scale = libm::hypot(libm::hypot(self.series_scale, self.mount_scale), self.specimen_scale);
+        let parts = [
+            self.repetition.at(load_n),
+            self.white() * self.series.at(load_n),
+            self.white() * self.series_common.at(load_n),
+            self.wandering_n(load_n),
+            self.group_offset_n,
+            scale * friction_n,
+        ];
+        parts.into_iter().fold(0.0, libm::hypot)
     }
 
     /// Root mean square of [`Noise::at`] over a table, in newtons.

@@ -44,7 +44,7 @@ impl Reliability {
         let of = |place: usize| {
             let at = self.places.iter().position(|p| *p == place)?;
             let relative = self.covariance[(at, at)].max(0.0).sqrt() / theta[place];
-            Some((1.96 * 0.5 * relative).exp())
+            Some(libm::exp(1.96 * 0.5 * relative))
         };
         let last = self.places.len();
         let mount = self.noise.mount_scale;
@@ -53,7 +53,7 @@ impl Reliability {
             common: of(3).or(of(2)),
             scale: of(4),
             mount: (mount > 0.0).then(|| {
-                (1.96 * 0.5 * self.covariance[(last, last)].max(0.0).sqrt() / (mount * mount)).exp()
+                libm::exp(1.96 * 0.5 * self.covariance[(last, last)].max(0.0).sqrt() / (mount * mount))
             }),
         }
     }

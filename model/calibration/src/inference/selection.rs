@@ -270,7 +270,7 @@ mod tests {
     fn effects_that_look_alike_are_rivals() {
         let offset = effect_named("load_cell_offset").unwrap();
         let hook_n = published::HOOK_MASS_G * 1e-3 * published::GRAVITY_M_S2;
-        let as_read_n = hook_n * (-published::MU_PINS * published::wrap_angle_rad()).exp();
+        let as_read_n = hook_n * libm::exp(-published::MU_PINS * published::wrap_angle_rad());
         let day = |seed: u64| {
             let mut rows = session_with(seed, &[(Term::Named(offset), &[as_read_n])]);
             rows.retain(|r| r.substrate == Some(Substrate::Abs) && r.direction.sign() < 0.0);

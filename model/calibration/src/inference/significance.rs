@@ -13,7 +13,7 @@ pub fn degrees_of_freedom(data: &Observations, constants: usize) -> f64 {
 /// square of a Student's t: the noise it is measured in is estimated from the series.
 pub fn family_p_value(gain: f64, tried: usize, degrees: f64) -> f64 {
     let single = StudentsT::new(0.0, 1.0, degrees).map_or(1.0, |t| 2.0 * t.sf(gain.max(0.0).sqrt()));
-    (-(tried as f64 * (-single.min(1.0)).ln_1p()).exp_m1()).clamp(0.0, 1.0)
+    (-libm::expm1(tried as f64 * libm::log1p(-single.min(1.0)))).clamp(0.0, 1.0)
 }
 
 /// The gain that chance reaches with this probability.

@@ -164,7 +164,7 @@ impl Walk {
 
     /// `ln det` of what it whitens.
     pub(super) fn log_det(&self) -> f64 {
-        self.steps.iter().map(|step| step.variance.ln()).sum()
+        self.steps.iter().map(|step| libm::log(step.variance)).sum()
     }
 }
 

@@ -98,7 +98,7 @@ fn restricted(weighed: &Weighed<'_>, residual: &[f64], columns: &[Vec<f64>]) -> 
         projection.remove(&mut rest);
         let length2 = dot(&rest, &rest);
         if projection.absorb(white) && length2 > 0.0 {
-            log_det += length2.ln();
+            log_det += libm::log(length2);
         }
     }
     let mut white = residual.to_vec();

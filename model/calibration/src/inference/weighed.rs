@@ -216,9 +216,9 @@ impl<'a> Weighed<'a> {
             .iter()
             .chain(&self.shared)
             .flat_map(|s| &s.removed)
-            .map(|removed| -2.0 * (1.0 - removed).ln())
+            .map(|removed| -2.0 * libm::log(1.0 - removed))
             .sum();
-        let carried: f64 = self.carried.iter().map(|c| -2.0 * (1.0 - c.removed).ln()).sum();
+        let carried: f64 = self.carried.iter().map(|c| -2.0 * libm::log(1.0 - c.removed)).sum();
         shared + carried + self.walk.as_ref().map_or(0.0, Walk::log_det)
     }
 }
@@ -267,12 +267,12 @@ mod tests {
                 if same(&data.cells) {
                     let gap = data.points[i].repetition - data.points[j].repetition;
                     v[(i, j)] +=
-                        0.01 * 0.6f64.powf(gap.abs()) / (data.roots[i] * data.roots[j]) + 0.09 * white2;
+                        0.01 * libm::pow(0.6f64, gap.abs()) / (data.roots[i] * data.roots[j]) + 0.09 * white2;
                 }
                 let apart = f64::from((data.series_of[i] as i32 - data.series_of[j] as i32).abs());
                 if walk.is_any() {
                     let direction = if data.points[i].sign == data.points[j].sign { 0.09 } else { 0.0 };
-                    v[(i, j)] += walk.correlation.powf(apart)
+                    v[(i, j)] += libm::pow(walk.correlation, apart)
                         * (walk.common.powi(2) * 0.0025 + walk.direction.powi(2) * direction);
                 }
                 let friction = data.friction_n[i] * data.friction_n[j];
@@ -297,7 +297,7 @@ mod tests {
         assert!(off < bound, "{off}");
         // Without a chain the adjoint is that of the same map.
         let unchained = Weighed::new(&data, Noise { correlation: 0.0, ..noise });
-        let (a, b): (Vec<f64>, Vec<f64>) = (0..n).map(|i| ((i as f64).sin(), (i as f64).cos())).unzip();
+        let (a, b): (Vec<f64>, Vec<f64>) = (0..n).map(|i| (libm::sin(i as f64), libm::cos(i as f64))).unzip();
         let mut white = a.clone();
         unchained.whiten(&mut white);
         let through: f64 = white.iter().zip(&b).map(|(x, y)| x * y).sum();

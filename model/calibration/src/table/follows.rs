@@ -86,7 +86,7 @@ pub(super) fn conditions(rows: &[PlateauRow]) -> Vec<Vec<&PlateauRow>> {
 fn widening(rows: &[&PlateauRow]) -> f64 {
     let wrap = |r: &&PlateauRow| r.substrate.map_or(UNKNOWN_WRAP, |_| r.wrap_angle_deg.to_radians());
     let largest = rows.iter().map(wrap).fold(0.0, f64::max);
-    (PER_RADIAN * (largest - published::wrap_angle_rad()).max(0.0)).exp()
+    libm::exp(PER_RADIAN * (largest - published::wrap_angle_rad()).max(0.0))
 }
 
 /// How readings go with loads in one condition.
@@ -185,7 +185,7 @@ mod tests {
         let mut rows = session(1);
         for row in &mut rows {
             row.wrap_angle_deg = 720.0;
-            row.force_n = row.load_n * (3.0 * row.direction.sign()).exp();
+            row.force_n = row.load_n * libm::exp(3.0 * row.direction.sign());
         }
         assert_eq!(of(&rows).astray, 0);
         rows.retain(|r| r.direction == Direction::Eccentric);

@@ -33,7 +33,7 @@ impl Condition {
     /// zero without pins. It tells layouts of equally many pins apart.
     pub fn turn_unevenness(&self) -> f64 {
         let n = self.pins.len() as f64;
-        if self.turn_rad > 0.0 { self.ploughing / (n * self.turn_rad.powf(1.5)) } else { 0.0 }
+        if self.turn_rad > 0.0 { self.ploughing / (n * libm::pow(self.turn_rad, 1.5)) } else { 0.0 }
     }
 
     pub(crate) fn new(
@@ -66,7 +66,7 @@ impl Condition {
         // half of what the pitches leave of the wrap (`model/doc/friction-laws.md`).
         let outside = (wrap - pitch.iter().sum::<f64>()).max(0.0) / 2.0;
         let half = |i: Option<usize>| i.and_then(|i| pitch.get(i)).map_or(outside, |p| p / 2.0);
-        (0..pins.len()).map(|i| (half(i.checked_sub(1)) + half(Some(i))).powf(1.5)).sum()
+        (0..pins.len()).map(|i| libm::pow(half(i.checked_sub(1)) + half(Some(i)), 1.5)).sum()
     }
 
     /// A name for people: `silicone`, `abs 5;8;11`, `silicone 5;8;11 at 90 deg`.
@@ -181,7 +181,7 @@ impl Frame {
     pub fn new(rows: &[PlateauRow]) -> Self {
         let max = |f: fn(&PlateauRow) -> f64| rows.iter().map(f).fold(0.0f64, f64::max);
         let furthest = max(|r| r.position_mm);
-        let speeds: Vec<f64> = rows.iter().map(|r| r.speed_pct).filter(|v| *v > 0.0).map(f64::ln).collect();
+        let speeds: Vec<f64> = rows.iter().map(|r| r.speed_pct).filter(|v| *v > 0.0).map(libm::log).collect();
         let mut times: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
         times.sort_by(f64::total_cmp);
         let count = times.len().max(1);
@@ -199,7 +199,7 @@ impl Frame {
             reference_speed_pct: if speeds.is_empty() {
                 1.0
             } else {
-                (speeds.iter().sum::<f64>() / speeds.len() as f64).exp()
+                libm::exp(speeds.iter().sum::<f64>() / speeds.len() as f64)
             },
             travel_time_s,
             travel_share,
@@ -267,7 +267,7 @@ impl Frame {
     }
 
     fn point(&self, row: &PlateauRow) -> Option<Point> {
-        let log_ratio = |v: f64, v0: f64| if v > 0.0 && v0 > 0.0 { (v / v0).ln() } else { 0.0 };
+        let log_ratio = |v: f64, v0: f64| if v > 0.0 && v0 > 0.0 { libm::log(v / v0) } else { 0.0 };
         Some(Point {
             condition: self.condition_of(row)?,
             load_n: row.load_n,
@@ -344,7 +344,7 @@ mod tests {
         // kappa = 0.0237 gives the pins-only maxima at +2.7 / -2.5 / -0.3 % (`model/doc/friction-laws.md`).
         let load = published::heaviest_load_n();
         let miss = |c: &Condition, published: f64| {
-            100.0 * (load * (0.0237 * load.sqrt() * c.ploughing).sinh() / published - 1.0)
+            100.0 * (load * libm::sinh(0.0237 * load.sqrt() * c.ploughing) / published - 1.0)
         };
         assert!((miss(&six, 3.935) - 2.7).abs() < 0.5, "{}", miss(&six, 3.935));
         assert!((miss(&double, 5.829) + 2.5).abs() < 0.5, "{}", miss(&double, 5.829));

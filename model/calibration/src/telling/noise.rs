@@ -36,7 +36,7 @@ pub(super) fn noise_parts(selection: &Selection, data: &Observations) -> Vec<Noi
             },
             if repeated > 0 { noise.repetition.at(TOLD_AT_N) } else { 0.0 },
             "N",
-            (repeated > 0).then(|| (1.96 / (2.0 * repetitions.max(1.0)).sqrt()).exp()),
+            (repeated > 0).then(|| libm::exp(1.96 / (2.0 * repetitions.max(1.0)).sqrt())),
         ),
         part(
             "series_and_direction",

@@ -96,13 +96,13 @@ impl Node {
             Kind::Call(function, a) => {
                 let a = a.value(k, moment);
                 match function {
-                    Function::Exp => a.exp(),
-                    Function::Ln => a.ln(),
+                    Function::Exp => libm::exp(a),
+                    Function::Ln => libm::log(a),
                     Function::Sqrt => a.sqrt(),
                     Function::Abs => a.abs(),
-                    Function::Sin => a.sin(),
-                    Function::Cos => a.cos(),
-                    Function::Tanh => a.tanh(),
+                    Function::Sin => libm::sin(a),
+                    Function::Cos => libm::cos(a),
+                    Function::Tanh => libm::tanh(a),
                 }
             }
             Kind::Binary(operator, a, b) => {
@@ -112,7 +112,7 @@ impl Node {
                     Operator::Subtract => a - b,
                     Operator::Multiply => a * b,
                     Operator::Divide => a / b,
-                    Operator::Power => a.powf(b),
+                    Operator::Power => libm::pow(a, b),
                     Operator::Less => one_if(a < b),
                     Operator::AtMost => one_if(a <= b),
                     Operator::More => one_if(a > b),

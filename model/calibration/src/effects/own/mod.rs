@@ -256,5 +256,9 @@ pub(super) fn duplicate(id: &str) -> DefinitionError {
 
 /// A share of the way between bounds, in logarithms where they span much and are positive.
 fn between((low, high): (f64, f64), share: f64) -> f64 {
-    if low > 0.0 && high > 4.0 * low { low * (high / low).powf(share) } else { low + share * (high - low) }
+    if low > 0.0 && high > 4.0 * low {
+        low * libm::pow(high / low, share)
+    } else {
+        low + share * (high - low)
+    }
 }

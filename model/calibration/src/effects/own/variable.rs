@@ -70,7 +70,7 @@ pub(super) static VARIABLES: [Variable; 22] = [
     moving("stroke", "1", "position as a share of the stroke, 0 to 1", |m| m.point.position),
     fixed("speed_pct", "%", "speed of the actuator; 0 counts as mean_speed_pct", |m| m.point.speed_pct),
     fixed("mean_speed_pct", "%", "geometric mean of all speeds of the table", |m| {
-        m.point.speed_pct * (-m.point.log_speed).exp()
+        m.point.speed_pct * libm::exp(-m.point.log_speed)
     }),
     fixed("dwell_s", "s", "pause before the reading; 0 counts as 3 s", |m| m.point.dwell_s),
     moving("time_s", "s", "time since the session began", |m| m.point.time_s),

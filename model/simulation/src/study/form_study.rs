@@ -8,6 +8,7 @@ use pinswitch_calibration::{CONFIRMED_P, Calibration, TrialOutcome, TrialReport,
 
 use super::cases::{Case, Truth, plan_of};
 use super::outcome::error_n;
+use super::shown::shows_all;
 use super::summary::median_told;
 use super::true_form::{true_forms, true_shapes};
 use crate::disturbance::Disturbance;
@@ -23,6 +24,8 @@ const OTHER_RIG: u64 = 500_000_000;
 pub struct FormOutcome {
     /// Whether structure was found where it is.
     pub place_is_right: bool,
+    /// Whether the session could show it beside mounts that differ as much as those of rigs of which nothing may be said.
+    pub visible: bool,
     /// The shape that was drawn; `None` where no structure was found.
     pub shape: Option<String>,
     /// Whether it is the true one, or the true one is among its rivals; `None` where no shape can be asked for.
@@ -51,7 +54,8 @@ pub fn run_form_case(case: &Case, seed: u64, levels: Levels) -> Option<FormOutco
     let Truth::Outside { covariates, .. } = case.truth else { return None };
     let plan = plan_of(case, seed);
     let disturbance = plan.disturbances.first()?;
-    let rows = simulate(&plan).rows;
+    let simulated = simulate(&plan);
+    let rows = simulated.rows;
     let Calibration { selection, data, form, .. } = calibrate(&rows, levels).ok()?;
     let frame = selection.baseline.model.frame.clone();
     let next = next_session(&plan).rows;
@@ -66,6 +70,7 @@ pub fn run_form_case(case: &Case, seed: u64, levels: Levels) -> Option<FormOutco
     let without = Plan { disturbances: Vec::new(), seed: seed + OTHER_RIG, ..plan.clone() };
     Some(FormOutcome {
         place_is_right: place.is_some_and(|place| covariates.contains(&place)),
+        visible: shows_all(&plan, &simulated.marks, levels)?,
         shape: form.as_ref().map(|f| f.report.shape.clone()),
         shape_is_right: shape_is_right(disturbance, form.as_ref().map(|f| &f.report)),
         next_n: [
@@ -133,7 +138,7 @@ impl FormStudy {
     /// A row for each kind, and one for all, in Markdown.
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "| protocol | rig | rigs | right place | right shape | later session, model / true form | form / true form | confirmed by a later session | refuted where absent | p >= 0.01 where absent |\n|---|---|---|---|---|---|---|---|---|---|\n",
+            "| protocol | rig | rigs | right place | of the visible | right shape | later session, model / true form | form / true form | confirmed by a later session | refuted where absent | p >= 0.01 where absent |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
         );
         for (case, outcomes) in &self.outcomes {
             let protocol = format!("{:?}", case.protocol).to_lowercase();
@@ -156,9 +161,10 @@ fn row(protocol: &str, name: &str, outcomes: &[&FormOutcome]) -> String {
     let again = outcomes.iter().filter_map(|o| o.again.as_ref());
     let absent = || outcomes.iter().filter_map(|o| o.absent.as_ref());
     format!(
-        "| {protocol} | {name} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
+        "| {protocol} | {name} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
         outcomes.len(),
         outcomes.iter().filter(|o| o.place_is_right).count(),
+        of(outcomes.iter().filter(|o| o.visible).map(|o| o.place_is_right).collect()),
         of(shapes),
         median_told(outcomes.iter().filter_map(|o| o.over_truth()), 2),
         median_told(outcomes.iter().filter_map(drawn), 2),
@@ -188,6 +194,6 @@ mod tests {
         assert_eq!(found.absent.as_ref().unwrap().outcome, TrialOutcome::Refuted);
         let mut study = FormStudy::default();
         study.add(case, vec![found]);
-        assert!(study.table().contains("| 1 | 1 | 1 of 1 |"), "{}", study.table());
+        assert!(study.table().contains("| 1 | 1 | 1 of 1 | 1 of 1 |"), "{}", study.table());
     }
 }

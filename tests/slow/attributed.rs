@@ -10,7 +10,7 @@
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{Report, Verdict, calibrate};
-use pinswitch_simulation::{Plan, plan_of, simulate, study_cases};
+use pinswitch_simulation::{EffectPlan, Plan, plan_of, simulate, study_cases};
 
 /// The first of the seeds, which nothing was tuned on.
 const SEED: u64 = 810_000;
@@ -83,5 +83,19 @@ fn what_is_attributed_has_a_size_and_helps() {
             plan.effects.iter_mut().filter_map(|e| e.values.first_mut()).for_each(|size| *size *= share);
             check_word(&format!("{name} times {share}"), &said(&plan));
         }
+    }
+}
+
+/// A drag of 10 N and a cell that reads less: shapes of the same two traces once took the place of both names, since a size
+/// of 10 N was a shade more probable for a shape than for a drag.
+#[test]
+fn a_huge_drag_keeps_its_name_beside_a_gain() {
+    for (seed, gain) in [(1, -0.035), (2, -0.03), (2, -0.045)] {
+        let effects = [("guide_drag", 10.0), ("load_cell_gain", gain)];
+        let effects = effects.map(|(id, size)| EffectPlan { id: id.to_owned(), values: vec![size], form: 0 });
+        let report = said(&Plan { seed, effects: effects.to_vec(), ..Plan::default() });
+        let named: Vec<&str> = report.effects.iter().map(|e| e.id.as_str()).collect();
+        assert_eq!(named, ["guide_drag", "load_cell_gain"], "seed {seed}, gain {gain}");
+        assert_eq!(report.verdict, Verdict::Attributed, "seed {seed}, gain {gain}");
     }
 }

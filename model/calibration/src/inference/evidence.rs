@@ -66,3 +66,24 @@ fn prior_sd(model: &Model) -> Vec<f64> {
     }
     sd
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two explanations of the same friction in which other sizes are typical, by a tenth: where the size is typical they
+    /// differ by less than two things to choose from, and where it is twenty times that by hardly more.
+    #[test]
+    fn how_typical_a_large_size_is_decides_nothing() {
+        let apart = |size: f64| {
+            let toll = |typical: f64| size_toll(size, typical) + 2.0 * libm::log(typical);
+            (toll(0.45) - toll(0.5)).abs()
+        };
+        for size in [0.0, 0.5, 2.0, 10.0, 100.0] {
+            assert!(apart(size) < 0.25, "{size}: {}", apart(size));
+        }
+        // Quartiles: half of the density at the typical size, none is ever impossible.
+        assert!((size_toll(0.3, 0.3) - size_toll(0.0, 0.3) - 2.0 * std::f64::consts::LN_2).abs() < 1e-12);
+        assert!(size_toll(1e6, 0.3) < 64.0);
+    }
+}

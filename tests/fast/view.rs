@@ -75,13 +75,24 @@ fn the_configurator_asks_and_saves_into_the_file_that_is_followed() {
     let mut values = start["values"].clone();
     values["shell.width_mm"] = 12.5.into();
     values["layout.pins"] = serde_json::json!([5, 11]);
-    let saved = asked(&preview, "/save", &serde_json::json!({ "values": values }).to_string());
-    assert_eq!(saved, r#"{"saved":"mine.toml"}"#);
+    let stamp = start["stamp"].clone();
+    let save = |values: &serde_json::Value, stamp: &serde_json::Value| -> serde_json::Value {
+        let question = serde_json::json!({ "values": values, "stamp": stamp });
+        serde_json::from_str(&asked(&preview, "/save", &question.to_string())).unwrap()
+    };
+    let saved = save(&values, &stamp);
+    assert_eq!(saved["saved"], "mine.toml");
     let now = std::fs::read_to_string(folder.path().join("mine.toml")).unwrap();
     let wanted = text.replace("[5, 8, 11]", "[5, 11]").replace("width_mm = 14", "width_mm = 12.5");
     assert_eq!(now, wanted, "the name that the file lent stays with the file");
+    // By the stamp of before, the file is another one by now: it is left as it is, and its values are told.
     values["switch.name"] = "other".into();
-    asked(&preview, "/save", &serde_json::json!({ "values": values }).to_string());
+    let refused = save(&values, &stamp);
+    assert_eq!(refused["differs"]["stamp"], saved["stamp"]);
+    assert_eq!(refused["differs"]["values"]["layout.pins"], serde_json::json!([5, 11]));
+    assert_eq!(refused["differs"]["values"]["switch.name"], "mine");
+    assert_eq!(std::fs::read_to_string(folder.path().join("mine.toml")).unwrap(), now);
+    save(&values, &saved["stamp"]);
     let now = std::fs::read_to_string(folder.path().join("mine.toml")).unwrap();
     assert_eq!(now, format!("{wanted}\n[switch]\nname = \"other\"\n"));
     for bad in ["", "{}", r#"{"values": {"shell.width_mm": 1e9}}"#, r#"{"values": {"x": 1}}"#] {

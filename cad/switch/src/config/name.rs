@@ -147,6 +147,16 @@ mod tests {
     use std::path::{Component, Path};
 
     #[test]
+    fn a_file_lends_its_name() {
+        let lent = |file: &str| Name::lent_by(file).as_str().to_owned();
+        assert_eq!(lent("parts/My Part.toml"), "My Part");
+        assert_eq!(lent("my.part.TOML"), "my.part");
+        assert_eq!(lent("three-double"), "three-double");
+        assert_eq!(lent(".toml"), "toml");
+        assert_eq!((lent(""), lent("..")), (NAMELESS.to_owned(), NAMELESS.to_owned()));
+    }
+
+    #[test]
     fn names_of_any_script_are_names() {
         let longest = "ü".repeat(80);
         for good in

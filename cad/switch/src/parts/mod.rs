@@ -17,6 +17,7 @@ mod shell;
 mod stroke_font;
 mod support;
 mod tendon;
+mod thin_walls;
 
 use crate::config::{ConfigError, Configuration, MouldKind, MountKind};
 use crate::design::Design;
@@ -104,6 +105,12 @@ fn has_tray(c: &Configuration) -> bool {
 pub fn printed(design: &Design) -> Result<Vec<Part>, ConfigError> {
     let wanted = PRINTED_PARTS.iter().filter(|p| (p.is_wanted)(design.configuration()));
     wanted.map(|p| (p.build)(design)).collect()
+}
+
+/// One printed part by its name; `None` where it is not asked for or cannot be built.
+fn printed_part(name: &str, design: &Design) -> Option<Part> {
+    let part = PRINTED_PARTS.iter().find(|p| p.name == name && (p.is_wanted)(design.configuration()))?;
+    (part.build)(design).ok()
 }
 
 /// The bodies that are not printed, for the assembly and the bill of materials: layer, pins and tendon.

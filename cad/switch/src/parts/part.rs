@@ -6,14 +6,8 @@ use crate::design::Design;
 use pinswitch_solid::mesh::{Mesh, Vector3};
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::Contour;
-use pinswitch_solid::solid::{CapError, Facing, Solid, ThinPlace};
+use pinswitch_solid::solid::{CapError, Facing, Solid};
 use pinswitch_solid::validity::Expectation;
-
-/// What two lines may be short of by rounding, mm.
-const THIN_ROUNDING_MM: f64 = 1e-6;
-
-/// Thicknesses closer than this are those of one wall, mm.
-const TOLD_MM: f64 = 1e-3;
 
 /// What a part is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -159,55 +153,6 @@ impl Part {
                 (high.x - low.x).min(high.y - low.y)
             })
             .fold(0.0, f64::max)
-    }
-
-    /// Places with less than two printed lines of material, the thinnest first; of what is printed.
-    pub fn thin_places(&self, design: &Design) -> Vec<ThinPlace> {
-        let limit = 2.0 * design.configuration().print.line_mm - THIN_ROUNDING_MM;
-        if self.material() == Material::Abs { self.solid.thin_places(limit) } else { Vec::new() }
-    }
-
-    /// The thinnest place, as a warning with what to change; `None` where every wall has two printed lines.
-    pub fn thin_warning(&self, design: &Design) -> Option<String> {
-        let mut places = self.thin_places(design);
-        if self.role == Role::Shell {
-            // Rules of their own tell of these, and by how much to mend them.
-            let told = [design.land_mm(), design.end_wall_mm()];
-            places.retain(|p| told.iter().all(|t| (p.thickness_mm - t).abs() > TOLD_MM));
-        }
-        let thinnest = places.first()?;
-        let (at, line_mm) = (thinnest.middle, design.configuration().print.line_mm);
-        Some(format!(
-            "{}: a wall of {:.2} mm, under two printed lines ({:.2} mm), at radius {:.1} mm and {:.1} deg, {:.1} to {:.1} mm \
-             above the bed{}: {}",
-            self.name,
-            thinnest.thickness_mm,
-            2.0 * line_mm,
-            at.coords.norm(),
-            libm::atan2(at.x, at.y).to_degrees(),
-            thinnest.from_mm,
-            thinnest.to_mm,
-            match places.len() {
-                1 => String::new(),
-                2 => ", and one more place".to_owned(),
-                n => format!(", and {} more places", n - 1),
-            },
-            self.remedy_for_thin_places()
-        ))
-    }
-
-    fn remedy_for_thin_places(&self) -> &'static str {
-        match (self.role, self.name.as_str()) {
-            (_, "mould-lid") => "lower mould.pour_width_mm or mould.key_diameter_mm",
-            (Role::Mould, _) => "raise mould.wall_mm, or lower mould.key_diameter_mm",
-            (Role::Proxy, _) => "raise segment.end_margin_mm",
-            (Role::Support { .. }, _) => {
-                "raise segment.end_margin_mm or shell.wall_mm, or lower support.slot_clearance_mm"
-            }
-            (Role::Mount, _) => "raise mount.rim_mm",
-            (Role::Shell, _) => "raise segment.end_margin_mm or shell.wall_mm, or use fewer grooves",
-            _ => "lower print.line_mm",
-        }
     }
 
     /// The mesh about the pulley's axis, standing on z = 0.

@@ -14,8 +14,8 @@ mod support;
 use super::Dimensions;
 use crate::config::{ConfigError, Configuration};
 
-pub(crate) use remedy::ways_out;
 pub use remedy::{Change, Remedy};
+pub(crate) use remedy::{alternatives, ways_out};
 
 /// What chamfers on both sides leave of a wall on the bed.
 const MIN_FOOT_MM: f64 = 0.05;

@@ -4,7 +4,7 @@ use super::{Part, Role, printed};
 use crate::config::{ConfigError, Configuration};
 use crate::design::Design;
 use crate::design::rules::Change::{self, Ease, Lower, Raise, Set};
-use crate::design::rules::ways_out;
+use crate::design::rules::{Effort, ways_out};
 use pinswitch_solid::files::{BED_EDGE_MM, Box3, needed_bed_mm};
 
 /// Whether each of `parts` fits on the bed by itself.
@@ -26,7 +26,7 @@ pub fn fit_on_bed(parts: &[Part], design: &Design) -> Result<(), ConfigError> {
                 (on_this_bed == *c && needed_mm <= changed.print.bed_mm)
                     || (on_this_bed != *c && all_fit(changed, &names))
             };
-            let (remedy, changes) = ways_out("print.bed_mm", c, smaller(part), &fits);
+            let (remedy, changes) = ways_out("print.bed_mm", c, smaller(part), &fits, Effort::THOROUGH);
             Err(ConfigError {
                 field: "print.bed_mm".to_owned(),
                 value: Some(bed_mm.to_string()),

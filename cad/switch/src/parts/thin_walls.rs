@@ -7,7 +7,7 @@ use super::{Material, Part, Role, printed_part};
 use crate::config::{Configuration, assign};
 use crate::design::Design;
 use crate::design::rules::Change::{self, Ease, Lower, Raise};
-use crate::design::rules::{alternatives, ways_out};
+use crate::design::rules::{Effort, alternatives, ways_out};
 
 /// Walls of exactly two lines are not thin for the rounding of their distance.
 const THIN_ROUNDING_MM: f64 = 1e-6;
@@ -16,7 +16,7 @@ const ALIKE_MM: f64 = 1e-3;
 /// Changes that are named together where no single one will do.
 const TOGETHER: usize = 3;
 /// Ways that are named.
-const NAMED: usize = 3;
+const NAMED: usize = 2;
 
 /// Whether a value is within a factor of two of the present one.
 fn is_moderate(c: &Configuration, field: &str, value: &str) -> bool {
@@ -75,21 +75,19 @@ impl Part {
             Some(printed_part(&self.name, &design)?.untold_thin_places(&design))
         };
         let is_mended = |c: &Configuration| places(c).is_some_and(|places| places.is_empty());
-        let ways: Vec<(String, bool)> = self
-            .thickening()
-            .iter()
-            .filter_map(|change| {
-                let c = design.configuration();
-                let (words, set) = ways_out("", c, std::slice::from_ref(change), &is_mended);
-                let (field, value) = set.first()?;
-                Some((words, is_moderate(c, field, value)))
-            })
-            .collect();
         // A layer three times as thick would mend the end walls of its copy, and be another switch.
-        let moderate = ways.iter().any(|(_, is_moderate)| *is_moderate);
-        let single = alternatives(
-            ways.into_iter().filter(|(_, is)| *is || !moderate).map(|(words, _)| words).take(NAMED).collect(),
-        );
+        let (mut moderate, mut large) = (Vec::new(), Vec::new());
+        for change in self.thickening() {
+            let c = design.configuration();
+            let (words, set) = ways_out("", c, std::slice::from_ref(change), &is_mended, Effort::QUICK);
+            let Some((field, value)) = set.first() else { continue };
+            (if is_moderate(c, field, value) { &mut moderate } else { &mut large }).push(words);
+            if moderate.len() == NAMED {
+                break;
+            }
+        }
+        large.truncate(1);
+        let single = alternatives(if moderate.is_empty() { large } else { moderate });
         if !single.is_empty() {
             return single;
         }
@@ -100,7 +98,7 @@ impl Part {
                 places(c).is_some_and(|p| p.first().is_none_or(|p| p.thickness_mm > left_mm + ALIKE_MM))
             };
             let found = self.thickening().iter().find_map(|change| {
-                let (words, set) = ways_out("", &c, std::slice::from_ref(change), &is_thicker);
+                let (words, set) = ways_out("", &c, std::slice::from_ref(change), &is_thicker, Effort::QUICK);
                 Some((words, set.into_iter().next()?))
             });
             let Some((words, (field, value))) = found else { break };

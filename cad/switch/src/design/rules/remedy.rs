@@ -7,8 +7,22 @@ use crate::config::parameter::Parameter;
 use crate::config::{ConfigError, Configuration};
 use crate::design::Dimensions;
 
-/// Values between the one that breaks a rule and the end of its range at which a change is tried.
-const TRIED: i64 = 32;
+/// How thoroughly a change is looked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Effort {
+    /// Values between the present one and the end of its range at which it is tried.
+    tried: i64,
+    /// How near to the least change it comes, in the steps in which numbers are shown.
+    near: i64,
+}
+
+impl Effort {
+    /// Where the design is refused, and nothing else has to be made.
+    pub(crate) const THOROUGH: Self = Self { tried: 32, near: 1 };
+    /// Where parts are made for each value, while somebody waits.
+    pub(crate) const QUICK: Self = Self { tried: 6, near: 20 };
+}
+
 /// The step in which numbers are shown, as a share of one: what is tried is what is shown.
 const STEPS_PER_UNIT: f64 = 1e3;
 /// Changes that one error names: more would not be read.
@@ -167,9 +181,11 @@ pub(crate) fn ways_out(
     c: &Configuration,
     changes: &[Change],
     fits: &dyn Fn(&Configuration) -> bool,
+    effort: Effort,
 ) -> (String, Vec<(String, String)>) {
+    let fits = |d: &Dimensions| fits(d.configuration());
     let mut found: Vec<Tried> =
-        changes.iter().filter_map(|change| tried(*change, c, &|d| fits(d.configuration()))).collect();
+        changes.iter().filter_map(|change| tried_with(*change, c, &fits, effort)).collect();
     found.truncate(NAMED);
     let first = found.first().map(std::slice::from_ref).unwrap_or_default();
     let settings = settings(first);
@@ -197,6 +213,15 @@ pub(super) fn keeps(rule: &Rule, dimensions: &Dimensions) -> bool {
 
 /// The least change of this kind that `fits`; `None` if none does within the field's range.
 fn tried(change: Change, c: &Configuration, fits: &dyn Fn(&Dimensions) -> bool) -> Option<Tried> {
+    tried_with(change, c, fits, Effort::THOROUGH)
+}
+
+fn tried_with(
+    change: Change,
+    c: &Configuration,
+    fits: &dyn Fn(&Dimensions) -> bool,
+    effort: Effort,
+) -> Option<Tried> {
     let Some(field) = change.field() else {
         let Change::Say(words) = change else { return None };
         return Some(Tried { field: None, verb: words, value: String::new(), changed: c.clone() });
@@ -213,7 +238,7 @@ fn tried(change: Change, c: &Configuration, fits: &dyn Fn(&Dimensions) -> bool) 
     }
     let is_upwards = change.is_upwards(c, parameter)?;
     let walk = Walk::new(c, parameter, is_upwards)?;
-    let (shown, changed) = walk.nearest(fits)?;
+    let (shown, changed) = walk.nearest(fits, effort)?;
     let verb = if is_upwards { "raise" } else { "lower" };
     Some(Tried { field: Some(field), verb, value: format!("to {shown}"), changed })
 }
@@ -320,7 +345,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The value nearest to the present one that fits, with the configuration that has it.
-    fn nearest(&self, fits: &dyn Fn(&Dimensions) -> bool) -> Option<(String, Configuration)> {
+    fn nearest(&self, fits: &dyn Fn(&Dimensions) -> bool, effort: Effort) -> Option<(String, Configuration)> {
         let at = |step: i64| {
             let shown = self.shown(step);
             let changed = Dimensions::new(with(self.c, self.parameter, &shown)?);
@@ -328,7 +353,12 @@ impl<'a> Walk<'a> {
         };
         let way = self.to - self.from;
         let mut bad = self.from;
-        let steps = (1..=TRIED).map(|i| self.from + way * i / TRIED);
+        // Nearer to the present value they are closer: what mends is mostly near.
+        let Effort { tried, near } = effort;
+        let steps = (1..=tried).map(|i| match near {
+            1 => self.from + way * i / tried,
+            _ => self.from + way * i * i / (tried * tried),
+        });
         let (mut good, mut found) = steps.into_iter().find_map(|step| {
             let found = at(step).map(|found| (step, found));
             if found.is_none() {
@@ -336,7 +366,7 @@ impl<'a> Walk<'a> {
             }
             found
         })?;
-        while (good - bad).abs() > 1 {
+        while (good - bad).abs() > if self.is_whole { 1 } else { near } {
             let middle = i64::midpoint(good, bad);
             match at(middle) {
                 Some(nearer) => (good, found) = (middle, nearer),

@@ -391,7 +391,7 @@ fn number(value: &Value) -> Option<f64> {
 }
 
 /// `a`, `a or b`, `a, b, or c`.
-pub(crate) fn alternatives(mut words: Vec<String>) -> String {
+fn alternatives(mut words: Vec<String>) -> String {
     match (words.pop(), words.len()) {
         (None, _) => String::new(),
         (Some(last), 0) => last,

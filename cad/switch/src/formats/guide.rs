@@ -270,7 +270,8 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
         ""
     };
     stages.push(Stage::LeftSupport);
-    steps.push(format!("Put the left support (L) on, its lip over the layer's edge. {marks}{covered}"));
+    let edge = if is_silicone { "layer's" } else { "proxy's" };
+    steps.push(format!("Put the left support (L) on, its lip over the {edge} edge. {marks}{covered}"));
     if bill.pins.number > 0 {
         let from = if is_marked { "counted from the `1`" } else { "counted from the load's side" };
         stages.push(Stage::Pins);
@@ -301,9 +302,10 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
     }
     stages.push(Stage::Tendon);
     steps.push(format!(
-        "Lay {} mm of tendon ({} mm over its coating) over the pins; it touches {:.2} deg.{}",
+        "Lay {} mm of tendon ({} mm over its coating) over the {}; it touches {:.2} deg.{}",
         bill.tendon.length_mm,
         bill.tendon.outer_diameter_mm,
+        if bill.pins.number > 0 { "pins" } else { bed },
         c.layout.wrap_angle_deg,
         where_it_lies(design)
     ));
@@ -431,6 +433,12 @@ fn where_it_lies(design: &Design) -> String {
         );
     }
     let radius = design.tendon_axis_radius_mm() - design.tendon_diameter_mm() / 2.0;
+    if c.layout.pins.is_empty() {
+        return format!(
+            " It lies on the {bed} all the way, {:.1} mm.",
+            2.0 * design.half_wrap_rad() * radius
+        );
+    }
     let length: f64 =
         touches(design).iter().filter(|t| t.pin.is_none()).map(|t| (t.to_rad - t.from_rad) * radius).sum();
     format!(
@@ -453,6 +461,24 @@ mod tests {
             crate::set::Set::new(&built, &prediction, &super::super::named(&["guide"]).unwrap()).unwrap();
         let bytes = set.files.iter().find(|f| f.name == "PRINTING.md").unwrap().bytes.clone();
         String::from_utf8(bytes).unwrap()
+    }
+
+    /// What a set does not have is in none of its steps.
+    #[test]
+    fn steps_name_what_the_set_has() {
+        let bare = guide("[layout]\npins = []\n");
+        assert!(
+            bare.contains("over the silicone layer; it touches")
+                && bare.contains("on the silicone all the way")
+        );
+        assert!(!bare.contains("over the pins") && !bare.contains("Beside the pins"), "{bare}");
+        let rigid = guide("[layout]\npins = [5, 8, 11]\nsubstrate = \"abs\"\n");
+        assert!(rigid.contains("over the proxy's edge") && !rigid.contains("layer's edge"), "{rigid}");
+        let both = guide("[layout]\npins = [5, 8, 11]\n");
+        assert!(
+            both.contains("over the layer's edge") && both.contains("over the pins; it touches"),
+            "{both}"
+        );
     }
 
     /// Numbers of sections and of steps follow each other, whatever is in the set.

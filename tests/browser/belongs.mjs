@@ -181,7 +181,6 @@ export async function fileThatChangedMeanwhile(visit, site, { anotherView, facts
   try {
     // An address of before, with another design.
     await visit.open(own.address + START);
-    await visit.check('a page says that the file has other values', () => /meanwhile\.toml has other values/.test(document.querySelector('#notice').textContent));
     await visit.type('#f-silicone-hardness_shore_a', '40');
     await visit.settled();
     await visit.click('#save');
@@ -203,6 +202,12 @@ export async function fileThatChangedMeanwhile(visit, site, { anotherView, facts
     await visit.page.reload();
     await visit.settled();
     visit.findings.check('a page that is loaded again knows the file', await visit.page.$eval('#notice', (e) => e.hidden));
+    const address = await visit.page.evaluate(() => location.hash);
+    await visit.page.goto('about:blank');
+    writeFileSync(own.followed, '[layout]\npins = [6, 10]\n');
+    await new Promise((done) => setTimeout(done, 1500));
+    await visit.open(own.address + address);
+    await visit.check('a page that comes back to another file says so', () => /meanwhile\.toml has other values/.test(document.querySelector('#notice').textContent));
   } finally {
     await visit.page.goto('about:blank');
     await own.end();

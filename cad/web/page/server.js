@@ -29,7 +29,8 @@ class Served {
     this.stamp = isSame || (seen?.file === this.file && seen.stamp === started.stamp) ? started.stamp : '';
     this.know(this.stamp);
     if (started.trouble) showNotice(started.trouble);
-    else if (!this.stamp) showNotice(WORDS.fileDiffers(this.file), this.showButton(values, started.stamp));
+    // An address that somebody was given says nothing of the file: saving asks then.
+    else if (!this.stamp && seen?.file === this.file) showNotice(WORDS.fileDiffers(this.file), this.showButton(values, started.stamp));
     this.follow(started.version);
   }
 

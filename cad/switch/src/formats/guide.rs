@@ -14,7 +14,7 @@ use crate::design::rules::checklist;
 use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
 use crate::parallel::map_each;
-use crate::parts::{left_out, touches};
+use crate::parts::{left_out, printed, touches};
 use crate::plates::{Plate, plates};
 use crate::prediction::Prediction;
 use crate::scene::{Stage, exploded_png, plate, stage_scene, stage_view};
@@ -249,7 +249,12 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
         let notes = manifest.parts.iter().filter(|p| p.name.starts_with("support")).flat_map(|p| &p.notes);
         notes.into_iter().any(|note| note.contains(&left_out(label)))
     };
-    let is_marked = c.label.engrave && !has_lost("L") && !has_lost("R");
+    let supports = || manifest.parts.iter().filter(|p| p.name.starts_with("support"));
+    // Only the letter of the side may have found room: then there is no arrow to go by.
+    let has_arrow = |lines: &[String]| lines.iter().any(|line| line.contains(['<', '>']));
+    let printed = printed(design).unwrap_or_default();
+    let is_marked = c.label.engrave
+        && printed.iter().filter(|p| p.name.starts_with("support")).all(|p| has_arrow(&p.engraved));
     let marks = match (is_marked, has_lost(&design.label())) {
         (true, false) => {
             "Outside it says the layout. The load pulls on the side of groove 1: the arrow points there, and the `1` stands there."
@@ -261,7 +266,7 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
             "The supports have no marks (`label.engrave = false`): the load pulls on the side of groove 1, which seen from outside the left support is on the right."
         }
         (false, _) => {
-            "There is no room for marks on the supports: the load pulls on the side of groove 1, which seen from outside the left support is on the right."
+            "There is no room for an arrow on the supports: the load pulls on the side of groove 1, which seen from outside the left support is on the right."
         }
     };
     let covered = if is_marked && c.mount.kind != MountKind::None {
@@ -271,7 +276,10 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
     };
     stages.push(Stage::LeftSupport);
     let edge = if is_silicone { "layer's" } else { "proxy's" };
-    steps.push(format!("Put the left support (L) on, its lip over the {edge} edge. {marks}{covered}"));
+    let has_lip = c.support.lip_depth_mm > 0.0
+        && supports().all(|p| p.notes.iter().all(|note| !note.starts_with("the lip does not fit")));
+    let lip = if has_lip { format!(", its lip over the {edge} edge") } else { String::new() };
+    steps.push(format!("Put the left support (L) on{lip}. {marks}{covered}"));
     if bill.pins.number > 0 {
         let from = if is_marked { "counted from the `1`" } else { "counted from the load's side" };
         stages.push(Stage::Pins);
@@ -283,7 +291,18 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
     let slides =
         if bill.pins.number > 0 { " Every pin must slide to the end of its slot and back." } else { "" };
     stages.push(Stage::RightSupport);
-    steps.push(format!("Put the right support (R) on.{slides}"));
+    let joined = match (&bill.fasteners, &bill.dowels) {
+        (Some(_), _) => "",
+        (None, None) => {
+            " No screws hold this set (`fasteners.count = 0`): glue the plates of both supports to the ends of the shell, with ABS cement \
+             or epoxy, and keep it out of slots and grooves."
+        }
+        (None, Some(_)) => {
+            " No screws hold this set (`fasteners.count = 0`): the dowels place the supports; glue these to the ends of the shell, with \
+             ABS cement or epoxy, and keep it out of slots and grooves."
+        }
+    };
+    steps.push(format!("Put the right support (R) on.{slides}{joined}"));
     if let Some(step) = mounting_step(design, manifest) {
         stages.push(Stage::Mount);
         steps.push(step);
@@ -461,6 +480,25 @@ mod tests {
             crate::set::Set::new(&built, &prediction, &super::super::named(&["guide"]).unwrap()).unwrap();
         let bytes = set.files.iter().find(|f| f.name == "PRINTING.md").unwrap().bytes.clone();
         String::from_utf8(bytes).unwrap()
+    }
+
+    /// Without screws something else joins, without room for an arrow none is spoken of, and without a lip none.
+    #[test]
+    fn steps_name_what_holds_and_marks_the_supports() {
+        let glued = guide("[layout]\npins = [5, 8, 11]\n[fasteners]\ncount = 0\n");
+        assert!(glued.contains("glue the plates of both supports to the ends of the shell"), "{glued}");
+        let placed = guide("[layout]\npins = [5]\n[fasteners]\ncount = 0\ndowel_diameter_mm = 2.0\n");
+        assert!(placed.contains("the dowels place the supports; glue these"), "{placed}");
+        assert!(!guide("[layout]\npins = [5]\n").contains("glue"));
+        let crowded = "[layout]\npins = [3, 8, 13]\n[fasteners]\nkind = \"insert\"\ncount = 3\ndowel_diameter_mm = 2.0\n[mount]\nkind = \"flange\"\n";
+        let text = guide(crowded);
+        assert!(
+            text.contains("no room for an arrow") && text.contains("counted from the load's side"),
+            "{text}"
+        );
+        assert!(!text.contains("the arrow") && !text.contains("same marks"), "{text}");
+        let flat = guide("[layout]\npins = [5, 8, 11]\n[support]\nlip_depth_mm = 0.0\n");
+        assert!(!flat.contains("its lip over"), "{flat}");
     }
 
     /// What a set does not have is in none of its steps.

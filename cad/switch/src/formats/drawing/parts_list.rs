@@ -58,7 +58,9 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
         add(bill.pins.number.to_string(), words, part_number(built, "pin"), material(pin), &shown);
     }
     let mut bought = |quantity: usize, words: String, shown: &str| {
-        add(quantity.to_string(), words, "bought".to_owned(), "Steel".to_owned(), shown);
+        // Inserts that are pressed into prints are made of brass.
+        let material = if words.starts_with("Heat-set") { "Brass" } else { "Steel" };
+        add(quantity.to_string(), words, "bought".to_owned(), material.to_owned(), shown);
     };
     if let Some(screws) = &bill.fasteners {
         let with = if screws.nuts > 0 { " with nut" } else { "" };

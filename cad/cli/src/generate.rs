@@ -131,9 +131,6 @@ fn report(arguments: &Arguments, set: &Set, folder: &Path, prediction: &Predicti
     }
     for part in &set.manifest.parts {
         log::debug!("{}: {:.3} mm3, {} triangles", part.file, part.volume_mm3, part.mesh.triangles);
-        for note in &part.notes {
-            log::warn!("{}: {note}", part.file);
-        }
     }
     let friction = &set.manifest.friction;
     log::info!(

@@ -271,6 +271,11 @@ impl Dimensions {
         self.recess_obstacle(&head_recess(&thread, f.head_recess_mm))
     }
 
+    /// Whether a recess in a support was asked for and finds no room.
+    pub(crate) fn has_lost_hardware(&self) -> bool {
+        self.nut_trap_remedy().is_some() || self.counterbore_remedy().is_some()
+    }
+
     /// Length of the screws that enter from the left and from the right, mm, the latter with inserts only; `None` where no
     /// such screw is sold (ISO 4762).
     pub fn screw_lengths_mm(&self) -> Option<(f64, Option<f64>)> {

@@ -62,7 +62,7 @@ pub struct PartEntry {
     pub widest_bridge_mm: f64,
     /// The mesh as written.
     pub mesh: MeshFacts,
-    /// Notes for the user.
+    /// What was left out of it, and what makes room for it; among the warnings, too.
     pub notes: Vec<String>,
 }
 
@@ -212,8 +212,10 @@ impl Manifest {
         let parts: Vec<_> = parts
             .into_iter()
             .map(|(part, facts)| {
+                let entry = part_entry(part, facts, design);
+                warnings.extend(entry.notes.iter().map(|note| format!("{}: {note}", part.name)));
                 warnings.extend(part.thin_warning(design));
-                part_entry(part, facts, c)
+                entry
             })
             .collect();
         let error = |p: &PartEntry| (p.mesh.volume_mm3 / p.volume_mm3 - 1.0).abs();
@@ -282,7 +284,7 @@ fn law_entry(curve: &FrictionCurve) -> LawEntry {
     }
 }
 
-fn part_entry(part: &Part, facts: &MeshFacts, c: &Configuration) -> PartEntry {
+fn part_entry(part: &Part, facts: &MeshFacts, design: &Design) -> PartEntry {
     let volume_mm3 = part.solid.volume_mm3();
     PartEntry {
         name: part.name.clone(),
@@ -290,10 +292,10 @@ fn part_entry(part: &Part, facts: &MeshFacts, c: &Configuration) -> PartEntry {
         material: part.material(),
         volume_mm3,
         surface_mm2: part.solid.surface_mm2(),
-        mass_g: volume_mm3 / 1000.0 * c.print.abs_density_g_cm3,
+        mass_g: volume_mm3 / 1000.0 * design.configuration().print.abs_density_g_cm3,
         widest_bridge_mm: part.widest_bridge_mm(),
         mesh: facts.clone(),
-        notes: part.notes.clone(),
+        notes: part.notes(design),
     }
 }
 

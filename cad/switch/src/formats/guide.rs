@@ -14,7 +14,7 @@ use crate::design::rules::checklist;
 use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
 use crate::parallel::map_each;
-use crate::parts::{left_out, printed, touches};
+use crate::parts::{LeftOut, printed, touches};
 use crate::plates::{Plate, plates};
 use crate::prediction::Prediction;
 use crate::scene::{Stage, exploded_png, plate, stage_scene, stage_view};
@@ -244,18 +244,12 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
             d.number, d.diameter_mm, d.length_mm
         ));
     }
-    // What found no room on a support is left out, and a note of the part says so.
-    let has_lost = |label: &str| {
-        let notes = manifest.parts.iter().filter(|p| p.name.starts_with("support")).flat_map(|p| &p.notes);
-        notes.into_iter().any(|note| note.contains(&left_out(label)))
-    };
-    let supports = || manifest.parts.iter().filter(|p| p.name.starts_with("support"));
-    // Only the letter of the side may have found room: then there is no arrow to go by.
-    let has_arrow = |lines: &[String]| lines.iter().any(|line| line.contains(['<', '>']));
     let printed = printed(design).unwrap_or_default();
-    let is_marked = c.label.engrave
-        && printed.iter().filter(|p| p.name.starts_with("support")).all(|p| has_arrow(&p.engraved));
-    let marks = match (is_marked, has_lost(&design.label())) {
+    let supports: Vec<_> = printed.iter().filter(|p| p.name.starts_with("support")).collect();
+    // What found no room is left out: there may be no arrow to go by, and no label.
+    let has_lost = |what: LeftOut| supports.iter().any(|p| p.left_out.contains(&what));
+    let is_marked = c.label.engrave && !has_lost(LeftOut::Arrow);
+    let marks = match (is_marked, has_lost(LeftOut::Label)) {
         (true, false) => {
             "Outside it says the layout. The load pulls on the side of groove 1: the arrow points there, and the `1` stands there."
         }
@@ -276,8 +270,7 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
     };
     stages.push(Stage::LeftSupport);
     let edge = if is_silicone { "layer's" } else { "proxy's" };
-    let has_lip = c.support.lip_depth_mm > 0.0
-        && supports().all(|p| p.notes.iter().all(|note| !note.starts_with("the lip does not fit")));
+    let has_lip = c.support.lip_depth_mm > 0.0 && !has_lost(LeftOut::Lip);
     let lip = if has_lip { format!(", its lip over the {edge} edge") } else { String::new() };
     steps.push(format!("Put the left support (L) on{lip}. {marks}{covered}"));
     if bill.pins.number > 0 {
@@ -490,13 +483,15 @@ mod tests {
         let placed = guide("[layout]\npins = [5]\n[fasteners]\ncount = 0\ndowel_diameter_mm = 2.0\n");
         assert!(placed.contains("the dowels place the supports; glue these"), "{placed}");
         assert!(!guide("[layout]\npins = [5]\n").contains("glue"));
-        let crowded = "[layout]\npins = [3, 8, 13]\n[fasteners]\nkind = \"insert\"\ncount = 3\ndowel_diameter_mm = 2.0\n[mount]\nkind = \"flange\"\n";
+        let crowded = "[layout]\npins = [3, 8, 13]\n[fasteners]\nkind = \"screw\"\ncount = 5\n";
         let text = guide(crowded);
+        let warned = "**warning**: support-left: the arrow to groove 1 does not fit and is left out: ";
+        assert!(text.contains(warned), "{text}");
         assert!(
             text.contains("no room for an arrow") && text.contains("counted from the load's side"),
             "{text}"
         );
-        assert!(!text.contains("the arrow") && !text.contains("same marks"), "{text}");
+        assert!(!text.contains("the arrow outside") && !text.contains("same marks"), "{text}");
         let flat = guide("[layout]\npins = [5, 8, 11]\n[support]\nlip_depth_mm = 0.0\n");
         assert!(!flat.contains("its lip over"), "{flat}");
     }

@@ -241,7 +241,8 @@ fn recesses_take_their_hardware() {
     let thin = design(&["shell.wall_mm=5.5"]);
     assert!(thin.fastening().nut_trap.is_none());
     let right = printed(&thin).unwrap().into_iter().find(|p| p.name == "support-right").unwrap();
-    assert!(right.notes.iter().any(|n| n.contains("nut traps do not fit")), "{:?}", right.notes);
+    let notes = right.notes(&thin);
+    assert!(notes.iter().any(|n| n.contains("nut traps do not fit")), "{notes:?}");
 }
 
 /// Between the stops the layer has its clearance at both ends and no more, over its whole width.

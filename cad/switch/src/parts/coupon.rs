@@ -48,7 +48,7 @@ pub(super) fn coupon(design: &Design) -> Result<Part, ConfigError> {
     solid.cap(Facing::Down, bottom, &bottoms);
     for (i, clearance) in CLEARANCES_HUNDREDTHS.iter().enumerate() {
         let zone = Zone::flat(Point2::new(place(i), WALL_MM + FIGURE_MM / 2.0), pitch, FIGURE_MM);
-        tops.extend(engrave_text(&mut solid, design, &clearance.to_string(), &zone, thickness).rings);
+        tops.extend(engrave_text(&mut solid, design, &clearance.to_string(), &zone, thickness));
     }
     solid.cap(Facing::Up, top, &tops);
     Ok(Part::new("coupon", Role::Accessory, solid, None))

@@ -3,6 +3,7 @@
 use i_overlay::mesh::float::stroke::offset::StrokeOffset;
 use i_overlay::mesh::float::style::{LineCap, LineJoin, StrokeStyle};
 
+use super::left_out::LeftOut;
 use super::stroke_font::{HEIGHT, WIDTH, strokes};
 use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Point2, Vector2, polar};
@@ -32,19 +33,26 @@ pub(super) enum Zone {
     Flat { middle: Point2, length_mm: f64, height_mm: f64 },
 }
 
-/// The result of an engraving: the rings at the top, which are holes in the cap there, and a note if nothing was engraved.
+/// The result of an engraving: the rings at the top, which are holes in the cap there.
 pub(super) struct Engraving {
     pub(super) rings: Vec<RingId>,
-    pub(super) note: Option<String>,
+    /// What found no room.
+    pub(super) left_out: Vec<LeftOut>,
     /// What was engraved, line by line.
     pub(super) lines: Vec<String>,
 }
 
 impl Engraving {
-    /// Nothing, and why.
-    pub(super) const fn none(note: Option<String>) -> Self {
-        Self { rings: Vec::new(), note, lines: Vec::new() }
+    /// Nothing, and what of it found no room.
+    pub(super) const fn none(left_out: Vec<LeftOut>) -> Self {
+        Self { rings: Vec::new(), left_out, lines: Vec::new() }
     }
+}
+
+/// A text as it can be laid out: the height of its letters in mm, and its pieces with their zones.
+struct Laid {
+    size_mm: f64,
+    pieces: Vec<(String, Zone)>,
 }
 
 impl Zone {
@@ -142,27 +150,39 @@ impl Zone {
     }
 }
 
-/// Engraves the design's label into the face at `top_mm`, into the first of several choices of zones that holds it: in the
-/// widest of the zones, or else from one to the next.
+/// Engraves the design's label into the face at `top_mm`, into the first of several choices of zones that holds it.
 pub(super) fn engrave(solid: &mut Solid, design: &Design, choices: &[Vec<Zone>], top_mm: f64) -> Engraving {
-    let text = design.label();
-    for zones in choices {
-        let whole = Zone::widest(zones).map(|zone| engrave_text(solid, design, &text, &zone, top_mm));
-        if let Some(engraved) = whole.filter(|whole| whole.note.is_none()) {
-            return engraved;
-        }
-        let laid = sizes_mm(design)
-            .filter(|_| has_floor(design, top_mm))
-            .find_map(|size_mm| Some((size_mm, broken(design, &text, zones, size_mm)?)));
-        if let Some((size_mm, pieces)) = laid {
-            let rings = pieces
-                .iter()
-                .flat_map(|(piece, zone)| pockets(solid, design, piece, zone, size_mm, top_mm))
-                .collect();
-            return Engraving { rings, note: None, lines: vec![text] };
-        }
+    if !design.configuration().label.engrave {
+        return Engraving::none(Vec::new());
     }
-    Engraving::none(Some(left_out(&text)))
+    let text = design.label();
+    let Some(Laid { size_mm, pieces }) = laid(design, &text, choices, top_mm) else {
+        return Engraving::none(vec![LeftOut::Label]);
+    };
+    let cut = |(piece, zone): &(String, Zone)| pockets(solid, design, piece, zone, size_mm, top_mm);
+    Engraving { rings: pieces.iter().flat_map(cut).collect(), left_out: Vec::new(), lines: vec![text] }
+}
+
+/// Whether [`engrave`] leaves the label out.
+pub(super) fn is_left_out(design: &Design, choices: &[Vec<Zone>], top_mm: f64) -> bool {
+    design.configuration().label.engrave && laid(design, &design.label(), choices, top_mm).is_none()
+}
+
+/// `text` in the widest zone of the first choice that holds it, or else broken from one zone to the next.
+fn laid(design: &Design, text: &str, choices: &[Vec<Zone>], top_mm: f64) -> Option<Laid> {
+    let c = design.configuration();
+    // A floor that prints must stay under the letters.
+    if top_mm - c.label.depth_mm < c.print.least_wall_mm {
+        return None;
+    }
+    choices.iter().find_map(|zones| {
+        let whole = Zone::widest(zones).and_then(|zone| {
+            let size_mm = largest_mm(design, text, &zone)?;
+            Some(Laid { size_mm, pieces: vec![(text.to_owned(), zone)] })
+        });
+        let parted = |size_mm| Some(Laid { size_mm, pieces: broken(design, text, zones, size_mm)? });
+        whole.or_else(|| sizes_mm(design).find_map(parted))
+    })
 }
 
 /// `text` broken between letters so that each piece fits its zone in letters of `size_mm`: it runs on behind a hole. The
@@ -197,31 +217,20 @@ pub(super) fn sizes_mm(design: &Design) -> impl Iterator<Item = f64> + use<> {
         .chain((height >= least - SAME_MM).then_some(least))
 }
 
-/// Engraves `text` as large as configured, smaller where the zone is small, or not at all with a note.
+/// Engraves `text` into one zone as large as configured, or smaller; the rings of nothing where it does not fit.
 pub(super) fn engrave_text(
     solid: &mut Solid,
     design: &Design,
     text: &str,
     zone: &Zone,
     top_mm: f64,
-) -> Engraving {
-    let c = design.configuration();
-    if !c.label.engrave {
-        return Engraving::none(None);
+) -> Vec<RingId> {
+    if !design.configuration().label.engrave {
+        return Vec::new();
     }
-    let size = largest_mm(design, text, zone).filter(|_| has_floor(design, top_mm));
-    let Some(size) = size else { return Engraving::none(Some(left_out(text))) };
-    Engraving {
-        rings: pockets(solid, design, text, zone, size, top_mm),
-        note: None,
-        lines: vec![text.to_owned()],
-    }
-}
-
-/// Whether letters in the face at `top_mm` leave a floor that prints.
-fn has_floor(design: &Design, top_mm: f64) -> bool {
-    let c = design.configuration();
-    top_mm - c.label.depth_mm >= c.print.least_wall_mm
+    laid(design, text, &[vec![*zone]], top_mm)
+        .map(|l| pockets(solid, design, text, zone, l.size_mm, top_mm))
+        .unwrap_or_default()
 }
 
 /// The letters of `text` as pockets in the face at `top_mm`; their rings are holes in the cap there.
@@ -257,11 +266,6 @@ pub(super) fn engrave_below(
             solid.recess(&outline.mirrored(), &islands, 0.0, ceiling)
         })
         .collect()
-}
-
-/// The note on a text that does not fit.
-pub(crate) fn left_out(text: &str) -> String {
-    format!("the label {text:?} does not fit and is left out")
 }
 
 /// Least height of letters whose strokes leave walls between them, mm.
@@ -402,8 +406,8 @@ mod tests {
             solid.cap(Facing::Down, bottom, &[]);
             let zone = Zone::flat(Point2::new(4.0, 4.0), 8.0, 8.0);
             let engraved = engrave_text(&mut solid, &design, &letter.to_string(), &zone, 2.0);
-            assert!(engraved.note.is_none());
-            solid.cap(Facing::Up, top, &engraved.rings);
+            assert!(!engraved.is_empty());
+            solid.cap(Facing::Up, top, &engraved);
             let printable = Expectation { bodies: Some(1), min_wall_mm: 0.4, ..Expectation::default() };
             let found = examine(&solid.mesh(design.tolerance()).unwrap(), &printable);
             assert!(found.is_valid(), "{letter}: {:?}", found.faults);

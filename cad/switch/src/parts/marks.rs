@@ -1,55 +1,87 @@
 //! Marks on the outer faces of the supports, which stay visible: which side it is, which layout, where groove 1 is and
 //! where the load pulls (cad/doc/dimensions.md, "Label").
 
-use super::label::{EDGE_MM, Engraving, SAME_MM, Zone, engrave_below, largest_mm, left_out, sizes_mm};
+use super::label::{EDGE_MM, Engraving, SAME_MM, Zone, engrave_below, largest_mm, sizes_mm};
+use super::left_out::LeftOut;
 use crate::design::Design;
 use pinswitch_solid::solid::Solid;
 
-/// Height of all letters in millimetres, and the zone of each row.
-type Laid = (f64, Vec<Zone>);
+/// The marks of a support as they can be laid out.
+struct Marks {
+    /// What they say, row by row.
+    rows: Vec<String>,
+    /// Height of all letters, mm.
+    size_mm: f64,
+    /// What stands where.
+    placed: Vec<(String, Zone)>,
+}
 
 /// Engraves the marks of a support into its face on the bed.
 pub(super) fn engrave_marks(solid: &mut Solid, design: &Design, is_right: bool) -> Engraving {
-    let c = design.configuration();
-    if !c.label.engrave {
-        return Engraving::none(None);
+    if !design.configuration().label.engrave {
+        return Engraving::none(Vec::new());
     }
-    let side = if is_right { "R" } else { "L" };
-    let least_floor =
-        c.print.least_wall_mm.max(c.support.plate_mm - c.support.plate_mm.max(c.label.depth_mm));
-    if c.support.plate_mm - c.label.depth_mm < least_floor {
-        return Engraving::none(Some(left_out(side)));
-    }
+    let found = marks(design, is_right);
+    let left_out = missing(design, is_right, found.as_ref());
+    let Some(Marks { rows, size_mm, placed }) = found else { return Engraving::none(left_out) };
+    let cut = |(text, zone): &(String, Zone)| engrave_below(solid, design, text, zone, size_mm);
+    Engraving { rings: placed.iter().flat_map(cut).collect(), left_out, lines: rows }
+}
+
+/// What of the marks of a support finds no room on it.
+pub(super) fn left_out(design: &Design, is_right: bool) -> Vec<LeftOut> {
+    let is_wanted = design.configuration().label.engrave;
+    if is_wanted { missing(design, is_right, marks(design, is_right).as_ref()) } else { Vec::new() }
+}
+
+fn missing(design: &Design, is_right: bool, marks: Option<&Marks>) -> Vec<LeftOut> {
+    let has = |is_it: &dyn Fn(&String) -> bool| marks.is_some_and(|m| m.rows.iter().any(is_it));
     let label = design.label();
-    let wanted = row_sets(side, &label, is_right);
-    let Some((rows, (size, laid))) = chosen_rows(design, &wanted, &label) else {
-        return Engraving::none(Some(left_out(side)));
-    };
-    let placed = rows.iter().zip(&laid);
-    let rings = placed.flat_map(|(text, zone)| engrave_below(solid, design, text, zone, size)).collect();
-    let note = (!has_label(rows, &label)).then(|| left_out(&label));
-    Engraving { rings, note, lines: rows.clone() }
+    [
+        (LeftOut::Side, has(&|row| row.contains(side(is_right)))),
+        (LeftOut::Arrow, has(&|row| has_arrow(row))),
+        (LeftOut::Label, has(&|row| row.contains(&label))),
+    ]
+    .into_iter()
+    .filter_map(|(what, is_there)| (!is_there).then_some(what))
+    .collect()
 }
 
-fn has_label(rows: &[String], label: &str) -> bool {
-    rows.iter().any(|row| row.contains(label))
+/// Whether an engraved line says where groove 1 is and the load pulls.
+fn has_arrow(line: &str) -> bool {
+    line.contains("1<") || line.contains(">1")
 }
 
-/// The fullest of the sets that can be laid out, with the label if one can, and how.
-fn chosen_rows<'a>(
-    design: &Design,
-    wanted: &'a [Vec<String>],
-    label: &str,
-) -> Option<(&'a Vec<String>, Laid)> {
-    let lay = |rows: &'a Vec<String>| Some((rows, fitted(design, rows)?));
-    let labelled = wanted.iter().filter(|rows| has_label(rows, label));
-    labelled.chain(wanted).find_map(lay)
+const fn side(is_right: bool) -> &'static str {
+    if is_right { "R" } else { "L" }
 }
 
-/// Rows from the outside inward, the fullest set first. Groove 1 is on the load's side, to which the arrow points: seen
-/// from outside it lies to the left on the right support, and to the right on the left one.
+/// The fullest set of rows that can be laid out: with the label if one can, and else with the arrow.
+fn marks(design: &Design, is_right: bool) -> Option<Marks> {
+    let c = design.configuration();
+    // A floor that prints must stay over the letters.
+    if c.support.plate_mm - c.label.depth_mm < c.print.least_wall_mm {
+        return None;
+    }
+    let (side, label) = (side(is_right), design.label());
+    let sets = row_sets(side, &label, is_right);
+    let labelled = sets.iter().filter(|rows| rows.iter().any(|row| row.contains(&label)));
+    labelled
+        .chain(&sets)
+        .find_map(|rows| below_each_other(design, rows))
+        .or_else(|| parted_rows(side, is_right).iter().find_map(|read| on_both_sides_of_holes(design, read)))
+        .or_else(|| below_each_other(design, &[side.to_owned()]))
+}
+
+/// `word` and the arrow away from it to groove 1, which is on the load's side: seen from outside that lies to the left on
+/// the right support, and to the right on the left one.
+fn towards_load(word: &str, is_right: bool) -> String {
+    if is_right { format!("1<{word}") } else { format!("{word}>1") }
+}
+
+/// Rows from the outside inward, the fullest set first.
 fn row_sets(side: &str, label: &str, is_right: bool) -> Vec<Vec<String>> {
-    let mark = |word: &str| if is_right { format!("1<{word}") } else { format!("{word}>1") };
+    let mark = |word: &str| towards_load(word, is_right);
     let (load, force) = (mark("LOAD"), mark("F"));
     let with_side = |mark: &str| if is_right { format!("{mark} {side}") } else { format!("{side} {mark}") };
     vec![
@@ -61,28 +93,59 @@ fn row_sets(side: &str, label: &str, is_right: bool) -> Vec<Vec<String>> {
         vec![mark(side), label.to_owned()],
         vec![with_side(&force)],
         vec![mark(side)],
-        vec![side.to_owned()],
+        vec![side.to_owned(), mark("")],
+        vec![mark(""), side.to_owned()],
     ]
 }
 
-/// The largest letters in which all rows fit below each other, each between two holes; with the zone of each.
-fn fitted(design: &Design, rows: &[String]) -> Option<Laid> {
-    let stroke = design.configuration().label.stroke_mm;
-    let (inner, outer) = (design.inner_radius_mm(), design.slot().inner_edge_mm());
-    let reach = design.fastener_along_mm();
-    sizes_mm(design).find_map(|size| {
-        // Rows share the wall between them.
-        let pitch = size + stroke + EDGE_MM;
+/// The largest letters in which all rows fit below each other, each between two holes.
+fn below_each_other(design: &Design, rows: &[String]) -> Option<Marks> {
+    sizes_mm(design).find_map(|size_mm| {
         let laid = |(i, row): (usize, &String)| {
-            let top = outer - i as f64 * pitch;
-            let bottom = top - pitch - EDGE_MM;
-            let zones = (bottom > inner).then(|| Zone::between_holes(design, reach, bottom, top))?;
-            let zone = Zone::widest(&zones)?;
-            largest_mm(design, row, &zone).is_some_and(|largest| largest >= size - SAME_MM).then_some(zone)
+            let zone = Zone::widest(&between_holes(design, i, size_mm)?)?;
+            fits(design, row, &zone, size_mm).then(|| (row.clone(), zone))
         };
-        let laid: Option<Vec<Zone>> = rows.iter().enumerate().map(laid).collect();
-        Some((size, laid?))
+        let placed: Option<Vec<_>> = rows.iter().enumerate().map(laid).collect();
+        Some(Marks { rows: rows.to_vec(), size_mm, placed: placed? })
     })
+}
+
+/// The ways to part the side and the arrow at holes, in the order in which they are read: the arrow with its `1`, and letter by
+/// letter. (No support of some 300 designs holds the label, too, only when its row is parted.)
+fn parted_rows(side: &str, is_right: bool) -> [Vec<String>; 2] {
+    let arrow = towards_load("", is_right);
+    let letters: Vec<String> = arrow.chars().map(String::from).collect();
+    [vec![arrow], letters].map(|mut read| {
+        read.insert(if is_right { read.len() } else { 0 }, side.to_owned());
+        read
+    })
+}
+
+/// The largest letters in which the pieces fit on one row with holes between them.
+fn on_both_sides_of_holes(design: &Design, read: &[String]) -> Option<Marks> {
+    sizes_mm(design).find_map(|size_mm| {
+        // From outside a support is seen from below, and what lies on the right is read first.
+        let mut zones = between_holes(design, 0, size_mm)?.into_iter().rev();
+        let place = |text: &String| {
+            zones.find(|zone| fits(design, text, zone, size_mm)).map(|zone| (text.clone(), zone))
+        };
+        let placed: Option<Vec<_>> = read.iter().map(place).collect();
+        Some(Marks { rows: vec![read.concat()], size_mm, placed: placed? })
+    })
+}
+
+/// The stretches between holes of a row, counted from outside; rows share the wall between them. `None` where the row lies
+/// beyond the plate.
+fn between_holes(design: &Design, row: usize, size_mm: f64) -> Option<Vec<Zone>> {
+    let pitch = size_mm + design.configuration().label.stroke_mm + EDGE_MM;
+    let top = design.slot().inner_edge_mm() - row as f64 * pitch;
+    let bottom = top - pitch - EDGE_MM;
+    (bottom > design.inner_radius_mm())
+        .then(|| Zone::between_holes(design, design.fastener_along_mm(), bottom, top))
+}
+
+fn fits(design: &Design, text: &str, zone: &Zone, size_mm: f64) -> bool {
+    largest_mm(design, text, zone).is_some_and(|largest| largest >= size_mm - SAME_MM)
 }
 
 #[cfg(test)]
@@ -90,28 +153,36 @@ mod tests {
     use super::*;
     use crate::config::{Configuration, assign};
 
-    fn rows(assignments: &[&str], is_right: bool) -> Option<Vec<String>> {
+    fn rows(assignments: &[&str], is_right: bool) -> Vec<String> {
         let mut c = Configuration::default();
         assignments.iter().for_each(|a| assign(&mut c, a).unwrap());
-        let design = Design::new(c).unwrap();
-        let side = if is_right { "R" } else { "L" };
-        let (label, sets) = (design.label(), row_sets(side, &design.label(), is_right));
-        Some(chosen_rows(&design, &sets, &label)?.0.clone())
+        marks(&Design::new(c).unwrap(), is_right).map(|m| m.rows).unwrap_or_default()
     }
 
     #[test]
     fn both_supports_say_side_layout_groove_and_load() {
         let pins = &["layout.pins=[5, 8, 11]"][..];
-        assert_eq!(rows(pins, false).unwrap(), ["3x3/5", "L>1"]);
-        assert_eq!(rows(pins, true).unwrap(), ["3x3/5", "1<R"]);
+        assert_eq!(rows(pins, false), ["3x3/5", "L>1"]);
+        assert_eq!(rows(pins, true), ["3x3/5", "1<R"]);
         let wide = &["layout.pins=[5, 8, 11]", "shell.outer_radius_mm=40", "shell.wall_mm=14"][..];
-        assert_eq!(rows(wide, false).unwrap(), ["L 3x3/5", "LOAD>1"]);
+        assert_eq!(rows(wide, false), ["L 3x3/5", "LOAD>1"]);
     }
 
     #[test]
-    fn small_supports_keep_the_side_and_the_load_before_the_layout() {
-        let small =
-            rows(&["shell.wall_mm=3.5", "fasteners.hole_diameter_mm=1.8", "shell.width_mm=7.5"], false);
-        assert!(small.is_none_or(|rows| rows[0].starts_with('L')));
+    fn small_supports_keep_the_side_and_the_arrow_before_the_layout() {
+        let small = ["shell.wall_mm=3.5", "fasteners.hole_diameter_mm=1.8", "shell.width_mm=7.5"];
+        assert_eq!(rows(&small, false), ["L F>1"]);
+        // Between wide recesses there is room for two letters at most.
+        let crowded = [
+            "fasteners.hole_diameter_mm=1.8",
+            "fasteners.count=5",
+            "shell.width_mm=7.5",
+            "shell.wall_mm=9",
+            "shell.outer_radius_mm=24",
+        ];
+        for is_right in [false, true] {
+            let rows = rows(&crowded, is_right);
+            assert!(rows.iter().any(|row| has_arrow(row)), "{rows:?}");
+        }
     }
 }

@@ -8,6 +8,7 @@ mod fastening;
 mod guide_pulley;
 mod label;
 mod layer;
+mod left_out;
 mod marks;
 mod mould;
 mod mount;
@@ -28,8 +29,8 @@ use pinswitch_solid::solid::Solid;
 
 pub(crate) use bed::can_be_printed;
 pub use bed::fit_on_bed;
-pub(crate) use label::left_out;
 pub use layer::silicone_layer;
+pub use left_out::LeftOut;
 pub use mould::{cavity_mm3, gang_mm};
 pub(crate) use mould::{keys, one_piece as tray};
 pub use mount::spacer_mm;

@@ -1,6 +1,7 @@
 //! What the switch is mounted by: a plate beside the left support, the spacer of the rig's pulley, and the stop of a
 //! sheath (cad/doc/dimensions.md, "Mounting").
 
+use super::left_out::LeftOut;
 use super::{Part, Pose, Role, fastening, offset_error};
 use crate::config::{ConfigError, Configuration, MountKind};
 use crate::design::{Design, Hole, SheathStop, axle_recess, pulley_width_mm, stop_recess};
@@ -80,13 +81,15 @@ pub(super) fn plate(design: &Design) -> Result<Part, ConfigError> {
     let pose = Pose::upright(face_mm(design) - thickness);
     let kind = c.mount.kind;
     let mut part = Part::new(name(kind), Role::Mount, solid, Some(pose));
-    if recess.is_none() && c.fasteners.count > 0 && c.fasteners.head_recess_mm > 0.0 {
-        part.notes.push(format!(
-            "counterbores for the heads do not fit and are left out: raise mount.plate_mm to {}",
-            design.seated_mm(c.fasteners.head_recess_mm)
-        ));
-    }
+    part.left_out = left_out(design);
     Ok(part)
+}
+
+/// What finds no room on the mounting plate.
+pub(super) fn left_out(design: &Design) -> Vec<LeftOut> {
+    let f = &design.configuration().fasteners;
+    let is_lost = f.count > 0 && f.head_recess_mm > 0.0 && design.fastening().mount_counterbore.is_none();
+    is_lost.then_some(LeftOut::PlateCounterbores).into_iter().collect()
 }
 
 /// Length of the spacer between plate and bearing, mm: the pulley's groove lies where the tendon runs.

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::LeftOut;
 use crate::design::Design;
 use pinswitch_solid::mesh::{Mesh, Vector3};
 use pinswitch_solid::pose::Pose;
@@ -100,8 +101,8 @@ pub struct Part {
     pub pose: Option<Pose>,
     /// Where it sits among the tools that are put together with it: the parts of a split mould.
     pub tool_pose: Option<Pose>,
-    /// Notes on it for the user.
-    pub notes: Vec<String>,
+    /// What was asked for and found no room on it.
+    pub left_out: Vec<LeftOut>,
     /// What is engraved in it, line by line.
     pub engraved: Vec<String>,
     /// The solid as a workshop draws it, where that is not as it lies in the set: about its own axis, or with its sides
@@ -117,7 +118,7 @@ impl Part {
             solid,
             pose,
             tool_pose: None,
-            notes: Vec::new(),
+            left_out: Vec::new(),
             engraved: Vec::new(),
             drawn: None,
         }

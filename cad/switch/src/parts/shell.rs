@@ -1,6 +1,7 @@
 //! The rigid shell: a grooved sector of an annulus with fastener holes (cad/doc/dimensions.md, "Shell").
 
-use super::label::{EDGE_MM, Zone, engrave};
+use super::label::{EDGE_MM, Zone, engrave, is_left_out};
+use super::left_out::LeftOut;
 use super::sector::Stops;
 use super::{Part, Pose, Role, Sector, fastening, offset_error};
 use crate::config::ConfigError;
@@ -79,14 +80,21 @@ pub(super) fn shell(design: &Design) -> Result<Part, ConfigError> {
     tops.extend(engraved.rings);
     solid.cap(Facing::Up, top, &tops);
     let mut part = Part::new("shell", Role::Shell, solid, Some(Pose::upright(0.0)));
-    part.notes.extend(engraved.note);
+    part.left_out = engraved.left_out;
     part.engraved = engraved.lines;
-    if c.shell.stop_mm > 0.0 && design.stops_mm().is_none() {
-        part.notes.push(
-            "the stops do not fit and are left out: raise shell.stop_mm or silicone.thickness_mm".to_owned(),
-        );
-    }
+    part.left_out.extend(has_lost_stops(design).then_some(LeftOut::Stops));
     Ok(part)
+}
+
+/// What finds no room on the shell.
+pub(super) fn left_out(design: &Design) -> Vec<LeftOut> {
+    let label = is_left_out(design, &label_zones(design), design.configuration().shell.width_mm);
+    let lost = [(label, LeftOut::Label), (has_lost_stops(design), LeftOut::Stops)];
+    lost.into_iter().filter_map(|(is_lost, what)| is_lost.then_some(what)).collect()
+}
+
+fn has_lost_stops(design: &Design) -> bool {
+    design.configuration().shell.stop_mm > 0.0 && design.stops_mm().is_none()
 }
 
 #[cfg(test)]
@@ -116,7 +124,7 @@ mod tests {
         assert!(laid(&two).is_some_and(|pieces| pieces.len() > 1));
         let part = shell(&design).unwrap();
         assert_eq!(part.engraved, ["3x3/5"]);
-        assert_eq!(part.notes, Vec::<String>::new());
+        assert_eq!(part.left_out, []);
         let thin = part.thin_places(&design);
         assert!(thin.iter().all(|place| place.to_mm - place.from_mm > 2.0), "{thin:?}");
         Built::new(design).unwrap();

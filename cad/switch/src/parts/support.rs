@@ -1,7 +1,8 @@
 //! The side supports: plates with radial slots, a lip over the silicone's edge and the shell's holes
 //! (cad/doc/dimensions.md, "Side supports").
 
-use super::marks::engrave_marks;
+use super::left_out::LeftOut;
+use super::marks::{self, engrave_marks};
 use super::shell::wall_sector;
 use super::{Part, Pose, Role, fastening, offset_error};
 use crate::config::{ConfigError, FastenerKind, MountKind, SlotKind};
@@ -20,7 +21,7 @@ const LIP_SAME_MM: f64 = 1e-6;
 
 /// Which side of the switch a support is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Side {
+pub(super) enum Side {
     /// At z = 0; printed as it stands.
     Left,
     /// At the other end: printed turned half round, so its plan is mirrored.
@@ -67,9 +68,7 @@ fn support(design: &Design, side: Side) -> Result<Part, ConfigError> {
     let dowel_floor = plate - design.dowel_depth_mm();
     tops.extend(blind.iter().map(|slot| solid.pocket(slot, &[], floor, plate)));
     tops.extend(dowels.iter().map(|hole| solid.pocket(hole, &[], dowel_floor, plate)));
-    let lip = lip(design);
-    let lost_lip = lip.is_none() && c.support.lip_depth_mm > 0.0;
-    if let Some(band) = lip {
+    if let Some(band) = lip(design) {
         tops.push(solid.boss(&turned(band), plate, plate + c.support.lip_depth_mm));
     }
     solid.cap(Facing::Up, top, &tops);
@@ -78,9 +77,9 @@ fn support(design: &Design, side: Side) -> Result<Part, ConfigError> {
         Side::Right => ("support-right", 1.0, Pose { flipped: true, z_mm: c.shell.width_mm + plate }),
     };
     let mut part = Part::new(name, Role::Support { outwards_z }, solid, Some(pose));
-    part.notes.extend(marks.note);
+    part.left_out = marks.left_out;
     part.engraved = marks.lines;
-    part.notes.extend(notes(design, side, lost_lip));
+    part.left_out.extend(lost_hardware(design, side));
     Ok(part)
 }
 
@@ -95,30 +94,28 @@ fn recess(design: &Design, side: Side) -> Option<Recess> {
     }
 }
 
-/// What was left out, and what does not hold.
-fn notes(design: &Design, side: Side, lost_lip: bool) -> Vec<String> {
+/// What finds no room on a support.
+pub(super) fn left_out(design: &Design, side: Side) -> Vec<LeftOut> {
+    let mut lost = marks::left_out(design, side == Side::Right);
+    lost.extend(lost_hardware(design, side));
+    lost
+}
+
+/// The lip and the recesses that were asked for and are not there.
+fn lost_hardware(design: &Design, side: Side) -> Vec<LeftOut> {
     let c = design.configuration();
     let has_heads = match side {
         Side::Left => c.mount.kind == MountKind::None,
         Side::Right => c.fasteners.kind == FastenerKind::Insert,
     };
-    let lost = |is_lost: bool, note: &str| is_lost.then(|| note.to_owned());
+    let lost_lip = c.support.lip_depth_mm > 0.0 && lip(design).is_none();
     [
-        lost(
-            lost_lip,
-            "the lip does not fit under the edge of the plate and is left out: raise support.rise_mm",
-        ),
-        design
-            .nut_trap_remedy()
-            .filter(|_| side == Side::Right)
-            .map(|remedy| format!("nut traps do not fit and are left out: {remedy}")),
-        design
-            .counterbore_remedy()
-            .filter(|_| has_heads)
-            .map(|remedy| format!("counterbores for the heads do not fit and are left out: {remedy}")),
+        (lost_lip, LeftOut::Lip),
+        (side == Side::Right && design.nut_trap_remedy().is_some(), LeftOut::NutTraps),
+        (has_heads && design.counterbore_remedy().is_some(), LeftOut::Counterbores),
     ]
     .into_iter()
-    .flatten()
+    .filter_map(|(is_lost, what)| is_lost.then_some(what))
     .collect()
 }
 

@@ -7,7 +7,7 @@ use super::{Material, Part, Role, printed_part};
 use crate::config::{Configuration, assign};
 use crate::design::Design;
 use crate::design::rules::Change::{self, Ease, Lower, Raise};
-use crate::design::rules::{Effort, ways_out};
+use crate::design::rules::{Effort, way_out, ways_out};
 
 /// Walls of exactly two lines are not thin for the rounding of their distance.
 const THIN_ROUNDING_MM: f64 = 1e-6;
@@ -15,15 +15,6 @@ const THIN_ROUNDING_MM: f64 = 1e-6;
 const ALIKE_MM: f64 = 1e-3;
 /// Changes that are named together where no single one will do.
 const TOGETHER: usize = 3;
-
-/// Whether a value is within a factor of two of the present one.
-fn is_moderate(c: &Configuration, field: &str, value: &str) -> bool {
-    let now = c.shown(field).and_then(|shown| shown.parse::<f64>().ok());
-    match (now, value.parse::<f64>()) {
-        (Some(now), Ok(value)) => now == 0.0 || (0.5..=2.0).contains(&(value / now)),
-        _ => true,
-    }
-}
 
 impl Part {
     /// Places with less than two printed lines of material, the thinnest first; of what is printed.
@@ -75,21 +66,12 @@ impl Part {
         let is_mended = |c: &Configuration| places(c).is_some_and(|places| places.is_empty());
         // The first that does: each part is made many times for it. A layer three times as thick would mend the end walls of
         // its copy, and be another switch: it is named where nothing else helps.
-        let mut large = None;
-        for change in self.thickening() {
-            let c = design.configuration();
-            let (words, set) = ways_out("", c, std::slice::from_ref(change), &is_mended, Effort::QUICK);
-            match set.first() {
-                Some((field, value)) if is_moderate(c, field, value) => return words,
-                Some(_) => large = large.or(Some(words)),
-                None => {}
-            }
-        }
-        if let Some(words) = large {
+        let c = design.configuration();
+        if let Some(words) = way_out(c, self.thickening(), &is_mended, Effort::QUICK) {
             return words;
         }
         // The thinnest places first, then those that are left.
-        let (mut c, mut left_mm, mut steps) = (design.configuration().clone(), thinnest_mm, Vec::new());
+        let (mut c, mut left_mm, mut steps) = (c.clone(), thinnest_mm, Vec::new());
         while steps.len() < TOGETHER {
             let is_thicker = |c: &Configuration| {
                 places(c).is_some_and(|p| p.first().is_none_or(|p| p.thickness_mm > left_mm + ALIKE_MM))

@@ -15,7 +15,7 @@ use super::Dimensions;
 use crate::config::{ConfigError, Configuration};
 
 pub use remedy::{Change, Remedy};
-pub(crate) use remedy::{Effort, ways_out};
+pub(crate) use remedy::{Effort, way_out, ways_out};
 
 /// What chamfers on both sides leave of a wall on the bed.
 const MIN_FOOT_MM: f64 = 0.05;

@@ -266,7 +266,7 @@ pub(super) fn notes(design: &Design, part: &Part, features: &Features, has_lette
         notes.push("R without a centre mark: about the pulley's axis".to_owned());
         notes.push("Angles from the middle plane, + to the right".to_owned());
     }
-    notes.extend(part.notes.iter().cloned());
+    notes.extend(part.notes(design));
     notes
 }
 

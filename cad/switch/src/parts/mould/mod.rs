@@ -14,7 +14,7 @@ use pinswitch_solid::profile::Contour;
 pub(super) use lid::lid;
 pub use one_piece::gang_mm;
 pub(super) use one_piece::one_piece;
-pub(super) use split::{core, ring};
+pub(super) use split::{core, core_has_lost_label, ring};
 
 /// Volume in mm³ of the mould's cavity, which is the layer (or as many as a gang casts), and of what lies above it: the basin of the one-piece mould,
 /// or the split mould's funnel and vents.

@@ -1,6 +1,6 @@
 //! The split mould's core (base and inner wall) and ring (ribbed outer wall and end walls).
 
-use super::super::label::{Zone, engrave};
+use super::super::label::{Zone, engrave, is_left_out};
 use super::super::sector::{End, grooved_face};
 use super::super::{Part, Pose, Role, Sector, offset_error};
 use super::{Cavity, keys};
@@ -59,19 +59,30 @@ pub(in crate::parts) fn core(design: &Design) -> Result<Part, ConfigError> {
     let (foot, head) = solid.extrude(&core_sector(design, &cavity).outline(), floor, top);
     standing.push(foot);
     solid.cap(Facing::Up, deck, &standing);
-    let zone = Zone::Arc {
-        inner_mm: core_inner_mm(design, &cavity),
-        outer_mm: cavity.sector.inner_mm,
-        from_rad: -design.half_span_rad(),
-        to_rad: design.half_span_rad(),
-    };
-    let engraved = engrave(&mut solid, design, &[vec![zone]], top);
+    let engraved = engrave(&mut solid, design, &[vec![label_zone(design, &cavity)]], top);
     solid.cap(Facing::Up, head, &engraved.rings);
     let mut part = Part::new("mould-core", Role::Mould, solid, None);
     part.tool_pose = Some(Pose::upright(0.0));
-    part.notes.extend(engraved.note);
+    part.left_out = engraved.left_out;
     part.engraved = engraved.lines;
     Ok(part)
+}
+
+/// Where the label goes on the core.
+fn label_zone(design: &Design, cavity: &Cavity) -> Zone {
+    Zone::Arc {
+        inner_mm: core_inner_mm(design, cavity),
+        outer_mm: cavity.sector.inner_mm,
+        from_rad: -design.half_span_rad(),
+        to_rad: design.half_span_rad(),
+    }
+}
+
+/// Whether the label finds no room on the core.
+pub(in crate::parts) fn core_has_lost_label(design: &Design) -> bool {
+    let cavity = Cavity::of(design);
+    let top = design.configuration().mould.floor_mm + cavity.depth_mm;
+    is_left_out(design, &[vec![label_zone(design, &cavity)]], top)
 }
 
 pub(in crate::parts) fn ring(design: &Design) -> Result<Part, ConfigError> {

@@ -1,0 +1,234 @@
+//! What a configuration asks for and finds no room on a part: the set is made without it, and a warning names a value that
+//! was tried and makes room.
+
+use super::mould::core_has_lost_label;
+use super::{Part, has_split_mould, mount, shell, support};
+use crate::config::{Configuration, MountKind};
+use crate::design::Design;
+use crate::design::rules::Change::{self, Ease, Lower, Raise, Set};
+use crate::design::rules::{Effort, way_out};
+
+/// What can be left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeftOut {
+    /// The engraved label.
+    Label,
+    /// `L` or `R` on a support.
+    Side,
+    /// The arrow to groove 1 on a support, and its `1`.
+    Arrow,
+    /// The lip over the silicone's edge.
+    Lip,
+    /// The stops at the layer's ends.
+    Stops,
+    /// Traps for the nuts in the right support.
+    NutTraps,
+    /// Counterbores for the heads in a support.
+    Counterbores,
+    /// The same in the mounting plate.
+    PlateCounterbores,
+}
+
+/// Where no single value makes room.
+const NO_WAY: &str = "no single value makes room";
+/// What makes room in the wall between fasteners and faces.
+const ROOM_FOR_RECESSES: &[Change] = &[
+    Raise("support.plate_mm"),
+    Raise("shell.wall_mm"),
+    Raise("fasteners.end_distance_mm"),
+    Lower("fasteners.count"),
+    Ease("fasteners.hole_diameter_mm"),
+    Lower("fasteners.nut_recess_mm"),
+    Lower("fasteners.head_recess_mm"),
+];
+/// What makes room for letters.
+const ROOM_FOR_LETTERS: &[Change] = &[
+    Raise("shell.wall_mm"),
+    Lower("fasteners.count"),
+    Ease("label.depth_mm"),
+    Raise("support.plate_mm"),
+    Ease("label.stroke_mm"),
+    Ease("print.least_wall_mm"),
+    Ease("fasteners.head_recess_mm"),
+    Ease("fasteners.nut_recess_mm"),
+    Ease("fasteners.hole_diameter_mm"),
+    Raise("shell.outer_radius_mm"),
+    Set("label.text", "\"\""),
+];
+
+impl LeftOut {
+    fn words(self, design: &Design, part: &str) -> String {
+        match self {
+            Self::Label => format!("the label {:?} does not fit and is left out", design.label()),
+            Self::Side => {
+                let side = if part.ends_with("left") { "L" } else { "R" };
+                format!("the mark {side:?} does not fit and is left out")
+            }
+            Self::Arrow => "the arrow to groove 1 does not fit and is left out".to_owned(),
+            Self::Lip => "the lip does not fit under the edge of the plate and is left out".to_owned(),
+            Self::Stops => "the stops do not fit and are left out".to_owned(),
+            Self::NutTraps => "nut traps do not fit and are left out".to_owned(),
+            Self::Counterbores | Self::PlateCounterbores => {
+                "counterbores for the heads do not fit and are left out".to_owned()
+            }
+        }
+    }
+
+    const fn room(self) -> &'static [Change] {
+        match self {
+            Self::Label | Self::Side | Self::Arrow => ROOM_FOR_LETTERS,
+            Self::Lip => &[
+                Raise("support.rise_mm"),
+                Ease("support.lip_height_mm"),
+                Ease("support.corner_radius_mm"),
+                Ease("print.elephant_foot_mm"),
+                Ease("support.lip_clearance_mm"),
+            ],
+            Self::Stops => &[
+                Raise("shell.stop_mm"),
+                Raise("silicone.thickness_mm"),
+                Raise("shell.stop_height_mm"),
+                Ease("print.elephant_foot_mm"),
+                Ease("print.least_wall_mm"),
+            ],
+            Self::NutTraps | Self::Counterbores => ROOM_FOR_RECESSES,
+            Self::PlateCounterbores => {
+                &[Raise("mount.plate_mm"), Lower("fasteners.count"), Lower("fasteners.head_recess_mm")]
+            }
+        }
+    }
+}
+
+impl Part {
+    /// What of it was left out, each with a value that makes room for it.
+    pub fn notes(&self, design: &Design) -> Vec<String> {
+        let note = |what: &LeftOut| {
+            let remedy = remedy(&self.name, *what, design);
+            let remedy = remedy.unwrap_or_else(|| NO_WAY.to_owned());
+            format!("{}: {remedy}", what.words(design, &self.name))
+        };
+        self.left_out.iter().map(note).collect()
+    }
+}
+
+/// All that a design leaves out, with the part that lacks it. The parts themselves are not made.
+fn of_set(design: &Design) -> Vec<(&'static str, LeftOut)> {
+    let c = design.configuration();
+    let on = |part: &'static str, lost: Vec<LeftOut>| lost.into_iter().map(move |what| (part, what));
+    let core = (has_split_mould(c) && core_has_lost_label(design)).then_some(LeftOut::Label);
+    let plate = if c.mount.kind == MountKind::None { Vec::new() } else { mount::left_out(design) };
+    on("shell", shell::left_out(design))
+        .chain(on("mould-core", core.into_iter().collect()))
+        .chain(on("support-left", support::left_out(design, support::Side::Left)))
+        .chain(on("support-right", support::left_out(design, support::Side::Right)))
+        .chain(on("plate", plate))
+        .collect()
+}
+
+/// What makes room for `what` on a part, and takes it from nothing else.
+fn remedy(part: &str, what: LeftOut, design: &Design) -> Option<String> {
+    let before = of_set(design);
+    let is_wanted = |(on, lost): &(&str, LeftOut)| *lost != what || (*on != part && *on != "plate");
+    let fits = |c: &Configuration| {
+        Design::new(c.clone()).is_ok_and(|changed| {
+            let after = of_set(&changed);
+            after.iter().all(|lost| before.contains(lost) && is_wanted(lost))
+        })
+    };
+    way_out(design.configuration(), what.room(), &fits, Effort::QUICK)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::assign;
+    use crate::parts::printed;
+
+    fn design(assignments: &[String]) -> Design {
+        let mut c = Configuration::default();
+        assignments.iter().for_each(|a| assign(&mut c, a).unwrap());
+        Design::new(c).unwrap()
+    }
+
+    fn notes(design: &Design) -> Vec<String> {
+        printed(design).unwrap().iter().flat_map(|part| part.notes(design)).collect()
+    }
+
+    const CASES: [&[&str]; 14] = [
+        &["shell.stop_mm=0.2"],
+        &["shell.wall_mm=5.5"],
+        &["fasteners.nut_recess_mm=2.4"],
+        &["fasteners.head_recess_mm=3"],
+        &["fasteners.head_recess_mm=1.7"],
+        &["fasteners.kind=insert", "fasteners.head_recess_mm=2"],
+        &["mount.kind=finger-link", "fasteners.head_recess_mm=6.5"],
+        &["fasteners.count=5"],
+        &["support.rise_mm=0.6"],
+        &["fasteners.hole_diameter_mm=4.5", "shell.wall_mm=9"],
+        &["label.depth_mm=2", "support.plate_mm=2.2"],
+        &["label.text=ABCDEFGHIJKL", "label.height_mm=5"],
+        &["shell.wall_mm=3.5", "fasteners.hole_diameter_mm=1.8", "shell.width_mm=7.5", "label.stroke_mm=0.9"],
+        &[
+            "fasteners.count=6",
+            "fasteners.hole_diameter_mm=1.8",
+            "shell.width_mm=7.5",
+            "layout.pins=[1, 2, 4]",
+        ],
+    ];
+
+    /// Every value that a note names, taken, brings back what the note is about, and no other note with it.
+    #[test]
+    fn a_note_about_what_was_left_out_mends_it() {
+        let mut told = 0;
+        for case in CASES {
+            let mut set: Vec<String> = case.iter().map(|a| (*a).to_owned()).collect();
+            let mut before = notes(&design(&set));
+            while let Some(note) = before.first().cloned() {
+                let remedy = note.split("left out: ").nth(1).unwrap();
+                let words: Vec<&str> = remedy.split(' ').collect();
+                match words[..] {
+                    ["raise" | "lower", field, "to", value] | ["set", field, "=", value] => {
+                        set.push(format!("{field}={value}"))
+                    }
+                    _ if remedy == NO_WAY => break,
+                    _ => panic!("{case:?}: {note}"),
+                }
+                let after = notes(&design(&set));
+                let about = |notes: &[String]| -> Vec<String> {
+                    notes.iter().filter_map(|n| n.split(" left out").next().map(str::to_owned)).collect()
+                };
+                let is_told_before = |what: &String| about(&before).contains(what);
+                assert!(
+                    after.len() < before.len() && about(&after).iter().all(is_told_before),
+                    "{set:?}: {before:?} -> {after:?}"
+                );
+                before = after;
+                told += 1;
+            }
+        }
+        assert!(told >= 12, "{told}");
+        // What fits to a hair is not lost to rounding.
+        assert_eq!(notes(&design(&["fasteners.head_recess_mm=1.6".to_owned()])), Vec::<String>::new());
+    }
+
+    /// What is told of a set without its parts is what the parts say.
+    #[test]
+    fn the_set_and_its_parts_lack_the_same() {
+        let mut lost = 0;
+        for case in CASES
+            .into_iter()
+            .chain([&[][..], &["mould.kind=split", "label.text=ABCDEFGHIJKL", "label.height_mm=5"]])
+        {
+            let design = design(&case.iter().map(|a| (*a).to_owned()).collect::<Vec<_>>());
+            let parts = printed(&design).unwrap();
+            let of_parts: Vec<LeftOut> = parts.iter().flat_map(|part| part.left_out.clone()).collect();
+            assert_eq!(
+                of_set(&design).into_iter().map(|(_, what)| what).collect::<Vec<_>>(),
+                of_parts,
+                "{case:?}"
+            );
+            lost += of_parts.len();
+        }
+        assert!(lost > CASES.len(), "{lost}");
+    }
+}

@@ -175,7 +175,14 @@ fn the_3mf_of_a_set_makes_the_set_again() {
         let (before, after) = (files(&folder.path().join(name)), files(&folder.path().join(&again)));
         assert!(before.keys().eq(after.keys()));
         for (file, bytes) in &before {
-            // The manifest names the file that a set was made from; a template is still the template.
+            assert!(after[file] == *bytes, "{name}/{file}");
+        }
+        // Away from its set nothing tells what it was made from: a template is still the template, and else it is the 3MF.
+        std::fs::copy(folder.path().join(&package), folder.path().join("sent.3mf")).unwrap();
+        let by_itself = format!("{name}-by-itself");
+        done(folder.path(), &["-q", "generate", "sent.3mf", "--out", &by_itself]);
+        let after = files(&folder.path().join(by_itself));
+        for (file, bytes) in &before {
             assert!(after[file] == *bytes || (file == "manifest.json" && name == "second"), "{name}/{file}");
         }
     }

@@ -5,6 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use clap::Args;
 
 use super::Failure;
+use crate::write::source_of_set_with;
 use pinswitch_friction::excerpt;
 use pinswitch_solid::files::read_three_mf;
 use pinswitch_switch::config::{
@@ -95,7 +96,9 @@ impl Source {
         let design = self.design_of_text(&text, &file)?;
         let origin = match kind {
             Kind::Text => Origin::of(&file, &text),
-            Kind::Package => Origin::of_package(&file, design.configuration()),
+            Kind::Package(set_s) => set_s
+                .and_then(|source| Origin::from_set(source, &file))
+                .unwrap_or_else(|| Origin::of_package(&file, design.configuration())),
         };
         Ok((design, origin))
     }
@@ -126,12 +129,12 @@ pub(super) fn read_text(name: &str) -> Result<(String, String), Failure> {
 }
 
 /// What a configuration is read from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 enum Kind {
     /// A TOML file, or a template.
     Text,
-    /// A 3MF with a configuration in it.
-    Package,
+    /// A 3MF with a configuration in it, and what the set beside it says that it was made from.
+    Package(Option<SourceEntry>),
 }
 
 fn read_configuration_text(name: &str) -> Result<(String, String, Kind), Failure> {
@@ -159,7 +162,8 @@ fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Fail
         return text(bytes, file).map(|text| (text, Kind::Text)).map_err(Failure::bad_input);
     }
     let package = read_three_mf(&bytes).map_err(|e| Failure::bad_input(format!("{file}: {e}")))?;
-    package.configuration.map(|text| (text, Kind::Package)).ok_or_else(|| {
+    let set_s = source_of_set_with(Path::new(file), &bytes);
+    package.configuration.map(|text| (text, Kind::Package(set_s))).ok_or_else(|| {
         Failure::bad_input(format!(
             "{file}: holds no configuration; give a TOML file, or an assembly.3mf that pinswitch wrote"
         ))
@@ -176,7 +180,17 @@ pub(super) enum Origin {
 }
 
 impl Origin {
-    /// Of a 3MF: a template that makes the same set made it, and otherwise the file stands for what did.
+    /// Of a 3MF in the folder of its set, whose manifest says what made both; `None` where that is no longer there.
+    fn from_set(source: SourceEntry, package: &str) -> Option<Self> {
+        if templates::names().contains(&source.name.as_str()) {
+            return Some(Self::Template(source.name));
+        }
+        let folder = Path::new(package).canonicalize().ok()?;
+        let file = folder.parent()?.join(source.name);
+        file.is_file().then_some(Self::File(file))
+    }
+
+    /// Of a 3MF by itself: a template that makes the same set made it, and otherwise the file stands for what did.
     fn of_package(file: &str, configuration: &Configuration) -> Self {
         let name = configuration.switch.name.to_string();
         let template = templates::text(&name).and_then(|text| read(&text, &name).ok());

@@ -14,6 +14,7 @@ use pinswitch_batch::{is_dead_link, remedy_at, temporary_file};
 use pinswitch_switch::output::OutputFile;
 
 use folder_lock::{FolderLock, Waiting};
+pub(crate) use record::source_of_set_with;
 pub use set_folder::{PublishError, SetFolder};
 
 use crate::Failure;

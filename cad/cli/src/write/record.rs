@@ -86,6 +86,12 @@ impl Record {
     }
 }
 
+/// What the set that `file` lies in was made from, if its manifest lists the file with this content.
+pub(crate) fn source_of_set_with(file: &Path, bytes: &[u8]) -> Option<SourceEntry> {
+    let record = Record::read(file.parent()?).ok()?;
+    record.wrote(file.file_name()?.to_str()?, bytes).then_some(record.source)?
+}
+
 /// Whether `name` is that of a file in its own folder, and no path.
 pub(super) fn is_plain(name: &str) -> bool {
     let mut parts = Path::new(name).components();

@@ -38,9 +38,9 @@ pub struct Pins {
 pub struct Silicone {
     /// Layers that the mould casts at once.
     pub layers: usize,
-    /// Volume of the cast layers, mm³ before shrinkage.
+    /// Volume of one of them, mm³ before shrinkage.
     pub layer_mm3: f64,
-    /// What to pour into the mould, ml: layer and overfill.
+    /// What to pour into the mould, ml: all layers and their overfill.
     pub pour_ml: f64,
     /// Mass of that, g.
     pub pour_g: f64,
@@ -135,16 +135,18 @@ pub struct Bill {
 /// What `design` needs beside its printed parts.
 pub fn bill_of_materials(design: &Design) -> Bill {
     let c = design.configuration();
-    let (layer_mm3, overfill_mm3) = cavity_mm3(design);
+    let (layers_mm3, overfill_mm3) = cavity_mm3(design);
+    // A split mould casts one.
+    let layers = if c.mould.kind == MouldKind::OnePiece { c.mould.layers } else { 1 };
     let silicone =
         (c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None).then(|| {
-            let pour_ml = (layer_mm3 + overfill_mm3) / 1000.0;
+            let pour_ml = (layers_mm3 + overfill_mm3) / 1000.0;
             let pour_g = pour_ml * c.silicone.density_g_cm3;
             let mix_g = (pour_g * c.silicone.waste_factor).max(c.silicone.least_mix_g);
             let agent_g = mix_g / (c.silicone.mix_ratio + 1.0);
             Silicone {
-                layers: c.mould.layers,
-                layer_mm3,
+                layers,
+                layer_mm3: layers_mm3 / layers as f64,
                 pour_ml,
                 pour_g,
                 mix_g,
@@ -235,6 +237,19 @@ mod tests {
         let screws = bill.fasteners.unwrap();
         assert_eq!((screws.thread, screws.length_mm, screws.number), ("M3", 25.0, 2));
         assert_eq!((bill.pins.length_mm, bill.pins.spares), (18.0, 0));
+    }
+
+    #[test]
+    fn a_gang_is_poured_at_once_and_each_layer_is_as_large_as_one_alone() {
+        let silicone = |layers: usize| {
+            let mut c = Configuration::default();
+            (c.mould.kind, c.mould.layers) = (MouldKind::OnePiece, layers);
+            bill_of_materials(&Design::new(c).unwrap()).silicone.unwrap()
+        };
+        let (one, four) = (silicone(1), silicone(4));
+        assert_eq!((one.layers, four.layers), (1, 4));
+        assert!((four.layer_mm3 / one.layer_mm3 - 1.0).abs() < 1e-12);
+        assert!(four.pour_ml > 3.0 * one.pour_ml && four.pour_ml * 1000.0 > 4.0 * four.layer_mm3);
     }
 
     #[test]

@@ -48,11 +48,9 @@ const ROOM_FOR_LETTERS: &[Change] = &[
     Ease("label.depth_mm"),
     Raise("support.plate_mm"),
     Ease("label.stroke_mm"),
-    Ease("print.least_wall_mm"),
     Ease("fasteners.head_recess_mm"),
     Ease("fasteners.nut_recess_mm"),
     Ease("fasteners.hole_diameter_mm"),
-    Raise("shell.outer_radius_mm"),
     Set("label.text", "\"\""),
 ];
 
@@ -89,7 +87,6 @@ impl LeftOut {
                 Raise("silicone.thickness_mm"),
                 Raise("shell.stop_height_mm"),
                 Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
             ],
             Self::NutTraps | Self::Counterbores => ROOM_FOR_RECESSES,
             Self::PlateCounterbores => {
@@ -135,7 +132,21 @@ fn remedy(part: &str, what: LeftOut, design: &Design) -> Option<String> {
             after.iter().all(|lost| before.contains(lost) && is_wanted(lost))
         })
     };
-    way_out(design.configuration(), what.room(), &fits, Effort::QUICK)
+    let c = design.configuration();
+    way_out(c, what.room(), &fits, Effort::QUICK).or_else(|| {
+        let letters = if what == LeftOut::Label { design.label().chars().count() } else { 0 };
+        let fitting = (1..letters).rev().find(|letters| {
+            let mut shorter = c.clone();
+            shorter.label.text = "M".repeat(*letters);
+            fits(&shorter)
+        })?;
+        Some(format!("set label.text to {} of your own", counted(fitting)))
+    })
+}
+
+/// At most so many letters.
+fn counted(letters: usize) -> String {
+    if letters == 1 { "one letter".to_owned() } else { format!("at most {letters} letters") }
 }
 
 #[cfg(test)]
@@ -154,7 +165,9 @@ mod tests {
         printed(design).unwrap().iter().flat_map(|part| part.notes(design)).collect()
     }
 
-    const CASES: [&[&str]; 14] = [
+    const CASES: [&[&str]; 16] = [
+        &["layout.pins=[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]"],
+        &["layout.pins=[5, 8, 11]", "print.line_mm=0.5", "print.least_wall_mm=0.5", "label.stroke_mm=0.5"],
         &["shell.stop_mm=0.2"],
         &["shell.wall_mm=5.5"],
         &["fasteners.nut_recess_mm=2.4"],
@@ -186,12 +199,20 @@ mod tests {
             while let Some(note) = before.first().cloned() {
                 let remedy = note.split("left out: ").nth(1).unwrap();
                 let words: Vec<&str> = remedy.split(' ').collect();
-                match words[..] {
-                    ["raise" | "lower", field, "to", value] | ["set", field, "=", value] => {
-                        set.push(format!("{field}={value}"))
+                let of_text =
+                    remedy.strip_prefix("set label.text to ").map(|said| said.replace("one", "most 1"));
+                if let Some(letters) =
+                    of_text.and_then(|said| said.split("most ").nth(1)?.split(' ').next()?.parse().ok())
+                {
+                    set.push(format!("label.text={}", "Q".repeat(letters)));
+                } else {
+                    match words[..] {
+                        ["raise" | "lower", field, "to", value] | ["set", field, "=", value] => {
+                            set.push(format!("{field}={value}"))
+                        }
+                        _ if remedy == NO_WAY => break,
+                        _ => panic!("{case:?}: {note}"),
                     }
-                    _ if remedy == NO_WAY => break,
-                    _ => panic!("{case:?}: {note}"),
                 }
                 let after = notes(&design(&set));
                 let about = |notes: &[String]| -> Vec<String> {

@@ -133,7 +133,10 @@ fn remedy(part: &str, what: LeftOut, design: &Design) -> Option<String> {
         })
     };
     let c = design.configuration();
-    way_out(c, what.room(), &fits, Effort::QUICK).or_else(|| {
+    // Nobody takes half of the screws off for a label.
+    let is_of_letters = matches!(what, LeftOut::Label | LeftOut::Side | LeftOut::Arrow);
+    let way = way_out(c, what.room(), &fits, Effort::QUICK).filter(|way| way.is_moderate || !is_of_letters);
+    way.map(|way| way.words).or_else(|| {
         let letters = if what == LeftOut::Label { design.label().chars().count() } else { 0 };
         let fitting = (1..letters).rev().find(|letters| {
             let mut shorter = c.clone();

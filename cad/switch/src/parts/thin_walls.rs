@@ -67,8 +67,8 @@ impl Part {
         // The first that does: each part is made many times for it. A layer three times as thick would mend the end walls of
         // its copy, and be another switch: it is named where nothing else helps.
         let c = design.configuration();
-        if let Some(words) = way_out(c, self.thickening(), &is_mended, Effort::QUICK) {
-            return words;
+        if let Some(way) = way_out(c, self.thickening(), &is_mended, Effort::QUICK) {
+            return way.words;
         }
         // The thinnest places first, then those that are left.
         let (mut c, mut left_mm, mut steps) = (c.clone(), thinnest_mm, Vec::new());

@@ -198,20 +198,28 @@ pub(crate) fn ways_out(
     (alternatives(found.iter().map(|t| t.words(field)).collect()), settings)
 }
 
-/// The first of `changes` that `fits`, in words: the first of at most a factor of two, if there is one. `None` where none
-/// does.
+/// A change that helps, in words.
+pub(crate) struct WayOut {
+    pub(crate) words: String,
+    /// Whether the value is within a factor of two of the present one.
+    pub(crate) is_moderate: bool,
+}
+
+/// The first of `changes` that `fits`: the first moderate one, if there is one. `None` where none does.
 pub(crate) fn way_out(
     c: &Configuration,
     changes: &[Change],
     fits: &dyn Fn(&Configuration) -> bool,
     effort: Effort,
-) -> Option<String> {
+) -> Option<WayOut> {
     let mut large = None;
     for change in changes {
         let (words, set) = ways_out("", c, std::slice::from_ref(change), fits, effort);
         match set.first() {
-            Some((field, value)) if is_moderate(c, field, value) => return Some(words),
-            Some(_) => large = large.or(Some(words)),
+            Some((field, value)) if is_moderate(c, field, value) => {
+                return Some(WayOut { words, is_moderate: true });
+            }
+            Some(_) => large = large.or(Some(WayOut { words, is_moderate: false })),
             None => {}
         }
     }

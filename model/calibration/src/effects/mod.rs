@@ -155,6 +155,11 @@ pub trait Effect: Debug + Sync {
         matches!(covariate, Covariate::Repetition | Covariate::Position | Covariate::Time)
     }
 
+    /// Whether it may change the contact, and not the tension or the reading alone.
+    fn acts_on_contact(&self) -> bool {
+        !matches!(self.description().stage, Stage::CellScale | Stage::CellZero | Stage::CellLimit)
+    }
+
     /// Its id.
     fn id(&self) -> &'static str {
         self.description().id

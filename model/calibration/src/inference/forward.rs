@@ -44,6 +44,15 @@ impl Term {
         matches!(covariate, Covariate::Repetition | Covariate::Position | Covariate::Time)
     }
 
+    /// Whether what it does to the contact changes from row to row of a series.
+    fn moves_contact(&self) -> bool {
+        self.moves_along_a_series()
+            && match self {
+                Term::Named(effect) => effect.acts_on_contact(),
+                Term::Structure(structure) => structure.channel != Channel::Reading,
+            }
+    }
+
     /// Bounds of its constants; `None` for sizes.
     fn bounds(&self) -> Vec<Option<(f64, f64)>> {
         match self {
@@ -304,8 +313,8 @@ impl Model {
         self.readings(&values, points, |_| true, &[])
     }
 
-    /// Readings at the points that are `touched`, those of `before` elsewhere. Neighbours that differ in nothing that
-    /// the model reads have one reading: the rows of a series, unless something moves along it.
+    /// Readings at the points that are `touched`, those of `before` elsewhere. The rows of a series are neighbours of one
+    /// setting: what does not move along a series is computed once for all of them.
     fn readings(
         &self,
         values: &[f64],
@@ -313,9 +322,11 @@ impl Model {
         touched: impl Fn(&Point) -> bool,
         before: &[f64],
     ) -> Vec<f64> {
-        let offsets: Vec<usize> = (0..self.terms.len()).map(|i| self.term_offset(i)).collect();
+        let terms = self.acting(values, false);
         let moves = self.terms.iter().any(Term::moves_along_a_series);
-        let mut last: Option<(Point, f64)> = None;
+        let still = terms.iter().take_while(|(term, _)| !term.moves_contact()).count();
+        let contact_moves = terms.iter().any(|(term, _)| term.moves_contact());
+        let mut last: Option<Setting> = None;
         points
             .iter()
             .enumerate()
@@ -323,14 +334,22 @@ impl Model {
                 if !touched(point) {
                     return before[i];
                 }
-                match last {
-                    Some((other, reading)) if !moves && other.is_of_one_setting(point) => reading,
-                    _ => {
-                        let reading = self.read(values, &offsets, point, false);
-                        last = Some((*point, reading));
-                        reading
-                    }
+                let known = last.take().filter(|known| known.point.is_of_one_setting(point));
+                if let Some(known) = known.as_ref().filter(|_| !moves) {
+                    let reading = known.reading_n;
+                    last = Some(Setting { point: *point, ..*known });
+                    return reading;
                 }
+                let state = known
+                    .as_ref()
+                    .map_or_else(|| self.contact(values, &terms[..still], point), |known| known.state);
+                let tension_n = match &known {
+                    Some(known) if !contact_moves => known.tension_n,
+                    _ => self.tension_n(&terms[still..], point, state),
+                };
+                let reading_n = self.reading_n(&terms, point, tension_n);
+                last = Some(Setting { point: *point, state, tension_n, reading_n });
+                reading_n
             })
             .collect()
     }
@@ -371,8 +390,12 @@ impl Model {
     /// Tension of a part in newtons: effects of the switch in, effects of the rig out.
     pub fn predict_part(&self, points: &[Point]) -> Vec<f64> {
         let values = self.values();
-        let offsets: Vec<usize> = (0..self.terms.len()).map(|i| self.term_offset(i)).collect();
-        points.iter().map(|point| self.read(&values, &offsets, point, true)).collect()
+        let terms = self.acting(&values, true);
+        let read = |point: &Point| {
+            let state = self.contact(&values, &terms, point);
+            self.reading_n(&terms, point, self.tension_n(&[], point, state))
+        };
+        points.iter().map(read).collect()
     }
 
     /// Share of the friction that the silicone makes at the points, by eq. 4 at the baseline's constants, 0..1.
@@ -394,7 +417,22 @@ impl Model {
             .collect()
     }
 
-    fn read(&self, values: &[f64], offsets: &[usize], point: &Point, part_only: bool) -> f64 {
+    /// The terms with their constants; of a part alone without those of the rig.
+    fn acting<'a>(&'a self, values: &'a [f64], part_only: bool) -> Vec<(&'a Term, &'a [f64])> {
+        let mut at = self.baseline_len();
+        let mut terms = Vec::with_capacity(self.terms.len());
+        for term in &self.terms {
+            let constants = &values[at..at + term.constants()];
+            at += term.constants();
+            let is_kept = !part_only
+                || matches!(term, Term::Named(effect) if effect.description().side == Side::Switch);
+            terms.extend(is_kept.then_some((term, constants)));
+        }
+        terms
+    }
+
+    /// The contact at a point, as these terms change it.
+    fn contact(&self, values: &[f64], terms: &[(&Term, &[f64])], point: &Point) -> ContactState {
         let condition: &Condition = &self.frame.conditions[point.condition];
         let plain = self.plain[point.condition];
         let [half_load_n, steepness] =
@@ -412,32 +450,32 @@ impl Model {
             adhesion_n: 0.0,
             drag_n: 0.0,
         };
-        let kept = |term: &Term| match term {
-            Term::Named(effect) => !part_only || effect.description().side == Side::Switch,
-            Term::Structure(_) => !part_only,
-        };
-        for (term, at) in self.terms.iter().zip(offsets).filter(|(term, _)| kept(term)) {
-            match term {
-                Term::Named(effect) => {
-                    effect.on_contact(&values[*at..at + term.constants()], point, condition, &mut state);
-                }
-                Term::Structure(structure) => structure.on_contact(values[*at], point, &mut state),
-            }
-        }
-        let mut reading = state.tension_n(condition, point);
+        on_contact(terms, point, condition, &mut state);
+        state
+    }
+
+    /// Tension in newtons of a contact that further terms change, before the load cell.
+    fn tension_n(&self, terms: &[(&Term, &[f64])], point: &Point, mut state: ContactState) -> f64 {
+        let condition = &self.frame.conditions[point.condition];
+        on_contact(terms, point, condition, &mut state);
+        state.tension_n(condition, point)
+    }
+
+    /// Reading in newtons of a tension that the contact leaves.
+    fn reading_n(&self, terms: &[(&Term, &[f64])], point: &Point, tension_n: f64) -> f64 {
+        let condition = &self.frame.conditions[point.condition];
+        let mut reading = tension_n;
         // What acts on the tension comes before the load cell, whichever was found first.
-        for (term, at) in self.terms.iter().zip(offsets).filter(|(term, _)| kept(term)) {
+        for (term, constants) in terms {
             if let Term::Named(effect) = term {
-                let constants = &values[*at..at + term.constants()];
                 reading = effect.on_tension(constants, point, condition, reading);
             }
         }
         // What ends the range of the load cell acts on everything before it.
         let mut limits = Vec::new();
-        for (term, at) in self.terms.iter().zip(offsets).filter(|(term, _)| kept(term)) {
+        for (term, constants) in terms {
             match term {
                 Term::Named(effect) => {
-                    let constants = &values[*at..at + term.constants()];
                     if effect.description().stage == Stage::CellLimit {
                         // A second limit of one kind is tried in place of the first.
                         limits.retain(|(other, _): &(&&dyn Effect, _)| other.id() != effect.id());
@@ -446,10 +484,31 @@ impl Model {
                         reading = effect.on_reading(constants, point, condition, reading);
                     }
                 }
-                Term::Structure(structure) => reading = structure.on_reading(values[*at], point, reading),
+                Term::Structure(structure) => {
+                    reading = structure.on_reading(constants[0], point, reading);
+                }
             }
         }
         limits.iter().fold(reading, |reading, (effect, k)| effect.on_reading(k, point, condition, reading))
+    }
+}
+
+/// What the rows of one setting share: the contact as far as it does not move along a series, and the last row's tension and
+/// reading in newtons.
+struct Setting {
+    point: Point,
+    state: ContactState,
+    tension_n: f64,
+    reading_n: f64,
+}
+
+/// Changes a contact by these terms, in their order.
+fn on_contact(terms: &[(&Term, &[f64])], point: &Point, condition: &Condition, state: &mut ContactState) {
+    for (term, constants) in terms {
+        match term {
+            Term::Named(effect) => effect.on_contact(constants, point, condition, state),
+            Term::Structure(structure) => structure.on_contact(constants[0], point, state),
+        }
     }
 }
 

@@ -243,6 +243,10 @@ impl Effect for LeakedEffect {
         self.own.formula.reads(|v| v.moves)
     }
 
+    fn acts_on_contact(&self) -> bool {
+        !self.acts_on().knows_tension()
+    }
+
     fn cited_formula(&self) -> String {
         format!("{} (an effect of one's own)", self.own.told_formula())
     }

@@ -118,13 +118,13 @@ fn along_a_share(x: &str, is_time: bool) -> Vec<Form> {
         // Steep enough to be a step between two series, and still with a slope where it is.
         let step = format!("a*0.5*(1 + tanh(({x} - c)/0.004))");
         forms.push(Form::new("step", step, &[("c", "1", c, (0.0, 1.0))]));
-        for w in [0.03, 0.1] {
+        for w in [0.03, 0.1, 0.25] {
             let constants = [("c", "1", c, (-0.2, 1.2)), ("w", "1", w, (0.025, 0.5))];
             forms.push(Form::new("bump", format!("a*exp(-(({x} - c)/w)^2)"), &constants));
         }
     }
     // Another level between two ends.
-    for (i, width) in (0..18).flat_map(|i| [0.08, 0.15, 0.3].map(|width| (i, width))) {
+    for (i, width) in (0..18).flat_map(|i| [0.08, 0.15, 0.3, 0.55].map(|width| (i, width))) {
         let c = 0.05 + 0.05 * f64::from(i);
         if c + width < 0.99 {
             let level = format!("a*0.25*(1 + tanh(({x} - c)/0.004))*(1 - tanh(({x} - e)/0.004))");
@@ -166,7 +166,7 @@ fn memory() -> Vec<Form> {
         let formula = "a*(previous_load_n - load_n)/50*exp(-repetitions_so_far/r)";
         Form::new("memory", formula, &[("r", "1", r, (0.5, 500.0))])
     };
-    [3.0, 10.0, 30.0].map(form).into()
+    [3.0, 10.0, 30.0, 100.0].map(form).into()
 }
 
 fn speed(frame: &Frame) -> Vec<Form> {
@@ -175,7 +175,7 @@ fn speed(frame: &Frame) -> Vec<Form> {
     for i in 0..=10 {
         let c = mean * (0.6 + 0.08 * f64::from(i));
         let (low, high) = (0.4 * mean, 2.0 * mean);
-        for w in [0.05 * mean, 0.15 * mean] {
+        for w in [0.05 * mean, 0.15 * mean, 0.4 * mean] {
             let constants = [("c", "%", c, (low, high)), ("w", "%", w, (0.01 * mean, mean))];
             forms.push(Form::new("bump", "a*exp(-((speed_pct - c)/w)^2)", &constants));
         }
@@ -187,7 +187,7 @@ fn speed(frame: &Frame) -> Vec<Form> {
 
 fn dwell() -> Vec<Form> {
     let mut forms = vec![Form::new("power", "a*ln(dwell_s/3)", &[])];
-    for t in [0.5, 2.0, 8.0] {
+    for t in [0.5, 2.0, 8.0, 30.0] {
         forms.push(Form::new("forgetting", "a*exp(-dwell_s/t)", &[("t", "s", t, (0.05, 200.0))]));
     }
     for c in [0.6, 2.0, 6.0, 15.0] {
@@ -200,14 +200,14 @@ fn dwell() -> Vec<Form> {
 fn load(frame: &Frame) -> Vec<Form> {
     let most = frame.load_range_n.1.max(1e-3);
     let mut forms = vec![Form::new("ramp", format!("a*load_n/{most:.3}"), &[])];
-    for p in [-0.5, 0.5, 2.0] {
+    for p in [-0.5, 0.5, 2.0, 3.5] {
         forms.push(Form::new("power", format!("a*(load_n/{most:.3})^p"), &[("p", "1", p, (-2.0, 5.0))]));
     }
     for i in 1..=9 {
         let c = 0.1 * f64::from(i) * most;
         let step = format!("a*0.5*(1 + tanh((load_n - c)/{:.3}))", 0.01 * most);
         forms.push(Form::new("step", step, &[("c", "N", c, (0.0, 1.1 * most))]));
-        for w in [0.06 * most, 0.2 * most] {
+        for w in [0.06 * most, 0.2 * most, 0.5 * most] {
             let constants = [("c", "N", c, (0.0, 1.2 * most)), ("w", "N", w, (0.01 * most, most))];
             forms.push(Form::new("bump", "a*exp(-((load_n - c)/w)^2)", &constants));
         }

@@ -198,14 +198,15 @@ fn ranked<'a>(start: &Fit, weighed: &Weighed<'_>, candidates: &'a [Candidate]) -
     let own = candidates.iter().filter_map(|c| OwnEffect::new(c.definition.clone()).ok()).collect();
     let model = start.model.clone().among(&Vocabulary::built_in().with(own).ok()?);
     let fitted = Fit { model, ..start.clone() };
-    let mut scores: Vec<_> = Screen::new(&fitted, weighed)
-        .effects()
-        .into_iter()
-        .filter(|score| score.strength > 1e-6)
-        .filter_map(|score| {
-            candidates.iter().find(|c| c.definition.id == score.effect.id()).map(|c| (c, score))
-        })
-        .collect();
+    let screen = Screen::new(&fitted, weighed);
+    // Each has one start, its own: the library holds the places that are tried.
+    let scored = |candidate: &'a Candidate| {
+        let effect = fitted.model.vocabulary.named(&candidate.definition.id)?;
+        let start = effect.starts(&fitted.model.frame).into_iter().next()?;
+        let score = screen.effect_at(effect, start)?;
+        (score.strength > 1e-6).then_some((candidate, score))
+    };
+    let mut scores: Vec<_> = candidates.iter().filter_map(scored).collect();
     scores.sort_by(|(_, a), (_, b)| b.gain.total_cmp(&a.gain));
     Some(Ranked { model: fitted.model, scores })
 }

@@ -41,6 +41,7 @@ mod median;
 mod model_check;
 mod model_file;
 mod own_values;
+mod parallel;
 mod part_curve;
 mod promise;
 mod published_maxima;

@@ -3,6 +3,7 @@
 
 use crate::forms::with_best_form;
 use crate::inference::{Levels, Model, Observations, Selection, Weighed, fit, selected_model};
+use crate::parallel::map_each;
 
 /// Parts into which the series are dealt.
 const FOLDS: usize = 4;
@@ -29,7 +30,8 @@ pub(crate) fn promise(
 ) -> Option<Promise> {
     let known = &whole.baseline.model;
     let start = Model::baseline(known.frame.clone()).among(&known.vocabulary);
-    let parts = per_part(|left_out| part(left_out, &start, whole, data, levels, with_form));
+    let parts =
+        map_each((0..FOLDS).collect(), |left_out| part(left_out, &start, whole, data, levels, with_form));
     let (mut baseline, mut augmented, mut rows) = (0.0, 0.0, 0.0);
     for (b, a, n) in parts.into_iter().flatten() {
         baseline += b;
@@ -76,31 +78,4 @@ fn part(
             .sum()
     };
     Some((squares(&baseline.model), squares(&found), readings))
-}
-
-/// One result per part, on as many threads as there are processors.
-#[cfg(feature = "parallel")]
-fn per_part<T: Send>(of: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    use std::sync::atomic::{AtomicUsize, Ordering};
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(FOLDS);
-    let next = AtomicUsize::new(0);
-    let done = std::sync::Mutex::new(Vec::new());
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some(part) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|p| *p < FOLDS) {
-                    let result = of(part);
-                    done.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((part, result));
-                }
-            });
-        }
-    });
-    let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    done.sort_by_key(|(part, _)| *part);
-    done.into_iter().map(|(_, result)| result).collect()
-}
-
-#[cfg(not(feature = "parallel"))]
-fn per_part<T>(of: impl Fn(usize) -> T) -> Vec<T> {
-    (0..FOLDS).map(of).collect()
 }

@@ -10,6 +10,7 @@ use super::projection::{Projection, dot};
 use super::structure_scores::least_squares;
 use super::weighed::Weighed;
 use crate::effects::Effect;
+use crate::parallel::map_each;
 
 /// A fitted model with its whitened residual and the directions its constants can take.
 pub(crate) struct Screen<'a> {
@@ -127,14 +128,8 @@ impl<'a> Screen<'a> {
         let absent = |effect: &&'static dyn Effect| {
             !model.terms.iter().any(|t| matches!(t, Term::Named(e) if e.id() == effect.id()))
         };
-        model
-            .vocabulary
-            .acting_order()
-            .iter()
-            .copied()
-            .filter(absent)
-            .filter_map(|effect| self.effect(effect))
-            .collect()
+        let absent: Vec<_> = model.vocabulary.acting_order().iter().copied().filter(absent).collect();
+        map_each(absent, |effect| self.effect(effect)).into_iter().flatten().collect()
     }
 
     /// Score of one effect at its best shape.

@@ -9,6 +9,7 @@ use super::sign_flips::family_probability;
 use super::significance::{degrees_of_freedom, family_p_value, gain_at};
 use super::weighed::Weighed;
 use crate::effects::Effect;
+use crate::parallel::map_each;
 
 /// How many candidates of a scan are fitted in full.
 const FITTED: usize = 6;
@@ -46,14 +47,12 @@ fn extensions(
     }
     scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     scores.truncate(most);
-    let mut fits: Vec<_> = scores
-        .into_iter()
-        .map(|score| {
-            let fitted = fit(&from.model.with_term(Term::Named(score.effect), &score.start), weighed);
-            Extension { score, fitted }
-        })
-        .filter(|e| possible(e.score.effect, &e.fitted))
-        .collect();
+    let extended = |score: EffectScore| {
+        let fitted = fit(&from.model.with_term(Term::Named(score.effect), &score.start), weighed);
+        Extension { score, fitted }
+    };
+    let mut fits = map_each(scores, extended);
+    fits.retain(|e| possible(e.score.effect, &e.fitted));
     fits.sort_by(|a: &Extension, b| a.fitted.cost.total_cmp(&b.fitted.cost));
     fits
 }
@@ -145,9 +144,10 @@ pub(super) fn flips(scores: &[EffectScore]) -> f64 {
 /// Drops named effects that the others have made superfluous, down to `keep` of them.
 pub(super) fn prune(mut current: Fit, weighed: &Weighed<'_>, least: f64, keep: usize) -> Fit {
     while current.model.named_effects().len() > keep {
-        let cheapest = (0..current.model.terms.len())
-            .filter(|i| matches!(current.model.terms[*i], Term::Named(_)))
-            .map(|i| fit(&current.model.without_term(i), weighed))
+        let named =
+            (0..current.model.terms.len()).filter(|i| matches!(current.model.terms[*i], Term::Named(_)));
+        let cheapest = map_each(named.collect(), |i| fit(&current.model.without_term(i), weighed))
+            .into_iter()
             .min_by(|a, b| a.cost.total_cmp(&b.cost));
         match cheapest {
             Some(without) if without.cost - current.cost < least => current = without,

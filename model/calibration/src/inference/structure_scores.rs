@@ -7,6 +7,7 @@ use super::projection::dot;
 use super::screening::Screen;
 use super::structures::Group;
 use crate::effects::{Channel, Covariate, Shape, Structure};
+use crate::parallel::map_each;
 
 /// What a wave's gain is reduced by, in whitened squares.
 const WAVE_PENALTY: f64 = 15.0;
@@ -108,6 +109,9 @@ type Channels = Vec<(Channel, Vec<f64>)>;
 /// Groups that are scored side by side: the lane of each one's first column.
 type Batch = Vec<(usize, usize)>;
 
+/// Parts into which the catalogue is dealt, to be scored side by side.
+const SHARES: usize = 8;
+
 /// Deals groups to batches of lanes. A pair stands side by side, from an even lane on.
 fn batches(groups: &[Group]) -> Vec<Batch> {
     let mut batches = Vec::new();
@@ -130,25 +134,32 @@ impl Screen<'_> {
     pub(crate) fn structures(&self) -> Vec<StructureScore> {
         let channels = self.channels();
         let catalogue = self.data().catalogue(&self.fitted.model.frame);
-        let mut lanes = Lanes::zeros(self.data().points.len());
         let shares_by_series = self.basis_by_series();
-        let mut scores: Vec<StructureScore> = Vec::with_capacity(catalogue.groups.len());
-        for batch in batches(&catalogue.groups) {
-            lanes.clear();
-            for (index, first) in &batch {
-                for (place, structure) in catalogue.groups[*index].iter().enumerate() {
-                    let Some((_, along)) = channels.iter().find(|(c, _)| *c == structure.channel) else {
-                        continue;
-                    };
-                    let values = catalogue.values(*index, place, &self.data().points);
-                    let lane = first + place;
-                    for ((row, value), along) in lanes.rows_mut().iter_mut().zip(values.iter()).zip(along) {
-                        row[lane] = value * along;
+        let score = |several: &[Batch]| {
+            let mut lanes = Lanes::zeros(self.data().points.len());
+            let mut scores = Vec::new();
+            for batch in several {
+                lanes.clear();
+                for (index, first) in batch {
+                    for (place, structure) in catalogue.groups[*index].iter().enumerate() {
+                        let Some((_, along)) = channels.iter().find(|(c, _)| *c == structure.channel) else {
+                            continue;
+                        };
+                        let values = catalogue.values(*index, place, &self.data().points);
+                        let lane = first + place;
+                        let rows = lanes.rows_mut().iter_mut();
+                        for ((row, value), along) in rows.zip(values.iter()).zip(along) {
+                            row[lane] = value * along;
+                        }
                     }
                 }
+                self.score_batch(&catalogue.groups, batch, &mut lanes, &shares_by_series, &mut scores);
             }
-            self.score_batch(&catalogue.groups, &batch, &mut lanes, &shares_by_series, &mut scores);
-        }
+            scores
+        };
+        let batches = batches(&catalogue.groups);
+        let dealt = batches.chunks(batches.len().div_ceil(SHARES).max(1)).collect();
+        let mut scores: Vec<StructureScore> = map_each(dealt, score).into_iter().flatten().collect();
         for (channel, along) in &channels[..3] {
             scores.extend(self.best_window(*channel, along));
         }

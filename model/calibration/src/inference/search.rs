@@ -13,6 +13,9 @@ use crate::parallel::map_each;
 
 /// How many candidates of a scan are fitted in full.
 const FITTED: usize = 6;
+/// Gain to first order, as a share of the largest, from which a candidate is fitted in full. In 651 scans of 36 tables the one
+/// that fitted best had never less than 0.9.
+const WORTH_A_FIT: f64 = 0.4;
 /// Share of its length that a trace must keep after the refit to be called visible.
 pub(super) const VISIBLE_SHARE: f64 = 2e-3;
 
@@ -47,6 +50,8 @@ fn extensions(
     }
     scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     scores.truncate(most);
+    let strongest = scores.first().map_or(0.0, |s| s.gain);
+    scores.retain(|s| s.gain >= WORTH_A_FIT * strongest);
     let extended = |score: EffectScore| {
         let fitted = fit(&from.model.with_term(Term::Named(score.effect), &score.start), weighed);
         Extension { score, fitted }

@@ -40,6 +40,7 @@ const ROOM_FOR_RECESSES: &[Change] = &[
     Ease("fasteners.hole_diameter_mm"),
     Lower("fasteners.nut_recess_mm"),
     Lower("fasteners.head_recess_mm"),
+    Set("fasteners.kind", "\"screw\""),
 ];
 /// What makes room for letters.
 const ROOM_FOR_LETTERS: &[Change] = &[
@@ -168,7 +169,13 @@ mod tests {
         printed(design).unwrap().iter().flat_map(|part| part.notes(design)).collect()
     }
 
-    const CASES: [&[&str]; 16] = [
+    const CASES: [&[&str]; 17] = [
+        &[
+            "fasteners.hole_diameter_mm=2.9",
+            "fasteners.nut_recess_mm=2.4",
+            "shell.wall_mm=6",
+            "fasteners.dowel_diameter_mm=2",
+        ],
         &["layout.pins=[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]"],
         &["layout.pins=[5, 8, 11]", "print.line_mm=0.5", "print.least_wall_mm=0.5", "label.stroke_mm=0.5"],
         &["shell.stop_mm=0.2"],
@@ -218,8 +225,12 @@ mod tests {
                     }
                 }
                 let after = notes(&design(&set));
+                // What a note is about, whatever the label says.
                 let about = |notes: &[String]| -> Vec<String> {
-                    notes.iter().filter_map(|n| n.split(" left out").next().map(str::to_owned)).collect()
+                    let words = |n: &String| {
+                        n.split(" left out").next()?.split('"').step_by(2).last().map(str::to_owned)
+                    };
+                    notes.iter().filter_map(words).collect()
                 };
                 let is_told_before = |what: &String| about(&before).contains(what);
                 assert!(

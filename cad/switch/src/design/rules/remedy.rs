@@ -140,12 +140,17 @@ fn advice(
     // Best is what mends all that is broken: other rules may be broken by the same value.
     let all: Vec<_> = rules().filter(|r| r.severity == Severity::Error).collect();
     let mends_all = |d: &Dimensions| all.iter().all(|r| keeps(r, d));
-    // Better still is what leaves room for all hardware: else the set is made without its nut traps, and the next remedy is
-    // about them.
+    let mut found = single(&mends_all);
+    // Better still is what leaves room for all hardware, if it is not far: else the set is made without its nut traps, and the
+    // next remedy is about them.
     let has_all = |d: &Dimensions| !d.has_lost_hardware() && mends_all(d);
-    let mut found = single(&has_all);
-    if found.is_empty() {
-        found = single(&mends_all);
+    for fuller in single(&has_all) {
+        let is_near =
+            settings(std::slice::from_ref(&fuller)).iter().all(|(field, value)| is_moderate(c, field, value));
+        let plain = found.iter_mut().find(|t| t.field == fuller.field && t.verb == fuller.verb);
+        if let Some(plain) = plain.filter(|_| is_near) {
+            *plain = fuller;
+        }
     }
     if found.is_empty() {
         found = single(&breaks_none);
@@ -226,8 +231,11 @@ pub(crate) fn way_out(
     large
 }
 
-/// Whether a value is within a factor of two of the present one.
+/// Whether a value is within a factor of two of the present one, and no set loses its screws for it.
 fn is_moderate(c: &Configuration, field: &str, value: &str) -> bool {
+    if field == "fasteners.count" && value.parse::<f64>().is_ok_and(|count| count < 2.0) {
+        return false;
+    }
     let now = c.shown(field).and_then(|shown| shown.parse::<f64>().ok());
     match (now, value.parse::<f64>()) {
         (Some(now), Ok(value)) => now == 0.0 || (0.5..=2.0).contains(&(value / now)),

@@ -137,7 +137,11 @@ fn along_a_share(x: &str, is_time: bool) -> Vec<Form> {
     }
     forms.push(Form::new("ramp", format!("a*({x} - 0.5)"), &[]));
     forms.push(Form::new("power", format!("a*({x} - 0.5)^2"), &[]));
-    for cycles in [0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0] {
+    // Close enough that a fit, which does not cross from one number of waves to the next, begins beside every one.
+    let cycles = [0.5, 0.75].into_iter().chain((2..=16).map(|i| 0.5 * f64::from(i)));
+    let cycles = cycles
+        .chain([9.0, 10.0, 11.0, 12.0, 13.5, 15.0, 17.0, 19.0, 21.0, 23.5, 26.0, 29.0, 32.0, 36.0, 40.0]);
+    for cycles in cycles {
         for phase in [0.0, 0.8, 1.6, 2.4] {
             let constants = [("f", "1", cycles, (0.2, 60.0)), ("p", "1", phase, (-3.3, 6.5))];
             forms.push(Form::new("sine", format!("a*sin(6.283185307*f*{x} + p)"), &constants));

@@ -8,7 +8,8 @@ use crate::inference::{
     select,
 };
 use crate::own_values::has_values;
-use crate::promise::promise;
+use crate::parallel::{both, map_each};
+use crate::promise::{learn, parts, promise};
 use crate::report::Report;
 use crate::table::{Frame, PlateauRow};
 use crate::telling::{Told, model_report, report};
@@ -119,10 +120,21 @@ pub fn calibrate_among(
     } else {
         whole.clone()
     };
-    let mut selection = select(&start, &mut data, levels);
-    let mut held = held_out(&selection.augmented.model, &Weighed::new(&data, selection.noise));
-    let mut form = drawn(&selection, &data, held);
-    let promised = promise(&selection, &data, levels, form.as_ref().is_some_and(|f| f.report.in_model));
+    let as_it_came = data.clone();
+    let learned_of = |part| learn(part, &start, &as_it_came, levels);
+    let search = || {
+        let selection = select(&start, &mut data, levels);
+        let held = held_out(&selection.augmented.model, &Weighed::new(&data, selection.noise));
+        let form = drawn(&selection, &data, held);
+        (selection, held, form)
+    };
+    let ((mut selection, mut held, mut form), mut learned) = both(search, || map_each(parts(), learned_of));
+    if data.excluded_series() > 0 {
+        // What is known to be wrong as a whole teaches nothing.
+        learned = map_each(parts(), |part| learn(part, &start, &data, levels));
+    }
+    let with_form = form.as_ref().is_some_and(|f| f.report.in_model);
+    let promised = promise(learned, &selection, &data, with_form);
     // What does not help on series that had no part in finding it is not kept.
     if promised.is_some_and(|p| p.augmented_n > p.baseline_n) && !selection.augmented.model.terms.is_empty() {
         selection = selection.without_findings(&data, levels);

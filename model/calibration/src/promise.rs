@@ -2,7 +2,9 @@
 //! without a fourth of the series, and judged on them.
 
 use crate::forms::with_best_form;
-use crate::inference::{Levels, Model, Observations, Selection, Weighed, fit, selected_model};
+use crate::inference::{
+    FoundStructure, Levels, Model, Noise, Observations, Selection, Weighed, fit, selected_model,
+};
 use crate::parallel::map_each;
 
 /// Parts into which the series are dealt.
@@ -19,21 +21,46 @@ pub(crate) struct Promise {
     pub(crate) augmented_n: f64,
 }
 
-/// The promise for a table; `None` if a part of its series cannot fix the baseline.
+/// What the procedure makes of a table without one part of its series.
+pub(crate) struct Learned {
+    left_out: usize,
+    seen: Observations,
+    model: Model,
+    noise: Noise,
+    structure: Option<FoundStructure>,
+}
+
+/// The parts that are left out in turn.
+pub(crate) fn parts() -> Vec<usize> {
+    (0..FOLDS).collect()
+}
+
+fn fold(data: &Observations, row: usize) -> usize {
+    (data.series_of[row] * 7 / 3) % FOLDS
+}
+
+/// Runs the procedure without one part; `None` if the rest cannot fix the baseline.
+pub(crate) fn learn(left_out: usize, start: &Model, data: &Observations, levels: Levels) -> Option<Learned> {
+    let mut seen = data.subset(|row| fold(data, row) != left_out);
+    if seen.points.len() < start.values().len() + 8 {
+        return None;
+    }
+    let (model, noise, structure) = selected_model(start, &mut seen, levels);
+    Some(Learned { left_out, seen, model, noise, structure })
+}
+
+/// The promise for a table, from what was learned of its parts; `None` if no part could be judged.
 ///
 /// `with_form` says that the model takes a drawn form in place of shapes.
 pub(crate) fn promise(
+    learned: Vec<Option<Learned>>,
     whole: &Selection,
     data: &Observations,
-    levels: Levels,
     with_form: bool,
 ) -> Option<Promise> {
-    let known = &whole.baseline.model;
-    let start = Model::baseline(known.frame.clone()).among(&known.vocabulary);
-    let parts =
-        map_each((0..FOLDS).collect(), |left_out| part(left_out, &start, whole, data, levels, with_form));
+    let judged = map_each(learned, |learned| judge(learned?, whole, data, with_form));
     let (mut baseline, mut augmented, mut rows) = (0.0, 0.0, 0.0);
-    for (b, a, n) in parts.into_iter().flatten() {
+    for (b, a, n) in judged.into_iter().flatten() {
         baseline += b;
         augmented += a;
         rows += n;
@@ -42,23 +69,19 @@ pub(crate) fn promise(
         .then(|| Promise { baseline_n: (baseline / rows).sqrt(), augmented_n: (augmented / rows).sqrt() })
 }
 
-/// Sums of squares on one part and its rows, if the rest could be fitted.
-fn part(
-    left_out: usize,
-    start: &Model,
+/// Sums of squares on the part that was left out, and its readings; `None` if it has none that count.
+fn judge(
+    learned: Learned,
     whole: &Selection,
     data: &Observations,
-    levels: Levels,
     with_form: bool,
 ) -> Option<(f64, f64, f64)> {
-    let fold = |row: usize| (data.series_of[row] * 7 / 3) % FOLDS;
-    let mut seen = data.subset(|row| fold(row) != left_out);
-    let hidden = data.subset(|row| fold(row) == left_out && !data.is_excluded(row));
-    let readings: f64 = hidden.counts.iter().sum();
-    if seen.points.len() < start.values().len() + 8 || hidden.points.is_empty() {
+    let Learned { left_out, seen, model: mut found, noise, structure } = learned;
+    let hidden = data.subset(|row| fold(data, row) == left_out && !data.is_excluded(row));
+    if hidden.points.is_empty() {
         return None;
     }
-    let (mut found, noise, structure) = selected_model(start, &mut seen, levels);
+    let readings: f64 = hidden.counts.iter().sum();
     if let Some(structure) = structure.filter(|_| with_form)
         && let Some(with_form) = with_best_form(structure.covariate, &found, noise, &seen)
     {

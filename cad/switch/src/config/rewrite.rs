@@ -1,13 +1,14 @@
 //! Values written back into the text of a configuration, whose comments and order stay.
 
-use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
+use toml_edit::{Array, DocumentMut, Item, RawString, Table, TableLike, Value};
 
 use super::parameters::Configuration;
 use super::read::read;
 use super::{ConfigError, Place};
 
 /// `text` with the values of `configuration`: what it sets otherwise is changed in its place, what it does not set and is
-/// no default is added to its table. Everything else stays as it is, comments too. `file` names the text in errors.
+/// no default is added to its table. Everything else stays as it is: comments, line ends, and a mark at its begin that says
+/// that it is UTF-8. What stands behind a pin on its line goes with the pin. `file` names the text in errors.
 ///
 /// ```
 /// use pinswitch_switch::config::{Configuration, assign, read, rewritten};
@@ -31,18 +32,31 @@ pub fn rewritten(text: &str, file: &str, configuration: &Configuration) -> Resul
         if value.to_string() == (parameter.get)(&before).to_string() {
             continue;
         }
-        let table = document.entry(parameter.section).or_insert_with(|| Item::Table(Table::new()));
-        if let Some(table) = table.as_table_like_mut() {
+        if document.get(parameter.section).is_none() {
+            let mut table = Table::new();
+            // What stood at the end of the text stays before what is added.
+            let end = document.trailing().as_str().unwrap_or_default().to_owned();
+            document.set_trailing("");
+            let gap = if text.trim().is_empty() { "" } else { "\n" };
+            table.decor_mut().set_prefix(format!("{end}{gap}"));
+            document.insert(parameter.section, Item::Table(table));
+        }
+        if let Some(table) = document.get_mut(parameter.section).and_then(Item::as_table_like_mut) {
             put(table, parameter.key, value);
         }
     }
-    Ok(document.to_string())
+    Ok(written_as(text, &document.to_string()))
 }
 
 /// Sets a key to a value; what stands before and behind an old value stays there.
 fn put(table: &mut dyn TableLike, key: &str, mut value: Value) {
     match table.get_mut(key).and_then(Item::as_value_mut) {
         Some(old) => {
+            if let (Value::Array(old), Value::Array(new)) = (&*old, &mut value)
+                && old.to_string().contains('\n')
+            {
+                lay_out_as(old, new);
+            }
             *value.decor_mut() = old.decor().clone();
             *old = value;
         }
@@ -52,11 +66,92 @@ fn put(table: &mut dyn TableLike, key: &str, mut value: Value) {
     }
 }
 
+/// `new` with the line ends of `text`, and with its byte order mark.
+fn written_as(text: &str, new: &str) -> String {
+    const MARK: char = '\u{feff}';
+    let lines = new.replace("\r\n", "\n");
+    let lines = if text.contains("\r\n") { lines.replace('\n', "\r\n") } else { lines };
+    if text.starts_with(MARK) && !lines.starts_with(MARK) { format!("{MARK}{lines}") } else { lines }
+}
+
+/// An item of a list over several lines.
+struct Listed {
+    item: String,
+    /// Lines before its own, and its indentation; without a line end if it stands behind another item.
+    before: String,
+    /// What stands behind it on its line.
+    behind: String,
+}
+
+/// Lays a list out over the lines that an old one had: items that were there keep theirs, with the comment behind them.
+fn lay_out_as(old: &Array, new: &mut Array) {
+    let raw = |text: Option<&RawString>| text.and_then(RawString::as_str).unwrap_or_default().to_owned();
+    let (mut opening, mut listed, mut suffix) = (String::new(), Vec::<Listed>::new(), String::new());
+    for value in old {
+        // A comma may stand behind the comment of its item, on a line of its own; it is written before it.
+        let (behind_last, before) = split_line(&(suffix + &raw(value.decor().prefix())));
+        match listed.last_mut() {
+            Some(last) => last.behind = behind_last,
+            None => opening = behind_last,
+        }
+        suffix = raw(value.decor().suffix()).trim_end_matches([' ', '\t']).to_owned();
+        let item = value.clone().decorated("", "").to_string();
+        listed.push(Listed { item, before, behind: String::new() });
+    }
+    let (behind_last, closing) = split_line(&(suffix + &raw(Some(old.trailing()))));
+    match listed.last_mut() {
+        Some(last) => last.behind = behind_last,
+        None => opening = behind_last,
+    }
+    let indent =
+        listed.iter().find_map(|l| l.before.rsplit_once('\n')).map_or("  ", |(_, indent)| indent).to_owned();
+    let own_line = format!("\n{indent}");
+    // Lines of comment before an item that goes stay where they are.
+    let (mut orphaned, mut ahead) = (String::new(), opening);
+    let wanted: Vec<String> = new.iter().map(|v| v.clone().decorated("", "").to_string()).collect();
+    let mut known = listed.into_iter().peekable();
+    for (value, item) in new.iter_mut().zip(&wanted) {
+        while let Some(gone) = known.next_if(|l| l.item != *item && !wanted.contains(&l.item)) {
+            orphaned += comment_lines(&gone.before);
+        }
+        let (before, behind) = match known.next_if(|l| l.item == *item) {
+            Some(known) => (known.before, known.behind),
+            None => (own_line.clone(), String::new()),
+        };
+        let before = std::mem::take(&mut orphaned) + &before;
+        let breaks = ahead.contains('#') && !before.starts_with('\n');
+        let begin = if breaks { own_line.as_str() } else { "" };
+        value
+            .decor_mut()
+            .set_prefix(format!("{ahead}{begin}{}", if breaks { before.trim_start() } else { &before }));
+        value.decor_mut().set_suffix("");
+        ahead = behind;
+    }
+    for gone in known {
+        orphaned += comment_lines(&gone.before);
+    }
+    let closing = if closing.starts_with('\n') { closing } else { format!("\n{closing}") };
+    new.set_trailing(format!("{ahead}{orphaned}{closing}"));
+    new.set_trailing_comma(true);
+}
+
+/// What stands on a line, and from its end on.
+fn split_line(text: &str) -> (String, String) {
+    let end = text.find('\n').unwrap_or(if text.contains('#') { text.len() } else { 0 });
+    (text[..end].trim_end().to_owned(), text[end..].to_owned())
+}
+
+/// The lines of comment before an item, without its indentation.
+fn comment_lines(before: &str) -> &str {
+    before.rsplit_once('\n').map_or("", |(lines, _)| if lines.contains('#') { lines } else { "" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::config::assign;
     use crate::templates;
+    use proptest::prelude::*;
 
     #[test]
     fn every_template_is_rewritten_to_every_other() {
@@ -85,5 +180,67 @@ mod tests {
         assert_eq!(read(&changed, "x.toml").unwrap().0, wanted, "{changed}");
         assert!(changed.contains("# inline"), "{changed}");
         assert!(rewritten("[shell", "x.toml", &wanted).is_err());
+    }
+
+    /// The text with its pins in these grooves.
+    fn with_pins(text: &str, pins: &str) -> String {
+        let (mut wanted, _) = read(text, "x.toml").unwrap();
+        assign(&mut wanted, &format!("layout.pins={pins}")).unwrap();
+        let changed = rewritten(text, "x.toml", &wanted).unwrap();
+        assert_eq!(read(&changed, "x.toml").unwrap().0, wanted, "{changed}");
+        changed
+    }
+
+    #[test]
+    fn a_list_keeps_its_lines_and_the_comments_of_what_stays() {
+        let text = "[layout]\npins = [ # mine\n  5, # first\n  # the middle\n  8,\n  11, # third\n] # done\n";
+        assert_eq!(
+            with_pins(text, "[2, 5, 11]"),
+            "[layout]\npins = [ # mine\n  2,\n  5, # first\n  # the middle\n  11, # third\n] # done\n"
+        );
+        assert_eq!(
+            with_pins(text, "[5, 8, 11, 14]"),
+            "[layout]\npins = [ # mine\n  5, # first\n  # the middle\n  8,\n  11, # third\n  14,\n] # done\n"
+        );
+        let none_left = with_pins(text, "[1]");
+        assert!(none_left.contains("# mine") && none_left.contains("# the middle"), "{none_left}");
+        let in_pairs = "[layout]\npins = [\n  5, 8, # two\n  11 # last\n]\n";
+        assert_eq!(with_pins(in_pairs, "[5, 11]"), "[layout]\npins = [\n  5,\n  11, # last\n]\n");
+        assert_eq!(with_pins("layout = { pins = [5, 8] } # one\n", "[5]"), "layout = { pins = [5] } # one\n");
+    }
+
+    #[test]
+    fn comments_stay_before_what_is_added_and_line_ends_as_they_are() {
+        assert_eq!(with_pins("# nothing yet\n", "[2]"), "# nothing yet\n\n[layout]\npins = [2]\n");
+        assert_eq!(with_pins("", "[2]"), "[layout]\npins = [2]\n");
+        assert_eq!(
+            with_pins("[shell]\nwidth_mm = 12\n# the end\n", "[2]"),
+            "[shell]\nwidth_mm = 12\n# the end\n\n[layout]\npins = [2]\n"
+        );
+        assert_eq!(
+            with_pins("\u{feff}# of Windows\r\n[layout]\r\npins = [5]\r\n", "[2]"),
+            "\u{feff}# of Windows\r\n[layout]\r\npins = [2]\r\n"
+        );
+    }
+
+    proptest! {
+        /// Whatever the lines of a list look like, it is read as what was wanted, and comments of what stays are there.
+        #[test]
+        fn lists_of_any_lines_are_rewritten(
+            old in prop::collection::btree_set(1..16u32, 0..6),
+            new in prop::collection::btree_set(1..16u32, 0..6),
+            lines in prop::collection::vec(("[ \n]{0,3}", prop::option::of("[a-z]{1,4}"), any::<bool>()), 7),
+        ) {
+            let mut text = "# head\n[layout]\npins = [".to_owned();
+            for (pin, (space, comment, own)) in old.iter().zip(&lines) {
+                let comment = comment.as_ref().map(|c| format!(" # {c}{pin}\n")).unwrap_or_default();
+                text += &if *own { format!("{comment}{space}{pin},") } else { format!("{space}{pin},{comment}") };
+            }
+            text += &format!("{}]\n# tail\n", lines[6].0);
+            let wanted = format!("{new:?}").replace('{', "[").replace('}', "]");
+            let changed = with_pins(&text, &wanted);
+            prop_assert!(changed.starts_with("# head\n") && changed.ends_with("# tail\n"), "{}", changed);
+            prop_assert_eq!(with_pins(&changed, &wanted), changed);
+        }
     }
 }

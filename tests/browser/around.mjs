@@ -20,6 +20,22 @@ export async function embedded(visit, site) {
   await hears('an address goes in', () => heard.some((m) => String(m.values?.['layout.pins']) === '7,9' && m.trust));
   await say({ type: 'pinswitch-set', values: { 'segment.grooves': 40 } });
   await hears('trouble comes out in words', () => heard.some((m) => /segment\.grooves/.test(m.trouble)));
+  await say({ type: 'pinswitch-set', hash: '#cut' });
+  await hears('what is no design is told', () => heard.some((m) => /holds no design/.test(m.said)));
+  await say({ type: 'pinswitch-set', values: { 'layout.pins': [4, 11] } });
+  await hears('each state comes with its own answer', () => heard.some((m) => m.hash.includes('layout.pins=4,11') && m.said === null));
+  // Many changes in a row: the friction of a layout is always that layout's.
+  const pairs = await visit.page.evaluate(async () => {
+    heard.length = 0;
+    for (let i = 0; i < 24; i += 1) {
+      frames[0].postMessage({ type: 'pinswitch-set', values: { 'layout.pins': i % 2 ? [5, 8, 11] : [2, 3, 4, 9, 13, 14] } }, '*');
+      await new Promise((done) => { setTimeout(done, 7 * (i % 5)); });
+    }
+    await new Promise((done) => { setTimeout(done, 1500); });
+    return heard.map((m) => [m.hash, m.friction_n]);
+  });
+  const frictions = (hash) => new Set(pairs.filter(([h]) => h === hash).map(([, friction]) => friction.toFixed(1)));
+  visit.findings.check('a hash has one friction', pairs.length > 2 && pairs.every(([hash]) => frictions(hash).size === 1), JSON.stringify(pairs));
   await say({ type: 'pinswitch-set', values: { nonsense: 1 } });
   await say({ type: 'something-else', values: { 'layout.pins': [1] } });
   const frame = visit.page.frames()[1];

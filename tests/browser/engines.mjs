@@ -26,9 +26,9 @@ export async function moduleSite(folder) {
   return { name: 'module', address: `${server.origin}/`, origin: server.origin, file: `file://${join(folder, 'index.html')}`, end: server.end };
 }
 
-// `pinswitch view`, with the file that it follows.
-export async function viewSite(binary, folder, configuration) {
-  const child = spawn(binary, ['view', configuration, '--port', '0'], { cwd: folder, stdio: ['ignore', 'pipe', 'ignore'] });
+// `pinswitch view` with these arguments; the first is the file that it follows, if it is one.
+export async function viewSite(binary, folder, [configuration, ...options]) {
+  const child = spawn(binary, ['view', configuration, ...options, '--port', '0'], { cwd: folder, stdio: ['ignore', 'pipe', 'ignore'] });
   const lines = createInterface({ input: child.stdout });
   const origin = await new Promise((done, fail) => {
     lines.once('line', done);

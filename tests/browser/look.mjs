@@ -54,6 +54,28 @@ export async function widths(visit, site, { pictures }) {
   }
 }
 
+// Who walks with Tab on a phone sees what has the focus: the button that stays at the bottom covers none of it.
+export async function focusOnAPhone(visit, site) {
+  await visit.look(375, 812, false);
+  await visit.open(site.address + START);
+  const covered = new Set();
+  let walked = 0;
+  for (; walked < 120; walked += 1) {
+    await visit.page.keyboard.press('Tab');
+    const what = await visit.page.evaluate(async () => {
+      await new Promise((done) => { requestAnimationFrame(done); });
+      const [e, bar] = [document.activeElement, document.querySelector('.floating')];
+      if (!e || e === document.body) return 'end';
+      if (e === bar || e.matches('.group *, aside *')) return '';
+      const [a, b] = [e.getBoundingClientRect(), bar.getBoundingClientRect()];
+      return a.right > b.left && a.left < b.right && a.bottom > b.top + 1 && a.top < b.bottom ? e.id || e.outerHTML.slice(0, 80) : '';
+    });
+    if (what === 'end') break;
+    if (what) covered.add(what);
+  }
+  visit.findings.check('nothing that has the focus is covered', walked > 20 && covered.size === 0, [...covered].join(' '));
+}
+
 // States of the page that a person meets, each with what brings it about and what ends it.
 const STATES = {
   'at rest': [async () => {}, async () => {}],

@@ -13,6 +13,7 @@ import * as belongs from './belongs.mjs';
 import * as design from './design.mjs';
 import * as downloads from './downloads.mjs';
 import * as look from './look.mjs';
+import * as served from './served.mjs';
 import * as tables from './tables.mjs';
 import * as trouble from './trouble.mjs';
 
@@ -29,7 +30,7 @@ async function fromFile(visit, site, { findings }) {
 }
 
 function scenarios() {
-  const all = { fromFile, ...design, ...look, ...tables, ...trouble, ...around, ...belongs, ...downloads };
+  const all = { fromFile, ...design, ...look, ...tables, ...trouble, ...around, ...belongs, ...served, ...downloads };
   return Object.entries(all).filter(([name, act]) => typeof act === 'function' && (job.only ?? '').split(' ').some((word) => name.includes(word)));
 }
 
@@ -65,11 +66,12 @@ async function main() {
   mkdirSync(job.pictures, { recursive: true });
   const view = (name, text = '[layout]\npins = [5, 8, 11]\n') => {
     writeFileSync(join(scratch, name), text);
-    return viewSite(job.binary, scratch, name);
+    return startView([name]);
   };
+  const startView = (given) => viewSite(job.binary, scratch, given);
   const server = await view('mine.toml');
   const facts = await factsOf(server);
-  const shared = { binary: job.binary, executable: job.browser, tools: job.tools, pictures: job.pictures, table: readFileSync(job.table, 'utf8'), facts, scratch, anotherView: view };
+  const shared = { binary: job.binary, executable: job.browser, tools: job.tools, pictures: job.pictures, table: readFileSync(job.table, 'utf8'), facts, scratch, anotherView: view, startView };
   const sites = [server, ...(job.site ? [await moduleSite(job.site)] : [])];
   // Pages wait for their visitors most of the time: both engines are tried at once.
   const findings = await Promise.all(sites.map((site) => drive(site, shared)));

@@ -28,6 +28,24 @@ export async function foreignFiles(visit, site) {
   await visit.settled();
 }
 
+// An address that is pasted into the open page, and what of it cannot be taken.
+export async function oddAddresses(visit, site) {
+  await visit.open(site.address + START);
+  const paste = (hash) => visit.page.evaluate((to) => { location.hash = to; }, hash);
+  const says = (source) => new RegExp(source, 's').test(document.querySelector('#notice').textContent);
+  await paste('#nonsense');
+  await visit.check('an address without a design leaves the design', says, 'holds no design.*stays as it was');
+  await visit.addressHas('layout.pins=4,8,12');
+  await paste('#v=1&layout.pins&ask.threshold_n=5,6&shell.walls');
+  await visit.check('names without a value are told whole', says, 'names shell\\.walls,.*gives layout\\.pins, ask\\.threshold_n a value that cannot be');
+  await visit.addressLacks('ask.threshold_n');
+  await visit.settled();
+  await visit.click('#undo');
+  await visit.addressHas('layout.pins=4,8,12');
+  await visit.check('what was said of an address goes with it', () => document.querySelector('#notice').hidden);
+  await visit.settled();
+}
+
 export async function moduleThatDoesNotLoad(visit, site) {
   if (!site.file) return;
   const words = { 'cut.html': /engine does not start in this browser.*pinswitch view/s, 'none.html': /holds no engine.*pinswitch view/s };

@@ -60,7 +60,7 @@ fn the_configurator_asks_and_saves_into_the_file_that_is_followed() {
     assert!(policy.contains("worker-src blob:") && page.contains(&format!("content=\"{policy}\"")));
     let start = preview.ask("GET /start", &preview.host());
     let start: serde_json::Value = serde_json::from_str(start.split_once("\r\n\r\n").unwrap().1).unwrap();
-    assert_eq!(start["file"], "mine.toml");
+    assert_eq!(start["begun"]["file"], "mine.toml");
     assert_eq!(start["values"]["layout.pins"], serde_json::json!([5, 8, 11]));
 
     let shown = asked(&preview, "/answer", r#"{"ask": "design", "values": {"segment.grooves": 40}}"#);

@@ -15,12 +15,19 @@ use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::templates;
 
+/// What a command shows that need not be told a configuration.
+const UNNAMED: &str = "three-double";
+
+/// The field that `--tolerance` gives.
+const TOLERANCE: &str = "mesh.chord_tolerance_mm";
+
 /// A configuration and what is laid over it.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Source {
     /// A TOML file, the assembly.3mf of a set, which holds its configuration, or the name of a template (see `pinswitch
     /// layouts`).
-    config: String,
+    #[arg(required = true)]
+    config: Option<String>,
     /// A template or file whose values lie under the configuration, such as printer-fff-0.4.
     #[arg(long, value_name = "NAME|FILE")]
     preset: Option<String>,
@@ -35,12 +42,32 @@ pub(super) struct Source {
 impl Source {
     /// The configuration of this name alone, with nothing laid over it.
     pub(super) fn named(config: &str) -> Self {
-        Self { config: config.to_owned(), preset: None, assignments: Vec::new(), tolerance: None }
+        Self { config: Some(config.to_owned()), preset: None, assignments: Vec::new(), tolerance: None }
+    }
+
+    fn config(&self) -> &str {
+        self.config.as_deref().unwrap_or(UNNAMED)
+    }
+
+    /// Whether the command line says what to make: a configuration, or anything under or over it.
+    pub(super) fn is_said(&self) -> bool {
+        let Self { config, preset, assignments, tolerance } = self;
+        config.is_some() || preset.is_some() || !assignments.is_empty() || tolerance.is_some()
+    }
+
+    /// The options that stand over the configuration, and the fields that they give.
+    pub(super) fn options(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let sets = self
+            .assignments
+            .iter()
+            .filter_map(|a| a.split_once('='))
+            .map(|(field, _)| ("--set", field.trim()));
+        sets.chain(self.tolerance.map(|_| ("--tolerance", TOLERANCE)))
     }
 
     /// The file that the configuration is read from; `None` for a template.
     pub(super) fn file(&self) -> Option<PathBuf> {
-        Some(PathBuf::from(&self.config)).filter(|path| path.exists() && !path.is_dir())
+        Some(PathBuf::from(self.config())).filter(|path| path.exists() && !path.is_dir())
     }
 
     /// The same with `preset` under it, unless the command line named one.
@@ -62,13 +89,21 @@ impl Source {
     /// # Errors
     /// As [`Self::design`].
     pub(super) fn design_from(&self, bytes: Vec<u8>) -> Result<Design, Failure> {
-        let (text, _) = configuration_text(bytes, &self.config)?;
-        self.design_of_text(&text, &self.config)
+        let (text, _) = configuration_text(bytes, self.config())?;
+        self.design_of_text(&text, self.config())
+    }
+
+    /// The configuration of the text of its file, with what lies under and over it.
+    ///
+    /// # Errors
+    /// As [`Self::design`]; what only a design finds is not looked for.
+    pub(super) fn configuration_from(&self, text: &str) -> Result<Configuration, Failure> {
+        self.configuration_of_text(text, self.config()).map(|(configuration, _)| configuration)
     }
 
     /// An error of what was read, with the option that gave the value, or the name of its file.
     pub(super) fn placed(&self, error: &ConfigError) -> Failure {
-        Failure::bad_input(self.with_place(error.clone(), &Places::default(), &self.config))
+        Failure::bad_input(self.with_place(error.clone(), &Places::default(), self.config()))
     }
 
     /// The error with the option that gave its field, the field's place in the file, or at least the file.
@@ -92,7 +127,7 @@ impl Source {
     /// # Errors
     /// As [`Self::design`].
     pub(super) fn design_and_origin(&self) -> Result<(Design, Origin), Failure> {
-        let (text, file, kind) = read_configuration_text(&self.config)?;
+        let (text, file, kind) = read_configuration_text(self.config())?;
         let design = self.design_of_text(&text, &file)?;
         let origin = match kind {
             Kind::Text => Origin::of(&file, &text),
@@ -104,6 +139,11 @@ impl Source {
     }
 
     fn design_of_text(&self, text: &str, file: &str) -> Result<Design, Failure> {
+        let (configuration, places) = self.configuration_of_text(text, file)?;
+        Design::new(configuration).map_err(|e| Failure::bad_input(self.with_place(e, &places, file)))
+    }
+
+    fn configuration_of_text(&self, text: &str, file: &str) -> Result<(Configuration, Places), Failure> {
         let base = self.preset.as_ref().map_or(Ok(Configuration::default()), |preset| {
             let (text, file) = read_text(preset)?;
             read(&text, &file).map(|(base, _)| base).map_err(Failure::bad_input)
@@ -116,10 +156,10 @@ impl Source {
             assign(&mut configuration, assignment).map_err(Failure::bad_input)?;
         }
         if let Some(mm) = self.tolerance {
-            assign(&mut configuration, &format!("mesh.chord_tolerance_mm={mm:?}"))
+            assign(&mut configuration, &format!("{TOLERANCE}={mm:?}"))
                 .map_err(|e| Failure::bad_input(e.to_string().replacen("--set", "--tolerance", 1)))?;
         }
-        Design::new(configuration).map_err(|e| Failure::bad_input(self.with_place(e, &places, file)))
+        Ok((configuration, places))
     }
 }
 

@@ -1,7 +1,8 @@
 // Within another page: `?embed` leaves the header out and speaks messages.
 //
 // Out, to the page around, whenever a design was shown or refused:
-//   {type: 'pinswitch-state', version: 1, hash, values, friction_n, load_n, threshold_n, trust, trouble}
+//   {type: 'pinswitch-state', version: 1, hash, values, friction_n, load_n, threshold_n, trust, trouble, said}
+//   `hash` and `values` are those that the frictions belong to; `said` is what of the last message could not be taken
 // In, from the page around:
 //   {type: 'pinswitch-set', values: {...}}   values by table.key, in place of the present ones
 //   {type: 'pinswitch-set', hash: '#v=1&...'} the whole state, as in an address
@@ -21,10 +22,22 @@ class Embed {
     });
   }
 
-  tell(state, data, trouble) {
-    if (!this.isOn || parent === window) return;
+  // A message of the page around was taken, but for what is `said`; where it changed nothing no design will tell.
+  took(said, isUnchanged) {
+    this.said = said || null;
+    if (isUnchanged && this.told) this.send();
+  }
+
+  // Tells what the engine answered for the state that it was asked for.
+  tell(asked, data, trouble) {
     const f = data?.manifest.friction;
-    parent.postMessage({ type: 'pinswitch-state', version: 1, hash: encodeHash(state.now), values: state.now.values, friction_n: f?.friction_n ?? null, load_n: f?.load_n ?? null,
-      threshold_n: f?.threshold_n ?? null, trust: f?.trust ?? null, trouble: trouble ? troubleWords(trouble) : null }, '*');
+    this.told = { hash: encodeHash(asked), values: asked.values, friction_n: f?.friction_n ?? null, load_n: f?.load_n ?? null,
+      threshold_n: f?.threshold_n ?? null, trust: f?.trust ?? null, trouble: trouble ? troubleWords(trouble) : null };
+    this.send();
+  }
+
+  send() {
+    if (!this.isOn || parent === window) return;
+    parent.postMessage({ type: 'pinswitch-state', version: 1, ...this.told, said: this.said ?? null }, '*');
   }
 }

@@ -21,12 +21,20 @@ addEventListener('unhandledrejection', (event) => fault(String(event.reason?.mes
 function showNotice(words, ...acts) {
   const host = byId('notice');
   host.hidden = !words;
+  host.dataset.about = '';
   host.replaceChildren();
   if (!words) return;
   host.append(make('p', words));
   host.append(...acts);
   host.append(button('×', () => showNotice(''), { class: 'tiny', 'aria-label': WORDS.close }));
 }
+
+// The same about something that may pass: `forgetNotice` takes it away, and leaves any other.
+function showNoticeAbout(about, words, ...acts) {
+  showNotice(words, ...acts);
+  byId('notice').dataset.about = about;
+}
+function forgetNotice(about) { if (byId('notice').dataset.about === about) showNotice(''); }
 
 function fillWords() {
   document.title = WORDS.title;
@@ -76,6 +84,7 @@ class Page {
     this.exactly = later(() => this.design('exact'), CALM_MS);
     this.address = later(() => this.writeAddress(), ADDRESS_MS);
     state.addEventListener('change', () => { this.changed(); this.address(); });
+    state.addEventListener('step', () => forgetNotice('address'));
     addEventListener('hashchange', () => this.addressChanged());
     byId('maker').textContent = facts.generator;
     this.changed();
@@ -83,12 +92,12 @@ class Page {
     new Served(state).begin(started);
   }
 
-  // The first state: of the address, of the server's file, of the last visit, or a published layout.
+  // The first state: of the address, of what the server was started with, of the last visit, or a published layout.
   async first(started) {
     const given = await decodeHash(location.hash, this.state.fields);
-    if (given?.said.length) showNotice(given.said.join(' '));
+    if (given?.said.length) showNoticeAbout('address', given.said.join(' '));
     if (given?.parts) { this.state.begin(given.parts); return; }
-    if (started?.file && !started.trouble) { this.state.begin({ values: started.values }); return; }
+    if (started?.begun.said && !started.trouble) { this.state.begin({ values: started.values }); return; }
     const last = given ? null : await decodeHash(remembered().hash ?? '', this.state.fields);
     if (last?.parts) { this.state.begin(last.parts); say(WORDS.welcomeBack); return; }
     this.state.begin({ values: { ...this.published()?.values } });
@@ -96,8 +105,12 @@ class Page {
 
   async take(hash) {
     const given = await decodeHash(hash, this.state.fields);
-    showNotice(given?.said.join(' ') ?? '');
+    const said = [...(given?.said ?? []), ...(given?.broken ? [WORDS.hash.stays] : [])].join(' ');
+    showNoticeAbout('address', said);
+    const before = this.state.now;
     if (given?.parts) this.state.change(given.parts);
+    this.embed.took(said, this.state.now === before);
+    this.address();
   }
 
   addressChanged() { if (location.hash !== this.written) this.take(location.hash); }
@@ -122,7 +135,8 @@ class Page {
   }
 
   async design(quality) {
-    const { values, model } = this.state.now;
+    const { now } = this.state;
+    const { values, model } = now;
     const asked = this.asked;
     const question = document.body.dataset.asked;
     document.body.dataset.pending = 'true';
@@ -135,7 +149,7 @@ class Page {
       showTrouble(answer.trouble, this.controls, this.state);
       this.downloads.refresh();
       document.body.dataset.answered = question;
-      this.embed.tell(this.state, answer.data, answer.trouble);
+      this.embed.tell(now, answer.data, answer.trouble);
       if (quality === 'exact' && asked === this.asked) document.body.dataset.pending = 'false';
       if (this.isGone) { this.isGone = false; showNotice(''); }
     } catch (problem) {

@@ -18,19 +18,19 @@ class Served {
   }
 
   begin(started) {
-    if (!started?.file) return;
-    this.file = started.file;
+    if (!started?.begun.file) return;
+    this.file = started.begun.file;
     byId('save').textContent = WORDS.saveTo(this.file);
-    byId('save').hidden = false;
+    byId('save').hidden = !started.begun.saves;
     const values = this.state.withoutDefaults(started.values);
     // What the page knows of the file: its stamp, of this visit or of the last one.
     const { seen } = remembered();
     const isSame = sameValue(values, this.state.now.values);
     this.stamp = isSame || (seen?.file === this.file && seen.stamp === started.stamp) ? started.stamp : '';
     this.know(this.stamp);
-    if (started.trouble) showNotice(started.trouble);
+    if (started.trouble) showNoticeAbout('file', started.trouble);
     // An address that somebody was given says nothing of the file: saving asks then.
-    else if (!this.stamp && seen?.file === this.file) showNotice(WORDS.fileDiffers(this.file), this.showButton(values, started.stamp));
+    else if (!this.stamp && seen?.file === this.file) showNoticeAbout('file', WORDS.fileDiffers(this.file), this.showButton(values, started.stamp));
     this.follow(started.version);
   }
 
@@ -57,7 +57,7 @@ class Served {
           pause_ms = 1000;
           if (next.version === version) continue;
           version = next.version;
-          showNotice(next.trouble ?? '');
+          if (next.trouble) showNoticeAbout('file', next.trouble); else forgetNotice('file');
           if (next.trouble || !next.values || next.stamp === this.stamp) continue;
           this.know(next.stamp);
           if (!sameValue(this.state.withoutDefaults(next.values), this.state.now.values)) {
@@ -72,21 +72,23 @@ class Served {
     }
   }
 
-  // Saves over the file with this stamp, and over no other.
-  async save(stamp = this.stamp) {
+  // Saves over the file with this stamp, and over no other; `anew` where it is gone.
+  async save(stamp = this.stamp, anew = false) {
     const { values, model } = this.state.now;
     try {
-      const response = await fetch('save', { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify({ values, stamp }) });
-      const { saved, stamp: written, differs, error } = await response.json();
+      const response = await fetch('save', { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify({ values, stamp, anew }) });
+      const { saved, stamp: written, hidden, differs, gone, error } = await response.json();
       if (saved) {
         this.know(written);
-        showNotice('');
+        showNotice(hidden.length ? WORDS.savedUnder(saved, hidden.map(([option, path]) => [option, fieldName(this.state.fields.get(path))])) : '');
         say(model ? WORDS.savedWithoutModel(saved) : WORDS.savedTo(saved));
       } else if (differs) {
         const names = [...this.state.fields.keys()].filter((path) => !sameValue(differs.values[path] ?? null, values[path] ?? null));
         if (!names.length) { await this.save(differs.stamp); return; }
         const over = button(WORDS.saveOver, () => this.save(differs.stamp));
-        showNotice(WORDS.fileNewer(this.file, names.slice(0, 6).map((path) => fieldName(this.state.fields.get(path)))), this.showButton(differs.values, differs.stamp), over);
+        showNoticeAbout('file', WORDS.fileNewer(this.file, names.slice(0, 6).map((path) => fieldName(this.state.fields.get(path)))), this.showButton(differs.values, differs.stamp), over);
+      } else if (gone) {
+        showNoticeAbout('file', WORDS.fileGone(this.file), button(WORDS.writeAnew, () => this.save(stamp, true)));
       } else {
         showNotice(WORDS.notSaved(this.file) + error);
       }

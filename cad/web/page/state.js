@@ -71,6 +71,7 @@ class State extends EventTarget {
     to.push(this.now);
     this.now = from.pop();
     this.last = { what: null, when: 0 };
+    this.dispatchEvent(new Event('step'));
     this.tell();
   }
 
@@ -109,7 +110,7 @@ function readValue(field, text) {
 async function decodeHash(hash, fields) {
   const text = hash.replace(/^#/, '');
   if (!text) return null;
-  const pairs = text.split('&').map((pair) => [pair.slice(0, pair.indexOf('=')), pair.slice(pair.indexOf('=') + 1)]).filter(([name]) => name);
+  const pairs = text.split('&').map((pair) => pair.split(/=(.*)/s)).filter(([name]) => name);
   const given = new Map(pairs);
   const said = [];
   const twice = [...given.keys()].filter((name) => pairs.filter(([other]) => other === name).length > 1);
@@ -120,8 +121,11 @@ async function decodeHash(hash, fields) {
   const parts = { values: {}, model: null, ask: { threshold_n: null, friction: [] } };
   const [unknown, wrong] = [[], []];
   for (const [name, raw] of given) {
+    const isKnown = fields.has(name) || ['model', 'ask.threshold_n', 'ask.friction'].includes(name);
     let value;
-    try { value = decodeURIComponent(raw); } catch { wrong.push(name); continue; }
+    // A name alone has no value.
+    if (raw === undefined) { (isKnown ? wrong : unknown).push(name.slice(0, 60)); continue; }
+    try { value = decodeURIComponent(raw); } catch { (isKnown ? wrong : unknown).push(name.slice(0, 60)); continue; }
     if (name === 'model') {
       parts.model = await unpackModel(raw);
       if (!parts.model) said.push(WORDS.hash.model);
@@ -148,7 +152,11 @@ async function decodeHash(hash, fields) {
 function readAsk(ask, name, text) {
   const numbers = text.split(',').map((item) => item.split(':').map(Number));
   if (!numbers.flat().every(isAsked)) return false;
-  if (name === 'ask.threshold_n') { [[ask.threshold_n]] = numbers; return true; }
+  if (name === 'ask.threshold_n') {
+    if (numbers.flat().length !== 1) return false;
+    [[ask.threshold_n]] = numbers;
+    return true;
+  }
   if (!numbers.every((pair) => pair.length === 2)) return false;
   ask.friction = numbers.map(([load_n, friction_n]) => ({ load_n, friction_n }));
   return true;

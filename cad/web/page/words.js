@@ -107,7 +107,7 @@ const WORDS = {
   hash: {
     older: (v) => `The address is of version ${v}, which there never was: versions begin with 1.`,
     newer: (v) => `The address is of version ${v}, newer than this page (1).`,
-    broken: 'The address holds no design, or is cut off. The page starts with a published one.',
+    broken: 'The address holds no design, or is cut off.', stays: 'The design stays as it was.',
     unknown: (names) => `The address names ${names.join(', ')}, which this version does not have.`,
     wrong: (names) => `The address gives ${names.join(', ')} a value that cannot be.`,
     rest: 'The rest was taken.',
@@ -119,6 +119,8 @@ const WORDS = {
   saveTo: (file) => `Save to ${file}`, savedTo: (file) => `Saved to ${file}.`, notSaved: (file) => `${file} was not saved: `, fileChanged: (file) => `${file} was changed: its values are shown. Undo goes back.`,
   fileDiffers: (file) => `The page shows a design of its address, and ${file} has other values now.`,
   fileNewer: (file, names) => `${file} was not saved: it has been changed since this page last read it (${names.join(', ')}).`,
+  savedUnder: (file, fields) => `Saved to ${file}. What it says of ${fields.map(([, name]) => name).join(', ')} counts once pinswitch view is started without ${[...new Set(fields.map(([option]) => option))].join(' and ')}.`,
+  fileGone: (file) => `${file} was not saved: it is no longer there.`, writeAnew: 'Write it anew',
   showFile: (file) => `Show ${file}`, saveOver: 'Save over it', savedWithoutModel: (file) => `Saved to ${file}, which holds no model: keep your model.toml, and make the parts with --model.`,
 
   starting: 'Starting the engine …', working: 'Working …',

@@ -5,22 +5,32 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use http_body_util::{BodyExt, Limited};
 use hyper::body::{Bytes, Incoming};
-use pinswitch_switch::config::{Name, read, rewritten};
+use pinswitch_switch::config::{Configuration, parameter::Parameter, rewritten};
 use pinswitch_web::{Answer, Engine, Values, configuration, values};
 use serde::Deserialize;
 
 use super::stamp;
 use crate::input::read_text_file;
+use crate::source::Source;
 use crate::write::write_back;
 
 /// Largest question: a table that is too large is refused by the engine, with what to do instead.
 const LARGEST: usize = 64 << 20;
 
-/// The engine, for one question at a time, and the file that may be written.
+/// The engine, for one question at a time, and what the server was started with.
 #[derive(Debug)]
 pub(super) struct Configurator {
     engine: Mutex<Engine>,
-    file: Option<PathBuf>,
+    source: Source,
+    file: Option<Followed>,
+}
+
+/// The file that is followed.
+#[derive(Clone, Debug)]
+pub(super) struct Followed {
+    pub(super) path: PathBuf,
+    /// Whether it is a text, into which values can be written.
+    pub(super) is_text: bool,
 }
 
 /// What is to be written.
@@ -30,12 +40,25 @@ struct Saved {
     /// The stamp of the file as the page knows it. Another file is written over only if the page has asked.
     #[serde(default)]
     stamp: Option<String>,
+    /// Whether a file that is gone is to be written anew.
+    #[serde(default)]
+    anew: bool,
+}
+
+/// What was written.
+struct Written {
+    file: String,
+    stamp: String,
+    /// Fields whose new values an option of the command line hides, with that option.
+    hidden: Vec<(&'static str, String)>,
 }
 
 /// Why nothing was written.
 enum NotSaved {
     /// The file is another one than the page knows: its stamp and its values.
     Differs { stamp: String, values: Values },
+    /// The file is no longer there.
+    Gone,
     /// Anything else.
     Because(String),
 }
@@ -54,13 +77,19 @@ pub(super) async fn question(body: Incoming) -> Result<Bytes, String> {
 }
 
 impl Configurator {
-    pub(super) fn new(file: Option<PathBuf>) -> Self {
-        Self { engine: Mutex::default(), file }
+    pub(super) fn new(source: Source, file: Option<Followed>) -> Self {
+        Self { engine: Mutex::default(), source, file }
     }
 
-    /// The name of the file that is followed, as a JSON value.
-    pub(super) fn file(&self) -> serde_json::Value {
-        self.file.as_ref().map(|file| file.display().to_string()).into()
+    /// What the server was started with, as JSON: the file that is followed, whether it can be saved, and whether the command
+    /// line said what to show.
+    pub(super) fn beginning(&self) -> serde_json::Value {
+        let file = self.file.as_ref();
+        serde_json::json!({
+            "file": file.map(|file| file.path.display().to_string()),
+            "saves": file.is_some_and(|file| file.is_text),
+            "said": self.source.is_said(),
+        })
     }
 
     /// The engine's answer. It computes beside the server, which goes on answering.
@@ -76,40 +105,54 @@ impl Configurator {
     /// read it is left as it is, and told.
     pub(super) fn save(&self, question: &[u8]) -> String {
         match self.saved(question) {
-            Ok((file, stamp)) => serde_json::json!({ "saved": file, "stamp": stamp }).to_string(),
+            Ok(Written { file, stamp, hidden }) => {
+                serde_json::json!({ "saved": file, "stamp": stamp, "hidden": hidden }).to_string()
+            }
             Err(NotSaved::Differs { stamp, values }) => {
                 serde_json::json!({ "differs": { "stamp": stamp, "values": values } }).to_string()
             }
+            Err(NotSaved::Gone) => serde_json::json!({ "gone": true }).to_string(),
             Err(NotSaved::Because(reason)) => error(&reason),
         }
     }
 
-    fn saved(&self, question: &[u8]) -> Result<(String, String), NotSaved> {
-        let nothing = || "no file is followed: start `pinswitch view FILE`".to_owned();
-        let file = self.file.as_ref().ok_or_else(nothing)?;
+    fn saved(&self, question: &[u8]) -> Result<Written, NotSaved> {
+        let nothing = || "no file of text is followed: start `pinswitch view FILE.toml`".to_owned();
+        let file = &self.file.as_ref().filter(|file| file.is_text).ok_or_else(nothing)?.path;
         let name = file.display().to_string();
         let saved: Saved = serde_json::from_slice(question).map_err(|e| e.to_string())?;
-        let mut configuration = configuration(&saved.values).map_err(|e| e.to_string())?;
-        let text = read_text_file(file).map_err(|e| e.message().to_owned())?;
-        let (before, places) = read(&text, &name).map_err(|e| e.to_string())?;
-        let lent = Name::lent_by(&name);
-        let is_lent = !places.sets("switch.name");
+        let wanted = configuration(&saved.values).map_err(|e| e.to_string())?;
+        let is_gone = !file.exists() && !file.is_symlink();
+        if is_gone && !saved.anew {
+            return Err(NotSaved::Gone);
+        }
+        let text = if is_gone { Ok(String::new()) } else { read_text_file(file) };
+        let text = text.map_err(|e| e.message().to_owned())?;
+        // As the page has it: a preset lies under the file, options over it, and its name is that of the file if it has none.
+        let shown = self.source.configuration_from(&text).map_err(|e| e.message().to_owned())?;
         let now = stamp(text.as_bytes());
-        if saved.stamp.is_some_and(|known| known != now) {
-            let mut before = before;
-            if is_lent {
-                before.switch.name = lent;
-            }
-            return Err(NotSaved::Differs { stamp: now, values: values(&before) });
+        if !is_gone && saved.stamp.is_some_and(|known| known != now) {
+            return Err(NotSaved::Differs { stamp: now, values: values(&shown) });
         }
-        // The name that the file lent the set is no value that somebody chose.
-        if is_lent && configuration.switch.name == lent {
-            configuration.switch.name = before.switch.name;
-        }
-        let text = rewritten(&text, &name, &configuration).map_err(|e| e.to_string())?;
+        let text = rewritten(&text, &name, &shown, &wanted).map_err(|e| e.to_string())?;
         write_back(file, text.as_bytes()).map_err(|e| e.to_string())?;
-        Ok((name, stamp(text.as_bytes())))
+        let hidden = hidden(&self.source, &shown, &wanted);
+        Ok(Written { file: name, stamp: stamp(text.as_bytes()), hidden })
     }
+}
+
+/// Options of the command line, and the fields that they give and that were changed nevertheless.
+fn hidden(source: &Source, shown: &Configuration, wanted: &Configuration) -> Vec<(&'static str, String)> {
+    let differs = |field: &str| {
+        let parameter = Configuration::PARAMETERS.iter().find(|p| p.path() == field);
+        let text = |p: &Parameter<Configuration>, of| (p.get)(of).to_string();
+        parameter.is_some_and(|p| text(p, shown) != text(p, wanted))
+    };
+    source
+        .options()
+        .filter(|(_, field)| differs(field))
+        .map(|(option, field)| (option, field.to_owned()))
+        .collect()
 }
 
 fn error(reason: &str) -> String {

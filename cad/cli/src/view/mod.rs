@@ -16,7 +16,7 @@ use tokio::sync::watch;
 use super::law::LawChoice;
 use super::source::Source;
 use super::{Failure, print};
-use configure::Configurator;
+use configure::{Configurator, Followed};
 use pinswitch_switch::built::Built;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::formats::named;
@@ -28,10 +28,12 @@ use state::State;
 /// Show the page of a configuration on this machine, rebuilt whenever the file changes, and a configurator that changes it.
 ///
 /// Serves on 127.0.0.1 only, and only to its own pages: the page of the set at /, the configurator at /configure, which
-/// writes the file only when asked. A configuration that breaks shows its error, and the last good state stays. Ends with
-/// Ctrl-C.
+/// begins with that configuration and writes its file only when asked. Without a configuration the page shows three-double,
+/// and the configurator goes on with what was last looked at in it. A configuration that breaks shows its error, and the
+/// last good state stays. --law chooses the curve of the page at /; the configurator draws the physics law, and the others
+/// beside it. Ends with Ctrl-C.
 #[derive(Args, Clone, Debug)]
-#[command(mut_arg("config", |a| a.required(false).default_value("three-double")))]
+#[command(mut_arg("config", |a| a.required(false)))]
 #[command(after_help = "Examples:
   pinswitch view
   pinswitch init three-double --out mine.toml && pinswitch view mine.toml")]
@@ -57,7 +59,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let (sender, states) =
         watch::channel(build(arguments, design?, 1, followed.as_ref().map_or(&[], |(bytes, _)| bytes))?);
-    let configurator = Configurator::new(followed.as_ref().map(|(_, file)| file.clone()));
+    let file = followed.as_ref().map(|(bytes, path)| {
+        // An assembly.3mf holds its configuration packed.
+        Followed { path: path.clone(), is_text: !bytes.starts_with(b"PK") }
+    });
+    let configurator = Configurator::new(arguments.source.clone(), file);
     // Kept to the end, also where there is no file to follow: pages that wait are not sent away.
     let sender = Arc::new(sender);
     // One thread answers all, however many wait.

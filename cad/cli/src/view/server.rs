@@ -125,7 +125,7 @@ impl Site {
                 let states = self.states.clone();
                 let state = match path.as_str() {
                     "/state" => after(states, known.parse().unwrap_or(0), LONG_POLL_TIMEOUT).await,
-                    _ => values_after(states, known, LONG_POLL_TIMEOUT, &self.configurator.file()).await,
+                    _ => values_after(states, known, LONG_POLL_TIMEOUT, &self.configurator.beginning()).await,
                 };
                 self.response(StatusCode::OK, "application/json", state)
             }

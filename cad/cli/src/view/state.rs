@@ -34,18 +34,18 @@ impl State {
 }
 
 /// Waits for a state other than that with the token `known`, with a timeout; gives its token, stamp, values and trouble as
-/// JSON, for a configurator that follows `file`. The server may have been started anew since, with another file.
+/// JSON, for a configurator, with what the server began with. The server may have been started anew since, with another file.
 pub(super) async fn values_after(
     mut states: watch::Receiver<State>,
     known: &str,
     timeout: Duration,
-    file: &serde_json::Value,
+    beginning: &serde_json::Value,
 ) -> String {
     let _ = tokio::time::timeout(timeout, states.wait_for(|state| state.token() != known)).await;
     let state = states.borrow();
     let trouble = serde_json::to_string(&state.trouble).unwrap_or_else(|_| "null".to_owned());
     format!(
-        r#"{{"version":"{}","stamp":"{}","values":{},"file":{file},"trouble":{trouble}}}"#,
+        r#"{{"version":"{}","stamp":"{}","values":{},"begun":{beginning},"trouble":{trouble}}}"#,
         state.token(),
         state.stamp,
         state.values

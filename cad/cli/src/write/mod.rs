@@ -78,14 +78,19 @@ fn refuse_obstacle(path: &Path) -> Result<(), WriteError> {
 /// [`WriteError`] names the path; the old file is untouched.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     refuse_obstacle(path)?;
-    write_back(path, bytes)
+    write_whole(path, bytes)
 }
 
-/// The same for a file that was read in order to be changed.
+/// The same for a file that was read in order to be changed. A link to it stays one: the file that it names is written.
 ///
 /// # Errors
 /// As [`write_file`].
 pub fn write_back(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    let file = if path.is_symlink() { path.canonicalize() } else { Ok(path.to_owned()) };
+    write_whole(&file.map_err(WriteError::at(path))?, bytes)
+}
+
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     match std::fs::metadata(path) {
         Ok(there) if there.is_dir() => return Err(WriteError::at(path)(ErrorKind::IsADirectory.into())),
         // A pipe or a terminal has no old content, and is not replaced by a file.
@@ -132,6 +137,22 @@ mod tests {
         write_set(folder.path(), &[file("a"), file("b")]).unwrap();
         assert_eq!(std::fs::read_to_string(folder.path().join("a")).unwrap(), "new");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_written_back_through_a_link_is_its_file() {
+        let place = tempfile::tempdir().unwrap();
+        let [file, link] = ["there/mine.toml", "link.toml"].map(|name| place.path().join(name));
+        std::fs::create_dir(place.path().join("there")).unwrap();
+        std::fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink("there/mine.toml", &link).unwrap();
+        write_back(&link, b"new").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "new");
+        std::fs::remove_file(&file).unwrap();
+        let said = write_back(&link, b"new").unwrap_err().to_string();
+        assert!(said.contains("leads nowhere"), "{said}");
     }
 
     #[cfg(unix)]

@@ -3,33 +3,39 @@
 use toml_edit::{Array, DocumentMut, Item, RawString, Table, TableLike, Value};
 
 use super::parameters::Configuration;
-use super::read::read;
 use super::{ConfigError, Place};
 
-/// `text` with the values of `configuration`: what it sets otherwise is changed in its place, what it does not set and is
-/// no default is added to its table. Everything else stays as it is: comments, line ends, and a mark at its begin that says
-/// that it is UTF-8. What stands behind a pin on its line goes with the pin. `file` names the text in errors.
+/// `text` with what differs between the configuration that it was `shown` as and the one that is `wanted`: that is changed
+/// in its place, or added to its table. Everything else stays as it is: comments, line ends, and a mark at its begin that
+/// says that it is UTF-8. What stands behind a pin on its line goes with the pin. `file` names the text in errors.
+///
+/// What it was shown as is more than it says, where a preset lay under it or an option over it.
 ///
 /// ```
-/// use pinswitch_switch::config::{Configuration, assign, read, rewritten};
+/// use pinswitch_switch::config::{assign, read, rewritten};
 ///
 /// let text = "# mine\n[shell]\nwidth_mm = 12 # narrow\n";
-/// let (mut configuration, _) = read(text, "mine.toml")?;
-/// assign(&mut configuration, "shell.width_mm=13")?;
-/// assert_eq!(rewritten(text, "mine.toml", &configuration)?, "# mine\n[shell]\nwidth_mm = 13.0 # narrow\n");
+/// let (shown, _) = read(text, "mine.toml")?;
+/// let mut wanted = shown.clone();
+/// assign(&mut wanted, "shell.width_mm=13")?;
+/// assert_eq!(rewritten(text, "mine.toml", &shown, &wanted)?, "# mine\n[shell]\nwidth_mm = 13.0 # narrow\n");
 /// # Ok::<(), pinswitch_switch::config::ConfigError>(())
 /// ```
 ///
 /// # Errors
-/// [`ConfigError`] for a text that is no configuration.
-pub fn rewritten(text: &str, file: &str, configuration: &Configuration) -> Result<String, ConfigError> {
-    let (before, _) = read(text, file)?;
+/// [`ConfigError`] for a text that is no TOML.
+pub fn rewritten(
+    text: &str,
+    file: &str,
+    shown: &Configuration,
+    wanted: &Configuration,
+) -> Result<String, ConfigError> {
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| {
         ConfigError::syntax(Place::new(file, text, e.span().map_or(0, |s| s.start)), e.message())
     })?;
     for parameter in Configuration::PARAMETERS {
-        let value = (parameter.get)(configuration);
-        if value.to_string() == (parameter.get)(&before).to_string() {
+        let value = (parameter.get)(wanted);
+        if value.to_string() == (parameter.get)(shown).to_string() {
             continue;
         }
         if document.get(parameter.section).is_none() {
@@ -149,7 +155,7 @@ fn comment_lines(before: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::assign;
+    use crate::config::{assign, read};
     use crate::templates;
     use proptest::prelude::*;
 
@@ -158,10 +164,14 @@ mod tests {
         for from in templates::names() {
             let text = templates::text(from).unwrap();
             let (own, _) = read(&text, from).unwrap();
-            assert_eq!(rewritten(&text, from, &own).unwrap(), text, "nothing to change changes nothing");
+            assert_eq!(
+                rewritten(&text, from, &own, &own).unwrap(),
+                text,
+                "nothing to change changes nothing"
+            );
             for to in templates::names() {
                 let (wanted, _) = read(&templates::text(to).unwrap(), to).unwrap();
-                let changed = rewritten(&text, from, &wanted).unwrap();
+                let changed = rewritten(&text, from, &own, &wanted).unwrap();
                 assert_eq!(read(&changed, from).unwrap().0, wanted, "{from} to {to}");
                 let comments = |text: &str| text.lines().filter(|l| l.trim_start().starts_with('#')).count();
                 assert_eq!(comments(&changed), comments(&text), "{from} to {to}");
@@ -172,21 +182,38 @@ mod tests {
     #[test]
     fn inline_tables_and_missing_tables_take_values() {
         let text = "shell = { width_mm = 12 } # inline\n";
-        let (mut wanted, _) = read(text, "x.toml").unwrap();
+        let (shown, _) = read(text, "x.toml").unwrap();
+        let mut wanted = shown.clone();
         for assignment in ["shell.wall_mm=9", "shell.width_mm=14", "layout.pins=[5, 8]"] {
             assign(&mut wanted, assignment).unwrap();
         }
-        let changed = rewritten(text, "x.toml", &wanted).unwrap();
+        let changed = rewritten(text, "x.toml", &shown, &wanted).unwrap();
         assert_eq!(read(&changed, "x.toml").unwrap().0, wanted, "{changed}");
         assert!(changed.contains("# inline"), "{changed}");
-        assert!(rewritten("[shell", "x.toml", &wanted).is_err());
+        assert!(rewritten("[shell", "x.toml", &shown, &wanted).is_err());
+    }
+
+    #[test]
+    fn what_lay_under_or_over_a_text_is_not_written_and_what_undoes_it_is() {
+        let text = "[layout]\npins = [5]\n";
+        let (mut shown, _) = read(text, "x.toml").unwrap();
+        let default = shown.clone();
+        assign(&mut shown, "shell.width_mm=13").unwrap();
+        let mut wanted = shown.clone();
+        assign(&mut wanted, "shell.wall_mm=9").unwrap();
+        let changed = rewritten(text, "x.toml", &shown, &wanted).unwrap();
+        assert_eq!(changed, format!("{text}\n[shell]\nwall_mm = 9.0\n"));
+        // Back to the default, against the preset.
+        let changed = rewritten(text, "x.toml", &shown, &default).unwrap();
+        assert!(changed.contains("width_mm"), "{changed}");
     }
 
     /// The text with its pins in these grooves.
     fn with_pins(text: &str, pins: &str) -> String {
-        let (mut wanted, _) = read(text, "x.toml").unwrap();
+        let (shown, _) = read(text, "x.toml").unwrap();
+        let mut wanted = shown.clone();
         assign(&mut wanted, &format!("layout.pins={pins}")).unwrap();
-        let changed = rewritten(text, "x.toml", &wanted).unwrap();
+        let changed = rewritten(text, "x.toml", &shown, &wanted).unwrap();
         assert_eq!(read(&changed, "x.toml").unwrap().0, wanted, "{changed}");
         changed
     }

@@ -193,28 +193,32 @@ impl<'a> Screen<'a> {
 
     /// Gain of free offsets of each series, one per direction, for the series that are not excluded.
     pub(crate) fn series_offsets(&self) -> Vec<(usize, f64)> {
-        let cells: Vec<&Vec<usize>> = self
-            .data()
-            .cells
-            .iter()
-            .filter(|cell| cell.first().is_some_and(|row| !self.data().is_excluded(*row)))
-            .collect();
-        let offsets = cells.iter().map(|cell| {
-            let mut column = vec![0.0; self.predicted.len()];
-            cell.iter().for_each(|r| column[*r] = 1.0);
-            column
-        });
-        let mut columns = vec![Vec::new(); self.data().series];
-        for (cell, (column, _)) in cells.iter().zip(self.all_visible(offsets)) {
-            columns[self.data().series_of[cell[0]]].push(column);
+        let data = self.data();
+        let mut cells = vec![Vec::new(); data.series];
+        for rows in &data.cells {
+            if let Some(row) = rows.first().filter(|row| !data.is_excluded(**row)) {
+                cells[data.series_of[*row]].push(rows);
+            }
         }
-        columns
-            .iter()
-            .enumerate()
-            .filter_map(|(series, columns)| {
-                least_squares(columns, &self.residual).map(|(gain, _)| (series, gain))
-            })
-            .collect()
+        let offset = |rows: &Vec<usize>| {
+            let mut column = vec![0.0; self.predicted.len()];
+            rows.iter().for_each(|r| column[*r] = 1.0);
+            column
+        };
+        // A few series at a time: a column takes as much room as the residual, and there are thousands of series.
+        let mut gains = Vec::new();
+        let numbered: Vec<(usize, Vec<&Vec<usize>>)> = cells.into_iter().enumerate().collect();
+        for several in numbered.chunks(LANES) {
+            let mut columns = self
+                .all_visible(several.iter().flat_map(|(_, cells)| cells).map(|rows| offset(rows)))
+                .into_iter();
+            for (series, cells) in several {
+                let own: Vec<Vec<f64>> =
+                    columns.by_ref().take(cells.len()).map(|(column, _)| column).collect();
+                gains.extend(least_squares(&own, &self.residual).map(|(gain, _)| (*series, gain)));
+            }
+        }
+        gains
     }
 }
 

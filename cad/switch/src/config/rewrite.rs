@@ -124,12 +124,13 @@ fn lay_out_as(old: &Array, new: &mut Array) {
             Some(known) => (known.before, known.behind),
             None => (own_line.clone(), String::new()),
         };
-        let before = std::mem::take(&mut orphaned) + &before;
-        let breaks = ahead.contains('#') && !before.starts_with('\n');
-        let begin = if breaks { own_line.as_str() } else { "" };
-        value
-            .decor_mut()
-            .set_prefix(format!("{ahead}{begin}{}", if breaks { before.trim_start() } else { &before }));
+        let mut prefix = ahead + &std::mem::take(&mut orphaned) + &before;
+        // Behind a comment it would be part of it.
+        if prefix.rsplit('\n').next().is_some_and(|line| line.contains('#')) {
+            prefix.truncate(prefix.trim_end().len());
+            prefix += &own_line;
+        }
+        value.decor_mut().set_prefix(prefix);
         value.decor_mut().set_suffix("");
         ahead = behind;
     }

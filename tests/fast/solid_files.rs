@@ -167,8 +167,11 @@ fn the_3mf_of_a_set_makes_the_set_again() {
             .replace(['<', '>', '&'], "+"),
     )
     .unwrap();
-    for (config, name) in [("three-double", "first"), ("mine.toml", "second")] {
-        done(folder.path(), &["-q", "generate", config, "--out", name]);
+    let laws: [&[&str]; 3] = [&[], &[], &["--law", "paper"]];
+    for ((config, name), law) in
+        [("three-double", "first"), ("mine.toml", "second"), ("three-double", "third")].into_iter().zip(laws)
+    {
+        done(folder.path(), &[&["-q", "generate", config, "--out", name], law].concat());
         let package = format!("{name}/assembly.3mf");
         let again = format!("{name}-again");
         done(folder.path(), &["-q", "generate", &package, "--out", &again]);

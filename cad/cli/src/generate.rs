@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use super::calibrated_curve::calibrated_curve;
 use super::law::LawChoice;
 use super::slicing;
-use super::source::Source;
+use super::source::{Made, Source};
 use super::{Failure, print};
 use crate::write::{PublishError, SetFolder};
 use pinswitch_switch::built::Built;
@@ -80,10 +80,10 @@ fn refused(error: PublishError) -> Failure {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let slicer = if arguments.slice { slicing::installed()? } else { None };
-    let (design, origin) = arguments.source.design_and_origin()?;
+    let Made { design, origin, law } = arguments.source.made()?;
     let prediction = match &arguments.model {
         Some(model) => Prediction::with_curve(&design, calibrated_curve(&design, model)?),
-        None => arguments.law.prediction(&design)?,
+        None => arguments.law.or_of_set(law.as_deref()).prediction(&design)?,
     };
     let folder = arguments
         .out

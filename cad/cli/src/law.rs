@@ -23,6 +23,22 @@ fn laws() -> PossibleValuesParser {
 }
 
 impl LawChoice {
+    /// This choice, or the law of the set that is made again. A set by a calibrated model tells that its model is needed.
+    pub(super) fn or_of_set(&self, law: Option<&str>) -> Self {
+        let of_set = law.and_then(Law::named).filter(|_| self.law.is_none());
+        match of_set {
+            Some(Law::Calibrated) => {
+                log::warn!(
+                    "the curve of that set came from a calibrated model: give it with --model to make the same set; here it comes from the {} law",
+                    Law::DEFAULT.as_str()
+                );
+                self.clone()
+            }
+            Some(law) => Self { law: Some(law.as_str().to_owned()) },
+            None => self.clone(),
+        }
+    }
+
     /// The prediction of `design` by the chosen law.
     ///
     /// # Errors

@@ -81,7 +81,7 @@ impl Source {
     /// # Errors
     /// [`Failure::BadInput`] names file, line, field, value, bound and remedy.
     pub(super) fn design(&self) -> Result<Design, Failure> {
-        self.design_and_origin().map(|(design, _)| design)
+        self.made().map(|made| made.design)
     }
 
     /// As [`Self::design`], from these bytes of its file: they are what the design shows, whatever happens to the file.
@@ -122,20 +122,21 @@ impl Source {
         }
     }
 
-    /// As [`Self::design`], with where the configuration comes from.
+    /// As [`Self::design`], with where the configuration comes from, and the law of its set.
     ///
     /// # Errors
     /// As [`Self::design`].
-    pub(super) fn design_and_origin(&self) -> Result<(Design, Origin), Failure> {
+    pub(super) fn made(&self) -> Result<Made, Failure> {
         let (text, file, kind) = read_configuration_text(self.config())?;
         let design = self.design_of_text(&text, &file)?;
-        let origin = match kind {
-            Kind::Text => Origin::of(&file, &text),
-            Kind::Package(set_s) => set_s
-                .and_then(|source| Origin::from_set(source, &file))
-                .unwrap_or_else(|| Origin::of_package(&file, design.configuration())),
+        let (origin, law) = match kind {
+            Kind::Text => (Origin::of(&file, &text), None),
+            Kind::Package(set_s, law) => {
+                let from_set = set_s.and_then(|source| Origin::from_set(source, &file));
+                (from_set.unwrap_or_else(|| Origin::of_package(&file, design.configuration())), law)
+            }
         };
-        Ok((design, origin))
+        Ok(Made { design, origin, law })
     }
 
     fn design_of_text(&self, text: &str, file: &str) -> Result<Design, Failure> {
@@ -173,8 +174,9 @@ pub(super) fn read_text(name: &str) -> Result<(String, String), Failure> {
 enum Kind {
     /// A TOML file, or a template.
     Text,
-    /// A 3MF with a configuration in it, and what the set beside it says that it was made from.
-    Package(Option<SourceEntry>),
+    /// A 3MF with a configuration in it, what the set beside it says that it was made from, and the law of its curve where
+    /// that was chosen.
+    Package(Option<SourceEntry>, Option<String>),
 }
 
 fn read_configuration_text(name: &str) -> Result<(String, String, Kind), Failure> {
@@ -203,11 +205,21 @@ fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Fail
     }
     let package = read_three_mf(&bytes).map_err(|e| Failure::bad_input(format!("{file}: {e}")))?;
     let set_s = source_of_set_with(Path::new(file), &bytes);
-    package.configuration.map(|text| (text, Kind::Package(set_s))).ok_or_else(|| {
+    let law = package.law;
+    package.configuration.map(|text| (text, Kind::Package(set_s, law))).ok_or_else(|| {
         Failure::bad_input(format!(
             "{file}: holds no configuration; give a TOML file, or an assembly.3mf that pinswitch wrote"
         ))
     })
+}
+
+/// A design with what else its source says.
+#[derive(Clone, Debug)]
+pub(super) struct Made {
+    pub(super) design: Design,
+    pub(super) origin: Origin,
+    /// The law that was chosen for the curve of the set that the configuration was read from.
+    pub(super) law: Option<String>,
 }
 
 /// Where a configuration comes from.

@@ -10,6 +10,7 @@ use crate::parts::Role;
 use crate::plates::{Plate, plates};
 use crate::prediction::Prediction;
 use crate::scene::plate as scene_of;
+use pinswitch_friction::Law;
 use pinswitch_solid::files::{BaseMaterial, Object, Package, three_mf};
 use pinswitch_solid::render::View;
 
@@ -51,6 +52,9 @@ fn package_bytes(built: &Built, prediction: &Prediction, plate: &Plate<'_>) -> R
         of => format!(", plate {} of {of}", plate.number),
     };
     let above = View { turn_deg: 20.0, rise_deg: 50.0 };
+    let law = prediction.curve.law;
+    let chosen = (law != Law::DEFAULT).then(|| ("law", law.as_str().to_owned()));
+    let own = [("layout", built.design().label()), ("configuration", to_toml(c))];
     let package = Package {
         metadata: vec![
             ("Title", format!("{name}: friction switch{on_plate}")),
@@ -62,7 +66,7 @@ fn package_bytes(built: &Built, prediction: &Prediction, plate: &Plate<'_>) -> R
             ("LicenseTerms", "The program is MIT licensed; what it makes is yours.".to_owned()),
             ("Application", concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned()),
         ],
-        own_metadata: vec![("layout", built.design().label()), ("configuration", to_toml(c))],
+        own_metadata: own.into_iter().chain(chosen).collect(),
         materials,
         thumbnail: png(&scene_of(plate), above, THUMBNAIL, THUMBNAIL)?,
         attachments: vec![("friction.csv".to_owned(), friction_csv(&prediction.curve).into_bytes())],

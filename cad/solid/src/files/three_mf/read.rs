@@ -59,6 +59,8 @@ pub struct ThreeMf {
     pub built: Vec<(usize, String, Mesh)>,
     /// The configuration that made it, if this program wrote it.
     pub configuration: Option<String>,
+    /// The law of its curve, where it is not the one that is used unless another is asked for.
+    pub law: Option<String>,
 }
 
 /// Why a file is no 3MF that could be judged.
@@ -214,13 +216,16 @@ impl Model {
             found.faults.push(fault("unit", format!("{unit} is no unit of the specification")));
             1.0
         });
-        let own = |n: &Node<'_, '_>| {
-            let (prefix, name) =
-                n.attribute("name").and_then(|name| name.split_once(':')).unwrap_or_default();
-            name == "configuration" && root.lookup_namespace_uri(Some(prefix)) == Some(OWN)
+        let own = |wanted: &str| {
+            let is_it = |n: &Node<'_, '_>| {
+                let (prefix, name) =
+                    n.attribute("name").and_then(|name| name.split_once(':')).unwrap_or_default();
+                name == wanted && root.lookup_namespace_uri(Some(prefix)) == Some(OWN)
+            };
+            core(root, "metadata").find(is_it).and_then(|n| n.text()).map(str::to_owned)
         };
-        let kept = core(root, "metadata").find(own).and_then(|n| n.text());
-        found.configuration = found.configuration.take().or_else(|| kept.map(str::to_owned));
+        found.configuration = found.configuration.take().or_else(|| own("configuration"));
+        found.law = found.law.take().or_else(|| own("law"));
         let mut model = Self::default();
         for object in core(root, "resources").flat_map(|resources| core(resources, "object")) {
             model.add(object, part, unit_mm, &mut found.faults);

@@ -47,14 +47,21 @@ const svg = (width, height, inner) => {
 };
 
 // The segment seen along the pulley's axis, to scale: shell, layer, and the pins in their grooves.
+// One scale for all, at which the widest and the highest fit into their box.
+const glyphScale = Math.min(...data.variants.filter(v => v.glyph).map(({ glyph: g }) => {
+  const [half, outer, inner] = [g.span_deg * Math.PI / 360, g.radius_mm + g.layer_mm, g.radius_mm - g.wall_mm];
+  const lowest = Math.min(outer * Math.cos(half), inner * Math.cos(half));
+  return Math.min(30 / (outer * Math.sin(Math.min(half, Math.PI / 2))), 28 / (outer - lowest));
+}));
 const glyph = v => {
   const g = v.glyph;
   if (!g) return undefined;
   const [half, out, inner] = [g.span_deg * Math.PI / 360, g.radius_mm, g.radius_mm - g.wall_mm];
-  const scale = 60 / (2 * Math.max(...data.variants.map(w => w.glyph ? (w.glyph.radius_mm + w.glyph.layer_mm) * Math.sin(w.glyph.span_deg * Math.PI / 360) : 0)));
+  const scale = glyphScale;
+  const large = half > Math.PI / 2 ? 1 : 0;
   const at = (r, a) => (34 + scale * r * Math.sin(a)).toFixed(2) + " " + (4 + scale * (out + g.layer_mm - r * Math.cos(a))).toFixed(2);
-  const ring = (low, high, kind) => `<path class="${kind}" d="M${at(high, -half)}A${scale * high} ${scale * high} 0 0 1 ${at(high, half)}L${at(low, half)}` +
-    `A${scale * low} ${scale * low} 0 0 0 ${at(low, -half)}Z"/>`;
+  const ring = (low, high, kind) => `<path class="${kind}" d="M${at(high, -half)}A${scale * high} ${scale * high} 0 ${large} 1 ${at(high, half)}L${at(low, half)}` +
+    `A${scale * low} ${scale * low} 0 ${large} 0 ${at(low, -half)}Z"/>`;
   const pins = g.pins_deg.map(degrees => {
     const [x, y] = at(out + g.layer_mm, degrees * Math.PI / 180).split(" ");
     return `<circle class="pin" cx="${x}" cy="${y}" r="1.7"/>`;

@@ -23,6 +23,8 @@ const TIER_MM: f64 = 6.0;
 const ARC_TIER_MM: f64 = 8.0;
 /// How many dimension lines are tried.
 const TIERS: u32 = 14;
+/// Least distance of a dimension line from another view.
+const VIEW_GAP_MM: f64 = 2.0;
 
 fn text(at: Point, content: &str, upright: bool) -> Shape {
     Shape::Text(Text { at, height_mm: TEXT_MM, content: content.to_owned(), upright })
@@ -53,6 +55,8 @@ pub struct Linear {
     pub edge_mm: f64,
     /// +1 if dimension lines move up or right from there, -1 down or left.
     pub outward: f64,
+    /// How far from there another view begins, mm: no dimension line comes as near as [`VIEW_GAP_MM`] to it.
+    pub room_mm: f64,
     /// What a text beside its dimension line must stand clear of, along the line: where others have their extension lines.
     pub clear_of: [f64; 2],
 }
@@ -77,7 +81,8 @@ impl Linear {
         // A text stands above its line: for an upright one that is to the left.
         let above = if self.upright { -0.8 } else { 0.8 };
         let mut all = Vec::new();
-        for tier in 0..TIERS {
+        let has_room = |tier: &u32| FIRST_TIER_MM + TIER_MM * f64::from(*tier) + VIEW_GAP_MM <= self.room_mm;
+        for tier in (0..TIERS).take_while(has_room) {
             let height = self.edge_mm + self.outward * (FIRST_TIER_MM + TIER_MM * f64::from(tier));
             let base = TIER_MM * f64::from(tier);
             let mut common = Vec::new();

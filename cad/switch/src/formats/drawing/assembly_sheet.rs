@@ -20,6 +20,11 @@ use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Arc, Contour, Point2, polar};
 use std::f64::consts::FRAC_PI_2;
 
+/// Outer radius of a 608 bearing (ISO 15), and radii of an M8 bolt and an M3 screw, mm.
+const BEARING_RADIUS_MM: f64 = 11.0;
+const AXLE_RADIUS_MM: f64 = 4.0;
+const STOP_SCREW_RADIUS_MM: f64 = 1.5;
+
 /// The assembly, ready to be drawn.
 struct Assembly<'a> {
     design: &'a Design,
@@ -150,6 +155,17 @@ impl Assembly<'_> {
         let view = draft.view("FRONT", place.origin, place.scale);
         draw(draft, &lines, place, view);
         let group = draft.group();
+        // Dowels end in the supports, the bearing looks towards the plate; bolt and screws end on this side.
+        for (kind, layer) in [
+            ("dowel", Layer::Hidden),
+            ("bearing", Layer::Hidden),
+            ("axle", Layer::Visible),
+            ("stop screw", Layer::Visible),
+        ] {
+            for (at, radius_mm) in self.hardware(kind) {
+                draft.put(layer, place.shape(&Trace::Circle(at, radius_mm)), None, group);
+            }
+        }
         for trace in self.tendon() {
             draft.put(Layer::Phantom, place.shape(&trace), None, group);
         }
@@ -158,6 +174,28 @@ impl Assembly<'_> {
         if axis.y > frame.low.y + 40.0 && lines.len() > 1 {
             let half = Point::new(6.0, 0.0);
             draft.put(Layer::Centre, Shape::Line { from: axis - half, to: axis + half }, None, group);
+        }
+    }
+
+    /// Where hardware of a kind lies, seen along the axis, with its radius in mm.
+    fn hardware(&self, kind: &str) -> Vec<(Point2, f64)> {
+        let (design, c) = (self.design, self.design.configuration());
+        let around = |angles: Vec<f64>, radius_mm: f64| -> Vec<(Point2, f64)> {
+            angles.into_iter().map(|a| (polar(design.fastener_radius_mm(), a), radius_mm)).collect()
+        };
+        let mounting = design.mounting();
+        let axle =
+            |radius_mm| mounting.iter().filter_map(|m| m.axle).map(|h| (h.centre, radius_mm)).collect();
+        match kind {
+            "screw" => around(design.fastener_angles_rad(), c.fasteners.hole_diameter_mm / 2.0),
+            "dowel" => around(design.dowel_angles_rad(), c.fasteners.dowel_diameter_mm / 2.0),
+            "bearing" => axle(BEARING_RADIUS_MM),
+            "axle" => axle(AXLE_RADIUS_MM),
+            "stop screw" => {
+                let screws = mounting.iter().filter_map(|m| m.sheath).flat_map(|s| s.screws);
+                screws.map(|h| (h.centre, STOP_SCREW_RADIUS_MM)).collect()
+            }
+            _ => Vec::new(),
         }
     }
 
@@ -222,6 +260,7 @@ impl Assembly<'_> {
             upright: false,
             edge_mm: section.low.y,
             outward: -1.0,
+            room_mm: f64::INFINITY,
             clear_of: [section.low.x, section.high.x],
         };
         linear.place(draft)
@@ -272,15 +311,6 @@ impl Assembly<'_> {
         };
         let leaders: Vec<Leader> = match item.shown.as_str() {
             "" => return true,
-            "screw" => self
-                .design
-                .fastener_angles_rad()
-                .into_iter()
-                .flat_map(|a| {
-                    let radius = self.design.configuration().fasteners.hole_diameter_mm / 2.0;
-                    Leader::around(place.at(polar(self.design.fastener_radius_mm(), a)), radius * place.scale)
-                })
-                .collect(),
             "tendon" => self
                 .tendon()
                 .iter()
@@ -291,6 +321,11 @@ impl Assembly<'_> {
                         Leader { tip, direction: (tip - place.origin).unit(), cost_mm: 0.0 }
                     })
                 })
+                .collect(),
+            kind if !self.hardware(kind).is_empty() => self
+                .hardware(kind)
+                .into_iter()
+                .flat_map(|(at, radius_mm)| Leader::around(place.at(at), radius_mm * place.scale))
                 .collect(),
             name => match inside.iter().find(|(n, _)| n == name) {
                 Some((_, tip)) => fan(*tip).collect(),

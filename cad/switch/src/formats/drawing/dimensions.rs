@@ -10,7 +10,7 @@ use super::plan::Place;
 use super::words;
 use crate::design::Design;
 use crate::parts::Part;
-use pinswitch_plot::drawing::{Angular, Callout, Draft, Label, Leader, Linear, Point};
+use pinswitch_plot::drawing::{Angular, Callout, Draft, Extent, Label, Leader, Linear, Point};
 use pinswitch_solid::profile::{Arc, Point2};
 
 /// A dimension that is to be written.
@@ -62,6 +62,11 @@ impl Wanted {
             around: None,
         };
         Self { key, lines, form: Form::Callout(callout) }
+    }
+
+    /// Whether it is a length that stands below a front view.
+    pub(super) fn is_below(&self, front: Extent) -> bool {
+        matches!(&self.form, Form::Linear(l) if !l.upright && l.outward < 0.0 && l.edge_mm == front.low.y)
     }
 
     /// Writes it; whether there was room.
@@ -164,6 +169,7 @@ pub(super) fn of_detail(
         upright: false,
         edge_mm: place.origin.y + radius - 3.0,
         outward: 1.0,
+        room_mm: f64::INFINITY,
         clear_of: [place.origin.x - half, place.origin.x + half],
     }));
     all.push(Wanted::linear(Linear {
@@ -174,6 +180,7 @@ pub(super) fn of_detail(
         upright: true,
         edge_mm: place.origin.x - radius + 3.0,
         outward: -1.0,
+        room_mm: f64::INFINITY,
         clear_of: [outer.y - travel, outer.y],
     }));
     let sides = [1.0, -1.0].into_iter().flat_map(|side| {

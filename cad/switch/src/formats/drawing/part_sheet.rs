@@ -170,11 +170,23 @@ impl Subject<'_> {
             let radius = detail.radius_mm * views.place.scale;
             all.push(dimensions::mark_of_detail(views.place.at(detail.middle), radius, letter));
         }
-        all.extend(sides::of_part(f, &views.place, views.front, (self.low, self.high)));
+        all.extend(sides::of_part(f, &views.place, views.front, self.room_mm(views), (self.low, self.high)));
         let details: Vec<Detail> = views.details.iter().map(|d| d.0).collect();
         all.extend(dimensions::callouts(self.design, self.part, f, &views.place, &details));
         all.extend(hole_table::names(f, &views.place));
         all
+    }
+
+    /// What is free below and above the front view, up to the view from above, mm.
+    fn room_mm(&self, views: &Views) -> [f64; 2] {
+        let (front, top_mm) = (views.front, views.layout.above_mm);
+        match self.title.projection {
+            Projection::First => [front.low.y - top_mm, f64::INFINITY],
+            Projection::Third => {
+                let height_mm = (self.high.z - self.low.z) * views.place.scale;
+                [f64::INFINITY, top_mm - height_mm - front.high.y]
+            }
+        }
     }
 
     /// The front view on paper about the part's origin, with the axis if it is near.
@@ -293,6 +305,7 @@ impl Subject<'_> {
                     upright: false,
                     edge_mm: foot,
                     outward: -1.0,
+                    room_mm: f64::INFINITY,
                     clear_of: [section.low.x, section.high.x],
                 })
             })

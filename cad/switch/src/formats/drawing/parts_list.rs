@@ -13,7 +13,7 @@ pub(super) struct Item {
     pub(super) designation: String,
     pub(super) part_number: String,
     pub(super) material: String,
-    /// The body that its balloon points at, `screw` or `tendon`; empty without a balloon.
+    /// The body that its balloon points at, `tendon`, or a kind of hardware; empty without a balloon.
     pub(super) shown: String,
 }
 
@@ -67,24 +67,24 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
         let words = |mm: f64| format!("Screw {} \u{d7} {}{with}", screws.thread, number(mm));
         let from_right = screws.right_length_mm.map_or(0, |_| screws.number / 2);
         bought(screws.number - from_right, words(screws.length_mm), "screw");
-        screws.right_length_mm.into_iter().for_each(|mm| bought(from_right, words(mm), ""));
+        screws.right_length_mm.into_iter().for_each(|mm| bought(from_right, words(mm), "screw"));
         if screws.inserts > 0 {
-            bought(screws.inserts, format!("Heat-set insert {}", screws.thread), "");
+            bought(screws.inserts, format!("Heat-set insert {}", screws.thread), "screw");
         }
     }
     if let Some(dowels) = &bill.dowels {
         let words = format!("Dowel \u{d8}{} \u{d7} {}", number(dowels.diameter_mm), number(dowels.length_mm));
-        bought(dowels.number, words, "");
+        bought(dowels.number, words, "dowel");
     }
     if let Some(bearing) = bill.pulley_bearing {
         bought(1, format!("Bearing {bearing}"), "");
     }
     let mount = bill.mount.as_ref();
-    for words in mount.into_iter().flat_map(|m| [m.bearing.map(|b| format!("Bearing {b}")), m.axle.clone()]) {
-        words.into_iter().for_each(|words| bought(1, words, ""));
-    }
+    let bearing = mount.and_then(|m| m.bearing).map(|b| format!("Bearing {b}"));
+    bearing.into_iter().for_each(|words| bought(1, words, "bearing"));
+    mount.and_then(|m| m.axle.clone()).into_iter().for_each(|words| bought(1, words, "axle"));
     if let Some(screw) = mount.and_then(|m| m.stop_screw.as_ref()) {
-        bought(STOP_SCREWS, format!("Screw {} with nut", screw.replace(" x ", " \u{d7} ")), "");
+        bought(STOP_SCREWS, format!("Screw {} with nut", screw.replace(" x ", " \u{d7} ")), "stop screw");
     }
     let tendon = format!(
         "Tendon \u{d8}{}, rope \u{d8}{}, {} long",

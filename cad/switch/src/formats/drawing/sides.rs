@@ -7,12 +7,17 @@ use super::words::number;
 use pinswitch_plot::drawing::{Extent, Linear};
 use pinswitch_solid::profile::Point2;
 
+/// With more dimensions below the front view its length goes above: another view may lie below.
+const MOST_BELOW: usize = 1;
+
 /// Where dimensions of a front view are put.
 struct Frame<'a> {
     place: &'a Place,
     front: Extent,
     low: Point2,
     high: Point2,
+    /// What is free below and above it, up to another view, mm.
+    room_mm: [f64; 2],
     all: Vec<Wanted>,
 }
 
@@ -33,18 +38,32 @@ impl Frame<'_> {
             (false, false) => self.front.low.y,
         };
         let outward = if is_far { 1.0 } else { -1.0 };
+        let room_mm = if upright { f64::INFINITY } else { self.room_mm[usize::from(is_far)] };
         let [from, to] = ends.map(|p| self.place.at(p));
         let ends = if upright { [from.y, to.y] } else { [from.x, to.x] };
         let clear_of = [ends[0].min(ends[1]), ends[0].max(ends[1])];
         let key = key.into();
-        self.all.push(Wanted::linear(Linear { key, text, from, to, upright, edge_mm, outward, clear_of }));
+        self.all.push(Wanted::linear(Linear {
+            key,
+            text,
+            from,
+            to,
+            upright,
+            edge_mm,
+            outward,
+            room_mm,
+            clear_of,
+        }));
     }
 
     /// Length and width over all; in parentheses where other dimensions make them.
     fn overall(&mut self, follows: bool) {
         let (low, high) = (self.low, self.high);
         let said = |mm: f64| if follows { format!("({})", number(mm)) } else { number(mm) };
-        self.linear("length", said(high.x - low.x), [low, Point2::new(high.x, low.y)], false, false);
+        let is_far = self.all.iter().filter(|w| w.is_below(self.front)).count() > MOST_BELOW;
+        let y = if is_far { high.y } else { low.y };
+        let ends = [Point2::new(low.x, y), Point2::new(high.x, y)];
+        self.linear("length", said(high.x - low.x), ends, false, is_far);
         self.linear("width", said(high.y - low.y), [Point2::new(high.x, low.y), high], true, true);
     }
 }
@@ -54,10 +73,11 @@ pub(super) fn of_part(
     f: &Features,
     place: &Place,
     front: Extent,
+    room_mm: [f64; 2],
     (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>),
 ) -> Vec<Wanted> {
     let (low, high) = (Point2::new(low.x, low.y), Point2::new(high.x, high.y));
-    let mut frame = Frame { place, front, low, high, all: Vec::new() };
+    let mut frame = Frame { place, front, low, high, room_mm, all: Vec::new() };
     match (f.axis_arcs.is_empty(), f.block) {
         (true, Some(_)) => block(f, &mut frame),
         (false, Some(_)) => block_about_axis(&mut frame),

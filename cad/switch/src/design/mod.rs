@@ -4,6 +4,7 @@ mod dimensions;
 mod fastening;
 mod mounting;
 pub mod rules;
+mod tendon_ends;
 
 use pinswitch_friction::physics::{Bed, modulus_of_shore_a_mpa};
 use pinswitch_friction::{Contact, PinPattern};

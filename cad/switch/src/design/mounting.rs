@@ -138,6 +138,25 @@ impl Dimensions {
         holes.iter().copied().chain(axle).chain(fasteners).chain(screws).collect()
     }
 
+    /// Distance of a point from the supports, mm; 0 behind them.
+    pub(super) fn beside_support_mm(&self, p: Point2) -> f64 {
+        let (inner, outer) = (self.inner_radius_mm(), self.support_radius_mm());
+        let half = self.half_span_rad();
+        let (radius, angle) = (p.coords.norm(), libm::atan2(p.x, p.y).abs());
+        let radial = (inner - radius).max(radius - outer).max(0.0);
+        // Their ends are shifted outwards along the tangent.
+        let mirrored = Vector2::new(p.x.abs(), p.y);
+        let outwards = polar(1.0, half).coords;
+        let along = Vector2::new(outwards.y, -outwards.x);
+        let shift = self.shell_end_shift_mm();
+        if angle <= half {
+            return radial;
+        }
+        let beyond = (mirrored.dot(&along) - shift).max(0.0);
+        let height = mirrored.dot(&outwards);
+        libm::hypot(beyond, (inner - height).max(height - outer).max(0.0))
+    }
+
     /// Four holes around the supports.
     fn flange_holes(&self) -> [Point2; 4] {
         let m = &self.configuration().mount;

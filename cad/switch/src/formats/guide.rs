@@ -214,6 +214,13 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
     }
     let is_silicone = c.layout.substrate == Substrate::Silicone;
     let bed = if is_silicone { "silicone layer" } else { "proxy" };
+    // Before the silicone is near: inserts are pressed in hot.
+    if bill.fasteners.as_ref().is_some_and(|f| f.inserts > 0) {
+        stages.push(Stage::Inserts);
+        steps.push(
+            "Press the inserts into both ends of the shell's holes with a soldering iron, flush; let the shell cool.".to_owned(),
+        );
+    }
     stages.push(Stage::Bed);
     let from_where = if is_silicone && c.mould.kind == MouldKind::None {
         format!(
@@ -230,12 +237,6 @@ fn assemble_section(text: &mut String, design: &Design, manifest: &Manifest, sec
     let keeps = if design.stops_mm().is_some() { ", between the stops at its ends" } else { "" };
     if let Some(last) = steps.last_mut() {
         last.insert_str(last.len() - 1, keeps);
-    }
-    if bill.fasteners.as_ref().is_some_and(|f| f.inserts > 0) {
-        stages.push(Stage::Inserts);
-        steps.push(
-            "Press the inserts into both ends of the shell's holes with a soldering iron, flush.".to_owned(),
-        );
     }
     if let Some(d) = &bill.dowels {
         stages.push(Stage::Dowels);
@@ -365,10 +366,11 @@ fn fastening_step(design: &Design, manifest: &Manifest) -> Option<String> {
     };
     let screws = match f.right_length_mm {
         Some(right_mm) => format!(
-            "{} {} x {} from the left and {} x {right_mm} from the right",
-            counted(f.number, "screw"),
+            "{} {} x {} from the left and {} {} x {right_mm} from the right",
+            counted(f.number / 2, "screw"),
             f.thread,
             f.length_mm,
+            f.number / 2,
             f.thread
         ),
         None => format!("{} {} x {}", counted(f.number, "screw"), f.thread, f.length_mm),

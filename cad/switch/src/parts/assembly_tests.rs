@@ -134,6 +134,39 @@ fn no_two_bodies_of_an_assembly_overlap() {
     assert!(overlap(&[twice, lifted]).is_some());
 }
 
+/// Wraps of more than half a turn bring the tendon's ends, the guide pulley and the sheath stop together: what is not refused
+/// keeps clear, and all of it can be made.
+#[test]
+fn wide_wraps_are_refused_or_bring_nothing_together() {
+    let (mut made, mut refused) = (0, 0);
+    for wrap in [200, 215, 230, 250, 280, 300] {
+        for more in [
+            &["mount.kind=none"][..],
+            &["mount.kind=rig"],
+            &["mount.kind=rig", "tendon.sheath_diameter_mm=4"],
+            &["mount.kind=rig", "tendon.sheath_diameter_mm=5", "mount.pulley_distance_mm=110"],
+            &["mount.kind=flange", "tendon.sheath_diameter_mm=3"],
+        ] {
+            let mut c = Configuration::default();
+            let wide = [format!("segment.span_deg={}", wrap + 8), format!("layout.wrap_angle_deg={wrap}")];
+            let all =
+                wide.iter().map(String::as_str).chain(["segment.grooves=25"]).chain(more.iter().copied());
+            all.for_each(|a| assign(&mut c, a).unwrap());
+            match Design::new(c) {
+                Ok(design) => {
+                    assert_eq!(overlap(&assembled(&design)), None, "{wrap} {more:?}");
+                    made += 1;
+                }
+                Err(e) => {
+                    assert!(!e.changes.is_empty(), "{wrap} {more:?}: {e}");
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(made >= 10 && refused >= 5, "{made} {refused}");
+}
+
 /// Every screw has its clear hole through shell, supports and plate, on one axis; only the skin above a recess is in its
 /// way. Every dowel has its hole, closed outside.
 #[test]

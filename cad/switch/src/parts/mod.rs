@@ -36,7 +36,6 @@ pub(crate) use mould::{keys, one_piece as tray};
 pub use mount::spacer_mm;
 pub use part::{Material, Part, Role};
 pub use sector::Sector;
-pub(crate) use tendon::leads_mm;
 pub use tendon::{Touch, touches};
 
 /// A printed part: when a configuration asks for it, and how it is built.

@@ -6,13 +6,10 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::{Part, Pose, Role};
-use crate::config::MountKind;
 use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Disc, HullArc, Pen, Point2, Vector2, hull_arcs, polar};
 use pinswitch_solid::solid::{Facing, Solid};
 
-/// What is shown of the tendon beyond the wrap, mm.
-const LEAD_MM: f64 = 20.0;
 /// Sides of the tendon's section: a polygon inside the circle, so that it overlaps nothing that the circle touches.
 const SIDES: u32 = 12;
 /// Arcs shorter than this, in radians, are none.
@@ -67,17 +64,10 @@ fn string(design: &Design) -> (Vec<Disc>, Vec<HullArc>, Vec<usize>) {
     (discs, arcs, pins)
 }
 
-/// What is shown of the tendon beyond the wrap, mm: on the load's side, and on the other. On the rig it runs on to the guide
-/// pulley.
-pub(crate) fn leads_mm(design: &Design) -> [f64; 2] {
-    let mount = &design.configuration().mount;
-    [if mount.kind == MountKind::Rig { mount.pulley_distance_mm } else { LEAD_MM }, LEAD_MM]
-}
-
 pub(super) fn tendon(design: &Design) -> Part {
     let radius = design.tendon_diameter_mm() / 2.0;
     let (discs, arcs, _) = string(design);
-    let [load_side, other_side] = leads_mm(design);
+    let [load_side, other_side] = design.shown_ends_mm();
     // The load's side is at the largest direction.
     let leads = [other_side, load_side];
     let mut solid = Solid::new();

@@ -21,6 +21,8 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "mount.kind", severity: Severity::Error, assess: holes_clear_each_other },
     Rule { field: "mount.pulley_distance_mm", severity: Severity::Error, assess: pulley_beside_switch },
     Rule { field: "mount.kind", severity: Severity::Error, assess: pulley_over_plate },
+    Rule { field: "tendon.sheath_diameter_mm", severity: Severity::Error, assess: stop_out_of_the_way },
+    Rule { field: "mount.bore_offset_mm", severity: Severity::Error, assess: bores_beside_support },
     Rule { field: "mount.plate_mm", severity: Severity::Error, assess: heads_within_plate },
 ];
 
@@ -111,6 +113,50 @@ fn pulley_beside_switch(i: &Inspection<'_>) -> Assessment {
                 "brings the pulley of {PULLEY_RADIUS_MM} mm into the switch: its axis is {distance:.1} mm away, {least:.1} mm is the least"
             ),
             &[Raise("mount.pulley_distance_mm"), NO_MOUNT],
+        )
+    })
+}
+
+fn stop_out_of_the_way(i: &Inspection<'_>) -> Assessment {
+    let Some(mounting) = i.mounting().filter(|m| m.sheath.is_some()) else {
+        return Assessment::NotApplicable;
+    };
+    let nearer_mm = i.stop_in_the_way_mm(&mounting);
+    require(nearer_mm <= 0.0, || {
+        let what = if mounting.axle.is_some() {
+            "guide pulley, or the tendon that runs to it"
+        } else {
+            "tendon on the load's side"
+        };
+        (
+            format!("puts the sheath stop {nearer_mm:.2} mm too near to the {what}"),
+            &[
+                Lower("layout.wrap_angle_deg"),
+                Raise("mount.pulley_distance_mm"),
+                Set("tendon.sheath_diameter_mm", "0"),
+            ],
+        )
+    })
+}
+
+/// A bore of a finger link that a support covers takes no pivot.
+fn bores_beside_support(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let Some(mounting) = i.mounting().filter(|_| c.mount.kind == MountKind::FingerLink) else {
+        return Assessment::NotApplicable;
+    };
+    let clear = |hole: &Hole| i.beside_support_mm(hole.centre) >= hole.radius_mm + HOLE_WALL_MM;
+    require(mounting.holes.iter().all(clear), || {
+        (
+            "puts a bore behind the left support, where no pivot passes".to_owned(),
+            &[
+                Lower("mount.bore_offset_mm"),
+                Raise("mount.bore_distance_mm"),
+                Lower("mount.bore_distance_mm"),
+                Raise("mount.bore_offset_mm"),
+                Lower("mount.hole_diameter_mm"),
+                NO_MOUNT,
+            ],
         )
     })
 }

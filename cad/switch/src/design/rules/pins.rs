@@ -19,8 +19,11 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "silicone.thickness_mm", severity: Severity::Error, assess: layer_thickness },
     Rule { field: "shell.width_mm", severity: Severity::Error, assess: layer_width },
     Rule { field: "layout.wrap_angle_deg", severity: Severity::Error, assess: wrap_within_segment },
+    Rule { field: "layout.wrap_angle_deg", severity: Severity::Error, assess: ends_keep_clear },
+    Rule { field: "layout.wrap_angle_deg", severity: Severity::Warning, assess: ends_meet },
     Rule { field: "tendon.rope_diameter_mm", severity: Severity::Error, assess: tendon_in_channel },
     Rule { field: "tendon.rope_diameter_mm", severity: Severity::Error, assess: tendon_bend },
+    Rule { field: "tendon.length_mm", severity: Severity::Warning, assess: tendon_reaches },
     Rule { field: "shell.outer_radius_mm", severity: Severity::Warning, assess: early_wear },
 ];
 
@@ -101,6 +104,40 @@ fn wrap_within_segment(i: &Inspection<'_>) -> Assessment {
                 c.layout.wrap_angle_deg, c.segment.span_deg
             ),
             &[Lower("layout.wrap_angle_deg"), Raise("segment.span_deg")],
+        )
+    })
+}
+
+fn ends_keep_clear(i: &Inspection<'_>) -> Assessment {
+    require(i.ends_keep_clear(), || {
+        (
+            "brings the two ends of the tendon together, or one into the guide pulley, where they leave the wrap".to_owned(),
+            &[Lower("layout.wrap_angle_deg"), Raise("mount.pulley_distance_mm"), Raise("shell.outer_radius_mm")],
+        )
+    })
+}
+
+fn ends_meet(i: &Inspection<'_>) -> Assessment {
+    let meet = i.ends_meet_mm();
+    advise(meet.is_none(), || {
+        (
+            format!(
+                "the two ends of the tendon would meet {:.1} mm beyond the wrap",
+                meet.unwrap_or_default()
+            ),
+            "lead them past each other, or lower layout.wrap_angle_deg".to_owned(),
+        )
+    })
+}
+
+fn tendon_reaches(i: &Inspection<'_>) -> Assessment {
+    let (length, least) = (i.configuration().tendon.length_mm, i.least_tendon_mm());
+    advise(length >= least, || {
+        (
+            format!(
+                "the tendon of {length} mm does not reach: wrap, ends and what it runs over need {least:.0} mm"
+            ),
+            format!("raise tendon.length_mm to {least:.0}"),
         )
     })
 }

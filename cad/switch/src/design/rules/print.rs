@@ -91,10 +91,14 @@ fn layer_of_nozzle(i: &Inspection<'_>) -> Assessment {
 }
 
 fn open_slots(i: &Inspection<'_>) -> Assessment {
-    let clearance = i.configuration().support.slot_clearance_mm;
+    let c = i.configuration();
+    let clearance = c.support.slot_clearance_mm;
     check(
         clearance >= MIN_GAP_MM,
-        format!("slots {clearance} mm wider than the pins; slicers close gaps under {MIN_GAP_MM:.2} mm"),
+        format!(
+            "slots {clearance} mm wider than a pin of {} mm; slicers close gaps under {MIN_GAP_MM:.2} mm",
+            c.pins.diameter_mm
+        ),
         "raise support.slot_clearance_mm",
     )
 }

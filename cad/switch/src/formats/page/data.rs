@@ -11,7 +11,7 @@ use crate::design::Design;
 use crate::design::rules::{Check, checklist};
 use crate::documents::{Manifest, friction_csv};
 use crate::output::SetError;
-use crate::parts::{Material, Role, leads_mm};
+use crate::parts::{Material, Role};
 use crate::prediction::Prediction;
 use pinswitch_solid::mesh::{Mesh, Vector3};
 use pinswitch_solid::pose::Pose;
@@ -217,7 +217,7 @@ fn contact_states(design: &Design) -> ContactStates {
         axis_radius_mm: bed.axis_radius_mm(),
         tendon_radius_mm: bed.tendon_radius_mm,
         half_wrap_rad: contact.wrap_rad() / 2.0,
-        lead_mm: leads_mm(design),
+        lead_mm: design.shown_ends_mm(),
         z_mm: design.configuration().shell.width_mm / 2.0,
         pin_depth_mm,
     }

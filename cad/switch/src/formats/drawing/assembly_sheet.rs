@@ -5,7 +5,7 @@ use super::body::{Body, Side};
 use super::elevation::{Elevation, elevation, joined, legible};
 use super::features::lettering;
 use super::layout::{ABOVE_ASSEMBLY_MM, ABOVE_MM, Layout, Sizes, choices_of_assembly};
-use super::part_sheet::{CROWDED_MM, HATCH_MM, put_strokes, section_mark};
+use super::part_sheet::{CROWDED_MM, HATCH_MM, Letter, put_strokes, section_mark};
 use super::parts_list::{Item, items};
 use super::plan::{Place, Trace, draw};
 use super::section::Face;
@@ -119,7 +119,13 @@ impl Assembly<'_> {
         let (section, inside) = self.section(&mut draft, &layout, scale);
         let front = Extent { low: sizes.front.low + layout.front, high: sizes.front.high + layout.front };
         let mark = [front.low.y - 2.0, front.high.y + 2.0];
-        section_mark(&mut draft, place.at(Point2::new(cut_x, 0.0)).x, mark, layout.section_sense);
+        section_mark(
+            &mut draft,
+            place.at(Point2::new(cut_x, 0.0)).x,
+            mark,
+            layout.section_sense,
+            Letter::BehindLine,
+        );
         if !draft.place_title("section title", "A-A", 3.5, section, true) {
             return None;
         }

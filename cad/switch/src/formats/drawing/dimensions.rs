@@ -25,7 +25,8 @@ pub(super) struct Wanted {
 
 #[derive(Clone, Debug)]
 enum Form {
-    Linear(Linear),
+    /// A length, and the same on the other side of the view where it may stand there.
+    Linear(Linear, Option<Linear>),
     Angular(Angular),
     Callout(Callout),
     Label(Label),
@@ -40,7 +41,15 @@ impl Wanted {
     }
 
     pub(super) fn linear(linear: Linear) -> Self {
-        Self { key: linear.key.clone(), lines: vec![linear.text.clone()], form: Form::Linear(linear) }
+        Self { key: linear.key.clone(), lines: vec![linear.text.clone()], form: Form::Linear(linear, None) }
+    }
+
+    /// The same, but on the other side of the view where it finds no room on the first.
+    pub(super) fn or(mut self, other: Linear) -> Self {
+        if let Form::Linear(_, otherwise) = &mut self.form {
+            *otherwise = Some(other);
+        }
+        self
     }
 
     fn angular(angular: Angular) -> Self {
@@ -66,13 +75,15 @@ impl Wanted {
 
     /// Whether it is a length that stands below a front view.
     pub(super) fn is_below(&self, front: Extent) -> bool {
-        matches!(&self.form, Form::Linear(l) if !l.upright && l.outward < 0.0 && l.edge_mm == front.low.y)
+        matches!(&self.form, Form::Linear(l, _) if !l.upright && l.outward < 0.0 && l.edge_mm == front.low.y)
     }
 
     /// Writes it; whether there was room.
     pub(super) fn place(&self, draft: &mut Draft) -> bool {
         match &self.form {
-            Form::Linear(l) => l.place(draft),
+            Form::Linear(l, other) => {
+                l.place(draft) || other.as_ref().is_some_and(|other| other.place(draft))
+            }
             Form::Angular(a) => a.place(draft),
             Form::Callout(c) => c.place(draft),
             Form::Label(l) => l.place(draft),

@@ -58,6 +58,23 @@ struct Views {
     details: Vec<(Detail, Place, String)>,
 }
 
+/// A sheet that may hold a part.
+#[derive(Clone, Copy, Debug)]
+struct Form {
+    paper: Paper,
+    scale: f64,
+    letter: Letter,
+}
+
+/// Where the letter of a section stands at its mark: extension lines pass where it is not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Letter {
+    /// On the other side of the line than the arrow.
+    BehindLine,
+    /// At the arrow's tip.
+    BeforeArrow,
+}
+
 /// The sheet of `part`; nothing for a part without extent. It is drawn as a workshop holds it, where that differs from how
 /// it lies in the set.
 pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked: Paper) -> Option<Sheet> {
@@ -77,28 +94,31 @@ pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked:
     let subject = Subject { design, part, title, features, above, cut_x, face, behind, low, high };
     // The first sheet that holds the views with all that is to be said. A part is not drawn smaller and smaller until
     // nothing is in the way of anything.
-    let mut first: Option<(Paper, f64, Vec<Wanted>)> = None;
-    for (paper, scale) in choices(asked) {
-        if first.as_ref().is_some_and(|(_, largest, _)| scale < LEAST_SHARE * largest) {
+    let mut first: Option<(Form, Vec<Wanted>)> = None;
+    let forms = choices(asked).into_iter().flat_map(|(paper, scale)| {
+        [Letter::BehindLine, Letter::BeforeArrow].map(|letter| Form { paper, scale, letter })
+    });
+    for form in forms {
+        if first.as_ref().is_some_and(|(largest, _)| form.scale < LEAST_SHARE * largest.scale) {
             break;
         }
-        let Some((sheet, left)) = subject.attempt(paper, scale, &[]) else { continue };
+        let Some((sheet, left)) = subject.attempt(form, &[]) else { continue };
         if left.is_empty() {
             return Some(sheet);
         }
-        first.get_or_insert((paper, scale, left));
+        first.get_or_insert((form, left));
     }
     // What finds no room is written among the notes of the first that holds the views.
-    let (paper, scale, left) = first?;
-    subject.attempt(paper, scale, &left).map(|(sheet, _)| sheet)
+    let (form, left) = first?;
+    subject.attempt(form, &left).map(|(sheet, _)| sheet)
 }
 
 impl Subject<'_> {
     /// The sheet in this size, and what found no room on it. `written` stands among the notes.
-    fn attempt(&self, paper: Paper, scale: f64, written: &[Wanted]) -> Option<(Sheet, Vec<Wanted>)> {
-        let title = TitleBlock { scale: Sheet::scale_text(scale), ..self.title.clone() };
-        let mut draft = Draft::new(paper, &title);
-        let views = self.views(&mut draft, scale, written)?;
+    fn attempt(&self, form: Form, written: &[Wanted]) -> Option<(Sheet, Vec<Wanted>)> {
+        let title = TitleBlock { scale: Sheet::scale_text(form.scale), ..self.title.clone() };
+        let mut draft = Draft::new(form.paper, &title);
+        let views = self.views(&mut draft, form, written)?;
         let mut left = Vec::new();
         for wanted in self.wanted(&views) {
             let is_written = written.iter().any(|w| w.key == wanted.key);
@@ -106,12 +126,12 @@ impl Subject<'_> {
                 left.push(wanted);
             }
         }
-        Some((draft.finished(self.part.name.clone(), scale), left))
+        Some((draft.finished(self.part.name.clone(), form.scale), left))
     }
 
     /// Draws all views with their titles and marks, and the notes; nothing if they do not fit.
-    fn views(&self, draft: &mut Draft, scale: f64, written: &[Wanted]) -> Option<Views> {
-        let paper = draft.sheet().paper;
+    fn views(&self, draft: &mut Draft, form: Form, written: &[Wanted]) -> Option<Views> {
+        let Form { paper, scale, letter } = form;
         let details = enlarged(&self.features, scale);
         let table = hole_table::table(&self.features);
         let reach = if paper == Paper::A4 { 20.0 } else { 27.0 };
@@ -138,7 +158,8 @@ impl Subject<'_> {
         self.centre_lines(draft, &place, front);
         if self.is_cut() {
             let x = place.at(Point2::new(self.cut_x, 0.0)).x;
-            section_mark(draft, x, [front.low.y - 2.0, self.mark_top(front)], layout.section_sense);
+            let ends = [front.low.y - 2.0, self.mark_top(front)];
+            section_mark(draft, x, ends, layout.section_sense, letter);
             if !draft.place_title("section title", "A-A", 3.5, section, true) {
                 return None;
             }
@@ -362,7 +383,7 @@ pub(super) fn put_strokes(
 }
 
 /// The plane of the section at `x`: a chain line through the view, thick beyond it, with arrows along the line of sight.
-pub(super) fn section_mark(draft: &mut Draft, x: f64, [low, high]: [f64; 2], sense: f64) {
+pub(super) fn section_mark(draft: &mut Draft, x: f64, [low, high]: [f64; 2], sense: f64, letter: Letter) {
     let group = draft.group();
     let line = |from: f64, to: f64| Shape::Line { from: Point::new(x, from), to: Point::new(x, to) };
     draft.put(Layer::Centre, line(low, high), None, group);
@@ -373,7 +394,9 @@ pub(super) fn section_mark(draft: &mut Draft, x: f64, [low, high]: [f64; 2], sen
         let tip = foot + direction * 6.0;
         draft.put(Layer::Dimension, Shape::Line { from: foot, to: tip }, None, group);
         draft.put(Layer::Dimension, Shape::Arrow { tip, direction }, None, group);
-        let at = foot + Point::new(if sense > 0.0 { -4.0 } else { 1.6 }, -1.75);
+        let is_left = (sense > 0.0) == (letter == Letter::BehindLine);
+        let from = if letter == Letter::BehindLine { foot } else { tip };
+        let at = from + Point::new(if is_left { -4.0 } else { 1.6 }, -1.75);
         let letter = Text { at, height_mm: 3.5, content: "A".to_owned(), upright: false };
         draft.put(Layer::Text, Shape::Text(letter), None, group);
     }

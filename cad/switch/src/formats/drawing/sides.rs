@@ -31,6 +31,25 @@ impl Frame<'_> {
         upright: bool,
         is_far: bool,
     ) {
+        let linear = self.measured(key.into(), text, ends, upright, is_far);
+        self.all.push(Wanted::linear(linear));
+    }
+
+    /// The same where there is room: at the ends near to the side on which `is_far` says that it stands, else on the other.
+    fn linear_on_a_side(
+        &mut self,
+        key: String,
+        text: String,
+        ends: impl Fn(bool) -> [Point2; 2],
+        upright: bool,
+        is_far: bool,
+    ) {
+        let on = |is_far| self.measured(key.clone(), text.clone(), ends(is_far), upright, is_far);
+        let wanted = Wanted::linear(on(is_far)).or(on(!is_far));
+        self.all.push(wanted);
+    }
+
+    fn measured(&self, key: String, text: String, ends: [Point2; 2], upright: bool, is_far: bool) -> Linear {
         let edge_mm = match (upright, is_far) {
             (true, true) => self.front.high.x,
             (true, false) => self.front.low.x,
@@ -42,18 +61,7 @@ impl Frame<'_> {
         let [from, to] = ends.map(|p| self.place.at(p));
         let ends = if upright { [from.y, to.y] } else { [from.x, to.x] };
         let clear_of = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-        let key = key.into();
-        self.all.push(Wanted::linear(Linear {
-            key,
-            text,
-            from,
-            to,
-            upright,
-            edge_mm,
-            outward,
-            room_mm,
-            clear_of,
-        }));
+        Linear { key, text, from, to, upright, edge_mm, outward, room_mm, clear_of }
     }
 
     /// Length and width over all; in parentheses where other dimensions make them.
@@ -104,12 +112,14 @@ fn block(f: &Features, frame: &mut Frame<'_>) {
     xs.dedup_by(|a, b| same(*a, *b));
     // In turn below and above, so that all find room.
     for (i, x) in xs.iter().filter(|x| !same(**x, high.x)).enumerate() {
-        let is_far = i % 2 == 1;
-        let ys = points.iter().filter(|p| same(p.x, *x)).map(|p| p.y);
-        let y = if is_far { ys.fold(f64::NEG_INFINITY, f64::max) } else { ys.fold(f64::INFINITY, f64::min) };
-        let from = Point2::new(low.x, if is_far { high.y } else { low.y });
+        let ends = |is_far: bool| {
+            let ys = points.iter().filter(|p| same(p.x, *x)).map(|p| p.y);
+            let y =
+                if is_far { ys.fold(f64::NEG_INFINITY, f64::max) } else { ys.fold(f64::INFINITY, f64::min) };
+            [Point2::new(low.x, if is_far { high.y } else { low.y }), Point2::new(*x, y)]
+        };
         let text = number(x - low.x);
-        frame.linear(format!("from the left side, {text}"), text, [from, Point2::new(*x, y)], false, is_far);
+        frame.linear_on_a_side(format!("from the left side, {text}"), text, ends, false, i % 2 == 1);
     }
     let middle = f64::midpoint(low.y, high.y);
     let is_paired = |p: &Point2| points.iter().any(|q| same(p.x, q.x) && same(q.y - middle, middle - p.y));
@@ -120,16 +130,17 @@ fn block(f: &Features, frame: &mut Frame<'_>) {
     for (i, p) in above.iter().filter(|p| !same(p.y, high.y)).enumerate() {
         if is_paired(p) {
             let text = number(2.0 * (p.y - middle));
-            let is_far = i % 2 == 0;
             // To the side on which it is written, where the same height is met nearest to it.
-            let at_height = points.iter().filter(|q| same(q.y, p.y)).map(|q| q.x);
-            let x = if is_far {
-                at_height.fold(f64::NEG_INFINITY, f64::max)
-            } else {
-                at_height.fold(f64::INFINITY, f64::min)
+            let ends = |is_far: bool| {
+                let at_height = points.iter().filter(|q| same(q.y, p.y)).map(|q| q.x);
+                let x = if is_far {
+                    at_height.fold(f64::NEG_INFINITY, f64::max)
+                } else {
+                    at_height.fold(f64::INFINITY, f64::min)
+                };
+                [Point2::new(x, 2.0 * middle - p.y), Point2::new(x, p.y)]
             };
-            let ends = [Point2::new(x, 2.0 * middle - p.y), Point2::new(x, p.y)];
-            frame.linear(format!("across the middle, {text}"), text, ends, true, is_far);
+            frame.linear_on_a_side(format!("across the middle, {text}"), text, ends, true, i % 2 == 0);
         } else {
             let text = number(p.y - low.y);
             let ends = [Point2::new(p.x, low.y), *p];

@@ -213,14 +213,18 @@ fn by_effect(gallery: &Gallery) -> Vec<usize> {
     ranked.into_iter().map(|(_, field)| field).collect()
 }
 
+/// Height of what is said where there is nothing to draw, px.
+const WORDS: i32 = 40;
+
 /// Friction at the heaviest load over the load from which the silicone takes over, with the band of the friction.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing library refuses a coordinate.
 pub(super) fn threshold_svg(name: &str, gallery: &Gallery) -> Result<String, PlotError> {
     let colours = Classes::new(gallery, by_effect(gallery).first().copied(), 8);
-    let size = (PANEL.0 * 2 + LEGEND, PANEL.1 * 2 + TITLE);
     let all: Vec<_> = gallery.made().filter_map(|s| Some((s, s.threshold_n?, s.friction_n?))).collect();
+    let height = if all.is_empty() { WORDS } else { PANEL.1 * 2 };
+    let size = (PANEL.0 * 2 + LEGEND, height + TITLE);
     let without = gallery.made().count() - all.len();
     draw(size, |root| {
         let note = if without > 0 {
@@ -229,6 +233,11 @@ pub(super) fn threshold_svg(name: &str, gallery: &Gallery) -> Result<String, Plo
             String::new()
         };
         let body = titled(root, &format!("{name}: friction against threshold{note}"))?;
+        if all.is_empty() {
+            let words = "No variant has a threshold: none of them switches within its loads.";
+            body.draw(&Text::new(words, (14 * FINE, 14 * FINE), ("sans-serif", 14 * FINE)))?;
+            return Ok(());
+        }
         let (body, key) = body.split_horizontally((size.0 - LEGEND) * FINE);
         legend(&key, &colours)?;
         let top = all.iter().map(|(_, _, f)| f[2]).fold(0.1, f64::max) * 1.05;

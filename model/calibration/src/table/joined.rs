@@ -2,6 +2,7 @@
 
 use super::columns::LABELS;
 use super::plateau_table::PlateauTable;
+use super::row_cells::RowCells;
 use super::table_error::TableError;
 
 /// The column that names the session.
@@ -19,7 +20,7 @@ impl PlateauTable {
         for (mut table, file) in tables {
             if !table.header.iter().any(|name| name == SESSION) {
                 table.header.push(SESSION.to_owned());
-                table.cells.iter_mut().for_each(|cells| cells.push(file.clone()));
+                table.cells.iter_mut().for_each(|cells| cells.push(&file));
                 table.rows.iter_mut().for_each(|row| row.labels.session.clone_from(&file));
             }
             let own: std::collections::BTreeSet<&String> =
@@ -36,15 +37,14 @@ impl PlateauTable {
             for name in &table.header {
                 if !all.header.contains(name) {
                     all.header.push(name.clone());
-                    all.cells.iter_mut().for_each(|cells| cells.push(String::new()));
+                    all.cells.iter_mut().for_each(|cells| cells.push(""));
                 }
             }
             let places: Vec<Option<usize>> =
                 all.header.iter().map(|name| table.header.iter().position(|own| own == name)).collect();
             all.cells.extend(table.cells.iter().map(|cells| {
-                let cell =
-                    |place: &Option<usize>| place.and_then(|i| cells.get(i)).cloned().unwrap_or_default();
-                places.iter().map(cell).collect()
+                let cell = |place: &Option<usize>| place.map_or("", |i| cells.get(i));
+                places.iter().map(cell).collect::<RowCells>()
             }));
             all.rows.extend(table.rows);
         }

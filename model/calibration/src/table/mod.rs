@@ -8,6 +8,7 @@ mod joined;
 mod plateau_table;
 mod plausible_table;
 mod row;
+mod row_cells;
 pub(crate) mod substrate_word;
 mod swapped_columns;
 mod table_error;

@@ -8,6 +8,7 @@ use pinswitch_friction::{Direction, Substrate};
 
 use super::columns::{COLUMNS, LABELS, WRAP_ANGLE, column_name};
 use super::row::{Labels, PlateauRow, Sweep};
+use super::row_cells::RowCells;
 use super::substrate_word::{WORDS, substrate_word};
 use super::table_error::TableError;
 
@@ -41,7 +42,7 @@ pub struct PlateauTable {
     /// One entry per line, in file order.
     pub rows: Vec<PlateauRow>,
     pub(super) header: Vec<String>,
-    pub(super) cells: Vec<Vec<String>>,
+    pub(super) cells: Vec<RowCells>,
 }
 
 /// What a reader may leave out.
@@ -136,7 +137,7 @@ impl PlateauTable {
                 return Err(line.refuse(9, problem));
             }
             rows.push(row);
-            cells.push(record.iter().map(str::to_owned).collect());
+            cells.push(record.iter().collect());
         }
         if rows.is_empty() {
             return Err(TableError::Empty { file: file.to_owned() });
@@ -165,7 +166,7 @@ impl PlateauTable {
         push_line(&mut out, self.header.iter().map(String::as_str).chain(names.iter().copied()));
         for (i, cells) in self.cells.iter().enumerate() {
             let added: Vec<String> = columns.iter().map(|c| format!("{:.decimals$}", c[i])).collect();
-            push_line(&mut out, cells.iter().chain(&added).map(String::as_str));
+            push_line(&mut out, cells.iter().chain(added.iter().map(String::as_str)));
         }
         out
     }

@@ -9,6 +9,7 @@ use super::screening::Screen;
 use super::unnamed::Context;
 use super::variance_components::{Scatter, shared_again};
 use super::weighed::Weighed;
+use crate::parallel::both;
 
 /// Evidence by which believing less may be behind and still be searched for.
 const WORTH_A_SEARCH: f64 = 25.0;
@@ -24,8 +25,10 @@ pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Le
     // What is believed is kept, and the scatter beside it estimated.
     let at = |explanation: &Explanation, noise| {
         let weighed = Weighed::new(data, noise);
-        let baseline = fit(&explanation.baseline.model, &weighed);
-        let augmented = fit(&explanation.augmented.model, &weighed);
+        let (baseline, augmented) = both(
+            || fit(&explanation.baseline.model, &weighed),
+            || fit(&explanation.augmented.model, &weighed),
+        );
         Explanation { baseline, augmented, noise, ..explanation.clone() }
     };
     let with_scatter = |explanation: Explanation| {

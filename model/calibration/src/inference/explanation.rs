@@ -15,6 +15,7 @@ use super::unnamed::{Context, FoundStructure, with_structure};
 use super::variance_components::{Scatter, estimate, shared_again};
 use super::weighed::Weighed;
 use crate::effects::Shape;
+use crate::parallel::map_each;
 
 /// Gain, in whitened squares, below which a shape is not worth a look.
 const MIN_SHAPE_GAIN: f64 = 9.0;
@@ -149,13 +150,16 @@ pub(super) fn sharper_noise(
     let choice = 2.0 * libm::log(shapes.len().max(1) as f64) + MIN_EVIDENCE;
     let mut best = (evidence(found, &weighed) - choice, None);
     let mut covariates = Vec::new();
-    let columns = explainable(found, data);
+    let mut strongest: Vec<&StructureScore> = Vec::new();
     for score in shapes.iter().filter(|s| s.gain > MIN_SHAPE_GAIN) {
         let covariate = score.group[0].covariate;
-        if covariates.contains(&covariate) {
-            continue;
+        if !covariates.contains(&covariate) {
+            covariates.push(covariate);
+            strongest.push(score);
         }
-        covariates.push(covariate);
+    }
+    let columns = explainable(found, data);
+    let tried = map_each(strongest, |score| {
         let with = with_structure(found, score, &weighed);
         let own = &with.model.terms[found.model.terms.len()..];
         let mut columns = columns.clone();
@@ -164,7 +168,9 @@ pub(super) fn sharper_noise(
         columns.extend(all.into_iter().rev().take(own.len()));
         let sharper = shared_again(data, &with.residual_n, &columns, noise);
         let weighed = Weighed::new(data, sharper);
-        let toll = evidence(&fit(&with.model, &weighed), &weighed);
+        (evidence(&fit(&with.model, &weighed), &weighed), sharper)
+    });
+    for (toll, sharper) in tried {
         if toll < best.0 {
             best = (toll, Some(sharper));
         }

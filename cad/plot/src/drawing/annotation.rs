@@ -55,7 +55,7 @@ pub struct Linear {
     pub edge_mm: f64,
     /// +1 if dimension lines move up or right from there, -1 down or left.
     pub outward: f64,
-    /// How far from there another view begins, mm: no dimension line comes as near as [`VIEW_GAP_MM`] to it.
+    /// How far from there another view begins, mm: no dimension line comes as near as 2 mm to it.
     pub room_mm: f64,
     /// What a text beside its dimension line must stand clear of, along the line: where others have their extension lines.
     pub clear_of: [f64; 2],

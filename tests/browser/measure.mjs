@@ -47,7 +47,8 @@ function changes(facts, count) {
   });
 }
 
-// A change, as a slider makes it, until part and curve of it are drawn. Refused ones count, too: the answer is the refusal.
+// A change, as a slider makes it, until part and curve of it are drawn. Refused ones count, too: the answer is the refusal. What is not
+// answered at all counts as five seconds; null is no change.
 async function change(page, [path, value]) {
   return page.evaluate(async (field, to) => {
     const { dataset } = document.body;
@@ -60,7 +61,7 @@ async function change(page, [path, value]) {
     if (dataset.asked === before) return null;
     // Not the exact answer to the change before, which may come first.
     while (dataset.answered !== dataset.asked) {
-      if (performance.now() - began > 5000) return null;
+      if (performance.now() - began > 5000) return 5000;
       await new Promise((done) => { const { port1, port2 } = new MessageChannel(); port1.onmessage = () => { port1.close(); done(); }; port2.postMessage(0); });
     }
     // What is shown is drawn in the next frame.
@@ -133,7 +134,7 @@ async function slow(browser, site, table) {
 
 async function main() {
   writeFileSync(join(scratch, 'mine.toml'), '[layout]\npins = [5, 8, 11]\n');
-  const sites = [await viewSite(job.binary, scratch, 'mine.toml')];
+  const sites = [await viewSite(job.binary, scratch, ['mine.toml'])];
   const { origin } = sites[0];
   const facts = await (await fetch(`${origin}/answer`, { method: 'POST', headers: { origin }, body: '{"ask": "facts"}' })).json();
   if (job.site) { weigh(job.site); sites.push(await moduleSite(job.site)); }

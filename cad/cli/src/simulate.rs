@@ -77,6 +77,10 @@ pub(super) struct Arguments {
     /// In a study, the first seed; others than those a level was tuned on give a fair figure.
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "study", value_parser = clap::value_parser!(u64).range(..=MAX_FIRST_SEED))]
     first_seed: u64,
+    /// In a study, give every rig all noise at once: scatter of mounts and seatings, walking offsets, chains, heavy tails, a cell with
+    /// steps, missing rows.
+    #[arg(long, requires = "study", conflicts_with = "experiments")]
+    every_noise: bool,
     /// In a study, ask for the error promised for a new session, too: five times the time.
     #[arg(long, requires = "study")]
     promises: bool,
@@ -218,7 +222,8 @@ fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
         each_case(arguments, seeds, cases, run, |case, outcomes| study.add(case, outcomes))?;
         return print(study.table().as_bytes());
     }
-    let numbered = (0..).zip(study_cases());
+    let every_noise = arguments.every_noise;
+    let numbered = (0..).zip(study_cases().into_iter().map(|case| Case { every_noise, ..case }));
     if arguments.forms {
         let mut study = FormStudy::default();
         let cases = numbered.filter(|(_, case)| case.group == Group::Outside).collect();

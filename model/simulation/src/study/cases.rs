@@ -87,6 +87,8 @@ pub struct Case {
     pub group: Group,
     /// What is true of it.
     pub truth: Truth,
+    /// Whether it holds every kind of noise at once, whatever it would have of its own.
+    pub every_noise: bool,
 }
 
 impl Case {
@@ -124,7 +126,9 @@ pub fn study_cases() -> Vec<Case> {
 
 fn cases_of(protocol: Protocol) -> Vec<Case> {
     let mut cases = Vec::new();
-    let mut push = |group, name: String, truth| cases.push(Case { name, protocol, group, truth });
+    let mut push = |group, name: String, truth| {
+        cases.push(Case { name, protocol, group, truth, every_noise: false });
+    };
     for (name, _) in NULLS {
         push(Group::Nulls, name.to_owned(), Truth::Nothing);
     }
@@ -203,6 +207,9 @@ pub fn plan_of(case: &Case, seed: u64) -> Plan {
     }
     if case.group == Group::Scattered {
         plan.noise.series_scale = random.random_range(0.01..0.02);
+    }
+    if case.every_noise {
+        nulls::everything_at_once(&mut plan.noise, &mut random);
     }
     plan.shuffled = is_shuffled(case, seed);
     plan
@@ -288,6 +295,20 @@ mod tests {
             if let Truth::Outside { covariates, .. } = case.truth {
                 assert_eq!(plan.disturbances[0].covariates(), covariates, "{}", case.name);
             }
+        }
+    }
+
+    #[test]
+    fn every_noise_is_that_of_the_rigs_without_effect_that_hold_it() {
+        for case in study_cases() {
+            let noise = plan_of(&Case { every_noise: true, ..case }, 4).noise;
+            assert!((0.01..0.04).contains(&noise.series_scale) && (0.01..0.03).contains(&noise.mount_scale));
+            assert!(
+                noise.series_walk > 0.0
+                    && noise.autocorrelation > 0.0
+                    && noise.heavy_tails
+                    && noise.resolution_n > 0.0
+            );
         }
     }
 

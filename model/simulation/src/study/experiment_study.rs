@@ -58,6 +58,7 @@ pub fn experiment_cases() -> Vec<Case> {
         protocol: Protocol::Paper,
         group: Group::Confounded,
         truth: Truth::Effects(vec![id]),
+        every_noise: false,
     })
     .to_vec()
 }

@@ -34,14 +34,7 @@ pub(super) const NULLS: [Kind; 18] = [
         noise.series_walk = 0.8;
     }),
     ("no effect, quantised cell", |noise, _| noise.resolution_n = 0.1),
-    ("no effect, everything at once", |noise, random| {
-        common_offsets(noise);
-        noise.series_scale = random.random_range(0.01..0.04);
-        noise.mount_scale = random.random_range(0.01..0.03);
-        noise.series_walk = 0.4;
-        (noise.autocorrelation, noise.heavy_tails) = (0.4, true);
-        (noise.resolution_n, noise.lost_share) = (0.05, 0.03);
-    }),
+    ("no effect, everything at once", everything_at_once),
 ];
 
 /// Kinds of which the study makes two and a half times as many rigs: with few alarms, their rate needs many.
@@ -49,6 +42,17 @@ pub(super) const OFTEN: usize = 4;
 
 fn common_offsets(noise: &mut NoisePlan) {
     (noise.series_common_n, noise.series_common_per_load) = (0.05, 0.004);
+}
+
+/// All that a rig of another hand may do at once: mounts and seatings that differ, offsets that depend on load and walk, chains of
+/// repetitions, heavy tails, a cell with steps, rows that are missing.
+pub(super) fn everything_at_once(noise: &mut NoisePlan, random: &mut ChaCha8Rng) {
+    common_offsets(noise);
+    noise.series_scale = random.random_range(0.01..0.04);
+    noise.mount_scale = random.random_range(0.01..0.03);
+    noise.series_walk = 0.4;
+    (noise.autocorrelation, noise.heavy_tails) = (0.4, true);
+    (noise.resolution_n, noise.lost_share) = (0.05, 0.03);
 }
 
 /// Gives the noise of a plan the kind of that name.

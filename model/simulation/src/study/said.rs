@@ -86,7 +86,13 @@ mod tests {
     use crate::study::Group;
 
     fn judged(truth: Truth, sets: &[Vec<&str>], place: Option<Covariate>) -> ((bool, bool), Vec<String>) {
-        let case = Case { name: String::new(), protocol: Protocol::Paper, group: Group::Masks, truth };
+        let case = Case {
+            name: String::new(),
+            protocol: Protocol::Paper,
+            group: Group::Masks,
+            truth,
+            every_noise: false,
+        };
         let verdict = match (sets, place) {
             (_, Some(_)) => Verdict::Unattributed,
             ([], None) => Verdict::None,

@@ -5,7 +5,10 @@ use pinswitch_calibration::inference::{Levels, Model, Observations, Weighed, int
 use pinswitch_calibration::segmentation::segment_run;
 use pinswitch_calibration::table::{Frame, PlateauTable};
 
-use crate::{Course, Disturbance, DisturbanceTarget, EffectPlan, Plan, RawRun, simulate};
+use crate::{
+    Case, Course, Disturbance, DisturbanceTarget, EffectPlan, Group, Plan, Protocol, RawRun, run_case,
+    simulate, study_cases,
+};
 
 fn estimated_correlation(plan: &Plan) -> f64 {
     let rows = simulate(plan).rows;
@@ -97,5 +100,23 @@ fn the_wrap_angle_of_a_run_reaches_the_table() {
         assert_eq!(found.report.series.len(), 2);
         assert!(found.rows.iter().all(|row| row.wrap_angle_deg == wrap_angle_deg));
         assert_eq!(PlateauTable::write(&found.rows).contains("wrap_angle_deg"), column);
+    }
+}
+
+/// Beside every kind of noise at once, shapes found before any scatter was known stood where a strong name had stood, and a
+/// second name where mounts and a walk explain the same.
+#[test]
+fn no_scatter_is_told_as_a_shape_or_a_second_name_beside_a_strong_one() {
+    let cases = [
+        ("run_in", Protocol::Paper, 2_023_002),
+        ("stroke_position", Protocol::Randomised, 2_111_002),
+        ("guide_drag", Protocol::Randomised, 2_114_001),
+        ("coating_stiffening", Protocol::Randomised, 2_101_002),
+    ];
+    for (name, protocol, seed) in cases {
+        let is_meant = |c: &Case| c.name == name && c.protocol == protocol && c.group == Group::Singles;
+        let case = Case { every_noise: true, ..study_cases().into_iter().find(is_meant).unwrap() };
+        let outcome = run_case(&case, seed, Levels::default(), false).unwrap();
+        assert!(outcome.exact, "{name}: {:?}", outcome.named);
     }
 }

@@ -17,38 +17,12 @@ const WORTH_A_SEARCH: f64 = 25.0;
 /// Whether scatter from mount to mount, or offsets that wander from series to series, explain a table as well as what
 /// was believed without them. Their groups are few, so that no variance is known well: they compete as explanations.
 pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Explanation {
-    let beside = |scatter: Scatter, fitted: &Fit, noise| {
-        let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
-        let own = jacobian(&fitted.model, data, &predicted);
-        scatter.estimated(data, &fitted.residual_n, &own, noise)
-    };
-    // What is believed is kept, and the scatter beside it estimated.
-    let at = |explanation: &Explanation, noise| {
-        let weighed = Weighed::new(data, noise);
-        let (baseline, augmented) = both(
-            || fit(&explanation.baseline.model, &weighed),
-            || fit(&explanation.augmented.model, &weighed),
-        );
-        Explanation { baseline, augmented, noise, ..explanation.clone() }
-    };
-    let with_scatter = |explanation: Explanation| {
-        let noises = [explanation.noise, beside_own(&explanation, data)]
-            .map(|noise| Scatter::ALL.iter().fold(noise, |n, s| beside(*s, &explanation.augmented, n)));
-        let mut best = explanation.clone();
-        for noise in noises.into_iter().filter(|noise| *noise != explanation.noise) {
-            let with = at(&explanation, noise);
-            if with.toll(data) < best.toll(data) {
-                best = with;
-            }
-        }
-        best
-    };
     if free.augmented.model.terms.is_empty() {
-        return with_scatter(free);
+        return with_scatter(free, data);
     }
     let bare = |noise| Scatter::ALL.iter().fold(noise, |n, scatter| scatter.left_out(n));
-    let alone = Scatter::ALL.map(|scatter| beside(scatter, &free.baseline, bare(free.noise)));
-    let mut best = with_scatter(free);
+    let alone = Scatter::ALL.map(|scatter| beside(scatter, data, &free.baseline, bare(free.noise)));
+    let mut best = or_names_alone(free, data);
     for found in alone {
         let noise = Scatter::ALL.iter().fold(best.noise, |n, scatter| scatter.taken_from(found, n));
         if noise == bare(noise) {
@@ -60,20 +34,76 @@ pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Le
             continue;
         }
         let other = explain(&best.baseline.model, data, noise, levels);
-        let other = with_scatter(other);
+        let other = or_names_alone(other, data);
         if other.toll(data) < best.toll(data) {
             best = other;
         }
     }
+    best = without_what_scatter_replaces(best, data);
     // Names were preferred to shapes before it was known that they need scatter beside them. What they gain by bending
     // their forms speaks for no shape: a half wave along the stroke is what `stroke_position` may look like.
     if best.names() > 0 && best.noise != bare(best.noise) {
         let bent_gain = Screen::guarded(&best.augmented, &Weighed::new(data, best.noise)).bent_gain();
         let least = best.toll(data) - bent_gain;
-        let shape = shape_alone(&best, data, levels).map(with_scatter);
+        let shape = shape_alone(&best, data, levels).map(|shape| with_scatter(shape, data));
         best = shape.filter(|shape| shape.toll(data) < least).unwrap_or(best);
     }
     best
+}
+
+/// The noise with one scatter as it is beside a fit.
+fn beside(scatter: Scatter, data: &Observations, fitted: &Fit, noise: Noise) -> Noise {
+    let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
+    let own = jacobian(&fitted.model, data, &predicted);
+    scatter.estimated(data, &fitted.residual_n, &own, noise)
+}
+
+/// The same things believed, with the scatter that is beside them where that makes the table more probable.
+fn with_scatter(explanation: Explanation, data: &Observations) -> Explanation {
+    let noises = [explanation.noise, beside_own(&explanation, data)]
+        .map(|noise| Scatter::ALL.iter().fold(noise, |n, s| beside(*s, data, &explanation.augmented, n)));
+    let mut best = explanation.clone();
+    for noise in noises.into_iter().filter(|noise| *noise != explanation.noise) {
+        let weighed = Weighed::new(data, noise);
+        let (baseline, augmented) = both(
+            || fit(&explanation.baseline.model, &weighed),
+            || fit(&explanation.augmented.model, &weighed),
+        );
+        let with = Explanation { baseline, augmented, noise, ..explanation.clone() };
+        if with.toll(data) < best.toll(data) {
+            best = with;
+        }
+    }
+    best
+}
+
+/// The same with its scatter, or the names alone with theirs: shapes that were found before any scatter was known may be
+/// nothing else, and may stand where a name stood.
+fn or_names_alone(explanation: Explanation, data: &Observations) -> Explanation {
+    let plain = explanation.names_alone().map(|e| e.at(data, e.noise));
+    let best = with_scatter(explanation, data);
+    match plain.map(|plain| with_scatter(plain, data)) {
+        Some(plain) if plain.toll(data) < best.toll(data) => plain,
+        _ => best,
+    }
+}
+
+/// An explanation without the names and shapes that are less probable than more scatter in their place.
+fn without_what_scatter_replaces(mut best: Explanation, data: &Observations) -> Explanation {
+    loop {
+        let (toll, terms) = (best.toll(data), best.augmented.model.terms.len());
+        let less = best
+            .with_less()
+            .filter(|less| less.augmented.model.terms.len() < terms)
+            .map(|less| less.at(data, best.noise))
+            .filter(|less| less.toll(data) < toll + WORTH_A_SEARCH)
+            .map(|less| with_scatter(less, data))
+            .min_by(|a, b| a.toll(data).total_cmp(&b.toll(data)));
+        match less.filter(|less| less.toll(data) < toll) {
+            Some(less) => best = less,
+            None => return best,
+        }
+    }
 }
 
 /// What series share beside the model's own columns alone. Before anything was searched for, all that might explain the
@@ -100,6 +130,7 @@ fn shape_alone(named: &Explanation, data: &Observations, levels: Levels) -> Opti
     let context = Context { weighed: &weighed, levels, explained: 0.0 };
     let (augmented, structure) = context.with_unnamed(&baseline, baseline.clone(), &left, 0.0);
     Some(Explanation {
+        named: baseline.model.clone(),
         baseline,
         augmented,
         structure: Some(structure?),

@@ -27,6 +27,8 @@ const MAX_EXCLUDED: usize = 3;
 pub(super) struct Explanation {
     pub(super) baseline: Fit,
     pub(super) augmented: Fit,
+    /// The names found before anything without a name was looked for.
+    pub(super) named: Model,
     pub(super) structure: Option<FoundStructure>,
     pub(super) structure_gain: f64,
     pub(super) structures_tried: usize,
@@ -62,6 +64,16 @@ impl Explanation {
 }
 
 impl Explanation {
+    /// The names that were found before anything without a name was looked for, alone.
+    pub(super) fn names_alone(&self) -> Option<Explanation> {
+        let has_shapes = self.structure.is_some() && !self.named.terms.is_empty();
+        has_shapes.then(|| Explanation {
+            augmented: Fit { model: self.named.clone(), ..self.augmented.clone() },
+            structure: None,
+            ..self.clone()
+        })
+    }
+
     /// The explanations that believe one thing less, or nothing.
     pub(super) fn with_less(&self) -> impl Iterator<Item = Explanation> {
         let terms = &self.augmented.model.terms;
@@ -125,13 +137,14 @@ pub(super) fn explain(start: &Model, data: &Observations, noise: Noise, levels: 
         })
         .flatten();
     let (structure_gain, structures_tried) = (left.first().map_or(0.0, |s| s.gain), left.len());
+    let named = found.model.clone();
     let (augmented, structure) = if isolated.is_some() {
         (found.clone(), None)
     } else {
         let bent = guarded.bent_gain();
         Context { weighed: &weighed, levels, explained }.with_unnamed(&baseline, found.clone(), &left, bent)
     };
-    Explanation { baseline, augmented, structure, structure_gain, structures_tried, noise, isolated }
+    Explanation { baseline, augmented, named, structure, structure_gain, structures_tried, noise, isolated }
 }
 
 /// Evidence that a shape must gain beside the choice among all shapes before it changes the noise.

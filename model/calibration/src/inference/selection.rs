@@ -117,6 +117,7 @@ impl Selection {
     pub fn without_findings(self, data: &Observations, levels: Levels) -> Self {
         let bare = Explanation {
             augmented: self.baseline.clone(),
+            named: self.baseline.model.clone(),
             baseline: self.baseline,
             structure: None,
             structure_gain: self.structure_gain,

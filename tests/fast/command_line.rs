@@ -130,7 +130,7 @@ fn other_layouts_say_how_far_to_trust_them() {
     };
     for (set, word, reason) in [
         ("layout.pins=[5,7,9,11]", "interpolated", "4 pins 11.93 deg apart"),
-        ("layout.pins=[5,6]", "extrapolated", "2 pin(s)"),
+        ("layout.pins=[5,6]", "extrapolated", "2 pins;"),
         (
             "silicone.thickness_mm=3",
             "extrapolated",

@@ -125,7 +125,7 @@ fn the_guide_speaks_in_numbers_of_this_set() {
         generate(folder.path(), &["three-double", "--set", "pins.diameter_mm=0.9", "--format", "guide"]);
     let guide = std::str::from_utf8(&files["PRINTING.md"]).unwrap();
     for words in
-        ["pins of 0.9 mm", "grooves [5, 8, 11]", "Weigh 10.0 g of base", "assembly.png", "2 screws M3 x 25"]
+        ["pins of 0.9 mm", "grooves 5, 8 and 11", "Weigh 10.0 g of base", "assembly.png", "2 screws M3 x 25"]
     {
         assert!(guide.contains(words), "{words} is missing from\n{guide}");
     }

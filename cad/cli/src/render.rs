@@ -26,9 +26,9 @@ pub(super) struct Arguments {
     /// What to draw.
     #[arg(long, value_enum, default_value_t = Scene::Exploded)]
     scene: Scene,
-    /// Turn about the vertical axis, in degrees.
-    #[arg(long, value_name = "DEG", default_value_t = 30.0, allow_negative_numbers = true)]
-    turn: f64,
+    /// Turn about the vertical axis, in degrees [default: 150, so that grooves and tendon are seen; 30 of a plate].
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    turn: Option<f64>,
     /// Height of the eye above the horizon, in degrees.
     #[arg(long, value_name = "DEG", default_value_t = 40.0, allow_negative_numbers = true)]
     rise: f64,
@@ -47,8 +47,17 @@ enum Scene {
     Plate,
 }
 
+impl Arguments {
+    fn turn_deg(&self) -> f64 {
+        self.turn.unwrap_or(match self.scene {
+            Scene::Assembled | Scene::Exploded => 150.0,
+            Scene::Plate => 30.0,
+        })
+    }
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for (flag, degrees) in [("--turn", arguments.turn), ("--rise", arguments.rise)] {
+    for (flag, degrees) in [("--turn", arguments.turn_deg()), ("--rise", arguments.rise)] {
         if !degrees.is_finite() {
             return Err(Failure::bad_input(format!("{flag} = {degrees}: give an angle in degrees")));
         }
@@ -63,7 +72,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Scene::Exploded => assembled(&built, 1.0),
         Scene::Plate => all_plates(&built),
     };
-    let view = View { turn_deg: arguments.turn, rise_deg: arguments.rise };
+    let view = View { turn_deg: arguments.turn_deg(), rise_deg: arguments.rise };
     let picture = render(&bodies, view, arguments.width, arguments.width * 3 / 4);
     let bytes = picture.png().map_err(Failure::failed)?;
     write_file(&arguments.out, &bytes).map_err(Failure::from)

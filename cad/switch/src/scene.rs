@@ -1,5 +1,6 @@
 //! Bodies to draw: assembled, exploded, step by step, or side by side on a plate.
 
+mod rig_hardware;
 mod stage;
 
 use crate::built::{Built, BuiltPart};
@@ -72,7 +73,8 @@ pub fn exploded_png(built: &Built) -> Result<&[u8], SetError> {
     if let Some(known) = built.kept_picture().get() {
         return Ok(known);
     }
-    let view = View { turn_deg: 30.0, rise_deg: 40.0 };
+    // From the side of the grooves and of the tendon.
+    let view = View { turn_deg: 150.0, rise_deg: 40.0 };
     let (width, height) = EXPLODED_PIXELS;
     let png = render(&assembled(built, 1.0), view, width, height).png().map_err(SetError::encoding)?;
     Ok(built.kept_picture().get_or_init(|| png))

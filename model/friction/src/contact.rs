@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::PinPattern;
+use crate::counted;
 use crate::physics::Bed;
 use crate::published::{self, PublishedLayout};
 
@@ -172,7 +173,8 @@ impl Contact {
         let mut all = self.unmodelled.clone();
         let outside = self.all_pins.count() - self.pins.count();
         if outside > 0 {
-            all.push(format!("{outside} pin(s) lie outside the wrap"));
+            let verb = if outside == 1 { "lies" } else { "lie" };
+            all.push(format!("{} {verb} outside the wrap", counted(outside, "pin")));
         }
         all
     }

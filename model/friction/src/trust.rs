@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::departure::{Departure, is_published_rig};
 use crate::published;
-use crate::{Contact, Substrate};
+use crate::{Contact, Substrate, counted};
 
 /// Number of pins between which the published layouts lie.
 const PINS_MEASURED: std::ops::RangeInclusive<usize> = 3..=6;
@@ -86,7 +86,7 @@ fn unmeasured_layout(contact: &Contact) -> Vec<String> {
     let pins = contact.pins();
     let mut reasons = Vec::new();
     if !PINS_MEASURED.contains(&pins.count()) {
-        reasons.push(format!("{} pin(s); measured were 3 and 6", pins.count()));
+        reasons.push(format!("{}; measured were 3 and 6", counted(pins.count(), "pin")));
     }
     let (narrow, wide) = measured_pitches_rad();
     if let Some(pitch) = pins.mean_pitch_rad()

@@ -21,6 +21,8 @@ const FIRST_TIER_MM: f64 = 7.0;
 const TIER_MM: f64 = 6.0;
 /// From one arc of an angle to the next, mm: level texts stick out of their arc.
 const ARC_TIER_MM: f64 = 8.0;
+/// Least radius of the arc of an angle, mm.
+const LEAST_ARC_MM: f64 = 5.0;
 /// How many dimension lines are tried.
 const TIERS: u32 = 14;
 /// Least distance of a dimension line from another view.
@@ -102,7 +104,7 @@ impl Linear {
                 common.push(line(at(a - 5.0, height), at(b + 5.0, height)));
             }
             if fits_arrows && b - a > width + 1.0 {
-                for shift in [0.0, -0.25, 0.25] {
+                for shift in [0.0, -0.15, 0.15, -0.25, 0.25, -0.4, 0.4] {
                     let start = f64::midpoint(a, b) - width / 2.0 + shift * (b - a - width);
                     let mut shapes = common.clone();
                     shapes.push((Layer::Text, text(at(start, height + above), &self.text, self.upright)));
@@ -141,6 +143,8 @@ pub struct Angular {
     pub begins_mm: f64,
     /// From the centre to what the dimension line must pass, mm on paper.
     pub edge_mm: f64,
+    /// Whether it stands on the side of the centre, and not beyond what it measures.
+    pub is_inside: bool,
 }
 
 impl Angular {
@@ -153,8 +157,12 @@ impl Angular {
         let sweep = self.to_rad - self.from_rad;
         let width = text_width_mm(&self.text, TEXT_MM);
         let mut all = Vec::new();
+        let outward = if self.is_inside { -1.0 } else { 1.0 };
         for tier in 0..TIERS {
-            let radius = self.edge_mm + FIRST_TIER_MM + ARC_TIER_MM * f64::from(tier);
+            let radius = self.edge_mm + outward * (FIRST_TIER_MM + ARC_TIER_MM * f64::from(tier));
+            if radius < LEAST_ARC_MM {
+                break;
+            }
             let on = |angle: f64, r: f64| self.centre + Point::towards(angle) * r;
             let mut common = vec![(
                 Layer::Dimension,
@@ -171,15 +179,15 @@ impl Angular {
             for (angle, sense) in [(self.from_rad, -1.0), (self.to_rad, 1.0)] {
                 let sense = if inside { sense } else { -sense };
                 common.push(line(
-                    on(angle, self.begins_mm + EXTENSION_GAP_MM),
-                    on(angle, radius + EXTENSION_MM),
+                    on(angle, self.begins_mm + outward * EXTENSION_GAP_MM),
+                    on(angle, radius + outward * EXTENSION_MM),
                 ));
                 common.push(arrow(on(angle, radius), Point::towards(angle + sense * (FRAC_PI_2 - turn))));
             }
             for share in [0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75, 0.15, 0.85] {
                 let angle = self.from_rad + sweep * share;
                 // The nearest place outside the arc where a level text does not touch it.
-                let outward = Point::towards(angle);
+                let towards = Point::towards(angle);
                 let clear = (0..60).map(|i| radius + 0.5 + 0.5 * f64::from(i)).find(|r| {
                     let middle = on(angle, *r);
                     let half = Point::new(width / 2.0 + 0.7, TEXT_MM / 2.0 + 0.7);
@@ -190,7 +198,7 @@ impl Angular {
                     (middle + nearest - self.centre).length() > radius
                 });
                 let Some(r) = clear else { continue };
-                let middle = self.centre + outward * r;
+                let middle = self.centre + towards * r;
                 let mut shapes = common.clone();
                 let at = middle - Point::new(width / 2.0, TEXT_MM / 2.0);
                 shapes.push((Layer::Text, text(at, &self.text, false)));

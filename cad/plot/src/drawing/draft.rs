@@ -74,7 +74,12 @@ impl Draft {
             self.texts.insert(text.extent(), (text.extent(), group));
         }
         for ends in shape.pieces() {
-            let is_annotation = view.is_none() && matches!(layer, Layer::Dimension | Layer::Thin);
+            // The planes of sections and engraved letters are read as dimensions are.
+            let is_annotation = match layer {
+                Layer::Thin => true,
+                Layer::Dimension | Layer::Frame => view.is_none(),
+                _ => false,
+            };
             self.pieces.insert(Extent::between(ends[0], ends[1]), Piece { ends, group, is_annotation });
         }
         self.sheet.entities.push(Entity { layer, shape, view, group });

@@ -70,7 +70,9 @@ pub(super) fn other_kind(head: &[u8], fits: bool) -> Option<&'static str> {
     } else if fits || is_ascii(head) || text.chars().any(|c| c.is_control() && !c.is_whitespace()) {
         None
     } else {
-        Some("a text that does not begin as an ASCII STL does, with the word solid")
+        Some(
+            "a text that begins neither with the word solid, as an ASCII STL, nor with ISO-10303-21, as a STEP",
+        )
     }
 }
 

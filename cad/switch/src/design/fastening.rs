@@ -44,7 +44,7 @@ const LEAST_GRIP: f64 = 0.6;
 /// Socket screws and nuts of the sheath stop: M3.
 pub(crate) const STOP_SCREW: Thread = THREADS[3];
 /// Head of the axle's hexagon bolt, M8: across its flats and its height, mm (ISO 4017).
-const AXLE_HEAD_MM: [f64; 2] = [13.0, 5.3];
+pub(crate) const AXLE_HEAD_MM: [f64; 2] = [13.0, 5.3];
 
 /// A metric thread with the hardware that fits it. Sources: cad/doc/print-limits.md, "Fasteners".
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,5 +1,6 @@
 //! A design: a configuration that can be built, printed and assembled, with every dimension that follows from it.
 
+mod clearance;
 mod dimensions;
 mod fastening;
 mod mounting;
@@ -12,11 +13,12 @@ use pinswitch_friction::{Contact, PinPattern};
 use crate::config::{ConfigError, Configuration};
 use pinswitch_solid::profile::ChordTolerance;
 
+pub(crate) use clearance::{clearance, clearance_grade};
 pub use dimensions::{Dimensions, Slot};
+pub(crate) use fastening::{AXLE_HEAD_MM, STOP_SCREW, axle_recess, stop_recess};
 pub use fastening::{Fastening, Recess, Thread};
-pub(crate) use fastening::{STOP_SCREW, axle_recess, stop_recess};
+pub(crate) use mounting::{BEARING_SEAT_MM, PULLEY_RADIUS_MM, pulley_outer_mm, pulley_width_mm};
 pub use mounting::{Hole, Mounting, SheathStop};
-pub(crate) use mounting::{PULLEY_RADIUS_MM, pulley_outer_mm, pulley_width_mm};
 
 /// A validated configuration: all its [`Dimensions`], the tolerance of its meshes, and what the tendon touches.
 ///

@@ -9,6 +9,9 @@ use pinswitch_solid::profile::{Disc, Point2, Vector2, polar};
 pub(crate) const PULLEY_RADIUS_MM: f64 = 22.0;
 /// Bore of a 608 bearing, and its hole in the plate for an M8 bolt, mm.
 const AXLE_HOLE_MM: f64 = 8.4;
+/// Diameter of the guide pulley's seat for a 608 bearing, whose outer ring measures 22 mm (ISO 15), with an allowance for
+/// the press fit, mm.
+pub(crate) const BEARING_SEAT_MM: f64 = 22.1;
 /// Width of each flange's rim of the guide pulley, mm.
 const PULLEY_RIM_MM: f64 = 1.2;
 /// Least width of the guide pulley: a 608 bearing of 7 mm over its ledge.

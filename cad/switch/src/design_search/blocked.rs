@@ -8,6 +8,7 @@ use super::relaxed::usual;
 use super::space::{Space, is_predictable};
 use crate::ask::{Ask, Limits, Materials, Parameter, Target, Vary};
 use crate::config::Configuration;
+use pinswitch_friction::counted;
 
 /// Steps of the search over all parameters together.
 const TOGETHER_STEPS: u64 = 400;
@@ -104,7 +105,7 @@ pub(super) fn blocked(
     });
     let of_pins = |pins: usize, effect: &str| {
         let asked = trial.ask.limits.pins.map_or_else(String::new, |(a, b)| format!("{a}..{b}"));
-        format!("limits.pins = {asked}: with {pins} pin(s) the ask {effect}")
+        format!("limits.pins = {asked}: with {} the ask {effect}", counted(pins, "pin"))
     };
     let limit = match (moves.first(), other_pins) {
         (Some(first), _) if first.meets => first.forbidden_by.clone(),

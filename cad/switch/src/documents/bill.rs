@@ -17,8 +17,8 @@ const BEARING: &str = "608";
 /// Screws of the sheath stop.
 pub const STOP_SCREWS: usize = 2;
 /// Width of a 608 bearing (ISO 15), and height of an M8 nut (ISO 4032), mm.
-const BEARING_MM: f64 = 7.0;
-const AXLE_NUT_MM: f64 = 6.8;
+pub(crate) const BEARING_MM: f64 = 7.0;
+pub(crate) const AXLE_NUT_MM: f64 = 6.8;
 
 /// Pins to cut.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -108,6 +108,12 @@ pub struct MountHardware {
     /// Thread and length of these screws, which are [`STOP_SCREWS`].
     #[serde(skip)]
     pub stop_screw: Option<String>,
+    /// Length of the bolt under its head, mm.
+    #[serde(skip)]
+    pub axle_length_mm: Option<f64>,
+    /// Length of the stop's screws under their heads, mm.
+    #[serde(skip)]
+    pub stop_screw_length_mm: Option<f64>,
 }
 
 /// The bill of materials of one set.
@@ -202,14 +208,13 @@ fn mount(design: &Design) -> Option<MountHardware> {
     let mounting = design.mounting()?;
     // Its head lies in the plate; then come spacer, bearing and nut.
     let stack = c.mount.plate_mm - axle_recess().depth_mm + spacer_mm(design) + BEARING_MM + AXLE_NUT_MM;
-    let axle = mounting.axle.map(|_| {
-        let length = BOLT_LENGTHS_MM.into_iter().find(|l| *l >= stack);
-        format!("M8 x {} hexagon bolt (ISO 4017), washer and nut", length.unwrap_or(BOLT_LENGTHS_MM[19]))
-    });
+    let axle_length_mm = mounting
+        .axle
+        .map(|_| BOLT_LENGTHS_MM.into_iter().find(|l| *l >= stack).unwrap_or(BOLT_LENGTHS_MM[19]));
+    let axle = axle_length_mm.map(|length| format!("M8 x {length} hexagon bolt (ISO 4017), washer and nut"));
     let stack = c.mount.plate_mm - stop_recess().depth_mm + design.sheath_floor_mm() + STOP_SCREW.nut_mm[1];
-    let stop_screw = mounting
-        .sheath
-        .and_then(|_| Some(format!("{} x {}", STOP_SCREW.name, STOP_SCREW.at_least_mm(stack)?)));
+    let stop_screw_length_mm = mounting.sheath.and_then(|_| STOP_SCREW.at_least_mm(stack));
+    let stop_screw = stop_screw_length_mm.map(|length| format!("{} x {length}", STOP_SCREW.name));
     let sheath_stop =
         stop_screw.as_ref().map(|screw| format!("{STOP_SCREWS} screws {screw} (ISO 4762) and nuts"));
     Some(MountHardware {
@@ -219,6 +224,8 @@ fn mount(design: &Design) -> Option<MountHardware> {
         axle,
         sheath_stop,
         stop_screw,
+        axle_length_mm,
+        stop_screw_length_mm,
     })
 }
 

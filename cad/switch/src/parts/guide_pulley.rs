@@ -2,13 +2,11 @@
 
 use super::{Part, Pose, Role, offset_error};
 use crate::config::ConfigError;
-use crate::design::{Design, PULLEY_RADIUS_MM, pulley_outer_mm, pulley_width_mm};
+use crate::design::{BEARING_SEAT_MM, Design, PULLEY_RADIUS_MM, pulley_outer_mm, pulley_width_mm};
 use pinswitch_solid::profile::{Contour, Point2};
 use pinswitch_solid::solid::{Facing, Solid};
 
-/// 608 bearing: outer diameter 22 mm and width 7 mm, with a press-fit allowance on the diameter.
-const SEAT_RADIUS_MM: f64 = 11.05;
-/// Depth of the seat.
+/// Depth of the seat: the width of a 608 bearing (ISO 15).
 const SEAT_MM: f64 = 7.0;
 /// Ledge under the outer ring; the inner ring must turn freely.
 const LEDGE_RADIUS_MM: f64 = 9.0;
@@ -38,7 +36,7 @@ pub(super) fn guide_pulley(design: &Design) -> Result<Part, ConfigError> {
     let seat = width - SEAT_MM;
     let bore = circle(LEDGE_RADIUS_MM).reversed();
     let (bore_foot, bore_head) = solid.extrude_chamfered(&bore, 0.0, seat, chamfer).map_err(&foot)?;
-    let (seat_foot, seat_head) = solid.extrude(&circle(SEAT_RADIUS_MM).reversed(), seat, width);
+    let (seat_foot, seat_head) = solid.extrude(&circle(BEARING_SEAT_MM / 2.0).reversed(), seat, width);
     solid.cap(Facing::Down, bottom, &[bore_foot]);
     solid.cap(Facing::Up, seat_foot, &[bore_head]);
     solid.cap(Facing::Up, top, &[seat_head]);

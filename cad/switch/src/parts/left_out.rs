@@ -107,6 +107,11 @@ impl Part {
         };
         self.left_out.iter().map(note).collect()
     }
+
+    /// What of it was left out, for those who make the part and do not know its configuration.
+    pub fn left_out_notes(&self, design: &Design) -> Vec<String> {
+        self.left_out.iter().map(|what| what.words(design, &self.name)).collect()
+    }
 }
 
 /// All that a design leaves out, with the part that lacks it. The parts themselves are not made.

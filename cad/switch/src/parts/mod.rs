@@ -22,6 +22,7 @@ mod thin_walls;
 
 use crate::config::{ConfigError, Configuration, MouldKind, MountKind};
 use crate::design::Design;
+use crate::design::rules::{Change, Effort, ways_out};
 use pinswitch_friction::Substrate;
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Contour, OffsetError, polar};
@@ -33,6 +34,7 @@ pub use layer::silicone_layer;
 pub use left_out::LeftOut;
 pub use mould::{cavity_mm3, gang_mm};
 pub(crate) use mould::{keys, one_piece as tray};
+pub(crate) use mount::SPACER;
 pub use mount::spacer_mm;
 pub use part::{Material, Part, Role};
 pub use sector::Sector;
@@ -78,11 +80,7 @@ pub const PRINTED_PARTS: &[PrintedPart] = &[
         is_wanted: |c| mount::has_plate(c, MountKind::Rig),
         build: mount::plate,
     },
-    PrintedPart {
-        name: "pulley-spacer",
-        is_wanted: |c| mount::has_plate(c, MountKind::Rig),
-        build: mount::spacer,
-    },
+    PrintedPart { name: SPACER, is_wanted: |c| mount::has_plate(c, MountKind::Rig), build: mount::spacer },
     PrintedPart { name: "sheath-stop", is_wanted: mount::has_sheath_stop, build: mount::sheath_stop },
 ];
 
@@ -101,10 +99,33 @@ fn has_tray(c: &Configuration) -> bool {
 /// Every printed part that `design` asks for.
 ///
 /// # Errors
-/// [`ConfigError`] if a chamfer, draft or offset swallows an edge.
+/// [`ConfigError`] if a chamfer, draft or offset swallows an edge, with the nearest value that swallows none.
 pub fn printed(design: &Design) -> Result<Vec<Part>, ConfigError> {
+    all_printed(design).map_err(|error| swallowing(error, design.configuration()))
+}
+
+fn all_printed(design: &Design) -> Result<Vec<Part>, ConfigError> {
     let wanted = PRINTED_PARTS.iter().filter(|p| (p.is_wanted)(design.configuration()));
     wanted.map(|p| (p.build)(design)).collect()
+}
+
+/// Fields of which a contour's offset depends, so that too large a value swallows an edge.
+const OFFSETS: [&str; 5] = [
+    "print.elephant_foot_mm",
+    "mould.key_height_mm",
+    "mould.pour_width_mm",
+    "segment.groove_radius_mm",
+    "support.corner_radius_mm",
+];
+
+/// The error about an offset that swallows an edge, with the present value and the largest one below it that swallows none.
+fn swallowing(error: ConfigError, c: &Configuration) -> ConfigError {
+    let Some(field) = OFFSETS.into_iter().find(|field| *field == error.field) else { return error };
+    let is_built =
+        |c: &Configuration| Design::new(c.clone()).is_ok_and(|design| all_printed(&design).is_ok());
+    let (remedy, changes) = ways_out(field, c, &[Change::Lower(field)], &is_built, Effort::THOROUGH);
+    let error = ConfigError { value: c.shown(field), ..error };
+    if remedy.is_empty() { error } else { ConfigError { remedy, changes, ..error } }
 }
 
 /// One printed part by its name; `None` where it is not asked for or cannot be built.

@@ -19,6 +19,9 @@ const STAND_BACK_MM: f64 = 0.5;
 /// From a screw's hole to the jaw beside it, with the wall beyond the hole, mm: the head of an M3 screw turns there.
 const JAW_AIR_MM: f64 = 3.5;
 
+/// The spacer under the rig's pulley.
+pub(crate) const SPACER: &str = "pulley-spacer";
+
 /// The name of the plate of a kind of mount.
 fn name(kind: MountKind) -> &'static str {
     match kind {
@@ -110,7 +113,7 @@ pub(super) fn spacer(design: &Design) -> Result<Part, ConfigError> {
             .map_err(offset_error("print.elephant_foot_mm"))
     };
     let pose = Some(Pose::upright(face_mm(design)));
-    let part = Part::new("pulley-spacer", Role::Mount, about(axle.centre)?, pose);
+    let part = Part::new(SPACER, Role::Mount, about(axle.centre)?, pose);
     Ok(Part { drawn: Some(about(Point2::origin())?), ..part })
 }
 

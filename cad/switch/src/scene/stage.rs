@@ -1,10 +1,11 @@
 //! Steps of the assembly as pictures: what is there already in grey, what the step adds apart from it and in colour.
 
+use super::rig_hardware::{in_the_plate, on_the_bolt};
 use crate::built::{Built, MeshedBody};
 use crate::config::MountKind;
 use crate::design::Design;
-use crate::documents::bill_of_materials;
-use crate::parts::Role;
+use crate::documents::{BEARING_MM, bill_of_materials};
+use crate::parts::{Part, Role, SPACER};
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
 use pinswitch_solid::profile::{Contour, Point2, polar};
 use pinswitch_solid::render::{Body, View};
@@ -46,9 +47,9 @@ const RISE_DEG: f64 = 32.0;
 const SHELL_GREY: [u8; 3] = [224, 224, 222];
 const BED_GREY: [u8; 3] = [202, 204, 206];
 const PLATE_GREY: [u8; 3] = [214, 214, 212];
-const METAL_GREY: [u8; 3] = [158, 160, 164];
+pub(super) const METAL_GREY: [u8; 3] = [158, 160, 164];
 /// Colour of steel that a step adds: pins, screws, dowels.
-const STEEL: [u8; 3] = [206, 72, 52];
+pub(super) const STEEL: [u8; 3] = [206, 72, 52];
 /// Colour of the tendon when it is added.
 const TENDON: [u8; 3] = [38, 128, 96];
 /// Colour of a mount when it is added.
@@ -59,22 +60,27 @@ const SUPPORT_APART_MM: f64 = 12.0;
 const BED_APART_MM: f64 = 9.0;
 const TENDON_APART_MM: f64 = 14.0;
 const MOUNT_APART_MM: f64 = 24.0;
-const PULLEY_APART_MM: f64 = 14.0;
+/// The spacer of the rig's pulley, the pulley with its bearing, washer and nut: one after the other on the bolt.
+const SPACER_APART_MM: f64 = 26.0;
+const PULLEY_APART_MM: f64 = 32.0;
+const NUT_APART_MM: f64 = 44.0;
+/// Pins to spare, beside the others.
+const SPARE_APART_MM: f64 = 5.0;
 const SMALL_APART_MM: f64 = 6.0;
 
 /// A body of a step in its place.
-struct Item {
-    mesh: Mesh,
-    grey: [u8; 3],
-    colour: [u8; 3],
+pub(super) struct Item {
+    pub(super) mesh: Mesh,
+    pub(super) grey: [u8; 3],
+    pub(super) colour: [u8; 3],
     /// How far it is shown from its place while its step adds it, in the assembly's frame.
-    apart: Vector3,
+    pub(super) apart: Vector3,
 }
 
 /// Where the eye stands: on the side of the left support, but where a large plate in front of it would hide what a step shows.
 pub fn stage_view(design: &Design, stage: Stage) -> View {
     let is_hidden = matches!(design.configuration().mount.kind, MountKind::Rig | MountKind::Flange)
-        && matches!(stage, Stage::Mount | Stage::Tendon);
+        && matches!(stage, Stage::Mount | Stage::Pulley | Stage::Tendon);
     View { turn_deg: if is_hidden { -TURN_DEG } else { TURN_DEG }, rise_deg: RISE_DEG }
 }
 
@@ -102,8 +108,17 @@ fn lying(mesh: Mesh) -> Mesh {
 
 /// Meshes of bodies of the assembly, in their places.
 fn bodies(built: &Built, is_wanted: impl Fn(Role) -> bool) -> impl Iterator<Item = Mesh> {
+    placed(built, move |part| is_wanted(part.role))
+}
+
+fn placed(built: &Built, is_wanted: impl Fn(&Part) -> bool) -> impl Iterator<Item = Mesh> {
     let place = |body: &MeshedBody| Some(body.part.pose?.apply(body.mesh.clone()));
-    built.assembly().filter(move |body| is_wanted(body.part.role)).filter_map(place)
+    built.assembly().filter(move |body| is_wanted(&body.part)).filter_map(place)
+}
+
+/// Whether a part comes with the pulley, and not with the plate.
+fn is_spacer(part: &Part) -> bool {
+    part.name == SPACER
 }
 
 /// What a step adds.
@@ -115,10 +130,17 @@ fn items(built: &Built, stage: Stage) -> Vec<Item> {
         bodies(built, is_wanted).map(|mesh| Item { mesh, grey, colour, apart }).collect()
     };
     let is_pin = |role| matches!(role, Role::Pin { .. });
+    let mount = |is_wanted: fn(&Part) -> bool, apart: Vector3| {
+        let is_wanted = move |part: &Part| part.role == Role::Mount && is_wanted(part);
+        placed(built, is_wanted).map(move |mesh| Item { mesh, grey: PLATE_GREY, colour: MOUNT, apart })
+    };
     match stage {
-        Stage::CutPins | Stage::Pins => {
-            of(is_pin, METAL_GREY, STEEL, z(design.pin_length_mm() + SMALL_APART_MM))
+        Stage::CutPins => {
+            let mut cut = of(is_pin, METAL_GREY, STEEL, Vector3::zeros());
+            cut.extend(spares(design, cut.first().map(|pin| &pin.mesh)));
+            cut
         }
+        Stage::Pins => of(is_pin, METAL_GREY, STEEL, z(design.pin_length_mm() + SMALL_APART_MM)),
         Stage::Bed => {
             let is_bed = |role| matches!(role, Role::Layer | Role::Proxy);
             let colour =
@@ -135,16 +157,34 @@ fn items(built: &Built, stage: Stage) -> Vec<Item> {
             let colour = Role::Support { outwards_z: 1.0 }.colour();
             of(is_right, PLATE_GREY, colour, z(SUPPORT_APART_MM))
         }
-        Stage::Mount => of(|role| role == Role::Mount, PLATE_GREY, MOUNT, z(-MOUNT_APART_MM)),
+        Stage::Mount => {
+            let plate = mount(|part| !is_spacer(part), z(-MOUNT_APART_MM));
+            plate.chain(in_the_plate(design, -MOUNT_APART_MM)).collect()
+        }
         Stage::Pulley => {
             let colour = Role::Accessory.colour();
-            of(|role| role == Role::Accessory, PLATE_GREY, colour, z(PULLEY_APART_MM))
+            let pulley = of(|role| role == Role::Accessory, PLATE_GREY, colour, z(PULLEY_APART_MM));
+            let bought = on_the_bolt(design, [PULLEY_APART_MM - BEARING_MM, NUT_APART_MM]);
+            mount(is_spacer, z(SPACER_APART_MM)).chain(pulley).chain(bought).collect()
         }
         Stage::Tendon => of(|role| role == Role::Tendon, METAL_GREY, TENDON, y(TENDON_APART_MM)),
         Stage::Inserts => inserts(design),
         Stage::Dowels => dowels(design),
         Stage::Fasteners => fasteners(design),
     }
+}
+
+/// Pins to spare, beside the one that lies outermost.
+fn spares(design: &Design, pin: Option<&Mesh>) -> Vec<Item> {
+    let number = design.configuration().pins.spares;
+    let aside = |i: usize| Vector3::new(-SPARE_APART_MM * (i + 1) as f64, 0.0, 0.0);
+    let spare = |pin: &Mesh, i| Item {
+        mesh: pin.clone().translated(aside(i)),
+        grey: METAL_GREY,
+        colour: STEEL,
+        apart: Vector3::zeros(),
+    };
+    pin.into_iter().flat_map(|pin| (0..number).map(move |i| spare(pin, i))).collect()
 }
 
 /// A prism of steel between two heights, for what is bought; nothing for an outline that has no area.

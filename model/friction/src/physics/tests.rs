@@ -229,7 +229,7 @@ fn maxima_left_out_lie_inside_their_bands() {
 #[test]
 fn a_single_pin_gets_a_band_that_covers_both_readings_of_its_free_spans() {
     let curve = predict_by(Law::Physics, &device(PinPattern::new(vec![0.0])), &[HEAVIEST_N]).unwrap();
-    assert!(curve.reasons.iter().any(|r| r.contains("1 pin(s)")), "{:?}", curve.reasons);
+    assert!(curve.reasons.iter().any(|r| r.contains("1 pin;")), "{:?}", curve.reasons);
     assert!(curve.band_high_n[0] > curve.friction_n[0]);
 }
 

@@ -137,10 +137,13 @@ struct Parts<'a> {
     archive: ZipArchive<Cursor<&'a [u8]>>,
 }
 
+/// What is wrong with an archive whose list of parts cannot be read. The library's words are its own business.
+const CUT_OFF: &str = "it is cut off or damaged";
+
 impl<'a> Parts<'a> {
     fn open(bytes: &'a [u8]) -> Result<Self, ThreeMfReadError> {
         let archive =
-            ZipArchive::new(Cursor::new(bytes)).map_err(|e| ThreeMfReadError::Archive(e.to_string()))?;
+            ZipArchive::new(Cursor::new(bytes)).map_err(|_| ThreeMfReadError::Archive(CUT_OFF.to_owned()))?;
         Ok(Self { archive })
     }
 
@@ -149,11 +152,11 @@ impl<'a> Parts<'a> {
         let file = match self.archive.by_name(part) {
             Ok(file) => file,
             Err(zip::result::ZipError::FileNotFound) => return Ok(None),
-            Err(e) => return Err(ThreeMfReadError::Archive(format!("{part}: {e}"))),
+            Err(_) => return Err(ThreeMfReadError::Archive(format!("{part} in it is damaged"))),
         };
         let mut bytes = Vec::new();
         let read = file.take(MAX_PART + 1).read_to_end(&mut bytes);
-        read.map_err(|e| ThreeMfReadError::Archive(format!("{part}: {e}")))?;
+        read.map_err(|_| ThreeMfReadError::Archive(format!("{part} in it is damaged")))?;
         if bytes.len() as u64 > MAX_PART {
             return Err(ThreeMfReadError::TooLong { part: part.to_owned() });
         }

@@ -2,6 +2,7 @@
 
 use super::Change::{Ease, Lower, Raise, Say};
 use super::{Assessment, Inspection, Rule, Severity, advise, require};
+use pinswitch_friction::PinPattern;
 
 /// Gap that the tendon needs on both sides of it.
 const TENDON_GAP_MM: f64 = 0.5;
@@ -21,6 +22,7 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "layout.wrap_angle_deg", severity: Severity::Error, assess: wrap_within_segment },
     Rule { field: "layout.wrap_angle_deg", severity: Severity::Error, assess: ends_keep_clear },
     Rule { field: "layout.wrap_angle_deg", severity: Severity::Warning, assess: ends_meet },
+    Rule { field: "layout.pins", severity: Severity::Warning, assess: pins_within_wrap },
     Rule { field: "tendon.rope_diameter_mm", severity: Severity::Error, assess: tendon_in_channel },
     Rule { field: "tendon.rope_diameter_mm", severity: Severity::Error, assess: tendon_bend },
     Rule { field: "tendon.length_mm", severity: Severity::Warning, assess: tendon_reaches },
@@ -126,6 +128,31 @@ fn ends_meet(i: &Inspection<'_>) -> Assessment {
                 meet.unwrap_or_default()
             ),
             "lead them past each other, or lower layout.wrap_angle_deg".to_owned(),
+        )
+    })
+}
+
+/// Pins that the tendon does not reach carry nothing.
+fn pins_within_wrap(i: &Inspection<'_>) -> Assessment {
+    let c = i.configuration();
+    let pins = PinPattern::new(i.pin_angles_rad());
+    let outside = pins.count() - pins.within(c.layout.wrap_angle_deg.to_radians()).count();
+    advise(outside == 0, || {
+        let furthest = pins.angles_rad().iter().map(|a| a.abs()).fold(0.0, f64::max);
+        let needed_deg = (20.0 * furthest.to_degrees()).ceil() / 10.0;
+        let raise = if needed_deg <= c.segment.span_deg {
+            format!(", or raise layout.wrap_angle_deg to {needed_deg:.1}")
+        } else {
+            String::new()
+        };
+        (
+            format!(
+                "{} outside the wrap of {} deg, where no tendon runs, and {} nothing",
+                if outside == 1 { "1 pin lies".to_owned() } else { format!("{outside} pins lie") },
+                c.layout.wrap_angle_deg,
+                if outside == 1 { "carries" } else { "carry" },
+            ),
+            format!("move them nearer to the middle groove (layout.pins){raise}"),
         )
     })
 }

@@ -627,6 +627,9 @@ mod tests {
             &["mount.kind=flange", "tendon.sheath_diameter_mm=3", "mount.plate_mm=2.5"],
             &["segment.grooves=40"],
             &["segment.grooves=60"],
+            &["print.elephant_foot_mm=0.3"],
+            &["print.elephant_foot_mm=0.5"],
+            &["print.elephant_foot_mm=1"],
         ] {
             let c = with_all(assignments_of_case);
             let error = error_of(&c).unwrap_or_else(|| panic!("{assignments_of_case:?} is fine"));

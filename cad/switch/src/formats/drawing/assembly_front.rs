@@ -14,6 +14,8 @@ use std::f64::consts::TAU;
 const BESIDE_MM: f64 = 2e-5;
 /// Longest piece of an edge that is judged by one look, mm.
 const PIECE_MM: f64 = 0.5;
+/// Around an engraved letter, free of hidden lines, mm: a dash in the room of a space would read as a minus.
+const AROUND_MARK_MM: f64 = 2.0;
 /// Halvings until the end of a visible piece is found.
 const HALVINGS: usize = 24;
 
@@ -43,7 +45,34 @@ pub(super) fn front_lines(bodies: &[(&Part, Pose)], lowest_mm: f64, chamfer_mm: 
             lines.extend(pieces(&trace, |point, beside| is_seen(&all, point, beside, z)));
         }
     }
-    lines
+    let marks = marks(nearest);
+    lines.into_iter().flat_map(|(layer, trace)| legible(layer, trace, &marks)).collect()
+}
+
+/// The boxes of the letters in the upper face of a part, with some room around them.
+fn marks((part, pose): &(&Part, Pose)) -> Vec<(Point2, Point2)> {
+    let letters = lettering(&part.solid);
+    let of_letters = part.solid.rings().zip(letters).filter(|(_, is_letter)| *is_letter);
+    of_letters
+        .map(|((contour, _), _)| {
+            let contour = if pose.flipped { contour.mirrored() } else { contour.clone() };
+            let (low, high) = contour.bounds();
+            let around = Vector2::new(AROUND_MARK_MM, AROUND_MARK_MM);
+            (low - around, high + around)
+        })
+        .collect()
+}
+
+/// What is drawn of a line: hidden ones end where marks are read.
+fn legible(layer: Layer, trace: Trace, marks: &[(Point2, Point2)]) -> Vec<(Layer, Trace)> {
+    if layer != Layer::Hidden || marks.is_empty() {
+        return vec![(layer, trace)];
+    }
+    let is_clear = |p: Point2, _: Vector2| {
+        !marks.iter().any(|(low, high)| low.x < p.x && p.x < high.x && low.y < p.y && p.y < high.y)
+    };
+    let kept = pieces(&trace, is_clear).into_iter().filter(|(is, _)| *is == Layer::Visible);
+    kept.map(|(_, piece)| (layer, piece)).collect()
 }
 
 /// The edges of the faces of a part that look up in the assembly, each with its height. Letters are no shape of the part.

@@ -1,6 +1,7 @@
 //! The sheet of the assembly: assembled, from above, cut open, with balloons and the list of its parts.
 
 use super::assembly_front::front_lines;
+use super::assembly_hardware;
 use super::body::{Body, Side};
 use super::elevation::{Elevation, elevation, joined, legible};
 use super::features::lettering;
@@ -20,10 +21,8 @@ use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Arc, Contour, Point2, polar};
 use std::f64::consts::FRAC_PI_2;
 
-/// Outer radius of a 608 bearing (ISO 15), and radii of an M8 bolt and an M3 screw, mm.
-const BEARING_RADIUS_MM: f64 = 11.0;
-const AXLE_RADIUS_MM: f64 = 4.0;
-const STOP_SCREW_RADIUS_MM: f64 = 1.5;
+/// Height of what is written under the views, mm: that of dimensions.
+const LEGEND_MM: f64 = 2.5;
 
 /// The assembly, ready to be drawn.
 struct Assembly<'a> {
@@ -118,6 +117,11 @@ impl Assembly<'_> {
         self.view_from_above(&mut draft, &layout, scale);
         let (section, inside) = self.section(&mut draft, &layout, scale);
         let front = Extent { low: sizes.front.low + layout.front, high: sizes.front.high + layout.front };
+        let above = Extent {
+            low: Point::new(front.low.x, layout.above_mm - sizes.depth_mm),
+            high: Point::new(front.high.x, layout.above_mm),
+        };
+        let lowest = if above.low.y < front.low.y { above } else { front };
         let mark = [front.low.y - 2.0, front.high.y + 2.0];
         section_mark(
             &mut draft,
@@ -133,7 +137,8 @@ impl Assembly<'_> {
             && self
                 .items
                 .iter()
-                .all(|item| self.balloon(&mut draft, item, &place, &inside, &[front, section]));
+                .all(|item| self.balloon(&mut draft, item, &place, &inside, &[front, section]))
+            && self.legend(&mut draft, lowest);
         is_placed.then(|| draft.finished("assembly", scale))
     }
 
@@ -161,16 +166,8 @@ impl Assembly<'_> {
         let view = draft.view("FRONT", place.origin, place.scale);
         draw(draft, &lines, place, view);
         let group = draft.group();
-        // Dowels end in the supports, the bearing looks towards the plate; bolt and screws end on this side.
-        for (kind, layer) in [
-            ("dowel", Layer::Hidden),
-            ("bearing", Layer::Hidden),
-            ("axle", Layer::Visible),
-            ("stop screw", Layer::Visible),
-        ] {
-            for (at, radius_mm) in self.hardware(kind) {
-                draft.put(layer, place.shape(&Trace::Circle(at, radius_mm)), None, group);
-            }
+        for (layer, trace) in assembly_hardware::front(self.design) {
+            draft.put(layer, place.shape(&trace), None, group);
         }
         for trace in self.tendon() {
             draft.put(Layer::Phantom, place.shape(&trace), None, group);
@@ -180,28 +177,6 @@ impl Assembly<'_> {
         if axis.y > frame.low.y + 40.0 && lines.len() > 1 {
             let half = Point::new(6.0, 0.0);
             draft.put(Layer::Centre, Shape::Line { from: axis - half, to: axis + half }, None, group);
-        }
-    }
-
-    /// Where hardware of a kind lies, seen along the axis, with its radius in mm.
-    fn hardware(&self, kind: &str) -> Vec<(Point2, f64)> {
-        let (design, c) = (self.design, self.design.configuration());
-        let around = |angles: Vec<f64>, radius_mm: f64| -> Vec<(Point2, f64)> {
-            angles.into_iter().map(|a| (polar(design.fastener_radius_mm(), a), radius_mm)).collect()
-        };
-        let mounting = design.mounting();
-        let axle =
-            |radius_mm| mounting.iter().filter_map(|m| m.axle).map(|h| (h.centre, radius_mm)).collect();
-        match kind {
-            "screw" => around(design.fastener_angles_rad(), c.fasteners.hole_diameter_mm / 2.0),
-            "dowel" => around(design.dowel_angles_rad(), c.fasteners.dowel_diameter_mm / 2.0),
-            "bearing" => axle(BEARING_RADIUS_MM),
-            "axle" => axle(AXLE_RADIUS_MM),
-            "stop screw" => {
-                let screws = mounting.iter().filter_map(|m| m.sheath).flat_map(|s| s.screws);
-                screws.map(|h| (h.centre, STOP_SCREW_RADIUS_MM)).collect()
-            }
-            _ => Vec::new(),
         }
     }
 
@@ -226,7 +201,9 @@ impl Assembly<'_> {
         let visible = legible(&self.above.visible, &[], CROWDED_MM / scale);
         let at = |p: [f64; 2]| origin + Point::new(p[0], -p[1]) * scale;
         let group = draft.group();
-        put_strokes(draft, Layer::Visible, &visible, at, view, group);
+        put_strokes(draft, Layer::Visible, &visible, at, Some(view), group);
+        let screws = assembly_hardware::beside(self.design, self.z_mm.0, |p| Some(p.x));
+        put_strokes(draft, Layer::Visible, &screws, at, None, group);
     }
 
     /// The section: each body hatched its own way, pins not at all. Returns what it covers, and a place in each body.
@@ -247,12 +224,31 @@ impl Assembly<'_> {
                 continue;
             }
             let apart = HATCH_MM / scale * if part.role == Role::Layer { 0.55 } else { 1.0 };
-            put_strokes(draft, Layer::Hatch, &face.hatch(apart, i % 2 == 0), at, view, group);
+            put_strokes(draft, Layer::Hatch, &face.hatch(apart, i % 2 == 0), at, Some(view), group);
         }
         let outlines = joined(&outlines, &[]);
-        put_strokes(draft, Layer::Visible, &outlines, at, view, group);
+        put_strokes(draft, Layer::Visible, &outlines, at, Some(view), group);
+        let is_behind = |x: f64| (x - self.cut_x) * if self.is_seen_from_left() { 1.0 } else { -1.0 } > 0.0;
+        let screws = assembly_hardware::beside(self.design, self.z_mm.0, |p| is_behind(p.x).then_some(p.y));
+        put_strokes(draft, Layer::Visible, &screws, at, None, group);
         let corners = outlines.iter().flatten().map(|p| Extent::between(at(*p), at(*p)));
         (corners.reduce(Extent::joined).unwrap_or(Extent::between(origin, origin)), inside)
+    }
+
+    /// What the label and the marks on the supports stand for; whether there was room.
+    fn legend(&self, draft: &mut Draft, lowest_view: Extent) -> bool {
+        let is_right = |part: &Part| matches!(part.role, Role::Support { outwards_z } if outwards_z > 0.0);
+        let right = self.bodies.iter().find(|(part, _)| is_right(part));
+        let marks = right.and_then(|(part, _)| words::marks(&part.engraved));
+        let all = [("layout", Some(words::layout(self.design))), ("marks", marks)];
+        all.into_iter()
+            .filter_map(|(key, words)| Some((key, words?)))
+            .all(|(key, words)| draft.place_title(key, &words, LEGEND_MM, lowest_view, false))
+    }
+
+    /// Whether the section is seen from the left.
+    fn is_seen_from_left(&self) -> bool {
+        self.title.projection == Projection::First
     }
 
     /// Width over both supports.
@@ -328,11 +324,12 @@ impl Assembly<'_> {
                     })
                 })
                 .collect(),
-            kind if !self.hardware(kind).is_empty() => self
-                .hardware(kind)
-                .into_iter()
-                .flat_map(|(at, radius_mm)| Leader::around(place.at(at), radius_mm * place.scale))
-                .collect(),
+            kind if !assembly_hardware::places(self.design, kind).is_empty() => {
+                assembly_hardware::places(self.design, kind)
+                    .into_iter()
+                    .flat_map(|(at, radius_mm)| Leader::around(place.at(at), radius_mm * place.scale))
+                    .collect()
+            }
             name => match inside.iter().find(|(n, _)| n == name) {
                 Some((_, tip)) => fan(*tip).collect(),
                 None => self.on_front(name, place).into_iter().flat_map(fan).collect(),

@@ -3,9 +3,10 @@
 //! shows.
 
 use super::features::same;
-use super::words::{number, on_radius, screw, times};
+use super::fits::{self, Fit};
+use super::words::{number, on_radius, times};
 use crate::design::Design;
-use crate::parts::{Part, Role};
+use crate::parts::Part;
 use pinswitch_solid::profile::{Contour, Edge, Point2};
 use std::f64::consts::FRAC_PI_6;
 
@@ -135,18 +136,24 @@ pub(super) fn hexagon(contour: &Contour) -> Option<(Point2, f64)> {
 /// What a bore is called, where `is_axial` parts say places about the pulley's axis.
 pub(super) fn bore(design: &Design, part: &Part, bore: &Bore, is_axial: bool) -> Vec<String> {
     let n = times(bore.centres.len());
-    let is_fastener = is_fastener(design, part, &bore.centres);
+    let fit = |stage: &Stage| fits::of_stage(design, part, *bore.centres.first()?, stage);
     let mut lines = match &bore.stages[..] {
-        [stage] => vec![format!("{n}{}", single(design, part, stage, bore.is_through(), is_fastener))],
+        [stage] => single(stage, bore.is_through(), fit(stage).as_ref()),
         [low, between, high] if bore.is_through() && is_mirrored(low, high) => {
-            let insert =
-                if is_fastener && part.role == Role::Shell { "for heat-set insert " } else { "for " };
-            let thread = if is_fastener { format!("{insert}{}", screw(design)) } else { String::new() };
-            let wide = format!("{n}{}, {} deep, both faces", low.across(), number(low.depth_mm()));
-            [wide, thread, format!("{} between them", between.across())].to_vec()
+            let fit_of_low = fit(low);
+            let wide =
+                format!("{}, {} deep, both faces", sized(low, fit_of_low.as_ref()), number(low.depth_mm()));
+            let purpose = fit_of_low.map_or_else(String::new, |f| f.purpose);
+            vec![wide, purpose, format!("{} between them", sized(between, fit(between).as_ref()))]
         }
-        stages => stacked(design, bore, stages, is_fastener, &n),
+        stages => {
+            let fits: Vec<Option<Fit>> = stages.iter().map(fit).collect();
+            stacked(bore, stages, &fits, is_on_fasteners(design, &bore.centres))
+        }
     };
+    if let Some(first) = lines.first_mut() {
+        first.insert_str(0, &n);
+    }
     lines.retain(|l| !l.is_empty());
     if is_axial {
         lines.extend(on_radius(&bore.centres));
@@ -159,46 +166,53 @@ fn is_mirrored(low: &Stage, high: &Stage) -> bool {
     !low.is_hexagon && low.across() == high.across() && same(low.depth_mm(), high.depth_mm())
 }
 
-/// Whether all lie where the screws are; a plate that is printed turned half round has them on the other side.
-fn is_fastener(design: &Design, part: &Part, centres: &[Point2]) -> bool {
+/// Whether all lie where the screws of the shell are.
+fn is_on_fasteners(design: &Design, centres: &[Point2]) -> bool {
     let radius = design.fastener_radius_mm();
-    matches!(part.role, Role::Shell | Role::Support { .. } | Role::Mount)
-        && centres.iter().all(|p| {
-            let angles = design.fastener_angles_rad();
-            same(p.coords.norm(), radius)
-                && angles.iter().any(|a| (libm::atan2(p.x.abs(), p.y) - a.abs()).abs() < 1e-6)
-        })
+    centres.iter().all(|p| {
+        let angles = design.fastener_angles_rad();
+        same(p.coords.norm(), radius)
+            && angles.iter().any(|a| (libm::atan2(p.x.abs(), p.y) - a.abs()).abs() < 1e-6)
+    })
 }
 
-fn single(design: &Design, part: &Part, stage: &Stage, is_through: bool, is_fastener: bool) -> String {
+/// The size of a stage with its tolerance.
+fn sized(stage: &Stage, fit: Option<&Fit>) -> String {
+    fit.map_or_else(|| stage.across(), |f| format!("{} {}", stage.across(), f.tolerance))
+}
+
+/// `, for dowel 2` behind what is for a dowel.
+fn purpose(fit: Option<&Fit>) -> String {
+    fit.map_or_else(String::new, |f| format!(", {}", f.purpose))
+}
+
+/// One hole on an axis.
+fn single(stage: &Stage, is_through: bool, fit: Option<&Fit>) -> Vec<String> {
     let (low, high) = stage.ends();
-    let depth = number(stage.depth_mm());
+    let deep = match fit.map(|f| f.depth_tolerance) {
+        Some(tolerance) if !tolerance.is_empty() => format!("{} {tolerance}", number(stage.depth_mm())),
+        _ => number(stage.depth_mm()),
+    };
     let face = if stage.opens_down { ", far face" } else { "" };
     match (is_through, same(low.1, high.1)) {
-        (true, true) if is_fastener => format!("{} H13 through, for {}", stage.across(), screw(design)),
-        (true, true) => format!("{} through", stage.across()),
-        // The outer ring of a 608 bearing measures 22 mm.
-        (false, true) if part.name == "guide-pulley" => {
-            format!("{} +0.1/0, {depth} deep{face}, for bearing 608", stage.across())
+        (true, true) => vec![format!("{} through{}", sized(stage, fit), purpose(fit))],
+        (false, true) => vec![format!("{}, {deep} deep{face}{}", sized(stage, fit), purpose(fit))],
+        (_, false) => {
+            let tolerance = fit.map_or_else(String::new, |f| format!(" {}", f.tolerance));
+            let wide = |radius: f64| format!("\u{d8}{}{tolerance}", number(2.0 * radius));
+            let mouth = format!("{}, {deep} deep{face}", wide(low.1));
+            let end = format!("{} at its end{}", wide(high.1), purpose(fit));
+            if fit.is_some() { vec![mouth + ",", end] } else { vec![format!("{mouth}, {end}")] }
         }
-        (false, true) => format!("{}, {depth} deep{face}", stage.across()),
-        (_, false) => format!(
-            "\u{d8}{}, {depth} deep{face}, \u{d8}{} at its end",
-            number(2.0 * low.1),
-            number(2.0 * high.1)
-        ),
     }
 }
 
 /// Stages of several widths from the far face to the near one, with what closes the way between them.
-fn stacked(design: &Design, bore: &Bore, stages: &[Stage], is_fastener: bool, n: &str) -> Vec<String> {
+fn stacked(bore: &Bore, stages: &[Stage], fits: &[Option<Fit>], is_on_fasteners: bool) -> Vec<String> {
     let mut lines = Vec::new();
     let skins: Vec<f64> = bore.skins_mm().collect();
-    for (i, stage) in stages.iter().enumerate() {
+    for (i, (stage, fit)) in stages.iter().zip(fits).enumerate() {
         let is_narrowest = stages.iter().all(|s| s.reach_mm() >= stage.reach_mm());
-        let is_screw = is_fastener && is_narrowest && !stage.is_hexagon;
-        let fit = if is_screw { " H13" } else { "" };
-        let bearing = if same(stage.reach_mm(), BEARING_RADIUS_MM) { " +0.1/0" } else { "" };
         let depth =
             match (bore.is_through() && is_narrowest, stage.opens_down && i == 0, i + 1 == stages.len()) {
                 (true, ..) => " through".to_owned(),
@@ -206,19 +220,13 @@ fn stacked(design: &Design, bore: &Bore, stages: &[Stage], is_fastener: bool, n:
                 (_, _, true) => format!(", {} deep, near face", number(stage.depth_mm())),
                 _ => format!(", {} long", number(stage.depth_mm())),
             };
-        let use_of = if is_screw {
-            format!(", for {}", screw(design))
-        } else if bearing.is_empty() {
-            String::new()
-        } else {
-            ", for bearing 608".to_owned()
-        };
-        let first = if i == 0 { n } else { "" };
-        lines.push(format!("{first}{}{bearing}{fit}{depth}{use_of}", stage.across()));
+        let size = sized(stage, fit.as_ref());
         if stage.is_hexagon {
-            lines.push(
-                if is_fastener { "two flats square to the radius" } else { "two flats along X" }.to_owned(),
-            );
+            let flats = if is_on_fasteners { "two flats square to the radius" } else { "two flats along X" };
+            lines.push(format!("{size}{depth}"));
+            lines.push(fit.as_ref().map_or_else(|| flats.to_owned(), |f| format!("{}, {flats}", f.purpose)));
+        } else {
+            lines.push(format!("{size}{depth}{}", purpose(fit.as_ref())));
         }
         if let Some(skin) = skins.get(i).filter(|s| !same(**s, 0.0)) {
             lines.push(format!("closed skin {} above it", number(*skin)));
@@ -226,9 +234,6 @@ fn stacked(design: &Design, bore: &Bore, stages: &[Stage], is_fastener: bool, n:
     }
     lines
 }
-
-/// Half of the outer ring of a 608 bearing, mm (ISO 15).
-const BEARING_RADIUS_MM: f64 = 11.0;
 
 #[cfg(test)]
 mod tests {

@@ -2,9 +2,13 @@
 
 use super::body::Side;
 use super::features::Features;
+use super::plan::{Place, Trace, draw, within};
 use super::words;
+use pinswitch_plot::drawing::{Draft, Extent, Layer, Point, Shape, Sheet};
 use pinswitch_solid::profile::{Point2, polar};
 
+/// Scales of details, the largest first.
+const DETAIL_SCALES: [f64; 6] = [20.0, 10.0, 5.0, 2.0, 1.0, 0.5];
 /// So many details find room beside the views.
 const MOST_DETAILS: usize = 2;
 
@@ -85,4 +89,38 @@ pub(super) fn cut_x(
         all.iter().copied().min_by(|a, b| key(*a).total_cmp(&key(*b)))
     };
     ranked.iter().find_map(nearest).unwrap_or(middle)
+}
+
+/// Draws a detail; returns where it lies.
+pub(super) fn draw_detail(
+    draft: &mut Draft,
+    detail: &Detail,
+    middle: Point,
+    reach_mm: f64,
+    lines: &[(Layer, Trace)],
+    letter: &str,
+) -> Option<Place> {
+    let scale = DETAIL_SCALES.into_iter().find(|s| detail.radius_mm * s <= reach_mm)?;
+    let place = Place { origin: middle, scale, about: detail.middle, turn_rad: detail.turn_rad };
+    let kept: Vec<(Layer, Trace)> = lines
+        .iter()
+        .flat_map(|(layer, t)| within(t, detail.middle, detail.radius_mm).into_iter().map(|t| (*layer, t)))
+        .collect();
+    let view = draft.view(format!("DETAIL_{letter}"), middle, scale);
+    draw(draft, &kept, &place, view);
+    let group = draft.group();
+    let radius_mm = detail.radius_mm * scale;
+    draft.put(Layer::Thin, Shape::Circle { centre: middle, radius_mm }, None, group);
+    let reach = radius_mm + 2.0;
+    for half in [Point::new(reach, 0.0), Point::new(0.0, reach)] {
+        let shift = if detail.is_slot && half.y == 0.0 { None } else { Some(Point::default()) };
+        if let Some(shift) = shift {
+            let (from, to) = (middle - half + shift, middle + half + shift);
+            draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
+        }
+    }
+    let corner = Point::new(radius_mm, radius_mm);
+    let around = Extent { low: middle - corner, high: middle + corner };
+    let title = format!("{letter} ({})", Sheet::scale_text(scale));
+    draft.place_title(&format!("title of detail {letter}"), &title, 3.5, around, false).then_some(place)
 }

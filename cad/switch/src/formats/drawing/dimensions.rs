@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::angles::Places;
 use super::bore::bore as words_of_bore;
 use super::cut::Detail;
 use super::features::{Features, Slot, same};
@@ -52,7 +53,7 @@ impl Wanted {
         self
     }
 
-    fn angular(angular: Angular) -> Self {
+    pub(super) fn angular(angular: Angular) -> Self {
         Self { key: angular.key.clone(), lines: vec![angular.text.clone()], form: Form::Angular(angular) }
     }
 
@@ -91,52 +92,8 @@ impl Wanted {
     }
 }
 
-/// Pitch of grooves and of slots, and the span of the ends.
-pub(super) fn angles(f: &Features, half_span_rad: f64, place: &Place, outermost_mm: f64) -> Vec<Wanted> {
-    let centre = place.at(Point2::origin());
-    let mut all = Vec::new();
-    let mut angle = |key: &str, text: String, from: f64, to: f64, begins_mm: f64| {
-        // Angles of the part run from +y toward +x, those of paper from +x toward +y.
-        all.push(Wanted::angular(Angular {
-            key: key.to_owned(),
-            text,
-            centre,
-            from_rad: FRAC_PI_2 - to,
-            to_rad: FRAC_PI_2 - from,
-            begins_mm: begins_mm * place.scale,
-            edge_mm: outermost_mm * place.scale,
-        }));
-    };
-    let mut pitch = |key: &str, points: &[Point2], reach_mm: f64| {
-        let places: Vec<f64> = points.iter().map(|p| words::angle_rad(*p)).collect();
-        if let Some((first, step)) = words::even_step(&places) {
-            let steps = (places.len() - 1) as f64;
-            let total = step * steps;
-            let text = format!("{steps} \u{d7} {} = {}", words::degrees(step), words::degrees(total));
-            angle(key, text, first, first + total, reach_mm);
-        }
-    };
-    if outermost_mm > 0.0 {
-        for (i, rounding) in f.roundings.iter().filter(|r| r.is_half_round).enumerate() {
-            let centres: Vec<Point2> = rounding.arcs.iter().map(|a| a.centre).collect();
-            let reach = centres.first().map_or(0.0, |p| p.coords.norm());
-            pitch(&numbered("groove pitch", i), &centres, reach);
-        }
-        for (i, slot) in f.slots.iter().enumerate() {
-            let centres: Vec<Point2> = slot.places.iter().map(|p| p.0).collect();
-            let reach = centres.first().map_or(0.0, |p| p.coords.norm()) + slot.width_mm / 2.0;
-            pitch(&numbered("slot pitch", i), &centres, reach);
-        }
-        if !f.ends.is_empty() {
-            let text = words::degrees(2.0 * half_span_rad);
-            angle("span", text, -half_span_rad, half_span_rad, outermost_mm);
-        }
-    }
-    all
-}
-
 /// `key`, or `key 2` for the second of its kind.
-fn numbered(key: &str, index: usize) -> String {
+pub(super) fn numbered(key: &str, index: usize) -> String {
     if index == 0 { key.to_owned() } else { format!("{key} {}", index + 1) }
 }
 
@@ -155,7 +112,7 @@ pub(super) fn of_detail(
             let Some(arc) = rounding.arcs.iter().find(|a| (a.centre - detail.middle).norm() < 1e-6) else {
                 continue;
             };
-            let lines = words::rounding(rounding, f);
+            let lines = words::rounding(part, rounding, f);
             all.push(Wanted::callout(
                 numbered("groove", i),
                 lines,
@@ -174,7 +131,7 @@ pub(super) fn of_detail(
     let radius = detail.radius_mm * place.scale;
     all.push(Wanted::linear(Linear {
         key: numbered("slot width", i),
-        text: words::slot_width(slot),
+        text: words::slot_width(part, slot),
         from: outer - Point::new(half, 0.0),
         to: outer + Point::new(half, 0.0),
         upright: false,
@@ -239,9 +196,10 @@ pub(super) fn callouts(
     design: &Design,
     part: &Part,
     f: &Features,
-    place: &Place,
+    places: &Places,
     details: &[Detail],
 ) -> Vec<Wanted> {
+    let place = &places.first;
     let mut all = Vec::new();
     let is_axial = !f.axis_arcs.is_empty();
     holes_and_rounds(design, part, f, place, &mut all);
@@ -273,8 +231,10 @@ pub(super) fn callouts(
         let leaders = on_arc(&slot.edge, place, &[0.2, 0.4, 0.6, 0.8], 0.0);
         all.push(Wanted::callout(numbered("arc slot", i), words::arc_slot(slot), leaders));
     }
+    // Copies beside each other stand on the right.
+    let is_free = |(a, _): &&(Point2, Point2)| f.copies.is_none_or(|c| c.are_nested() || a.x < 0.0);
     for ends in f.ends.iter().filter(|e| !same(e.shift_mm, 0.0)) {
-        let leaders = ends.lines.iter().flat_map(|(a, b)| {
+        let leaders = ends.lines.iter().filter(is_free).flat_map(|(a, b)| {
             [0.3, 0.5, 0.7].into_iter().flat_map(move |share| {
                 let tip = place.at(a + (b - a) * share);
                 let outward = Point::new(if tip.x > place.origin.x { 1.0 } else { -1.0 }, 0.0);
@@ -289,7 +249,7 @@ pub(super) fn callouts(
         all.push(Wanted::callout(key, words::ends(ends.shift_mm, design.half_span_rad()), leaders.collect()));
     }
     if is_axial {
-        radii(f, place, &mut all);
+        radii(f, places, &mut all);
     }
     all
 }
@@ -340,7 +300,18 @@ fn slots_and_roundings(
         let middles = slot.places.iter().map(|(a, b)| nalgebra::center(a, b));
         middles.into_iter().any(|m| details.iter().any(|d| d.is_slot && (d.middle - m).norm() < 1e-6))
     };
-    for (i, slot) in f.slots.iter().enumerate().filter(|(_, slot)| !is_enlarged(slot)) {
+    let row = slot_row(f);
+    if let Some((lines, tips)) = &row {
+        let leaders = tips.iter().flat_map(|tip| {
+            [-1.0, -0.5, 0.0, 0.5, 1.0].map(|lean| Leader {
+                tip: place.at(*tip),
+                direction: Point::new(lean, 1.0).unit(),
+                cost_mm: 0.0,
+            })
+        });
+        all.push(Wanted::callout("slots", lines.clone(), leaders.collect()));
+    }
+    for (i, slot) in f.slots.iter().enumerate().filter(|(_, slot)| row.is_none() && !is_enlarged(slot)) {
         let leaders = slot.places.iter().flat_map(|(a, b)| {
             let middle = place.at(nalgebra::center(a, b));
             [1.0, -1.0].into_iter().flat_map(move |side| {
@@ -352,7 +323,7 @@ fn slots_and_roundings(
             })
         });
         let mut lines =
-            vec![format!("{} \u{d7} {}", words::slot_width(slot), words::number(slot.travel_mm()))];
+            vec![format!("{} \u{d7} {}", words::slot_width(part, slot), words::number(slot.travel_mm()))];
         if is_axial {
             lines.extend(words::slot(design, part, slot));
         }
@@ -372,12 +343,41 @@ fn slots_and_roundings(
             format!("corner {}", words::number(rounding.radius_mm))
         };
         let leaders = rounding.arcs.iter().flat_map(|a| on_arc(a, place, &[0.3, 0.5, 0.7], 0.0)).collect();
-        all.push(Wanted::callout(key, words::rounding(rounding, f), leaders));
+        all.push(Wanted::callout(key, words::rounding(part, rounding, f), leaders));
     }
 }
 
-/// Radii about the axis, the outermost from outside and the innermost from inside.
-fn radii(f: &Features, place: &Place, all: &mut Vec<Wanted>) {
+/// Slots of one length in a row that differ in nothing but their widths, in one callout, and where it may point at: their
+/// upper ends. `None` of others.
+fn slot_row(f: &Features) -> Option<(Vec<String>, Vec<Point2>)> {
+    let first = f.slots.first()?;
+    let is_alike = |s: &Slot| {
+        s.places.len() == 1
+            && same(s.travel_mm(), first.travel_mm())
+            && same(s.places[0].0.y, first.places[0].0.y)
+    };
+    if f.slots.len() < 2 || !f.axis_arcs.is_empty() || !f.slots.iter().all(is_alike) {
+        return None;
+    }
+    let mut slots: Vec<&Slot> = f.slots.iter().collect();
+    slots.sort_by(|a, b| a.places[0].0.x.total_cmp(&b.places[0].0.x));
+    let widths: Vec<String> = slots.iter().map(|s| words::number(s.width_mm)).collect();
+    let lines = vec![
+        format!("{} \u{d7} slot, widths from the left", slots.len()),
+        widths.join(", "),
+        format!("each {} between the centres of its ends", words::number(first.travel_mm())),
+    ];
+    let upper = |s: &Slot| {
+        let (a, b) = s.places[0];
+        let end = if a.y > b.y { a } else { b };
+        Point2::new(end.x, end.y + s.width_mm / 2.0)
+    };
+    Some((lines, slots.into_iter().map(upper).collect()))
+}
+
+/// Radii about the axis, the outermost from outside and the innermost from inside. Where there are copies, no leader passes
+/// another: from inside it ends at the first, from outside at the last.
+fn radii(f: &Features, places: &Places, all: &mut Vec<Wanted>) {
     for (i, arcs) in f.axis_arcs.iter().enumerate() {
         let radius = arcs[0].radius_mm;
         let shares: &[f64] = if arcs.len() > 4 {
@@ -386,12 +386,25 @@ fn radii(f: &Features, place: &Place, all: &mut Vec<Wanted>) {
             &[0.06, 0.12, 0.18, 0.24, 0.3, 0.36, 0.43, 0.57, 0.64, 0.7, 0.76, 0.82, 0.88, 0.94]
         };
         let is_inner = i + 1 == f.axis_arcs.len();
-        let mut leaders: Vec<Leader> = arcs.iter().flat_map(|a| on_arc(a, place, shares, 0.0)).collect();
-        for leader in &mut leaders {
-            let outward = (leader.tip - place.origin).unit();
-            let is_outward = outward.x * leader.direction.x + outward.y * leader.direction.y > 0.0;
-            leader.cost_mm = if is_outward == is_inner { 18.0 } else { 0.0 };
-        }
+        let on = |place: &Place, is_wanted: &dyn Fn(Point, bool) -> bool| -> Vec<Leader> {
+            let ends = arcs.iter().flat_map(|a| on_arc(a, place, shares, 0.0));
+            ends.filter_map(|leader| {
+                let outward = (leader.tip - place.origin).unit();
+                let is_outward = outward.x * leader.direction.x + outward.y * leader.direction.y > 0.0;
+                let cost_mm = if is_outward == is_inner { 18.0 } else { 0.0 };
+                is_wanted(leader.direction, is_outward).then_some(Leader { cost_mm, ..leader })
+            })
+            .collect()
+        };
+        let leaders = match f.copies {
+            None => on(&places.first, &|_, _| true),
+            Some(copies) if copies.are_nested() => {
+                let outside = on(&places.last, &|_, is_outward| is_outward);
+                [on(&places.first, &|_, is_outward| !is_outward), outside].concat()
+            }
+            // The others stand on the right.
+            Some(_) => on(&places.first, &|direction, is_outward| !is_outward || direction.x < 0.0),
+        };
         let key = format!("radius {}", words::number(radius));
         all.push(Wanted::callout(key, vec![format!("R{}", words::number(radius))], leaders));
     }

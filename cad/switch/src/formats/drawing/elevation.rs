@@ -22,6 +22,9 @@ pub(super) struct Elevation {
     pub(super) hidden: Vec<Stroke>,
 }
 
+/// Distances that differ by less are the same, mm: what lies alike on both sides is thinned out alike.
+const SAME_MM: f64 = 1e-3;
+
 /// An edge: from and to as `[u, z, w]`, with the share of the way between.
 struct Edge {
     at: Box<dyn Fn(f64) -> [f64; 3]>,
@@ -257,7 +260,7 @@ pub(super) fn legible(strokes: &[Stroke], kept: &[Stroke], apart_mm: f64) -> Vec
             let ((p, near), (q, far)) = (split(other[0]), split(other[1]));
             let is_parallel = (near - far).abs() < 1e-4;
             let shared = high.min(p.max(q)) - low.max(p.min(q));
-            is_parallel && (near - off).abs() < apart_mm && shared > 0.8 * (high - low)
+            is_parallel && (near - off).abs() < apart_mm - SAME_MM && shared > 0.8 * (high - low)
         });
         if !is_crowded {
             all.push(*stroke);

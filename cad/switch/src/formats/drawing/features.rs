@@ -61,6 +61,18 @@ pub(super) struct Slot {
     pub(super) is_blind: bool,
 }
 
+impl Copies {
+    /// From the first to the last.
+    pub(super) fn reach(&self) -> Vector2 {
+        self.step * (self.number - 1) as f64
+    }
+
+    /// Whether each lies in the bow of the one before it, and not beside it.
+    pub(super) fn are_nested(&self) -> bool {
+        same(self.step.x, 0.0)
+    }
+}
+
 impl Slot {
     /// Distance of the centres of its ends.
     pub(super) fn travel_mm(&self) -> f64 {

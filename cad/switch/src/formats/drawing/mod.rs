@@ -1,6 +1,8 @@
 //! The drawing: one sheet of the assembly and one per part, as SVG, PDF and DXF (cad/doc/drawing.md).
 
+mod angles;
 mod assembly_front;
+mod assembly_hardware;
 mod assembly_sheet;
 mod body;
 mod bore;
@@ -9,6 +11,7 @@ mod cut;
 mod dimensions;
 mod elevation;
 mod features;
+mod fits;
 mod hole_table;
 mod layout;
 mod part_sheet;

@@ -2,14 +2,16 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::angles::{Places, angles};
 use super::body::{Body, Side};
-use super::cut::{Detail, cut_x, enlarged};
+use super::cut::{Detail, cut_x, draw_detail, enlarged};
 use super::dimensions::{self, Wanted};
 use super::elevation::{Elevation, Stroke, elevation, joined, legible};
 use super::features::{Features, features, lettering};
+use super::fits;
 use super::hole_table;
 use super::layout::{ABOVE_MM, Layout, Sizes, choices};
-use super::plan::{Place, Trace, draw, plan, within};
+use super::plan::{Place, draw, plan};
 use super::section::Face;
 use super::sides;
 use super::words;
@@ -23,8 +25,6 @@ use pinswitch_solid::profile::Point2;
 
 /// Scale down to which room is looked for, as a share of the largest at which the views fit.
 const LEAST_SHARE: f64 = 0.5;
-/// Scales of details, the largest first.
-const DETAIL_SCALES: [f64; 6] = [20.0, 10.0, 5.0, 2.0, 1.0, 0.5];
 /// Between hatching lines, mm on paper.
 pub(super) const HATCH_MM: f64 = 1.8;
 /// Parallel lines of a view from a side are no nearer to each other than this, mm on paper.
@@ -82,7 +82,8 @@ pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked:
     let part = turned.as_ref().unwrap_or(part);
     let (low, high) = part.solid.bounds()?;
     let chamfer_mm = design.configuration().print.elephant_foot_mm;
-    let features = features(&part.solid, chamfer_mm, design.half_span_rad());
+    let mut features = features(&part.solid, chamfer_mm, design.half_span_rad());
+    features.bores = fits::parted(design, part, features.bores);
     let side = if title.projection == Projection::First { Side::Left } else { Side::Right };
     let cut_x = cut_x(&features, side, (low, high));
     let cut = if side == Side::Left { -cut_x } else { cut_x };
@@ -181,19 +182,19 @@ impl Subject<'_> {
     /// Every dimension, in the order in which they look for room.
     fn wanted(&self, views: &Views) -> Vec<Wanted> {
         let f = &self.features;
-        let outermost = f.axis_arcs.first().map_or(0.0, |a| a[0].radius_mm);
+        let places = Places::of(f, views.place);
         let mut all = self.heights(&views.layout, views.place.scale, views.section);
-        all.extend(dimensions::angles(f, self.design.half_span_rad(), &views.place, outermost));
+        all.extend(angles(f, self.design.half_span_rad(), &places));
         for (detail, place, _) in &views.details {
             all.extend(dimensions::of_detail(self.design, self.part, f, detail, place));
         }
         for (detail, _, letter) in &views.details {
             let radius = detail.radius_mm * views.place.scale;
-            all.push(dimensions::mark_of_detail(views.place.at(detail.middle), radius, letter));
+            all.push(dimensions::mark_of_detail(places.last.at(detail.middle), radius, letter));
         }
         all.extend(sides::of_part(f, &views.place, views.front, self.room_mm(views), (self.low, self.high)));
         let details: Vec<Detail> = views.details.iter().map(|d| d.0).collect();
-        all.extend(dimensions::callouts(self.design, self.part, f, &views.place, &details));
+        all.extend(dimensions::callouts(self.design, self.part, f, &places, &details));
         all.extend(hole_table::names(f, &views.place));
         all
     }
@@ -242,7 +243,7 @@ impl Subject<'_> {
         let at = |p: [f64; 2]| origin + Point::new(p[0], -p[1]) * scale;
         let group = draft.group();
         for (layer, strokes) in [(Layer::Visible, &visible), (Layer::Hidden, &hidden)] {
-            put_strokes(draft, layer, strokes, at, view, group);
+            put_strokes(draft, layer, strokes, at, Some(view), group);
         }
     }
 
@@ -256,9 +257,9 @@ impl Subject<'_> {
         let outline = self.face.outline();
         let behind = legible(&self.behind.visible, &outline, CROWDED_MM / scale);
         let visible = joined(&[outline, behind].concat(), &[]);
-        put_strokes(draft, Layer::Visible, &visible, at, view, group);
+        put_strokes(draft, Layer::Visible, &visible, at, Some(view), group);
         if self.is_cut() {
-            put_strokes(draft, Layer::Hatch, &self.face.hatch(HATCH_MM / scale, true), at, view, group);
+            put_strokes(draft, Layer::Hatch, &self.face.hatch(HATCH_MM / scale, true), at, Some(view), group);
         }
         let ends = visible.iter().flatten().map(|p| Extent::between(at(*p), at(*p)));
         ends.reduce(Extent::joined).unwrap_or(Extent::between(origin, origin))
@@ -334,51 +335,17 @@ impl Subject<'_> {
     }
 }
 
-/// Draws a detail; returns where it lies.
-fn draw_detail(
-    draft: &mut Draft,
-    detail: &Detail,
-    middle: Point,
-    reach_mm: f64,
-    lines: &[(Layer, Trace)],
-    letter: &str,
-) -> Option<Place> {
-    let scale = DETAIL_SCALES.into_iter().find(|s| detail.radius_mm * s <= reach_mm)?;
-    let place = Place { origin: middle, scale, about: detail.middle, turn_rad: detail.turn_rad };
-    let kept: Vec<(Layer, Trace)> = lines
-        .iter()
-        .flat_map(|(layer, t)| within(t, detail.middle, detail.radius_mm).into_iter().map(|t| (*layer, t)))
-        .collect();
-    let view = draft.view(format!("DETAIL_{letter}"), middle, scale);
-    draw(draft, &kept, &place, view);
-    let group = draft.group();
-    let radius_mm = detail.radius_mm * scale;
-    draft.put(Layer::Thin, Shape::Circle { centre: middle, radius_mm }, None, group);
-    let reach = radius_mm + 2.0;
-    for half in [Point::new(reach, 0.0), Point::new(0.0, reach)] {
-        let shift = if detail.is_slot && half.y == 0.0 { None } else { Some(Point::default()) };
-        if let Some(shift) = shift {
-            let (from, to) = (middle - half + shift, middle + half + shift);
-            draft.put(Layer::Centre, Shape::Line { from, to }, None, group);
-        }
-    }
-    let corner = Point::new(radius_mm, radius_mm);
-    let around = Extent { low: middle - corner, high: middle + corner };
-    let title = format!("{letter} ({})", Sheet::scale_text(scale));
-    draft.place_title(&format!("title of detail {letter}"), &title, 3.5, around, false).then_some(place)
-}
-
 /// Draws strokes of a view from a side.
 pub(super) fn put_strokes(
     draft: &mut Draft,
     layer: Layer,
     strokes: &[Stroke],
     at: impl Fn([f64; 2]) -> Point,
-    view: usize,
+    view: Option<usize>,
     group: usize,
 ) {
     for [from, to] in strokes {
-        draft.put(layer, Shape::Line { from: at(*from), to: at(*to) }, Some(view), group);
+        draft.put(layer, Shape::Line { from: at(*from), to: at(*to) }, view, group);
     }
 }
 

@@ -69,9 +69,11 @@ impl Frame<'_> {
         let (low, high) = (self.low, self.high);
         let said = |mm: f64| if follows { format!("({})", number(mm)) } else { number(mm) };
         let is_far = self.all.iter().filter(|w| w.is_below(self.front)).count() > MOST_BELOW;
-        let y = if is_far { high.y } else { low.y };
-        let ends = [Point2::new(low.x, y), Point2::new(high.x, y)];
-        self.linear("length", said(high.x - low.x), ends, false, is_far);
+        let ends = |is_far: bool| {
+            let y = if is_far { high.y } else { low.y };
+            [Point2::new(low.x, y), Point2::new(high.x, y)]
+        };
+        self.linear_on_a_side("length".to_owned(), said(high.x - low.x), ends, false, is_far);
         self.linear("width", said(high.y - low.y), [Point2::new(high.x, low.y), high], true, true);
     }
 }
@@ -166,7 +168,11 @@ fn block_about_axis(frame: &mut Frame<'_>) {
 fn copies(f: &Features, frame: &mut Frame<'_>) {
     let Some(copies) = f.copies else { return };
     let steps = copies.number - 1;
-    let last = Point2::from(copies.step * steps as f64);
+    // Nested ones are measured at their outermost corners, from which nothing lies between them and the dimension.
+    let corners = f.ends.iter().flat_map(|e| e.lines.iter().flat_map(|(a, b)| [*a, *b]));
+    let outermost = corners.max_by(|a, b| a.x.total_cmp(&b.x));
+    let first = outermost.filter(|_| copies.are_nested()).unwrap_or_else(Point2::origin);
+    let last = first + copies.reach();
     for (upright, step, word) in [(false, copies.step.x, "along"), (true, copies.step.y, "across")] {
         if !same(step, 0.0) {
             let (step, steps) = (step.abs(), steps as f64);
@@ -175,7 +181,6 @@ fn copies(f: &Features, frame: &mut Frame<'_>) {
             } else {
                 number(step)
             };
-            let first = Point2::origin();
             // The axis is measured from on the left.
             frame.linear(format!("pitch of the basins {word}"), text, [first, last], upright, upright);
         }
@@ -192,18 +197,18 @@ fn rows(f: &Features, frame: &mut Frame<'_>) {
     for (word, mut points) in [("slots", slots), ("grooves", grooves)] {
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { continue };
-        let is_far = word == "grooves";
+        // Above: no extension line runs through what is engraved below the slots.
         let from = |p: Point2| [Point2::new(corner.x, p.y), p];
-        frame.linear(format!("first of the {word}"), number(first.x - corner.x), from(first), false, is_far);
+        frame.linear(format!("first of the {word}"), number(first.x - corner.x), from(first), false, true);
         let steps = points.len() - 1;
         let step = points.get(1).map_or(0.0, |p| p.x - first.x);
         if steps > 1 && points.windows(2).all(|w| same(w[1].x - w[0].x, step)) {
             let text = format!("{steps} \u{d7} {} = {}", number(step), number(last.x - first.x));
-            frame.linear(format!("pitch of the {word}"), text, [first, last], false, is_far);
+            frame.linear(format!("pitch of the {word}"), text, [first, last], false, true);
         } else {
             for (i, p) in points.iter().enumerate().skip(1) {
                 let key = format!("{word} {}", i + 1);
-                frame.linear(key, number(p.x - corner.x), from(*p), false, is_far);
+                frame.linear(key, number(p.x - corner.x), from(*p), false, true);
             }
         }
         if !same(first.y, high.y) {

@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 
 use super::features::{ArcSlot, Features, Pieces, Round, Rounding, Slot, same};
+use super::fits;
 use crate::design::Design;
 use crate::parts::{Material, Part, Role};
 use pinswitch_solid::profile::Point2;
@@ -89,6 +90,15 @@ pub(super) fn round(
     if matches!(part.role, Role::Pin { .. }) {
         return vec![pin(design)];
     }
+    if let Some(fit) = fits::of_round(design, part, round) {
+        let deviation = &fit.tolerance;
+        let mut lines = vec![
+            format!("{n}key \u{d8}{low} {deviation}, {depth} {} high,", fit.depth_tolerance),
+            format!("\u{d8}{} {deviation} at its head, {}", number(2.0 * last.1), fit.purpose),
+        ];
+        lines.extend(on_radius(&round.centres));
+        return lines;
+    }
     let mut lines = match (same(first.1, last.1), is_body) {
         (true, true) => vec![format!("{n}\u{d8}{low}")],
         (true, false) => vec![format!("{n}\u{d8}{low} \u{d7} {depth}")],
@@ -110,14 +120,16 @@ fn pin(design: &Design) -> String {
     format!("\u{d8}{} \u{b1}{}", number(p.diameter_mm), number(p.tolerance_mm))
 }
 
-/// The screw that the holes take.
-pub(super) fn screw(design: &Design) -> String {
-    crate::documents::bill_of_materials(design).fasteners.map_or_else(String::new, |f| f.thread.to_owned())
+/// The width of a slot, and the tolerance that the pin's fit asks for: never narrower, at most 0.1 mm wider. The slots of the
+/// coupon have none: what the machine makes of them is what the coupon is for.
+pub(super) fn slot_width(part: &Part, slot: &Slot) -> String {
+    let width = number(slot.width_mm);
+    if is_coupon(part) { width } else { format!("{width} {}", fits::SLOT) }
 }
 
-/// The width of a slot, and the tolerance that the pin's fit asks for: never narrower, at most 0.1 mm wider.
-pub(super) fn slot_width(slot: &Slot) -> String {
-    format!("{} +0.1/0", number(slot.width_mm))
+/// Whether a part measures the machine that makes it.
+fn is_coupon(part: &Part) -> bool {
+    part.name == "coupon"
 }
 
 /// What slots are called.
@@ -151,14 +163,17 @@ pub(super) fn arc_slot(slot: &ArcSlot) -> Vec<String> {
 }
 
 /// What grooves, ribs and rounded corners are called.
-pub(super) fn rounding(rounding: &Rounding, f: &Features) -> Vec<String> {
+pub(super) fn rounding(part: &Part, rounding: &Rounding, f: &Features) -> Vec<String> {
     let is_axial = !f.axis_arcs.is_empty();
     let word = match (rounding.is_half_round, rounding.is_rib) {
         (true, true) => "rib ",
         (true, false) => "groove ",
         (false, _) => "",
     };
-    let mut lines = vec![format!("{}{word}R{}", times(rounding.arcs.len()), number(rounding.radius_mm))];
+    let has_tolerance = rounding.is_half_round && !is_coupon(part);
+    let tolerance = if has_tolerance { format!(" {}", fits::HALF_ROUND) } else { String::new() };
+    let radius = number(rounding.radius_mm);
+    let mut lines = vec![format!("{}{word}R{radius}{tolerance}", times(rounding.arcs.len()))];
     if rounding.is_half_round && !is_axial {
         lines.push("centres on the edge".to_owned());
     }
@@ -237,7 +252,7 @@ pub(super) fn notes(design: &Design, part: &Part, features: &Features, has_lette
     let mut notes = Vec::new();
     if has_lettering {
         let what =
-            if part.name == "coupon" { "the slots' clearances".to_owned() } else { part.engraved.join(", ") };
+            if is_coupon(part) { "the slots' clearances".to_owned() } else { part.engraved.join(", ") };
         // Supports have their marks on the face that was printed on the bed.
         let face = if matches!(part.role, Role::Support { .. }) { " in the far face" } else { "" };
         notes.push(format!("Engraved{face}: {what}, {} deep", number(c.label.depth_mm)));
@@ -250,30 +265,93 @@ pub(super) fn notes(design: &Design, part: &Part, features: &Features, has_lette
         notes.push(format!("Walls of the basin: draft {}\u{b0}", number(c.mould.draft_deg)));
     }
     if features.axis_arcs.is_empty() && !features.slots.is_empty() {
-        notes.push("Slots: width \u{d7} distance of the centres of their ends, through".to_owned());
+        notes.push("Slots: through, with round ends".to_owned());
+    }
+    if is_coupon(part) {
+        notes.push("Widths of slots and radii of grooves: without tolerance,".to_owned());
+        notes.push("as the machine makes them; the coupon measures the machine".to_owned());
     }
     if features.bores.iter().any(|b| !b.is_plain()) {
         notes.push("Near face: the one shown in the front view".to_owned());
     }
     if let Some(copies) = features.copies {
-        notes.push(format!("{} basins, all alike: dimensions stand at the first", copies.number));
+        notes.push(format!("{} basins, all alike: what is said of one is so of each", copies.number));
     }
     let is_plate = features.axis_arcs.is_empty() && features.block.is_none() && !features.is_round_body();
     if is_plate && !features.bores.is_empty() {
         notes.push("Outline: straight lines that touch both arcs".to_owned());
     }
     if !features.axis_arcs.is_empty() {
-        notes.push("R without a centre mark: about the pulley's axis".to_owned());
+        let axis = if features.copies.is_some() { "the axis of the basin" } else { "the pulley's axis" };
+        notes.push(format!("R without a centre mark: about {axis}"));
         notes.push("Angles from the middle plane, + to the right".to_owned());
     }
-    notes.extend(part.notes(design));
+    if part.engraved.iter().any(|line| line.contains(&design.label())) {
+        notes.push(layout(design));
+    }
+    notes.extend(marks(&part.engraved));
+    notes.extend(part.left_out_notes(design));
     notes
+}
+
+/// What the label of a layout stands for: which grooves hold pins.
+pub(super) fn layout(design: &Design) -> String {
+    let mut pins = design.configuration().layout.pins.clone();
+    pins.sort_unstable();
+    let holds = match pins[..] {
+        [] => "no pins".to_owned(),
+        [only] => format!("pin in groove {only}"),
+        _ => format!("pins in grooves {}", runs(&pins)),
+    };
+    format!("{}: {holds}", design.label())
+}
+
+/// Numbers in ascending order, three and more that follow each other as `4 to 7`.
+fn runs(numbers: &[usize]) -> String {
+    let mut all: Vec<(usize, usize)> = Vec::new();
+    for number in numbers {
+        match all.last_mut() {
+            Some((_, last)) if *last + 1 == *number => *last = *number,
+            _ => all.push((*number, *number)),
+        }
+    }
+    let word = |(first, last): &(usize, usize)| match last - first {
+        0 => first.to_string(),
+        1 => format!("{first}, {last}"),
+        _ => format!("{first} to {last}"),
+    };
+    all.iter().map(word).collect::<Vec<_>>().join(", ")
+}
+
+/// What the marks of a support stand for, beside its layout.
+pub(super) fn marks(engraved: &[String]) -> Option<String> {
+    let arrow = ["1<", ">1"].into_iter().find(|arrow| engraved.iter().any(|line| line.contains(arrow)))?;
+    let is_named = |name: &&str| engraved.iter().any(|line| line.contains(name));
+    let pull = ["LOAD", "F"].into_iter().find(is_named).map_or_else(String::new, |name| format!(" ({name})"));
+    Some(format!("{arrow}: to groove 1, where the load{pull} pulls"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use pinswitch_solid::profile::polar;
+
+    #[test]
+    fn the_layout_is_told_in_grooves() {
+        let told = |pins: &str| {
+            let mut c = crate::config::Configuration::default();
+            crate::config::assign(&mut c, &format!("layout.pins={pins}")).unwrap();
+            layout(&Design::new(c).unwrap())
+        };
+        assert_eq!(told("[4, 5, 11]"), "418: pins in grooves 4, 5, 11");
+        assert_eq!(told("[11, 5, 8]"), "3x3/5: pins in grooves 5, 8, 11");
+        assert_eq!(told("[1, 2, 3, 7]"), "47: pins in grooves 1 to 3, 7");
+        assert_eq!(told("[8]"), "1/8: pin in groove 8");
+        assert_eq!(told("[]"), "BARE: no pins");
+        let engraved = |lines: &[&str]| marks(&lines.iter().map(|l| (*l).to_owned()).collect::<Vec<_>>());
+        assert_eq!(engraved(&["1<F R"]).unwrap(), "1<: to groove 1, where the load (F) pulls");
+        assert_eq!(engraved(&["418"]), None);
+    }
 
     #[test]
     fn places_on_a_radius_are_said_in_the_shortest_way() {

@@ -28,6 +28,8 @@ const FRONT = 0, BACK = 1, ALWAYS = 519, NOT_EQUAL = 517, INCREMENT = 34055, DEC
 const ROOM = 1.1;
 // So many points of a body are enough to see how far it reaches.
 const SAMPLES = 600;
+// Of the tendon's points one in so many.
+const TENDON_STEP = 11;
 // Without a graphics card the processor fills every pixel: few while something moves, and all once it has stood still so long.
 const QUICK_RATIO = 0.5, STILL_MS = 700;
 const SHARP = Math.cos(25 * Math.PI / 180);
@@ -209,9 +211,13 @@ class Assembly {
     this.frame();
   }
 
-  // Points of the bodies that are shown, in the assembly; of large meshes not all, since neighbours say the same. The tendon
-  // leads out of the picture.
+  // Points of the bodies that are shown, and of the tendon, in the assembly; of large meshes not all, since neighbours say
+  // the same.
   *points() {
+    if (this.tendon) {
+      const { array } = this.tendon.geometry.getAttribute('position');
+      for (let i = 0; i < array.length; i += 3 * TENDON_STEP) yield new THREE.Vector3(array[i], array[i + 1], array[i + 2]);
+    }
     for (const node of this.bodies) {
       if (!node.visible) continue;
       const [mesh] = node.children;

@@ -84,6 +84,11 @@ struct ContactStates {
 }
 
 impl PageData {
+    /// Whether a server follows the configuration for this page.
+    pub(super) fn is_live(&self) -> bool {
+        self.live.is_some()
+    }
+
     /// The data of a page; `live` is the version of a live preview that follows its configuration.
     pub fn new(built: &Built, prediction: &Prediction, manifest: &Manifest, live: Option<u64>) -> Self {
         let design = built.design();

@@ -29,6 +29,7 @@ fn make(built: &Built, prediction: &Prediction, manifest: &Manifest) -> Result<V
 }
 
 const HTML: &str = include_str!("page.html");
+const CONFIGURATOR: &str = "\n  <p><a href=\"/configure\">Change it in the configurator</a></p>";
 const CSS: &str = include_str!("page.css");
 const JS: &str = concat!("'use strict';\n", include_str!("assembly.js"), include_str!("page.js"));
 /// The assembly in three dimensions: scripts that the configurator has, too.
@@ -57,6 +58,8 @@ pub fn page_html(data: &PageData, still: &str) -> Result<String, SetError> {
         "UPLOT" => Some(UPLOT.into()),
         "JS" => Some(JS.into()),
         "STILL" => Some(still.into()),
+        // Only a server has the configurator, at this address.
+        "BESIDE" => Some(if data.is_live() { CONFIGURATOR } else { "" }.into()),
         "DATA" => Some(json_in_script(&json).into()),
         "POLICY" => Some(policy.as_str().into()),
         _ => None,

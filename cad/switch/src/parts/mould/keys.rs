@@ -2,7 +2,7 @@
 
 use crate::config::MouldTable;
 use crate::design::Design;
-use pinswitch_solid::profile::{Contour, OffsetError, polar};
+use pinswitch_solid::profile::{Contour, OffsetError, Point2, polar};
 use pinswitch_solid::solid::{Facing, RingId, Solid};
 
 use super::Cavity;
@@ -36,15 +36,17 @@ pub(super) fn wall_of_ring_mm(design: &Design) -> f64 {
     ring_wall_mm(m, m.key_diameter_mm)
 }
 
-/// Circles of the keys' feet, counter-clockwise, widened by `play_mm`.
-fn feet(design: &Design, play_mm: f64) -> Vec<Contour> {
-    let m = &design.configuration().mould;
+/// Middles of the keys, about the pulley's axis.
+pub(crate) fn middles(design: &Design) -> [Point2; 3] {
     let cavity = Cavity::of(design).sector;
     let radius = cavity.outer_mm + wall_of_ring_mm(design) / 2.0;
-    let key = |place: f64| {
-        Contour::circle(polar(radius, place * cavity.half_span_rad), m.key_diameter_mm / 2.0 + play_mm)
-    };
-    PLACES.map(key).to_vec()
+    PLACES.map(|place| polar(radius, place * cavity.half_span_rad))
+}
+
+/// Circles of the keys' feet, counter-clockwise, widened by `play_mm`.
+fn feet(design: &Design, play_mm: f64) -> Vec<Contour> {
+    let radius = design.configuration().mould.key_diameter_mm / 2.0 + play_mm;
+    middles(design).map(|middle| Contour::circle(middle, radius)).to_vec()
 }
 
 fn head(foot: &Contour, height_mm: f64) -> Result<Contour, OffsetError> {

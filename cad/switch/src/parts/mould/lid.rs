@@ -15,6 +15,9 @@ const SLOT_SHARE: f64 = 0.15;
 /// Where the vents lie, as a share of half the span.
 const VENT_SHARE: f64 = 0.9;
 
+/// A smaller chamfer does not print, mm (cad/doc/print-limits.md, "First layer").
+const LEAST_CHAMFER_MM: f64 = 0.02;
+
 /// The lid's openings, clockwise.
 struct Openings {
     keys: Vec<Contour>,
@@ -73,7 +76,8 @@ pub(in crate::parts) fn lid(design: &Design) -> Result<Part, ConfigError> {
 
     let mut solid = Solid::new();
     let (bottom, top) = solid.extrude_chamfered(&plate, 0.0, thickness, chamfer).map_err(&foot)?;
-    let (mut bottoms, mut tops) = solid.through_holes(&holes, 0.0, thickness, chamfer).map_err(&foot)?;
+    let of_holes = hole_chamfer_mm(design, &plate, &o.spout, &holes);
+    let (mut bottoms, mut tops) = solid.through_holes(&holes, 0.0, thickness, of_holes).map_err(&foot)?;
     let (spout, mouth) = (solid.ring(o.spout, 0.0), solid.ring(o.mouth, thickness));
     solid.wall(spout, mouth);
     bottoms.push(spout);
@@ -83,6 +87,21 @@ pub(in crate::parts) fn lid(design: &Design) -> Result<Part, ConfigError> {
     let mut part = Part::new("mould-lid", Role::Mould, solid, None);
     part.tool_pose = Some(Pose::upright(c.mould.floor_mm + Cavity::of(design).depth_mm));
     Ok(part)
+}
+
+/// The chamfer of the lid's holes, mm: that of all parts, as far as a wall stays on the bed between them, and between them and
+/// the funnel and the edge, which has its chamfer.
+fn hole_chamfer_mm(design: &Design, plate: &Contour, spout: &Contour, holes: &[Contour]) -> f64 {
+    let print = &design.configuration().print;
+    let wall = print.least_wall_mm;
+    let room = |i: usize, hole: &Contour| {
+        let apart = holes.iter().skip(i + 1).map(|other| (gap_mm(hole, other) - wall) / 2.0);
+        let beside = [gap_mm(hole, spout) - wall, gap_mm(hole, plate) - wall - print.elephant_foot_mm];
+        apart.chain(beside).fold(f64::INFINITY, f64::min)
+    };
+    let room = holes.iter().enumerate().map(|(i, hole)| room(i, hole)).fold(f64::INFINITY, f64::min);
+    let chamfer = print.elephant_foot_mm.min(room);
+    if chamfer < LEAST_CHAMFER_MM { 0.0 } else { chamfer }
 }
 
 /// Least distance in mm from `slot`, at eight points of every edge, to the curve of `other`.

@@ -14,6 +14,9 @@ const BASE_MARGIN_MM: f64 = 1.0;
 /// Largest shift of the ends of the base, as a share of its inner radius: beyond it the inner corners become edges of less
 /// than 45 degrees, which break off and are no wall.
 const BLUNT_SHARE: f64 = 0.65;
+/// Largest chamfer of the ring, as a share of the radius of its ribs: it leaves them a foot of nine tenths of that radius. At
+/// a half of it nothing is left of a rib on the bed.
+const RIB_SHARE: f64 = 0.4;
 /// What stays of the block at least where its inner radius grows, or the mould's wall if that is thinner, mm.
 const LEAST_BLOCK_MM: f64 = 3.0;
 
@@ -24,6 +27,11 @@ fn core_inner_mm(design: &Design, cavity: &Cavity) -> f64 {
     let blunt = BASE_MARGIN_MM + shift / BLUNT_SHARE;
     let block_mm = wall_mm.min(LEAST_BLOCK_MM);
     design.inner_radius_mm().max(blunt.min(cavity.sector.inner_mm - block_mm))
+}
+
+/// The ring's chamfer, mm: that of all parts, as far as its ribs bear it.
+fn ring_chamfer_mm(design: &Design, cavity: &Cavity) -> f64 {
+    design.configuration().print.elephant_foot_mm.min(RIB_SHARE * cavity.groove_radius_mm)
 }
 
 /// The block that shapes the layer's smooth inner face; the ring's end walls rest on its face beyond the cavity.
@@ -92,7 +100,7 @@ pub(in crate::parts) fn ring(design: &Design) -> Result<Part, ConfigError> {
     let key = offset_error("mould.key_height_mm");
     let mut solid = Solid::new();
     let (bottom, top) = solid
-        .extrude_chamfered(&ring_outline(design, &cavity), 0.0, height, c.print.elephant_foot_mm)
+        .extrude_chamfered(&ring_outline(design, &cavity), 0.0, height, ring_chamfer_mm(design, &cavity))
         .map_err(offset_error("print.elephant_foot_mm"))?;
     let mouths = keys::blind_holes(&mut solid, design, 0.0).map_err(&key)?;
     solid.cap(Facing::Down, bottom, &mouths);

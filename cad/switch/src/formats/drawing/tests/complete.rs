@@ -13,7 +13,7 @@ use pinswitch_solid::profile::{Contour, Edge, Point2};
 use std::f64::consts::PI;
 
 /// All that is written on a sheet, its title block left out.
-fn texts(sheet: &Sheet) -> Vec<String> {
+pub(super) fn texts(sheet: &Sheet) -> Vec<String> {
     let content = sheet.entities.iter().filter(|e| e.group >= sheet.first_group);
     content
         .filter_map(|e| if let Shape::Text(t) = &e.shape { Some(t.content.clone()) } else { None })
@@ -265,7 +265,10 @@ fn holes_are_called_through_that_are() {
     let screw = told("[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"screw\"\n", "support-right");
     assert!(screw.contains("H13 through, for M3"), "{screw}");
     let insert = told("[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"insert\"\n", "shell");
-    assert!(insert.contains("2 \u{d7} \u{d8}4, 5.7 deep, both faces\nfor heat-set insert M3"), "{insert}");
+    assert!(
+        insert.contains("2 \u{d7} \u{d8}4 +0.1/0, 5.7 deep, both faces\nfor heat-set insert M3"),
+        "{insert}"
+    );
     assert_eq!(insert.matches("33.635").count(), 1, "{insert}");
 }
 
@@ -286,4 +289,53 @@ fn nothing_is_called_engraved_that_was_left_out() {
         }
     }
     assert!(left_out > 0, "some label should have found no room");
+}
+
+/// A workshop does not know the parameters of the program, and a sheet gives no advice about them.
+#[test]
+fn no_sheet_speaks_of_parameters() {
+    let mut noted = 0;
+    for (name, text) in known() {
+        let Some(built) = built(&text) else { continue };
+        for sheet in super::sheets(&built) {
+            let all = texts(&sheet).join(" ");
+            noted += usize::from(all.contains("is left out") || all.contains("are left out"));
+            for word in all.split_whitespace() {
+                let (table, field) = word.split_once('.').unwrap_or(("", ""));
+                let is_word = |w: &str| w.chars().next().is_some_and(|c| c.is_ascii_lowercase());
+                let is_parameter = is_word(table) && is_word(field);
+                assert!(!is_parameter, "{name}, {}: {word:?} in {all}", sheet.name);
+            }
+        }
+    }
+    assert!(noted > 0, "something should have been left out");
+}
+
+/// The overall lengths of a coupon are dimensions, and not notes.
+#[test]
+fn a_coupon_is_dimensioned_in_its_views() {
+    let built = built("").unwrap();
+    let all = super::sheets(&built);
+    let coupon = all.iter().find(|s| s.name == "coupon").unwrap();
+    for (key, said) in [("length", "54.5"), ("width", "13.25"), ("overall height", "3")] {
+        assert_eq!(super::text_of(coupon, key), said);
+    }
+    for row in ["slots", "grooves"] {
+        for key in [format!("first of the {row}"), format!("pitch of the {row}")] {
+            assert_ne!(super::text_of(coupon, &key), "", "{key}");
+        }
+    }
+    let slots = super::text_of(coupon, "slots");
+    assert!(slots.starts_with("7 \u{d7} slot, widths from the left\n1.04, 1.09, 1.14"), "{slots}");
+}
+
+/// The layout's label is decoded where it is to be read.
+#[test]
+fn sheets_say_which_grooves_hold_pins() {
+    let built = built("[layout]\npins = [4, 5, 11]\n").unwrap();
+    let all = super::sheets(&built);
+    for name in ["assembly", "shell", "support-right"] {
+        let words = texts(all.iter().find(|s| s.name == name).unwrap()).join("|");
+        assert!(words.contains("418: pins in grooves 4, 5, 11"), "{name}: {words}");
+    }
 }

@@ -2,6 +2,9 @@
 //! what is measured in the DXF is what the manifest says.
 
 mod complete;
+mod copies;
+mod fits;
+
 mod measured;
 
 use std::collections::BTreeMap;
@@ -167,26 +170,27 @@ fn promised_of_holes(d: &Design, part: &str) -> Vec<String> {
     let n = if c.fasteners.count == 1 { String::new() } else { format!("{} \u{d7} ", c.fasteners.count) };
     let thread = crate::documents::bill_of_materials(d).fasteners.unwrap().thread;
     let diameter = number(c.fasteners.hole_diameter_mm);
+    let grade = crate::design::clearance_grade(Some(thread), c.fasteners.hole_diameter_mm);
     let fastening = d.fastening();
     let has_heads = part == "support-left" || fastening.insert_mm.is_some();
     let is_covered = part == "support-left" && c.mount.kind != config::MountKind::None;
     match (part, fastening.insert_mm, fastening.recess(has_heads)) {
         ("shell", Some([bore, length]), _) => vec![
-            format!("{n}\u{d8}{}, {} deep, both faces", number(bore), number(length)),
+            format!("{n}\u{d8}{} +0.1/0, {} deep, both faces", number(bore), number(length)),
             format!("for heat-set insert {thread}"),
-            format!("\u{d8}{diameter} between them"),
+            format!("\u{d8}{diameter} {grade} between them"),
         ],
         (_, _, Some(recess)) if part != "shell" && !is_covered => {
             let word = if recess.is_hexagon { "hexagon AF " } else { "\u{d8}" };
             let depth = number(recess.depth_mm);
             let rest = c.support.plate_mm - recess.depth_mm - d.membrane_mm();
             vec![
-                format!("{n}{word}{}, {depth} deep, far face", number(2.0 * recess.radial_mm)),
+                format!("{n}{word}{} +0.2/0, {depth} deep, far face", number(2.0 * recess.radial_mm)),
                 format!("closed skin {} above it", number(d.membrane_mm())),
-                format!("\u{d8}{diameter} H13, {} deep, near face, for {thread}", number(rest)),
+                format!("\u{d8}{diameter} {grade}, {} deep, near face, for {thread}", number(rest)),
             ]
         }
-        _ => vec![format!("{n}\u{d8}{diameter} H13 through, for {thread}")],
+        _ => vec![format!("{n}\u{d8}{diameter} {grade} through, for {thread}")],
     }
 }
 
@@ -267,6 +271,31 @@ fn views_lie_where_the_projection_wants_them() {
         };
         let (lower, upper) = (wide(above_y.0), wide(above_y.1));
         assert!(lower < upper - 2.0, "z grows downward in the view from above: {lower} {upper}");
+    }
+}
+
+/// Lines that crowd are thinned out alike on both supports, whatever the scale.
+#[test]
+fn both_supports_are_seen_alike_from_above() {
+    let wide = "[segment]\nspan_deg = 160.0\n[layout]\npins = [8]\nwrap_angle_deg = 140.0\n[shell]\nouter_radius_mm = 30.0\n";
+    for text in ["[layout]\npins = [8]\n", wide] {
+        let all = sheets(&built(text).unwrap());
+        let view = all[0].views.iter().position(|v| v.name == "ABOVE");
+        let lines = all[0].entities.iter().filter(|e| e.view == view);
+        let level = |e: &pinswitch_plot::drawing::Entity| match &e.shape {
+            Shape::Line { from, to } if (from.y - to.y).abs() < 1e-6 && (from.x - to.x).abs() > 20.0 => {
+                Some(from.y)
+            }
+            _ => None,
+        };
+        let levels: Vec<f64> = lines.filter_map(level).collect();
+        let ends = levels.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(*y), h.max(*y)));
+        let has = |y: f64| levels.iter().any(|other| (other - y).abs() < 1e-3);
+        assert!(levels.len() >= 6, "{text}: {levels:?}");
+        // Between them lies the tendon, which is no mirror image of itself.
+        let middle = f64::midpoint(ends.0, ends.1);
+        let mut of_supports = levels.iter().filter(|y| (*y - middle).abs() > 2.0 * all[0].scale);
+        assert!(of_supports.all(|y| has(2.0 * middle - y)), "{text}: {levels:?}");
     }
 }
 

@@ -1,0 +1,145 @@
+//! Every hole and every peg that meets another body has a tolerance and says what it is for.
+
+use super::{built, text_of};
+use pinswitch_plot::drawing::Sheet;
+
+/// What makes a tolerance of its own.
+const TOLERANCES: [&str; 6] = ["+0.1/0", "+0.2/0", "0/-0.2", "H12", "H13", "H14"];
+/// Holes into which nothing comes: the way of the bearing's inner ring, and the vents of the lid.
+const FREE: [(&str, &str); 2] = [("guide-pulley", "\u{d8}18 through"), ("mould-lid", "\u{d8}")];
+
+/// Each kind of hardware, on every mount, and sizes that are not those of the defaults.
+fn sets() -> Vec<String> {
+    let fasteners = [
+        "",
+        "kind = \"screw\"\ndowel_diameter_mm = 2.0\n",
+        "kind = \"insert\"\nhead_recess_mm = 1.6\n",
+        "hole_diameter_mm = 3.2\nhead_recess_mm = 1.2\n",
+        "hole_diameter_mm = 2.4\ncount = 3\ndowel_diameter_mm = 1.5\n",
+        "count = 0\ndowel_diameter_mm = 2.0\n",
+    ];
+    let mounts = [
+        "",
+        "kind = \"flange\"\n[tendon]\nsheath_diameter_mm = 4.0\n",
+        "kind = \"finger-link\"\nhole_diameter_mm = 6.0\n",
+        "kind = \"rig\"\nhole_diameter_mm = 6.6\n[tendon]\nsheath_diameter_mm = 4.0\n",
+        "kind = \"rig\"\n",
+    ];
+    let others = [
+        "",
+        "[parts]\nguide_pulley = true\n[mould]\nkey_diameter_mm = 2.5\nkey_height_mm = 3.0\nclearance_mm = 0.05\n",
+        "[mould]\nkind = \"one-piece\"\n",
+    ];
+    let mut all = Vec::new();
+    for (i, fastener) in fasteners.iter().enumerate() {
+        for (k, mount) in mounts.iter().enumerate() {
+            let other = others[(i + k) % others.len()];
+            all.push(format!("[layout]\npins = [5, 8, 11]\n[fasteners]\n{fastener}[mount]\n{mount}{other}"));
+        }
+    }
+    all
+}
+
+fn has_tolerance(line: &str) -> bool {
+    TOLERANCES.iter().any(|t| line.contains(t))
+}
+
+/// Lines of callouts of holes, pegs, grooves and slots that lack a tolerance.
+fn open_fits(sheet: &Sheet) -> Vec<String> {
+    let mut open = Vec::new();
+    for a in &sheet.annotations {
+        let is_hole = a.key.starts_with("hole ");
+        let is_free = |line: &str| FREE.iter().any(|(part, w)| sheet.name == *part && line.contains(w));
+        let meets = |line: &str| match a.key.split(' ').next() {
+            Some("hole") => line.contains('\u{d8}') || line.contains("hexagon"),
+            Some("round") => sheet.name.starts_with("mould") && line.contains('\u{d8}'),
+            Some("groove") => sheet.name != "coupon" && line.contains(" R") && !line.contains(" on R"),
+            _ => false,
+        };
+        let of_lines = a.text.lines().filter(|l| meets(l) && !has_tolerance(l) && !is_free(l));
+        open.extend(of_lines.map(|l| format!("{}, {}: {l:?}", sheet.name, a.key)));
+        let is_fitted = is_hole && has_tolerance(&a.text);
+        if is_fitted && !a.text.contains("for ") {
+            open.push(format!("{}, {}: for what? {:?}", sheet.name, a.key, a.text));
+        }
+    }
+    open
+}
+
+#[test]
+fn whatever_meets_another_body_has_a_tolerance() {
+    let (mut drawn, mut open) = (0, Vec::new());
+    for text in sets() {
+        let Some(built) = built(&text) else { continue };
+        drawn += 1;
+        let sheets = super::sheets(&built);
+        open.extend(sheets.iter().flat_map(open_fits).map(|o| format!("{text:?}: {o}")));
+    }
+    assert!(drawn >= 20, "only {drawn} sets were drawn");
+    assert!(open.is_empty(), "{}", open.join("\n"));
+}
+
+/// All that is said of holes, pegs, grooves and slots of a part.
+fn said(text: &str, part: &str) -> String {
+    let built = built(text).unwrap();
+    let all = super::sheets(&built);
+    let sheet = all.iter().find(|s| s.name == part).unwrap();
+    sheet.annotations.iter().map(|a| a.text.as_str()).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn fits_are_those_of_what_comes_into_them() {
+    let rig = "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 4.0\n";
+    let plate = said(rig, "rig-plate");
+    for words in [
+        "\u{d8}4.5 H13 through, for M4",
+        "hexagon AF 13.2 +0.2/0",
+        "\u{d8}8.4 H12",
+        "for M8",
+        // Those of the shell and those of the sheath stop are alike, and told together.
+        "4 \u{d7} \u{d8}6 +0.2/0",
+        "\u{d8}3.4 H13",
+        "for M3",
+    ] {
+        assert!(plate.contains(words), "{words} is not in {plate:?}");
+    }
+    let of = [
+        (rig, "guide-pulley", "\u{d8}22.1 +0.1/0, 7 deep, near face, for bearing 608"),
+        (rig, "pulley-spacer", "\u{d8}8.4 H12 through, for M8"),
+        (rig, "sheath-stop", "\u{d8}3.4 H13 through, for M3"),
+        ("[parts]\nguide_pulley = true\n", "guide-pulley", "+0.1/0, 7 deep, near face, for bearing 608"),
+        ("[mount]\nkind = \"finger-link\"\n", "finger-link", "\u{d8}4.5 +0.1/0 through, for the joint's pin"),
+        ("[fasteners]\ndowel_diameter_mm = 2.0\n", "shell", "\u{d8}2.1 +0.1/0 through, for dowel 2"),
+        ("[fasteners]\ndowel_diameter_mm = 2.0\n", "support-left", "\u{d8}2.1 +0.1/0, 1.5 deep"),
+        ("", "support-right", "hexagon AF 5.7 +0.2/0, 1.5 deep, far face\nfor nut M3"),
+        ("", "shell", "groove R0.5 +0.1/0"),
+        ("", "mould-ring", "rib R0.5 +0.1/0"),
+        (
+            "",
+            "mould-core",
+            "key \u{d8}3 0/-0.2, 2.5 0/-0.2 high,\n\u{d8}2 0/-0.2 at its head, for hole \u{d8}3.4",
+        ),
+        (
+            "",
+            "mould-ring",
+            "\u{d8}3.4 +0.2/0, 2.9 +0.2/0 deep, far face,\n\u{d8}2.4 +0.2/0 at its end, for key",
+        ),
+        ("", "mould-lid", "\u{d8}3.4 +0.2/0 through, for key \u{d8}3"),
+    ];
+    for (text, part, words) in of {
+        let said = said(text, part);
+        assert!(said.contains(words), "{part}: {words:?} is not in {said:?}");
+    }
+}
+
+/// The coupon tells what a machine makes of a width: a tolerance as wide as its steps would leave nothing to measure.
+#[test]
+fn the_coupon_leaves_its_widths_to_the_machine() {
+    let built = built("").unwrap();
+    let all = super::sheets(&built);
+    let coupon = all.iter().find(|s| s.name == "coupon").unwrap();
+    assert!(coupon.annotations.iter().all(|a| !has_tolerance(&a.text)), "{:?}", coupon.annotations);
+    assert!(text_of(coupon, "slots").contains("\n1.04, 1.09, 1.14, "), "{}", text_of(coupon, "slots"));
+    let words = super::complete::texts(coupon).join(" ");
+    assert!(words.contains("the coupon measures the machine"), "{words}");
+}

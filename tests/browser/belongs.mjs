@@ -30,6 +30,28 @@ export async function curveOfAModelNotTaken(visit, site, { table }) {
   await visit.settled();
 }
 
+// One table's verdict, button and curve are not another's.
+export async function tableAfterATable(visit, site, { table }) {
+  await visit.open(site.address + START);
+  const isBare = () => document.querySelector('#take-model').hidden && !document.querySelector('#legend').textContent.includes('with your model');
+  await visit.drop('first.csv', table);
+  await visit.page.waitForSelector('#take-model:not([hidden])', { timeout: SLOW_MS });
+  await visit.check('its curve is drawn', legendHas, 'with your model');
+  visit.findings.check('a verdict names its file', (await visit.text('#verdict')).startsWith('first.csv: '), await visit.text('#verdict'));
+  await visit.drop('second.csv', 'a,b\n1,2\n');
+  await visit.check('a table that cannot be read is told', () => /second\.csv/.test(document.querySelector('#verdict .error')?.textContent ?? ''));
+  visit.findings.check('nothing of the first stands beside it', await visit.page.evaluate(isBare));
+  await visit.drop('third.csv', table);
+  await visit.page.waitForSelector('#take-model:not([hidden])', { timeout: SLOW_MS });
+  await visit.drop('fourth.csv', table);
+  await visit.check('nothing of the third stands there while the fourth is fitted', () => /Fitting the model to fourth\.csv/.test(document.querySelector('#verdict').textContent));
+  visit.findings.check('no button offers its model', await visit.page.evaluate(isBare));
+  await visit.drop('fifth.csv', 'a,b\n1,2\n');
+  await visit.page.waitForSelector('#verdict .error', { timeout: SLOW_MS });
+  await new Promise((done) => { setTimeout(done, 1500); });
+  visit.findings.check('the last table has the word, whatever was still being fitted', /fifth\.csv/.test(await visit.text('#verdict')), await visit.text('#verdict'));
+}
+
 export async function searchByTheModel(visit, site, { table }) {
   await visit.open(`${site.address}${START}&ask.threshold_n=14`);
   await visit.drop('plateaus.csv', table);
@@ -69,6 +91,17 @@ export async function closingCardsEndsASearchOnly(visit, site, { table }) {
   await visit.click('#found-close');
   const verdict = await visit.page.waitForSelector('#verdict b', { timeout: SLOW_MS }).then(() => true, () => false);
   visit.findings.check('a table is fitted to its end while cards are closed', verdict, await visit.text('#verdict'));
+  await visit.settled();
+}
+
+export async function filesBehindASearch(visit, site) {
+  await visit.open(`${site.address}${START}&ask.threshold_n=24`);
+  await visit.click('#search');
+  await visit.click('#download');
+  await visit.check('files that wait for a search say so', () => /Waits for the search for designs/.test(document.querySelector('#files-say').textContent));
+  await visit.page.waitForSelector('#file-list li', { timeout: SLOW_MS });
+  visit.findings.check('and no longer once they are there', await visit.text('#files-say') === '', await visit.text('#files-say'));
+  await visit.click('#files-close');
   await visit.settled();
 }
 

@@ -129,6 +129,20 @@ export async function outOfBounds(visit, site) {
   await visit.check('what is no whole number is told at once', () => document.querySelector('#f-segment-grooves-error').textContent === 'A whole number goes here.');
 }
 
+export async function errorUnderAFilter(visit, site) {
+  await visit.open(site.address + START);
+  const isShown = () => document.querySelector('#f-segment-grooves-error').checkVisibility() && document.querySelector('#f-segment-grooves').checkVisibility();
+  const isGone = () => !document.querySelector('#f-segment-grooves').checkVisibility();
+  await visit.type('#find', 'engrave');
+  await visit.check('what does not fit is hidden', isGone);
+  await visit.page.evaluate(() => { location.hash += '&segment.grooves=40'; });
+  await visit.check('a field with an error is shown, whatever is looked for', isShown);
+  await visit.settled();
+  await visit.click('#trouble .mend');
+  await visit.check('mended, it goes again', isGone);
+  await visit.settled();
+}
+
 export async function undoAndRedo(visit, site) {
   await visit.open(site.address + START);
   visit.findings.check('at first there is nothing to undo', await visit.page.$eval('#undo', (b) => b.disabled) && await visit.page.$eval('#redo', (b) => b.disabled));
@@ -154,6 +168,28 @@ export async function undoAndRedo(visit, site) {
   await visit.settled();
 }
 
+export async function undoOfAnAsk(visit, site) {
+  await visit.open(site.address + START);
+  const undo = async () => {
+    await visit.page.keyboard.down('Control');
+    await visit.page.keyboard.press('z');
+    await visit.page.keyboard.up('Control');
+  };
+  await visit.type('#ask-threshold', '24');
+  await visit.addressHas('ask.threshold_n=24');
+  await undo();
+  await visit.addressLacks('ask.threshold_n');
+  visit.findings.check('the box has no number that is not asked', await visit.page.$eval('#ask-threshold', (e) => e.value === ''));
+  await visit.click('#add-friction');
+  await visit.addressHas('ask.friction=');
+  const before = await visit.page.$eval('#ask-frictions input', (e) => e.value);
+  await visit.type('#ask-frictions input', '8.25');
+  await visit.addressHas('8.25');
+  await undo();
+  await visit.check('nor has that of a friction', (value) => document.querySelector('#ask-frictions input').value === value, before);
+  await visit.settled();
+}
+
 export async function address(visit, site) {
   const hash = '#v=1&layout.pins=3,8,13&label.text=a%20b%2Cc&silicone.thickness_mm=2.5&ask.threshold_n=24&ask.friction=40:8.5';
   await visit.open(site.address + hash);
@@ -169,6 +205,23 @@ export async function address(visit, site) {
   if (site.name === 'module') {
     await visit.open(site.address);
     await visit.addressHas('layout.pins=7,9');
+  }
+}
+
+// What the page itself wrote into the address is read again, with its error.
+export async function reloadOfWhatIsRefused(visit, site) {
+  for (const [box, text, part] of [['#f-layout-pins', '0, 4, -3, 8', 'layout.pins=-3,0,4,8'], ['#f-layout-pins', '4, 12345678901', 'layout.pins=4,12345678901'], ['#f-silicone-thickness_mm', '1e-9', 'silicone.thickness_mm=1e-9'],
+    ['#f-segment-grooves', '-2', 'segment.grooves=-2']]) {
+    await visit.open(site.address + START);
+    await visit.type(box, text);
+    await visit.addressHas(part);
+    await visit.settled();
+    const said = await visit.text(`${box}-error`);
+    await visit.page.reload();
+    await visit.settled();
+    await visit.addressHas(part);
+    visit.findings.check(`${text} has its error again after loading`, said !== '' && await visit.text(`${box}-error`) === said && await visit.shown(`${box}-error`), said);
+    visit.findings.check('and no other words', !await visit.shown('#notice'), await visit.text('#notice'));
   }
 }
 
@@ -199,7 +252,7 @@ export async function compare(visit, site) {
   await visit.type('#f-silicone-thickness_mm', '5');
   await visit.settled();
   const both = await visit.picture('#chart');
-  visit.findings.check('it stays beside the next design', (await legend()).includes('4, 8, 12'), await legend());
+  visit.findings.check('it stays beside the next design, with what differs', /4, 8, 12\], thickness 2 mm/.test(await legend()), await legend());
   await visit.page.reload();
   await visit.settled();
   visit.findings.check('it outlives a reload', (await legend()).includes('4, 8, 12'));

@@ -40,6 +40,8 @@ const WIDTHS = { phone: [375, 812], tablet: [820, 1180], desk: [1440, 900] };
 
 export async function widths(visit, site, { pictures }) {
   await visit.open(site.address + START);
+  const codes = await visit.page.$$eval('[data-word], [data-name]', (all) => all.map((e) => `${e.textContent} ${e.getAttribute('aria-label')}`).filter((text) => /=>|undefined/.test(text)));
+  visit.findings.check('every place has words', codes.length === 0, codes.join('; '));
   for (const [name, [width, height]] of Object.entries(WIDTHS)) {
     for (const dark of [false, true]) {
       await visit.look(width, height, dark);
@@ -76,10 +78,42 @@ export async function focusOnAPhone(visit, site) {
   visit.findings.check('nothing that has the focus is covered', walked > 20 && covered.size === 0, [...covered].join(' '));
 }
 
+// The reasons are opened and closed by hand, by key, and by a click elsewhere, at every width.
+export async function reasonsClose(visit, site) {
+  await visit.open(site.address + START);
+  const isOpen = () => visit.shown('#reasons');
+  for (const width of [320, 375, 820, 1440]) {
+    await visit.look(width, 812, false);
+    const place = async () => {
+      await visit.page.$eval('#trust', (e) => e.scrollIntoView({ block: 'center' }));
+      const { x, y, width: wide, height } = await (await visit.page.$('#trust')).boundingBox();
+      return [x + wide / 2, y + height / 2];
+    };
+    const press = async () => visit.page.mouse.click(...await place());
+    await press();
+    visit.findings.check(`the badge opens its reasons at ${width} px`, await isOpen());
+    await press();
+    visit.findings.check(`and closes them at ${width} px`, !await isOpen());
+    await press();
+    await visit.focus('#reasons');
+    await visit.page.keyboard.press('Escape');
+    visit.findings.check(`so does Escape at ${width} px`, !await isOpen() && await visit.page.evaluate(() => document.activeElement.id === 'trust'));
+    await press();
+    await visit.click('#pins-say');
+    visit.findings.check(`so does a click elsewhere at ${width} px`, !await isOpen());
+  }
+}
+
 // States of the page that a person meets, each with what brings it about and what ends it.
+const MANY_REASONS = 'layout.pins=1,2,3,4,5,6,7,8,9,10,11,12,13,14,15&silicone.thickness_mm=6&silicone.hardness_shore_a=20';
+async function turn(visit, hash) {
+  await visit.page.evaluate((to) => { document.body.dataset.pending = 'true'; location.hash = to; }, hash);
+  await visit.settled();
+}
 const STATES = {
   'at rest': [async () => {}, async () => {}],
   'with reasons': [(v) => v.click('#trust'), (v) => v.click('#trust')],
+  'with many reasons': [async (v) => { await turn(v, `#v=1&${MANY_REASONS}`); await v.click('#trust'); }, async (v) => { await v.page.keyboard.press('Escape'); await turn(v, START); }],
   'with templates': [(v) => v.click('#more > summary'), (v) => v.page.keyboard.press('Escape')],
   'with the view menu': [(v) => v.click('#look > summary'), (v) => v.page.keyboard.press('Escape')],
   'with files': [async (v) => { await v.click('#download'); await v.page.waitForSelector('#file-list button'); }, (v) => v.click('#files-close')],

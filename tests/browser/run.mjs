@@ -12,6 +12,7 @@ import * as around from './around.mjs';
 import * as belongs from './belongs.mjs';
 import * as design from './design.mjs';
 import * as downloads from './downloads.mjs';
+import * as focus from './focus.mjs';
 import * as look from './look.mjs';
 import * as served from './served.mjs';
 import * as tables from './tables.mjs';
@@ -30,7 +31,7 @@ async function fromFile(visit, site, { findings }) {
 }
 
 function scenarios() {
-  const all = { fromFile, ...design, ...look, ...tables, ...trouble, ...around, ...belongs, ...served, ...downloads };
+  const all = { fromFile, ...design, ...look, ...tables, ...trouble, ...around, ...belongs, ...focus, ...served, ...downloads };
   return Object.entries(all).filter(([name, act]) => typeof act === 'function' && (job.only ?? '').split(' ').some((word) => name.includes(word)));
 }
 

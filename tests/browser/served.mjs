@@ -34,6 +34,21 @@ export async function templateOfTheCommandLine(visit, site, { startView }) {
   });
 }
 
+export async function fromPageToPage(visit, site) {
+  await visit.open(site.address + START);
+  if (site.file) {
+    visit.findings.check('a page without a server names no other page', !await visit.shown('#set-page'));
+    return;
+  }
+  // The page of the set has no icon to ask for.
+  visit.allowed.push(/404/);
+  await visit.click('#set-page');
+  await visit.check('the configurator leads to the page of the set', () => location.pathname === '/' && document.querySelector('#summary').textContent !== '');
+  await visit.click('a[href="/configure"]');
+  await visit.settled();
+  visit.findings.check('which leads back', await visit.page.evaluate(() => location.pathname === '/configure'));
+}
+
 export async function fileBehindALink(visit, site, { startView, scratch }) {
   if (site.file) return;
   const text = '# Mine.\r\n[layout]\r\npins = [\r\n  5, # first\r\n  8,\r\n]\r\n# the end\r\n';

@@ -24,12 +24,23 @@ export async function search(visit, site) {
   await visit.addressHas('ask.threshold_n=');
   await visit.type('#ask-threshold', '24');
   await visit.addressHas('ask.threshold_n=24');
+  const isOver = () => getComputedStyle(document.querySelector('.threshold-line.own')).zIndex > 0 && getComputedStyle(document.querySelector('.threshold-line.own'), '::after').backgroundColor !== 'rgba(0, 0, 0, 0)';
+  visit.findings.check('where it switches now is not struck through by what is asked', await visit.page.evaluate(isOver));
   await visit.focus('.grip.diamond');
   await visit.page.keyboard.press('ArrowUp');
   await visit.addressHas('ask.friction=');
   await visit.click('#ask-frictions .tiny');
   await visit.addressLacks('ask.friction');
   await visit.click('#search');
+  const told = await visit.page.evaluate(async () => {
+    const texts = new Set();
+    for (let i = 0; i < 35 && !document.querySelector('#stop').hidden; i += 1) {
+      texts.add(document.querySelector('#search-says').textContent);
+      await new Promise((done) => { setTimeout(done, 100); });
+    }
+    return [...texts].filter((text) => /Looking/.test(text));
+  });
+  visit.findings.check('the time of a search is not read aloud each second', told.length === 1, told.join(' / '));
   await visit.page.waitForSelector('#designs .design', { timeout: SLOW_MS });
   const cards = await visit.page.$$eval('.design', (all) => all.map((c) => Number(/(\d+) % likely/.exec(c.textContent)?.[1])));
   visit.findings.check('the best designs come as cards, the most probable first', cards.length > 1 && cards.every((p, i) => p >= 0 && p <= 100 && (i === 0 || p <= cards[i - 1])), cards);
@@ -39,6 +50,16 @@ export async function search(visit, site) {
   await visit.click('.design:nth-child(2) button');
   await visit.settled();
   await visit.check('one click takes a design', (taken) => document.querySelector('#pins-say').textContent.replaceAll(' ', '') === `Pinsin${taken}`, pins);
+  await visit.type('#ask-threshold', '24');
+  await visit.click('#add-friction');
+  await visit.type('#ask-frictions label:nth-child(2) input', '40');
+  await visit.type('#ask-frictions label:nth-child(1) input', '8.5');
+  await visit.addressHas('ask.friction=40:8.5');
+  await visit.click('#search');
+  await visit.page.waitForFunction(() => /asked: 8\.5 N/.test(document.querySelector('#designs').textContent), { timeout: SLOW_MS });
+  const card = await visit.text('.design');
+  visit.findings.check('a card answers each thing that was asked, and says the rest once', /switches at [\d.]+ N; asked: 24 N/.test(card) && /[\d.]+ N at 40 N of load; asked: 8\.5 N/.test(card) && card.split('heaviest').length === 2, card);
+  visit.findings.check('what likely means is to be seen', await visit.shown('#likely-means') && /within 10 %/.test(await visit.text('#likely-means')), await visit.text('#likely-means'));
   await visit.click('#found-close');
   await visit.check('the cards go', () => document.querySelector('#found').hidden);
 }
@@ -59,7 +80,8 @@ export async function calibration(visit, site, { table, binary, scratch }) {
   await visit.focus('#apart');
   await visit.page.waitForSelector('#take-model:not([hidden])', { timeout: SLOW_MS });
   const verdict = await visit.text('#verdict');
-  visit.findings.check('a table gets a verdict', /^Attributed/.test(verdict) && /Held-out error .* before/.test(verdict) && /coating_ploughing/.test(verdict), verdict);
+  visit.findings.check('a table gets a verdict', /^plateaus\.csv: the published model misses something/.test(verdict) && /Held-out error .* before/.test(verdict), verdict);
+  visit.findings.check('it names what was found once, in words', verdict.split('coating_ploughing').length === 2 && /pins plough the coating/.test(verdict) && !/attributed/i.test(verdict), verdict);
   await visit.check('its curve stands beside the design', () => /with your model/.test(document.querySelector('#legend').textContent));
   await visit.click('#take-model');
   await visit.check('the model is in the design', (before) => /your model/.test(document.querySelector('#trust').textContent) && document.querySelector('#friction-words').textContent !== before, published);

@@ -28,6 +28,48 @@ export async function foreignFiles(visit, site) {
   await visit.settled();
 }
 
+// What is said of a design that cannot be built covers none of what is shown in its stead, and moves nothing.
+export async function troubleCoversNothing(visit, site, { pictures }) {
+  for (const [width, height] of [[375, 812], [820, 1180], [1440, 900]]) {
+    await visit.look(width, height, false);
+    await visit.open(site.address + START);
+    const places = () => visit.page.evaluate(() => ['#name', '.intro', '#view-tools', '.head', '#chart', '#pins'].map((s) => {
+      const { left, top, right, bottom } = document.querySelector(s).getBoundingClientRect();
+      return { s, left, top: top + scrollY, right, bottom: bottom + scrollY };
+    }));
+    const before = await places();
+    await visit.page.evaluate((hash) => { location.hash = hash; }, `${START}&segment.grooves=40`);
+    await visit.page.waitForSelector('#trouble:not([hidden])');
+    await visit.settled();
+    await visit.page.evaluate(() => scrollTo(0, 0));
+    const moved = (await places()).filter((now, i) => Math.abs(now.top - before[i].top) + Math.abs(now.bottom - before[i].bottom) > 1);
+    visit.findings.check(`trouble moves nothing at ${width} px`, moved.length === 0, JSON.stringify(moved));
+    for (const down of [0, 120, 250, 400]) {
+      const covered = await visit.page.evaluate((y) => {
+        scrollTo(0, y);
+        const a = document.querySelector('#trouble').getBoundingClientRect();
+        return ['#name', '.intro', '#view-tools', '.head', '#chart'].filter((s) => {
+          const b = document.querySelector(s).getBoundingClientRect();
+          return a.right > b.left + 1 && a.left < b.right - 1 && a.bottom > b.top + 1 && a.top < b.bottom - 1;
+        });
+      }, down);
+      visit.findings.check(`trouble covers nothing at ${width} px, ${down} px down`, covered.length === 0, covered.join(' '));
+    }
+    await visit.page.evaluate(() => scrollTo(0, 0));
+    await visit.page.screenshot({ path: `${pictures}/${site.name}-trouble-${width}.png` });
+  }
+}
+
+export async function firstVisitByALinkThatCannotBe(visit, site) {
+  await visit.open(`${site.address}#v=1&segment.grooves=40`);
+  await visit.check('what is shown instead is named', () => /In its place three-double is shown/.test(document.querySelector('#trouble').textContent));
+  await visit.click('#trouble .mend');
+  await visit.settled();
+  await visit.type('#f-segment-grooves', '40');
+  await visit.check('later it is the last design that could be', () => /The last design that can stays/.test(document.querySelector('#trouble').textContent));
+  await visit.settled();
+}
+
 // An address that is pasted into the open page, and what of it cannot be taken.
 export async function oddAddresses(visit, site) {
   await visit.open(site.address + START);
@@ -63,11 +105,14 @@ export async function withoutWebgl(visit, site, { tools, executable, findings })
   try {
     await bare.open(site.address + START);
     await bare.check('without WebGL the page says so', () => /no WebGL/.test(document.querySelector('#view').textContent) && document.body.dataset.still === 'true');
+    await bare.check('a picture of the parts stands there', () => document.querySelector('#view img')?.naturalWidth > 300);
+    const { src } = await bare.page.$eval('#view img', (e) => ({ src: e.src }));
     await bare.click('#mirror-pins');
     await bare.focus('[data-groove="4"]');
     await bare.page.keyboard.press('Delete');
     await bare.addressHas('layout.pins=8,12');
     await bare.settled();
+    await bare.check('it is that of the design', (before) => document.querySelector('#view img').src !== before, src);
     findings.check('without WebGL there is a curve', (await bare.text('#friction-words')).includes('of load'));
     await bare.end();
   } finally {

@@ -43,20 +43,27 @@ class Ask {
     });
   }
 
+  // Shows what is asked; not over the same number as somebody writes it.
+  fill(input, value) {
+    const written = input.value === '' ? null : Number(input.value);
+    if (document.activeElement === input && written === value && !input.validity.badInput) return;
+    input.value = value ?? '';
+    if (!input.hasAttribute('aria-invalid')) return;
+    input.removeAttribute('aria-invalid');
+    byId('ask-says').hidden = true;
+  }
+
   show() {
     this.age();
     const { threshold_n, friction } = this.state.now.ask;
-    const input = byId('ask-threshold');
-    if (document.activeElement !== input) input.value = threshold_n ?? '';
+    this.fill(byId('ask-threshold'), threshold_n);
     byId('ask-no-threshold').hidden = threshold_n === null;
     byId('add-friction').hidden = friction.length >= MOST_FRICTIONS;
     byId('search-here').hidden = threshold_n === null && !friction.length;
     const rows = byId('ask-frictions');
     while (rows.children.length > friction.length) rows.lastChild.remove();
     while (rows.children.length < friction.length) rows.append(this.row(rows.children.length));
-    friction.forEach((f, i) => [...rows.children[i].querySelectorAll('input')].forEach((box, k) => {
-      if (document.activeElement !== box) box.value = k ? f.load_n : f.friction_n;
-    }));
+    friction.forEach((f, i) => [...rows.children[i].querySelectorAll('input')].forEach((box, k) => this.fill(box, k ? f.load_n : f.friction_n)));
   }
 
   row(i) {
@@ -85,18 +92,16 @@ class Ask {
     byId('stop').hidden = false;
     this.searched = null;
     byId('found').classList.add('old');
-    const began = performance.now();
-    const tick = () => { byId('search-says').textContent = WORDS.searching(Math.round((performance.now() - began) / 1000)); };
-    tick();
-    const clock = setInterval(tick, 1000);
+    const endTime = tellTime((seconds) => { byId('search-says').textContent = WORDS.searching(seconds); });
     try {
       const answer = await this.engine.ask({ ask: 'search', values, threshold_n: ask.threshold_n, friction: ask.friction, most: 6, model: model?.toml ?? null });
       this.searched = { says: answer.words + (model ? WORDS.searchedWith(model.name) : ''), of: this.question(ask, values, model) };
+      byId('likely-means').textContent = WORDS.likelyMeans(answer.within);
       this.found(answer.designs);
     } catch (problem) {
       byId('search-says').textContent = problem instanceof Stale ? WORDS.stopped : problem.message;
     } finally {
-      clearInterval(clock);
+      endTime();
       byId('search').disabled = byId('search-here').disabled = false;
       byId('stop').hidden = true;
       this.age();
@@ -132,10 +137,14 @@ class Ask {
     const card = make('li', undefined, { class: 'design' });
     const percent = Math.round(100 * design.probability);
     const head = make('div', undefined, { class: 'design-head' });
-    head.append(make('b', WORDS.likely(percent), { title: WORDS.askFor }), this.spark(design.curve));
+    head.append(make('b', WORDS.likely(percent)), this.spark(design.curve));
     const bar = make('div', undefined, { class: 'bar', 'aria-hidden': 'true' });
     bar.append(make('i', undefined, { style: `width: ${percent}%` }));
-    const has = WORDS.designHas(design.threshold_n === null ? null : design.threshold_n.toFixed(1), design.friction_n === null ? null : design.friction_n.toFixed(2));
+    // What was asked, and once what was not.
+    const answers = make('ul', undefined, { class: 'answers' });
+    answers.append(...design.answers.map((answer) => make('li', WORDS.answer(answer), { class: answer.is_met ? undefined : 'missed' })));
+    const asksThreshold = design.answers.some((answer) => answer.load_n === null);
+    const rest = [...(asksThreshold ? [] : [WORDS.switchesAt(design.threshold_n)]), WORDS.heaviest(design.friction_n)].join(', ');
     const take = button(WORDS.take, () => {
       this.curve.further('preview', null);
       // What the search does not vary stays as it is now.
@@ -144,7 +153,7 @@ class Ask {
       this.state.change({ values: pins ? { ...values, 'layout.pins': pins } : values });
       say(WORDS.designTaken);
     }, { class: 'btn', 'aria-label': `${WORDS.take}: ${WORDS.designName(i + 1)}` });
-    card.append(head, bar, make('p', design.words), make('p', has, { class: 'dim' }), take);
+    card.append(head, bar, make('p', WORDS.designPins(design.pins)), answers, make('p', rest, { class: 'dim' }), take);
     const preview = (on) => this.curve.further('preview', on ? { name: WORDS.previewCurve(i + 1), curve: design.curve } : null);
     for (const [event, on] of [['pointerenter', true], ['focusin', true], ['pointerleave', false], ['focusout', false]]) card.addEventListener(event, () => preview(on));
     return card;

@@ -20,8 +20,9 @@ function showChecks(data) {
   byId('fine-list').replaceChildren(...(problems.length > 2 ? fine.map((c) => line('✓', 'fine', c.words)) : []));
 }
 
-// Trouble with a design: above the view, and at the control of its field, with a button that mends it.
-function showTrouble(trouble, controls, state) {
+// Trouble with a design: over the picture, and at the control of its field, with a button that mends it. `instead` is what is
+// shown where no design of this visit could be.
+function showTrouble(trouble, controls, state, instead) {
   const host = byId('trouble');
   host.hidden = !trouble;
   document.body.classList.toggle('stale', Boolean(trouble));
@@ -31,7 +32,7 @@ function showTrouble(trouble, controls, state) {
     const words = fits.map((c) => WORDS.setTo(fieldName(state.fields.get(c.path)), shownValue(c.value)));
     return button(WORDS.mends(words), () => {
       state.change({ values: { ...state.now.values, ...Object.fromEntries(fits.map((c) => [c.path, c.value])) } });
-    }, { class: 'btn mend' });
+    }, { class: 'btn mend', 'data-heir': controls.idOf(fits[0].path) });
   };
   controls.trouble(trouble, mend());
   host.replaceChildren();
@@ -39,10 +40,10 @@ function showTrouble(trouble, controls, state) {
   const field = state.fields.get(trouble.field);
   const name = field ? `${WORDS.groups[field.section] ?? field.section}, ${fieldName(field)}` : trouble.field;
   const text = make('p');
-  text.append(make('b', `${WORDS.refused} `), `${troubleWords(trouble, name)}.`);
+  text.append(make('b', `${instead ? WORDS.refusedAtFirst(instead) : WORDS.refused} `), `${troubleWords(trouble, name)}.`);
   host.append(text);
   const mending = mend();
   if (mending) host.append(mending);
   if (!field && state.now.model) host.append(button(WORDS.dropModel, () => state.change({ model: null }), { class: 'btn mend' }));
-  if (state.past.length) host.append(button(WORDS.undo, () => state.undo(), { class: 'btn' }));
+  if (state.past.length) host.append(button(WORDS.undo, () => state.undo(), { class: 'btn', 'data-heir': 'undo redo' }));
 }

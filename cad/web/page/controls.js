@@ -46,6 +46,7 @@ class Control {
     this.back = button('↺', () => { this.state.reset(field.path); this.input.focus(); }, { class: 'tiny', 'aria-label': WORDS.reset(this.name), title: WORDS.reset(this.name) });
     const row = make('div', undefined, { class: 'line' });
     this.build();
+    this.input.dataset.home = '';
     row.append(this.label, this.back, this.input);
     if (unitName(field) || field.ends) row.append(make('span', unitName(field), { class: 'unit' }));
     row.append(this.asks);
@@ -94,8 +95,8 @@ class Control {
     const text = this.input.value.trim();
     if (kind === 'text') { this.take(this.input.value); return; }
     if (kind === 'list') {
-      const items = text.replace(/^\[|\]$/g, '').split(/[\s,;]+/).filter(Boolean).map(Number);
-      if (items.every(Number.isInteger)) this.take([...new Set(items)].sort((a, b) => a - b)); else this.complainOfText(WORDS.notList);
+      const items = wholeNumbers(text.replace(/^\[|\]$/g, '').split(/[\s,;]+/).filter(Boolean));
+      if (items) this.take([...new Set(items)].sort((a, b) => a - b)); else this.complainOfText(WORDS.notList);
       return;
     }
     const value = Number(text);
@@ -137,6 +138,8 @@ class Control {
     this.about.hidden = !open;
     this.asks.setAttribute('aria-expanded', String(open));
   }
+
+  isWrong() { return !this.error.hidden; }
 
   // Says at the control what is wrong, with a button that mends it.
   complain(text, mend) {
@@ -198,8 +201,10 @@ class Controls {
       let any = false;
       for (const field of section.fields) {
         const text = `${field.path} ${fieldName(field)} ${WORDS.groups[field.section] ?? ''} ${field.reason}`.toLowerCase();
-        const fits = words.every((w) => text.includes(w)) && (!only || this.state.isChanged(field.path));
-        this.controls.get(field.path).element.hidden = !fits;
+        const control = this.controls.get(field.path);
+        // What is wrong is shown, whatever is looked for.
+        const fits = control.isWrong() || (words.every((w) => text.includes(w)) && (!only || this.state.isChanged(field.path)));
+        control.element.hidden = !fits;
         any ||= fits;
         found += fits;
       }
@@ -211,14 +216,18 @@ class Controls {
     this.none.hidden = found > 0;
   }
 
-  // Shows trouble at its control, and nowhere else; tells whether it has one.
+  idOf(path) { return this.controls.get(path)?.id; }
+
+  // Shows trouble at its control, and nowhere else.
   trouble(trouble, mend) {
-    for (const control of this.controls.values()) if (control.told) { control.complain(''); control.told = false; }
+    const before = [...this.controls.values()].filter((c) => c.told);
+    for (const control of before) { control.complain(''); control.told = false; }
     const control = trouble && this.controls.get(trouble.field);
-    if (!control) return false;
-    control.complain(`${troubleWords(trouble, control.name)}.`, mend);
-    control.told = true;
-    control.element.closest('details').open = true;
-    return true;
+    if (control) {
+      control.complain(`${troubleWords(trouble, control.name)}.`, mend);
+      control.told = true;
+    }
+    if (control || before.length) this.filter();
+    if (control) control.element.closest('details').open = true;
   }
 }

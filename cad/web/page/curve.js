@@ -9,6 +9,9 @@ const LINES = {
   [CALIBRATED]: { colour: '--green', width: 2.5, dash: [12, 3, 3, 3] },
 };
 
+// Fields that the name of a kept curve tells at the most.
+const MOST_TOLD = 3;
+
 class Curve {
   constructor(state) {
     this.state = state;
@@ -24,9 +27,9 @@ class Curve {
     this.kept = remembered().kept ?? null;
   }
 
-  show(data, values) {
-    this.data = data;
-    this.values = values;
+  // A design, with the values that it was asked for and the name of its calibrated model, if it has one.
+  show(data, values, model) {
+    Object.assign(this, { data, values, model });
     const loads = data.curve.load_n;
     const slider = byId('load');
     [slider.min, slider.max] = [loads[0], loads.at(-1)];
@@ -44,9 +47,23 @@ class Curve {
 
   keep() {
     if (this.kept) this.kept = null;
-    else if (this.data) this.kept = { name: `${this.data.manifest.name} ${shownValue(this.values['layout.pins'] ?? this.state.fields.get('layout.pins').default)}`, curve: this.data.curve };
+    else if (this.data) this.kept = { name: this.data.manifest.name, values: this.values, model: this.model, curve: this.data.curve };
     remember({ ...remembered(), kept: this.kept });
     this.draw();
+  }
+
+  // What the kept is called: its pins, and what else differs from what is shown.
+  keptName() {
+    const { name, values, model } = this.kept;
+    // Kept by an earlier version of the page.
+    if (!values) return name;
+    const { fields } = this.state;
+    const of = (all, path) => all[path] ?? fields.get(path)?.default;
+    const differ = [...new Set([...Object.keys(values), ...Object.keys(this.values)])].filter((path) => fields.has(path) && !['layout.pins', 'switch.name'].includes(path) && !sameValue(of(values, path), of(this.values, path)));
+    const told = differ.slice(0, MOST_TOLD).map((path) => `${fieldName(fields.get(path))} ${shownValue(of(values, path))} ${unitName(fields.get(path))}`.trim());
+    if (differ.length > MOST_TOLD) told.push(WORDS.more(differ.length - MOST_TOLD));
+    if (model !== this.model) told.push(model ? WORDS.modelName(model) : WORDS.publishedConstants);
+    return [`${name} ${shownValue(of(values, 'layout.pins'))}`, ...told].join(', ');
   }
 
   draw() {
@@ -140,6 +157,8 @@ class Curve {
   }
 
   reasons(open) {
+    // Who read them with the keyboard goes back to what opened them.
+    if (!open && byId('reasons').contains(document.activeElement)) byId('trust').focus();
     byId('reasons').hidden = !open;
     byId('trust').setAttribute('aria-expanded', String(open));
   }
@@ -154,7 +173,7 @@ class Curve {
     const item = (mark, text) => { const li = make('li'); li.append(mark, text); return li; };
     const items = [item(sample(MAIN), this.data.curve.law), item(make('i', undefined, { class: 'swatch', 'aria-hidden': 'true' }), WORDS.band)];
     if (this.rivals) this.data.other_laws.slice(0, OTHERS).forEach((o, i) => items.push(item(sample(RIVAL + i), o.law)));
-    if (this.kept) items.push(item(sample(KEPT), WORDS.kept(this.kept.name)));
+    if (this.kept) items.push(item(sample(KEPT), WORDS.kept(this.keptName())));
     if (this.preview) items.push(item(sample(PREVIEW), this.preview.name));
     if (this.calibrated) items.push(item(sample(CALIBRATED), WORDS.calibratedCurve));
     if (this.data.published.length) items.push(item(make('i', undefined, { class: 'dotmark', 'aria-hidden': 'true' }), WORDS.measuredPoint));

@@ -61,6 +61,16 @@ function save(name, content, type) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
+// Tells how many seconds something has taken, at once and then seldom, since each time is read aloud. Returns what ends it.
+const TOLD_EVERY_MS = 5000;
+function tellTime(tell) {
+  const began = performance.now();
+  const tick = () => tell(Math.round((performance.now() - began) / 1000));
+  tick();
+  const clock = setInterval(tick, TOLD_EVERY_MS);
+  return () => clearInterval(clock);
+}
+
 // A line at the lower edge that says what was done, and goes by itself.
 let sayingEnds;
 function say(text) {

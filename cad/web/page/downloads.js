@@ -22,6 +22,12 @@ class Downloads {
     if (this.dialog.open && !isListed) this.ask();
   }
 
+  // What is being made, and what it waits for.
+  making(words) {
+    const busy = this.engine.busyWith();
+    return busy ? `${WORDS.waitsFor[busy]} ${words}` : words;
+  }
+
   isStale() { return document.body.classList.contains('stale') || !this.title; }
   name() { return this.title ?? 'switch'; }
   asked() { return { values: this.state.now.values, model: this.state.now.model?.toml ?? null }; }
@@ -37,7 +43,7 @@ class Downloads {
     this.listed = cannot ? null : { values, model };
     byId('file-list').replaceChildren();
     byId('zip').disabled = byId('toml').disabled = cannot;
-    byId('files-say').textContent = cannot ? (document.body.classList.contains('gone') ? WORDS.serverGone : WORDS.noFiles) : WORDS.makingFiles;
+    byId('files-say').textContent = cannot ? (document.body.classList.contains('gone') ? WORDS.serverGone : WORDS.noFiles) : this.making(WORDS.makingFiles);
     const turn = this.turn = (this.turn ?? 0) + 1;
     if (cannot) return;
     try {
@@ -89,7 +95,7 @@ class Downloads {
   }
 
   async fetch(request, name, type) {
-    byId('files-say').textContent = WORDS.saving(name);
+    byId('files-say').textContent = this.making(WORDS.saving(name));
     try {
       save(name, await this.engine.ask({ ...request, ...this.asked() }), type);
       byId('files-say').textContent = WORDS.saved(name);

@@ -114,14 +114,19 @@ class Engine {
     // What takes seconds has a lane of its own, so that pins still move.
     this.quick = lane();
     this.slow = lane();
+    this.underWay = new Set();
   }
+
+  // What of that which takes long is under way: `search`, `calibrate`, or nothing. Files are made behind it.
+  busyWith() { return [...this.underWay].map((request) => request.ask).find((kind) => kind === 'search' || kind === 'calibrate'); }
 
   // The answer; an EngineError in words if there is none, Stale if a newer design was asked for meanwhile.
   async ask(request) {
     const isSlow = ['search', 'files', 'file', 'zip', 'calibrate', 'model'].includes(request.ask);
     const newest = request.ask === 'design' && !request.aside ? 'design' : undefined;
     const { aside: _, ...question } = request;
-    const answer = await (isSlow ? this.slow : this.quick).ask(question, newest);
+    this.underWay.add(request);
+    const answer = await (isSlow ? this.slow : this.quick).ask(question, newest).finally(() => this.underWay.delete(request));
     if (answer?.error !== undefined) throw new EngineError(answer.error, 'refused');
     // Designs and files that were opened tell trouble at its field; what follows from a design says it in a line.
     if (isSlow && answer?.trouble) throw new EngineError(troubleWords(answer.trouble), 'refused');

@@ -18,25 +18,38 @@ class Measured {
     byId('model-words').textContent = model ? `${WORDS.modelName(model.name)}. ${WORDS.modelTaken}` : '';
     byId('take-model').hidden = !this.found || model?.toml === this.found.toml;
     // The curve of another design would be none of this one's.
-    if (this.curve.calibrated && (model || this.curve.calibrated.of !== this.state.now.values)) this.curve.further('calibrated', null);
+    if (this.curve.calibrated && (!this.found || model || this.curve.calibrated.of !== this.state.now.values)) this.curve.further('calibrated', null);
     if (this.found && !model) this.again();
   }
 
+  // Nothing of the table before stands beside what is said of the next one, and no answer for it comes in between.
+  begin() {
+    this.engine.stop('calibrate');
+    this.found = null;
+    byId('model-not').hidden = true;
+    this.show();
+    this.turn = (this.turn ?? 0) + 1;
+    return this.turn;
+  }
+
   async calibrate(csv, file) {
-    const began = performance.now();
-    const tick = () => this.tell([WORDS.calibrating(file, Math.round((performance.now() - began) / 1000))]);
-    tick();
-    // Seldom, since each is read aloud.
-    const clock = setInterval(tick, 5000);
+    const turn = this.begin();
+    const endTime = tellTime((seconds) => this.tell([WORDS.calibrating(file, seconds)]));
     byId('measured').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
     try {
-      const answer = await this.engine.ask({ ask: 'calibrate', csv, file }).finally(() => clearInterval(clock));
+      const answer = await this.engine.ask({ ask: 'calibrate', csv, file }).finally(endTime);
+      if (turn !== this.turn) return;
       const digits = (v) => (v < 0.1 ? v.toFixed(4) : v.toFixed(2));
       const errors = answer.before_n === null || answer.after_n === null ? [] : [WORDS.calibrated(digits(answer.before_n), digits(answer.after_n), digits(answer.promise_n ?? answer.after_n))];
-      this.tell([answer.words, ...errors, ...(answer.effects?.length ? [WORDS.effects(answer.effects)] : [])], WORDS.verdicts[answer.verdict] ?? answer.verdict);
+      // What no effect explains is no effect; the verdict says so.
+      const effects = answer.effects.filter(([id]) => id !== 'unattributed');
+      const found = effects.length ? [WORDS.foundEffects(effects)] : [];
+      const open = answer.verdict === 'inconclusive' ? [WORDS.notExcluded(answer.not_excluded)] : [];
+      this.tell([...found, ...open, ...errors], WORDS.verdictOf(file, WORDS.verdicts[answer.verdict] ?? answer.verdict));
       this.found = answer.model ? { name: file, toml: answer.model } : null;
       this.show();
     } catch (problem) {
+      if (turn !== this.turn) return;
       this.tell([problem instanceof Stale ? WORDS.stopped : problem.message], undefined, !(problem instanceof Stale));
     }
   }
@@ -75,6 +88,7 @@ class Measured {
       else if (!(problem instanceof Stale)) throw problem;
       return;
     }
+    this.begin();
     this.tell([WORDS.opened(file)]);
     this.found = { name: file, toml };
     await this.take();

@@ -17,7 +17,7 @@ document.body.dataset.generation = document.body.dataset.asked = document.body.d
 addEventListener('error', (event) => { if (!/ResizeObserver/.test(event.message)) fault(event.message); });
 addEventListener('unhandledrejection', (event) => fault(String(event.reason?.message ?? event.reason)));
 
-// A line above the view: about an address, a file, the engine. `acts` are what could be done.
+// A line over the picture: about an address, a file, the engine. `acts` are what could be done.
 function showNotice(words, ...acts) {
   const host = byId('notice');
   host.hidden = !words;
@@ -47,6 +47,7 @@ function fillWords() {
 class Page {
   async start() {
     fillWords();
+    new Focus();
     this.engine = new Engine();
     byId('busy').textContent = WORDS.starting;
     let facts;
@@ -143,10 +144,10 @@ class Page {
     const slow = setTimeout(() => { byId('busy').textContent = WORDS.working; }, 300);
     try {
       const answer = await this.engine.ask({ ask: 'design', values, quality, model: model?.toml ?? null });
-      if (answer.data) this.show(answer, quality, values);
+      if (answer.data) { this.instead = null; this.show(answer, quality, now); }
       else if (!this.data) await this.showPublished();
       document.body.classList.remove('gone');
-      showTrouble(answer.trouble, this.controls, this.state);
+      showTrouble(answer.trouble, this.controls, this.state, this.instead);
       this.downloads.refresh();
       document.body.dataset.answered = question;
       this.embed.tell(now, answer.data, answer.trouble);
@@ -171,16 +172,18 @@ class Page {
   async showPublished() {
     const values = this.published()?.values ?? {};
     const answer = await this.engine.ask({ ask: 'design', values, quality: 'coarse', model: null, aside: true });
-    if (answer.data && !this.data) this.show(answer, 'coarse', values);
+    if (!answer.data || this.data) return;
+    this.instead = answer.data.manifest.name;
+    this.show(answer, 'coarse', { values, model: null });
   }
 
   published() { return this.facts.templates.find((t) => t.name === FIRST) ?? this.facts.templates[0]; }
 
-  show({ data }, quality, values) {
+  show({ data }, quality, { values, model }) {
     this.data = data;
     this.markTemplate();
     this.view.show(data);
-    this.curve.show(data, values);
+    this.curve.show(data, values, model?.name ?? null);
     showChecks(data);
     showBill(data);
     this.downloads.show(data);
@@ -188,7 +191,9 @@ class Page {
     dataset.generation = Number(dataset.generation) + 1;
     dataset.quality = quality;
     dataset.ready = 'true';
-    if (quality === 'exact') byId('heard').textContent = this.inWords(data);
+    if (quality !== 'exact') return;
+    byId('heard').textContent = this.inWords(data);
+    this.view.picture(this.engine, { values, model: model?.toml ?? null });
   }
 
   // What changed, for those who do not see it.
@@ -266,7 +271,7 @@ class Page {
     byId('sheet-close').addEventListener('click', () => this.sheet(false));
     byId('curve-table').addEventListener('toggle', () => this.curve.data && this.curve.words());
     addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') { this.sheet(false); byId('more').open = byId('look').open = false; }
+      if (event.key === 'Escape') { this.sheet(false); this.closeMenus(); }
       if (!(event.ctrlKey || event.metaKey) || event.altKey || byId('files').open) return;
       const key = event.key.toLowerCase();
       // In a text that is being written, the browser's own undo.
@@ -276,9 +281,14 @@ class Page {
       else return;
       event.preventDefault();
     });
-    addEventListener('pointerdown', (event) => {
-      for (const id of ['more', 'look']) if (byId(id).open && !byId(id).contains(event.target)) byId(id).open = false;
-    });
+    addEventListener('pointerdown', (event) => this.closeMenus(event.target));
+  }
+
+  // Closes what lies open over the page, but for that which holds `within`.
+  closeMenus(within) {
+    for (const menu of [byId('more'), byId('look')]) if (!menu.contains(within ?? null)) menu.open = false;
+    const isWithin = [byId('reasons'), byId('trust')].some((e) => e.contains(within ?? null));
+    if (!isWithin) this.curve.reasons(false);
   }
 
   sheet(open) {

@@ -18,6 +18,7 @@ class Served {
   }
 
   begin(started) {
+    byId('set-page').hidden = !started;
     if (!started?.begun.file) return;
     this.file = started.begun.file;
     byId('save').textContent = WORDS.saveTo(this.file);

@@ -85,18 +85,24 @@ function encodeHash(now) {
   const pairs = [`v=${HASH_VERSION}`];
   const text = (value) => encodeURIComponent(Array.isArray(value) ? value.join(',') : String(value)).replaceAll('%2C', ',');
   for (const [path, value] of Object.entries(now.values)) pairs.push(`${path}=${text(value)}`);
-  if (now.ask.threshold_n !== null) pairs.push(`ask.threshold_n=${plain(now.ask.threshold_n)}`);
-  if (now.ask.friction.length) pairs.push(`ask.friction=${now.ask.friction.map((f) => `${plain(f.load_n)}:${plain(f.friction_n)}`).join(',')}`);
+  if (now.ask.threshold_n !== null) pairs.push(`ask.threshold_n=${now.ask.threshold_n}`);
+  if (now.ask.friction.length) pairs.push(`ask.friction=${now.ask.friction.map((f) => `${f.load_n}:${f.friction_n}`).join(',')}`);
   if (now.model) pairs.push(`model=${now.model.packed}`);
   return `#${pairs.join('&')}`;
+}
+
+// Whole numbers of a list; undefined if one is none. What is typed and what an address holds are read alike, so that what
+// the page has written comes back, with its error if it has one.
+function wholeNumbers(texts) {
+  const numbers = texts.map(Number);
+  return texts.every((text) => text.trim() !== '') && numbers.every(Number.isSafeInteger) ? numbers : undefined;
 }
 
 // A value of the address as the field's kind wants it; undefined if it cannot be one. Ranges are the engine's affair.
 function readValue(field, text) {
   if (field.kind === 'flag') return { true: true, false: false }[text];
   if (field.kind === 'list') {
-    const items = text.trim() === '' ? [] : text.split(',');
-    return items.every((item) => /^\d{1,9}$/.test(item)) ? items.map(Number) : undefined;
+    return wholeNumbers(text.trim() === '' ? [] : text.split(','));
   }
   if (field.kind === 'number' || field.kind === 'whole') {
     const value = text.trim() === '' ? NaN : Number(text);

@@ -23,6 +23,7 @@ class View {
     this.assembly = undefined;
     delete byId('view').dataset.drawn;
     byId('view').replaceChildren(make('p', WORDS.noWebgl, { class: 'instead' }));
+    byId('view').setAttribute('aria-label', WORDS.stillName);
     byId('view-tools').hidden = true;
     document.body.dataset.still = 'true';
   }
@@ -35,6 +36,25 @@ class View {
     this.shape('cut');
     this.load(this.load_n ?? data.curve.load_n.at(-1));
     if (isFirst) this.shape('turn');
+  }
+
+  // Without WebGL, a picture of the parts, which is one of the design's files; `asked` is that design.
+  async picture(engine, asked) {
+    if (this.assembly) return;
+    const turn = this.turn = (this.turn ?? 0) + 1;
+    let png;
+    try {
+      png = await engine.ask({ ask: 'file', name: 'assembly.png', ...asked });
+    } catch (problem) {
+      // Why there is none is told where the design is.
+      if (problem instanceof EngineError || problem instanceof Stale) return;
+      throw problem;
+    }
+    if (turn !== this.turn) return;
+    const image = make('img', undefined, { src: URL.createObjectURL(new Blob([png], { type: 'image/png' })), alt: '' });
+    image.addEventListener('load', () => URL.revokeObjectURL(image.src));
+    byId('view').querySelector('img')?.remove();
+    byId('view').append(image);
   }
 
   load(load_n) {

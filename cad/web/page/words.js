@@ -44,7 +44,7 @@ const WORDS = {
   setTo: (name, value) => `Set ${name} to ${value}`,
 
   mends: (changes) => `Mend it: ${changes.join(', ')}`,
-  refused: 'This cannot be built. The last design that can stays in view, in grey.',
+  refused: 'This cannot be built. The last design that can stays in view, in grey.', refusedAtFirst: (name) => `This cannot be built. In its place ${name} is shown, in grey.`,
   changedFrom: (name) => `${name}, changed`,
 
   newtons: (v, digits = 1) => `${v.toFixed(digits)} N`,
@@ -56,7 +56,7 @@ const WORDS = {
   calibratedTrust: (trust) => `your model, ${trust}`,
   trustOf: (words) => `How far to trust the curve: ${words}. Show the reasons`,
   axisLoad: 'load (N)', axisFriction: 'friction (N)',
-  band: 'band of 95 %', measuredPoint: 'measured', kept: (name) => `kept: ${name}`, calibratedCurve: 'with your model', previewCurve: (n) => `design ${n}`,
+  band: 'band of 95 %', measuredPoint: 'measured', kept: (name) => `kept: ${name}`, more: (n) => `${n} more`, publishedConstants: 'published constants', calibratedCurve: 'with your model', previewCurve: (n) => `design ${n}`,
   law: (law, source) => `Law of the curve, ${law}: ${source}.`,
   thresholdOwn: (n) => `now ${n}`, thresholdNow: (n) => `switches at ${n}`, thresholdAsked: (n) => `asked: ${n}`, frictionAsked: (n) => `asked: ${n}`,
   thresholdHandle: 'Load at which it should switch', frictionHandle: (i) => `Friction that is asked for, mark ${i}`,
@@ -79,21 +79,39 @@ const WORDS = {
 
   searching: (s) => `Looking for designs, ${s} s. The page stays yours meanwhile.`, searchedWith: (name) => `; by the ${WORDS.modelName(name)}`, searchedBefore: 'Found for the design and the wishes as they were before your last change. Find designs again for what you ask now.',
   notAsked: (most) => `A number above 0 and up to ${most} N goes here.`, searchNothing: 'Say first where it should switch or how much friction it should make.',
-  stopped: 'Stopped.', likely: (p) => `${p} % likely`, designHas: (t, f) => [t === null ? '' : `switches at ${t} N`, f === null ? '' : `${f} N at the heaviest load`].filter(Boolean).join(', '),
-  removeFriction: (i) => `Remove friction ${i}`, designName: (i) => `Design ${i}`, askFor: 'likely that a made part does what was asked',
+  stopped: 'Stopped.', likely: (p) => `${p} % likely`, designPins: (pins) => (pins.length ? `pins [${pins.join(', ')}]` : 'no pins'),
+  likelyMeans: (within) => `Likely: of parts that are made so, this share comes within ${plain(100 * within)} % of all that is asked.`,
+  switchesAt: (n) => (n === null ? 'does not switch' : `switches at ${n.toFixed(1)} N`), heaviest: (n) => `${n.toFixed(2)} N at the heaviest load`,
+  answer: ({ load_n, asked_n, value_n, is_met }) => `${load_n === null ? WORDS.switchesAt(value_n) : `${value_n.toFixed(2)} N at ${plain(load_n)} N of load`}; asked: ${plain(asked_n)} N${is_met ? '' : ', missed'}`,
+  removeFriction: (i) => `Remove friction ${i}`, designName: (i) => `Design ${i}`,
   forgetThreshold: 'Ask for no threshold',
 
   calibrating: (file, s) => `Fitting the model to ${file}, ${s} s. Thousands of rows take half a minute and more; the page stays yours meanwhile.`,
   calibrated: (before, after, promise) => `Held-out error ${before} N before, ${after} N after; a new session: ${promise} N.`,
-  effects: (names) => `Effects: ${names.join(', ')}.`,
   modelTaken: 'The design uses your calibrated model. The address carries it, and is long.', modelName: (file) => `model from ${file}`,
-  verdicts: { attributed: 'Attributed', unattributed: 'Not attributed', none: 'Nothing to mend' },
+  verdictOf: (file, verdict) => `${file}: ${verdict}`,
+  // By the verdict: what it says, with the effects that were found or are not excluded.
+  verdicts: {
+    none: 'the published model holds for this table.', inconclusive: 'nothing was found, but this table cannot exclude all that matters.', attributed: 'the published model misses something, and this table tells what.',
+    ambiguous: 'the published model misses something, and this table cannot tell what of several.', unattributed: 'the published model misses something that no known effect explains.',
+  },
+  foundEffects: (effects) => `Found: ${effects.map((rivals) => rivals.map(effectWords).join(', or ')).join('; ')}.`,
+  notExcluded: (effects) => `Not excluded: ${effects.map((id) => WORDS.effectNames[id] ?? id).join('; ')}.`,
+  effectNames: {
+    coating_ploughing: 'pins plough the coating of the tendon', coating_stiffening: 'friction of the coating grows with load', polygon_bending: 'the tendon turns sharply at single pins',
+    substrate_saturation: 'friction of the silicone is bounded', adhesion: 'the silicone sticks at no load', dwell_relaxation: 'friction of the silicone depends on the pause before',
+    run_in: 'friction is higher in the first repetitions', wear_drift: 'friction drifts with the travel', rate_dependence: 'friction depends on the speed', direction_asymmetry: 'friction differs between the directions',
+    switching_hysteresis: 'it switches elsewhere with a falling load', switch_local_tension: 'the switch follows the tension along the wrap', fixture_compliance: 'the mount bends under load',
+    stroke_position: 'the wrap angle changes along the stroke', guide_drag: 'the guide pulleys drag', load_cell_offset: 'the load cell reads too much or too little', load_cell_gain: 'the load cell has a wrong scale',
+    load_cell_nonlinearity: 'the load cell is not linear', load_cell_saturation: 'the load cell stops rising', hook_omitted: 'the hook was not weighed', thermal_drift: 'the reading drifts with time',
+  },
   tooLarge: (name, mb, limit) => `${name} has ${mb} MB. A table of plateaus has one line per plateau and stays under ${limit} MB. A raw log becomes one with: pinswitch segment.`,
   tooLargeConfiguration: (name, mb) => `${name} has ${mb} MB, which is no configuration of pinswitch. Drop the TOML file that it wrote.`,
   foreign: (name) => `${name} is of no kind that this page reads. It reads tables of plateaus (.csv), configurations and models (.toml).`,
   notText: (name) => `${name} holds no text. It may be packed, or of another program: export it as CSV.`,
   empty: (name) => `${name} is empty.`, unreadable: (name) => `${name} could not be read. Is it still there?`, manyFiles: 'One file at a time: the first was taken.',
 
+  waitsFor: { search: 'Waits for the search for designs to end, or to be stopped.', calibrate: 'Waits for the fit to your table to end.' },
   makingFiles: 'Making the files …', filesFail: 'The files were not made: ', saving: (name) => `Making ${name} …`, saved: (name) => `${name} is saved.`, noFiles: 'This design cannot be built, so that it has no files. Mend it first.',
   megabytes: (bytes) => (bytes < 1000 ? `${bytes} B` : bytes < 1e6 ? `${Math.round(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`),
   kinds: { stl: 'Printed parts, one by one', '3mf': 'All parts on a plate', step: 'For CAD, exact', dxf: 'Drawings', svg: 'Drawings and figures', pdf: 'Drawings', glb: 'For viewers and web pages', png: 'Pictures', md: 'Guide', csv: 'Tables', json: 'Tables', html: 'Pages', ini: 'Printer', toml: 'Configuration', other: 'Other' },
@@ -116,6 +134,7 @@ const WORDS = {
     model: 'The address holds a calibrated model that is cut off. The published constants are used.',
   },
 
+  setPage: 'The page of the set that this server follows',
   saveTo: (file) => `Save to ${file}`, savedTo: (file) => `Saved to ${file}.`, notSaved: (file) => `${file} was not saved: `, fileChanged: (file) => `${file} was changed: its values are shown. Undo goes back.`,
   fileDiffers: (file) => `The page shows a design of its address, and ${file} has other values now.`,
   fileNewer: (file, names) => `${file} was not saved: it has been changed since this page last read it (${names.join(', ')}).`,
@@ -130,9 +149,13 @@ const WORDS = {
   enginePart: (reason) => `The engine did not answer: ${reason}.`,
   serverGone: 'The server does not answer. Is pinswitch view still running? The last design stays; what you change next asks again.',
   retry: 'Try again',
+  stillName: 'A picture of the parts, pulled apart.',
   noWebgl: 'This browser shows no WebGL, which the turning view needs. Pins, curve, checks and downloads work without.',
   fault: (message) => `The page has a fault: ${message}. Reloading keeps the design, which the address holds.`,
 };
+
+// An effect in words, with the name under which the catalogue and the reports have it.
+const effectWords = (id) => (WORDS.effectNames[id] ? `${WORDS.effectNames[id]} (${id})` : id.replaceAll('_', ' '));
 
 // Trouble as the engine tells it: what has it, its value, what is wrong, and what helps.
 function troubleWords({ field, value, problem, remedy }, name = field) {

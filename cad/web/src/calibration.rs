@@ -17,13 +17,15 @@ const LARGEST: usize = LARGEST_MB * 1_000_000;
 #[derive(Serialize)]
 struct Said {
     verdict: &'static str,
-    words: String,
     before_n: f64,
     after_n: f64,
     promise_n: Option<f64>,
     noise_n: f64,
     adequate: bool,
-    effects: Vec<String>,
+    /// What was found, each with what this table cannot tell it from. The page has words for them.
+    effects: Vec<Vec<String>>,
+    /// Effects of consequence that are not excluded.
+    not_excluded: Vec<String>,
     /// The text of `model.toml`.
     model: String,
 }
@@ -59,15 +61,16 @@ fn said(csv: &str, file: &str) -> Result<Said, String> {
         .map_err(|e| format!("{file}: {e}"))?;
     let (report, selection) = (&calibration.report, &calibration.selection);
     let model = ModelFile::new(&selection.augmented, &calibration.data, selection.noise);
+    let SessionReport { effects, not_excluded, .. } = SessionReport::after(file.to_owned(), report);
     Ok(Said {
         verdict: report.verdict.as_str(),
-        words: SessionReport::after(file.to_owned(), report).words(),
         before_n: report.baseline.heldout_rmse_n,
         after_n: report.augmented.heldout_rmse_n,
         promise_n: report.promise_n,
         noise_n: report.noise_floor_n,
         adequate: report.adequate,
-        effects: report.effects.iter().map(|effect| effect.id.clone()).collect(),
+        effects,
+        not_excluded,
         model: model.to_text().map_err(|e| e.to_string())?,
     })
 }
@@ -75,6 +78,16 @@ fn said(csv: &str, file: &str) -> Result<Said, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_verdict_and_every_effect_has_its_words_on_the_page() {
+        let words = include_str!("../page/words.js");
+        let vocabulary = Vocabulary::built_in();
+        let effects = vocabulary.effects().map(|effect| effect.description().id);
+        for word in effects.chain(["none", "inconclusive", "attributed", "ambiguous", "unattributed"]) {
+            assert!(words.contains(&format!("{word}: ")), "{word} has no words in words.js");
+        }
+    }
 
     #[test]
     fn what_is_no_table_is_told_in_words() {

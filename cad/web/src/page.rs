@@ -9,9 +9,10 @@ const WORKER: &str =
     concat!(include_str!("../page/xz-decompress.min.js"), "\n", include_str!("../page/worker.js"));
 
 /// The page's own scripts, in the order in which they are read.
-const SCRIPTS: [&str; 20] = [
+const SCRIPTS: [&str; 21] = [
     include_str!("../page/words.js"),
     include_str!("../page/dom.js"),
+    include_str!("../page/focus.js"),
     include_str!("../page/state.js"),
     include_str!("../page/engine.js"),
     include_str!("../page/controls.js"),

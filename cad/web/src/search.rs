@@ -6,7 +6,7 @@ use pinswitch_friction::published::GROOVES;
 use pinswitch_switch::ask::{Ask, DEFAULT_WITHIN, Quantity, Target, Vary, Wish};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::design_search::{
-    Belief, Options, Proposal, PublishedPhysics, Silent, load_range_n, search,
+    Belief, Options, Proposal, PublishedPhysics, Silent, TargetResult, load_range_n, search,
 };
 use pinswitch_switch::prediction::predicted_curve;
 use serde::Serialize;
@@ -28,11 +28,23 @@ const QUICK: Options = Options { best: 6, draws: 300, seed: 1, starts: 6 };
 #[derive(Debug, Serialize)]
 struct Card {
     values: Values,
-    words: String,
+    pins: Vec<usize>,
+    /// What it has of all that was asked.
+    answers: Vec<Has>,
     probability: f64,
     threshold_n: Option<f64>,
     friction_n: f64,
     curve: FrictionCurve,
+}
+
+/// What was asked for, in newtons, and the best guess of it; a threshold, where it has no load. `value_n` is none where
+/// the design does not switch.
+#[derive(Debug, Serialize)]
+struct Has {
+    load_n: Option<f64>,
+    asked_n: f64,
+    value_n: Option<f64>,
+    is_met: bool,
 }
 
 /// Cards, the most probable first, and how the search went, in words.
@@ -40,6 +52,8 @@ struct Card {
 struct Found {
     designs: Vec<Card>,
     words: String,
+    /// How far from what was asked a made part may be and is still counted as likely: a share.
+    within: f64,
 }
 
 /// The best designs for what is wanted.
@@ -82,7 +96,7 @@ fn found(wanted: &Wanted) -> Result<Found, Trouble> {
         words.push_str("; none does all of it by the best guess: this is the nearest");
     }
     let designs = found.proposals.iter().filter_map(|proposal| card(proposal, model.as_ref())).collect();
-    Ok(Found { designs, words })
+    Ok(Found { designs, words, within: DEFAULT_WITHIN })
 }
 
 fn card(proposal: &Proposal, model: Option<&ModelFile>) -> Option<Card> {
@@ -91,18 +105,26 @@ fn card(proposal: &Proposal, model: Option<&ModelFile>) -> Option<Card> {
         Some(model) => calibrated_curve(&design, model, MODEL).ok()?,
         None => predicted_curve(&design),
     };
-    let threshold = proposal.threshold_n.map_or("no switching".to_owned(), |n| format!("threshold {n:.1} N"));
     Some(Card {
         values: values(&proposal.configuration),
-        words: format!(
-            "pins {:?}, {threshold}, {:.1} N at the heaviest load",
-            proposal.pins, proposal.friction_n
-        ),
+        pins: proposal.pins.clone(),
+        answers: proposal.targets.iter().filter_map(|result| has(result, proposal)).collect(),
         probability: proposal.probability.all,
         threshold_n: proposal.threshold_n,
         friction_n: proposal.friction_n,
         curve,
     })
+}
+
+/// What a proposal has of one thing that was asked.
+fn has(result: &TargetResult, proposal: &Proposal) -> Option<Has> {
+    let Wish::About { value: asked_n, .. } = result.target.wish else { return None };
+    let (load_n, value_n) = match result.target.quantity {
+        Quantity::Threshold => (None, proposal.threshold_n),
+        Quantity::Friction { load_n } => (Some(load_n), Some(result.value)),
+        _ => return None,
+    };
+    Some(Has { load_n, asked_n, value_n, is_met: result.is_met })
 }
 
 #[cfg(test)]
@@ -114,6 +136,13 @@ mod tests {
         let wanted: Wanted = serde_json::from_str(r#"{"threshold_n": 24, "most": 2}"#).unwrap();
         let proposed = found(&wanted).unwrap();
         assert!((1..=2).contains(&proposed.designs.len()));
+        let wanted: Wanted =
+            serde_json::from_str(r#"{"threshold_n": 24, "friction": [{"load_n": 40, "friction_n": 8.5}]}"#)
+                .unwrap();
+        for card in &found(&wanted).unwrap().designs {
+            let asked: Vec<_> = card.answers.iter().map(|has| (has.load_n, has.asked_n)).collect();
+            assert_eq!(asked, [(None, 24.0), (Some(40.0), 8.5)]);
+        }
         for card in &proposed.designs {
             assert!((0.0..=1.0).contains(&card.probability));
             Design::new(configuration(&card.values).unwrap()).unwrap();

@@ -49,23 +49,40 @@ fn every_cited_document_is_there() {
     assert!(citations > 50, "only {citations} citations were found");
 }
 
+/// The anchors of a document's headings, as those who show Markdown make them: small letters, spaces as hyphens, and nothing
+/// of punctuation but these and underscores.
+fn anchors(text: &str) -> Vec<String> {
+    let anchor = |heading: &str| -> String {
+        let kept = heading.to_lowercase().replace(' ', "-");
+        kept.chars().filter(|c| c.is_alphanumeric() || "-_".contains(*c)).collect()
+    };
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    headings.map(|line| anchor(line.trim_start_matches('#').trim())).collect()
+}
+
 #[test]
 fn every_link_between_documents_resolves() {
     let mut files = Vec::new();
     texts(&repository(""), &mut files);
-    let mut links = 0;
+    let (mut links, mut places) = (0, 0);
     for file in files.iter().filter(|f| f.extension().is_some_and(|e| e == "md")) {
         let text = std::fs::read_to_string(file).unwrap();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
-            if link.starts_with("http") || link.starts_with('#') || link.contains(' ') {
+            if link.starts_with("http") || link.contains(' ') {
                 continue;
             }
-            let path = link.split('#').next().unwrap();
-            assert!(file.parent().unwrap().join(path).exists(), "{} links {link}", file.display());
+            let (path, place) = link.split_once('#').unwrap_or((link, ""));
+            let linked = if path.is_empty() { file.clone() } else { file.parent().unwrap().join(path) };
+            assert!(linked.exists(), "{} links {link}", file.display());
             links += 1;
+            if !place.is_empty() {
+                let headings = anchors(&std::fs::read_to_string(&linked).unwrap());
+                assert!(headings.iter().any(|h| h == place), "{} links {link}: {headings:?}", file.display());
+                places += 1;
+            }
         }
     }
-    assert!(links > 20, "only {links} links were found");
+    assert!(links > 20 && places > 10, "only {links} links to {places} headings were found");
 }
 
 #[test]

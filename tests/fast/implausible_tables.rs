@@ -185,6 +185,23 @@ fn one_odd_condition_or_series_is_left_to_the_fit() {
     }
 }
 
+/// Found by [`no_simulated_rig_is_refused`]: loads too alike to tell in any layout, whose frictions differ tenfold.
+#[test]
+fn layouts_of_unlike_friction_are_not_mixed_to_judge_their_loads() {
+    let mut plan = Plan::default();
+    plan.noise.series_n = 0.0;
+    let weights_g = vec![4293.4, 5074.1, 5419.3, 5448.2, 6639.8];
+    let plan = Plan {
+        wrap_angle_deg: 663.0,
+        weights_g,
+        silicone: false,
+        repetitions: [1, 1],
+        repetitions_spread: 0,
+        ..plan
+    };
+    judged(&written(&simulate(&plan).rows)).unwrap();
+}
+
 fn plans() -> impl Strategy<Value = Plan> {
     let weights = prop::collection::vec(200.0..8000.0f64, 2..9);
     (any::<u64>(), any::<bool>(), 15.0..720.0f64, weights, any::<[bool; 2]>(), 0.0..0.15f64, 1..6u32)

@@ -30,6 +30,7 @@ mod pictures;
 mod readme;
 mod reference_shell;
 mod segment_raw;
+mod several_sessions;
 mod slicing;
 mod solid_files;
 mod table_columns;

@@ -142,6 +142,29 @@ fn faults_are_placed_and_the_cause_is_named() {
     let (code, said) = ended(at, &["calibrate", "rig/plateaus.csv", "--effects", "log.toml", "--out", "x"]);
     assert!(code == Some(2) && said.contains("has no number at its start values in row"), "{said}");
     assert!(!at.join("x").exists());
+    // Formulas that say something else than they seem to, or nothing.
+    for (from, to, words) in [
+        ("id = \"lubricant_dip\"", "id = \"none\"", "id 'none' is what reports call"),
+        ("-a * exp(-((speed_pct - c)/w)^2)", "-a*(40 < speed_pct < c)*w/w", "a comparison of a comparison"),
+        ("-a * exp(-((speed_pct - c)/w)^2)", "0*a*speed_pct/(c + w)", "such an effect does nothing"),
+    ] {
+        assert!(good.contains(from), "{from}");
+        std::fs::write(at.join("odd.toml"), good.replace(from, to)).unwrap();
+        let (code, said) = ended(at, &["effects", "--effects", "odd.toml"]);
+        assert!(code == Some(2) && said.contains(words) && said.contains("odd.toml:"), "{to}: {said}");
+    }
+    for (effect, words) in [
+        ("lubricant_dp=0.1,50,5", "did you mean lubricant_dip?"),
+        ("coating_stiffening=1,99", "m = 99 is outside 0.9 to 2.1"),
+        ("adhesion=-1", "c = -1 is below 0"),
+    ] {
+        let (code, said) =
+            ended(at, &["simulate", "--effects", "mine.toml", "--effect", effect, "--out", "x"]);
+        assert!(code == Some(2) && said.contains(words), "{effect}: {said}");
+    }
+    std::fs::write(at.join("kind.toml"), "[[disturbances]]\nkind = \"resonance\"\nsize = 0.1\n").unwrap();
+    let (code, said) = ended(at, &["simulate", "kind.toml", "--out", "x"]);
+    assert!(code == Some(2) && said.contains("kind.resonance = {"), "{said}");
     // The field that was the cause, and no flag that was not.
     let (code, said) = ended(at, &["simulate", "--randomised", "--raw", "--out", "raw"]);
     assert!(code == Some(2) && said.contains("dwells_s") && !said.contains("--effect"), "{said}");

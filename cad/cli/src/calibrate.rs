@@ -1,5 +1,6 @@
 //! `pinswitch calibrate TABLE --out DIR`.
 
+mod plans;
 mod summary;
 mod waiting;
 
@@ -7,7 +8,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pinswitch_calibration::effects::{Vocabulary, own_effects_text};
-use pinswitch_calibration::experiment::SCHEMA;
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
@@ -16,10 +16,10 @@ use pinswitch_calibration::{
 
 use super::own_effects::OwnEffects;
 use super::{Failure, print};
-use crate::input::read_text_file;
 use crate::write::write_set;
 use pinswitch_plot::{UNEXPLAINED, page, plots, published_page, published_plot};
 use pinswitch_switch::output::OutputFile;
+use plans::plans;
 use summary::summary;
 use waiting::Waiting;
 
@@ -76,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return published(&arguments.out);
     }
     let vocabulary = arguments.own.vocabulary()?;
-    let plans = plans(arguments)?;
+    let plans = plans(&arguments.plan, &arguments.tables)?;
     let (mut table, name) = joined(&arguments.tables)?;
     let sessions = match arguments.tables.split_last() {
         Some((_, before)) if !before.is_empty() => before_the_last(before, &plans, &vocabulary)?,
@@ -133,7 +133,7 @@ fn joined(paths: &[PathBuf]) -> Result<(PlateauTable, String), Failure> {
 /// What was known after each table but the last.
 fn before_the_last(
     paths: &[PathBuf],
-    plans: &[Asked],
+    plans: &[Option<Asked>],
     vocabulary: &Vocabulary,
 ) -> Result<Vec<SessionReport>, Failure> {
     let until = |count: usize| {
@@ -149,48 +149,17 @@ fn before_the_last(
 /// What a calibration says after these tables, the last of them recorded by a plan.
 fn so_far(
     paths: &[PathBuf],
-    plans: &[Asked],
+    plans: &[Option<Asked>],
     table: &PlateauTable,
     calibration: &Calibration,
 ) -> SessionReport {
     let last = paths.last().map_or_else(String::new, |path| path.display().to_string());
     let highest_n = table.rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
-    let plan = paths.len().checked_sub(2).and_then(|nth| plans.get(nth)).cloned();
+    let plan = paths.len().checked_sub(2).and_then(|nth| plans.get(nth)).cloned().flatten();
     SessionReport {
         asked: plan.map(|asked| asked.answered(&calibration.report, highest_n)),
         ..SessionReport::after(last, &calibration.report)
     }
-}
-
-/// What the tables after the first were recorded for.
-fn plans(arguments: &Arguments) -> Result<Vec<Asked>, Failure> {
-    let (plans, later) = (&arguments.plan, arguments.tables.len().saturating_sub(1));
-    if plans.len() > later {
-        return Err(Failure::bad_input(format!(
-            "--plan is given {} times and {later} tables follow the first; give the tables in order, and a plan for each after it at most",
-            plans.len()
-        )));
-    }
-    plans.iter().map(|folder| plan(folder)).collect()
-}
-
-/// What the plan in a folder asks.
-fn plan(folder: &Path) -> Result<Asked, Failure> {
-    #[derive(serde::Deserialize)]
-    struct PlanFile {
-        schema: String,
-        #[serde(flatten)]
-        asked: Asked,
-    }
-    let path = folder.join("experiment.json");
-    let refused = |problem: String| {
-        Failure::bad_input(format!("{}: {problem}; give the folder as `experiment` wrote it", path.display()))
-    };
-    let plan: PlanFile = serde_json::from_str(&read_text_file(&path)?).map_err(|e| refused(e.to_string()))?;
-    if plan.schema != SCHEMA {
-        return Err(refused(format!("schema = \"{}\" is not {SCHEMA}", plan.schema)));
-    }
-    Ok(plan.asked)
 }
 
 /// The loop on the paper's own numbers.

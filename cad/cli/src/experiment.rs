@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pinswitch_calibration::effects::Vocabulary;
-use pinswitch_calibration::experiment::{ExperimentError, Known, Proposal, RigLimits, propose, write_runs};
+use pinswitch_calibration::experiment::{
+    ExperimentError, Known, MOST_RUNS, Proposal, RigLimits, propose, write_runs,
+};
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{ModelFile, Report};
@@ -73,6 +75,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(Failure::bad_input)?;
     let name = folder.display().to_string();
     let vocabulary = with_form(arguments.own.vocabulary()?, folder, &report)?;
+    if let Some(id) = not_defined(&report, &model, &vocabulary) {
+        return Err(Failure::bad_input(format!(
+            "{}: it was calibrated with the effect '{id}', which nothing here defines; give its file by --effects, as for calibrate",
+            folder.join("report.json").display()
+        )));
+    }
     let known =
         Known { report: &report, model: &model, rows: &table.rows, vocabulary: &vocabulary, name: &name };
     let proposal = propose(known, &rig, arguments.minutes, Levels::default()).map_err(|e| match e {
@@ -101,6 +109,12 @@ fn report(folder: &Path) -> Result<Report, Failure> {
     serde_json::from_str(&text).map_err(|e| {
         Failure::bad_input(format!("{}: {e}; give the folder as `calibrate` wrote it", path.display()))
     })
+}
+
+/// An effect that a calibration tried, and that neither the model on file nor the vocabulary defines.
+fn not_defined<'a>(report: &'a Report, model: &ModelFile, vocabulary: &Vocabulary) -> Option<&'a str> {
+    let mut tried = report.candidates.iter().map(|candidate| candidate.id.as_str());
+    tried.find(|id| vocabulary.named(id).is_none() && model.vocabulary().named(id).is_none())
 }
 
 /// A vocabulary with the form that the calibration drew, if it drew one.
@@ -138,6 +152,14 @@ fn summary(proposal: &Proposal, out: &Path) -> String {
     }
     for u in &proposal.unanswerable {
         text.push_str(&format!("not on this rig: {} or {}: {}\n", u.between[0], u.between[1], u.why));
+    }
+    if proposal.runs.len() >= MOST_RUNS {
+        text.push_str(&format!(
+            "a plan has at most {MOST_RUNS} runs: what is left of the time is for another, after these are calibrated\n"
+        ));
+    }
+    if proposal.runs.is_empty() {
+        text.push_str("no run is worth making for it\n");
     }
     text.push_str(&format!(
         "{} runs, {:.0} minutes: {}\n",

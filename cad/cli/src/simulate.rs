@@ -140,15 +140,16 @@ fn rehearsed(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failu
         Some(path) => RigLimits::parse(&read_text_file(path)?, &path.display().to_string())
             .map_err(Failure::bad_input)?,
     };
-    let rows = rows_of(&runs, &rig, "");
     let rows = match &arguments.model {
         Some(path) => {
             let name = path.display().to_string();
             let model = ModelFile::parse(&read_text_file(path)?, &name).map_err(Failure::bad_input)?;
+            let rows = rows_of(&runs, &rig.wrapped_by(model.usual_wrap_deg()), "");
             rehearse(&model, &name, rows, arguments.seed.unwrap_or(1)).map_err(Failure::bad_input)?
         }
         None => {
             let (plan, name) = plan(arguments)?;
+            let rows = rows_of(&runs, &rig.wrapped_by(plan.wrap_angle_deg), "");
             let simulated = simulate_rows(&plan, rows);
             simulated.check(&name).map_err(Failure::bad_input)?;
             simulated.rows
@@ -175,6 +176,7 @@ fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
     if let Some(model) = &arguments.noise {
         plan.noise = noise_of(model)?;
     }
+    plan.check(&name).map_err(Failure::bad_input)?;
     for effect in &arguments.effects {
         let (id, values) = effect.split_once('=').unwrap_or((effect, ""));
         let values: Result<Vec<f64>, _> =
@@ -183,8 +185,9 @@ fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
             Failure::bad_input(format!("--effect {effect}: values are numbers, like coating_ploughing=0.02"))
         })?;
         plan.add_effect(id, values);
+        // The plan alone is sound: what is wrong now came by the flag.
+        plan.check(&format!("--effect {effect}")).map_err(Failure::bad_input)?;
     }
-    plan.check(&name).map_err(Failure::bad_input)?;
     Ok((plan, name))
 }
 

@@ -83,7 +83,7 @@ fn answer(question: &AskedQuestion, report: &Report, highest_n: f64) -> Answer {
         return match trial.outcome {
             TrialOutcome::Confirmed => Answer::Found,
             TrialOutcome::Refuted => Answer::Excluded,
-            TrialOutcome::Open => Answer::Open,
+            TrialOutcome::Open | TrialOutcome::Drawn => Answer::Open,
         };
     }
     if of.starts_with(FRICTION_ABOVE) {
@@ -103,5 +103,11 @@ fn answer(question: &AskedQuestion, report: &Report, highest_n: f64) -> Answer {
         .limits
         .iter()
         .any(|limit| limit.id == *of && (limit.excluded || is_smaller(limit.low, limit.high)));
+    // What is too weak to be seen at a typical size may still be known to be smaller than what was asked about.
+    let is_below = report
+        .invisible
+        .iter()
+        .any(|hidden| hidden.id == *of && hidden.possible.is_some_and(|[low, high]| is_smaller(low, high)));
+    let is_out = is_out || is_below;
     if or == NONE && !is_named(of) && is_out { Answer::Excluded } else { Answer::Open }
 }

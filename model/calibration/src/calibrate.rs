@@ -125,7 +125,7 @@ pub fn calibrate_among(
     let search = || {
         let selection = select(&start, &mut data, levels);
         let held = held_out(&selection.augmented.model, &Weighed::new(&data, selection.noise));
-        let form = drawn(&selection, &data, held);
+        let form = drawn(rows, &selection, &data, held);
         (selection, held, form)
     };
     let ((mut selection, mut held, mut form), mut learned) = both(search, || map_each(parts(), learned_of));
@@ -135,8 +135,12 @@ pub fn calibrate_among(
     }
     let with_form = form.as_ref().is_some_and(|f| f.report.in_model);
     let promised = promise(learned, &selection, &data, with_form);
-    // What does not help on series that had no part in finding it is not kept.
-    if promised.is_some_and(|p| p.augmented_n > p.baseline_n) && !selection.augmented.model.terms.is_empty() {
+    // What does not help on series that had no part in finding it, or in fitting it, is not kept.
+    let is_worse = || {
+        let of_baseline = held_out(&selection.baseline.model, &Weighed::new(&data, selection.noise));
+        promised.is_some_and(|p| p.augmented_n > p.baseline_n) || held.both_n() > of_baseline.both_n()
+    };
+    if !selection.augmented.model.terms.is_empty() && is_worse() {
         selection = selection.without_findings(&data, levels);
         held = held_out(&selection.augmented.model, &Weighed::new(&data, selection.noise));
         form = None;
@@ -159,8 +163,13 @@ pub fn calibrate_among(
 }
 
 /// The form of what has no name. It goes into the model if it predicts held-out data no worse than the shapes do.
-fn drawn(selection: &Selection, data: &Observations, shapes: HeldOut) -> Option<DrawnForm> {
-    let mut form = draw_form(selection, data)?;
+fn drawn(
+    rows: &[PlateauRow],
+    selection: &Selection,
+    data: &Observations,
+    shapes: HeldOut,
+) -> Option<DrawnForm> {
+    let mut form = draw_form(rows, selection, data)?;
     form.report.in_model = form.report.heldout_rmse_n <= shapes.both_n();
     Some(form)
 }

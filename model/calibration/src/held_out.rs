@@ -26,7 +26,8 @@ pub fn held_out(model: &Model, weighed: &Weighed<'_>) -> HeldOut {
     loads.sort_by(f64::total_cmp);
     loads.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
     let load_fold = |i: usize| loads.partition_point(|l| *l < data.points[i].load_n - 1e-7) % FOLDS;
-    let series_fold = |i: usize| (data.series_of[i] * 7 / 3) % FOLDS;
+    let parts = data.parts_of_series(FOLDS);
+    let series_fold = |i: usize| parts[i];
     HeldOut {
         series_n: error(model, weighed, &series_fold),
         loads_n: if loads.len() > FOLDS { error(model, weighed, &load_fold) } else { f64::NAN },

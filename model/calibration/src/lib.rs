@@ -65,8 +65,8 @@ pub use median::median;
 pub use model_file::{ModelFile, ModelFileError};
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
-    BadSeries, CandidateReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate, Invisible,
-    LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, Verdict,
+    BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate,
+    Invisible, LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, Verdict,
 };
 pub use toml_text::toml_error;
 pub use trial::{CERTAIN_P, CONFIRMED_P, CONFIRMED_SHARE, TrialOutcome, TrialReport, trials};

@@ -154,6 +154,16 @@ pub(crate) fn check_frame(frame: &Frame) -> Result<(), Flaw> {
         within(&format!("frame.travel_time_s[{i}]"), *time, before, MAX_CONSTANT)?;
         within(&format!("frame.travel_share[{i}]"), *share, 0.0, 1.0)?;
     }
+    for (i, change) in frame.changes.iter().enumerate() {
+        let count = frame.groups_by(change.by).len();
+        if change.groups.is_empty() || change.groups.iter().any(|group| group + 1 >= count) {
+            return Err(Flaw::new(
+                format!("frame.changes[{i}].groups"),
+                format!("{:?}", change.groups),
+                format!("some of the {count} {}s but the last, counted from 0", change.by.as_str()),
+            ));
+        }
+    }
     let mut devices = 0;
     for (i, condition) in frame.conditions.iter().enumerate() {
         let field = |name: &str| format!("frame.conditions[{i}].{name}");

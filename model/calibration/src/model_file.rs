@@ -1,6 +1,6 @@
 //! `baseline.toml` and `model.toml`: a fitted model that predicts rows later.
 
-use pinswitch_friction::excerpt;
+use pinswitch_friction::{excerpt, published};
 use serde::{Deserialize, Serialize};
 
 use crate::beyond_range::error_beyond_range;
@@ -168,6 +168,11 @@ impl ModelFile {
         let weighed = Weighed::new(data, noise);
         let covariance = coordinate_covariance(fitted, &weighed);
         let beyond_range = error_beyond_range(model, &weighed);
+        let mut frame = model.frame.clone();
+        if frame.changes.is_empty() {
+            // Nothing of the model depends on who they were.
+            (frame.sessions, frame.specimens) = (Vec::new(), Vec::new());
+        }
         let used = |id: &str| model.terms.iter().any(|term| term.id() == id);
         Self {
             schema: SCHEMA.to_owned(),
@@ -197,7 +202,7 @@ impl ModelFile {
                 .collect(),
             noise,
             beyond_range,
-            frame: model.frame.clone(),
+            frame,
             covariance: (0..covariance.nrows())
                 .map(|i| covariance.row(i).iter().copied().collect())
                 .collect(),
@@ -309,6 +314,18 @@ impl ModelFile {
             }));
         }
         Ok((predicted, sd))
+    }
+
+    /// Wrap in degrees of the first contact that was fitted and has one.
+    pub fn usual_wrap_deg(&self) -> f64 {
+        let wrapped = self.frame.conditions.iter().find(|c| c.substrate.is_some());
+        // Degrees are written in tables, and come back as they were.
+        wrapped.map_or(published::WRAP_ANGLE_DEG, |c| (1e9 * c.wrap_rad.to_degrees()).round() / 1e9)
+    }
+
+    /// The effects that its terms may name: the built-in ones, and those of one's own that are in it.
+    pub fn vocabulary(&self) -> &Vocabulary {
+        &self.vocabulary
     }
 
     /// The noise of the table that was fitted.

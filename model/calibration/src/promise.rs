@@ -1,9 +1,11 @@
 //! The error to expect on a new session of the same rig: the whole procedure, from the noise to the names, is run
-//! without a fourth of the series, and judged on them.
+//! without a fourth of the series, and judged on them; and what mounts that are put on anew add, whose scatter the other
+//! series of a mount share.
 
 use crate::forms::with_best_form;
 use crate::inference::{
-    FoundStructure, Levels, Model, Noise, Observations, Selection, Weighed, fit, selected_model,
+    FoundStructure, Levels, Model, Noise, Observations, Selection, Weighed, fit, new_mounts_n2,
+    selected_model,
 };
 use crate::parallel::map_each;
 
@@ -35,13 +37,10 @@ pub(crate) fn parts() -> Vec<usize> {
     (0..FOLDS).collect()
 }
 
-fn fold(data: &Observations, row: usize) -> usize {
-    (data.series_of[row] * 7 / 3) % FOLDS
-}
-
 /// Runs the procedure without one part; `None` if the rest cannot fix the baseline.
 pub(crate) fn learn(left_out: usize, start: &Model, data: &Observations, levels: Levels) -> Option<Learned> {
-    let mut seen = data.subset(|row| fold(data, row) != left_out);
+    let parts = data.parts_of_series(FOLDS);
+    let mut seen = data.subset(|row| parts[row] != left_out);
     if seen.points.len() < start.values().len() + 8 {
         return None;
     }
@@ -65,8 +64,9 @@ pub(crate) fn promise(
         augmented += a;
         rows += n;
     }
-    (rows > 0.0)
-        .then(|| Promise { baseline_n: (baseline / rows).sqrt(), augmented_n: (augmented / rows).sqrt() })
+    let anew = new_mounts_n2(&whole.augmented, data, whole.noise);
+    let expected_n = |squares: f64| (squares / rows + anew).sqrt();
+    (rows > 0.0).then(|| Promise { baseline_n: expected_n(baseline), augmented_n: expected_n(augmented) })
 }
 
 /// Sums of squares on the part that was left out, and its readings; `None` if it has none that count.
@@ -77,7 +77,8 @@ fn judge(
     with_form: bool,
 ) -> Option<(f64, f64, f64)> {
     let Learned { left_out, seen, model: mut found, noise, structure } = learned;
-    let hidden = data.subset(|row| fold(data, row) == left_out && !data.is_excluded(row));
+    let parts = data.parts_of_series(FOLDS);
+    let hidden = data.subset(|row| parts[row] == left_out && !data.is_excluded(row));
     if hidden.points.is_empty() {
         return None;
     }

@@ -8,7 +8,7 @@ use crate::aliasing::Aliasing;
 use crate::asked::Asked;
 use crate::forms::FormReport;
 use crate::inference::{Noise, Selection};
-use crate::trial::TrialReport;
+use crate::trial::{TrialOutcome, TrialReport};
 
 /// What the data say about the paper's model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,6 +49,17 @@ impl Verdict {
             Verdict::Ambiguous
         } else {
             Verdict::Attributed
+        }
+    }
+
+    /// The verdict beside the trials of effects of one's own: what is confirmed is not excluded.
+    #[must_use]
+    pub fn beside(self, trials: &[TrialReport]) -> Self {
+        match self {
+            Verdict::None if trials.iter().any(|t| t.outcome == TrialOutcome::Confirmed) => {
+                Verdict::Inconclusive
+            }
+            verdict => verdict,
         }
     }
 }
@@ -154,6 +165,8 @@ pub enum Fate {
     Chance,
     /// What it would explain is explained by what was kept.
     Superfluous,
+    /// Its gain is no chance, and nothing was kept: scatter explains the table as well, or it did not help on data held out.
+    Unsettled,
 }
 
 /// One effect of the vocabulary before the decision.
@@ -181,6 +194,9 @@ pub struct Invisible {
     pub why: String,
     /// The experiment that would show it.
     pub experiment: String,
+    /// Sizes that the data do not exclude, where they tell any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub possible: Option<[f64; 2]>,
 }
 
 /// A series that stands out from the model by more than its noise allows.
@@ -231,6 +247,91 @@ pub struct NoisePart {
     pub ci95: Option<[f64; 2]>,
     /// `N`, or `1` for a share of the friction.
     pub unit: String,
+}
+
+/// A constant of the switch that some sessions or specimens have otherwise than the latest one, whose constants the model
+/// predicts with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChangeReport {
+    /// `mu_p`, `mu_s`, or `F_half`: the half loads of all layouts.
+    pub constant: String,
+    /// `session` or `specimen`.
+    pub by: String,
+    /// The names of those that have it otherwise.
+    pub groups: Vec<String>,
+    /// The names of the others, the latest among them.
+    pub others: Vec<String>,
+    /// Their constant over that of the others.
+    pub factor: Estimate,
+    /// The constant of the others, where it is one; absent for half loads.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub latest: Option<f64>,
+}
+
+impl ChangeReport {
+    /// In words: what is how large where.
+    pub fn words(&self) -> String {
+        let Estimate { value, ci95, .. } = &self.factor;
+        let percent = |factor: f64| format!("{:+.1}", 100.0 * (factor - 1.0));
+        let than = self
+            .latest
+            .map_or_else(String::new, |latest| format!(" ({:.3} instead of {latest:.3})", value * latest));
+        let name = if self.constant == "F_half" { "the half load of every layout" } else { &self.constant };
+        format!(
+            "{name} differs by {} % [{}, {}] in {} {}{than} from that in {}",
+            percent(*value),
+            percent(ci95[0]),
+            percent(ci95[1]),
+            self.by,
+            self.groups.join(", "),
+            self.others.join(", "),
+        )
+    }
+}
+
+/// A named effect whose size is not the same in all sessions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct UnequalReport {
+    /// Its id.
+    pub id: String,
+    /// The size.
+    pub parameter: String,
+    /// What the model has, which is true of no session.
+    pub in_the_model: f64,
+    /// Probability by chance that sizes differ so much.
+    pub p_value: f64,
+    /// The size in each session that tells it.
+    pub sizes: Vec<SizeInSession>,
+}
+
+/// A size in one session.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SizeInSession {
+    /// The session.
+    pub session: String,
+    /// The size there, shapes held as all sessions together have them.
+    pub size: Estimate,
+}
+
+impl UnequalReport {
+    /// In words: how large it is where.
+    pub fn words(&self) -> String {
+        let each: Vec<String> = self
+            .sizes
+            .iter()
+            .map(|SizeInSession { session, size }| {
+                let [low, high] = size.ci95;
+                format!("{:.4} [{low:.4}, {high:.4}] {} in {session}", size.value, size.unit)
+            })
+            .collect();
+        format!(
+            "{} is not the same in all sessions: {} = {}; the {:.4} that the model has is true of none",
+            self.id,
+            self.parameter,
+            each.join(", "),
+            self.in_the_model
+        )
+    }
 }
 
 /// Sizes of an effect that the data do not exclude.
@@ -287,6 +388,12 @@ pub struct Report {
     pub noise: Noise,
     /// The noise by its parts, with intervals.
     pub noise_parts: Vec<NoisePart>,
+    /// Constants of the switch that differ between sessions or specimens; empty where all share them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<ChangeReport>,
+    /// Named effects whose sizes differ between sessions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unequal: Vec<UnequalReport>,
     /// The paper's model, refitted.
     pub baseline: ModelReport,
     /// With what was found.

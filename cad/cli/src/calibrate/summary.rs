@@ -1,6 +1,6 @@
 //! What a calibration says on the terminal: a few lines, the rest stands in report.html.
 
-use pinswitch_calibration::{FormReport, Report, SessionReport, TrialReport, Verdict};
+use pinswitch_calibration::{FormReport, Report, SessionReport, TrialOutcome, TrialReport, Verdict};
 
 /// Series to check, open effects and columns that the terminal lists.
 const SHOWN: usize = 6;
@@ -20,6 +20,8 @@ pub(super) fn summary(report: &Report) -> String {
         .collect();
     text.extend(report.sessions.last().map(asked));
     text.push_str(&format!("verdict: {}\n", verdict(report)));
+    report.changes.iter().for_each(|change| text.push_str(&format!("changed: {}\n", change.words())));
+    report.unequal.iter().for_each(|effect| text.push_str(&format!("changed: {}\n", effect.words())));
     text.push_str(&errors(report));
     text.push_str(&effects(report));
     text.push_str(&trials(report));
@@ -54,7 +56,25 @@ fn verdict(report: &Report) -> String {
         Verdict::Inconclusive => {
             let open: Vec<&str> =
                 report.limits.iter().filter(|l| !l.excluded).map(|l| l.id.as_str()).collect();
-            format!("inconclusive: nothing is believed, and not excluded are {}", listed(&open))
+            let believed = if report.changes.is_empty() { "nothing" } else { "no effect" };
+            let is_confirmed = |t: &&TrialReport| t.outcome == TrialOutcome::Confirmed;
+            let confirmed: Vec<&str> =
+                report.trials.iter().filter(is_confirmed).map(|t| t.id.as_str()).collect();
+            let told = format!("inconclusive: {believed} is believed");
+            match (open.is_empty(), confirmed.is_empty()) {
+                (_, true) => format!("{told}, and not excluded are {}", listed(&open)),
+                (true, false) => {
+                    format!(
+                        "{told} of all that was searched; asked for alone, there is {}",
+                        listed(&confirmed)
+                    )
+                }
+                (false, false) => format!(
+                    "{told} of all that was searched, and not excluded are {}; asked for alone, there is {}",
+                    listed(&open),
+                    listed(&confirmed)
+                ),
+            }
         }
         Verdict::Attributed => "attributed".to_owned(),
         Verdict::Ambiguous => "ambiguous: this data cannot tell rivals apart".to_owned(),
@@ -120,12 +140,7 @@ fn effects(report: &Report) -> String {
 /// What the table says of each effect of one's own.
 fn trials(report: &Report) -> String {
     let line = |trial: &TrialReport| {
-        let size = &trial.size;
-        let told = format!(
-            "here {:.4} [{:.4}, {:.4}] {} against {:.4} known before, p = {:.2e}",
-            size.value, size.ci95[0], size.ci95[1], size.unit, trial.start, trial.p_value
-        );
-        format!("  {} on trial: {}: {told}\n", trial.id, trial.outcome.as_str())
+        format!("  {} on trial: {}: {}\n", trial.id, trial.outcome.as_str(), trial.words())
     };
     report.trials.iter().map(line).collect()
 }
@@ -155,7 +170,11 @@ fn noise(report: &Report) -> String {
         .noise_parts
         .iter()
         .map(|part| {
-            let name = part.part.replace('_', " ");
+            let name = match part.part.as_str() {
+                "group" if part.what.contains("operator") => "from operator to operator".to_owned(),
+                "group" => "from session to session".to_owned(),
+                name => name.replace('_', " "),
+            };
             if part.size == 0.0 {
                 return format!("{name} unknown");
             }

@@ -2,20 +2,54 @@
 
 use std::fmt::Write;
 
-use pinswitch_calibration::{Asked, AskedQuestion, EffectReport, Report, Verdict};
+use pinswitch_calibration::{Answer, Asked, AskedQuestion, EffectReport, Report, TrialReport, Verdict};
 
 use super::super::html::escape;
 use super::limits::{open_limits, possible, typical};
-use super::number::newtons;
+use super::number::{newtons, short};
 
 /// Open effects that the conclusion names; the section on limits has them all.
 const NAMED: usize = 4;
 
 /// The box at the top of the page.
 pub(super) fn conclusion(report: &Report) -> String {
-    let told =
-        format!("<div class=\"verdict\">{}{}{}</div>\n", verdict(report), errors(report), adequacy(report));
+    let told = [changes(report), verdict(report), trials(report), errors(report), adequacy(report)].concat();
+    let told = format!("<div class=\"verdict\">{told}</div>\n");
     format!("{told}{}", story(report))
+}
+
+/// What is not the same switch any more.
+fn changes(report: &Report) -> String {
+    let unequal: String =
+        report.unequal.iter().map(|effect| format!("<p>{}.</p>", escape(&effect.words()))).collect();
+    if report.changes.is_empty() {
+        return unequal;
+    }
+    let each: String =
+        report.changes.iter().map(|change| format!("<li>{}</li>", escape(&change.words()))).collect();
+    unequal
+        + &format!(
+            "<p><b>The switch is not the same in all tables.</b> Curves and predictions are those of the latest:</p><ul>{each}</ul>"
+        )
+}
+
+/// What the data say of each effect of one's own, asked for alone.
+fn trials(report: &Report) -> String {
+    if report.trials.is_empty() {
+        return String::new();
+    }
+    let told = |trial: &TrialReport| {
+        format!(
+            "<li><b>{}</b>: {}; {}</li>",
+            escape(&trial.id),
+            trial.outcome.as_str(),
+            escape(&trial.words())
+        )
+    };
+    let each: String = report.trials.iter().map(told).collect();
+    format!(
+        "<p>Effects of one's own, each asked for alone with its shape as it was written down:</p><ul>{each}</ul>"
+    )
 }
 
 /// What changed its mind: the verdict after each of several tables.
@@ -45,8 +79,11 @@ fn story(report: &Report) -> String {
 fn asked(plan: &Asked) -> String {
     let told = |q: &AskedQuestion| {
         let percent = (100.0 * q.resolved_probability).clamp(1.0, 99.0);
-        let words = format!("{} or {} ({percent:.0} %)", q.between[0], q.between[1]);
-        format!("<li>{}: <b>{}</b></li>", escape(&words), q.answer.as_str())
+        let size = q.size.map_or_else(String::new, |size| format!(" at a size of {}", short(size)));
+        let words = format!("{} or {}{size} ({percent:.0} %)", q.between[0], q.between[1]);
+        // What is smaller than what was asked about may still be of consequence, and then stands in the verdict.
+        let at = if q.answer == Answer::Excluded && q.size.is_some() { " at this size" } else { "" };
+        format!("<li>{}: <b>{}{at}</b></li>", escape(&words), q.answer.as_str())
     };
     let questions: String = plan.questions.iter().map(told).collect();
     format!(
@@ -96,9 +133,12 @@ fn alternatives(effect: &EffectReport) -> String {
 
 fn inconclusive(report: &Report) -> String {
     let open = open_limits(report);
-    let mut html = "<p>This data settles nothing: no effect gains more than chance may, yet effects of consequence are not excluded. \
-                    To know more, record more.</p><ul>"
-        .to_owned();
+    let settles =
+        if report.changes.is_empty() { "This data settles nothing" } else { "It settles nothing else" };
+    let mut html = format!(
+        "<p>{settles}: no effect gains more than chance may, yet effects of consequence are not excluded. \
+         To know more, record more.</p><ul>"
+    );
     for limit in open.iter().take(NAMED) {
         let _ = write!(
             html,
@@ -110,6 +150,15 @@ fn inconclusive(report: &Report) -> String {
         );
     }
     html.push_str("</ul>");
+    if let Some(group) = report.noise_parts.iter().find(|part| part.part == "group") {
+        let _ = write!(
+            html,
+            "<p>What this data does show is told as a part of the noise: {}, by {}. No curve of a part holds it, and no reading of \
+             another one is predicted without it.</p>",
+            escape(&group.what),
+            newtons(group.size)
+        );
+    }
     if let Some(more) = open.len().checked_sub(NAMED).filter(|n| *n > 0) {
         let _ = write!(html, "<p>{more} more are open: section 8.</p>");
     }

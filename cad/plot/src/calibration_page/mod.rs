@@ -126,6 +126,9 @@ fn candidates(report: &Report) -> String {
             Fate::Invisible => ("", "dropped: this data cannot show it"),
             Fate::Chance => ("", "dropped: may be chance"),
             Fate::Superfluous => ("", "dropped: superfluous beside what was kept"),
+            Fate::Unsettled => {
+                ("", "not believed: scatter explains the data as well, or it did not help on data held out")
+            }
         };
         let left = c.gain_left.map_or_else(String::new, |g| number(g, 1));
         let _ = writeln!(

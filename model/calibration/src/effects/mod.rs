@@ -204,7 +204,7 @@ mod tests {
             travel_time_s: vec![0.0, 1e4],
             travel_share: vec![0.0, 1.0],
             load_range_n: (3.0, 50.0),
-            conditions: Vec::new(),
+            ..Frame::default()
         };
         let condition = Condition {
             substrate: Some(Substrate::Silicone),

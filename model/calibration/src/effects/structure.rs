@@ -284,6 +284,7 @@ impl Structure {
                 format!("another level on {}", conditions.iter().map(name).collect::<Vec<_>>().join(" and "))
             }
             Shape::Repetition { r0 } => format!("a settling over {r0} repetitions"),
+            Shape::Memory { r0, .. } if *r0 > 1e3 => "a lasting memory of the load before".to_owned(),
             Shape::Memory { r0, .. } => {
                 format!("a memory of the load before, forgotten over {r0} repetitions")
             }

@@ -98,6 +98,13 @@ impl Vocabulary {
         self.acting.iter().copied().find(|effect| effect.id() == id)
     }
 
+    /// Says that an id is unknown, with the nearest one that is known, or all.
+    pub fn unknown(&self, id: &str) -> String {
+        // Those of one's own first: an error shows the beginning and the end of a long list.
+        let own = self.own().map(|own| own.definition().id.as_str());
+        super::own::unknown("effect", id, own.chain(CATALOGUE.iter().map(|effect| effect.id())))
+    }
+
     /// All of them in the order of the catalogue, those of one's own behind.
     pub fn effects(&self) -> impl Iterator<Item = &'static dyn Effect> {
         CATALOGUE.iter().copied().chain(self.own.iter().map(|effect| *effect as &dyn Effect))

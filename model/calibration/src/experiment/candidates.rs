@@ -6,6 +6,7 @@ use pinswitch_friction::published;
 use super::question::Agenda;
 use super::rig::RigLimits;
 use super::runs::{PlannedRun, append};
+use super::settings::{dwells_s, speeds_pct};
 use crate::effects::Covariate;
 use crate::inference::Model;
 use crate::table::{PlateauRow, Sweep};
@@ -23,6 +24,8 @@ const FEW_LOADS: usize = 6;
 pub(super) struct Candidate {
     pub(super) run: PlannedRun,
     pub(super) late: bool,
+    /// The weight that hung before it, in grams, where a question is about that.
+    pub(super) after_g: Option<f64>,
 }
 
 impl Candidate {
@@ -54,19 +57,24 @@ impl Candidate {
 
 /// All of them, each within what the load cell may read.
 pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec<Candidate> {
-    let sweeps: &[Sweep] =
-        if agenda.asks_along(Covariate::Sweep) { &[Sweep::Up, Sweep::Down] } else { &[Sweep::Up] };
+    let sweeps: &[Sweep] = if agenda.asks_along(Covariate::Sweep) || agenda.asks_of_the_load_before() {
+        &[Sweep::Up, Sweep::Down]
+    } else {
+        &[Sweep::Up]
+    };
     let times: &[bool] = if agenda.asks_along(Covariate::Time) { &[false, true] } else { &[false] };
     let loads_g = if rig.contacts().len() * rig.loads_g.len() > MOST_PLACES {
         spread(&rig.loads_g, FEW_LOADS)
     } else {
         rig.loads_g.clone()
     };
+    let speeds = speeds_pct(model, rig, agenda);
+    let dwells = dwells_s(model, rig, agenda);
     let mut all = Vec::new();
     for (substrate, pins) in rig.contacts() {
         for load_mass_g in &loads_g {
-            for speed_pct in rig.speeds() {
-                for dwell_s in rig.dwells() {
+            for speed_pct in &speeds {
+                for dwell_s in &dwells {
                     for repetitions in REPETITIONS {
                         for sweep in sweeps {
                             for late in times {
@@ -75,14 +83,18 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
                                     pins: pins.clone(),
                                     sweep: *sweep,
                                     load_mass_g: *load_mass_g,
-                                    speed_pct,
-                                    dwell_s,
+                                    speed_pct: *speed_pct,
+                                    dwell_s: *dwell_s,
                                     repetitions,
                                     mount: 1,
                                     minutes: 0.0,
                                     asks: String::new(),
+                                    wrap_angle_deg: rig.own_wrap_deg(),
                                 };
-                                all.push(Candidate { run, late: *late });
+                                let after_g = agenda
+                                    .asks_of_the_load_before()
+                                    .then(|| neighbour_g(&loads_g, *load_mass_g, *sweep));
+                                all.push(Candidate { run, late: *late, after_g });
                             }
                         }
                     }
@@ -97,6 +109,16 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
     all.into_iter().zip(fits).filter(|(_, fits)| *fits).map(|(candidate, _)| candidate).collect()
 }
 
+/// The weight that hangs before one, as the runs of a mount are ordered: the next lighter one while loads ascend, before the
+/// lightest the heaviest, on the contact before.
+fn neighbour_g(loads_g: &[f64], load_g: f64, sweep: Sweep) -> f64 {
+    let lighter = loads_g.iter().copied().filter(|g| *g < load_g).fold(f64::NEG_INFINITY, f64::max);
+    let heavier = loads_g.iter().copied().filter(|g| *g > load_g).fold(f64::INFINITY, f64::min);
+    let most = loads_g.iter().copied().fold(load_g, f64::max);
+    let found = if sweep == Sweep::Down { heavier } else { lighter };
+    if found.is_finite() { found } else { most }
+}
+
 /// `most` of the values, evenly spread by rank, the least and the greatest among them.
 fn spread(values: &[f64], most: usize) -> Vec<f64> {
     let mut sorted = values.to_vec();
@@ -109,9 +131,14 @@ fn spread(values: &[f64], most: usize) -> Vec<f64> {
     kept
 }
 
-/// The rows of a candidate in a session of its own that began `begins_s` seconds before it.
+/// The rows of a candidate in a session of its own that began `begins_s` seconds before it; where it is asked what hung before,
+/// after one reading of that.
 pub(super) fn alone(candidate: &Candidate, series: &str, rig: &RigLimits, begins_s: f64) -> Vec<PlateauRow> {
     let (mut rows, mut time_s) = (Vec::new(), begins_s);
+    if let Some(load_mass_g) = candidate.after_g {
+        let before = PlannedRun { load_mass_g, repetitions: [1, 0], ..candidate.run.clone() };
+        append(&before, &format!("before {series}"), series, rig, &mut time_s, &mut rows);
+    }
     append(&candidate.run, series, series, rig, &mut time_s, &mut rows);
     rows
 }
@@ -129,15 +156,18 @@ pub(super) fn paper_protocol(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
                 sweep: Sweep::Up,
                 load_mass_g: *load_mass_g,
                 // 47 to 57 %, as in the paper.
-                speed_pct: 47.0 + 10.0 * i as f64 / loads.len().saturating_sub(1).max(1) as f64,
-                dwell_s: published::DWELL_S,
+                speed_pct: (47.0 + 10.0 * i as f64 / loads.len().saturating_sub(1).max(1) as f64)
+                    .clamp(rig.speeds_pct[0], rig.speeds_pct[1]),
+                dwell_s: published::DWELL_S.clamp(rig.dwells_s[0], rig.dwells_s[1]),
                 repetitions: [12, 29],
                 mount: mount + 1,
                 minutes: 0.0,
                 asks: String::new(),
+                wrap_angle_deg: rig.own_wrap_deg(),
             };
             let change = if i == 0 { rig.minutes_per_mount_change } else { 0.0 };
-            run.minutes = run.recording_minutes(rig) + rig.minutes_per_load_change + change;
+            let takes = run.recording_minutes(rig) + rig.minutes_per_load_change + change;
+            run.minutes = (100.0 * takes).floor() / 100.0;
             spent += run.minutes;
             if spent > minutes {
                 return runs;

@@ -7,13 +7,16 @@
 
 mod candidates;
 mod information;
+mod plan;
 mod question;
 mod rig;
 mod runs;
 mod search;
+mod settings;
 mod shortlist;
 
 use nalgebra::DMatrix;
+use pinswitch_friction::published;
 use serde::Serialize;
 
 pub use rig::{RigError, RigLimits};
@@ -26,9 +29,10 @@ use crate::report::Report;
 use crate::table::{PlateauRow, Sweep};
 use candidates::{Candidate, candidates, paper_protocol};
 use information::{Design, Trace};
+use plan::Planner;
 use question::{Agenda, Question};
 pub(crate) use question::{COVERED, FRICTION_ABOVE, NONE};
-use search::Search;
+pub use search::MOST_RUNS;
 use shortlist::Shortlist;
 
 /// Name and version of `experiment.json`.
@@ -50,6 +54,8 @@ pub struct QuestionOutlook {
     pub by_repeating: f64,
 }
 
+/// Probability from which data that are there already count as an answer.
+const KNOWN: f64 = 0.99;
 /// What no experiment on the rig can settle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Unanswerable {
@@ -83,7 +89,9 @@ pub enum ExperimentError {
     #[error(transparent)]
     Model(#[from] ModelFileError),
     /// Rows and model are not of one calibration.
-    #[error("{0}: its rows are not those that model.toml was fitted to; calibrate again")]
+    #[error(
+        "{0}: report.json, model.toml and residuals.csv are not of one calibration, or not whole; calibrate again"
+    )]
     Rows(String),
     /// No run is possible at any length.
     #[error(
@@ -131,11 +139,18 @@ pub fn propose(
     levels: Levels,
 ) -> Result<Proposal, ExperimentError> {
     let foreign = || ExperimentError::Rows(known.name.to_owned());
+    // The rig is wrapped as it was, unless its file says otherwise.
+    let rig = &rig.clone().wrapped_by(usual_wrap_deg(known.rows));
     let (model, noise) = extended(known, rig)?;
     let of_rows = |traces: &[Trace]| {
         let design = Design { model: &model, noise, traces };
         design.of(known.rows).map(|data| data + design.priors())
     };
+    if known.report.data.rows != known.rows.len()
+        || !is_told_in(known.report, &known.model.model(known.name)?)
+    {
+        return Err(foreign());
+    }
     of_rows(&[]).ok_or_else(foreign)?;
     let highest_n = known.rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
     let agenda = Agenda::of(known.report, &model, highest_n, levels, |traces| {
@@ -155,18 +170,22 @@ pub fn propose(
         Shortlist::of(all, &design, &data, &agenda.questions, rig, minutes).ok_or_else(foreign)?;
     let (open, closed): (Vec<Question>, Vec<Question>) =
         agenda.questions.iter().cloned().partition(|q| q.probability(&everything) >= ANSWERABLE);
-    let search = Search { candidates: &all, information: &single, questions: &open, rig, minutes };
-    let chosen = if open.is_empty() { Vec::new() } else { search.run(&data) };
-    let purposes: Vec<String> = (0..chosen.len())
-        .map(|place| search.purpose(place, &chosen, &data).map_or_else(String::new, Question::words))
-        .collect();
-    let runs = in_order(chosen.iter().map(|c| &all[*c]).zip(purposes), rig);
-    let after = |runs: &[PlannedRun]| {
-        let rows = rows_of(runs, rig, "next");
-        if rows.is_empty() { Some(data.clone()) } else { design.of(&rows).map(|more| more + &data) }
+    // What the data so far should show by themselves, and did not, no more of the same will.
+    let open: Vec<Question> = open.into_iter().filter(|q| q.probability(&data) < KNOWN).collect();
+    let planner = Planner {
+        candidates: &all,
+        information: &single,
+        design: &design,
+        data: &data,
+        questions: &open,
+        rig,
+        minutes,
     };
+    let runs = planner.best_plan().ok_or_else(foreign)?;
+    let after = |runs: &[PlannedRun]| planner.after(runs);
     let with_runs = after(&runs).ok_or_else(foreign)?;
-    let spent: f64 = runs.iter().map(|run| run.minutes).sum();
+    // An empty sum is minus zero.
+    let spent = 0.0 + runs.iter().map(|run| run.minutes).sum::<f64>();
     let repeated = after(&paper_protocol(rig, spent)).ok_or_else(foreign)?;
     let mut questions: Vec<QuestionOutlook> = open
         .iter()
@@ -178,8 +197,29 @@ pub fn propose(
         })
         .collect();
     questions.sort_by(|a, b| b.resolved_probability.total_cmp(&a.resolved_probability));
-    let unanswerable = closed.iter().map(|q| unanswerable(q, &everything, &agenda, minutes)).collect();
-    Ok(Proposal { schema: SCHEMA, minutes: (10.0 * spent).round() / 10.0, questions, unanswerable, runs })
+    let unanswerable =
+        closed.iter().map(|q| unanswerable(q, &everything, &agenda, &model, minutes)).collect();
+    Ok(Proposal { schema: SCHEMA, minutes: (100.0 * spent).round() / 100.0, questions, unanswerable, runs })
+}
+
+/// Whether a report tells the constants of a model: those of one calibration.
+fn is_told_in(report: &Report, model: &Model) -> bool {
+    let told = &report.augmented.parameters;
+    let is_one = |((name, _), value): ((String, &str), f64)| {
+        told.get(&name).is_none_or(|known| (known.value - value).abs() <= 1e-6 * value.abs().max(1e-9))
+    };
+    let names = model.names();
+    told.keys().all(|key| names.iter().any(|(name, _)| name == key))
+        && names.into_iter().zip(model.values()).all(is_one)
+}
+
+/// The wrap in degrees that most rows have.
+fn usual_wrap_deg(rows: &[PlateauRow]) -> f64 {
+    let mut wraps: Vec<f64> =
+        rows.iter().filter(|r| r.substrate.is_some()).map(|r| r.wrap_angle_deg).collect();
+    wraps.sort_by(f64::total_cmp);
+    let longest = wraps.chunk_by(|a, b| a == b).max_by_key(|chunk| chunk.len());
+    longest.map_or(published::WRAP_ANGLE_DEG, |chunk| chunk[0])
 }
 
 /// The paper's protocol from its beginning, as far as it comes in so many minutes.
@@ -231,6 +271,8 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
         let minutes = candidate.run.recording_minutes(rig)
             + if is_loaded { 0.0 } else { rig.minutes_per_load_change }
             + if is_mounted { 0.0 } else { rig.minutes_per_mount_change };
+        // As it is written, so that the file adds up to what is told.
+        let minutes = (100.0 * minutes).floor() / 100.0;
         runs.push(PlannedRun { mount, minutes, asks, ..candidate.run.clone() });
         before = Some(candidate);
     }
@@ -241,6 +283,7 @@ fn unanswerable(
     question: &Question,
     everything: &DMatrix<f64>,
     agenda: &Agenda,
+    model: &Model,
     minutes: f64,
 ) -> Unanswerable {
     let [of, or] = &question.between;
@@ -252,6 +295,13 @@ fn unanswerable(
     } else {
         String::new()
     };
+    let shapes = agenda.shapes_of(model);
+    if most < 100.0 * ANSWERABLE && question.beside_no(&shapes).probability(everything) >= ANSWERABLE {
+        let why = format!(
+            "the model has structure without a name in its place, which no run tells from {of}: calibrate the next table with the effect, which puts it on trial"
+        );
+        return Unanswerable { between: question.between.clone(), why };
+    }
     let why = format!(
         "every run that this rig can make, all together, would {does} with a probability of {most:.0} %{within}"
     );

@@ -22,6 +22,8 @@ pub(crate) const FRICTION_ABOVE: &str = "friction_above_";
 const SEEN: f64 = 16.0;
 /// How much less an effect counts that nobody suspects.
 const UNSUSPECTED: f64 = 0.3;
+/// How much more a form counts that was drawn: what it stands for is there, and has no name yet.
+const DRAWN: f64 = 3.0;
 /// Share of the loads of a curve up to which data must reach, so that it needs no carrying on.
 pub(crate) const COVERED: f64 = 0.9;
 /// Largest size of a rival, in units of the size at which a fit of it starts: beyond it, no rig is that wrong.
@@ -80,6 +82,21 @@ impl Question {
         }
     }
 
+    /// The same question where these columns are not fitted.
+    pub(super) fn beside_no(&self, columns: &[usize]) -> Self {
+        let mut question = self.clone();
+        for way in &mut question.ways {
+            way.nuisance.retain(|column| !columns.contains(column));
+        }
+        question
+    }
+
+    /// What an answer loses without some of the information.
+    pub(super) fn loss(&self, all: &DMatrix<f64>, without: &DMatrix<f64>) -> f64 {
+        let of = |information| libm::log(1.0 + self.squares(information) / self.needed);
+        of(all) - of(without)
+    }
+
     /// Words for a run sheet.
     pub(super) fn words(&self) -> String {
         match self.between[1].as_str() {
@@ -118,6 +135,10 @@ pub(super) struct Agenda {
     pub(super) effects: Vec<&'static dyn Effect>,
     /// Columns of which only data to come may tell: what was drawn from the data so far is not confirmed by them.
     ahead: Vec<usize>,
+    /// Ids of forms that stand for structure without a name.
+    forms: Vec<String>,
+    /// Whether one of the effects remembers the load before.
+    remembers: bool,
 }
 
 impl Agenda {
@@ -189,6 +210,11 @@ impl Agenda {
             }
         }
         agenda.ask_again(report, model);
+        let remembers = |id: &str| {
+            let mut own = model.vocabulary.own().map(|own| own.definition());
+            own.any(|own| own.id == id && own.formula.contains(LOAD_BEFORE))
+        };
+        agenda.remembers = agenda.effects.iter().any(|effect| remembers(effect.id()));
         agenda.ask_beyond(highest_n, &own);
         if pairs.is_empty() {
             return agenda;
@@ -249,7 +275,8 @@ impl Agenda {
             self.traces.push(trace);
             self.effects.push(effect);
             self.ahead.push(column);
-            self.ask_whether(effect.id(), column, surely(effect, &form.parameters), &base, 1.0);
+            self.ask_whether(effect.id(), column, surely(effect, &form.parameters), &base, DRAWN);
+            self.forms.push(effect.id().to_owned());
         }
     }
 
@@ -295,11 +322,31 @@ impl Agenda {
         self.effects.iter().any(|e| e.id() == id && e.description().covariate == covariate)
     }
 
+    /// Constants of the model that stand for what has no name.
+    pub(super) fn shapes_of(&self, model: &Model) -> Vec<usize> {
+        let is_nameless = |term: &Term| match term {
+            Term::Structure(_) => true,
+            Term::Named(effect) => self.forms.iter().any(|id| id == effect.id()),
+        };
+        (0..model.terms.len())
+            .filter(|t| is_nameless(&model.terms[*t]))
+            .flat_map(|t| (0..model.terms[t].constants()).map(move |i| model.term_offset(t) + i))
+            .collect()
+    }
+
+    /// Whether an effect that is asked about remembers the load before.
+    pub(super) fn asks_of_the_load_before(&self) -> bool {
+        self.remembers
+    }
+
     /// Whether an answer may lie along this covariate.
     pub(super) fn asks_along(&self, covariate: Covariate) -> bool {
         self.effects.iter().any(|effect| effect.description().covariate == covariate)
     }
 }
+
+/// The variable of formulas that holds the load of the series before.
+const LOAD_BEFORE: &str = "previous_load_n";
 
 /// The constants at which a fit of an effect starts.
 fn start(effect: &dyn Effect, model: &Model) -> Option<Vec<f64>> {

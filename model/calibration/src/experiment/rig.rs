@@ -3,6 +3,7 @@
 use pinswitch_friction::{Substrate, excerpt, published};
 use serde::{Deserialize, Serialize};
 
+use crate::table::{MAX_WRAP_DEG, MIN_WRAP_DEG};
 use crate::toml_text::{place_of, toml_error};
 
 /// The limits of a rig and the minutes of its work. Every field that a file leaves out is that of the paper's rig.
@@ -21,6 +22,9 @@ pub struct RigLimits {
     pub silicone: bool,
     /// Whether the layouts can be measured on the rigid proxy.
     pub proxy: bool,
+    /// Wrap of the tendon in degrees; left out, it is that of the table that was calibrated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wrap_angle_deg: Option<f64>,
     /// Length of the stroke, in millimetres.
     pub stroke_mm: f64,
     /// Time of one repetition beside its dwell, in seconds.
@@ -44,6 +48,7 @@ impl Default for RigLimits {
             layouts: published::LAYOUTS.iter().map(|l| l.grooves.to_vec()).collect(),
             silicone: true,
             proxy: true,
+            wrap_angle_deg: None,
             stroke_mm: published::STROKE_MM,
             seconds_per_repetition: 1.5,
             minutes_per_load_change: 1.5,
@@ -79,6 +84,8 @@ pub enum RigError {
     },
 }
 
+/// The wraps that a table may have, in words.
+pub(super) const WRAPS: &str = "1 to 720 deg";
 /// Most weights, and most layouts, of a rig: the search grows with both.
 const MOST: usize = 40;
 
@@ -149,7 +156,9 @@ impl RigLimits {
                 "true, or at least one layout: something must be measured",
             ));
         }
+        let usual = published::WRAP_ANGLE_DEG;
         let single = [
+            ("wrap_angle_deg", self.wrap_angle_deg.unwrap_or(usual), MIN_WRAP_DEG, MAX_WRAP_DEG, WRAPS),
             ("stroke_mm", self.stroke_mm, 1.0, 1e4, "1 to 10000 mm"),
             ("seconds_per_repetition", self.seconds_per_repetition, 0.01, 600.0, "0.01 to 600 s"),
             ("minutes_per_load_change", self.minutes_per_load_change, 0.0, 600.0, "0 to 600 min"),
@@ -171,6 +180,18 @@ impl RigLimits {
         }
         all.extend(self.layouts.iter().map(|pins| (Substrate::Silicone, pins.clone())));
         all
+    }
+
+    /// The same with a wrap for every run, where the file gives none.
+    #[must_use]
+    pub fn wrapped_by(mut self, degrees: f64) -> Self {
+        self.wrap_angle_deg = self.wrap_angle_deg.or(Some(degrees));
+        self
+    }
+
+    /// The wrap of its runs, where it is not the paper's.
+    pub(super) fn own_wrap_deg(&self) -> Option<f64> {
+        self.wrap_angle_deg.filter(|degrees| *degrees != published::WRAP_ANGLE_DEG)
     }
 
     /// Speeds to choose from: both ends, and the middle.
@@ -214,6 +235,7 @@ mod tests {
             ("layouts = [[16]]", "grooves 1..15"),
             ("layouts = [[8, 5]]", "ascending"),
             ("layouts = []\nsilicone = false", "rig.toml:2: silicone"),
+            ("wrap_angle_deg = 0", "rig.toml:1: wrap_angle_deg = 0 is outside 1 to 720 deg"),
             ("stroke_mm = nan", "stroke_mm = NaN"),
             ("cell_limit_n = 0", "cell_limit_n"),
             ("colour = 3", "rig.toml:1: unknown field `colour`"),

@@ -2,8 +2,8 @@
 
 use pinswitch_friction::{Direction, Substrate, published};
 
-use super::rig::RigLimits;
-use crate::table::{Labels, PlateauRow, Sweep, substrate_word};
+use super::rig::{RigLimits, WRAPS};
+use crate::table::{Labels, MAX_WRAP_DEG, MIN_WRAP_DEG, PlateauRow, Sweep, substrate_word};
 
 /// One series to record.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +28,8 @@ pub struct PlannedRun {
     pub minutes: f64,
     /// What it is recorded for.
     pub asks: String,
+    /// Wrap of the tendon in degrees, where it is not the rig's own or the paper's.
+    pub wrap_angle_deg: Option<f64>,
 }
 
 impl PlannedRun {
@@ -59,6 +61,9 @@ const COLUMNS: [&str; 12] = [
     "asks",
 ];
 
+/// One more, of runs around another wrap than the paper's.
+const WRAP: &str = "wrap_angle_deg";
+
 /// Why a text lists no runs.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -85,6 +90,14 @@ pub enum RunsError {
         /// What may stand there.
         bound: &'static str,
     },
+    /// A plan of nothing.
+    #[error(
+        "{file}: the plan has no run, since `experiment` found none worth making: there is nothing to rehearse or to record"
+    )]
+    NoRun {
+        /// File name as given.
+        file: String,
+    },
     /// The text is no CSV, or has too few or too many lines.
     #[error("{file}: {problem}; use the file as `experiment` wrote it")]
     Malformed {
@@ -101,7 +114,8 @@ const MOST_REPETITIONS: u32 = 1000;
 
 /// The runs as CSV.
 pub fn write_runs(runs: &[PlannedRun]) -> String {
-    let mut text = COLUMNS.join(",") + "\n";
+    let is_wrapped = runs.iter().any(|run| run.wrap_angle_deg.is_some());
+    let mut text = COLUMNS.join(",") + if is_wrapped { ",wrap_angle_deg\n" } else { "\n" };
     for (i, run) in runs.iter().enumerate() {
         let pins: Vec<String> = run.pins.iter().map(usize::to_string).collect();
         let cells = [
@@ -115,10 +129,15 @@ pub fn write_runs(runs: &[PlannedRun]) -> String {
             run.repetitions[0].to_string(),
             run.repetitions[1].to_string(),
             run.mount.to_string(),
-            format!("{:.1}", run.minutes),
+            format!("{:.2}", run.minutes),
             run.asks.clone(),
         ];
-        text += &(cells.join(",") + "\n");
+        text += &cells.join(",");
+        if is_wrapped {
+            let degrees = run.wrap_angle_deg.unwrap_or(published::WRAP_ANGLE_DEG);
+            text += &format!(",{degrees}");
+        }
+        text.push('\n');
     }
     text
 }
@@ -136,6 +155,7 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, RunsError> {
         let found = header.iter().position(|name| name.trim_start_matches('\u{feff}') == column);
         *place = found.ok_or_else(|| RunsError::MissingColumn { file: file.to_owned(), column })?;
     }
+    let wrap = header.iter().position(|name| name == WRAP);
     let mut runs = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| malformed(e.to_string()))?;
@@ -155,6 +175,21 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, RunsError> {
         let count = |column: usize| {
             let value: Option<u32> = cell(column).parse().ok();
             value.filter(|n| *n <= MOST_REPETITIONS).ok_or_else(|| refuse(column, "0 to 1000"))
+        };
+        let wrap_angle_deg = match wrap.and_then(|at| record.get(at)).unwrap_or_default() {
+            "" => None,
+            text => {
+                let degrees: Option<f64> = text.parse().ok();
+                let wraps = MIN_WRAP_DEG..=MAX_WRAP_DEG;
+                let refused = || RunsError::Cell {
+                    file: file.to_owned(),
+                    line,
+                    column: WRAP,
+                    value: text.chars().take(60).collect(),
+                    bound: WRAPS,
+                };
+                Some(degrees.filter(|x| wraps.contains(x)).ok_or_else(refused)?)
+            }
         };
         let pins: Option<Vec<usize>> =
             cell(2).split(';').filter(|p| !p.is_empty()).map(|p| p.trim().parse().ok()).collect();
@@ -182,6 +217,7 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, RunsError> {
             mount: cell(9).parse().ok().filter(|n| *n <= MOST_RUNS).ok_or_else(|| refuse(9, "1 to 10000"))?,
             minutes: number(10, 0.0, 1e6, "0 to 1000000")?,
             asks: cell(11).to_owned(),
+            wrap_angle_deg,
         };
         if run.substrate == Substrate::Abs && run.pins.is_empty() {
             return Err(refuse(2, "at least one groove on abs"));
@@ -194,7 +230,7 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, RunsError> {
             return Err(malformed(format!("more than {MOST_RUNS} runs")));
         }
     }
-    if runs.is_empty() { Err(malformed("no run".to_owned())) } else { Ok(runs) }
+    if runs.is_empty() { Err(RunsError::NoRun { file: file.to_owned() }) } else { Ok(runs) }
 }
 
 /// The rows that runs give one after the other, with zero forces. `session` names them all.
@@ -237,7 +273,10 @@ pub(super) fn append(
                 position_mm: rig.stroke_mm * position,
                 time_s: *time_s,
                 force_n: 0.0,
-                wrap_angle_deg: published::WRAP_ANGLE_DEG,
+                wrap_angle_deg: run
+                    .wrap_angle_deg
+                    .or(rig.wrap_angle_deg)
+                    .unwrap_or(published::WRAP_ANGLE_DEG),
                 labels: Labels {
                     session: session.to_owned(),
                     mount: run.mount.to_string(),
@@ -248,10 +287,12 @@ pub(super) fn append(
     }
 }
 
-/// A contact in words: `silicone`, `abs 5;8;11`.
+/// A contact in words: `silicone`, `abs 5;8;11`, `silicone 5;8;11, wrap 120 deg`.
 pub fn contact_words(run: &PlannedRun) -> String {
     let pins: Vec<String> = run.pins.iter().map(usize::to_string).collect();
-    format!("{} {}", substrate_word(Some(run.substrate)), pins.join(";")).trim_end().to_owned()
+    let contact = format!("{} {}", substrate_word(Some(run.substrate)), pins.join(";"));
+    let wrap = run.wrap_angle_deg.map_or_else(String::new, |degrees| format!(", wrap {degrees} deg"));
+    format!("{}{wrap}", contact.trim_end())
 }
 
 #[cfg(test)]
@@ -270,6 +311,7 @@ mod tests {
             mount: 2,
             minutes: 3.7,
             asks: "rate_dependence or fixture_compliance".to_owned(),
+            wrap_angle_deg: None,
         }
     }
 
@@ -282,6 +324,21 @@ mod tests {
         assert_eq!(rows.len(), 18);
         assert!(rows.is_sorted_by(|a, b| a.time_s < b.time_s));
         assert_eq!((rows[9].series.as_str(), rows[9].labels.mount.as_str()), ("2", "2"));
+    }
+
+    #[test]
+    fn another_wrap_is_a_column_more_and_that_of_the_rig_where_there_is_none() {
+        let wrapped = vec![PlannedRun { wrap_angle_deg: Some(120.0), ..run(251.2) }];
+        let text = write_runs(&wrapped);
+        assert!(text.lines().next().unwrap().ends_with(",asks,wrap_angle_deg"), "{text}");
+        assert_eq!(read_runs(&text, "r.csv").unwrap(), wrapped);
+        let rig = RigLimits::default();
+        let of = |runs: &[PlannedRun], rig: &RigLimits| rows_of(runs, rig, "")[0].wrap_angle_deg;
+        assert_eq!(of(&wrapped, &rig), 120.0);
+        assert_eq!(of(&[run(251.2)], &rig), published::WRAP_ANGLE_DEG);
+        assert_eq!(of(&[run(251.2)], &rig.wrapped_by(70.0)), 70.0);
+        let error = read_runs(&text.replace(",120", ",0"), "r.csv").unwrap_err().to_string();
+        assert!(error.contains("2: wrap_angle_deg = '0' is outside 1 to 720 deg"), "{error}");
     }
 
     #[test]

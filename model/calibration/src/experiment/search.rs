@@ -14,9 +14,9 @@ const LEAST: f64 = 1e-4;
 /// Rounds of exchanges.
 const ROUNDS: usize = 2;
 /// Runs up to which they are exchanged: of a longer plan, one run decides little.
-const FEW_RUNS: usize = 100;
+pub(super) const FEW_RUNS: usize = 100;
 /// Most runs of a plan: a week of work.
-const MOST_RUNS: usize = 400;
+pub const MOST_RUNS: usize = 400;
 
 /// What information is worth: for each question the logarithm of the squares expected, so that none is answered at the
 /// cost of all others.
@@ -103,10 +103,6 @@ impl Search<'_> {
     pub(super) fn purpose(&self, place: usize, chosen: &[usize], known: &DMatrix<f64>) -> Option<&Question> {
         let all = chosen.iter().fold(known.clone(), |sum, c| sum + &self.information[*c]);
         let without = &all - &self.information[chosen[place]];
-        let loss = |q: &Question| {
-            let of = |information| libm::log(1.0 + q.squares(information) / q.needed);
-            of(&all) - of(&without)
-        };
-        self.questions.iter().max_by(|a, b| loss(a).total_cmp(&loss(b)))
+        self.questions.iter().max_by(|a, b| a.loss(&all, &without).total_cmp(&b.loss(&all, &without)))
     }
 }

@@ -94,7 +94,10 @@ fn of_candidates(
     let begins_s = |c: &Candidate| if c.late { 0.75 * 60.0 * minutes } else { 0.0 };
     let rows: Vec<PlateauRow> =
         all.iter().enumerate().flat_map(|(i, c)| alone(c, &i.to_string(), rig, begins_s(c))).collect();
-    design.by_series(&rows)
+    let each = design.by_series(&rows)?;
+    // What hung before a run is no part of it.
+    let has_before = all.iter().any(|c| c.after_g.is_some());
+    Some(if has_before { each.into_iter().skip(1).step_by(2).collect() } else { each })
 }
 
 #[cfg(test)]

@@ -87,6 +87,7 @@ impl Form {
             one_sided: false,
             confused_with: Vec::new(),
             experiment: String::new(),
+            drawn_from: Vec::new(),
             parameters: std::iter::once(size).chain(shapes).collect(),
         };
         Candidate { form: self.clone(), definition }

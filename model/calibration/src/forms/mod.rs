@@ -16,6 +16,7 @@ use crate::inference::{
     EffectScore, Fit, Model, Noise, Observations, Screen, Selection, Term, Weighed, fit, interval_half_widths,
 };
 use crate::report::Estimate;
+use crate::table::{PlateauRow, readings_by_session};
 use library::{ALL, Candidate, FIRST, Form, acts_on_word, library};
 
 /// Starts of each form that are tried on everything, and fitted to the end.
@@ -74,9 +75,9 @@ pub struct DrawnForm {
     pub fitted: Fit,
 }
 
-/// Draws the form of the structure that a calibration found and could not name; `None` if it found none, or none of the
-/// library explains any of it.
-pub fn draw_form(selection: &Selection, data: &Observations) -> Option<DrawnForm> {
+/// Draws the form of the structure that a calibration of these rows found and could not name; `None` if it found none, or none
+/// of the library explains any of it.
+pub fn draw_form(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Option<DrawnForm> {
     let data = data.compacted();
     let weighed = Weighed::new(&data, selection.noise);
     let Best { first, found, rivals, explained, by_shapes } =
@@ -86,12 +87,21 @@ pub fn draw_form(selection: &Selection, data: &Observations) -> Option<DrawnForm
     let definition = named(&first, &found, selection.structure?.covariate, &shape, known);
     let fitted = renamed(&found, &definition, known, &weighed)?;
     // Its constants are those that are told.
-    let definition = named(&first, &fitted, selection.structure?.covariate, &shape, known);
-    let half_widths = interval_half_widths(&fitted, &weighed);
+    let mut definition = named(&first, &fitted, selection.structure?.covariate, &shape, known);
+    definition.drawn_from = readings_by_session(rows).into_values().collect();
     let at = fitted.model.term_offset(fitted.model.terms.len() - 1);
     let values = fitted.model.values();
+    // Where the table does not tell where the form lies, its size is told where it was drawn, and nothing of its place.
+    let told = if size_is_known(&fitted, &weighed) {
+        fitted.clone()
+    } else {
+        let sizes = definition.parameters.iter().filter(|p| p.bounds.is_none()).count();
+        Fit { model: fitted.model.frozen_except(&(0..at + sizes).collect::<Vec<_>>()), ..fitted.clone() }
+    };
+    let half_widths = interval_half_widths(&told, &weighed);
     let parameters = definition.parameters.iter().enumerate().map(|(i, p)| {
-        let (value, half) = (values[at + i], half_widths[at + i]);
+        let held = told.model.is_held(at + i);
+        let (value, half) = (values[at + i], if held { f64::INFINITY } else { half_widths[at + i] });
         let (low, high) = p.bounds.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let ci95 = [(value - half).max(low), (value + half).min(high)];
         (p.name.clone(), Estimate { value, ci95, unit: p.unit.clone() })
@@ -161,7 +171,7 @@ fn best(covariate: Covariate, with_shapes: &Model, weighed: &Weighed<'_>) -> Opt
             acts_on: acts_on_word(c.definition.acts_on).to_owned(),
             worse_by: toll(c, f) - toll(first, found),
         })
-        .filter(|rival| rival.worse_by <= RIVAL.max(RIVAL_SHARE * explained))
+        .filter(|rival| rival.worse_by <= rival_bound(explained))
         .collect();
     let by_shapes = without.cost - with_shapes.cost;
     (explained > 0.0).then(|| Best {
@@ -241,7 +251,29 @@ fn best_of_each<'a>(
         }
     }
     best.sort_by(|(a, x), (b, y)| toll(a, x).total_cmp(&toll(b, y)));
+    // Of forms that fit alike, one whose size is known goes first: the ends of another may lie anywhere between two readings.
+    let explained = best.first().map_or(0.0, |(_, fitted)| start.cost - fitted.cost);
+    let alike = |(c, f): &(&Candidate, Fit)| {
+        best.first().is_some_and(|(first, found)| toll(c, f) - toll(first, found) <= rival_bound(explained))
+    };
+    if let Some(at) = best.iter().position(|form| alike(form) && size_is_known(&form.1, weighed)) {
+        let known = best.remove(at);
+        best.insert(0, known);
+    }
     Some(best)
+}
+
+/// Squares of the noise by which a form may fit worse than the best, which explains so many, and be its rival.
+fn rival_bound(explained: f64) -> f64 {
+    RIVAL.max(RIVAL_SHARE * explained)
+}
+
+/// Whether the interval of the size of a fit's last term does not reach zero. Sizes come first among the constants of a form.
+fn size_is_known(fitted: &Fit, weighed: &Weighed<'_>) -> bool {
+    let at = fitted.model.term_offset(fitted.model.terms.len() - 1);
+    let half = interval_half_widths(fitted, weighed).get(at).copied();
+    let size = fitted.model.values().get(at).copied();
+    size.zip(half).is_some_and(|(size, half)| size.abs() > half)
 }
 
 /// Squares that are left, and what each constant costs: as the information criterion of Schwarz for some dozen series.

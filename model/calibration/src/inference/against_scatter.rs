@@ -5,9 +5,10 @@ use super::fit::{Fit, fit, jacobian};
 use super::levels::Levels;
 use super::noise::Noise;
 use super::observations::Observations;
+use super::scatter::Scatter;
 use super::screening::Screen;
 use super::unnamed::Context;
-use super::variance_components::{Scatter, shared_again};
+use super::variance_components::shared_again;
 use super::weighed::Weighed;
 use crate::parallel::both;
 

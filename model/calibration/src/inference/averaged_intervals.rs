@@ -6,6 +6,8 @@ use nalgebra::DVector;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::fit::{Fit, Slopes, interval_half_widths};
+use super::model::{Model, Term};
+use super::projection::dot;
 use super::screening::{EffectScore, Screen};
 use super::weighed::Weighed;
 
@@ -15,6 +17,9 @@ const NORMAL_95: f64 = 1.96;
 const TAIL: f64 = 0.025;
 /// Half-widths between which a quantile is looked for; nothing beyond is told.
 const FURTHEST: f64 = 50.0;
+
+/// Cosine of two whitened traces from which they are one.
+const SAME_TRACE: f64 = 0.98;
 
 /// An effect more: how probable it is against none, and what it does to the coordinates.
 struct OneMore {
@@ -41,13 +46,22 @@ pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> 
         return half_widths.into_iter().map(|half| [half, half]).collect();
     };
     let choices = fitted.model.vocabulary.count().max(1) as f64;
+    let sizes = sizes_of_names(&fitted.model);
     let others: Vec<OneMore> = Screen::new(fitted, weighed)
         .effects()
         .iter()
         .filter_map(|score| {
             let mut trace = score.trace_n.clone();
             weighed.whiten(&mut trace);
-            one_more(score, choices, -solver.solve(&slopes.along(&trace)))
+            let (along, length2) = (slopes.along(&trace), dot(&trace, &trace));
+            // What leaves the very trace of a name is its rival: there is one of the two, and not both with the size between
+            // them.
+            let is_a_name =
+                |i: &usize| along[*i].powi(2) > SAME_TRACE.powi(2) * slopes.normal[(*i, *i)] * length2;
+            if sizes.iter().any(is_a_name) {
+                return None;
+            }
+            one_more(score, choices, -solver.solve(&along))
         })
         .collect();
     half_widths
@@ -69,6 +83,13 @@ pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> 
             [reach(-1.0), reach(1.0)]
         })
         .collect()
+}
+
+/// Places of the first size of each name among the constants.
+fn sizes_of_names(model: &Model) -> Vec<usize> {
+    let is_a_name =
+        |i: &usize| matches!(&model.terms[*i], Term::Named(effect) if effect.description().scales);
+    (0..model.terms.len()).filter(is_a_name).map(|i| model.term_offset(i)).collect()
 }
 
 /// The effect of a score as one more; `None` for what the data cannot show or physics does not allow.

@@ -1,7 +1,7 @@
 //! The refitted baseline, and what could still explain its residuals.
 
 use super::fit::{Fit, fit, jacobian};
-use super::forward::{Model, Term};
+use super::model::{Model, Term};
 use super::observations::Observations;
 use super::weighed::Weighed;
 use crate::effects::effect_named;

@@ -30,6 +30,15 @@ pub(super) fn unchain<const N: usize>(
     }
 }
 
+/// `ln det` of what [`unchain`] whitens, over that of rows without neighbours. A row counts as many readings as it weighs.
+pub(super) fn chain_log_det(rho: f64, data: &Observations) -> f64 {
+    let own = |cell: &[usize], i: usize| {
+        let phi = libm::pow(rho, gap(data, cell, i));
+        data.weights[cell[i]] * libm::log1p(-phi * phi)
+    };
+    data.cells.iter().flat_map(|cell| (1..cell.len()).map(move |i| own(cell, i))).sum()
+}
+
 fn gap(data: &Observations, cell: &[usize], i: usize) -> f64 {
     (data.points[cell[i]].repetition - data.points[cell[i - 1]].repetition).max(1.0)
 }

@@ -2,7 +2,7 @@
 //! approximation. It weighs explanations against each other that differ in their noise, which a sum of squares cannot.
 
 use super::fit::{Fit, Slopes};
-use super::forward::{Model, Term};
+use super::model::{Model, Term};
 use super::weighed::Weighed;
 use crate::effects::Channel;
 
@@ -19,14 +19,13 @@ fn size_toll(size: f64, typical: f64) -> f64 {
     beside_bell + 2.0 * libm::log1p((size / typical).powi(2))
 }
 
-/// Minus twice the logarithm of the marginal likelihood, up to a constant of the table: whitened squares, `ln det V` of
-/// what rows share, and for every constant how much narrower the data made it.
+/// Minus twice the logarithm of the marginal likelihood, up to a constant of the table: whitened squares, `ln det V`, and for every constant how much narrower the data made it.
 pub(super) fn evidence(fitted: &Fit, weighed: &Weighed<'_>) -> f64 {
     let predicted: Vec<f64> =
         weighed.data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let mut a = Slopes::new(&fitted.model, weighed, &predicted).normal;
     let prior_sd = prior_sd(&fitted.model);
-    let mut cost = fitted.cost + weighed.shared_log_det();
+    let mut cost = fitted.cost + weighed.log_det();
     for (i, (sd, prior)) in prior_sd.iter().zip(fitted.model.priors()).enumerate() {
         if prior.sd > *sd {
             a[(i, i)] += sd.powi(-2);

@@ -3,16 +3,17 @@
 use super::baseline::{explainable, fit_baseline};
 use super::evidence::evidence;
 use super::fit::{Fit, fit, jacobian};
-use super::forward::{Model, Term};
 use super::isolation::isolated_series;
 use super::levels::Levels;
+use super::model::{Model, Term};
 use super::noise::Noise;
 use super::observations::Observations;
+use super::scatter::Scatter;
 use super::screening::Screen;
 use super::search::{bendable_gain, search};
 use super::structure_scores::StructureScore;
 use super::unnamed::{Context, FoundStructure, with_structure};
-use super::variance_components::{Scatter, estimate, shared_again};
+use super::variance_components::{estimate, shared_again};
 use super::weighed::Weighed;
 use crate::effects::Shape;
 use crate::parallel::map_each;
@@ -150,6 +151,10 @@ pub(super) fn explain(start: &Model, data: &Observations, noise: Noise, levels: 
 /// Evidence that a shape must gain beside the choice among all shapes before it changes the noise.
 const MIN_EVIDENCE: f64 = 6.0;
 
+/// Gain of a shape, in whitened squares, from which it is no chance: the best of many shapes makes the noise of a small table look
+/// smaller than it is.
+const CERTAIN_GAIN: f64 = 100.0;
+
 /// The noise beside the best shape of each covariate, if one of them makes the table more probable than the noise does
 /// without it; and the scores of all shapes.
 pub(super) fn sharper_noise(
@@ -179,7 +184,14 @@ pub(super) fn sharper_noise(
         let predicted: Vec<f64> = data.force_n.iter().zip(&with.residual_n).map(|(y, r)| y - r).collect();
         let all = jacobian(&with.model, data, &predicted);
         columns.extend(all.into_iter().rev().take(own.len()));
-        let sharper = shared_again(data, &with.residual_n, &columns, noise);
+        // What moves along a series was read as noise of its repetitions, too.
+        let is_certain = score.gain > CERTAIN_GAIN;
+        let sharper = if is_certain && own.iter().any(Term::moves_along_a_series) {
+            let found = estimate(data, &with.residual_n, &columns, noise);
+            Scatter::ALL.iter().fold(found, |found, scatter| scatter.taken_from(noise, found))
+        } else {
+            shared_again(data, &with.residual_n, &columns, noise)
+        };
         let weighed = Weighed::new(data, sharper);
         (evidence(&fit(&with.model, &weighed), &weighed), sharper)
     });

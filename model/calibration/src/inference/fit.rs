@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use pinswitch_friction::LayoutLaw;
 
-use super::forward::Model;
+use super::model::Model;
 use super::noise::Noise;
 use super::observations::Observations;
 use super::projection::dot;

@@ -5,7 +5,7 @@
 //! (`model/doc/naming-an-effect.md`), held near zero by a prior: a second effect that is larger than they can be is
 //! still seen.
 
-use super::forward::{Model, Term};
+use super::model::{Model, Term};
 use super::observations::Observations;
 use crate::effects::Covariate;
 use crate::table::Point;

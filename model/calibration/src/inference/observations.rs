@@ -107,7 +107,7 @@ impl CellMeans {
 /// Rows weighed down further than this are outliers and judge no model.
 const SOUND_WEIGHT: f64 = 0.5;
 /// Weight below which no row falls, so that its root stays a number; a reading a million times off has no say at it.
-const MIN_WEIGHT: f64 = 1e-16;
+pub(super) const MIN_WEIGHT: f64 = 1e-16;
 /// Weight of the rows of an excluded series: they keep their place and have no say.
 const EXCLUDED_WEIGHT: f64 = 1e-7;
 
@@ -222,6 +222,25 @@ impl Observations {
         }
     }
 
+    /// The part of each row, of so many that are left out in turn: whole series, dealt in the order in which they were recorded,
+    /// whatever the order of the table.
+    pub(crate) fn parts_of_series(&self, parts: usize) -> Vec<usize> {
+        let begin = |series: &usize| {
+            let rows = &self.series_rows[*series];
+            let session = rows.first().and_then(|r| self.points[*r].session_group);
+            (session, rows.iter().map(|r| self.points[*r].time).fold(f64::INFINITY, f64::min))
+        };
+        let mut order: Vec<usize> = (0..self.series).collect();
+        order.sort_by(|a, b| {
+            let ((s, t), (other, later)) = (begin(a), begin(b));
+            s.cmp(&other).then(t.total_cmp(&later))
+        });
+        let mut part = vec![0; self.series];
+        // Neighbours in time are in different parts, and so are series a period of the protocol apart.
+        order.iter().enumerate().for_each(|(rank, series)| part[*series] = (rank * 7 / 3) % parts.max(1));
+        self.series_of.iter().map(|series| part[*series]).collect()
+    }
+
     /// The structures that its points could show.
     pub(crate) fn catalogue(&self, frame: &Frame) -> Arc<Catalogue> {
         let known = self.catalogue.get_or_init(|| Arc::new(Catalogue::new(frame, &self.points)));
@@ -297,51 +316,13 @@ impl Observations {
         self.excluded.len()
     }
 
-    fn apply_exclusions(&mut self) {
+    pub(super) fn apply_exclusions(&mut self) {
         for row in 0..self.points.len() {
             if self.is_excluded(row) {
                 self.weights[row] = EXCLUDED_WEIGHT;
                 self.roots[row] = EXCLUDED_WEIGHT.sqrt();
             }
         }
-    }
-
-    /// Weighs rows down whose residual stands out from its neighbours in the same series and direction.
-    /// The neighbours' running median follows any smooth course, so that structure is not taken for outliers.
-    pub fn weigh_outliers(&mut self, residual_n: &[f64]) -> f64 {
-        let mut local = vec![0.0; residual_n.len()];
-        for cell in &self.cells {
-            for (i, row) in cell.iter().enumerate() {
-                let (from, to) = (i.saturating_sub(3), (i + 4).min(cell.len()));
-                let mut near: Vec<f64> = cell[from..to].iter().map(|r| residual_n[*r]).collect();
-                local[*row] = residual_n[*row] - median(&mut near);
-            }
-        }
-        // The spread may grow with load: medians over quarters of the loads, the own row's zeros left out.
-        let spread = |keep: &dyn Fn(f64) -> bool| {
-            let mut size: Vec<f64> = local
-                .iter()
-                .zip(&self.points)
-                .filter(|(v, p)| **v != 0.0 && keep(p.load_n))
-                .map(|(v, _)| v.abs())
-                .collect();
-            (size.len() > 20).then(|| 1.4826 * median(&mut size) / 1.08)
-        };
-        let sd = spread(&|_| true).unwrap_or(0.0).max(1e-9);
-        let mut loads: Vec<f64> = self.points.iter().map(|p| p.load_n).collect();
-        loads.sort_by(f64::total_cmp);
-        let quarter = |i: usize| loads.get(i * loads.len() / 4).copied().unwrap_or(f64::INFINITY);
-        let edges = [quarter(1), quarter(2), quarter(3)];
-        let part = |load: f64| edges.iter().filter(|e| load >= **e).count();
-        let parts: Vec<f64> =
-            (0..4).map(|i| spread(&|load| part(load) == i).unwrap_or(sd).max(0.3 * sd)).collect();
-        for (row, weight) in self.weights.iter_mut().enumerate() {
-            let z = (local[row] / parts[part(self.points[row].load_n)]).abs();
-            *weight = self.counts[row] * if z <= 3.2 { 1.0 } else { (3.2 / z).powi(3).max(MIN_WEIGHT) };
-        }
-        self.roots = self.weights.iter().map(|w| w.sqrt()).collect();
-        self.apply_exclusions();
-        sd
     }
 }
 

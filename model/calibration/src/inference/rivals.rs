@@ -1,8 +1,8 @@
 //! What is told of each effect of the vocabulary: the gain and the rivals of those that are named, and how the others score.
 
 use super::fit::{Fit, fit};
-use super::forward::Term;
 use super::levels::Levels;
+use super::model::Term;
 use super::projection::dot;
 use super::screening::{EffectScore, Screen};
 use super::search::possible;
@@ -55,6 +55,17 @@ fn rivals(
         .collect()
 }
 
+/// Strength at the size that is typical, whichever of several starts scored best: what a table can show is no matter of its noise.
+fn at_typical_size(score: &EffectScore, fitted: &Fit) -> f64 {
+    let typical = score.effect.starts(&fitted.model.frame).first().and_then(|start| start.first().copied());
+    match typical {
+        Some(typical) if score.effect.description().scales && score.size != 0.0 => {
+            score.strength * (typical / score.size).abs()
+        }
+        _ => score.strength,
+    }
+}
+
 /// Every effect of the catalogue, by its score over the baseline.
 pub(super) fn candidates(
     scores: &[EffectScore],
@@ -69,7 +80,7 @@ pub(super) fn candidates(
             gain: score.gain,
             gain_left: left.iter().find(|l| l.effect.id() == score.effect.id()).map(|l| l.gain),
             visible_share: score.visible_share,
-            strength: score.strength,
+            strength: at_typical_size(score, augmented),
         })
         .collect();
     candidates.sort_by(|a, b| b.gain.total_cmp(&a.gain));

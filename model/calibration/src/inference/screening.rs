@@ -3,8 +3,8 @@
 
 use super::fit::{Fit, jacobian};
 use super::form_tolerance::{BEND, bent_copies};
-use super::forward::Term;
 use super::lanes::{LANES, Lanes};
+use super::model::Term;
 use super::observations::Observations;
 use super::projection::{Projection, dot};
 use super::structure_scores::least_squares;

@@ -1,8 +1,8 @@
 //! The search among named effects: forward, backward and exchange steps.
 
 use super::fit::{Fit, fit, jacobian};
-use super::forward::Term;
 use super::levels::Levels;
+use super::model::Term;
 use super::reliability::Reliability;
 use super::screening::{EffectScore, Screen};
 use super::sign_flips::family_probability;

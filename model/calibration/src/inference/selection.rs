@@ -2,11 +2,12 @@
 
 use super::against_scatter::against_scatter;
 use super::baseline::{explainable, fit_baseline};
+use super::changes::choose;
 use super::explanation::{Explanation, explain};
 use super::fit::{Fit, fit, interval_half_widths, jacobian};
-use super::forward::{Model, Term};
 use super::levels::Levels;
 use super::limits::{SizeLimit, classes, limits};
+use super::model::{Model, Term};
 use super::noise::Noise;
 use super::observations::Observations;
 use super::reliability::{NoiseFactors, Reliability};
@@ -97,6 +98,8 @@ pub struct Selection {
     pub candidates: Vec<CandidateEffect>,
     /// Sizes that the data do not exclude, of visible effects that were not found.
     pub limits: Vec<SizeLimit>,
+    /// The same of effects that are too weak to be seen at a typical size.
+    pub hidden_limits: Vec<SizeLimit>,
     /// Visible effects that this design cannot tell apart.
     pub classes: Vec<Vec<&'static str>>,
     /// Probability, by flipped signs of whole series, of the largest candidate without any effect.
@@ -158,8 +161,8 @@ pub(crate) fn selected_model(
     (without_uncertain_names(chosen.augmented, &weighed).model, chosen.noise, chosen.structure)
 }
 
-/// The explanation of a table.
-fn choose(start: &Model, data: &mut Observations, levels: Levels) -> Explanation {
+/// The explanation of a table with the constants that its model has.
+pub(super) fn explained(start: &Model, data: &mut Observations, levels: Levels) -> Explanation {
     let guess = Noise::constant(0.1, 0.03);
     let rough = fit(start, &Weighed::new(data, guess));
     let sd = data.weigh_outliers(&rough.residual_n);
@@ -167,6 +170,7 @@ fn choose(start: &Model, data: &mut Observations, levels: Levels) -> Explanation
     // The first fit has seen readings that are absurd; what friction does is told by the next one.
     let rough = fit_baseline(&rough.model, &Weighed::new(data, guess));
     data.friction_n = rough.model.friction_n(&data.points);
+    let mut is_known = false;
     loop {
         let rough = fit_baseline(&rough.model, &Weighed::new(data, guess));
         let noise = estimate(data, &rough.residual_n, &explainable(&rough, data), guess);
@@ -175,25 +179,77 @@ fn choose(start: &Model, data: &mut Observations, levels: Levels) -> Explanation
             data.exclude(series);
             continue;
         }
+        // A drag that the baseline took for friction does not scale when the tendon is seated anew.
+        let friction_n = free.augmented.model.friction_n(&data.points);
+        if !is_known && departs(&friction_n, &data.friction_n) {
+            data.friction_n = friction_n;
+            is_known = true;
+            continue;
+        }
         return against_scatter(free, data, levels);
     }
 }
 
+/// Difference of two traces of friction, as a share of their length, from which scatter of friction is another one.
+const ANOTHER_FRICTION: f64 = 0.1;
+
+fn departs(now: &[f64], before: &[f64]) -> bool {
+    let (mut apart, mut length) = (0.0, 0.0);
+    for (a, b) in now.iter().zip(before) {
+        apart += (a - b).powi(2);
+        length += b * b;
+    }
+    apart > ANOTHER_FRICTION.powi(2) * length
+}
+
 /// A model without the names whose sizes may as well be zero.
 fn without_uncertain_names(mut current: Fit, weighed: &Weighed<'_>) -> Fit {
-    loop {
-        let (values, widths) = (current.model.values(), interval_half_widths(&current, weighed));
-        let uncertain = (0..current.model.terms.len()).find(|index| {
-            let at = current.model.term_offset(*index);
-            let Term::Named(effect) = &current.model.terms[*index] else { return false };
-            let free = effect.parameters().first().is_some_and(|p| p.bounds.is_none());
-            free && effect.description().scales && values[at].abs() <= widths[at]
-        });
-        match uncertain {
-            Some(index) => current = fit(&current.model.without_term(index), weighed),
-            None => return current,
-        }
+    while let Some(index) = uncertain_name(&current, weighed) {
+        current = as_claimed(&current, index, weighed)
+            .unwrap_or_else(|| fit(&current.model.without_term(index), weighed));
     }
+    current
+}
+
+/// Index of a named term whose size may as well be zero.
+fn uncertain_name(fitted: &Fit, weighed: &Weighed<'_>) -> Option<usize> {
+    let (values, widths) = (fitted.model.values(), interval_half_widths(fitted, weighed));
+    (0..fitted.model.terms.len()).find(|index| {
+        let at = fitted.model.term_offset(*index);
+        let Term::Named(effect) = &fitted.model.terms[*index] else { return false };
+        let free = effect.parameters().first().is_some_and(|p| p.bounds.is_none());
+        free && effect.description().scales && values[at].abs() <= widths[at]
+    })
+}
+
+/// Squares of the noise, and share of what a claim explains, by which it may fit worse than the same effect with free shapes.
+const AS_CLAIMED: (f64, f64) = (9.0, 0.1);
+
+/// The same with an effect of one's own whose shapes are held as claimed: where a bump lies between two readings no table
+/// tells, and how high it is depends on that; that it is there may be certain all the same. `None` if the claim does not
+/// explain it.
+fn as_claimed(fitted: &Fit, index: usize, weighed: &Weighed<'_>) -> Option<Fit> {
+    let Term::Named(effect) = &fitted.model.terms[index] else { return None };
+    let model = &fitted.model;
+    let own = model.vocabulary.own().find(|own| own.definition().id == effect.id())?;
+    let last = model.term_offset(index) + own.definition().parameters.len() - 1;
+    if model.is_held(last) {
+        return None;
+    }
+    let claimed: Vec<f64> = own.definition().parameters.iter().map(|p| p.start).collect();
+    let bare = model.without_term(index);
+    let with = bare.with_term(Term::Named(*effect), &claimed);
+    let at = with.term_offset(bare.terms.len());
+    let shapes = own.definition().parameters.iter().filter(|p| p.bounds.is_some()).count();
+    if shapes == 0 {
+        return None;
+    }
+    let free: Vec<usize> = (0..with.values().len() - shapes).collect();
+    let held = fit(&with.frozen_except(&free), weighed);
+    let explained = fit(&bare, weighed).cost - fitted.cost;
+    let is_as_good = held.cost - fitted.cost < AS_CLAIMED.0.max(AS_CLAIMED.1 * explained);
+    let (size, half) = (held.model.values()[at], interval_half_widths(&held, weighed)[at]);
+    (is_as_good && size.abs() > half).then_some(held)
 }
 
 /// Everything that is told about the explanation chosen.
@@ -207,9 +263,13 @@ fn finish(mut chosen: Explanation, data: &Observations, levels: Levels) -> Selec
     let reliability = Reliability::new(data, chosen.noise, &own);
     let candidates = candidates(&scores, &chosen.augmented, &weighed);
     let visible = |id: &str| candidates.iter().any(|c| c.effect.id() == id && !c.is_invisible());
+    let shown = |id: &str| candidates.iter().any(|c| c.effect.id() == id && !c.is_taken_over());
+    let limits = limits(&chosen.augmented, &weighed, &reliability, |effect| shown(effect.id()));
+    let (limits, hidden_limits) = limits.into_iter().partition(|limit| visible(limit.effect.id()));
     Selection {
         noise_factors: reliability.factors(),
-        limits: limits(&chosen.augmented, &weighed, &reliability, |effect| visible(effect.id())),
+        limits,
+        hidden_limits,
         classes: classes(&scores, |score| visible(score.effect.id())),
         effects: found_effects(&chosen.augmented, &weighed, levels),
         structure: chosen.structure,

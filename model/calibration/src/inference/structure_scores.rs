@@ -1,8 +1,8 @@
 //! Scores of structures without a name: every shape of the catalogue on every channel, by what the model's own constants
 //! leave of it.
 
-use super::forward::Term;
 use super::lanes::{LANES, Lanes};
+use super::model::Term;
 use super::projection::dot;
 use super::screening::Screen;
 use super::structures::Group;

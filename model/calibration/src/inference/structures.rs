@@ -85,7 +85,7 @@ impl Catalogue {
 /// All structures that a table of these points could show.
 pub(crate) fn structures_to_try(frame: &Frame, points: &[Point]) -> Vec<Group> {
     let mut groups = Vec::new();
-    time(&mut groups, points);
+    time(&mut groups, frame, points);
     position(&mut groups, points);
     levels_of_conditions(&mut groups, frame, points);
     rates(&mut groups, frame, points);
@@ -111,16 +111,32 @@ fn push_wave(
     );
 }
 
+/// Repetitions over which a memory that lasts is forgotten: more than a series has.
+const LASTING: f64 = 1e4;
+
 const READING_AND_FRICTION: [Channel; 2] = [Channel::Reading, Channel::Friction];
 const ALL: [Channel; 3] = [Channel::Reading, Channel::Drag, Channel::Friction];
 
-fn time(groups: &mut Vec<Group>, points: &[Point]) {
+/// All channels, with those of one material where a condition has it: another tendon may rub less on silicone and more on pins.
+fn by_material(frame: &Frame) -> Vec<Channel> {
+    let mut channels = ALL.to_vec();
+    if frame.conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone)) {
+        channels.push(Channel::Silicone);
+    }
+    if frame.conditions.iter().any(crate::table::Condition::has_pins) {
+        channels.push(Channel::Pins);
+    }
+    channels
+}
+
+fn time(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]) {
+    let channels = by_material(frame);
     let mut times: Vec<f64> = points.iter().map(|p| p.time).collect();
     times.sort_by(f64::total_cmp);
     // Sixty places for a step, at equal numbers of rows.
     for i in 3..58 {
         if let Some(at) = times.get(i * times.len() / 60) {
-            push(groups, Covariate::Time, &ALL, &Shape::TimeStep { at: *at });
+            push(groups, Covariate::Time, &channels, &Shape::TimeStep { at: *at });
         }
     }
     for i in 1..160 {
@@ -180,13 +196,7 @@ fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]
             }
         }
     }
-    let mut channels = vec![Channel::Reading, Channel::Drag, Channel::Friction];
-    if frame.conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone)) {
-        channels.push(Channel::Silicone);
-    }
-    if frame.conditions.iter().any(crate::table::Condition::has_pins) {
-        channels.push(Channel::Pins);
-    }
+    let channels = by_material(frame);
     for power in 1..=3 {
         push(groups, Covariate::Load, &channels, &Shape::LoadPower { power, unit_n });
     }
@@ -194,7 +204,7 @@ fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]
         push(groups, Covariate::Direction, &[Channel::Reading], &Shape::DirectionLoad { power, unit_n });
     }
     push(groups, Covariate::Sweep, &ALL, &Shape::Descending);
-    for r0 in [3.0, 8.0, 20.0, 60.0] {
+    for r0 in [3.0, 8.0, 20.0, 60.0, LASTING] {
         push(groups, Covariate::Load, &channels, &Shape::Memory { r0, unit_n });
     }
     let loads = levels(points, |p| p.load_n, 1e-3);

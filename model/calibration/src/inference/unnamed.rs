@@ -1,8 +1,8 @@
 //! Structure that no name explains: found, compared with the names, corrected by smooth shapes.
 
 use super::fit::{Fit, fit};
-use super::forward::Term;
 use super::levels::Levels;
+use super::model::Term;
 use super::screening::Screen;
 use super::search::{prune, search};
 use super::sign_flips::family_probability;
@@ -64,7 +64,7 @@ impl Context<'_> {
         };
         match best {
             Some((with, structure)) => {
-                let corrected = self.smooth(with);
+                let corrected = with_what_is_left(with, weighed);
                 let least = levels.further.max(0.01 * (baseline.cost - corrected.cost));
                 let pruned = prune(corrected, weighed, least, 0);
                 (self.without_names_that_shapes_replace(pruned), Some(structure))
@@ -133,7 +133,7 @@ impl Context<'_> {
             if matches!(current.model.terms[index], Term::Named(_)) {
                 let without = fit(&current.model.without_term(index), self.weighed);
                 let gain = without.cost - current.cost;
-                let bare = self.smooth(without);
+                let bare = with_what_is_left(without, self.weighed);
                 if bare.cost - current.cost < self.levels.further.max(REPLACED_SHARE * gain) {
                     current = bare;
                     index = 0;
@@ -144,20 +144,20 @@ impl Context<'_> {
         }
         current
     }
+}
 
-    /// Refines the data-driven correction: more shapes while each gains clearly.
-    fn smooth(&self, mut current: Fit) -> Fit {
-        for _ in 0..4 {
-            let scores = Screen::new(&current, self.weighed).structures();
-            let Some(score) = scores.first().filter(|s| s.gain > 30.0) else { break };
-            let with = with_structure(&current, score, self.weighed);
-            if current.cost - with.cost < 25.0 {
-                break;
-            }
-            current = with;
+/// Refines the data-driven correction: more shapes while each gains clearly.
+pub(crate) fn with_what_is_left(mut current: Fit, weighed: &Weighed<'_>) -> Fit {
+    for _ in 0..4 {
+        let scores = Screen::new(&current, weighed).structures();
+        let Some(score) = scores.first().filter(|s| s.gain > 30.0) else { break };
+        let with = with_structure(&current, score, weighed);
+        if current.cost - with.cost < 25.0 {
+            break;
         }
-        current
+        current = with;
     }
+    current
 }
 
 /// Adds a structure's shapes to a model and fits.

@@ -11,20 +11,17 @@ use nalgebra::{DMatrix, DVector};
 use super::correlation;
 use super::noise::{Noise, Spread};
 use super::observations::Observations;
-use super::projection::{Projection, dot};
+use super::projection::Projection;
+use super::scatter::Scatter;
 use super::walk::Wandering;
-use super::wandering::{walk_cost, wandering};
 use super::weighed::Weighed;
 
 /// Rounds of the update: parts far from their start need some tens.
-const ROUNDS: usize = 24;
+pub(super) const ROUNDS: usize = 24;
 /// Shares of friction below which a scatter changes no decision.
-const LEAST_SCALE: f64 = 2e-4;
+pub(super) const LEAST_SCALE: f64 = 2e-4;
 /// Fewer means than this beyond what is projected out tell nothing of what series share.
 const LEAST_DEGREES: f64 = 8.0;
-/// Largest scatter of the friction from mount to mount that is called scatter: beyond it, something is wrong.
-pub(super) const MOST_MOUNT_SCALE: f64 = 0.06;
-
 /// A square beyond nine times its expectation counts as nine; the cap loses 2 % of a chi-square's mean.
 fn capped(square: f64, expected: f64) -> f64 {
     1.02 * square.min(9.0 * expected)
@@ -47,9 +44,11 @@ pub(super) fn estimate(
         noise.repetition = inside(data, residual_n, explainable, noise).0;
     }
     let noise = between(data, residual_n, explainable, noise).unwrap_or(noise);
-    [Scatter::Groups, Scatter::Specimens]
-        .iter()
-        .fold(noise, |noise, labelled| labelled.estimated(data, residual_n, &[], noise))
+    [Scatter::Groups, Scatter::Specimens].iter().fold(noise, |noise, labelled| {
+        // What all groups have in common is no scatter between them: an offset that comes back in every session is one of the cell.
+        let common = (0..data.points.len()).map(|row| labelled.direction_n(data, row)).collect();
+        labelled.estimated(data, residual_n, &[common], noise)
+    })
 }
 
 /// The same with the repetition noise and the scatter that competes with effects as they are: what series share, beside
@@ -273,164 +272,8 @@ fn means_variance(means: &Observations, noise: Noise, block: &Block, a: &DVector
         + (noise.series_scale * means.friction_n[row]).powi(2)
 }
 
-fn indicator(len: usize, rows: &[usize], value: impl Fn(usize) -> f64) -> Vec<f64> {
+pub(super) fn indicator(len: usize, rows: &[usize], value: impl Fn(usize) -> f64) -> Vec<f64> {
     let mut column = vec![0.0; len];
     rows.iter().for_each(|r| column[*r] = value(*r));
     column
-}
-
-/// A scatter that competes with effects, since few groups tell it: its effects are alike to its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scatter {
-    /// The friction of each mount.
-    Mounts,
-    /// Offsets that wander from series to series.
-    Walk,
-    /// The reading of each operator and of each session, where the table names them.
-    Groups,
-    /// The friction of each specimen, where the table names them.
-    Specimens,
-}
-
-impl Scatter {
-    /// Those that compete with effects. The others are known by the table's own labels.
-    pub(super) const ALL: [Scatter; 2] = [Scatter::Mounts, Scatter::Walk];
-
-    /// The noise with this scatter as it is in another one.
-    pub(super) fn taken_from(self, other: Noise, noise: Noise) -> Noise {
-        match self {
-            Scatter::Mounts => Noise { mount_scale: other.mount_scale, ..noise },
-            Scatter::Walk => Noise { walk: other.walk, ..noise },
-            Scatter::Groups => Noise { group_offset_n: other.group_offset_n, ..noise },
-            Scatter::Specimens => Noise { specimen_scale: other.specimen_scale, ..noise },
-        }
-    }
-
-    /// The noise without this scatter.
-    pub(super) fn left_out(self, noise: Noise) -> Noise {
-        self.taken_from(Noise::constant(0.0, 0.0), noise)
-    }
-
-    /// The noise with this scatter as residuals in newtons show it beside what `own` columns can take over. Everything
-    /// else of the noise stays.
-    pub(super) fn estimated(
-        self,
-        data: &Observations,
-        residual_n: &[f64],
-        own: &[Vec<f64>],
-        noise: Noise,
-    ) -> Noise {
-        let without = self.left_out(noise);
-        if self == Scatter::Walk {
-            return Noise { walk: wandering(data, residual_n, own, without), ..without };
-        }
-        self.in_noise(without, scatter_size(self, data, residual_n, own, without))
-    }
-
-    /// Those but the walk have one size.
-    fn in_noise(self, noise: Noise, size: f64) -> Noise {
-        match self {
-            Scatter::Mounts => Noise { mount_scale: size, ..noise },
-            Scatter::Walk => noise,
-            Scatter::Groups => Noise { group_offset_n: size, ..noise },
-            Scatter::Specimens => Noise { specimen_scale: size, ..noise },
-        }
-    }
-
-    fn groups(self, data: &Observations) -> Vec<&Vec<usize>> {
-        match self {
-            Scatter::Mounts => data.mounts.iter().collect(),
-            Scatter::Walk => Vec::new(),
-            Scatter::Groups => data.operators.iter().chain(&data.sessions).collect(),
-            Scatter::Specimens => data.specimens.iter().collect(),
-        }
-    }
-
-    /// Groups without which nothing can be told of the scatter between them.
-    fn least_groups(self) -> usize {
-        match self {
-            Scatter::Mounts => 3,
-            Scatter::Walk => 0,
-            Scatter::Groups | Scatter::Specimens => 2,
-        }
-    }
-
-    /// What a row of a group does when the group is off by one, in newtons.
-    fn direction_n(self, data: &Observations, row: usize) -> f64 {
-        match self {
-            Scatter::Mounts | Scatter::Specimens => data.friction_n[row],
-            Scatter::Walk | Scatter::Groups => 1.0,
-        }
-    }
-
-    /// Sizes: the least that changes a decision, one to start from, what is typical, the largest that is called scatter.
-    fn scale(self) -> [f64; 4] {
-        match self {
-            Scatter::Mounts => [LEAST_SCALE, 0.02, 0.045, MOST_MOUNT_SCALE],
-            Scatter::Walk => [0.0; 4],
-            Scatter::Groups => [2e-3, 0.2, 0.5, 10.0],
-            Scatter::Specimens => [LEAST_SCALE, 0.05, 0.1, 1.0],
-        }
-    }
-
-    /// Minus twice the logarithm of how probable this scatter is before any data, a half-normal law of its size, up to a
-    /// constant.
-    pub(super) fn cost(self, noise: Noise, data: &Observations) -> f64 {
-        let size = match self {
-            Scatter::Mounts => noise.mount_scale,
-            Scatter::Walk => return walk_cost(noise, data),
-            Scatter::Groups => noise.group_offset_n,
-            Scatter::Specimens => noise.specimen_scale,
-        };
-        (size / self.scale()[2]).powi(2)
-    }
-}
-
-/// The size of a scatter by restricted maximum likelihood.
-fn scatter_size(
-    scatter: Scatter,
-    data: &Observations,
-    residual_n: &[f64],
-    own: &[Vec<f64>],
-    noise: Noise,
-) -> f64 {
-    let [least, start, _, most] = scatter.scale();
-    let none = (0..data.points.len()).all(|r| scatter.direction_n(data, r) == 0.0);
-    if scatter.groups(data).len() < scatter.least_groups() || none {
-        return 0.0;
-    }
-    let means = data.cell_means(noise);
-    let residual = means.mean_of(data, residual_n);
-    let columns = means.means_of(data, own);
-    let means = &means.observations;
-    let groups: Vec<Vec<f64>> = scatter
-        .groups(means)
-        .iter()
-        .map(|rows| indicator(residual.len(), rows, |r| scatter.direction_n(means, r)))
-        .collect();
-    let mut theta = start * start;
-    for _ in 0..ROUNDS {
-        let weighed = Weighed::new(means, scatter.in_noise(noise, theta.sqrt()));
-        let projection = Projection::of_whitened(&columns, residual.len(), &weighed);
-        let mut rest = residual.clone();
-        weighed.whiten(&mut rest);
-        projection.remove(&mut rest);
-        let (mut found, mut expected) = (0.0, 0.0);
-        let mut white = groups.clone();
-        weighed.whiten_all(&mut white);
-        for mut white in white {
-            projection.remove(&mut white);
-            let expect = dot(&white, &white);
-            found += dot(&white, &rest).powi(2);
-            expected += expect;
-        }
-        if expected <= 0.0 {
-            return 0.0;
-        }
-        theta *= (found / expected).clamp(0.05, 20.0);
-        if theta < least * least {
-            return 0.0;
-        }
-    }
-    theta.sqrt().min(most)
 }

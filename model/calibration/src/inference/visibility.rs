@@ -3,8 +3,8 @@
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::fit::jacobian;
-use super::forward::Model;
 use super::levels::Levels;
+use super::model::Model;
 use super::projection::{Projection, dot};
 use super::significance::gain_at;
 use super::weighed::Weighed;

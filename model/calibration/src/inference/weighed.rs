@@ -5,7 +5,7 @@
 //! zero of an operator. Each of those is one random number per group times a direction among the group's rows, so that
 //! `V` is whitened by one step of rank one after the other; the cost is linear in rows.
 
-use super::correlation::unchain;
+use super::correlation::{chain_log_det, unchain};
 use super::lanes::{LANES, Lanes};
 use super::noise::{Noise, Part};
 use super::observations::Observations;
@@ -209,7 +209,20 @@ impl<'a> Weighed<'a> {
         values
     }
 
-    /// `ln det V` over that of the repetition noise alone: what shared noise costs a likelihood.
+    /// What the noise costs a likelihood beside the whitened squares of the rows, up to a constant of the table: `ln det V`,
+    /// and the squares of the readings about their mean where a row is one. A row counts as many readings as it weighs.
+    pub(crate) fn log_det(&self) -> f64 {
+        let own = |row: usize| {
+            let variance = self.noise.repetition.at(self.data.points[row].load_n).max(1e-12).powi(2);
+            self.data.weights[row] * (libm::log(variance) + self.data.within_n2[row] / variance)
+        };
+        let repetition: f64 = (0..self.data.points.len()).map(own).sum();
+        let correlation = self.noise.correlation;
+        let chain = if correlation > 0.0 { chain_log_det(correlation, self.data) } else { 0.0 };
+        repetition + chain + self.shared_log_det()
+    }
+
+    /// `ln det V` over that of the repetition noise alone.
     pub(crate) fn shared_log_det(&self) -> f64 {
         let shared: f64 = self
             .cells
@@ -232,19 +245,20 @@ mod tests {
 
     #[test]
     fn whitening_undoes_the_covariance() {
-        whitens(Wandering::default(), 0.05, 1e-9);
+        whitens(Wandering::default(), 0.05, 1.0, 1e-9);
+        whitens(Wandering::default(), 0.05, 0.2, 1e-9);
         let walk = Wandering { correlation: 0.8, white: 0.5, common: 1.5, direction: 0.7 };
-        whitens(walk, 0.0, 1e-9);
-        whitens(walk, 0.05, 1e-6);
+        whitens(walk, 0.0, 0.2, 1e-9);
+        whitens(walk, 0.05, 0.2, 1e-6);
     }
 
-    /// `V^-1/2 V V^-1/2' = 1` to a bound, for a covariance with every part.
-    fn whitens(walk: Wandering, mount_scale: f64, bound: f64) {
+    /// `V^-1/2 V V^-1/2' = 1` to a bound, for a covariance with every part, where every ninth row has another weight.
+    fn whitens(walk: Wandering, mount_scale: f64, weight: f64, bound: f64) {
         let rows: Vec<_> = session(1).into_iter().take(54).collect();
         let frame = Frame::new(&rows);
         let mut data = Observations::new(&frame, &rows).unwrap();
         let n = rows.len();
-        data.weights = (0..n).map(|i| if i % 9 == 3 { 0.2 } else { 1.0 }).collect();
+        data.weights = (0..n).map(|i| if i % 9 == 3 { weight } else { 1.0 }).collect();
         data.roots = data.weights.iter().map(|w| w.sqrt()).collect();
         // A walk takes the friction of a cell for one number: its rows have one load.
         let number = |r: usize| {
@@ -303,6 +317,10 @@ mod tests {
         let through: f64 = white.iter().zip(&b).map(|(x, y)| x * y).sum();
         let back: f64 = unchained.whiten_transposed(b).iter().zip(&a).map(|(x, y)| x * y).sum();
         assert!((through / back - 1.0).abs() < 1e-9, "{through} {back}");
+        if data.weights.iter().all(|w| *w == 1.0) {
+            let log_det: f64 = v.cholesky().unwrap().l().diagonal().iter().map(|d| 2.0 * libm::log(*d)).sum();
+            assert!((weighed.log_det() - log_det).abs() < 1e-6, "{} {log_det}", weighed.log_det());
+        }
         let repetition = Noise::constant(0.1, 0.0);
         let chained = Weighed::new(&data, Noise { correlation: 0.6, ..repetition });
         assert!(chained.shared_log_det() == 0.0);

@@ -19,6 +19,8 @@ const PER_RADIAN: f64 = 0.4;
 
 /// Widening of the bounds beyond which an eccentric course alone does not tell.
 const WIDE: f64 = 3.0;
+/// Ratio of a condition's heaviest load to its lightest below which it has one load.
+const ONE_LOAD: f64 = 1.02;
 /// Rank correlation below which readings have nothing to do with loads, whatever the slope.
 const UNRELATED: f64 = 0.5;
 
@@ -48,9 +50,7 @@ impl Following {
             |of: &[&PlateauRow]| Course { directions: directions(of, &load, &force), widening: widening(of) };
         let told: Vec<Course> =
             conditions(rows).iter().map(|of| course(of)).filter(Course::can_tell).collect();
-        // Where every condition has one load only, the table as a whole can still tell.
-        let told = if told.is_empty() { vec![course(&rows.iter().collect::<Vec<_>>())] } else { told };
-        let told: Vec<Course> = told.into_iter().filter(Course::can_tell).collect();
+        let told = if told.is_empty() { across(rows, &load, &course) } else { told };
         let widest = told.iter().map(|course| course.widening).fold(1.0, f64::max);
         let astray = told.iter().filter(|course| !course.is_possible());
         let mut slopes: Vec<f64> =
@@ -82,11 +82,36 @@ pub(super) fn conditions(rows: &[PlateauRow]) -> Vec<Vec<&PlateauRow>> {
     found.into_values().collect()
 }
 
+/// The table as a whole, which can tell where every condition has one load only: if those differ by more than the
+/// friction of the conditions may.
+fn across(
+    rows: &[PlateauRow],
+    load: &impl Fn(&PlateauRow) -> f64,
+    course: &impl Fn(&[&PlateauRow]) -> Course,
+) -> Vec<Course> {
+    let ratio = |of: &[&PlateauRow]| {
+        let loads = of.iter().map(|r| load(r)).filter(|n| *n > 0.0);
+        let (least, most) = loads.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), n| (a.min(n), b.max(n)));
+        most / least
+    };
+    let all: Vec<&PlateauRow> = rows.iter().collect();
+    let friction = libm::exp(PER_RADIAN * largest_wrap_rad(&all));
+    let one_load = conditions(rows).iter().all(|of| ratio(of) < ONE_LOAD);
+    Some(course(&all))
+        .filter(|whole| one_load && ratio(&all) > friction && whole.can_tell())
+        .into_iter()
+        .collect()
+}
+
+/// Largest wrap of some rows, in radians.
+fn largest_wrap_rad(rows: &[&PlateauRow]) -> f64 {
+    let wrap = |r: &&PlateauRow| r.substrate.map_or(UNKNOWN_WRAP, |_| r.wrap_angle_deg.to_radians());
+    rows.iter().map(wrap).fold(0.0, f64::max)
+}
+
 /// Factor by which a wrap beyond the paper's widens the bounds.
 fn widening(rows: &[&PlateauRow]) -> f64 {
-    let wrap = |r: &&PlateauRow| r.substrate.map_or(UNKNOWN_WRAP, |_| r.wrap_angle_deg.to_radians());
-    let largest = rows.iter().map(wrap).fold(0.0, f64::max);
-    libm::exp(PER_RADIAN * (largest - published::wrap_angle_rad()).max(0.0))
+    libm::exp(PER_RADIAN * (largest_wrap_rad(rows) - published::wrap_angle_rad()).max(0.0))
 }
 
 /// How readings go with loads in one condition.
@@ -178,6 +203,26 @@ mod tests {
         assert!(of(&rows).astray == 1 && !of(&rows).is_astray());
         rows.iter_mut().filter(|r| r.pins.len() == 3).for_each(|r| r.force_n = 30.0);
         assert!(of(&rows).astray == 3 && of(&rows).is_astray(), "{:?}", of(&rows));
+    }
+
+    #[test]
+    fn one_load_for_each_condition_tells_over_the_table_unless_friction_may_be_what_differs() {
+        let all = session(1);
+        let layouts: Vec<Vec<usize>> = conditions(&all).iter().map(|of| of[0].pins.clone()).collect();
+        let with = |step: f64| {
+            let mut rows = all.clone();
+            for row in &mut rows {
+                let k = layouts.iter().position(|pins| *pins == row.pins).unwrap_or(0);
+                row.load_n = 20.0 * (1.0 + step * k as f64);
+                row.force_n = row.load_n + row.direction.sign();
+            }
+            rows
+        };
+        let mut rows = with(1.0);
+        assert_eq!((of(&rows).judged, of(&rows).astray), (1, 0));
+        rows.iter_mut().for_each(|r| r.force_n = 7.0);
+        assert_eq!((of(&rows).judged, of(&rows).astray), (1, 1));
+        assert_eq!(of(&with(0.15)).judged, 0);
     }
 
     #[test]

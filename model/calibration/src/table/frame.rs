@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use pinswitch_friction::{Substrate, published};
 use serde::{Deserialize, Serialize};
 
-use super::row::{PlateauRow, Sweep};
+use super::change::Change;
+use super::row::{Labels, PlateauRow, Sweep};
 use super::substrate_word::substrate_word;
 
 /// One kind of contact in a table: substrate and pins.
@@ -87,6 +88,11 @@ impl Condition {
         }
     }
 
+    /// Whether the tendon touches silicone, or what nobody named.
+    pub(crate) fn is_silicone_or_plain(&self) -> bool {
+        self.substrate != Some(Substrate::Abs)
+    }
+
     /// Whether pins touch the tendon (on `abs` or in a device).
     pub fn has_pins(&self) -> bool {
         !self.pins.is_empty() && self.substrate.is_some()
@@ -103,7 +109,7 @@ fn wrap_rad(substrate: Option<Substrate>, wrap_angle_deg: f64) -> f64 {
 
 /// Conditions and reference values of a session; a model carries it, so that rows of the same rig can be
 /// predicted later.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// Length of the stroke in millimetres.
     pub stroke_mm: f64,
@@ -119,6 +125,15 @@ pub struct Frame {
     pub load_range_n: (f64, f64),
     /// The conditions, in order of appearance.
     pub conditions: Vec<Condition>,
+    /// Names of the sessions in order of appearance; empty with fewer than two.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sessions: Vec<String>,
+    /// Names of the specimens in order of appearance; empty with fewer than two.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub specimens: Vec<String>,
+    /// Constants that some of them have otherwise than the last one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<Change>,
 }
 
 /// A row in the form in which the friction model reads it.
@@ -162,6 +177,10 @@ pub struct Point {
     pub session: f64,
     /// The number of the mount, or its place in the order of the table, from 1.
     pub mount: f64,
+    /// Place of its session in [`Frame::sessions`], if it is one of them.
+    pub session_group: Option<usize>,
+    /// Place of its specimen in [`Frame::specimens`], if it is one of them.
+    pub specimen_group: Option<usize>,
 }
 
 impl Point {
@@ -173,6 +192,8 @@ impl Point {
             && self.descending == other.descending
             && self.log_speed == other.log_speed
             && self.log_dwell == other.log_dwell
+            && self.session_group == other.session_group
+            && self.specimen_group == other.specimen_group
     }
 }
 
@@ -205,6 +226,9 @@ impl Frame {
             travel_share,
             load_range_n: (rows.iter().map(|r| r.load_n).fold(f64::INFINITY, f64::min), max(|r| r.load_n)),
             conditions: Vec::new(),
+            sessions: several(rows, |labels| &labels.session),
+            specimens: several(rows, |labels| &labels.specimen),
+            changes: Vec::new(),
         };
         for row in rows {
             frame.extend(row);
@@ -288,8 +312,20 @@ impl Frame {
             time_s: row.time_s,
             session: 1.0,
             mount: 1.0,
+            session_group: self.sessions.iter().position(|name| *name == row.labels.session),
+            specimen_group: self.specimens.iter().position(|name| *name == row.labels.specimen),
         })
     }
+}
+
+/// The labels of some rows in order of appearance; none where all are one.
+fn several(rows: &[PlateauRow], label: impl Fn(&Labels) -> &String) -> Vec<String> {
+    let (of, count) = groups(rows, |row| label(&row.labels).clone());
+    let mut names = vec![String::new(); count];
+    for (row, group) in rows.iter().zip(of) {
+        names[group].clone_from(label(&row.labels));
+    }
+    if count > 1 { names } else { Vec::new() }
 }
 
 /// Place of a name among those seen so far, from 1.

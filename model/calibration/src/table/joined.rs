@@ -1,5 +1,7 @@
 //! Tables of several sessions as one.
 
+use std::collections::BTreeSet;
+
 use super::columns::LABELS;
 use super::plateau_table::PlateauTable;
 use super::row_cells::RowCells;
@@ -14,8 +16,10 @@ impl PlateauTable {
     ///
     /// # Errors
     /// [`TableError::Session`] if two tables hold rows of one session: their times and series would be mixed up.
+    /// [`TableError::Copied`] if one holds most readings of another: what is counted twice looks certain.
     pub fn joined(tables: Vec<(Self, String)>) -> Result<Self, TableError> {
         let mut sessions: Vec<(String, String)> = Vec::new();
+        refuse_copies(&tables)?;
         let mut all = Self { rows: Vec::new(), header: Vec::new(), cells: Vec::new() };
         for (mut table, file) in tables {
             if !table.header.iter().any(|name| name == SESSION) {
@@ -23,16 +27,14 @@ impl PlateauTable {
                 table.cells.iter_mut().for_each(|cells| cells.push(&file));
                 table.rows.iter_mut().for_each(|row| row.labels.session.clone_from(&file));
             }
-            let own: std::collections::BTreeSet<&String> =
-                table.rows.iter().map(|r| &r.labels.session).collect();
+            let own: BTreeSet<&String> = table.rows.iter().map(|r| &r.labels.session).collect();
             for session in own {
                 if let Some((_, other)) = sessions.iter().find(|(known, _)| known == session) {
                     let (session, other) = (session.clone(), other.clone());
                     return Err(TableError::Session { file, other, session });
                 }
             }
-            let own: std::collections::BTreeSet<String> =
-                table.rows.iter().map(|r| r.labels.session.clone()).collect();
+            let own: BTreeSet<String> = table.rows.iter().map(|r| r.labels.session.clone()).collect();
             sessions.extend(own.into_iter().map(|session| (session, file.clone())));
             for name in &table.header {
                 if !all.header.contains(name) {
@@ -50,6 +52,32 @@ impl PlateauTable {
         }
         Ok(all)
     }
+}
+
+/// Share of the shorter table's readings that another one has only if it is a copy: a cell with coarse steps reads the same
+/// now and then.
+const COPIED: f64 = 0.8;
+/// Readings below which nobody can tell.
+const LEAST_READINGS: usize = 8;
+
+fn refuse_copies(tables: &[(PlateauTable, String)]) -> Result<(), TableError> {
+    let readings = |table: &PlateauTable| -> BTreeSet<[u64; 3]> {
+        table.rows.iter().map(|r| [r.time_s, r.load_n, r.force_n].map(f64::to_bits)).collect()
+    };
+    let sets: Vec<BTreeSet<[u64; 3]>> = tables.iter().map(|(table, _)| readings(table)).collect();
+    for (i, own) in sets.iter().enumerate() {
+        for (j, other) in sets[..i].iter().enumerate() {
+            let both = own.intersection(other).count();
+            let shorter = own.len().min(other.len());
+            // A file that is given twice is told by its session.
+            let is_another = tables[i].1 != tables[j].1;
+            if is_another && shorter >= LEAST_READINGS && both as f64 >= COPIED * shorter as f64 {
+                let [file, other] = [i, j].map(|at| tables[at].1.clone());
+                return Err(TableError::Copied { file, other, rows: both });
+            }
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -78,5 +106,30 @@ mod tests {
         let twice = PlateauTable::joined(vec![(first.clone(), "a.csv".into()), (first, "a.csv".into())]);
         let error = twice.unwrap_err().to_string();
         assert!(error.contains("a.csv") && error.contains("session"), "{error}");
+    }
+
+    #[test]
+    fn a_copy_is_no_second_session() {
+        let of = |rows: Vec<crate::table::PlateauRow>| {
+            PlateauTable::read(PlateauTable::write(&rows).as_bytes(), "t.csv").unwrap()
+        };
+        let joined = |first: PlateauTable, second: PlateauTable| {
+            PlateauTable::joined(vec![(first, "a.csv".into()), (second, "b.csv".into())])
+        };
+        let rows = crate::test_session::session(1);
+        let part = rows[..rows.len() / 2].to_vec();
+        for (first, second) in
+            [(rows.clone(), rows.clone()), (part.clone(), rows.clone()), (rows.clone(), part)]
+        {
+            let error = joined(of(first), of(second)).unwrap_err().to_string();
+            assert!(error.starts_with("b.csv: ") && error.contains("stand in a.csv too"), "{error}");
+        }
+        // Another day of the same protocol, on a cell that shows twentieths of a newton.
+        let coarse = |seed: u64| {
+            let mut rows = crate::test_session::session(seed);
+            rows.iter_mut().for_each(|r| r.force_n = (20.0 * r.force_n).round() / 20.0);
+            of(rows)
+        };
+        assert!(joined(coarse(1), coarse(2)).is_ok());
     }
 }

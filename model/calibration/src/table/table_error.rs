@@ -27,6 +27,19 @@ pub enum TableError {
         /// The session.
         session: String,
     },
+    /// Two tables are one, or parts of one.
+    #[error(
+        "{file}: {rows} of its readings stand in {other} too, with their times; a table and a copy of it are one session: leave one \
+         of the files out"
+    )]
+    Copied {
+        /// File name as given.
+        file: String,
+        /// The other file.
+        other: String,
+        /// Rows that both have.
+        rows: usize,
+    },
     /// A column is absent from the header.
     #[error(
         "{file}, line 1: column '{column}' is missing; the header must name {}; a raw log becomes such a table by \

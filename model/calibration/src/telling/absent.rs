@@ -53,12 +53,17 @@ pub(super) fn invisible(selection: &Selection) -> Vec<Invisible> {
                     "the refitted baseline takes it over".to_owned()
                 } else {
                     format!(
-                        "at a typical size it makes {:.1} standard deviations, {} are needed",
+                        "at a typical size it makes {:.2} standard deviations, {} are needed",
                         candidate.strength,
                         CandidateEffect::MIN_STRENGTH
                     )
                 },
                 experiment: told.experiment.to_owned(),
+                possible: selection
+                    .hidden_limits
+                    .iter()
+                    .find(|limit| limit.effect.id() == told.id)
+                    .map(|limit| limit.interval),
             }
         })
         .collect()
@@ -73,6 +78,8 @@ pub(super) fn candidates(selection: &Selection, data: &Observations, levels: Lev
             Fate::Kept
         } else if selection.effects.iter().any(|found| found.ids().contains(&id)) {
             Fate::Rival
+        } else if p <= levels.first_p && selection.effects.is_empty() && selection.structure.is_none() {
+            Fate::Unsettled
         } else if p <= levels.first_p {
             Fate::Superfluous
         } else if candidate.is_invisible() {

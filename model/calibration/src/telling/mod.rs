@@ -2,9 +2,11 @@
 
 mod absent;
 mod bad_series;
+mod changes;
 mod effects;
 mod model;
 mod noise;
+mod unequal;
 
 use crate::aliasing::aliasing;
 use crate::held_out::{HeldOut, held_out};
@@ -16,8 +18,10 @@ use crate::trial::trials;
 
 use absent::{NEVER_VISIBLE, candidates, invisible, limits};
 use bad_series::bad_series;
+use changes::changes;
 use effects::effects;
 use noise::{is_adequate, noise_parts};
+use unequal::unequal;
 
 pub(crate) use bad_series::BAD_READING_SD;
 pub(crate) use model::model_report;
@@ -52,6 +56,7 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
     let after_n = held.both_n();
     let effects = effects(selection, weighed, after_n, &augmented);
     let promise_n = promised.map(|p| if effects.is_empty() { p.baseline_n } else { p.augmented_n });
+    let trials = trials(rows, selection, data);
     Report {
         schema: "pinswitch.calibration/1".to_owned(),
         data: DataSummary {
@@ -60,7 +65,7 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
             conditions: selection.baseline.model.frame.conditions.len(),
             outliers,
         },
-        verdict: Verdict::of(selection),
+        verdict: Verdict::of(selection).beside(&trials),
         noise_floor_n: noise.floor_n(data),
         noise,
         noise_parts: noise_parts(selection, data),
@@ -75,6 +80,8 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
             .collect(),
         aliasing: aliasing(rows),
         ignored_columns: Vec::new(),
+        changes: changes(&selection.augmented, weighed),
+        unequal: unequal(selection, data),
         baseline,
         augmented,
         candidates: candidates(selection, data, levels),
@@ -83,7 +90,7 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
         invisible: invisible(selection),
         never_visible: NEVER_VISIBLE.map(str::to_owned).to_vec(),
         bad_series: bad_series(rows, selection, weighed),
-        trials: trials(selection, data),
+        trials,
         sessions: Vec::new(),
         extrapolation: None,
     }

@@ -39,6 +39,8 @@ pub(crate) fn model_report(
         .enumerate()
         .filter(|(_, ((name, _), _))| touched(name))
         .map(|(i, ((name, unit), (value, reach)))| {
+            // Of what is held as it was claimed the table says nothing.
+            let reach = if fitted.model.is_held(i) { [f64::INFINITY; 2] } else { reach };
             (name, estimate(value, reach, unit, fitted.model.bounds_of(i)))
         })
         .collect();

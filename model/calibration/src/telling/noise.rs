@@ -12,6 +12,9 @@ pub(super) fn is_adequate(held_out_n: f64, floor_n: f64, data: &Observations) ->
 /// Load in newtons at which parts of the noise are told.
 const TOLD_AT_N: f64 = 20.0;
 
+/// An interval that reaches further than this factor to both sides says nothing.
+const UNKNOWN_FACTOR: f64 = 10.0;
+
 /// The parts of the noise that are there, the smallest groups first.
 pub(super) fn noise_parts(selection: &Selection, data: &Observations) -> Vec<NoisePart> {
     let noise = selection.noise;
@@ -20,7 +23,7 @@ pub(super) fn noise_parts(selection: &Selection, data: &Observations) -> Vec<Noi
         part: part.to_owned(),
         what: what.to_owned(),
         size,
-        ci95: factor.map(|f| [size / f, size * f]),
+        ci95: factor.filter(|f| *f < UNKNOWN_FACTOR).map(|f| [size / f, size * f]),
         unit: unit.to_owned(),
     };
     // Of one repetition in each direction nobody can tell what another one would have read.
@@ -63,7 +66,13 @@ pub(super) fn noise_parts(selection: &Selection, data: &Observations) -> Vec<Noi
         part("walk", "an offset that wanders from series to series", noise.wandering_n(TOLD_AT_N), "N", None),
         part(
             "group",
-            "an offset from session to session and operator to operator",
+            match (data.operators.len() > 1, data.sessions.len() > 1) {
+                (true, false) => {
+                    "an offset from operator to operator: they read, or zero the cell, differently"
+                }
+                (false, _) => "an offset from session to session",
+                (true, true) => "an offset from session to session and operator to operator",
+            },
             noise.group_offset_n,
             "N",
             None,

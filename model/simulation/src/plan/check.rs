@@ -1,6 +1,6 @@
 //! Whether a plan can be run: every field within its bounds.
 
-use pinswitch_calibration::effects::{CATALOGUE, Vocabulary};
+use pinswitch_calibration::effects::{Effect, Vocabulary};
 use pinswitch_friction::published;
 
 use super::{EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan};
@@ -279,8 +279,17 @@ fn check_raw(r: &RawPlan) -> Result<(), Fault> {
 
 /// Whether an effect is in the vocabulary, with as many constants as it needs, in a form that the twin has.
 fn check_effect(planned: &EffectPlan, vocabulary: &Vocabulary, file: &str) -> Result<(), PlanError> {
+    let effect_error = |remedy: String| PlanError::Effect {
+        file: file.to_owned(),
+        id: planned.id.clone(),
+        found: planned.values.len(),
+        remedy,
+    };
     let remedy = match vocabulary.named(&planned.id) {
         Some(effect) if effect.parameters().len() == planned.values.len() => {
+            if let Some(problem) = out_of_bounds(effect, &planned.values) {
+                return Err(effect_error(problem));
+            }
             let forms = forms_of(&planned.id);
             if usize::from(planned.form) < forms.len() {
                 return Ok(());
@@ -292,17 +301,22 @@ fn check_effect(planned: &EffectPlan, vocabulary: &Vocabulary, file: &str) -> Re
             let names: Vec<&str> = effect.parameters().iter().map(|p| p.name).collect();
             format!("it needs {} value(s): {}", names.len(), names.join(", "))
         }
-        None => {
-            // Those of one's own first: an error shows the beginning and the end of a long list.
-            let own = vocabulary.own().map(|own| own.definition().id.as_str());
-            let built_in = CATALOGUE.iter().map(|effect| effect.id());
-            format!("known are {}", own.chain(built_in).collect::<Vec<_>>().join(", "))
-        }
+        None => vocabulary.unknown(&planned.id),
     };
-    Err(PlanError::Effect {
-        file: file.to_owned(),
-        id: planned.id.clone(),
-        found: planned.values.len(),
-        remedy,
-    })
+    Err(effect_error(remedy))
+}
+
+/// The first value that the effect cannot have.
+fn out_of_bounds(effect: &dyn Effect, values: &[f64]) -> Option<String> {
+    let told = effect.parameters().iter().zip(values);
+    for (i, (parameter, value)) in told.enumerate() {
+        let name = parameter.name;
+        if let Some((low, high)) = parameter.bounds.filter(|(low, high)| !(*low..=*high).contains(value)) {
+            return Some(format!("{name} = {value} is outside {low} to {high}"));
+        }
+        if i == 0 && effect.description().one_sided && *value < 0.0 {
+            return Some(format!("{name} = {value} is below 0, which this effect cannot be"));
+        }
+    }
+    None
 }

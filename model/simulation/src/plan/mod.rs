@@ -192,7 +192,10 @@ impl Plan {
     /// [`PlanError`] at the first field that cannot be used.
     pub fn parse_among(text: &str, file: &str, vocabulary: &Vocabulary) -> Result<Self, PlanError> {
         let plan: Self = toml::from_str(text).map_err(|e| {
-            let (file, problem) = toml_error(file, text, &e);
+            let (file, mut problem) = toml_error(file, text, &e);
+            if problem.contains("unit variant") {
+                problem += "; a kind has its numbers beside it, as kind.resonance = { speed_pct = 52, width_pct = 2 }";
+            }
             PlanError::Malformed { file, problem }
         })?;
         let plan = Self { vocabulary: vocabulary.clone(), ..plan };

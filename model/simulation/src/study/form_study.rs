@@ -120,7 +120,7 @@ fn trial_on(rows: &[PlateauRow], vocabulary: &Vocabulary, levels: Levels) -> Opt
     let frame = Frame::new(rows);
     let mut data = Observations::new(&frame, rows)?;
     let found = select(&Model::baseline(frame).among(vocabulary), &mut data, levels);
-    trials(&found, &data).pop()
+    trials(rows, &found, &data).pop()
 }
 
 /// The outcomes by kind of rig.
@@ -170,7 +170,7 @@ fn row(protocol: &str, name: &str, outcomes: &[&FormOutcome]) -> String {
         median_told(outcomes.iter().filter_map(drawn), 2),
         of(again.map(|t| t.outcome == TrialOutcome::Confirmed).collect()),
         of(absent().map(|t| t.outcome == TrialOutcome::Refuted).collect()),
-        of(absent().map(|t| t.p_value >= CONFIRMED_P).collect()),
+        of(absent().map(|t| t.p_value.is_none_or(|p| p >= CONFIRMED_P)).collect()),
     )
 }
 

@@ -40,6 +40,7 @@ pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vo
                 one_sided: false,
                 confused_with: Vec::new(),
                 experiment: String::new(),
+                drawn_from: Vec::new(),
                 parameters: vec![OwnParameter {
                     name: "a".to_owned(),
                     unit: if is_force { "N" } else { "1" }.to_owned(),

@@ -17,6 +17,8 @@ const MAX_PARAMETERS: usize = 8;
 const MAX_ID: usize = 60;
 const MAX_NAME: usize = 30;
 const MAX_EXPERIMENT: usize = 300;
+/// Most sessions that one may be drawn from.
+const MAX_SESSIONS: usize = 4000;
 /// Most effects that one may be confused with.
 const MAX_RIVALS: usize = 20;
 /// Largest start and bound of a constant, far above any.
@@ -56,6 +58,9 @@ pub struct EffectDefinition {
     pub confused_with: Vec<String>,
     /// The experiment that shows it; empty for one that varies the covariate.
     pub experiment: String,
+    /// The sessions whose readings it was drawn from, by what [`crate::table::readings_by_session`] says of them; none for
+    /// what somebody wrote down.
+    pub drawn_from: Vec<String>,
     /// Its constants.
     pub parameters: Vec<OwnParameter>,
 }
@@ -68,6 +73,7 @@ pub(super) enum Part {
     Formula(usize),
     ConfusedWith,
     Experiment,
+    DrawnFrom,
     Parameters,
     Parameter(usize),
 }
@@ -122,6 +128,7 @@ impl EffectDefinition {
             one_sided: told.one_sided,
             confused_with: told.confused_with.iter().map(|id| (*id).to_owned()).collect(),
             experiment: told.experiment.to_owned(),
+            drawn_from: Vec::new(),
             parameters: told.parameters.iter().zip(start).map(parameter).collect(),
         })
     }
@@ -167,6 +174,9 @@ impl EffectDefinition {
         require(effect_named(id).is_none() && id != UNATTRIBUTED, Part::Id, || {
             format!("id '{id}' is that of a built-in effect; give yours another one, such as my_{id}")
         })?;
+        require(id != "none", Part::Id, || {
+            "id 'none' is what reports call the absence of every effect; give yours another one".to_owned()
+        })?;
         require(self.experiment.len() <= MAX_EXPERIMENT, Part::Experiment, || {
             format!(
                 "an experiment told in {} characters; {MAX_EXPERIMENT} are possible",
@@ -175,6 +185,9 @@ impl EffectDefinition {
         })?;
         require(self.confused_with.len() <= MAX_RIVALS, Part::ConfusedWith, || {
             format!("{} effects to be confused with; {MAX_RIVALS} are possible", self.confused_with.len())
+        })?;
+        require(self.drawn_from.len() <= MAX_SESSIONS, Part::DrawnFrom, || {
+            format!("drawn from {} sessions; {MAX_SESSIONS} are possible", self.drawn_from.len())
         })?;
         let count = self.parameters.len();
         require((1..=MAX_PARAMETERS).contains(&count), Part::Parameters, || {
@@ -231,6 +244,8 @@ impl EffectDefinition {
             pick(0.0, |_, (low, high)| high - 0.01 * (high - low)),
         ];
         let there = pick(1.0, |start, _| start);
+        // What acts in a narrow range only may act in none of these rows.
+        let mut acts = node.has_condition();
         for probe in probes() {
             let moment = probe.moment();
             let value = node.value(&there, &moment);
@@ -239,6 +254,7 @@ impl EffectDefinition {
                     format!("no number at its start values {}; guard it with max or min", probe.told());
                 return Err(formula(text));
             }
+            acts |= value.abs() > 1e-12;
             if let Some(left) =
                 gone.iter().map(|k| node.value(k, &moment)).find(|v| v.is_nan() || v.abs() >= 1e-9)
             {
@@ -250,7 +266,10 @@ impl EffectDefinition {
                 return Err(formula(text));
             }
         }
-        Ok(())
+        if acts {
+            return Ok(());
+        }
+        Err(formula("it is zero in every row at its start values: such an effect does nothing".to_owned()))
     }
 }
 

@@ -36,6 +36,14 @@ pub(super) enum Operator {
     Greatest,
 }
 
+impl Operator {
+    /// Whether its value is 0 or 1.
+    fn compares(self) -> bool {
+        use Operator::{AtLeast, AtMost, Equal, Less, More, Unequal};
+        matches!(self, Less | AtMost | More | AtLeast | Equal | Unequal)
+    }
+}
+
 /// A function of one value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Function {
@@ -69,6 +77,25 @@ pub(super) enum Kind {
 }
 
 impl Node {
+    /// Whether it is 0 or 1 by a comparison.
+    pub(super) fn is_comparison(&self) -> bool {
+        matches!(&self.kind, Kind::Binary(operator, ..) if operator.compares())
+    }
+
+    /// Whether a part of it depends on where a row lies: a comparison, or the greater or lesser of two.
+    pub(super) fn has_condition(&self) -> bool {
+        match &self.kind {
+            Kind::Number(_) | Kind::Variable(_) | Kind::Constant(_) => false,
+            Kind::Negated(a) | Kind::Call(_, a) => a.has_condition(),
+            Kind::Binary(operator, a, b) => {
+                operator.compares()
+                    || matches!(operator, Operator::Least | Operator::Greatest)
+                    || a.has_condition()
+                    || b.has_condition()
+            }
+        }
+    }
+
     /// A part; its parts are there already.
     ///
     /// # Errors

@@ -104,6 +104,13 @@ pub fn read_own_effects(
     }
     let found = blocks(&source, root.get_ref())?;
     for (i, effect) in found.iter().enumerate() {
+        if let Some(alike) = effect.own.constants_not_told_apart() {
+            let problem = format!(
+                "no data can tell {} apart: what one does another makes up for; leave one out",
+                alike.join(" and ")
+            );
+            return Err(source.error(effect.formula_at, problem));
+        }
         let id = &effect.own.definition().id;
         let twice = found[..i].iter().any(|other| other.own.definition().id == *id);
         if twice || vocabulary.named(id).is_some() {
@@ -152,6 +159,7 @@ fn document<'a>(source: &Source<'a>) -> Result<Spanned<DeTable<'a>>, OwnEffectEr
 struct Placed {
     own: OwnEffect,
     id_at: usize,
+    formula_at: usize,
     rivals_at: Vec<usize>,
 }
 
@@ -237,7 +245,7 @@ impl<'a> Table<'a> {
     }
 }
 
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 11] = [
     "id",
     "side",
     "covariate",
@@ -247,6 +255,7 @@ const KEYS: [&str; 10] = [
     "one_sided",
     "confused_with",
     "experiment",
+    "drawn_from",
     "parameters",
 ];
 
@@ -256,7 +265,9 @@ fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, OwnEffectErr
     let (id, id_at) = table.string("id", "give it a name such as id = \"lubricant_dip\"")?;
     let (formula, formula_at) = table.string("formula", "such as formula = \"k*ln(speed_pct/50)\"")?;
     let (parameters, parameters_at) = parameters(&table)?;
-    let (confused_with, rivals_at) = rivals(&table)?;
+    let (confused_with, rivals_at) =
+        words(&table, "confused_with", "list of ids, such as [\"rate_dependence\"]")?;
+    let (drawn_from, _) = words(&table, "drawn_from", "list of words; `calibrate` writes it")?;
     let experiment = match table.table.contains_key("experiment") {
         true => table.string("experiment", "")?.0,
         false => "",
@@ -271,6 +282,7 @@ fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, OwnEffectErr
         one_sided: table.boolean("one_sided")?,
         confused_with,
         experiment: experiment.to_owned(),
+        drawn_from,
         parameters,
     };
     let own = OwnEffect::new(found).map_err(|DefinitionError { part, problem }| {
@@ -281,10 +293,11 @@ fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, OwnEffectErr
             Part::Parameters => key_at(&table, "parameters"),
             Part::ConfusedWith => key_at(&table, "confused_with"),
             Part::Experiment => key_at(&table, "experiment"),
+            Part::DrawnFrom => key_at(&table, "drawn_from"),
         };
         source.error(at, problem)
     })?;
-    Ok(Placed { own, id_at: id_at.start, rivals_at })
+    Ok(Placed { own, id_at: id_at.start, formula_at: formula_at.start, rivals_at })
 }
 
 /// Where a key stands, or the table that lacks it.
@@ -326,15 +339,16 @@ fn parameters(effect: &Table<'_>) -> Result<(Vec<OwnParameter>, Vec<usize>), Own
     Ok((found, named.iter().map(|(name, _)| name.span().start).collect()))
 }
 
-fn rivals(effect: &Table<'_>) -> Result<(Vec<String>, Vec<usize>), OwnEffectError> {
-    let Some(value) = effect.table.get("confused_with") else { return Ok((Vec::new(), Vec::new())) };
-    let wrong = |at| effect.wrong("confused_with", at, "list of ids, such as [\"rate_dependence\"]");
+/// A list of words, and where each begins; none where the key is absent.
+fn words(effect: &Table<'_>, key: &str, wanted: &str) -> Result<(Vec<String>, Vec<usize>), OwnEffectError> {
+    let Some(value) = effect.table.get(key) else { return Ok((Vec::new(), Vec::new())) };
+    let wrong = |at| effect.wrong(key, at, wanted);
     let all = value.get_ref().as_array().ok_or_else(|| wrong(value.span().start))?;
     let mut found = (Vec::new(), Vec::new());
-    for rival in all {
-        let id = rival.get_ref().as_str().ok_or_else(|| wrong(rival.span().start))?;
-        found.0.push(id.to_owned());
-        found.1.push(rival.span().start);
+    for word in all {
+        let text = word.get_ref().as_str().ok_or_else(|| wrong(word.span().start))?;
+        found.0.push(text.to_owned());
+        found.1.push(word.span().start);
     }
     Ok(found)
 }

@@ -4,6 +4,7 @@
 //! [`Effect`] of a [`Vocabulary`](super::Vocabulary). `model/doc/own-effects.md` tells a user how to write one.
 
 mod definition;
+mod determined;
 mod expression;
 mod file;
 mod parser;
@@ -22,6 +23,7 @@ pub use file::{OwnEffectError, read_own_effects};
 pub use writer::{own_effect_blocks, own_effects_text};
 
 use expression::Node;
+pub(crate) use parser::unknown;
 use variable::Moment;
 
 use super::written::{on_contact, stage};
@@ -52,6 +54,7 @@ pub fn formula_variables() -> impl Iterator<Item = [&'static str; 3]> {
 ///     one_sided: true,
 ///     confused_with: vec!["dwell_relaxation".to_owned()],
 ///     experiment: "dead weights with two pauses".to_owned(),
+///     drawn_from: Vec::new(),
 ///     parameters: vec![OwnParameter { name: "k".into(), unit: "1".into(), start: 0.02, bounds: None }],
 /// };
 /// let error = OwnEffect::new(EffectDefinition { formula: "k*ln(dwel_s/3)".into(), ..dip.clone() }).unwrap_err();
@@ -83,6 +86,11 @@ impl OwnEffect {
     /// What is said of it.
     pub fn definition(&self) -> &EffectDefinition {
         &self.definition
+    }
+
+    /// Names of constants that no data can tell apart, if there are any.
+    pub(super) fn constants_not_told_apart(&self) -> Option<Vec<&str>> {
+        determined::not_told_apart(&self.formula, &self.definition.parameters)
     }
 
     /// The start, and the same with the shapes elsewhere within their bounds: a formula that is not linear in a shape must

@@ -23,6 +23,8 @@ const OPERATORS: [(&str, Operator, u8, bool); 11] = [
     ("/", Operator::Divide, 3, false),
     ("^", Operator::Power, 5, true),
 ];
+/// How strongly a comparison binds.
+const COMPARISON: u8 = 1;
 /// How strongly a minus before a value binds: `-x^2` is `-(x^2)`.
 const NEGATION: u8 = 4;
 
@@ -110,6 +112,10 @@ impl<'a> Parser<'a> {
             if *binds < least {
                 break;
             }
+            if *binds == COMPARISON && left.is_comparison() {
+                let problem = "a comparison of a comparison, which is 0 or 1; write (5 < x)*(x < 9) for what lies between";
+                return Err(Fault::new(at, problem.to_owned()));
+            }
             self.at += 1;
             let right = self.expression(binds + u8::from(!from_right), depth + 1)?;
             left = Node::new(at, Kind::Binary(*operator, Box::new(left), Box::new(right)))?;
@@ -184,7 +190,7 @@ fn sign_of(sign: &str) -> &'static str {
 }
 
 /// Says that a name is unknown, with the nearest one that is known, or all.
-pub(super) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
     let shown = pinswitch_friction::excerpt(name, 40);
     let near = known

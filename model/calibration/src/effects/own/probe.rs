@@ -79,3 +79,57 @@ pub(super) fn probes() -> Vec<Probe> {
     }
     all
 }
+
+/// Rows at which every variable takes values of its own: what a formula's constants do is told apart at them.
+pub(super) fn spread_probes() -> Vec<Probe> {
+    const COUNT: usize = 600;
+    let silicone = Some(Substrate::Silicone);
+    let abs = Some(Substrate::Abs);
+    let layouts: [(Option<Substrate>, &[u8], Option<usize>); 9] = [
+        (silicone, &[], None),
+        (abs, &[5, 8, 11], None),
+        (silicone, &[8], Some(0)),
+        (silicone, &[4, 12], Some(1)),
+        (silicone, &[5, 8, 11], Some(2)),
+        (silicone, &[4, 5, 11], Some(3)),
+        (silicone, &[3, 6, 9, 12], Some(4)),
+        (silicone, &[2, 5, 8, 11, 13], Some(5)),
+        (silicone, &[3, 5, 7, 9, 11, 13], Some(6)),
+    ];
+    // Roots of primes: no two sequences of their multiples' fractions keep step.
+    let share = |i: usize, root: f64| libm::modf(i as f64 * root).0;
+    (0..COUNT)
+        .map(|i| {
+            let (substrate, pins, device) = layouts[i % layouts.len()];
+            let pins = pins.iter().map(|p| (*p).into()).collect::<Vec<_>>();
+            let condition = Condition::new(substrate, &pins, published::WRAP_ANGLE_DEG, device);
+            let along = |prime: f64| share(i + 1, libm::sqrt(prime));
+            let (speed_pct, dwell_s) = (20.0 + 70.0 * along(2.0), libm::exp(-1.2 + 4.6 * along(3.0)));
+            let (load_n, position, time) = (0.6 + 65.0 * along(5.0), along(7.0), along(11.0));
+            let repetition = 1.0 + (60.0 * along(13.0)).floor();
+            let sign = if along(17.0) < 0.5 { -1.0 } else { 1.0 };
+            let point = Point {
+                load_n,
+                sign,
+                descending: f64::from(u8::from(along(19.0) < 0.5)),
+                speed_pct,
+                log_speed: libm::log(speed_pct / 50.0),
+                dwell_s,
+                log_dwell: libm::log(dwell_s / published::DWELL_S),
+                repetition,
+                position,
+                position_mm: position * published::STROKE_MM,
+                time,
+                time_s: 9000.0 * time,
+                travel: along(23.0),
+                previous_load_n: 65.0 * along(29.0),
+                through: (60.0 * along(31.0)).floor(),
+                session: 1.0 + (4.0 * along(37.0)).floor(),
+                mount: 1.0 + (9.0 * along(41.0)).floor(),
+                ..Point::default()
+            };
+            let tension_n = load_n * libm::exp(0.3 * sign * along(43.0));
+            Probe { point, condition, tension_n }
+        })
+        .collect()
+}

@@ -1,0 +1,142 @@
+//! Whether the constants of a formula can be told apart: of `(a + b)*f` only the sum can, from no data whatever.
+
+use nalgebra::DMatrix;
+
+use super::definition::OwnParameter;
+use super::expression::Node;
+use super::probe::spread_probes;
+
+/// Smallest singular value of the sensitivities, as a share of the largest, below which some combination of constants does
+/// nothing. Differences of a formula that are the same agree to 1e-8.
+const NOTHING: f64 = 1e-6;
+/// Share of such a combination from which a constant is part of it.
+const TAKES_PART: f64 = 0.05;
+/// Rows in which a formula must act, for each of its constants, or nothing is said.
+const ROWS_EACH: usize = 3;
+
+/// Names of constants that no data can tell apart, wherever they stand; `None` if there are none, or the rows that are tried
+/// cannot say.
+pub(super) fn not_told_apart<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<Vec<&'a str>> {
+    // What is one at its start values alone is no fault of the formula.
+    let places = [(1.0, 0.5), (1.37, 0.31), (0.71, 0.68)];
+    // Each constant elsewhere: what may be exchanged is one where it is equal.
+    let between = |share: f64, k: usize| 0.1 + 0.8 * libm::modf(share + 0.618 * k as f64).0;
+    let mut found: Option<Vec<usize>> = None;
+    for (i, (size, shape)) in places.into_iter().enumerate() {
+        let values: Vec<f64> = parameters
+            .iter()
+            .enumerate()
+            .map(|(k, p)| match p.bounds {
+                _ if i == 0 => p.start,
+                None => p.start * (size + 0.1 * k as f64),
+                Some((low, high)) => low + (high - low) * between(shape, k),
+            })
+            .collect();
+        let alike = alike_at(node, parameters, &values)?;
+        found = Some(match found {
+            None => alike,
+            Some(before) => before.into_iter().filter(|k| alike.contains(k)).collect(),
+        });
+    }
+    let names: Vec<&str> = found?.into_iter().map(|k| parameters[k].name.as_str()).collect();
+    (names.len() > 1).then_some(names)
+}
+
+/// Constants that take part in a combination that does nothing; `None` if there is none, or too few rows say anything.
+fn alike_at(node: &Node, parameters: &[OwnParameter], values: &[f64]) -> Option<Vec<usize>> {
+    let rows = spread_probes();
+    let mut columns: Vec<(usize, Vec<f64>)> = Vec::new();
+    for (k, parameter) in parameters.iter().enumerate() {
+        let scale = parameter.bounds.map_or(values[k].abs(), |(low, high)| high - low);
+        let step = 1e-5 * scale.max(1e-9);
+        let at = |value: f64| {
+            let mut moved = values.to_vec();
+            moved[k] = value;
+            rows.iter().map(|row| node.value(&moved, &row.moment())).collect::<Vec<f64>>()
+        };
+        let (above, below) = (at(values[k] + step), at(values[k] - step));
+        let column: Vec<f64> = above.iter().zip(&below).map(|(a, b)| (a - b) / (2.0 * step)).collect();
+        let length = column.iter().map(|v| v * v).sum::<f64>().sqrt();
+        if !length.is_finite() {
+            return None;
+        }
+        // The place of a step moves nothing by a little.
+        if length * scale > 1e-9 {
+            columns.push((k, column.into_iter().map(|v| v / length).collect()));
+        }
+    }
+    let acts = |row: &usize| columns.iter().any(|(_, column)| column[*row].abs() > 1e-3);
+    let acting = (0..rows.len()).filter(acts).count();
+    if columns.len() < 2 || acting < ROWS_EACH * columns.len() {
+        return None;
+    }
+    let matrix = DMatrix::from_fn(rows.len(), columns.len(), |row, k| columns[k].1[row]);
+    let svd = matrix.svd(false, true);
+    let largest = svd.singular_values.max();
+    let v_t = svd.v_t?;
+    let mut part = vec![false; columns.len()];
+    for (i, _) in svd.singular_values.iter().enumerate().filter(|(_, v)| **v < NOTHING * largest) {
+        (0..columns.len()).for_each(|k| part[k] |= v_t[(i, k)].abs() > TAKES_PART);
+    }
+    let alike: Vec<usize> = columns.iter().zip(&part).filter(|(_, p)| **p).map(|((k, _), _)| *k).collect();
+    (!alike.is_empty()).then_some(alike)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effects::{CATALOGUE, EffectDefinition, OwnEffect, Vocabulary, own_effects_text};
+
+    fn told(formula: &str, parameters: &str) -> Result<(), String> {
+        let text = format!(
+            "schema = \"pinswitch.effects/1\"\n[[effect]]\nid = \"mine\"\nside = \"switch\"\ncovariate = \"speed\"\n\
+             acts_on = \"mu\"\ncombine = \"factor\"\nformula = \"{formula}\"\n{parameters}"
+        );
+        Vocabulary::built_in().read(&text, "mine.toml").map(|_| ()).map_err(|e| e.to_string())
+    }
+
+    const A: &str = "parameters.a = { size = true, start = 0.1, unit = \"1\" }\n";
+    const B: &str = "parameters.b = { size = true, start = 0.2, unit = \"1\" }\n";
+    const D: &str = "parameters.d = { start = 1.0, low = 0.5, high = 2.0, unit = \"1\" }\n";
+    const C: &str = "parameters.c = { start = 52, low = 35, high = 75, unit = \"%\" }\n";
+    const W: &str = "parameters.w = { start = 8, low = 3, high = 30, unit = \"%\" }\n";
+
+    #[test]
+    fn constants_that_make_up_for_each_other_are_refused_by_name() {
+        for (formula, parameters, names) in [
+            ("(a + b)*exp(-((speed_pct - c)/w)^2)*d^2", [A, B, C, D, W].concat(), "a and b and d"),
+            ("a*b*(speed_pct/50 - 1) + a*b*(speed_pct/50 - 1)^2", [A, B].concat(), "a and b"),
+            ("a*exp(d*1)*load_n/50", [A, D].concat(), "a and d"),
+            ("a*(1 - is_silicone) + b*(1 - is_silicone)*2", [A, B].concat(), "a and b"),
+        ] {
+            let said = told(formula, &parameters).unwrap_err();
+            assert!(said.contains(&format!("no data can tell {names} apart")), "{formula}: {said}");
+            assert!(said.starts_with("mine.toml:8:"), "{said}");
+        }
+    }
+
+    #[test]
+    fn constants_with_a_say_of_their_own_are_not() {
+        let narrow = "parameters.w = { start = 0.2, low = 0.1, high = 0.4, unit = \"%\" }\n";
+        for (formula, parameters) in [
+            ("-a*exp(-((speed_pct - c)/w)^2)", [A, C, W].concat()),
+            ("-a*exp(-((speed_pct - c)/w)^2)", [A, C, narrow].concat()),
+            ("a*(speed_pct > c)", [A, C].concat()),
+            ("a*(time > 0.5) + b*(time <= 0.5)", [A, B].concat()),
+            ("a*stroke + b*stroke^2", [A, B].concat()),
+            ("a*(load_n/50)^d", [A, D].concat()),
+            ("a*pin_count + b*is_device", [A, B].concat()),
+            ("a*sin(6.28*d*stroke) + b*cos(6.28*d*stroke)", [A, B, D].concat()),
+        ] {
+            assert_eq!(told(formula, &parameters), Ok(()), "{formula}");
+        }
+    }
+
+    #[test]
+    fn no_built_in_effect_is_refused() {
+        for effect in CATALOGUE {
+            let Ok(definition) = EffectDefinition::of(*effect) else { continue };
+            let own = OwnEffect::new(EffectDefinition { id: "mine".to_owned(), ..definition }).unwrap();
+            assert_eq!(own.constants_not_told_apart(), None, "{}", own_effects_text([own.definition()]));
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Several sessions of one rig: what they share, what changed between them, and files that do not belong together.
+
+use std::path::Path;
+
+use crate::harness::{done, ended, printed};
+use serde_json::Value;
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+/// Another specimen of silicone in the second session: its constant is told, and no scatter or effect is made of it.
+#[test]
+fn a_constant_that_changed_is_a_finding_and_sessions_of_one_switch_share_theirs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    std::fs::write(path.join("other.toml"), "[constants]\nmu_s = 0.31\n").unwrap();
+    done(path, &["-q", "simulate", "--seed", "21", "--out", "a"]);
+    done(path, &["-q", "simulate", "--seed", "122", "--out", "b"]);
+    done(path, &["-q", "simulate", "other.toml", "--seed", "121", "--out", "c"]);
+    let said = printed(path, &["-q", "calibrate", "a/plateaus.csv", "c/plateaus.csv", "--out", "changed"]);
+    let told = "changed: mu_s differs by -2";
+    assert!(said.contains(told) && said.contains("in session a/plateaus.csv (0.2"), "{said}");
+    let report = json(&path.join("changed/report.json"));
+    let change = &report["changes"][0];
+    let end = |i: usize| change["factor"]["ci95"][i].as_f64().unwrap();
+    assert!(end(0) < 0.24 / 0.31 && 0.24 / 0.31 < end(1) && end(1) - end(0) < 0.1, "{change}");
+    assert_eq!(report["changes"].as_array().unwrap().len(), 1, "{report}");
+    assert_eq!(report["effects"].as_array().unwrap().len(), 0, "{}", report["effects"]);
+    assert!(report["noise"]["mount_scale"].as_f64().unwrap() < 0.03, "{}", report["noise"]);
+    let page = std::fs::read_to_string(path.join("changed/report.html")).unwrap();
+    assert!(page.contains("The switch is not the same in all tables") && !page.contains("settles nothing:"));
+    assert!(!said.contains("nothing is believed"), "{said}");
+    // What is predicted is the switch as it is now; rows of the first session, by their name, as it was.
+    let rms = |table: &str| {
+        done(path, &["-q", "predict", "--model", "changed/model.toml", "--rows", table, "--out", "p.csv"]);
+        let text = std::fs::read_to_string(path.join("p.csv")).unwrap();
+        let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+        let column = |name: &str| header.iter().position(|h| *h == name).unwrap();
+        let (read, predicted) = (column("force_N"), column("predicted_N"));
+        let misses: Vec<f64> = text
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').collect::<Vec<_>>())
+            .map(|cells| cells[read].parse::<f64>().unwrap() - cells[predicted].parse::<f64>().unwrap())
+            .collect();
+        (misses.iter().map(|m| m * m).sum::<f64>() / misses.len() as f64).sqrt()
+    };
+    let named = |table: &str, session: &str| {
+        let text = std::fs::read_to_string(path.join(table)).unwrap();
+        let lines: Vec<String> = text
+            .lines()
+            .enumerate()
+            .map(|(i, line)| format!("{line},{}", if i == 0 { "session" } else { session }))
+            .collect();
+        std::fs::write(path.join("named.csv"), lines.join("\n")).unwrap();
+        rms("named.csv")
+    };
+    let (now, before, wrong) = (
+        rms("c/plateaus-fresh.csv"),
+        named("a/plateaus-fresh.csv", "a/plateaus.csv"),
+        rms("a/plateaus-fresh.csv"),
+    );
+    assert!(now < 0.2 && before < 0.2 && wrong > 0.5, "{now} {before} {wrong}");
+    let model = std::fs::read_to_string(path.join("changed/model.toml")).unwrap();
+    std::fs::write(path.join("m.toml"), model.replace("groups = [0]", "groups = [1]")).unwrap();
+    let (code, said) =
+        ended(path, &["predict", "--model", "m.toml", "--rows", "c/plateaus-fresh.csv", "--out", "x.csv"]);
+    assert!(code == Some(2) && said.contains("frame.changes[0].groups"), "{said}");
+    let said = printed(path, &["-q", "calibrate", "a/plateaus.csv", "b/plateaus.csv", "--out", "same"]);
+    assert!(!said.contains("changed"), "{said}");
+    assert!(json(&path.join("same/report.json"))["changes"].is_null());
+}
+
+/// What one session names is not lost by another that shows the same.
+#[test]
+fn an_offset_that_comes_back_in_every_session_is_one_of_the_cell() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    for (seed, name) in [("51", "a"), ("52", "b"), ("53", "c")] {
+        let arguments = ["-q", "simulate", "--effect", "load_cell_offset=0.5", "--seed", seed, "--out", name];
+        done(path, &arguments);
+    }
+    let tables = ["a/plateaus.csv", "b/plateaus.csv", "c/plateaus.csv"];
+    for count in 1..=3 {
+        let said = printed(path, &[&["-q", "calibrate"], &tables[..count], &["--out", "x"]].concat());
+        assert!(
+            said.contains("verdict: attributed") && said.contains("load_cell_offset (direction): b = 0."),
+            "{said}"
+        );
+        let size = json(&path.join("x/report.json"))["effects"][0]["parameters"]["b"].clone();
+        assert!((size["value"].as_f64().unwrap() - 0.5).abs() < 0.05, "{size}");
+    }
+}
+
+#[test]
+fn what_does_not_belong_together_is_one_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    done(path, &["-q", "simulate", "--effect", "rate_dependence=0.2", "--out", "a"]);
+    std::fs::copy(path.join("a/plateaus.csv"), path.join("copy.csv")).unwrap();
+    done(path, &["init", "effects", "--out", "mine.toml"]);
+    done(path, &["-q", "calibrate", "a/plateaus.csv", "--out", "plain"]);
+    done(path, &["-q", "calibrate", "a/plateaus.csv", "--effects", "mine.toml", "--out", "mine"]);
+    done(path, &["-q", "experiment", "plain", "--minutes", "30", "--out", "next"]);
+    done(path, &["-q", "experiment", "mine", "--effects", "mine.toml", "--minutes", "30", "--out", "own"]);
+    // Runs of other weights than the table has.
+    let runs = std::fs::read_to_string(path.join("next/next-runs.csv")).unwrap();
+    std::fs::create_dir(path.join("foreign")).unwrap();
+    std::fs::copy(path.join("next/experiment.json"), path.join("foreign/experiment.json")).unwrap();
+    let heavier: Vec<String> = runs
+        .lines()
+        .enumerate()
+        .map(|(i, line)| {
+            let mut cells: Vec<&str> = line.split(',').collect();
+            if i > 0 {
+                cells[4] = "90000";
+            }
+            cells.join(",")
+        })
+        .collect();
+    std::fs::write(path.join("foreign/next-runs.csv"), heavier.join("\n")).unwrap();
+    done(path, &["-q", "simulate", "--seed", "9", "--out", "b"]);
+    for (name, file) in [("cut", "residuals.csv"), ("other", "model.toml")] {
+        let to = path.join(name);
+        std::fs::create_dir(&to).unwrap();
+        for entry in std::fs::read_dir(path.join("plain")).unwrap() {
+            let entry = entry.unwrap();
+            std::fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
+        }
+        let text = std::fs::read_to_string(to.join(file)).unwrap();
+        let changed = match name {
+            "cut" => text.lines().take(500).collect::<Vec<_>>().join("\n"),
+            _ => std::fs::read_to_string(path.join("plain/baseline.toml")).unwrap().replacen(
+                "value = 0.",
+                "value = 0.1",
+                1,
+            ),
+        };
+        std::fs::write(to.join(file), changed).unwrap();
+    }
+    for (command, words) in [
+        ("calibrate a/plateaus.csv copy.csv --out x", "copy.csv: 3"),
+        ("calibrate a/plateaus.csv b/plateaus.csv --plan foreign --out x", "b/plateaus.csv: none of the"),
+        (
+            "experiment cut --out x",
+            "cut: report.json, model.toml and residuals.csv are not of one calibration",
+        ),
+        ("experiment other --out x", "other: report.json, model.toml and residuals.csv are not of one"),
+        ("experiment mine --out x", "mine/report.json: it was calibrated with the effect 'lubricant_dip'"),
+    ] {
+        let arguments: Vec<&str> = ["-q"].into_iter().chain(command.split(' ')).collect();
+        let (code, said) = ended(path, &arguments);
+        assert!(code == Some(2) && said.contains(words), "{command}: {said}");
+        assert!(!path.join("x").exists(), "{command}");
+    }
+}
+
+/// A rig of another wrap is asked for runs of that wrap, and rehearsed with it.
+#[test]
+fn runs_are_proposed_and_made_around_the_wrap_of_the_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    std::fs::write(path.join("wide.toml"), "wrap_angle_deg = 95.0\n").unwrap();
+    done(path, &["-q", "simulate", "wide.toml", "--out", "a"]);
+    done(path, &["-q", "calibrate", "a/plateaus.csv", "--out", "c"]);
+    done(path, &["-q", "experiment", "c", "--minutes", "30", "--out", "next"]);
+    let runs = std::fs::read_to_string(path.join("next/next-runs.csv")).unwrap();
+    assert!(runs.lines().next().unwrap().ends_with(",wrap_angle_deg") && runs.contains(",95\n"), "{runs}");
+    assert!(std::fs::read_to_string(path.join("next/run-sheet.html")).unwrap().contains("wrap 95 deg"));
+    let wraps = |folder: &str| {
+        let text = std::fs::read_to_string(path.join(folder).join("plateaus.csv")).unwrap();
+        let at = text.lines().next().unwrap().split(',').position(|c| c == "wrap_angle_deg").unwrap();
+        text.lines().skip(1).all(|line| line.split(',').nth(at) == Some("95"))
+    };
+    done(path, &["-q", "simulate", "wide.toml", "--runs", "next/next-runs.csv", "--out", "b"]);
+    done(path, &["-q", "simulate", "--model", "c/model.toml", "--runs", "next/next-runs.csv", "--out", "d"]);
+    // A plan without the column is of the rig's own wrap.
+    let bare: Vec<&str> = runs.lines().map(|line| line.rsplit_once(',').unwrap().0).collect();
+    std::fs::write(path.join("bare.csv"), bare.join("\n")).unwrap();
+    done(path, &["-q", "simulate", "wide.toml", "--runs", "bare.csv", "--out", "e"]);
+    assert!(wraps("b") && wraps("d") && wraps("e"));
+}

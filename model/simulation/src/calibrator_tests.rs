@@ -120,3 +120,17 @@ fn no_scatter_is_told_as_a_shape_or_a_second_name_beside_a_strong_one() {
         assert!(outcome.exact, "{name}: {:?}", outcome.named);
     }
 }
+
+/// Between the places of the library lie waves that a fit from them does not reach.
+#[test]
+fn a_quick_wave_is_drawn_with_its_own_frequency() {
+    for (cycles, seed) in [(14.25, 2), (20.1, 9), (38.4, 3), (61.7, 4)] {
+        let mut plan = Plan { seed, ..Plan::default() };
+        let kind = Course::TimeWave { cycles, phase: 2.0 };
+        plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Reading, size: 0.15 });
+        let form = calibrate(&simulate(&plan).rows, Levels::default()).unwrap().form.unwrap().report;
+        let (size, frequency) = (form.parameters["a"].value.abs(), form.parameters["f"].value);
+        assert!(form.shape == "sine" && (frequency / cycles - 1.0).abs() < 0.02, "{cycles}: {form:?}");
+        assert!((size / 0.15 - 1.0).abs() < 0.2, "{cycles}: {form:?}");
+    }
+}

@@ -1,6 +1,6 @@
 //! The library of forms: what a structure along one covariate may look like, as formulas of effects of one's own.
 
-use crate::effects::{ActsOn, Combine, Covariate, EffectDefinition, OwnParameter, Side};
+use crate::effects::{ActsOn, Combine, Covariate, EffectDefinition, OwnParameter, Shape, Side, Structure};
 use crate::table::Frame;
 
 /// A form before it acts on anything: a formula of order one with constants other than its size, and places to start them
@@ -111,43 +111,69 @@ pub(super) fn library(covariate: Covariate, frame: &Frame) -> Vec<Form> {
     }
 }
 
+/// Phases from which a wave is fitted, in radians.
+const PHASES: [f64; 4] = [0.0, 0.8, 1.6, 2.4];
+
+/// Forms that begin where shapes of the catalogue were found, which lie closer together than the places of the library.
+pub(super) fn where_shapes_lie<'a>(shapes: impl Iterator<Item = &'a Structure>) -> Vec<Form> {
+    let mut forms: Vec<Form> = Vec::new();
+    for shape in shapes {
+        let at_this: Vec<Form> = match shape.form {
+            Shape::TimeStep { at } => vec![step("time", at)],
+            Shape::TimeWindow { from, to } => vec![level("time", from, to)],
+            Shape::TimeWave { cycles, .. } => PHASES.map(|phase| sine("time", cycles, phase)).into(),
+            Shape::PositionWave { cycles, .. } => PHASES.map(|phase| sine("stroke", cycles, phase)).into(),
+            Shape::PositionBump { at, width } => vec![bump("stroke", at, std::f64::consts::SQRT_2 * width)],
+            _ => Vec::new(),
+        };
+        // A wave is a sine and a cosine of one frequency.
+        forms.extend(at_this.into_iter().filter(|form| !forms.contains(form)).collect::<Vec<_>>());
+    }
+    forms
+}
+
+/// A step, steep enough to lie between two series, and still with a slope where it is.
+fn step(x: &str, c: f64) -> Form {
+    Form::new("step", format!("a*0.5*(1 + tanh(({x} - c)/0.004))"), &[("c", "1", c, (0.0, 1.0))])
+}
+
+fn bump(x: &str, c: f64, w: f64) -> Form {
+    let constants = [("c", "1", c, (-0.2, 1.2)), ("w", "1", w, (0.025, 0.5))];
+    Form::new("bump", format!("a*exp(-(({x} - c)/w)^2)"), &constants)
+}
+
+/// Another level between two ends.
+fn level(x: &str, c: f64, e: f64) -> Form {
+    let formula = format!("a*0.25*(1 + tanh(({x} - c)/0.004))*(1 - tanh(({x} - e)/0.004))");
+    Form::new("level", formula, &[("c", "1", c, (0.0, 1.0)), ("e", "1", e, (0.0, 1.0))])
+}
+
+fn sine(x: &str, cycles: f64, phase: f64) -> Form {
+    let constants = [("f", "1", cycles, (0.2, 100.0)), ("p", "1", phase, (-3.3, 6.5))];
+    Form::new("sine", format!("a*sin(6.283185307*f*{x} + p)"), &constants)
+}
+
 /// Along the share of the session or of the stroke, 0 to 1.
 fn along_a_share(x: &str, is_time: bool) -> Vec<Form> {
     let mut forms = Vec::new();
     for i in 1..=19 {
         let c = 0.05 * f64::from(i);
-        // Steep enough to be a step between two series, and still with a slope where it is.
-        let step = format!("a*0.5*(1 + tanh(({x} - c)/0.004))");
-        forms.push(Form::new("step", step, &[("c", "1", c, (0.0, 1.0))]));
-        for w in [0.03, 0.1, 0.25] {
-            let constants = [("c", "1", c, (-0.2, 1.2)), ("w", "1", w, (0.025, 0.5))];
-            forms.push(Form::new("bump", format!("a*exp(-(({x} - c)/w)^2)"), &constants));
-        }
+        forms.push(step(x, c));
+        forms.extend([0.03, 0.1, 0.25].map(|w| bump(x, c, w)));
     }
-    // Another level between two ends.
     for (i, width) in (0..18).flat_map(|i| [0.08, 0.15, 0.3, 0.55].map(|width| (i, width))) {
         let c = 0.05 + 0.05 * f64::from(i);
         if c + width < 0.99 {
-            let level = format!("a*0.25*(1 + tanh(({x} - c)/0.004))*(1 - tanh(({x} - e)/0.004))");
-            forms.push(Form::new(
-                "level",
-                level,
-                &[("c", "1", c, (0.0, 1.0)), ("e", "1", c + width, (0.0, 1.0))],
-            ));
+            forms.push(level(x, c, c + width));
         }
     }
     forms.push(Form::new("ramp", format!("a*({x} - 0.5)"), &[]));
     forms.push(Form::new("power", format!("a*({x} - 0.5)^2"), &[]));
-    // Close enough that a fit, which does not cross from one number of waves to the next, begins beside every one.
+    // A fit does not cross from one number of waves to the next: beyond these few it begins at the waves that were found.
     let cycles = [0.5, 0.75].into_iter().chain((2..=16).map(|i| 0.5 * f64::from(i)));
     let cycles = cycles
         .chain([9.0, 10.0, 11.0, 12.0, 13.5, 15.0, 17.0, 19.0, 21.0, 23.5, 26.0, 29.0, 32.0, 36.0, 40.0]);
-    for cycles in cycles {
-        for phase in [0.0, 0.8, 1.6, 2.4] {
-            let constants = [("f", "1", cycles, (0.2, 60.0)), ("p", "1", phase, (-3.3, 6.5))];
-            forms.push(Form::new("sine", format!("a*sin(6.283185307*f*{x} + p)"), &constants));
-        }
-    }
+    forms.extend(cycles.flat_map(|cycles| PHASES.map(|phase| sine(x, cycles, phase))));
     if is_time {
         for t in [0.05, 0.2, 0.6] {
             forms.push(Form::new("forgetting", "a*exp(-time/t)", &[("t", "1", t, (0.005, 3.0))]));

@@ -17,7 +17,7 @@ use crate::inference::{
 };
 use crate::report::Estimate;
 use crate::table::{PlateauRow, readings_by_session};
-use library::{ALL, Candidate, FIRST, Form, acts_on_word, library};
+use library::{ALL, Candidate, FIRST, Form, acts_on_word, library, where_shapes_lie};
 
 /// Starts of each form that are tried on everything, and fitted to the end.
 const FITTED_STARTS: usize = 2;
@@ -147,12 +147,17 @@ struct Best {
 
 fn best(covariate: Covariate, with_shapes: &Model, weighed: &Weighed<'_>) -> Option<Best> {
     let with_shapes = fit(with_shapes, weighed);
+    let shapes = with_shapes.model.terms.iter().filter_map(|term| match term {
+        Term::Structure(shape) if shape.covariate == covariate => Some(shape),
+        _ => None,
+    });
+    let mut forms = where_shapes_lie(shapes);
     let mut bare = with_shapes.model.clone();
     while let Some(at) = bare.terms.iter().position(|t| matches!(t, Term::Structure(_))) {
         bare = bare.without_term(at);
     }
     let without = fit(&bare, weighed);
-    let forms = library(covariate, &bare.frame);
+    forms.extend(library(covariate, &bare.frame));
     let on = |forms: &mut dyn Iterator<Item = &Form>, things: &[ActsOn]| -> Vec<Candidate> {
         let pairs = forms.flat_map(|form| things.iter().map(move |acts_on| (form, *acts_on)));
         pairs.enumerate().map(|(i, (form, acts_on))| form.on(acts_on, covariate, i)).collect()

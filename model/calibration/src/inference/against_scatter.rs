@@ -1,12 +1,13 @@
 //! What is believed against scatter that would explain a table as well.
 
-use super::explanation::{Explanation, explain, sharper_noise};
+use super::explanation::{Explanation, explain};
 use super::fit::{Fit, fit, jacobian};
 use super::levels::Levels;
 use super::noise::Noise;
 use super::observations::Observations;
 use super::scatter::Scatter;
 use super::screening::Screen;
+use super::sharper_noise::sharper_noise;
 use super::unnamed::Context;
 use super::variance_components::shared_again;
 use super::weighed::Weighed;

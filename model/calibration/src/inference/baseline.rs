@@ -32,12 +32,17 @@ const OWN_COLUMNS: usize = 48;
 /// Series and directions that must be left beside an offset, a drag and a gain.
 const MIN_BESIDE: usize = 11;
 
+/// Whether what names explain is taken out before the noise is estimated.
+pub(super) fn takes_names_out(data: &Observations) -> bool {
+    data.cells.len() >= MIN_CELLS
+}
+
 /// Columns that could explain residuals, in newtons: the model's own, the library's, and coarse structure.
 pub(super) fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
     let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let mut columns = jacobian(&fitted.model, data, &predicted);
     // So many columns would explain a few series altogether and leave no noise to estimate.
-    if data.cells.len() < MIN_CELLS {
+    if !takes_names_out(data) {
         // What moves all readings alike would still pass for scatter of the series: their mean is not zero.
         if data.cells.len() > columns.len() + MIN_BESIDE {
             columns.push(vec![1.0; data.points.len()]);

@@ -1,8 +1,8 @@
 //! One explanation of a table at one noise: names, then structure without a name, then the noise beside them again.
 
-use super::baseline::{explainable, fit_baseline};
+use super::baseline::{explainable, fit_baseline, takes_names_out};
 use super::evidence::evidence;
-use super::fit::{Fit, fit, jacobian};
+use super::fit::{Fit, fit};
 use super::isolation::isolated_series;
 use super::levels::Levels;
 use super::model::{Model, Term};
@@ -11,15 +11,12 @@ use super::observations::Observations;
 use super::scatter::Scatter;
 use super::screening::Screen;
 use super::search::{bendable_gain, search};
-use super::structure_scores::StructureScore;
-use super::unnamed::{Context, FoundStructure, with_structure};
-use super::variance_components::{estimate, shared_again};
+use super::sharper_noise::{noise_beside_a_name, sharper_noise};
+use super::unnamed::{Context, FoundStructure};
+use super::variance_components::estimate;
 use super::weighed::Weighed;
 use crate::effects::Shape;
-use crate::parallel::map_each;
 
-/// Gain, in whitened squares, below which a shape is not worth a look.
-const MIN_SHAPE_GAIN: f64 = 9.0;
 /// Series that may be excluded; more than these are no accidents.
 const MAX_EXCLUDED: usize = 3;
 
@@ -106,6 +103,15 @@ pub(super) fn explain(start: &Model, data: &Observations, noise: Noise, levels: 
     let mut weighed = Weighed::new(data, noise);
     let mut baseline = fit_baseline(start, &weighed);
     let mut found = search(&baseline, &weighed, levels);
+    if found.model.terms.is_empty()
+        && !takes_names_out(data)
+        && let Some(sharper) = noise_beside_a_name(&baseline, data, noise)
+    {
+        noise = sharper;
+        weighed = Weighed::new(data, noise);
+        baseline = fit(&baseline.model, &weighed);
+        found = search(&baseline, &weighed, levels);
+    }
     if !found.model.terms.is_empty() {
         let before = noise;
         noise = estimate(data, &found.residual_n, &explainable(&found, data), noise);
@@ -146,59 +152,4 @@ pub(super) fn explain(start: &Model, data: &Observations, noise: Noise, levels: 
         Context { weighed: &weighed, levels, explained }.with_unnamed(&baseline, found.clone(), &left, bent)
     };
     Explanation { baseline, augmented, named, structure, structure_gain, structures_tried, noise, isolated }
-}
-
-/// Evidence that a shape must gain beside the choice among all shapes before it changes the noise.
-const MIN_EVIDENCE: f64 = 6.0;
-
-/// Gain of a shape, in whitened squares, from which it is no chance: the best of many shapes makes the noise of a small table look
-/// smaller than it is.
-const CERTAIN_GAIN: f64 = 100.0;
-
-/// The noise beside the best shape of each covariate, if one of them makes the table more probable than the noise does
-/// without it; and the scores of all shapes.
-pub(super) fn sharper_noise(
-    found: &Fit,
-    data: &Observations,
-    noise: Noise,
-) -> (Option<Noise>, Vec<StructureScore>) {
-    let weighed = Weighed::new(data, noise);
-    let screen = Screen::new(found, &weighed);
-    let shapes = screen.structures();
-    let choice = 2.0 * libm::log(shapes.len().max(1) as f64) + MIN_EVIDENCE;
-    let mut best = (evidence(found, &weighed) - choice, None);
-    let mut covariates = Vec::new();
-    let mut strongest: Vec<&StructureScore> = Vec::new();
-    for score in shapes.iter().filter(|s| s.gain > MIN_SHAPE_GAIN) {
-        let covariate = score.group[0].covariate;
-        if !covariates.contains(&covariate) {
-            covariates.push(covariate);
-            strongest.push(score);
-        }
-    }
-    let columns = explainable(found, data);
-    let tried = map_each(strongest, |score| {
-        let with = with_structure(found, score, &weighed);
-        let own = &with.model.terms[found.model.terms.len()..];
-        let mut columns = columns.clone();
-        let predicted: Vec<f64> = data.force_n.iter().zip(&with.residual_n).map(|(y, r)| y - r).collect();
-        let all = jacobian(&with.model, data, &predicted);
-        columns.extend(all.into_iter().rev().take(own.len()));
-        // What moves along a series was read as noise of its repetitions, too.
-        let is_certain = score.gain > CERTAIN_GAIN;
-        let sharper = if is_certain && own.iter().any(Term::moves_along_a_series) {
-            let found = estimate(data, &with.residual_n, &columns, noise);
-            Scatter::ALL.iter().fold(found, |found, scatter| scatter.taken_from(noise, found))
-        } else {
-            shared_again(data, &with.residual_n, &columns, noise)
-        };
-        let weighed = Weighed::new(data, sharper);
-        (evidence(&fit(&with.model, &weighed), &weighed), sharper)
-    });
-    for (toll, sharper) in tried {
-        if toll < best.0 {
-            best = (toll, Some(sharper));
-        }
-    }
-    (best.1, shapes)
 }

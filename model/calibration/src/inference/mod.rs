@@ -29,6 +29,7 @@ mod scatter;
 mod screening;
 mod search;
 mod selection;
+mod sharper_noise;
 mod sign_flips;
 mod significance;
 mod structure_scores;

@@ -78,7 +78,8 @@ pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> 
                 .collect();
             let reach = |side: f64| {
                 let mirrored: Vec<[f64; 3]> = parts.iter().map(|[w, m, sd]| [*w, side * m, *sd]).collect();
-                quantile_above(&mirrored, half)
+                // What may be missing makes nothing better known than it is without it.
+                quantile_above(&mirrored, half).max(half)
             };
             [reach(-1.0), reach(1.0)]
         })

@@ -16,10 +16,11 @@ use pinswitch_calibration::{
 
 use super::own_effects::OwnEffects;
 use super::{Failure, print};
+use crate::input::was_read;
 use crate::write::write_set;
 use pinswitch_plot::{UNEXPLAINED, page, plots, published_page, published_plot};
 use pinswitch_switch::output::OutputFile;
-use plans::plans;
+use plans::{plans, with_forms};
 use summary::summary;
 use waiting::Waiting;
 
@@ -63,19 +64,26 @@ const DISCOVERED: &str =
 pub(super) const FORM: &str = "discovered.toml";
 
 /// Removes the form that an earlier calibration drew into the folder: it is none of this one. A file of one's own stays.
-fn forget_form(folder: &Path) {
+fn forget_form(folder: &Path) -> Result<(), Failure> {
     let path = folder.join(FORM);
+    if was_read(&path) {
+        return Err(Failure::bad_input(format!(
+            "{}: this calibration reads it, and --out would put another in its place; give --out a folder of its own",
+            path.display()
+        )));
+    }
     if std::fs::read_to_string(&path).is_ok_and(|text| text.starts_with(DISCOVERED)) {
         // What cannot be removed is told of by its first line.
         let _ = std::fs::remove_file(path);
     }
+    Ok(())
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.published {
         return published(&arguments.out);
     }
-    let vocabulary = arguments.own.vocabulary()?;
+    let vocabulary = with_forms(arguments.own.vocabulary()?, &arguments.plan)?;
     let plans = plans(&arguments.plan, &arguments.tables)?;
     let (mut table, name) = joined(&arguments.tables)?;
     let sessions = match arguments.tables.split_last() {
@@ -105,7 +113,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let text = format!("{DISCOVERED}{}", own_effects_text([&form.definition]));
         files.insert(0, OutputFile { name: FORM.to_owned(), bytes: text.into_bytes() });
     } else {
-        forget_form(&arguments.out);
+        forget_form(&arguments.out)?;
     }
     write_set(&arguments.out, &files)?;
     print(summary(&calibration.report).as_bytes())

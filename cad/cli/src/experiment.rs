@@ -22,8 +22,9 @@ use crate::write::write_set;
 /// Propose the runs that settle most of what a calibration left open, per minute of work.
 ///
 /// Rivals that the data could not tell apart, effects of consequence that it did not exclude, and effects that it could not
-/// see. Writes next-runs.csv (the runs, in order), run-sheet.html (to print) and experiment.json (how probably each question
-/// is settled, and what no run on this rig can settle).
+/// see. Writes next-runs.csv (the runs, in order), run-sheet.html (to print), experiment.json (how probably each question
+/// is settled, and what no run on this rig can settle) and, where the calibration drew a form, discovered.toml: what
+/// `calibrate --plan` needs to tell whether it came again.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch experiment calibration --minutes 60 --out next
@@ -94,11 +95,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut json = serde_json::to_vec_pretty(&proposal).map_err(Failure::failed)?;
     json.push(b'\n');
     let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
-    let files = [
+    let mut files = vec![
         file("next-runs.csv", write_runs(&proposal.runs).into_bytes()),
         file("run-sheet.html", run_sheet(&name, &proposal).into_bytes()),
         file("experiment.json", json),
     ];
+    // The form that is asked about goes with the plan, so that what comes of it can be told.
+    let form = folder.join(FORM);
+    if report.effects.iter().any(|found| found.form.is_some()) && form.is_file() {
+        files.push(file(FORM, read_text_file(&form)?.into_bytes()));
+    }
     write_set(&arguments.out, &files)?;
     if arguments.json { print_json(&proposal) } else { print(summary(&proposal, &arguments.out).as_bytes()) }
 }

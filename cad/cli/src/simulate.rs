@@ -148,8 +148,10 @@ fn rehearsed(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failu
             rehearse(&model, &name, rows, arguments.seed.unwrap_or(1)).map_err(Failure::bad_input)?
         }
         None => {
-            let (plan, name) = plan(arguments)?;
-            let rows = rows_of(&runs, &rig.wrapped_by(plan.wrap_angle_deg), "");
+            let (mut plan, name) = plan(arguments)?;
+            let rig = rig.wrapped_by(plan.wrap_angle_deg);
+            plan.wrap_angle_deg = rig.wrap_angle_deg.unwrap_or(plan.wrap_angle_deg);
+            let rows = rows_of(&runs, &rig, "");
             let simulated = simulate_rows(&plan, rows);
             simulated.check(&name).map_err(Failure::bad_input)?;
             simulated.rows

@@ -44,8 +44,8 @@ const NOTES: &str = "<h2>To write down</h2>
 <li>Zero of the load cell before the first run and after the last: ____________ N, ____________ N</li>
 <li>Every time the switch was taken off and put back; a run that was repeated; whatever went otherwise than planned.</li>
 </ul>
-<p>Then: <code>pinswitch calibrate FIRST.csv SECOND.csv --out DIR</code>, with the plateau table of before and that of these
-runs.</p>\n";
+<p>Then: <code>pinswitch calibrate FIRST.csv SECOND.csv --plan PLAN --out DIR</code>, with the plateau table of before, that of
+these runs, and the folder that this sheet lies in.</p>\n";
 
 fn questions(proposal: &Proposal) -> String {
     // Nothing is certain.

@@ -13,6 +13,7 @@ use crate::promise::{learn, parts, promise};
 use crate::report::Report;
 use crate::table::{Frame, PlateauRow};
 use crate::telling::{Told, model_report, report};
+use crate::trial::TrialOutcome;
 
 /// Why rows cannot be calibrated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -93,11 +94,45 @@ pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, Cal
     calibrate_among(rows, &Vocabulary::built_in(), levels)
 }
 
-/// Calibrates a table, with the effects of a vocabulary.
+/// Calibrates a table, with the effects of a vocabulary. What was drawn before is named only where readings that it was not
+/// drawn from confirm it.
 ///
 /// # Errors
 /// [`CalibrationError`] if the rows cannot fix the baseline, or if an effect of one's own has no value on them.
 pub fn calibrate_among(
+    rows: &[PlateauRow],
+    vocabulary: &Vocabulary,
+    levels: Levels,
+) -> Result<Calibration, CalibrationError> {
+    let found = calibrated(rows, vocabulary, levels)?;
+    let barred = only_drawn(&found, vocabulary);
+    if barred.is_empty() {
+        return Ok(found);
+    }
+    let confirmed = vocabulary.retaining(|own| !barred.contains(&own.definition().id));
+    let mut again = calibrated(rows, &confirmed, levels)?;
+    let tried = std::mem::take(&mut again.report.trials);
+    // In the order in which they were read; what is not in the vocabulary now keeps its trial.
+    again.report.trials = found
+        .report
+        .trials
+        .into_iter()
+        .map(|trial| tried.iter().find(|other| other.id == trial.id).cloned().unwrap_or(trial))
+        .collect();
+    Ok(again)
+}
+
+/// Ids of effects that were drawn before, stand among the names, and are confirmed by nothing.
+fn only_drawn(found: &Calibration, vocabulary: &Vocabulary) -> Vec<String> {
+    let is_confirmed = |id: &str| {
+        found.report.trials.iter().any(|trial| trial.id == id && trial.outcome == TrialOutcome::Confirmed)
+    };
+    let is_named = |id: &str| found.selection.effects.iter().any(|effect| effect.ids().contains(&id));
+    let drawn = vocabulary.own().map(|own| own.definition()).filter(|own| !own.drawn_from.is_empty());
+    drawn.filter(|own| is_named(&own.id) && !is_confirmed(&own.id)).map(|own| own.id.clone()).collect()
+}
+
+fn calibrated(
     rows: &[PlateauRow],
     vocabulary: &Vocabulary,
     levels: Levels,

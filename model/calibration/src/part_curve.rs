@@ -70,7 +70,23 @@ impl ModelFile {
             ));
         }
         if !inside.is_empty() {
-            reasons.push(format!("effects of the switch are in the curve: {}", inside.join(", ")));
+            let drawn = |id: &str| {
+                model
+                    .vocabulary
+                    .own()
+                    .any(|own| own.definition().id == id && !own.definition().drawn_from.is_empty())
+            };
+            let told: Vec<String> = inside
+                .iter()
+                .map(|id| {
+                    if drawn(id) {
+                        format!("{id} (a form drawn from measured data)")
+                    } else {
+                        (*id).to_owned()
+                    }
+                })
+                .collect();
+            reasons.push(format!("effects of the switch are in the curve: {}", told.join(", ")));
         }
         if !outside.is_empty() {
             reasons.push(format!("effects of the measurement stay out of it: {}", outside.join(", ")));

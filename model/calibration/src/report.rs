@@ -296,7 +296,7 @@ pub struct UnequalReport {
     pub id: String,
     /// The size.
     pub parameter: String,
-    /// What the model has, which is true of no session.
+    /// What the model has, which is true of no session; 0 of an effect that sessions alone show and all together do not.
     pub in_the_model: f64,
     /// Probability by chance that sizes differ so much.
     pub p_value: f64,
@@ -324,12 +324,16 @@ impl UnequalReport {
                 format!("{:.4} [{low:.4}, {high:.4}] {} in {session}", size.value, size.unit)
             })
             .collect();
+        let in_the_model = if self.in_the_model == 0.0 {
+            "together they name none, and the model has none of it".to_owned()
+        } else {
+            format!("the {:.4} that the model has is true of none", self.in_the_model)
+        };
         format!(
-            "{} is not the same in all sessions: {} = {}; the {:.4} that the model has is true of none",
+            "{} is not the same in all sessions: {} = {}; {in_the_model}",
             self.id,
             self.parameter,
-            each.join(", "),
-            self.in_the_model
+            each.join(", ")
         )
     }
 }

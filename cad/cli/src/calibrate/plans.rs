@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use pinswitch_calibration::Asked;
+use pinswitch_calibration::effects::{EffectDefinition, Vocabulary};
 use pinswitch_calibration::experiment::{PlannedRun, SCHEMA, read_runs};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_friction::published::load_n;
 
 use super::super::Failure;
+use super::FORM;
 use crate::input::{read_file, read_text_file};
 
 /// Share of a load by which a weight may differ from the one planned, hook and scale included.
@@ -59,6 +61,29 @@ fn plan(folder: &Path) -> Result<Asked, Failure> {
         return Err(refused(format!("schema = \"{}\" is not {SCHEMA}", plan.schema)));
     }
     Ok(plan.asked)
+}
+
+/// A vocabulary with the forms whose coming again the plans ask about, unless they are in it under whatever name.
+pub(super) fn with_forms(vocabulary: Vocabulary, plans: &[PathBuf]) -> Result<Vocabulary, Failure> {
+    plans.iter().try_fold(vocabulary, |vocabulary, folder| {
+        let folder = if folder.is_file() { folder.parent().unwrap_or(folder) } else { folder };
+        let path = folder.join(FORM);
+        if !path.is_file() {
+            return Ok(vocabulary);
+        }
+        let (text, name) = (read_text_file(&path)?, path.display().to_string());
+        let forms = Vocabulary::built_in().read(&text, &name).map_err(Failure::bad_input)?;
+        let is_known = |form: &EffectDefinition| {
+            let is_it = |own: &EffectDefinition| {
+                own.id == form.id || (own.formula == form.formula && own.drawn_from == form.drawn_from)
+            };
+            vocabulary.own().any(|own| is_it(own.definition()))
+        };
+        if forms.own().any(|form| is_known(form.definition())) {
+            return Ok(vocabulary);
+        }
+        vocabulary.read(&text, &name).map_err(Failure::bad_input)
+    })
 }
 
 /// The runs of a plan, and the file that they stand in; `None` where only its questions were kept.

@@ -168,6 +168,12 @@ fn directions(
         .collect()
 }
 
+/// Change of the reading per newton of load in one direction; `None` if the loads are too alike to tell.
+pub(super) fn slope(direction: Direction, rows: &[&PlateauRow]) -> Option<f64> {
+    let of = rows.iter().filter(|r| r.direction == direction);
+    Some(along(direction, of.map(|r| (r.load_n, r.force_n)).collect())?.slope)
+}
+
 /// `None` if the loads are too alike to tell.
 fn along(direction: Direction, mut pairs: Vec<(f64, f64)>) -> Option<Along> {
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));

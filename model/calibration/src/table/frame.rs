@@ -203,7 +203,9 @@ impl Frame {
         let max = |f: fn(&PlateauRow) -> f64| rows.iter().map(f).fold(0.0f64, f64::max);
         let furthest = max(|r| r.position_mm);
         let speeds: Vec<f64> = rows.iter().map(|r| r.speed_pct).filter(|v| *v > 0.0).map(libm::log).collect();
-        let mut times: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
+        let session_s = session_length_s(rows);
+        let begins = begins_s(rows, session_s);
+        let mut times: Vec<f64> = rows.iter().map(|r| since(&begins, r)).collect();
         times.sort_by(f64::total_cmp);
         let count = times.len().max(1);
         let stride = (count / 400).max(1);
@@ -216,7 +218,7 @@ impl Frame {
         }
         let mut frame = Self {
             stroke_mm: if furthest > published::STROKE_MM * 1.05 { furthest } else { published::STROKE_MM },
-            session_s: max(|r| r.time_s).max(1e-9),
+            session_s,
             reference_speed_pct: if speeds.is_empty() {
                 1.0
             } else {
@@ -260,7 +262,9 @@ impl Frame {
 
     /// The rows as points; `None` for the first row whose condition the frame does not have.
     pub fn points(&self, rows: &[PlateauRow]) -> Option<Vec<Point>> {
-        let mut points: Vec<Point> = rows.iter().map(|row| self.point(row)).collect::<Option<_>>()?;
+        let begins = begins_s(rows, self.session_s);
+        let mut points: Vec<Point> =
+            rows.iter().map(|row| self.point(row, since(&begins, row))).collect::<Option<_>>()?;
         // What came before is known by the order of time, whatever the order of the table.
         let mut order: Vec<usize> = (0..rows.len()).collect();
         order.sort_by(|a, b| {
@@ -290,7 +294,7 @@ impl Frame {
         Some(points)
     }
 
-    fn point(&self, row: &PlateauRow) -> Option<Point> {
+    fn point(&self, row: &PlateauRow, time_s: f64) -> Option<Point> {
         let log_ratio = |v: f64, v0: f64| if v > 0.0 && v0 > 0.0 { libm::log(v / v0) } else { 0.0 };
         Some(Point {
             condition: self.condition_of(row)?,
@@ -301,21 +305,57 @@ impl Frame {
             log_dwell: log_ratio(row.dwell_s, published::DWELL_S),
             repetition: f64::from(row.repetition),
             position: row.position_mm / self.stroke_mm,
-            time: row.time_s / self.session_s,
-            travel: interpolate(&self.travel_time_s, &self.travel_share, row.time_s),
+            time: time_s / self.session_s,
+            travel: interpolate(&self.travel_time_s, &self.travel_share, time_s),
             previous_load_n: row.load_n,
             through: 0.0,
             begins_session: true,
             speed_pct: if row.speed_pct > 0.0 { row.speed_pct } else { self.reference_speed_pct },
             dwell_s: if row.dwell_s > 0.0 { row.dwell_s } else { published::DWELL_S },
             position_mm: row.position_mm,
-            time_s: row.time_s,
+            time_s,
             session: 1.0,
             mount: 1.0,
             session_group: self.sessions.iter().position(|name| *name == row.labels.session),
             specimen_group: self.specimens.iter().position(|name| *name == row.labels.specimen),
         })
     }
+}
+
+/// Where the clock of each session stood when it began, in seconds: zero, as the format has it, or the time of the first
+/// row where the clock did not begin with the session, such as one that tells the time of day.
+type Begins<'a> = BTreeMap<&'a str, f64>;
+
+/// A clock that stands at more than a whole session when its session begins, or below zero, did not begin with it.
+fn begins_s(rows: &[PlateauRow], session_s: f64) -> Begins<'_> {
+    let mut first: Begins<'_> = BTreeMap::new();
+    for row in rows {
+        let at = first.entry(&row.labels.session).or_insert(row.time_s);
+        *at = at.min(row.time_s);
+    }
+    first.values_mut().for_each(|at| *at = if (0.0..=session_s).contains(at) { 0.0 } else { *at });
+    first
+}
+
+fn since(begins: &Begins<'_>, row: &PlateauRow) -> f64 {
+    row.time_s - begins.get(row.labels.session.as_str()).copied().unwrap_or(0.0)
+}
+
+/// Length in seconds of the longest session, from where its clock began.
+fn session_length_s(rows: &[PlateauRow]) -> f64 {
+    let mut spans: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
+    for row in rows {
+        let (first, last) = spans.entry(&row.labels.session).or_insert((row.time_s, row.time_s));
+        (*first, *last) = (first.min(row.time_s), last.max(row.time_s));
+    }
+    let mut longest = spans.values().map(|(first, last)| last - first).fold(1e-9, f64::max);
+    // Each round may let the clock of one session more count as begun with it.
+    for _ in 0..=spans.len() {
+        let until =
+            spans.values().filter(|(first, _)| (0.0..=longest).contains(first)).map(|(_, last)| *last);
+        longest = until.fold(longest, f64::max);
+    }
+    longest
 }
 
 /// The labels of some rows in order of appearance; none where all are one.

@@ -14,6 +14,8 @@ mod row_cells;
 pub(crate) mod substrate_word;
 mod swapped_columns;
 mod table_error;
+mod units;
+mod whole_series;
 
 pub use change::{Change, Changing, Grouping};
 pub use frame::{Condition, Frame, Point};
@@ -21,6 +23,7 @@ pub(crate) use frame::{groups, groups_of};
 pub use plateau_table::PlateauTable;
 pub(crate) use plateau_table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG};
 pub use readings::readings_by_session;
+pub(crate) use readings::{sessions_told, tells_readings};
 pub use row::{Labels, PlateauRow, Sweep};
 pub use substrate_word::substrate_word;
 pub use table_error::TableError;

@@ -10,6 +10,8 @@ use super::plateau_table::PlateauTable;
 use super::row::PlateauRow;
 use super::swapped_columns::{Swapped, evident, repairing};
 use super::table_error::TableError;
+use super::units::implausible;
+use super::whole_series::mixed_up;
 use crate::median::median;
 
 /// Declared load over the weight of the declared mass: one, with room for hooks and levers.
@@ -24,7 +26,8 @@ impl PlateauTable {
     /// stand in each other's place, [`TableError::Unrelated`] if the readings do not follow the loads in most
     /// conditions, [`TableError::LoadUnit`] if loads and masses contradict each other, [`TableError::NoFriction`] if the
     /// directions differ nowhere, [`TableError::SwappedDirections`] if they differ the wrong way round in most
-    /// conditions.
+    /// conditions; what tells units and directions without masses or a second direction, and what is wrong with single
+    /// series, has variants of its own.
     pub fn require_baseline(&self, file: &str) -> Result<(), TableError> {
         let mut loads: Vec<f64> = self.rows.iter().map(|r| r.load_n).filter(|n| *n > 0.0).collect();
         loads.sort_by(f64::total_cmp);
@@ -44,10 +47,10 @@ impl PlateauTable {
             let last_line = self.rows.len() + 1;
             return Err(TableError::TooFewLoads { file, last_line, found: loads.len(), needed });
         }
-        match self.contradiction(&file) {
-            None => Ok(()),
-            Some(error) => Err(repairing(&self.rows).map_or(error, swapped)),
+        if let Some(error) = self.contradiction(&file) {
+            return Err(repairing(&self.rows).map_or(error, swapped));
         }
+        implausible(&self.rows, &file).or_else(|| mixed_up(&self.rows, &file)).map_or(Ok(()), Err)
     }
 
     /// What no rig can have measured.
@@ -107,7 +110,7 @@ mod tests {
     #[test]
     fn one_load_or_readings_that_do_not_follow_it_fix_no_baseline() {
         let checked = |from: &str, to: &str| {
-            let other = LINE.replacen("3.5", "7", 1).replacen(from, to, 1);
+            let other = LINE.replacen("0,", "1,", 1).replacen("3.5", "7", 1).replacen(from, to, 1);
             let text = format!("{HEADER}\n{LINE}\n{other}\n");
             PlateauTable::read(text.as_bytes(), "t.csv").unwrap().require_baseline("t.csv")
         };

@@ -156,6 +156,122 @@ pub enum TableError {
         /// What is possible.
         bounds: std::ops::RangeInclusive<f64>,
     },
+    /// Loads that are no newtons.
+    #[error(
+        "{file}, column 'load_N': half of the loads are above {load_n} N; {} to {} N are possible of a tendon on a printed switch. \
+         Give newtons: divide grams by 101.97, multiply kilonewtons by 1000",
+        bounds.start(), bounds.end()
+    )]
+    NoNewtons {
+        /// File name as given.
+        file: String,
+        /// The median load.
+        load_n: f64,
+        /// What is possible.
+        bounds: std::ops::RangeInclusive<f64>,
+    },
+    /// Readings in another unit than the loads.
+    #[error(
+        "{file}, column 'force_N': over both directions the readings are {factor:.3} times the loads, {} to {} are possible; give \
+         both columns in newtons at the tendon, and divide by what a pulley between tendon and cell multiplies",
+        bounds.start(), bounds.end()
+    )]
+    ReadingUnit {
+        /// File name as given.
+        file: String,
+        /// Readings over loads, friction fallen out.
+        factor: f64,
+        /// What is possible.
+        bounds: std::ops::RangeInclusive<f64>,
+    },
+    /// One direction, on the wrong side of its loads.
+    #[error(
+        "{file}, column 'direction': what was {direction} lies on the wrong side of its load in {conditions} of {of} condition(s), where the reading changes by {slope:.2} N \
+         for each newton; what is pulled (concentric) reads more than its load and what is released (eccentric) less. Write the \
+         other word, or check load_N"
+    )]
+    WrongSide {
+        /// File name as given.
+        file: String,
+        /// The word of the column.
+        direction: &'static str,
+        /// Newtons per newton, the median over the conditions on the wrong side.
+        slope: f64,
+        /// Conditions on the wrong side.
+        conditions: usize,
+        /// Conditions that can tell.
+        of: usize,
+    },
+    /// A series on two conditions or at several loads.
+    #[error(
+        "{file}, column '{column}': series '{}' holds {} and {}; a series is recorded in one go, on one condition and at one load. Give \
+         each its own name in column series",
+        excerpt(series, 80),
+        excerpt(one, 80),
+        excerpt(other, 80)
+    )]
+    MixedSeries {
+        /// File name as given.
+        file: String,
+        /// The series.
+        series: String,
+        /// The column that holds both.
+        column: &'static str,
+        /// One of its values.
+        one: String,
+        /// The other.
+        other: String,
+    },
+    /// A series that stands in the table twice.
+    #[error(
+        "{file}, column 'force_N': the {rows} readings of series '{}' are those of series '{}' to the last digit; a copy is no second \
+         measurement: leave it out",
+        excerpt(series, 80),
+        excerpt(other, 80)
+    )]
+    CopiedSeries {
+        /// File name as given.
+        file: String,
+        /// The series.
+        series: String,
+        /// The one that it is a copy of.
+        other: String,
+        /// Its rows.
+        rows: usize,
+    },
+    /// Directions exchanged in more series than can be set aside.
+    #[error(
+        "{file}, column 'direction': in {count} of {of} series less was read pulling than releasing ({}); friction takes from what is \
+         released and adds to what is pulled. Exchange the words concentric and eccentric there, or leave these series out",
+        excerpt(series, 200)
+    )]
+    ExchangedSeries {
+        /// File name as given.
+        file: String,
+        /// How many.
+        count: usize,
+        /// Of so many.
+        of: usize,
+        /// Their names, the first of them.
+        series: String,
+    },
+    /// A wrap angle measured row by row.
+    #[error(
+        "{file}, column 'wrap_angle_deg': {count} different angles of one layout, from {least_deg:.2} to {most_deg:.2} degrees; each would be \
+         a condition with constants of its own, and at most {most} are possible. Give the nominal angle of each mount"
+    )]
+    ScatteredWraps {
+        /// File name as given.
+        file: String,
+        /// How many.
+        count: usize,
+        /// The smallest.
+        least_deg: f64,
+        /// The largest.
+        most_deg: f64,
+        /// How many are possible.
+        most: usize,
+    },
     /// The loads cannot fix the baseline.
     #[error(
         "{file}, lines 2 to {last_line}, column 'load_N': {found} different load(s) above zero; the baseline needs at least {needed}, \

@@ -12,7 +12,7 @@ use crate::aliasing::aliasing;
 use crate::held_out::{HeldOut, held_out};
 use crate::inference::{Levels, Observations, Selection, Weighed, averaged_intervals, interval_half_widths};
 use crate::promise::Promise;
-use crate::report::{DataSummary, Report, Verdict};
+use crate::report::{DataSummary, Report, UnequalReport, Verdict};
 use crate::table::PlateauRow;
 use crate::trial::trials;
 
@@ -21,7 +21,7 @@ use bad_series::bad_series;
 use changes::changes;
 use effects::effects;
 use noise::{is_adequate, noise_parts};
-use unequal::unequal;
+use unequal::{hidden, unequal};
 
 pub(crate) use bad_series::BAD_READING_SD;
 pub(crate) use model::model_report;
@@ -56,7 +56,17 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
     let after_n = held.both_n();
     let effects = effects(selection, weighed, after_n, &augmented);
     let promise_n = promised.map(|p| if effects.is_empty() { p.baseline_n } else { p.augmented_n });
-    let trials = trials(rows, selection, data);
+    let hidden = hidden(selection, data, levels);
+    let unequal: Vec<UnequalReport> =
+        unequal(selection, data).into_iter().chain(hidden.iter().cloned()).collect();
+    let trials =
+        trials(rows, selection, data).into_iter().map(|trial| trial.beside(&unequal)).collect::<Vec<_>>();
+    let adequate =
+        is_adequate(augmented.heldout_series_rmse_n, noise.floor_n(data), data) && hidden.is_empty();
+    let verdict = match Verdict::of(selection).beside(&trials) {
+        Verdict::None if !hidden.is_empty() => Verdict::Inconclusive,
+        verdict => verdict,
+    };
     Report {
         schema: "pinswitch.calibration/1".to_owned(),
         data: DataSummary {
@@ -65,11 +75,11 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
             conditions: selection.baseline.model.frame.conditions.len(),
             outliers,
         },
-        verdict: Verdict::of(selection).beside(&trials),
+        verdict,
         noise_floor_n: noise.floor_n(data),
         noise,
         noise_parts: noise_parts(selection, data),
-        adequate: is_adequate(augmented.heldout_series_rmse_n, noise.floor_n(data), data),
+        adequate,
         promise_n,
         promise_baseline_n: promised.map(|p| p.baseline_n),
         limits: limits(selection),
@@ -81,7 +91,7 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
         aliasing: aliasing(rows),
         ignored_columns: Vec::new(),
         changes: changes(&selection.augmented, weighed),
-        unequal: unequal(selection, data),
+        unequal,
         baseline,
         augmented,
         candidates: candidates(selection, data, levels),

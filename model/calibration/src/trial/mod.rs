@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::effects::EffectDefinition;
 use crate::inference::{Observations, Selection, Weighed};
-use crate::report::Estimate;
-use crate::table::{PlateauRow, readings_by_session};
+use crate::report::{Estimate, UnequalReport};
+use crate::table::{PlateauRow, sessions_told};
 
 use beside::{Beside, beside};
 use claim::Found;
@@ -82,6 +82,23 @@ pub struct TrialReport {
 }
 
 impl TrialReport {
+    /// The same beside what differs between sessions: what one session has and another has not is no effect of the rig. Of what
+    /// was drawn only sessions that it was not drawn from were asked.
+    #[must_use]
+    pub(crate) fn beside(self, unequal: &[UnequalReport]) -> Self {
+        let is_everywhere =
+            |told: &UnequalReport| told.sizes.iter().all(|s| s.size.ci95[0] > 0.0 || s.size.ci95[1] < 0.0);
+        match unequal.iter().find(|told| told.id == self.id) {
+            Some(told)
+                if self.outcome == TrialOutcome::Confirmed && !self.was_drawn && !is_everywhere(told) =>
+            {
+                let note = "its size is not the same in all sessions, and zero in one of them".to_owned();
+                Self { outcome: TrialOutcome::Open, note: Some(note), ..self }
+            }
+            _ => self,
+        }
+    }
+
     /// Size, claim, chance and note, in one line.
     pub fn words(&self) -> String {
         let known = if self.was_drawn { "drawn before" } else { "typical" };
@@ -131,8 +148,8 @@ fn trial(
     let outcome = claim.outcome(found, structure.is_some());
     let is_named = selection.effects.iter().any(|e| e.ids().contains(&definition.id.as_str()));
     let (outcome, note) = match (outcome, structure) {
-        // The search moves shapes, which a trial does not.
-        (TrialOutcome::Refuted, _) if is_named => {
+        // The search moves shapes, which a trial does not. What was drawn is named by nothing but its trial.
+        (TrialOutcome::Refuted, _) if is_named && !claim.was_drawn => {
             let note = "not where its shapes start: what the table has of it is named above";
             (TrialOutcome::Open, Some(note.to_owned()))
         }
@@ -155,8 +172,8 @@ fn unseen_part(
     if definition.drawn_from.is_empty() {
         return None;
     }
-    let readings = readings_by_session(rows);
-    let is_seen = |session: &str| readings.get(session).is_some_and(|r| definition.drawn_from.contains(r));
+    let told = sessions_told(rows, &definition.drawn_from);
+    let is_seen = |session: &str| told.contains(session);
     let seen: Vec<bool> =
         data.source.iter().map(|row| rows.get(*row).is_some_and(|r| is_seen(&r.labels.session))).collect();
     seen.contains(&true).then(|| data.subset(|row| !seen[row]))

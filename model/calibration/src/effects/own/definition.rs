@@ -9,7 +9,7 @@ use super::unit_check::check_units;
 use super::variable::{VARIABLES, variable};
 use crate::effects::{ActsOn, Combine, Covariate, Effect, Parameter, Side, Written, effect_named};
 use crate::inference::UNATTRIBUTED;
-use crate::table::Frame;
+use crate::table::{Frame, tells_readings};
 
 /// Most constants of an effect.
 const MAX_PARAMETERS: usize = 8;
@@ -188,6 +188,18 @@ impl EffectDefinition {
         })?;
         require(self.drawn_from.len() <= MAX_SESSIONS, Part::DrawnFrom, || {
             format!("drawn from {} sessions; {MAX_SESSIONS} are possible", self.drawn_from.len())
+        })?;
+        for told in &self.drawn_from {
+            require(tells_readings(told), Part::DrawnFrom, || {
+                format!(
+                    "drawn from '{}', which tells no readings; leave drawn_from as `calibrate` wrote it, or take it out if you \
+                     claim the effect yourself",
+                    shown(told)
+                )
+            })?;
+        }
+        require(!self.confused_with.contains(&self.id), Part::ConfusedWith, || {
+            format!("'{}' is the effect itself; name others", self.id)
         })?;
         let count = self.parameters.len();
         require((1..=MAX_PARAMETERS).contains(&count), Part::Parameters, || {

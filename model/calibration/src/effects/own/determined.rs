@@ -42,6 +42,26 @@ pub(super) fn not_told_apart<'a>(node: &Node, parameters: &'a [OwnParameter]) ->
     (names.len() > 1).then_some(names)
 }
 
+/// Name of a shape that moves the effect by jumps alone: no fit can follow it, and no interval tells where it lies.
+pub(super) fn jumps_only<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<&'a str> {
+    let rows = spread_probes();
+    let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
+    let at = |k: usize, value: f64| -> Vec<f64> {
+        let mut moved = start.clone();
+        moved[k] = value;
+        rows.iter().map(|row| node.value(&moved, &row.moment())).collect()
+    };
+    let jumps = |(k, parameter): &(usize, &OwnParameter)| {
+        let Some((low, high)) = parameter.bounds else { return false };
+        let places: Vec<f64> = (1..20).map(|i| low + (high - low) * (f64::from(i) / 20.0 + 1e-3)).collect();
+        let step = 1e-7 * (high - low);
+        let moves_a_little = places.iter().any(|place| at(*k, *place) != at(*k, place + step));
+        let moves = places.windows(2).any(|pair| at(*k, pair[0]) != at(*k, pair[1]));
+        moves && !moves_a_little
+    };
+    parameters.iter().enumerate().find(jumps).map(|(_, parameter)| parameter.name.as_str())
+}
+
 /// Constants that take part in a combination that does nothing; `None` if there is none, or too few rows say anything.
 fn alike_at(node: &Node, parameters: &[OwnParameter], values: &[f64]) -> Option<Vec<usize>> {
     let rows = spread_probes();
@@ -120,7 +140,6 @@ mod tests {
         for (formula, parameters) in [
             ("-a*exp(-((speed_pct - c)/w)^2)", [A, C, W].concat()),
             ("-a*exp(-((speed_pct - c)/w)^2)", [A, C, narrow].concat()),
-            ("a*(speed_pct > c)", [A, C].concat()),
             ("a*(time > 0.5) + b*(time <= 0.5)", [A, B].concat()),
             ("a*stroke + b*stroke^2", [A, B].concat()),
             ("a*(load_n/50)^d", [A, D].concat()),
@@ -132,10 +151,20 @@ mod tests {
     }
 
     #[test]
+    fn places_of_steps_that_no_fit_can_follow_are_refused_by_name() {
+        let said = told("a*(speed_pct > c)", &[A, C].concat()).unwrap_err();
+        assert!(said.contains("'c' moves the effect by jumps"), "{said}");
+        assert_eq!(told("a*(speed_pct > 52)", A), Ok(()));
+        assert_eq!(told("a*0.5*(1 + tanh((speed_pct - c)/0.5))", &[A, C].concat()), Ok(()));
+        assert_eq!(told("a*max((speed_pct - c)/50, 0)", &[A, C].concat()), Ok(()));
+    }
+
+    #[test]
     fn no_built_in_effect_is_refused() {
         for effect in CATALOGUE {
             let Ok(definition) = EffectDefinition::of(*effect) else { continue };
             let own = OwnEffect::new(EffectDefinition { id: "mine".to_owned(), ..definition }).unwrap();
+            assert_eq!(own.moved_by_jumps(), None);
             assert_eq!(own.constants_not_told_apart(), None, "{}", own_effects_text([own.definition()]));
         }
     }

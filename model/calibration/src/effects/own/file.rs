@@ -111,6 +111,13 @@ pub fn read_own_effects(
             );
             return Err(source.error(effect.formula_at, problem));
         }
+        if let Some(place) = effect.own.moved_by_jumps() {
+            let problem = format!(
+                "'{place}' moves the effect by jumps alone, which no fit can follow; write a narrow slope in place of the \
+                 comparison, such as 0.5*(1 + tanh((time - {place})/0.004)), or a number in place of the parameter"
+            );
+            return Err(source.error(effect.formula_at, problem));
+        }
         let id = &effect.own.definition().id;
         let twice = found[..i].iter().any(|other| other.own.definition().id == *id);
         if twice || vocabulary.named(id).is_some() {

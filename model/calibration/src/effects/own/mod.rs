@@ -93,6 +93,11 @@ impl OwnEffect {
         determined::not_told_apart(&self.formula, &self.definition.parameters)
     }
 
+    /// Name of a shape that moves the effect by jumps alone, if there is one.
+    pub(super) fn moved_by_jumps(&self) -> Option<&str> {
+        determined::jumps_only(&self.formula, &self.definition.parameters)
+    }
+
     /// The start, and the same with the shapes elsewhere within their bounds: a formula that is not linear in a shape must
     /// not be missed because its fit began on the wrong side.
     pub(super) fn starts(&self) -> Vec<Vec<f64>> {

@@ -1,0 +1,178 @@
+//! Whether the rows of each series belong together: one condition, loads that are alike, readings of its own, and directions
+//! the right way round.
+
+use std::collections::{BTreeMap, HashMap};
+
+use pinswitch_friction::Direction;
+
+use super::row::PlateauRow;
+use super::substrate_word::substrate_word;
+use super::table_error::TableError;
+use crate::median::median;
+
+/// Ratio of the heaviest load of a series to its lightest, beyond which it is no series. A machine that pulls against a
+/// spring moves its load by some tenths.
+const MOST_SPREAD: f64 = 2.5;
+/// Readings of a series that another one cannot repeat by chance.
+const COPIED: usize = 4;
+/// Series with exchanged directions that are left to the fit, which sets them aside.
+const SET_ASIDE: usize = 3;
+/// Share of the load by which a pull must lie below a release before a series counts as exchanged, and standard errors.
+const BACKWARDS: (f64, f64) = (0.02, 5.0);
+/// Series that are named in an error.
+const NAMED: usize = 8;
+
+/// The rows of one series of one session.
+type Series<'a> = ((&'a str, &'a str), Vec<&'a PlateauRow>);
+
+/// What is wrong with the series of a table, if anything is.
+pub(super) fn mixed_up(rows: &[PlateauRow], file: &str) -> Option<TableError> {
+    let mut by_name: BTreeMap<(&str, &str), Vec<&PlateauRow>> = BTreeMap::new();
+    for row in rows {
+        by_name.entry((&row.labels.session, &row.series)).or_default().push(row);
+    }
+    let all: Vec<Series<'_>> = by_name.into_iter().collect();
+    all.iter()
+        .find_map(|(name, of)| mixed(name.1, of, file))
+        .or_else(|| copied(&all, file))
+        .or_else(|| exchanged(&all, file))
+}
+
+/// A series on two conditions, or at loads that are not one.
+fn mixed(series: &str, of: &[&PlateauRow], file: &str) -> Option<TableError> {
+    let first = of.first()?;
+    let condition = |row: &PlateauRow| {
+        let pins: Vec<String> = row.pins.iter().map(usize::to_string).collect();
+        format!("{} {}", substrate_word(row.substrate), pins.join(";")).trim_end().to_owned()
+    };
+    let mixed = |column, one, other| {
+        Some(TableError::MixedSeries { file: file.to_owned(), series: series.to_owned(), column, one, other })
+    };
+    if let Some(other) = of.iter().find(|r| r.substrate != first.substrate || r.pins != first.pins) {
+        return mixed("pins", condition(first), condition(other));
+    }
+    let loads = || of.iter().map(|r| r.load_n);
+    let (least, most) = (loads().fold(f64::INFINITY, f64::min), loads().fold(0.0, f64::max));
+    if most > MOST_SPREAD * least {
+        return mixed("load_N", format!("{least} N"), format!("{most} N"));
+    }
+    None
+}
+
+/// A series whose readings are those of another one.
+fn copied(all: &[Series<'_>], file: &str) -> Option<TableError> {
+    let mut known: HashMap<Vec<(bool, u64)>, &str> = HashMap::new();
+    for ((_, series), of) in all {
+        let mut readings: Vec<(bool, u64)> =
+            of.iter().map(|r| (r.direction.sign() > 0.0, r.force_n.to_bits())).collect();
+        readings.sort_unstable();
+        let mut different = readings.clone();
+        different.dedup();
+        if different.len() < COPIED {
+            continue;
+        }
+        if let Some(other) = known.insert(readings, series) {
+            return Some(TableError::CopiedSeries {
+                file: file.to_owned(),
+                series: (*series).to_owned(),
+                other: other.to_owned(),
+                rows: of.len(),
+            });
+        }
+    }
+    None
+}
+
+/// More series than the fit sets aside where less was read pulling than releasing.
+fn exchanged(all: &[Series<'_>], file: &str) -> Option<TableError> {
+    let wrong: Vec<&str> =
+        all.iter().filter(|(_, of)| is_backwards(of)).map(|((_, series), _)| *series).collect();
+    (wrong.len() > SET_ASIDE).then(|| TableError::ExchangedSeries {
+        file: file.to_owned(),
+        count: wrong.len(),
+        of: all.len(),
+        series: format!(
+            "{}{}",
+            wrong[..wrong.len().min(NAMED)].join(", "),
+            if wrong.len() > NAMED { ", ..." } else { "" }
+        ),
+    })
+}
+
+fn is_backwards(of: &[&PlateauRow]) -> bool {
+    let side = |direction: Direction| -> Vec<f64> {
+        of.iter().filter(|r| r.direction == direction).map(|r| r.force_n - r.load_n).collect()
+    };
+    let (mut released, mut pulled) = (side(Direction::Eccentric), side(Direction::Concentric));
+    if released.len() < 2 || pulled.len() < 2 {
+        return false;
+    }
+    let error2 = |values: &[f64]| {
+        let (n, mean) = (values.len() as f64, values.iter().sum::<f64>() / values.len() as f64);
+        values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) / n
+    };
+    let error_n = (error2(&released) + error2(&pulled)).sqrt();
+    let below_n = median(&mut released) - median(&mut pulled);
+    let load_n = median(&mut of.iter().map(|r| r.load_n).collect::<Vec<_>>());
+    below_n > (BACKWARDS.0 * load_n).max(BACKWARDS.1 * error_n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_session::session;
+
+    fn said(change: impl Fn(&mut Vec<PlateauRow>)) -> String {
+        let mut rows = session(3);
+        change(&mut rows);
+        mixed_up(&rows, "t.csv").map_or_else(String::new, |e| e.to_string())
+    }
+
+    fn turn(rows: &mut [PlateauRow], series: usize) {
+        let mut names: Vec<String> = rows.iter().map(|r| r.series.clone()).collect();
+        names.sort();
+        names.dedup();
+        for row in rows.iter_mut().filter(|r| r.load_n > 20.0 && !r.pins.is_empty()) {
+            if names[names.len().saturating_sub(series)..].contains(&row.series) {
+                row.direction = match row.direction {
+                    Direction::Eccentric => Direction::Concentric,
+                    Direction::Concentric => Direction::Eccentric,
+                };
+            }
+        }
+    }
+
+    #[test]
+    fn series_are_whole_or_named() {
+        assert_eq!(said(|_| {}), "");
+        let loads =
+            said(|rows| rows.iter_mut().for_each(|r| r.series = format!("{:?} {:?}", r.substrate, r.pins)));
+        assert!(loads.starts_with("t.csv, column 'load_N': series '"), "{loads}");
+        let layouts = said(|rows| rows.iter_mut().for_each(|r| r.series = format!("{}", r.load_n)));
+        assert!(layouts.contains("column 'pins'"), "{layouts}");
+        let copied = said(|rows| {
+            let first: Vec<PlateauRow> =
+                rows.iter().filter(|r| r.series == rows[0].series).cloned().collect();
+            rows.extend(first.into_iter().map(|r| PlateauRow { series: "again".into(), ..r }));
+        });
+        assert!(copied.contains("'again'") && copied.contains("copy"), "{copied}");
+    }
+
+    #[test]
+    fn a_few_exchanged_series_are_the_fits_and_more_are_named() {
+        let backwards = |rows: &[PlateauRow]| {
+            let mut names: Vec<&str> = rows.iter().map(|r| r.series.as_str()).collect();
+            names.sort_unstable();
+            names.dedup();
+            let of = |name: &str| rows.iter().filter(|r| r.series == name).collect::<Vec<_>>();
+            names.iter().filter(|name| is_backwards(&of(name))).count()
+        };
+        let mut rows = session(3);
+        assert_eq!(backwards(&rows), 0);
+        turn(&mut rows, 400);
+        let many = backwards(&rows);
+        assert!(many > SET_ASIDE, "{many}");
+        let told = mixed_up(&rows, "t.csv").unwrap().to_string();
+        assert!(told.contains(&format!("{many} of")) && told.contains("Exchange"), "{told}");
+    }
+}

@@ -164,7 +164,8 @@ fn no_rig_of_the_study_is_refused() {
     }
 }
 
-/// One condition, or some series, may be as wrong as they like.
+/// One condition, or three series, may be as wrong as they like, but for directions: no friction makes a pull read less than a
+/// release, and with more than three such series nothing that is said of the others would be true.
 #[test]
 fn one_odd_condition_or_series_is_left_to_the_fit() {
     let rows = simulate(&Plan::randomised()).rows;
@@ -178,7 +179,9 @@ fn one_odd_condition_or_series_is_left_to_the_fit() {
     for (i, wrong) in wrongs.iter().enumerate() {
         let mut condition = rows.clone();
         condition.iter_mut().filter(|r| r.pins.is_empty()).for_each(wrong);
-        judged(&written(&condition)).unwrap_or_else(|e| panic!("condition, {i}: {e}"));
+        let said = judged(&written(&condition));
+        let is_exchanged = matches!(said, Err(TableError::ExchangedSeries { count: 22, .. }));
+        assert!(if [0, 3].contains(&i) { is_exchanged } else { said.is_ok() }, "condition, {i}: {said:?}");
         let mut series = rows.clone();
         series.iter_mut().filter(|r| ["3", "17", "40"].contains(&r.series.as_str())).for_each(wrong);
         judged(&written(&series)).unwrap_or_else(|e| panic!("series, {i}: {e}"));
@@ -222,6 +225,47 @@ fn plans() -> impl Strategy<Value = Plan> {
                 }
             },
         )
+}
+
+/// Found by an attack: each was accepted, and most of them named an effect that is not there.
+#[test]
+fn mixed_up_series_and_foreign_units_are_refused_without_masses() {
+    let rows = simulate(&Plan { seed: 5, ..Plan::randomised() }).rows;
+    let refused = |what: &str, change: &dyn Fn(&mut Vec<PlateauRow>)| {
+        let mut rows = rows.clone();
+        rows.iter_mut().for_each(|r| r.load_mass_g = 0.0);
+        change(&mut rows);
+        assert_refused(&written(&rows), what);
+    };
+    let both = |factor: f64| {
+        move |rows: &mut Vec<PlateauRow>| {
+            for row in rows {
+                (row.load_n, row.force_n) = (factor * row.load_n, factor * row.force_n);
+            }
+        }
+    };
+    refused("grams", &both(101.97));
+    refused("kilonewtons", &both(1e-3));
+    refused("pounds", &|rows| rows.iter_mut().for_each(|r| r.force_n *= 0.2248));
+    refused("a pulley", &|rows| rows.iter_mut().for_each(|r| r.force_n *= 2.0));
+    refused("one series", &|rows| rows.iter_mut().for_each(|r| r.series = "1".to_owned()));
+    refused("a series for each layout", &|rows| {
+        rows.iter_mut().for_each(|r| r.series = format!("{:?}{:?}", r.substrate, r.pins))
+    });
+    refused("a wrap for each row", &|rows| {
+        rows.iter_mut().enumerate().for_each(|(i, r)| r.wrap_angle_deg += 0.001 * i as f64);
+    });
+    for kept in [Direction::Eccentric, Direction::Concentric] {
+        refused("one direction under the other's name", &|rows| {
+            rows.retain(|r| r.direction == kept);
+            rows.iter_mut().for_each(|r| r.direction = turned(r.direction));
+        });
+    }
+    refused("four exchanged series", &|rows| {
+        let heavy =
+            |r: &&mut PlateauRow| ["30", "31", "32", "33", "34", "35", "36"].contains(&r.series.as_str());
+        rows.iter_mut().filter(heavy).for_each(|r| r.direction = turned(r.direction));
+    });
 }
 
 proptest! {

@@ -4,8 +4,8 @@ use crate::effects::Vocabulary;
 use crate::forms::{DrawnForm, draw_form};
 use crate::held_out::{HeldOut, held_out};
 use crate::inference::{
-    Levels, MOST_ROWS, Model, Noise, Observations, Selection, UNATTRIBUTED, Weighed, averaged_intervals, fit,
-    select,
+    Levels, MOST_ROWS, Model, Noise, Observations, Selection, Term, UNATTRIBUTED, Weighed,
+    averaged_intervals, fit, select,
 };
 use crate::own_values::has_values;
 use crate::parallel::{both, map_each};
@@ -13,7 +13,7 @@ use crate::promise::{learn, parts, promise};
 use crate::report::Report;
 use crate::table::{Frame, PlateauRow};
 use crate::telling::{Told, model_report, report};
-use crate::trial::TrialOutcome;
+use crate::trial::{TrialOutcome, trials};
 
 /// Why rows cannot be calibrated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -180,6 +180,10 @@ fn calibrated(
         held = held_out(&selection.augmented.model, &Weighed::new(&data, selection.noise));
         form = None;
     }
+    if let Some(named) = with_confirmed(rows, &selection, &data, held, levels) {
+        held = held_out(&named.augmented.model, &Weighed::new(&data, named.noise));
+        (selection, form) = (named, None);
+    }
     if data.points.len() == whole.points.len() {
         whole = data.clone();
     }
@@ -195,6 +199,43 @@ fn calibrated(
     }
     let data = whole;
     Ok(Calibration { report, selection, data, form })
+}
+
+/// Share of what shapes without a name explain from which a confirmed effect of the same covariate stands in their place, and by
+/// which its held-out error may be larger: shapes follow a course more closely than any one formula.
+const STANDS_FOR: (f64, f64) = (0.85, 1.05);
+
+/// The selection with an effect of one's own in place of the structure along its covariate, if the table confirms the effect and
+/// that structure is what it does.
+fn with_confirmed(
+    rows: &[PlateauRow],
+    selection: &Selection,
+    data: &Observations,
+    shapes: HeldOut,
+    levels: Levels,
+) -> Option<Selection> {
+    let covariate = selection.structure?.covariate;
+    let weighed = Weighed::new(data, selection.noise);
+    let all = &selection.augmented.model;
+    let is_shape = |i: &usize| matches!(all.terms[*i], Term::Structure(_));
+    let bare =
+        (0..all.terms.len()).rev().filter(is_shape).fold(all.clone(), |model, i| model.without_term(i));
+    let without = fit(&bare, &weighed);
+    let confirmed = trials(rows, selection, data);
+    let confirmed = confirmed.iter().filter(|trial| trial.outcome == TrialOutcome::Confirmed);
+    let tried = confirmed.filter_map(|trial| {
+        let own = all.vocabulary.own().find(|own| own.definition().id == trial.id)?.definition();
+        let effect = all.vocabulary.named(&own.id)?;
+        let is_named = selection.effects.iter().any(|found| found.effect.id() == own.id);
+        let claimed: Vec<f64> = own.parameters.iter().map(|p| p.start).collect();
+        (own.covariate == covariate && !is_named)
+            .then(|| fit(&bare.with_term(Term::Named(effect), &claimed), &weighed))
+    });
+    let best = tried.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+    let explained = (without.cost - best.cost) / (without.cost - selection.augmented.cost);
+    let held = held_out(&best.model, &weighed);
+    let stands = explained >= STANDS_FOR.0 && held.both_n() <= STANDS_FOR.1 * shapes.both_n();
+    stands.then(|| selection.clone().with_names(best, data, levels))
 }
 
 /// The form of what has no name. It goes into the model if it predicts held-out data no worse than the shapes do.

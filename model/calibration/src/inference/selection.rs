@@ -118,9 +118,16 @@ impl Selection {
     /// The same table with nothing believed: what was found did not help on data that had no part in it.
     #[must_use]
     pub fn without_findings(self, data: &Observations, levels: Levels) -> Self {
+        let baseline = self.baseline.clone();
+        self.with_names(baseline, data, levels)
+    }
+
+    /// The same table with the names of a fit believed, and no structure without one.
+    #[must_use]
+    pub(crate) fn with_names(self, named: Fit, data: &Observations, levels: Levels) -> Self {
         let bare = Explanation {
-            augmented: self.baseline.clone(),
-            named: self.baseline.model.clone(),
+            named: named.model.clone(),
+            augmented: named,
             baseline: self.baseline,
             structure: None,
             structure_gain: self.structure_gain,

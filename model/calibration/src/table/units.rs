@@ -12,6 +12,8 @@ use crate::median::median;
 const LOADS_N: std::ops::RangeInclusive<f64> = 0.3..=1000.0;
 /// What both directions together may read for each newton: friction falls out of their geometric mean, gains of cells do not.
 const READS: std::ops::RangeInclusive<f64> = 0.6..=1.6;
+/// Wrap angle in degrees up to which that mean says something: beyond it friction is no small part of what is read.
+const NARROW_DEG: f64 = 120.0;
 /// Newtons per newton by which the middle condition of a direction alone must lie on the wrong side of its load, and none of
 /// them may lie on the right one: a gain of a cell does less, and friction of silicone more.
 const WRONG_SIDE: (f64, f64) = (0.05, 0.02);
@@ -26,13 +28,15 @@ pub(super) fn implausible(rows: &[PlateauRow], file: &str) -> Option<TableError>
     if !LOADS_N.contains(&load_n) {
         return Some(TableError::NoNewtons { file, load_n, bounds: LOADS_N });
     }
-    let (mut both, mut alone) = (Vec::new(), Vec::new());
+    let (mut both, mut alone, mut has_both) = (Vec::new(), Vec::new(), false);
     for of in conditions(rows) {
+        let is_narrow = of.iter().all(|row| row.wrap_angle_deg <= NARROW_DEG);
         match [Direction::Eccentric, Direction::Concentric]
             .map(|direction| (direction, slope(direction, &of)))
         {
             [(_, Some(released)), (_, Some(pulled))] if released > 0.0 && pulled > 0.0 => {
-                both.push((released * pulled).sqrt());
+                both.extend(is_narrow.then(|| (released * pulled).sqrt()));
+                has_both = true;
             }
             [(direction, Some(slope)), (_, None)] | [(_, None), (direction, Some(slope))] => {
                 alone.push((direction, slope));
@@ -47,7 +51,7 @@ pub(super) fn implausible(rows: &[PlateauRow], file: &str) -> Option<TableError>
     let mut beyond: Vec<f64> =
         alone.iter().map(|(direction, slope)| direction.sign() * (slope - 1.0)).collect();
     let most = beyond.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if let Some((direction, _)) = alone.first().filter(|_| both.is_empty())
+    if let Some((direction, _)) = alone.first().filter(|_| !has_both)
         && median(&mut beyond) < -WRONG_SIDE.0
         && most < WRONG_SIDE.1
     {

@@ -64,7 +64,8 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
     let adequate =
         is_adequate(augmented.heldout_series_rmse_n, noise.floor_n(data), data) && hidden.is_empty();
     let verdict = match Verdict::of(selection).beside(&trials) {
-        Verdict::None if !hidden.is_empty() => Verdict::Inconclusive,
+        // Where something is left nothing is excluded.
+        Verdict::None if !adequate => Verdict::Inconclusive,
         verdict => verdict,
     };
     Report {

@@ -51,6 +51,11 @@ pub(super) fn hidden(selection: &Selection, data: &Observations, levels: Levels)
         Term::Structure(shape) => Some(along(shape)),
         Term::Named(_) => None,
     });
+    // Shapes that follow one session would take from the size what is there.
+    let bare = (0..all.terms.len())
+        .rev()
+        .filter(|i| matches!(all.terms[*i], Term::Structure(_)))
+        .fold(all.clone(), |model, i| model.without_term(i));
     let mut known: BTreeSet<String> = named.chain(unnamed).collect();
     let mut found = Vec::new();
     for (model, noise) in alone.into_iter().flatten() {
@@ -67,8 +72,8 @@ pub(super) fn hidden(selection: &Selection, data: &Observations, levels: Levels)
             };
             let constants = &values[model.term_offset(i)..model.term_offset(i) + term.constants()];
             let Some(told) = told.filter(|told| known.insert(told.id.clone())) else { continue };
-            let with = all.with_term(term.clone(), constants);
-            let of_this = of_term(told, all.terms.len(), tries, &with, noise, data);
+            let with = bare.with_term(term.clone(), constants);
+            let of_this = of_term(told, bare.terms.len(), tries, &with, noise, data);
             found.extend(of_this.map(|told| UnequalReport { in_the_model: 0.0, ..told }));
         }
     }

@@ -152,10 +152,7 @@ fn best(covariate: Covariate, with_shapes: &Model, weighed: &Weighed<'_>) -> Opt
         _ => None,
     });
     let mut forms = where_shapes_lie(shapes);
-    let mut bare = with_shapes.model.clone();
-    while let Some(at) = bare.terms.iter().position(|t| matches!(t, Term::Structure(_))) {
-        bare = bare.without_term(at);
-    }
+    let bare = with_shapes.model.without_terms(|term| matches!(term, Term::Structure(_)));
     let without = fit(&bare, weighed);
     forms.extend(library(covariate, &bare.frame));
     let on = |forms: &mut dyn Iterator<Item = &Form>, things: &[ActsOn]| -> Vec<Candidate> {

@@ -75,14 +75,11 @@ impl Explanation {
     /// The explanations that believe one thing less, or nothing.
     pub(super) fn with_less(&self) -> impl Iterator<Item = Explanation> {
         let terms = &self.augmented.model.terms;
-        let bare = (0..terms.len()).rev().fold(self.augmented.model.clone(), |m, i| m.without_term(i));
+        let bare = self.augmented.model.without_terms(|_| true);
         let named = (0..terms.len())
             .filter(|i| matches!(terms[*i], Term::Named(_)))
             .map(|i| (self.augmented.model.without_term(i), self.structure));
-        let shapeless = (0..terms.len())
-            .rev()
-            .filter(|i| matches!(terms[*i], Term::Structure(_)))
-            .fold(self.augmented.model.clone(), |m, i| m.without_term(i));
+        let shapeless = self.augmented.model.without_terms(|term| matches!(term, Term::Structure(_)));
         [(bare, None), (shapeless, None)].into_iter().chain(named).map(|(model, structure)| Explanation {
             augmented: Fit { model, ..self.augmented.clone() },
             structure,

@@ -215,6 +215,13 @@ impl Model {
         model
     }
 
+    /// The same model without the terms for which this holds.
+    #[must_use]
+    pub(crate) fn without_terms(&self, is_out: impl Fn(&Term) -> bool) -> Self {
+        let out = (0..self.terms.len()).rev().filter(|index| is_out(&self.terms[*index]));
+        out.fold(self.clone(), |model, index| model.without_term(index))
+    }
+
     /// The same model with every constant but these held where it is.
     #[must_use]
     pub(crate) fn frozen_except(&self, free: &[usize]) -> Self {

@@ -52,10 +52,7 @@ pub(super) fn hidden(selection: &Selection, data: &Observations, levels: Levels)
         Term::Named(_) => None,
     });
     // Shapes that follow one session would take from the size what is there.
-    let bare = (0..all.terms.len())
-        .rev()
-        .filter(|i| matches!(all.terms[*i], Term::Structure(_)))
-        .fold(all.clone(), |model, i| model.without_term(i));
+    let bare = all.without_terms(|term| matches!(term, Term::Structure(_)));
     let mut known: BTreeSet<String> = named.chain(unnamed).collect();
     let mut found = Vec::new();
     for (model, noise) in alone.into_iter().flatten() {

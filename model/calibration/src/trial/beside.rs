@@ -3,7 +3,7 @@
 use super::IS_THAT;
 use super::claim::{Found, ask, claimed, with_claim};
 use crate::effects::{Effect, EffectDefinition};
-use crate::inference::{Fit, Model, Screen, Selection, Term, Weighed, dot, fit, with_what_is_left};
+use crate::inference::{Fit, Screen, Selection, Term, Weighed, dot, fit, with_what_is_left};
 
 /// Cosine of two visible traces from which they are one.
 const SAME_TRACE: f64 = 0.95;
@@ -24,7 +24,7 @@ pub(super) fn beside(
 ) -> Option<Beside> {
     let all = &selection.augmented.model;
     let effect = all.vocabulary.named(&definition.id)?;
-    let alone = without_terms(all, |_| true);
+    let alone = all.without_terms(|_| true);
     let screen_on = fit(&alone, weighed);
     let screen = Screen::new(&screen_on, weighed);
     let own = screen.effect_at(effect, claimed(definition))?.column;
@@ -45,14 +45,14 @@ pub(super) fn beside(
         }
     }
     let is_aside = |term: &Term| matches!(term, Term::Named(e) if aside.contains(&e.id()));
-    let named = fit(&without_terms(all, |t| is_aside(t) || matches!(t, Term::Structure(_))), weighed);
+    let named = fit(&all.without_terms(|t| is_aside(t) || matches!(t, Term::Structure(_))), weighed);
     let first = ask(definition, effect, &named, weighed)?;
     let plain = Beside { found: first, structure: None };
     if selection.structure.is_none() && !all.terms.iter().any(|t| matches!(t, Term::Structure(_))) {
         return Some(plain);
     }
     // The claim is what was found there if it explains most of what the shapes do.
-    let with_shapes = fit(&without_terms(all, is_aside), weighed);
+    let with_shapes = fit(&all.without_terms(is_aside), weighed);
     let with = with_claim(definition, effect, &named.model, weighed);
     let share = IS_THAT[usize::from(definition.drawn_from.is_empty())];
     if named.cost - with.cost >= share * (named.cost - with_shapes.cost) {
@@ -75,16 +75,9 @@ fn beside_structure(
         Term::Named(_) => None,
     })?;
     let without =
-        fit(&without_terms(&left.model, |t| matches!(t, Term::Named(e) if e.id() == definition.id)), weighed);
+        fit(&left.model.without_terms(|t| matches!(t, Term::Named(e) if e.id() == definition.id)), weighed);
     let found = ask(definition, effect, &without, weighed)?;
     Some(Beside { found, structure: Some(structure) })
-}
-
-fn without_terms(model: &Model, is_out: impl Fn(&Term) -> bool) -> Model {
-    (0..model.terms.len())
-        .rev()
-        .filter(|i| is_out(&model.terms[*i]))
-        .fold(model.clone(), |model, i| model.without_term(i))
 }
 
 fn cosine(a: &[f64], b: &[f64]) -> f64 {

@@ -227,6 +227,16 @@ fn plans() -> impl Strategy<Value = Plan> {
         )
 }
 
+/// Found by trying every table of an attack: a cell with coarse steps reads the same few values in two series.
+#[test]
+fn coarse_readings_that_come_again_are_no_copies() {
+    for seed in 1..=6 {
+        let mut rows = simulate(&Plan { seed, ..Plan::randomised() }).rows;
+        rows.iter_mut().for_each(|r| r.force_n = (2.0 * r.force_n).round() / 2.0);
+        judged(&written(&rows)).unwrap_or_else(|e| panic!("{seed}: {e}"));
+    }
+}
+
 /// Found by an attack: each was accepted, and most of them named an effect that is not there.
 #[test]
 fn mixed_up_series_and_foreign_units_are_refused_without_masses() {

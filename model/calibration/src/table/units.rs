@@ -1,5 +1,7 @@
 //! Whether loads and readings can be newtons, and directions the right way round, where no mass and no second direction says so.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use pinswitch_friction::Direction;
 
 use super::follows::{conditions, slope};
@@ -68,8 +70,7 @@ pub(super) fn implausible(rows: &[PlateauRow], file: &str) -> Option<TableError>
 
 /// A wrap angle that was measured row by row would make a condition of each.
 fn scattered_wraps(rows: &[PlateauRow], file: &str) -> Option<TableError> {
-    let mut found: std::collections::BTreeMap<(&str, &[usize]), std::collections::BTreeSet<u64>> =
-        std::collections::BTreeMap::new();
+    let mut found: BTreeMap<(&str, &[usize]), BTreeSet<u64>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.substrate.is_some()) {
         let wraps = found.entry((substrate_word(row.substrate), &row.pins)).or_default();
         wraps.insert(row.wrap_angle_deg.to_bits());

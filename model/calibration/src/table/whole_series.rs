@@ -13,8 +13,9 @@ use crate::median::median;
 /// Ratio of the heaviest load of a series to its lightest, beyond which it is no series. A machine that pulls against a
 /// spring moves its load by some tenths.
 const MOST_SPREAD: f64 = 2.5;
-/// Readings of a series that another one cannot repeat by chance.
-const COPIED: usize = 4;
+/// Different readings of a series that another one cannot repeat by chance. A cell with coarse steps reads few different values, and
+/// the same ones again.
+const COPIED: usize = 12;
 /// Series with exchanged directions that are left to the fit, which sets them aside.
 const SET_ASIDE: usize = 3;
 /// Share of the load by which a pull must lie below a release before a series counts as exchanged, and standard errors.

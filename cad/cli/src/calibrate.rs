@@ -63,12 +63,12 @@ const DISCOVERED: &str =
 /// Its file.
 pub(super) const FORM: &str = "discovered.toml";
 
-/// Removes the form that an earlier calibration drew into the folder: it is none of this one. A file of one's own stays.
-fn forget_form(folder: &Path) -> Result<(), Failure> {
+/// Removes the form of an earlier run from the folder: it is none of this one. A file of one's own stays.
+pub(super) fn forget_form(folder: &Path) -> Result<(), Failure> {
     let path = folder.join(FORM);
     if was_read(&path) {
         return Err(Failure::bad_input(format!(
-            "{}: this calibration reads it, and --out would put another in its place; give --out a folder of its own",
+            "{}: it was read, and --out would take it away; give --out a folder of its own",
             path.display()
         )));
     }

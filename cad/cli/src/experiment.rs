@@ -13,10 +13,10 @@ use pinswitch_calibration::{ModelFile, Report};
 use pinswitch_plot::run_sheet;
 use pinswitch_switch::output::OutputFile;
 
-use super::calibrate::FORM;
+use super::calibrate::{FORM, forget_form};
 use super::own_effects::OwnEffects;
 use super::{Failure, print, print_json};
-use crate::input::{read_file, read_text_file};
+use crate::input::{read_file, read_text_file, was_read};
 use crate::write::write_set;
 
 /// Propose the runs that settle most of what a calibration left open, per minute of work.
@@ -102,8 +102,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     ];
     // The form that is asked about goes with the plan, so that what comes of it can be told.
     let form = folder.join(FORM);
-    if report.effects.iter().any(|found| found.form.is_some()) && form.is_file() {
+    let asks = report.effects.iter().any(|found| found.form.is_some()) && form.is_file();
+    if was_read(&arguments.out.join(FORM)) {
+        // The plan goes into the folder of the calibration, where the form lies already.
+    } else if asks {
         files.push(file(FORM, read_text_file(&form)?.into_bytes()));
+    } else {
+        forget_form(&arguments.out)?;
     }
     write_set(&arguments.out, &files)?;
     if arguments.json { print_json(&proposal) } else { print(summary(&proposal, &arguments.out).as_bytes()) }

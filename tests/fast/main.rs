@@ -17,6 +17,7 @@ mod batch_damage;
 mod command_line;
 mod corpus;
 mod documents;
+mod few_series;
 mod finger;
 mod fit;
 mod formats;

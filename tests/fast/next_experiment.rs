@@ -133,6 +133,24 @@ fn a_form_drawn_from_one_session_is_confirmed_by_another_and_refuted_by_one_with
     let plan = json(&path.join("plan/experiment.json"));
     let asked = plan["questions"].as_array().unwrap().iter().find(|q| q["between"][0] == id);
     assert!(asked.is_some_and(|q| q["resolved_probability"].as_f64() > Some(0.9)), "{plan}");
+    // The plan carries the form, so that whether it came again is answered without its file.
+    assert_eq!(
+        std::fs::read(path.join("plan/discovered.toml")).unwrap(),
+        std::fs::read(path.join("first/discovered.toml")).unwrap()
+    );
+    done(path, &["-q", "simulate", "step.toml", "--runs", "plan/next-runs.csv", "--out", "made"]);
+    let tables = ["step/plateaus.csv", "made/plateaus.csv"];
+    done(path, &[&["-q", "calibrate"], &tables[..], &["--plan", "plan", "--out", "joined"]].concat());
+    let answers = json(&path.join("joined/report.json"))["sessions"][1]["asked"]["questions"].clone();
+    let answer = answers.as_array().unwrap().iter().find(|q| q["between"][0] == id).unwrap();
+    // A step lies at a share of its own session: in one of another length it is not where it was drawn.
+    assert_ne!(answer["answer"], "open", "{answers}");
+    // What it was drawn from names nothing, and is not taken away from under the calibration that reads it.
+    let own = ["-q", "calibrate", "step/plateaus.csv", "--effects", "first/discovered.toml", "--out"];
+    let said = printed(path, &[&own[..], &["own"]].concat());
+    assert!(said.starts_with("verdict: unattributed") && said.contains("on trial: drawn"), "{said}");
+    let (code, said) = ended(path, &[&own[..], &["first"]].concat());
+    assert!(code == Some(2) && path.join("first/discovered.toml").exists(), "{said}");
     // The step came after three hours: an hour cannot show it, and says so.
     done(path, &["-q", "experiment", "first", "--minutes", "60", "--out", "short"]);
     let short = json(&path.join("short/experiment.json"));

@@ -217,9 +217,7 @@ fn with_confirmed(
     let covariate = selection.structure?.covariate;
     let weighed = Weighed::new(data, selection.noise);
     let all = &selection.augmented.model;
-    let is_shape = |i: &usize| matches!(all.terms[*i], Term::Structure(_));
-    let bare =
-        (0..all.terms.len()).rev().filter(is_shape).fold(all.clone(), |model, i| model.without_term(i));
+    let bare = all.without_terms(|term| matches!(term, Term::Structure(_)));
     let without = fit(&bare, &weighed);
     let confirmed = trials(rows, selection, data);
     let confirmed = confirmed.iter().filter(|trial| trial.outcome == TrialOutcome::Confirmed);
@@ -272,8 +270,8 @@ fn tell_form(form: &DrawnForm, report: &mut Report, selection: &mut Selection, d
 mod tests {
     use super::*;
     use crate::effects::CATALOGUE;
-    use crate::report::Fate;
-    use crate::test_session::session;
+    use crate::report::{Fate, Verdict};
+    use crate::test_session::{session, session_with};
 
     fn fates(levels: Levels) -> Vec<Fate> {
         let report = calibrate(&session(3), levels).unwrap().report;
@@ -290,6 +288,100 @@ mod tests {
         // Flips at zero keep the search from naming anything; what chance could explain is then the level's to say.
         let credulous = fates(Levels { first_p: 1.0, flips: 0.0, ..Levels::default() });
         assert!(!credulous.contains(&Fate::Chance), "{credulous:?}");
+    }
+
+    fn offset() -> Term {
+        Term::Named(crate::effects::effect_named("load_cell_offset").unwrap())
+    }
+
+    /// A session of that name with an offset of the cell.
+    fn day(name: &str, seed: u64, offset_n: f64) -> Vec<PlateauRow> {
+        let mut rows = session_with(seed, &[(offset(), &[offset_n])]);
+        rows.iter_mut().for_each(|r| r.labels.session = name.to_owned());
+        rows
+    }
+
+    #[test]
+    fn what_one_session_has_the_other_way_round_is_no_scatter() {
+        let told = |second_n| {
+            let rows = [day("a", 1, 0.6), day("b", 2, second_n)].concat();
+            calibrate(&rows, Levels::default()).unwrap().report
+        };
+        for second_n in [-0.6, 0.0] {
+            let report = told(second_n);
+            let [unequal] = report.unequal.as_slice() else { panic!("{second_n}: {:?}", report.unequal) };
+            let sizes: Vec<f64> = unequal.sizes.iter().map(|s| s.size.value).collect();
+            assert_eq!(unequal.id, "load_cell_offset");
+            assert!((sizes[0] - 0.6).abs() < 0.1 && (sizes[1] - second_n).abs() < 0.1, "{sizes:?}");
+            assert!(report.verdict != Verdict::None, "{second_n}");
+            let is_named = report.effects.iter().any(|e| e.id == "load_cell_offset");
+            assert!(is_named || !report.adequate, "{second_n}: what is left is no noise");
+        }
+        let same = told(0.6);
+        assert!(same.unequal.is_empty() && same.verdict == Verdict::Attributed, "{:?}", same.unequal);
+    }
+
+    #[test]
+    fn what_was_only_drawn_is_not_attributed() {
+        let rows = session_with(3, &[(offset(), &[0.5])]);
+        let file = |start: f64, drawn_from: &str| {
+            format!(
+                "schema = \"pinswitch.effects/1\"\n[[effect]]\nid = \"mine\"\nside = \"rig\"\ncovariate = \"position\"\n\
+                 acts_on = \"reading\"\ncombine = \"add\"\nformula = \"a*exp(-((stroke - 0.5)/0.1)^2)\"\n{drawn_from}\
+                 parameters.a = {{ size = true, start = {start}, unit = \"N\" }}\n"
+            )
+        };
+        let vocabulary = |text: String| Vocabulary::built_in().read(&text, "mine.toml").unwrap();
+        let plain = vocabulary(file(0.5, ""));
+        let bump = Term::Named(plain.named("mine").unwrap());
+        let rows_with = |seed, size: f64| session_with(seed, &[(bump.clone(), &[size])]);
+        let report = |rows: &[PlateauRow], vocabulary| {
+            calibrate_among(rows, &vocabulary, Levels::default()).unwrap().report
+        };
+        let first = rows_with(4, 0.5);
+        let named = |report: &Report| report.effects.iter().any(|e| e.id == "mine");
+        assert!(named(&report(&first, plain.clone())), "claimed by somebody, it is found");
+        let told: Vec<String> = crate::table::readings_by_session(&first).into_values().collect();
+        let drawn = || vocabulary(file(0.5, &format!("drawn_from = [\"{}\"]\n", told[0])));
+        // The readings that it was drawn from, and parts of them.
+        for rows in [&first[..], &first[20..], &first[..first.len() / 2]] {
+            let report = report(rows, drawn());
+            assert!(
+                !named(&report) && report.trials[0].outcome == TrialOutcome::Drawn,
+                "{:?}",
+                report.trials
+            );
+        }
+        // Others confirm it, or refute it: absent, or the other way round.
+        let again = report(&rows_with(5, 0.5), drawn());
+        assert!(named(&again) && again.trials[0].outcome == TrialOutcome::Confirmed, "{:?}", again.trials);
+        for other in [rows, rows_with(6, -0.5)] {
+            let report = report(&other, drawn());
+            assert!(
+                !named(&report) && report.trials[0].outcome == TrialOutcome::Refuted,
+                "{:?}",
+                report.trials
+            );
+        }
+    }
+
+    /// The time of day, and seconds since 1970.
+    #[test]
+    fn where_a_clock_stood_when_the_session_began_changes_nothing() {
+        let drift = Term::Named(crate::effects::effect_named("thermal_drift").unwrap());
+        let rows = session_with(7, &[(drift, &[0.8])]);
+        let size = |begins_s: f64| {
+            let mut rows = rows.clone();
+            rows.iter_mut().for_each(|r| r.time_s += begins_s);
+            let report = calibrate(&rows, Levels::default()).unwrap().report;
+            let [effect] = report.effects.as_slice() else { panic!("{begins_s}: {:?}", report.verdict) };
+            assert_eq!(effect.id, "thermal_drift", "{begins_s}");
+            effect.parameters["k"].value
+        };
+        let plain = size(0.0);
+        for begins_s in [32_400.0, -40_000.0, 1.7e9] {
+            assert!((size(begins_s) / plain - 1.0).abs() < 0.02, "{begins_s}: {} {plain}", size(begins_s));
+        }
     }
 
     #[test]

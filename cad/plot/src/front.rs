@@ -1,5 +1,7 @@
 //! The points that no other beats in what an ask wants of both axes.
 
+use pinswitch_friction::sort_by_number;
+
 use super::AskedRegion;
 
 /// A front and what it is.
@@ -23,8 +25,8 @@ fn pull((low, high): (f64, f64)) -> Option<f64> {
 pub(super) fn front(points: &[(f64, f64)], asked: AskedRegion) -> Option<Front> {
     let (later, more) = (pull(asked.threshold_n)?, pull(asked.friction_n)?);
     let mut by_threshold = points.to_vec();
-    by_threshold
-        .sort_by(|a, b| (later * b.0).total_cmp(&(later * a.0)).then((more * b.1).total_cmp(&(more * a.1))));
+    sort_by_number(&mut by_threshold, |p| -more * p.1);
+    sort_by_number(&mut by_threshold, |p| -later * p.0);
     let mut best = f64::NEG_INFINITY;
     by_threshold.retain(|p| {
         let leads = more * p.1 > best;

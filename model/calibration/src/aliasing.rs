@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use pinswitch_friction::sort_by_number;
+
 use crate::table::PlateauRow;
 
 /// Correlation beyond which two covariates are told to move together.
@@ -101,7 +103,7 @@ pub(crate) fn rank_correlation(a: &[f64], b: &[f64]) -> f64 {
 /// Ranks from 0; equal values share their mean rank.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    sort_by_number(&mut order, |i| values[*i]);
     let mut ranks = vec![0.0; values.len()];
     let mut from = 0;
     while from < order.len() {

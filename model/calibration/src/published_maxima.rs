@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use pinswitch_friction::least_squares::minimise;
 use pinswitch_friction::published::{self, PublishedLayout};
-use pinswitch_friction::{LayoutLaw, PinPattern, Substrate, Switch, ThresholdRule};
+use pinswitch_friction::{LayoutLaw, PinPattern, Substrate, Switch, ThresholdRule, sort_by_number};
 use serde::Serialize;
 
 use crate::table::Condition;
@@ -170,7 +170,7 @@ pub fn explain_published() -> Vec<Explanation> {
         });
     }
     let left_out = |e: &Explanation| e.left_out_rms_pct.unwrap_or(f64::INFINITY);
-    all[1..].sort_by(|a, b| left_out(a).total_cmp(&left_out(b)));
+    sort_by_number(&mut all[1..], left_out);
     all
 }
 

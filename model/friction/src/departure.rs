@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::physics::{Bed, Constants, PhysicsSwitch, shore_a_of_modulus_mpa};
+use crate::sort_by_number;
 use crate::{Contact, published};
 
 /// A parameter of a contact besides the layout of its pins.
@@ -168,7 +169,7 @@ pub(crate) fn departures(contact: &Contact, loads_n: &[f64]) -> Vec<Departure> {
         })
         .collect();
     let size = |d: &Departure| d.log_effect.last().map_or(f64::INFINITY, |e| e.abs());
-    all.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    sort_by_number(&mut all, |d| -size(d));
     all
 }
 

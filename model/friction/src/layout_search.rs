@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::physics::{Bed, Constants, PhysicsSwitch};
+use crate::sort_by_number;
 use crate::{Contact, PinPattern, Substrate, Transition};
 
 /// Loads at which the sweep computes a pattern: the threshold comes out within about 1 %.
@@ -122,7 +123,8 @@ pub fn patterns(grooves: &[(usize, f64)], (fewest, most): (usize, usize)) -> Vec
 pub fn pareto_front(candidates: &[LayoutCandidate]) -> Vec<&LayoutCandidate> {
     let mut switching: Vec<(f64, &LayoutCandidate)> =
         candidates.iter().filter_map(|c| Some((c.threshold_n?, c))).collect();
-    switching.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.friction_n.total_cmp(&a.1.friction_n)));
+    sort_by_number(&mut switching, |(_, c)| -c.friction_n);
+    sort_by_number(&mut switching, |(threshold_n, _)| -threshold_n);
     let mut best = 0.0;
     let mut front: Vec<&LayoutCandidate> = switching
         .into_iter()

@@ -32,6 +32,7 @@
 #![warn(clippy::disallowed_methods)]
 
 mod band;
+mod by_number;
 mod capstan;
 mod carry;
 mod contact;
@@ -52,6 +53,7 @@ mod transition;
 mod trust;
 
 pub use band::{Band, BandSource};
+pub use by_number::sort_by_number;
 pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};
 pub use carry::Carry;
 pub use contact::{Contact, ContactError, Substrate};

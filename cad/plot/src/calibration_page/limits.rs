@@ -5,6 +5,8 @@ use std::fmt::Write;
 use pinswitch_calibration::effects::effect_named;
 use pinswitch_calibration::{LimitReport, Report};
 
+use pinswitch_friction::sort_by_number;
+
 use super::super::html::escape;
 use super::number::{number, short, with_unit};
 
@@ -18,7 +20,7 @@ const STRIPS: (f64, f64) = (170.0, 525.0);
 /// Limits that leave room for an effect of consequence, the widest first.
 pub(super) fn open_limits(report: &Report) -> Vec<&LimitReport> {
     let mut open: Vec<&LimitReport> = report.limits.iter().filter(|l| !l.excluded).collect();
-    open.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
+    sort_by_number(&mut open, |limit| -reach(limit));
     open
 }
 
@@ -91,7 +93,7 @@ pub(super) fn limits(report: &Report) -> String {
 /// Open limits first, the widest first.
 fn sorted(report: &Report) -> Vec<&LimitReport> {
     let mut excluded: Vec<&LimitReport> = report.limits.iter().filter(|l| l.excluded).collect();
-    excluded.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
+    sort_by_number(&mut excluded, |limit| -reach(limit));
     open_limits(report).into_iter().chain(excluded).collect()
 }
 

@@ -9,7 +9,7 @@ mod target;
 mod tolerance;
 
 use phrase::short;
-use pinswitch_friction::excerpt;
+use pinswitch_friction::{excerpt, sort_by_number};
 use serde::{Deserialize, Serialize};
 
 pub use parameter::Parameter;
@@ -185,7 +185,7 @@ impl Ask {
             .iter()
             .filter_map(|t| Some((t.quantity.friction_load_n((lightest, heaviest))?, t)))
             .collect();
-        frictions.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_number(&mut frictions, |(load_n, _)| *load_n);
         for (i, (load, a)) in frictions.iter().enumerate() {
             for (other_load, b) in &frictions[i + 1..] {
                 let is_same_load = other_load - load <= SAME_LOAD * load;

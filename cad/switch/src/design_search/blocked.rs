@@ -8,7 +8,7 @@ use super::relaxed::usual;
 use super::space::{Space, is_predictable};
 use crate::ask::{Ask, Limits, Materials, Parameter, Target, Vary};
 use crate::config::Configuration;
-use pinswitch_friction::counted;
+use pinswitch_friction::{counted, sort_by_number};
 
 /// Steps of the search over all parameters together.
 const TOGETHER_STEPS: u64 = 400;
@@ -97,11 +97,10 @@ pub(super) fn blocked(
         !space.varied.iter().any(|v| v.parameter == m.parameter) && !is_listed(trial.ask, m.parameter)
     };
     let change = |m: &Move| libm::log(m.to / m.from).abs();
-    moves.sort_by(|a, b| {
-        (b.meets.cmp(&a.meets)).then_with(|| match a.meets {
-            true => is_held(a).cmp(&is_held(b)).then(change(a).total_cmp(&change(b))),
-            false => a.miss.total_cmp(&b.miss),
-        })
+    sort_by_number(&mut moves, |m| if m.meets { change(m) } else { m.miss });
+    sort_by_number(&mut moves, |m| match m.meets {
+        true => f64::from(is_held(m)),
+        false => 2.0,
     });
     let of_pins = |pins: usize, effect: &str| {
         let asked = trial.ask.limits.pins.map_or_else(String::new, |(a, b)| format!("{a}..{b}"));

@@ -4,6 +4,8 @@
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
+use pinswitch_friction::sort_by_number;
+
 use super::candidate::Trial;
 use crate::ask::{Quantity, SOURCES, Target, Tolerances};
 use crate::config::Configuration;
@@ -61,7 +63,7 @@ impl Spread {
             .into_iter()
             .map(|(source, v)| VarianceShare { source, share: if sum > 0.0 { v / sum } else { 0.0 } })
             .collect();
-        shares.sort_by(|a, b| b.share.total_cmp(&a.share));
+        sort_by_number(&mut shares, |s| -s.share);
         shares
     }
 }

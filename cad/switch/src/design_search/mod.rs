@@ -15,6 +15,7 @@ mod sensitivity;
 mod space;
 
 use pinswitch_friction::layout_search::LayoutCandidate;
+use pinswitch_friction::sort_by_number;
 
 use crate::ask::{Ask, Quantity, Wish};
 use crate::config::Configuration;
@@ -165,10 +166,9 @@ pub fn search(
     let is_possible = pool.iter().any(|c| c.meets);
     if is_possible {
         pool.retain(|c| c.meets);
-        pool.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.pins().cmp(b.pins())));
-    } else {
-        pool.sort_by(|a, b| a.miss.total_cmp(&b.miss).then(a.pins().cmp(b.pins())));
     }
+    pool.sort_by(|a, b| a.pins().cmp(b.pins()));
+    sort_by_number(&mut pool, |c| if is_possible { c.cost } else { c.miss });
     let wanted = if is_possible { options.best + SPARE } else { 1 };
     let kinds = distinct(pool, wanted);
     progress.begin("probabilities", kinds.len());
@@ -180,9 +180,8 @@ pub fn search(
     .into_iter()
     .flatten()
     .collect();
-    proposals.sort_by(|a, b| {
-        b.probability.all.total_cmp(&a.probability.all).then(a.pins.len().cmp(&b.pins.len()))
-    });
+    sort_by_number(&mut proposals, |p| p.pins.len() as f64);
+    sort_by_number(&mut proposals, |p| -p.probability.all);
     proposals.truncate(options.best);
     if let Some((nearest, blocked)) = relaxed {
         proposals.extend(proposal::propose(&trial, &nearest, &draws));
@@ -301,7 +300,7 @@ fn enumerate(trial: &Trial<'_>, space: &Space, progress: &dyn Progress) -> Enume
         candidates.extend(candidate);
         places.push((cost, place));
     }
-    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut places, |(cost, _)| *cost);
     Enumerated { places, patterns, tried, candidates }
 }
 

@@ -3,6 +3,8 @@
 use i_overlay::mesh::float::stroke::offset::StrokeOffset;
 use i_overlay::mesh::float::style::{LineCap, LineJoin, StrokeStyle};
 
+use pinswitch_friction::sort_by_number;
+
 use super::left_out::LeftOut;
 use super::stroke_font::{HEIGHT, WIDTH, strokes};
 use crate::design::Design;
@@ -81,7 +83,7 @@ impl Zone {
         let mut holes: Vec<(f64, f64)> = taken(design.fastener_angles_rad(), fastener_mm)
             .chain(taken(design.dowel_angles_rad(), dowel))
             .collect();
-        holes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_number(&mut holes, |(from_rad, _)| *from_rad);
         let from = std::iter::once(-half).chain(holes.iter().map(|h| h.1));
         let to = holes.iter().map(|h| h.0).chain([half]);
         from.zip(to)

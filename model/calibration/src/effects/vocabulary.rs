@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use pinswitch_friction::sort_by_number;
+
 use super::own::{DefinitionError, LeakedEffect, OwnEffect, OwnEffectError, duplicate, read_own_effects};
 use super::{CATALOGUE, Effect};
 
@@ -57,7 +59,7 @@ impl Vocabulary {
     fn of(own: Vec<&'static LeakedEffect>) -> Self {
         let mut acting: Vec<&'static dyn Effect> = CATALOGUE.to_vec();
         acting.extend(own.iter().map(|effect| *effect as &dyn Effect));
-        acting.sort_by_key(|effect| effect.description().stage);
+        sort_by_number(&mut acting, |effect| f64::from(effect.description().stage as u8));
         Self { own: own.into(), acting: acting.into() }
     }
 

@@ -16,7 +16,7 @@ mod settings;
 mod shortlist;
 
 use nalgebra::DMatrix;
-use pinswitch_friction::published;
+use pinswitch_friction::{published, sort_by_number};
 use serde::Serialize;
 
 pub use rig::{RigError, RigLimits};
@@ -196,7 +196,7 @@ pub fn propose(
             by_repeating: rounded(q.probability(&repeated)),
         })
         .collect();
-    questions.sort_by(|a, b| b.resolved_probability.total_cmp(&a.resolved_probability));
+    sort_by_number(&mut questions, |q| -q.resolved_probability);
     let unanswerable =
         closed.iter().map(|q| unanswerable(q, &everything, &agenda, &model, minutes)).collect();
     Ok(Proposal { schema: SCHEMA, minutes: (100.0 * spent).round() / 100.0, questions, unanswerable, runs })

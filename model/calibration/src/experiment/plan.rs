@@ -3,6 +3,8 @@
 
 use nalgebra::DMatrix;
 
+use pinswitch_friction::sort_by_number;
+
 use super::candidates::{Candidate, paper_protocol};
 use super::in_order;
 use super::information::Design;
@@ -67,7 +69,7 @@ impl Planner<'_> {
             others.push(self.searched(&within_reach, self.data, self.minutes));
             let mut open: Vec<&Question> =
                 self.questions.iter().filter(|q| !is_within_reach(q) && q.weight >= 1.0).collect();
-            open.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+            sort_by_number(&mut open, |q| -q.weight);
             let alone = open.into_iter().take(ALONE);
             others.extend(alone.map(|q| self.searched(std::slice::from_ref(q), self.data, self.minutes)));
         }

@@ -3,6 +3,8 @@
 
 use nalgebra::DMatrix;
 
+use pinswitch_friction::sort_by_number;
+
 use super::candidates::{Candidate, alone};
 use super::information::Design;
 use super::question::{Projections, Question};
@@ -73,7 +75,7 @@ fn best_of_each<T>(
     let mut is_kept = vec![false; all.len()];
     for question in 0..questions {
         let mut order: Vec<usize> = (0..all.len()).collect();
-        order.sort_by(|a, b| all[*b].2[question].total_cmp(&all[*a].2[question]).then(a.cmp(b)));
+        sort_by_number(&mut order, |i| -all[*i].2[question]);
         order.into_iter().take(each).for_each(|i| is_kept[i] = true);
     }
     all.into_iter().zip(is_kept).filter(|(_, kept)| *kept).map(|(one, _)| one).collect()

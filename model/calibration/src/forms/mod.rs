@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use pinswitch_friction::sort_by_number;
+
 use crate::effects::{ActsOn, Covariate, EffectDefinition, OwnEffect, Vocabulary};
 use crate::held_out::held_out;
 use crate::inference::{
@@ -219,7 +221,7 @@ fn ranked<'a>(start: &Fit, weighed: &Weighed<'_>, candidates: &'a [Candidate]) -
         (score.strength > 1e-6).then_some((candidate, score))
     };
     let mut scores: Vec<_> = candidates.iter().filter_map(scored).collect();
-    scores.sort_by(|(_, a), (_, b)| b.gain.total_cmp(&a.gain));
+    sort_by_number(&mut scores, |(_, score)| -score.gain);
     Some(Ranked { model: fitted.model, scores })
 }
 
@@ -252,7 +254,7 @@ fn best_of_each<'a>(
             None => best.push((candidate, fitted)),
         }
     }
-    best.sort_by(|(a, x), (b, y)| toll(a, x).total_cmp(&toll(b, y)));
+    sort_by_number(&mut best, |(candidate, fitted)| toll(candidate, fitted));
     // Of forms that fit alike, one whose size is known goes first: the ends of another may lie anywhere between two readings.
     let explained = best.first().map_or(0.0, |(_, fitted)| start.cost - fitted.cost);
     let alike = |(c, f): &(&Candidate, Fit)| {

@@ -1,6 +1,8 @@
 //! Whether a constant of the switch differs between the sessions or specimens of a table. Scatter from mount to mount, a
 //! drift, or an effect may look like that, so that a change competes with all of them as an explanation.
 
+use pinswitch_friction::sort_by_number;
+
 use super::explanation::Explanation;
 use super::fit::fit;
 use super::levels::Levels;
@@ -113,7 +115,7 @@ fn promising(start: &Model, best: &Explanation, data: &Observations) -> (Vec<Mod
         })
         .filter(|(gain, _)| *gain > WORTH_A_SEARCH)
         .collect();
-    gains.sort_by(|a, b| b.0.total_cmp(&a.0));
+    sort_by_number(&mut gains, |(gain, _)| -gain);
     (gains.into_iter().take(SEARCHED).map(|(_, model)| model).collect(), possible.len())
 }
 

@@ -1,6 +1,8 @@
 //! Long series in fewer rows: neighbouring repetitions are averaged, so that the cost of a fit depends on the number of
 //! series and not on how long each was measured.
 
+use pinswitch_friction::sort_by_number;
+
 use super::observations::Observations;
 use crate::table::Point;
 
@@ -21,7 +23,7 @@ impl Observations {
         for cell in &self.cells {
             bins.extend(cell.chunks(cell.len().div_ceil(per_cell).max(1)));
         }
-        bins.sort_by_key(|rows| rows[0]);
+        sort_by_number(&mut bins, |rows| rows[0] as f64);
         let first: std::collections::HashMap<usize, usize> =
             bins.iter().enumerate().map(|(bin, rows)| (rows[0], bin)).collect();
         let mut compact = self.subset(|row| first.contains_key(&row));

@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, OnceLock};
 
+use pinswitch_friction::sort_by_number;
+
 use super::noise::Noise;
 use super::structures::Catalogue;
 use super::weighed::Weighed;
@@ -127,7 +129,7 @@ impl Observations {
         }
         // Neighbours in time, whatever the order of the table.
         for cell in &mut cells {
-            cell.sort_by(|a, b| points[*a].time.total_cmp(&points[*b].time));
+            sort_by_number(cell, |row| points[*row].time);
         }
         let by = |key: &dyn Fn(usize) -> String| {
             let (of, count) = crate::table::groups_of(rows.len(), key);
@@ -231,10 +233,8 @@ impl Observations {
             (session, rows.iter().map(|r| self.points[*r].time).fold(f64::INFINITY, f64::min))
         };
         let mut order: Vec<usize> = (0..self.series).collect();
-        order.sort_by(|a, b| {
-            let ((s, t), (other, later)) = (begin(a), begin(b));
-            s.cmp(&other).then(t.total_cmp(&later))
-        });
+        sort_by_number(&mut order, |series| begin(series).1);
+        sort_by_number(&mut order, |series| begin(series).0.map_or(-1.0, |session| session as f64));
         let mut part = vec![0; self.series];
         // Neighbours in time are in different parts, and so are series a period of the protocol apart.
         order.iter().enumerate().for_each(|(rank, series)| part[*series] = (rank * 7 / 3) % parts.max(1));
@@ -288,7 +288,7 @@ impl Observations {
         let mut observations = self.subset(|i| place.contains_key(&i));
         // `subset` keeps the order of the rows; the cells may stand in another one.
         let mut order: Vec<usize> = (0..kept.len()).collect();
-        order.sort_by_key(|i| kept[*i]);
+        sort_by_number(&mut order, |i| kept[*i] as f64);
         let cells: Vec<usize> = order.clone();
         observations.weights = order.iter().map(|i| weights[*i]).collect();
         observations.roots = observations.weights.iter().map(|w| w.sqrt()).collect();
@@ -341,11 +341,11 @@ fn turns(cells: &[Vec<usize>], points: &[Point], series_of: &[usize]) -> Vec<Tur
     let mut turns: Vec<(f64, Turn)> = of_series
         .into_values()
         .map(|mut cells| {
-            cells.sort_by(|a, b| begin(a).total_cmp(&begin(b)));
+            sort_by_number(&mut cells, begin);
             (cells.first().map_or(0.0, begin), Turn { cells, since: 1 })
         })
         .collect();
-    turns.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut turns, |(begin, _)| *begin);
     let mut gaps: Vec<f64> = turns.windows(2).map(|w| w[1].0 - w[0].0).collect();
     let usual = median(&mut gaps);
     for i in 1..turns.len() {

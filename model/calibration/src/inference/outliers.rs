@@ -1,5 +1,7 @@
 //! Readings that stand out from their neighbours are weighed down, so that a slip of the cell decides nothing.
 
+use pinswitch_friction::sort_by_number;
+
 use super::observations::{MIN_WEIGHT, Observations};
 use crate::median::median;
 use crate::table::Point;
@@ -65,7 +67,7 @@ fn common_course(points: &[Point], local: &[f64]) -> Vec<f64> {
     }
     let mut common = vec![0.0; local.len()];
     for mut rows in groups.into_values().filter(|rows| rows.len() >= LEAST_SERIES) {
-        rows.sort_by(|a, b| points[*a].load_n.total_cmp(&points[*b].load_n));
+        sort_by_number(&mut rows, |row| points[*row].load_n);
         let (slope, at_zero) = robust_line(&rows, |row| (points[row].load_n, local[row]));
         rows.iter().for_each(|row| common[*row] = at_zero + slope * points[*row].load_n);
     }

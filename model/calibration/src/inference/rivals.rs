@@ -1,5 +1,7 @@
 //! What is told of each effect of the vocabulary: the gain and the rivals of those that are named, and how the others score.
 
+use pinswitch_friction::sort_by_number;
+
 use super::fit::{Fit, fit};
 use super::levels::Levels;
 use super::model::Term;
@@ -37,7 +39,7 @@ fn rivals(
     let scores = Screen::new(without, weighed).effects();
     let own = scores.iter().find(|s| s.effect.id() == effect.id()).map(|s| s.column.clone());
     let mut others: Vec<_> = scores.into_iter().filter(|s| s.effect.id() != effect.id()).collect();
-    others.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    sort_by_number(&mut others, |s| -s.gain);
     others.retain(|s| s.gain > 0.3 * gain);
     others.truncate(4);
     others
@@ -83,6 +85,6 @@ pub(super) fn candidates(
             strength: at_typical_size(score, augmented),
         })
         .collect();
-    candidates.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    sort_by_number(&mut candidates, |c| -c.gain);
     candidates
 }

@@ -1,5 +1,7 @@
 //! The search among named effects: forward, backward and exchange steps.
 
+use pinswitch_friction::sort_by_number;
+
 use super::fit::{Fit, fit, jacobian};
 use super::levels::Levels;
 use super::model::Term;
@@ -48,7 +50,7 @@ fn extensions(
         let guarded = Screen::guarded(from, weighed);
         scores.retain(|s| s.gain > beyond_form || guarded.effect(s.effect).is_some_and(|g| g.gain > least));
     }
-    scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    sort_by_number(&mut scores, |s| -s.gain);
     scores.truncate(most);
     let strongest = scores.first().map_or(0.0, |s| s.gain);
     scores.retain(|s| s.gain >= WORTH_A_FIT * strongest);
@@ -58,7 +60,7 @@ fn extensions(
     };
     let mut fits = map_each(scores, extended);
     fits.retain(|e| possible(e.score.effect, &e.fitted));
-    fits.sort_by(|a: &Extension, b| a.fitted.cost.total_cmp(&b.fitted.cost));
+    sort_by_number(&mut fits, |e: &Extension| e.fitted.cost);
     fits
 }
 

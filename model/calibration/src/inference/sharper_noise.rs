@@ -1,5 +1,7 @@
 //! Noise that is smaller than it looked, beside a name or a shape that passed for scatter as long as it was not in the model.
 
+use pinswitch_friction::sort_by_number;
+
 use super::baseline::explainable;
 use super::evidence::evidence;
 use super::fit::{Fit, fit, jacobian};
@@ -74,7 +76,7 @@ pub(super) fn noise_beside_a_name(found: &Fit, data: &Observations, noise: Noise
     let weighed = Weighed::new(data, noise);
     let mut scores = Screen::new(found, &weighed).effects();
     scores.retain(|score| score.gain > MIN_NAME_GAIN);
-    scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    sort_by_number(&mut scores, |s| -s.gain);
     scores.truncate(NAMES);
     let choice = 2.0 * libm::log(found.model.vocabulary.count().max(1) as f64) + MIN_EVIDENCE;
     let least = evidence(found, &weighed) - choice;

@@ -1,6 +1,8 @@
 //! Scores of structures without a name: every shape of the catalogue on every channel, by what the model's own constants
 //! leave of it.
 
+use pinswitch_friction::sort_by_number;
+
 use super::lanes::{LANES, Lanes};
 use super::model::Term;
 use super::projection::dot;
@@ -163,7 +165,7 @@ impl Screen<'_> {
         for (channel, along) in &channels[..3] {
             scores.extend(self.best_window(*channel, along));
         }
-        scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        sort_by_number(&mut scores, |s| -s.gain);
         scores
     }
 
@@ -274,7 +276,7 @@ impl Screen<'_> {
             begins[*series] = begins[*series].min(self.data().points[row].time);
         }
         let mut order: Vec<usize> = (0..self.data().series).filter(|s| begins[*s].is_finite()).collect();
-        order.sort_by(|a, b| begins[*a].total_cmp(&begins[*b]));
+        sort_by_number(&mut order, |series| begins[*series]);
         // Ends at up to eighty places, so that thousands of series cost no more than some hundreds.
         let ends: Vec<usize> = if order.len() <= WINDOW_ENDS {
             (1..=order.len()).collect()

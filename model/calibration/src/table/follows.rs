@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use pinswitch_friction::{Direction, published};
+use pinswitch_friction::{Direction, published, sort_by_number};
 
 use super::row::PlateauRow;
 use super::substrate_word::substrate_word;
@@ -176,7 +176,7 @@ pub(super) fn slope(direction: Direction, rows: &[&PlateauRow]) -> Option<f64> {
 
 /// `None` if the loads are too alike to tell.
 fn along(direction: Direction, mut pairs: Vec<(f64, f64)>) -> Option<Along> {
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut pairs, |(load_n, _)| *load_n);
     let quarter = pairs.len().div_ceil(4);
     let (light, heavy) = (&pairs[..quarter], &pairs[pairs.len() - quarter..]);
     let middle = |of: &[(f64, f64)], value: fn(&(f64, f64)) -> f64| {

@@ -1,6 +1,6 @@
 //! Whether a table's two directions hold friction: pulling a load takes more than releasing it.
 
-use pinswitch_friction::Direction;
+use pinswitch_friction::{Direction, sort_by_number};
 
 use super::follows::conditions;
 use super::row::PlateauRow;
@@ -101,7 +101,7 @@ fn course(
 ) -> Vec<(f64, f64)> {
     let of = rows.iter().filter(|r| r.direction == direction).map(|r| (load(r), force(r)));
     let mut pairs: Vec<(f64, f64)> = of.filter(|(load, _)| *load > 0.0).collect();
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut pairs, |(load_n, _)| *load_n);
     pairs
         .chunk_by(|a, b| b.0 - a.0 < ONE_LOAD * a.0)
         .map(|chunk| {
@@ -154,7 +154,7 @@ fn is_negative(shares: &[f64]) -> bool {
 
 /// The gap whose share is in the middle.
 fn middle_gap(mut gaps: Vec<Gap>) -> Option<Gap> {
-    gaps.sort_by(|a, b| a.share().total_cmp(&b.share()));
+    sort_by_number(&mut gaps, |gap| gap.share());
     gaps.get(gaps.len() / 2).copied()
 }
 

@@ -13,6 +13,7 @@ use super::table_error::TableError;
 use super::units::implausible;
 use super::whole_series::mixed_up;
 use crate::median::median;
+use pinswitch_friction::sort_by_number;
 
 /// Declared load over the weight of the declared mass: one, with room for hooks and levers.
 const WEIGHS: RangeInclusive<f64> = 0.5..=2.0;
@@ -89,7 +90,7 @@ impl PlateauTable {
     /// `None` where no mass is given.
     fn newtons_per_weight(&self) -> Option<f64> {
         let mut rows: Vec<&PlateauRow> = self.rows.iter().collect();
-        rows.sort_by(|a, b| b.load_n.total_cmp(&a.load_n));
+        sort_by_number(&mut rows, |r| -r.load_n);
         let weight_n = |r: &PlateauRow| r.load_mass_g * 1e-3 * GRAVITY_M_S2;
         let mut factors: Vec<f64> = rows[..rows.len().div_ceil(4)]
             .iter()

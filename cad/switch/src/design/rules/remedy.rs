@@ -2,6 +2,8 @@
 
 use toml_edit::Value;
 
+use pinswitch_friction::sort_by_number;
+
 use super::{Assessment, Inspection, Rule, Severity, rules};
 use crate::config::parameter::Parameter;
 use crate::config::{ConfigError, Configuration};
@@ -174,10 +176,10 @@ fn advice(
     }
     let subject = subject(rule, c, &found);
     // What is spoken of comes first, then what somebody set, which is more likely wrong than a default.
-    found.sort_by_key(|t| match t.field {
-        Some(field) if field == subject => 0,
-        Some(field) if departs(c, field) => 1,
-        _ => 2,
+    sort_by_number(&mut found, |t| match t.field {
+        Some(field) if field == subject => 0.0,
+        Some(field) if departs(c, field) => 1.0,
+        _ => 2.0,
     });
     found.truncate(NAMED);
     let first = found.iter().find(|t| t.field.is_some()).map(std::slice::from_ref).unwrap_or_default();
@@ -303,7 +305,7 @@ fn nearest_of(
 ) -> Option<Tried> {
     let now = number(&(parameter.get)(c))?;
     let mut nearest: Vec<f64> = values.iter().copied().filter(|v| (v - now).abs() > 1e-9).collect();
-    nearest.sort_by(|a, b| (a - now).abs().total_cmp(&(b - now).abs()));
+    sort_by_number(&mut nearest, |value| (value - now).abs());
     nearest.into_iter().find_map(|value| {
         let shown = format!("{value:?}");
         let changed = with(c, parameter, &shown)?;

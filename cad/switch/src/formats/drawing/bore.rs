@@ -2,6 +2,8 @@
 //! of inserts and of bearings. Each axis is told in one callout, from the far face to the near one, which the front view
 //! shows.
 
+use pinswitch_friction::sort_by_number;
+
 use super::features::same;
 use super::fits::{self, Fit};
 use super::words::{number, on_radius, times};
@@ -105,7 +107,7 @@ pub(super) fn add_stage(axes: &mut Vec<Bore>, centre: Point2, stage: Stage) {
 pub(super) fn gathered(axes: Vec<Bore>) -> Vec<Bore> {
     let mut all: Vec<Bore> = Vec::new();
     for mut axis in axes {
-        axis.stages.sort_by(|a, b| a.levels[0].0.total_cmp(&b.levels[0].0));
+        sort_by_number(&mut axis.stages, |stage| stage.levels[0].0);
         let is_like = |other: &Bore| {
             other.stages.len() == axis.stages.len()
                 && other.stages.iter().zip(&axis.stages).all(|(a, b)| a.is_like(b))

@@ -2,6 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use pinswitch_friction::sort_by_number;
+
 use super::angles::Places;
 use super::bore::bore as words_of_bore;
 use super::cut::Detail;
@@ -360,7 +362,7 @@ fn slot_row(f: &Features) -> Option<(Vec<String>, Vec<Point2>)> {
         return None;
     }
     let mut slots: Vec<&Slot> = f.slots.iter().collect();
-    slots.sort_by(|a, b| a.places[0].0.x.total_cmp(&b.places[0].0.x));
+    sort_by_number(&mut slots, |slot| slot.places[0].0.x);
     let widths: Vec<String> = slots.iter().map(|s| words::number(s.width_mm)).collect();
     let lines = vec![
         format!("{} \u{d7} slot, widths from the left", slots.len()),

@@ -3,6 +3,8 @@
 //! Edges are the ends of walls, their corners, and where they turn away from the eye. A piece of an edge is seen if the
 //! first material on a line of sight beside it lies no nearer than the edge itself.
 
+use pinswitch_friction::sort_by_number;
+
 use super::body::{Body, Curve};
 
 /// Beside an edge, mm: further than rounding, nearer than anything that is made.
@@ -209,7 +211,7 @@ pub(super) fn joined(strokes: &[Stroke], over: &[Stroke]) -> Vec<Stroke> {
     }
     let mut result = Vec::new();
     for carrier in &mut all {
-        carrier.spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        sort_by_number(&mut carrier.spans, |span| span[0]);
         let mut kept: Vec<[f64; 2]> = Vec::new();
         for span in &carrier.spans {
             match kept.last_mut() {
@@ -249,9 +251,10 @@ pub(super) fn legible(strokes: &[Stroke], kept: &[Stroke], apart_mm: f64) -> Vec
         })
     };
     let mut longest: Vec<&Stroke> = strokes.iter().collect();
-    longest.sort_by(|a, b| is_bound(b).cmp(&is_bound(a)).then(length(b).total_cmp(&length(a))));
+    sort_by_number(&mut longest, |s| -length(s));
+    let (bounds, inner): (Vec<&Stroke>, Vec<&Stroke>) = longest.into_iter().partition(|s| is_bound(s));
     let mut all: Vec<Stroke> = Vec::new();
-    for stroke in longest {
+    for stroke in bounds.into_iter().chain(inner) {
         let Some([c, s]) = direction_of(stroke) else { continue };
         let split = |p: [f64; 2]| (p[0] * c + p[1] * s, p[1] * c - p[0] * s);
         let ((a, off), (b, _)) = (split(stroke[0]), split(stroke[1]));

@@ -2,6 +2,8 @@
 //!
 //! They are found in the contours of the exact solid, so that a part that nobody has drawn yet has its dimensions, too.
 
+use pinswitch_friction::sort_by_number;
+
 use super::bore::{Bore, add_stage, gathered};
 use super::chains::{Chain, chains};
 use pinswitch_solid::profile::{Arc, Contour, Edge, Point2, Vector2};
@@ -190,7 +192,7 @@ pub(super) fn features(solid: &Solid, chamfer_mm: f64, half_span_rad: f64) -> Fe
         // One piece alone is a body of its own.
         if pieces.len() > 1 { all.add_piece(contour, *z) } else { all.add_outline(contour, half_span_rad) }
     }
-    all.axis_arcs.sort_by(|a, b| b[0].radius_mm.total_cmp(&a[0].radius_mm));
+    sort_by_number(&mut all.axis_arcs, |arcs| -arcs[0].radius_mm);
     heights.retain(|z| !same(*z, bottom));
     heights.sort_by(f64::total_cmp);
     heights.dedup_by(|a, b| same(*a, *b));

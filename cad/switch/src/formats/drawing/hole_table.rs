@@ -1,6 +1,8 @@
 //! Where the holes of a plate lie that has no axis of its own: named on the sheet, listed in a table, measured from the
 //! first of them.
 
+use pinswitch_friction::sort_by_number;
+
 use super::dimensions::Wanted;
 use super::features::Features;
 use super::plan::Place;
@@ -31,7 +33,8 @@ fn holes(f: &Features) -> Vec<(String, Point2, f64)> {
     for (i, bore) in f.bores.iter().enumerate() {
         let Some(letter) = letter(f, i) else { continue };
         let mut centres = bore.centres.clone();
-        centres.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        sort_by_number(&mut centres, |c| c.y);
+        sort_by_number(&mut centres, |c| c.x);
         for (k, centre) in centres.iter().enumerate() {
             let name = if centres.len() == 1 { letter.clone() } else { format!("{letter}{}", k + 1) };
             all.push((name, *centre, bore.reach_mm()));

@@ -1,5 +1,7 @@
 //! Lengths along the two sides of the paper: of parts without an axis, and of blocks around one.
 
+use pinswitch_friction::sort_by_number;
+
 use super::dimensions::Wanted;
 use super::features::{Features, same};
 use super::plan::Place;
@@ -127,7 +129,8 @@ fn block(f: &Features, frame: &mut Frame<'_>) {
     let is_paired = |p: &Point2| points.iter().any(|q| same(p.x, q.x) && same(q.y - middle, middle - p.y));
     let mut above: Vec<Point2> = points.iter().copied().filter(|p| p.y > middle || !is_paired(p)).collect();
     // Of those at one height the nearest to the side on which it is written.
-    above.sort_by(|a, b| a.y.total_cmp(&b.y).then(b.x.total_cmp(&a.x)));
+    sort_by_number(&mut above, |p| -p.x);
+    sort_by_number(&mut above, |p| p.y);
     above.dedup_by(|a, b| same(a.y, b.y));
     for (i, p) in above.iter().filter(|p| !same(p.y, high.y)).enumerate() {
         if is_paired(p) {
@@ -195,7 +198,7 @@ fn rows(f: &Features, frame: &mut Frame<'_>) {
     let half_rounds = f.roundings.iter().filter(|r| r.is_half_round);
     let grooves = half_rounds.flat_map(|r| r.arcs.iter().map(|a| a.centre)).collect();
     for (word, mut points) in [("slots", slots), ("grooves", grooves)] {
-        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        sort_by_number(&mut points, |p| p.x);
         let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { continue };
         // Above: no extension line runs through what is engraved below the slots.
         let from = |p: Point2| [Point2::new(corner.x, p.y), p];

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pinswitch_friction::excerpt;
+use pinswitch_friction::{excerpt, sort_by_number};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -318,7 +318,7 @@ fn parameters(effect: &Table<'_>) -> Result<(Vec<OwnParameter>, Vec<usize>), Own
     let value = effect.table.get("parameters").ok_or_else(|| effect.missing("parameters", example))?;
     let all = Table::new(effect.source, value, "parameters")?;
     let mut named: Vec<_> = all.table.iter().collect();
-    named.sort_by_key(|(name, _)| name.span().start);
+    sort_by_number(&mut named, |(name, _)| name.span().start as f64);
     let mut found = Vec::new();
     for (name, value) in &named {
         let what = format!("parameter '{}'", excerpt(name.get_ref(), 60));

@@ -26,6 +26,8 @@ use expression::Node;
 pub(crate) use parser::unknown;
 use variable::Moment;
 
+use pinswitch_friction::sort_by_number;
+
 use super::written::{on_contact, stage};
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, StudyRange, Written,
@@ -78,7 +80,7 @@ impl OwnEffect {
     pub fn new(mut definition: EffectDefinition) -> Result<Self, DefinitionError> {
         // The order in the definition is what errors point at.
         definition.compiled()?;
-        definition.parameters.sort_by_key(|p| p.bounds.is_some());
+        sort_by_number(&mut definition.parameters, |p| f64::from(p.bounds.is_some()));
         let formula = definition.compiled()?;
         Ok(Self { definition, formula })
     }

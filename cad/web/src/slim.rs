@@ -2,8 +2,9 @@
 //!
 //! A module is its magic, its version, and sections: a number, a length, the content (WebAssembly core specification,
 //! chapter 5.5). Custom sections (names, notes for bindgen) are left out, and of the exports all but the engine's own; what
-//! described functions to bindgen keeps its number and has no body. The libraries that `report.html` holds are in the module as text, and in the configurator's page, too: they become holes,
-//! filled with zeros, which the worker fills again from the page before the module is compiled.
+//! described functions to bindgen keeps its number and has no body. Texts that the configurator's page holds as well, as the
+//! libraries of `report.html`, become holes filled with zeros, which the worker fills again from the page before the module is
+//! compiled.
 
 /// What the page asks the module for.
 const EXPORTS: [&str; 4] = ["memory", "room", "answer", "free"];

@@ -24,8 +24,9 @@ pub struct MeshedBody {
 }
 
 impl MeshedBody {
-    fn new(part: Part, design: &Design) -> Result<Self, BuildError> {
-        let mesh = part.mesh(design).map_err(|source| BuildError::Cap { part: part.name.clone(), source })?;
+    fn new(part: Part, design: &Design, caps: &CapCache) -> Result<Self, BuildError> {
+        let mesh = part.solid.mesh_with(design.tolerance(), caps);
+        let mesh = mesh.map_err(|source| BuildError::Cap { part: part.name.clone(), source })?;
         Ok(Self { part, mesh })
     }
 }
@@ -48,7 +49,11 @@ impl BuiltPart {
     /// # Errors
     /// [`BuildError`]; a mesh that the oracle refuses is never returned.
     pub fn new(part: Part, design: &Design) -> Result<Self, BuildError> {
-        let body = MeshedBody::new(part, design)?;
+        Self::with_caps(part, design, &CapCache::new(usize::MAX))
+    }
+
+    fn with_caps(part: Part, design: &Design, caps: &CapCache) -> Result<Self, BuildError> {
+        let body = MeshedBody::new(part, design, caps)?;
         let print_mesh = body.mesh.clone().translated(body.part.print_shift_mm());
         let facts = examined(&body.part, &print_mesh, design)?;
         Ok(Self { body, print_mesh, facts })
@@ -124,9 +129,18 @@ impl Built {
     /// # Errors
     /// [`BuildError`]; nothing is returned if one part cannot be built.
     pub fn new(design: Design) -> Result<Self, BuildError> {
+        Self::with_caps(design, &CapCache::new(usize::MAX))
+    }
+
+    /// The same with the caps that designs before it have left in `caps`, and with its own left there: where one design
+    /// follows another, most parts of it are as they were.
+    ///
+    /// # Errors
+    /// As [`Built::new`].
+    pub fn with_caps(design: Design, caps: &CapCache) -> Result<Self, BuildError> {
         let parts = printed(&design)?;
         fit_on_bed(&parts, &design)?;
-        let printed = map_each(parts, |part| BuiltPart::new(part, &design))
+        let printed = map_each(parts, |part| BuiltPart::with_caps(part, &design, caps))
             .into_iter()
             .collect::<Result<Vec<_>, _>>()
             .map_err(|e| diagnosed(e, &design))?;
@@ -136,7 +150,7 @@ impl Built {
                 // The layer is often the same solid as its proxy: equal solids are meshed once.
                 match printed.iter().find(|p| p.part().solid == part.solid) {
                     Some(twin) => Ok(MeshedBody { part, mesh: twin.body.mesh.clone() }),
-                    None => MeshedBody::new(part, &design),
+                    None => MeshedBody::new(part, &design, caps),
                 }
             })
             .collect::<Result<_, _>>()?;

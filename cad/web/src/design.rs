@@ -9,7 +9,7 @@ use pinswitch_switch::prediction::Prediction;
 use pinswitch_switch::set::Set;
 use serde::Serialize;
 
-use crate::predicted::Predictions;
+use crate::kept::Kept;
 use crate::request::{Asked, Quality};
 use crate::trouble::Trouble;
 use crate::values::configuration;
@@ -28,14 +28,14 @@ pub(crate) struct Shown {
 }
 
 /// The data of a design, its configuration as text, or its trouble.
-pub(crate) fn answer(kept: &mut Predictions, asked: &Asked, quality: Quality) -> Shown {
+pub(crate) fn answer(kept: &mut Kept, asked: &Asked, quality: Quality) -> Shown {
     match shown(kept, asked, quality) {
         Ok((data, toml)) => Shown { data: Some(data), toml: Some(toml), trouble: None },
         Err(trouble) => Shown { data: None, toml: None, trouble: Some(trouble) },
     }
 }
 
-fn shown(kept: &mut Predictions, asked: &Asked, quality: Quality) -> Result<(PageData, String), Trouble> {
+fn shown(kept: &mut Kept, asked: &Asked, quality: Quality) -> Result<(PageData, String), Trouble> {
     let exact = configuration(&asked.values)?;
     let toml = to_toml(&exact);
     let mut seen = exact;
@@ -49,16 +49,16 @@ fn shown(kept: &mut Predictions, asked: &Asked, quality: Quality) -> Result<(Pag
     Ok((PageData::new(&built, &prediction, &set.manifest, Some(1)), toml))
 }
 
-/// The parts of a configuration and the curve, by the published constants or by a calibrated model; the curve that is `kept`
-/// where it is the same.
+/// The parts of a configuration and the curve, by the published constants or by a calibrated model, with what is `kept` where
+/// it is the same.
 pub(crate) fn built(
-    kept: &mut Predictions,
+    kept: &mut Kept,
     configuration: Configuration,
     model: Option<&str>,
 ) -> Result<(Built, Prediction), Trouble> {
     let design = Design::new(configuration)?;
-    let prediction = kept.of(&design, model)?;
-    let built = Built::new(design).map_err(|e| trouble(e.into()))?;
+    let prediction = kept.predictions.of(&design, model)?;
+    let built = Built::with_caps(design, &kept.caps).map_err(|e| trouble(e.into()))?;
     Ok((built, prediction))
 }
 

@@ -12,7 +12,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::design::{built, trouble};
-use crate::predicted::Predictions;
+use crate::kept::Kept;
 use crate::request::Asked;
 use crate::trouble::Trouble;
 use crate::values::configuration;
@@ -35,7 +35,7 @@ impl Engine {
     /// An answer from the files of a design, made anew only where it is another one.
     pub(crate) fn files(&mut self, design: &Asked, of: impl FnOnce(&Made) -> Answer) -> Answer {
         if self.made.as_ref().is_none_or(|made| made.design != *design) {
-            match Made::new(&mut self.predicted, design) {
+            match Made::new(&mut self.kept, design) {
                 Ok(made) => self.made = Some(made),
                 Err(trouble) => return Answer::json(&serde_json::json!({ "trouble": trouble })),
             }
@@ -47,7 +47,7 @@ impl Engine {
 impl Made {
     /// Every file that `pinswitch generate NAME.toml --format all --out .` writes beside a `NAME.toml` with this
     /// configuration, and that file.
-    fn new(kept: &mut Predictions, design: &Asked) -> Result<Self, Trouble> {
+    fn new(kept: &mut Kept, design: &Asked) -> Result<Self, Trouble> {
         let configuration = configuration(&design.values)?;
         let own = OutputFile::new(format!("{}.toml", configuration.switch.name), to_toml(&configuration));
         let (built, prediction) = built(kept, configuration, design.model.as_deref())?;

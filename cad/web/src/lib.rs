@@ -21,6 +21,7 @@ mod calibration;
 mod design;
 mod facts;
 mod files;
+mod kept;
 #[cfg(target_arch = "wasm32")]
 mod module;
 pub mod page;
@@ -32,7 +33,7 @@ mod trouble;
 mod values;
 
 use files::Made;
-use predicted::Predictions;
+use kept::Kept;
 use request::Request;
 use serde::Serialize;
 
@@ -66,7 +67,7 @@ impl Answer {
 #[derive(Debug, Default)]
 pub struct Engine {
     made: Option<Made>,
-    predicted: Predictions,
+    kept: Kept,
 }
 
 impl Engine {
@@ -79,7 +80,7 @@ impl Engine {
         match request {
             Request::Facts => Answer::json(&facts::facts()),
             Request::Design { design, quality } => {
-                Answer::json(&design::answer(&mut self.predicted, &design, quality))
+                Answer::json(&design::answer(&mut self.kept, &design, quality))
             }
             Request::Open { toml, file } => Answer::json(&values::opened(&toml, &file)),
             Request::Files { design } => self.files(&design, |made| made.list()),

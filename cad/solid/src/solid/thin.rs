@@ -58,10 +58,10 @@ impl Solid {
         faces.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
         let mut found = Vec::new();
         for (i, a) in faces.iter().enumerate() {
-            for b in faces[i + 1..].iter().take_while(|b| b.low.x < a.high.x + under_mm) {
-                let apart = b.low.y > a.high.y + under_mm || a.low.y > b.high.y + under_mm;
+            let near = faces[i + 1..].iter().take_while(|b| b.low.x < a.high.x + under_mm);
+            for b in near.filter(|b| !a.is_apart(b, under_mm)) {
                 let (from_mm, to_mm) = (a.from_mm.max(b.from_mm), a.to_mm.min(b.to_mm));
-                if !apart && to_mm > from_mm + SAME_MM {
+                if to_mm > from_mm + SAME_MM {
                     found.extend(self.between(a, b, from_mm, to_mm, under_mm));
                 }
             }
@@ -90,12 +90,15 @@ impl Solid {
 
     /// What is between two faces over the heights at which both stand, if it is thin.
     fn between(&self, a: &Face, b: &Face, from_mm: f64, to_mm: f64, under_mm: f64) -> Option<ThinPlace> {
+        let are_upright = a.upright.is_some() && b.upright.is_some();
+        // Of a wall that leans, the end that is not thin is measured, too: the mean of both is asked for below.
+        let within_mm = if are_upright { under_mm } else { f64::INFINITY };
         let at = |z_mm: f64| {
             let (a, b) = (self.face_at(a, z_mm), self.face_at(b, z_mm));
-            nearest(&a, &b)
+            nearest(&a, &b, within_mm)
         };
         let below = at(from_mm);
-        let above = if a.upright.is_some() && b.upright.is_some() { below } else { at(to_mm) };
+        let above = if are_upright { below } else { at(to_mm) };
         let thickness = |place: Option<(f64, Point2)>| place.map_or(f64::INFINITY, |p| p.0);
         let (thickness_mm, middle) = if thickness(above) < thickness(below) { above? } else { below? };
         // Of a wall that leans, the mean tells whether it is higher than thick; where one end faces nothing, it is.
@@ -150,32 +153,81 @@ fn tangent((from, to, arc): &PlainEdge, share: f64) -> Vector2 {
     }
 }
 
-/// The shortest way through material between two edges: its length, and its middle.
-fn nearest(a: &Section, b: &Section) -> Option<(f64, Point2)> {
+/// The shortest way through material between two edges, if it is shorter than `within_mm`: its length, and its middle.
+fn nearest(a: &Section, b: &Section, within_mm: f64) -> Option<(f64, Point2)> {
     let mut best: Option<(f64, Point2)> = None;
-    let mut consider = |p: Point2, q: Point2| {
-        let length = (q - p).norm();
+    // Whether an arc reaches its point is asked last: it takes longest to tell.
+    let mut consider = |p: Spot, q: Spot| {
+        let length = (q.point - p.point).norm();
         if length > SAME_MM
-            && best.is_none_or(|(least, _)| length < least)
-            && a.faces(p, (q - p) / length)
-            && b.faces(q, (p - q) / length)
+            && length < best.map_or(within_mm, |(least, _)| least)
+            && a.holds(p)
+            && b.holds(q)
+            && a.faces(p.point, (q.point - p.point) / length)
+            && b.faces(q.point, (p.point - q.point) / length)
         {
-            best = Some((length, nalgebra::center(&p, &q)));
+            best = Some((length, nalgebra::center(&p.point, &q.point)));
         }
     };
-    for p in a.stations(b) {
-        b.feet(p).into_iter().flatten().for_each(|q| consider(p, q));
+    for p in a.stations(b).into_iter().flatten() {
+        b.feet(p.point).into_iter().flatten().for_each(|q| consider(p, q));
     }
-    for q in b.stations(a) {
-        a.feet(q).into_iter().flatten().for_each(|p| consider(p, q));
+    for q in b.stations(a).into_iter().flatten() {
+        a.feet(q.point).into_iter().flatten().for_each(|p| consider(p, q));
     }
     best
 }
 
+/// A point of an edge; one in a direction from an arc's centre lies on the arc only if that reaches there.
+#[derive(Clone, Copy)]
+struct Spot {
+    point: Point2,
+    radial: Option<Vector2>,
+}
+
+impl Spot {
+    fn end(point: Point2) -> Self {
+        Self { point, radial: None }
+    }
+
+    fn on(arc: &Arc, radial: Vector2) -> Self {
+        Self { point: arc.centre + radial * arc.radius_mm, radial: Some(radial) }
+    }
+}
+
+impl Face {
+    /// Whether another face is further away than `under_mm` at every height: its box, or the disc around that.
+    fn is_apart(&self, other: &Self, under_mm: f64) -> bool {
+        other.low.y > self.high.y + under_mm
+            || self.low.y > other.high.y + under_mm
+            || self.is_beyond(other, under_mm)
+            || other.is_beyond(self, under_mm)
+    }
+
+    /// Whether the disc around another face's box is further away than `under_mm` from the line or circle of this one.
+    fn is_beyond(&self, other: &Self, under_mm: f64) -> bool {
+        self.upright.as_ref().is_some_and(|section| {
+            let middle = nalgebra::center(&other.low, &other.high);
+            section.offset_mm(middle) > under_mm + 0.5 * (other.high - other.low).norm()
+        })
+    }
+}
+
 impl Section {
-    /// Points of this edge from which the shortest way to `other` can start: its ends, and where an arc is parallel to it.
-    fn stations(&self, other: &Self) -> Vec<Point2> {
-        let mut all = vec![self.from, self.to];
+    /// Distance of a point from the line or circle that this edge is a part of, mm.
+    fn offset_mm(&self, point: Point2) -> f64 {
+        match &self.arc {
+            Some(arc) => ((point - arc.centre).norm() - arc.radius_mm).abs(),
+            None => {
+                let along = self.to - self.from;
+                along.perp(&(point - self.from)).abs() / along.norm()
+            }
+        }
+    }
+
+    /// Points from which the shortest way to `other` can start: the ends, and where an arc is parallel to it.
+    fn stations(&self, other: &Self) -> [Option<Spot>; 4] {
+        let mut all = [Some(Spot::end(self.from)), Some(Spot::end(self.to)), None, None];
         if let Some(arc) = &self.arc {
             let towards = match &other.arc {
                 Some(o) => (o.centre - arc.centre).try_normalize(SAME_MM),
@@ -183,30 +235,37 @@ impl Section {
             };
             // Arcs about one centre are parallel all along.
             let towards = towards.unwrap_or_else(|| (arc.point_at(0.5, 1.0) - arc.centre).normalize());
-            for side in [towards, -towards] {
-                all.extend(on_arc(arc, side));
-            }
+            all[2] = Some(Spot::on(arc, towards));
+            all[3] = Some(Spot::on(arc, -towards));
         }
         all
     }
 
-    /// Points of this edge that are nearest to `point`: on an arc also the furthest, which lies across its inside.
-    fn feet(&self, point: Point2) -> [Option<Point2>; 4] {
-        let mut feet = [Some(self.from), Some(self.to), None, None];
+    /// Points that are nearest to `point`: on an arc also the furthest, which lies across its inside.
+    fn feet(&self, point: Point2) -> [Option<Spot>; 4] {
+        let mut feet = [Some(Spot::end(self.from)), Some(Spot::end(self.to)), None, None];
         match &self.arc {
             Some(arc) => {
                 if let Some(radial) = (point - arc.centre).try_normalize(SAME_MM) {
-                    feet[2] = on_arc(arc, radial);
-                    feet[3] = on_arc(arc, -radial);
+                    feet[2] = Some(Spot::on(arc, radial));
+                    feet[3] = Some(Spot::on(arc, -radial));
                 }
             }
             None => {
                 let along = self.to - self.from;
                 let share = (point - self.from).dot(&along) / along.norm_squared();
-                feet[2] = (0.0..=1.0).contains(&share).then(|| self.from + along * share);
+                feet[2] = (0.0..=1.0).contains(&share).then(|| Spot::end(self.from + along * share));
             }
         }
         feet
+    }
+
+    /// Whether a spot lies on this edge.
+    fn holds(&self, spot: Spot) -> bool {
+        match (&self.arc, spot.radial) {
+            (Some(arc), Some(radial)) => arc.covers(libm::atan2(radial.y, radial.x)),
+            _ => true,
+        }
     }
 
     /// Whether a way that leaves `point` of this edge in `direction` starts into the material, about at a right angle, or
@@ -230,11 +289,6 @@ impl Section {
         (point == self.from && between(self.before, tangent(&here, 0.0)))
             || (point == self.to && between(tangent(&here, 1.0), self.after))
     }
-}
-
-/// The point of `arc` in the direction `radial` from its centre, if it reaches there.
-fn on_arc(arc: &Arc, radial: Vector2) -> Option<Point2> {
-    arc.covers(libm::atan2(radial.y, radial.x)).then(|| arc.centre + radial * arc.radius_mm)
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ pub(crate) use device::{states, uncertain, unexplained};
 pub use fit::{
     FitError, LayoutLeftOut, MaximaFit, fit_maxima, leave_one_condition_out, leave_one_layout_out,
 };
-pub use profile::{ContactProfile, contact_profile};
+pub use profile::{ContactProfile, contact_profile, contact_profiles};
 
 /// Why a tendon cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::fit::PUBLISHED_FIT;
+use super::march::Sliding;
 use super::{PhysicsError, PhysicsSwitch};
 use crate::{Contact, Direction};
 
@@ -37,8 +38,28 @@ pub fn contact_profile(
     direction: Direction,
 ) -> Result<ContactProfile, PhysicsError> {
     let switch = PhysicsSwitch::new(contact, PUBLISHED_FIT.constants());
-    let sliding = switch.sliding(load_n, direction, None)?;
-    Ok(ContactProfile {
+    Ok(profile(&switch, switch.sliding(load_n, direction, None)?))
+}
+
+/// The profiles under several loads, each found from the one before: neighbours are much alike.
+///
+/// # Errors
+/// [`PhysicsError`] if an equilibrium is not found.
+pub fn contact_profiles(
+    contact: &Contact,
+    loads_n: &[f64],
+    direction: Direction,
+) -> Result<Vec<ContactProfile>, PhysicsError> {
+    let switch = PhysicsSwitch::new(contact, PUBLISHED_FIT.constants());
+    let mut states: Vec<Sliding> = Vec::with_capacity(loads_n.len());
+    for load_n in loads_n {
+        states.push(switch.sliding(*load_n, direction, states.last())?);
+    }
+    Ok(states.into_iter().map(|state| profile(&switch, state)).collect())
+}
+
+fn profile(switch: &PhysicsSwitch, sliding: Sliding) -> ContactProfile {
+    ContactProfile {
         angle_rad: switch.angles_rad().to_vec(),
         silicone_rad: switch.silicone_rad(),
         gap_mm: sliding.shape.gap_mm,
@@ -47,5 +68,5 @@ pub fn contact_profile(
         pin_n: sliding.shape.pin_n,
         pin_turn_rad: sliding.pin_turn_rad,
         silicone_turn_rad: sliding.silicone_turn_rad,
-    })
+    }
 }

@@ -2,7 +2,7 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use pinswitch_friction::physics::contact_profile;
+use pinswitch_friction::physics::contact_profiles;
 use pinswitch_friction::{Direction, FrictionCurve, PublishedPoint, Substrate, published_points};
 use serde::Serialize;
 
@@ -192,9 +192,9 @@ fn contact_states(design: &Design) -> ContactStates {
     let (lightest, heaviest) = (f.load_min_n.max(MIN_SHARE * f.load_max_n), f.load_max_n);
     let load_n: Vec<f64> =
         (0..STATES).map(|i| lightest + (heaviest - lightest) * i as f64 / (STATES - 1) as f64).collect();
-    let profiles: Result<Vec<_>, _> =
-        load_n.iter().map(|load| contact_profile(contact, *load, Direction::Eccentric)).collect();
-    let Ok(profiles) = profiles else { return ContactStates::default() };
+    let Ok(profiles) = contact_profiles(contact, &load_n, Direction::Eccentric) else {
+        return ContactStates::default();
+    };
     let bed = contact.bed();
     // Only pins that the tendon touches sink; numbers in the configuration count all of them.
     let touched: Vec<f64> = contact.pins().angles_rad().to_vec();

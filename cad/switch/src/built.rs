@@ -52,6 +52,12 @@ impl BuiltPart {
         Self::with_caps(part, design, &CapCache::new(usize::MAX))
     }
 
+    /// What was built of another part with the same solid, at the same tolerance.
+    fn as_built(&self, part: Part) -> Self {
+        let body = MeshedBody { part: part.known_by(self.part()), mesh: self.body.mesh.clone() };
+        Self { body, print_mesh: self.print_mesh.clone(), facts: self.facts.clone() }
+    }
+
     fn with_caps(part: Part, design: &Design, caps: &CapCache) -> Result<Self, BuildError> {
         let body = MeshedBody::new(part, design, caps)?;
         let print_mesh = body.mesh.clone().translated(body.part.print_shift_mm());
@@ -129,18 +135,27 @@ impl Built {
     /// # Errors
     /// [`BuildError`]; nothing is returned if one part cannot be built.
     pub fn new(design: Design) -> Result<Self, BuildError> {
-        Self::with_caps(design, &CapCache::new(usize::MAX))
+        Self::following(design, None, &CapCache::new(usize::MAX))
     }
 
-    /// The same with the caps that designs before it have left in `caps`, and with its own left there: where one design
-    /// follows another, most parts of it are as they were.
+    /// The same where one design follows another: parts that are as they were are taken from the one `before`, and caps that
+    /// others have left from `caps`, where its own are left, too.
     ///
     /// # Errors
     /// As [`Built::new`].
-    pub fn with_caps(design: Design, caps: &CapCache) -> Result<Self, BuildError> {
+    pub fn following(design: Design, before: Option<&Self>, caps: &CapCache) -> Result<Self, BuildError> {
         let parts = printed(&design)?;
         fit_on_bed(&parts, &design)?;
-        let printed = map_each(parts, |part| BuiltPart::with_caps(part, &design, caps))
+        let known = before.filter(|before| before.design.tolerance() == design.tolerance());
+        let twin = |part: &Part| {
+            let is_twin = |b: &&BuiltPart| b.part().name == part.name && b.part().solid == part.solid;
+            known?.printed.iter().find(is_twin)
+        };
+        let made = |part: Part| match twin(&part) {
+            Some(twin) => Ok(twin.as_built(part)),
+            None => BuiltPart::with_caps(part, &design, caps),
+        };
+        let printed = map_each(parts, made)
             .into_iter()
             .collect::<Result<Vec<_>, _>>()
             .map_err(|e| diagnosed(e, &design))?;

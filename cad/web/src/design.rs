@@ -46,7 +46,11 @@ fn shown(kept: &mut Kept, asked: &Asked, quality: Quality) -> Result<(PageData, 
     let (built, prediction) = built(kept, seen, asked.model.as_deref())?;
     // What is looked at needs no files, which take longer than the parts.
     let set = Set::new(&built, &prediction, &[]).map_err(trouble)?;
-    Ok((PageData::new(&built, &prediction, &set.manifest, Some(1)), toml))
+    let data = PageData::new(&built, &prediction, &set.manifest, Some(1));
+    if quality == Quality::Coarse {
+        kept.built = Some(built);
+    }
+    Ok((data, toml))
 }
 
 /// The parts of a configuration and the curve, by the published constants or by a calibrated model, with what is `kept` where
@@ -58,7 +62,7 @@ pub(crate) fn built(
 ) -> Result<(Built, Prediction), Trouble> {
     let design = Design::new(configuration)?;
     let prediction = kept.predictions.of(&design, model)?;
-    let built = Built::with_caps(design, &kept.caps).map_err(|e| trouble(e.into()))?;
+    let built = Built::following(design, kept.built.as_ref(), &kept.caps).map_err(|e| trouble(e.into()))?;
     Ok((built, prediction))
 }
 
@@ -67,5 +71,38 @@ pub(crate) fn trouble(error: SetError) -> Trouble {
     match error {
         SetError::Build(BuildError::Configuration(error)) => error.into(),
         other => Trouble::general(other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    /// Of every number of the configuration, changed a little, a design that follows another is told as one made anew.
+    #[test]
+    fn a_design_that_follows_another_is_told_as_one_made_anew() {
+        let with = |path: &str, value: Value| {
+            let base = [("layout.pins", json!([5, 8, 11])), ("friction.points", json!(3)), (path, value)];
+            let values = base.into_iter().map(|(path, value)| (path.to_owned(), value)).collect();
+            Asked { values, model: None }
+        };
+        let told = |kept: &mut Kept, asked: &Asked| {
+            let shown = answer(kept, asked, Quality::Coarse);
+            (shown.trouble.is_none(), serde_json::to_string(&shown).unwrap())
+        };
+        let mut kept = Kept::default();
+        let mut compared = 0;
+        for parameter in Configuration::PARAMETERS {
+            let value = (parameter.get)(&Configuration::default()).to_string();
+            let Ok(number) = value.parse::<f64>() else { continue };
+            let new = [json!(number * 0.98), json!(number as i64 + 1)];
+            for changed in new.map(|new| with(&parameter.path(), new)) {
+                let (is_design, after) = told(&mut kept, &changed);
+                assert_eq!(after, told(&mut Kept::default(), &changed).1, "{}", parameter.path());
+                compared += usize::from(is_design);
+            }
+        }
+        assert!(compared > 60, "{compared}");
     }
 }

@@ -1,5 +1,7 @@
 //! One body: its exact solid in print orientation, what it is for, and its place in the assembly.
 
+use std::sync::OnceLock;
+
 use serde::Serialize;
 
 use super::LeftOut;
@@ -7,7 +9,7 @@ use crate::design::Design;
 use pinswitch_solid::mesh::{Mesh, Vector3};
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::Contour;
-use pinswitch_solid::solid::{CapError, Facing, Solid};
+use pinswitch_solid::solid::{CapError, Facing, Solid, ThinPlace};
 use pinswitch_solid::validity::Expectation;
 
 /// What a part is made of.
@@ -108,6 +110,9 @@ pub struct Part {
     /// The solid as a workshop draws it, where that is not as it lies in the set: about its own axis, or with its sides
     /// along the paper.
     pub drawn: Option<Solid>,
+    /// Its thin places, once they were looked for: those under so many millimetres. Private, so that nobody gives it another
+    /// solid and keeps them.
+    pub(super) thin: OnceLock<(f64, Vec<ThinPlace>)>,
 }
 
 impl Part {
@@ -121,12 +126,19 @@ impl Part {
             left_out: Vec::new(),
             engraved: Vec::new(),
             drawn: None,
+            thin: OnceLock::new(),
         }
     }
 
     /// What it is made of.
     pub const fn material(&self) -> Material {
         self.role.material()
+    }
+
+    /// The same with another solid, as a drawing shows it: nothing is known of that yet.
+    #[must_use]
+    pub(crate) fn with_solid(&self, solid: Solid) -> Self {
+        Self { solid, drawn: None, thin: OnceLock::new(), ..self.clone() }
     }
 
     /// What its mesh is compared with: one body, and the exact volume within what the chord tolerance allows.

@@ -19,8 +19,19 @@ const TOGETHER: usize = 3;
 impl Part {
     /// Places with less than two printed lines of material, the thinnest first; of what is printed.
     pub fn thin_places(&self, design: &Design) -> Vec<ThinPlace> {
-        let limit = 2.0 * design.configuration().print.line_mm - THIN_ROUNDING_MM;
-        if self.material() == Material::Abs { self.solid.thin_places(limit) } else { Vec::new() }
+        if self.material() != Material::Abs {
+            return Vec::new();
+        }
+        let limit_mm = 2.0 * design.configuration().print.line_mm - THIN_ROUNDING_MM;
+        let (under_mm, found) = self.thin.get_or_init(|| (limit_mm, self.solid.thin_places(limit_mm)));
+        if *under_mm == limit_mm { found.clone() } else { self.solid.thin_places(limit_mm) }
+    }
+
+    /// The same part with what is known of one whose solid is the same.
+    #[must_use]
+    pub(crate) fn known_by(mut self, twin: &Self) -> Self {
+        self.thin = twin.thin.clone();
+        self
     }
 
     /// Those of which no rule of its own tells.

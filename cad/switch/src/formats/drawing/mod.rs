@@ -120,7 +120,10 @@ fn single_pin(built: &Built) -> Option<Part> {
     let radius_mm = built.design().configuration().pins.diameter_mm / 2.0;
     let outline = Contour::circle(Point2::origin(), radius_mm);
     let solid = Solid::prism(&outline, &[], 0.0, built.design().pin_length_mm(), 0.0).ok()?;
-    Some(Part { name: "pin".to_owned(), solid, pose: None, ..pin.clone() })
+    let mut alone = pin.with_solid(solid);
+    alone.name = "pin".to_owned();
+    alone.pose = None;
+    Some(alone)
 }
 
 #[cfg(test)]

@@ -78,7 +78,7 @@ pub(super) enum Letter {
 /// The sheet of `part`; nothing for a part without extent. It is drawn as a workshop holds it, where that differs from how
 /// it lies in the set.
 pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked: Paper) -> Option<Sheet> {
-    let turned = part.drawn.as_ref().map(|solid| Part { solid: solid.clone(), drawn: None, ..part.clone() });
+    let turned = part.drawn.as_ref().map(|solid| part.with_solid(solid.clone()));
     let part = turned.as_ref().unwrap_or(part);
     let (low, high) = part.solid.bounds()?;
     let chamfer_mm = design.configuration().print.elephant_foot_mm;

@@ -123,6 +123,7 @@ class Assembly {
     // Materials by what they are of. They outlive what is shown: a graphics card compiles a program for each kind, and forgets
     // it with the last material of that kind.
     this.materials = new Map();
+    this.shapes = [];
     this.square = square();
     this.counted = [counting(BACK, INCREMENT, this.plane), counting(FRONT, DECREMENT, this.plane)];
     this.group = new THREE.Group();
@@ -135,14 +136,12 @@ class Assembly {
     const before = this.reach;
     this.forget();
     this.data = data;
+    const shapes = this.shaped(data);
     this.bodies = data.bodies.map((body, order) => {
-      const source = data.meshes[body.mesh];
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(bytesOf(source.positions).buffer), 3));
-      geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytesOf(source.triangles).buffer), 1));
+      const { geometry, lines } = shapes.get(body.mesh);
       const { material, cut } = this.coat(body);
       const mesh = new THREE.Mesh(geometry, material);
-      const edges = new THREE.LineSegments(sharpEdges(geometry), this.ink());
+      const edges = new THREE.LineSegments(lines, this.ink());
       // Two bodies are not counted together: each is counted, covered and forgotten before the next.
       const counted = this.counted.map((count) => new THREE.Mesh(geometry, count));
       counted.forEach((count) => { count.renderOrder = 2 * order + 1; });
@@ -167,6 +166,28 @@ class Assembly {
     this.edges();
     // A part of much the same size is looked at from where one was.
     if (!before || Math.abs(this.reach / before - 1) > 0.08) this.apart = undefined;
+  }
+
+  // Meshes with their edges, by number. What is as it was in the design before is taken from there: its edges are known, and
+  // the graphics card has it.
+  shaped(data) {
+    const before = this.shapes;
+    const shapes = new Map();
+    for (const { mesh } of data.bodies) {
+      if (shapes.has(mesh)) continue;
+      const { positions, triangles } = data.meshes[mesh];
+      const same = before.find((shape) => shape.positions === positions && shape.triangles === triangles);
+      if (same) { shapes.set(mesh, same); continue; }
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(bytesOf(positions).buffer), 3));
+      geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytesOf(triangles).buffer), 1));
+      shapes.set(mesh, { positions, triangles, geometry, lines: sharpEdges(geometry) });
+    }
+    this.shapes = [...shapes.values()];
+    for (const shape of before) {
+      if (!this.shapes.includes(shape)) [shape.geometry, shape.lines].forEach((geometry) => geometry.dispose());
+    }
+    return shapes;
   }
 
   kept(kind, material) {
@@ -194,7 +215,7 @@ class Assembly {
 
   // Lets what is shown go, with its memory on the graphics card.
   forget() {
-    this.group.traverse((object) => object.geometry?.dispose());
+    this.tendon?.geometry.dispose();
     this.group.clear();
     this.covers.clear();
     this.tendon = undefined;

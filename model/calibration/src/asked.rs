@@ -99,14 +99,15 @@ fn answer(question: &AskedQuestion, report: &Report, highest_n: f64) -> Answer {
     }
     // As large as it was asked about, which may be more than what is of consequence.
     let is_smaller = |low: f64, high: f64| question.size.is_some_and(|size| low > -size && high < size);
+    let is_out = report
+        .limits
+        .iter()
+        .any(|limit| limit.id == *of && (limit.excluded || is_smaller(limit.low, limit.high)));
     // What is too weak to be seen at a typical size may still be known to be smaller than what was asked about.
-    let is_out = |id: &String| {
-        report.limits.iter().any(|l| l.id == *id && (l.excluded || is_smaller(l.low, l.high)))
-            || report.invisible.iter().any(|hidden| {
-                hidden.id == *id && hidden.possible.is_some_and(|[low, high]| is_smaller(low, high))
-            })
-    };
-    // Of two that were suspected neither may be there.
-    let is_absent = |id: &String| id == NONE || (!is_named(id) && is_out(id));
-    if is_absent(of) && is_absent(or) { Answer::Excluded } else { Answer::Open }
+    let is_below = report
+        .invisible
+        .iter()
+        .any(|hidden| hidden.id == *of && hidden.possible.is_some_and(|[low, high]| is_smaller(low, high)));
+    let is_out = is_out || is_below;
+    if or == NONE && !is_named(of) && is_out { Answer::Excluded } else { Answer::Open }
 }

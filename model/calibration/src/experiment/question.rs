@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
-use pinswitch_friction::{published, sort_by_number};
+use pinswitch_friction::published;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::information::{Projected, Trace};
@@ -26,8 +26,6 @@ const UNSUSPECTED: f64 = 0.3;
 const DRAWN: f64 = 3.0;
 /// Share of the loads of a curve up to which data must reach, so that it needs no carrying on.
 pub(crate) const COVERED: f64 = 0.9;
-/// Suspects that are asked about in pairs, at most: those that the data so far speak for most.
-const SUSPECTS: usize = 3;
 /// Largest size of a rival, in units of the size at which a fit of it starts: beyond it, no rig is that wrong.
 const LARGEST_SHARE: f64 = 30.0;
 
@@ -192,18 +190,13 @@ impl Agenda {
                 }
             }
         }
-        let mut suspects: Vec<Suspect> = Vec::new();
         for limit in report.limits.iter().filter(|limit| !limit.excluded) {
             let Some(effect) = model.vocabulary.named(&limit.id) else { continue };
             let Some(values) = of_consequence(effect, limit, model) else { continue };
             let column = agenda.absent(effect, values, model);
             agenda.ask_whether(effect.id(), column, 1.0, &own, 1.0);
             agenda.of_size(limit.typical);
-            suspects.extend(Suspect::of(limit, effect.id(), column));
         }
-        sort_by_number(&mut suspects, |s| -s.certainty);
-        suspects.truncate(SUSPECTS);
-        agenda.ask_which(&suspects, &own, levels);
         for invisible in &report.invisible {
             let Some(effect) = model.vocabulary.named(&invisible.id) else { continue };
             // What stays in the rig does not change the curve of a part.
@@ -257,26 +250,6 @@ impl Agenda {
             });
         }
         agenda
-    }
-
-    /// Which of the suspects it is: what is seen of one may be another, and each is asked about where the other is fitted.
-    fn ask_which(&mut self, suspects: &[Suspect], own: &[usize], levels: Levels) {
-        for (i, a) in suspects.iter().enumerate() {
-            for b in &suspects[i + 1..] {
-                let way = |of: &Suspect, beside: &Suspect| Way {
-                    truth: of.column,
-                    size: of.size,
-                    nuisance: own.iter().copied().chain([beside.column]).collect(),
-                };
-                self.questions.push(Question {
-                    between: [a.id.to_owned(), b.id.to_owned()],
-                    size: None,
-                    ways: vec![way(a, b), way(b, a)],
-                    needed: levels.rival,
-                    weight: 1.0,
-                });
-            }
-        }
     }
 
     /// Whether the form of what has no name will be seen again.
@@ -369,30 +342,6 @@ impl Agenda {
     /// Whether an answer may lie along this covariate.
     pub(super) fn asks_along(&self, covariate: Covariate) -> bool {
         self.effects.iter().any(|effect| effect.description().covariate == covariate)
-    }
-}
-
-/// An effect that the data speak for, and not enough to name it.
-struct Suspect {
-    id: &'static str,
-    column: usize,
-    /// Its size, in units of the column.
-    size: f64,
-    /// The size told over the width of its interval.
-    certainty: f64,
-}
-
-impl Suspect {
-    /// `None` of an effect that may as well be absent.
-    fn of(limit: &LimitReport, id: &'static str, column: usize) -> Option<Self> {
-        let (middle, half) = (f64::midpoint(limit.low, limit.high), 0.5 * (limit.high - limit.low));
-        let is_there = limit.low > 0.0 || limit.high < 0.0;
-        (is_there && limit.typical.abs() > 0.0).then(|| Self {
-            id,
-            column,
-            size: (middle / limit.typical).clamp(-LARGEST_SHARE, LARGEST_SHARE),
-            certainty: middle.abs() / half.max(1e-12),
-        })
     }
 }
 

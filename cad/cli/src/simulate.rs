@@ -87,12 +87,20 @@ pub(super) struct Arguments {
     /// In a study, draw the forms of what has no name, and let other sessions confirm or refute them.
     #[arg(long, requires = "study", conflicts_with = "promises")]
     forms: bool,
-    /// In a study, propose a session where the paper's protocol leaves something open, make it, and calibrate both.
-    #[arg(long, requires = "study", conflicts_with_all = ["promises", "forms"])]
-    experiments: bool,
+    /// In a study, propose a session where the paper's protocol leaves something open, make it, and calibrate both; a number makes
+    /// the effects so many times as large.
+    #[arg(long, value_name = "TIMES", num_args = 0..=1, default_missing_value = "1", value_parser = times)]
+    #[arg(requires = "study", conflicts_with_all = ["promises", "forms"])]
+    experiments: Option<f64>,
     /// In a study, only these kinds of rig: a group (nulls, singles, scattered, pairs, masks, confounded, outside) or a part of a name.
     #[arg(long, value_name = "GROUP|NAME", requires = "study")]
     only: Vec<String>,
+}
+
+/// How many times as large effects are put in.
+fn times(text: &str) -> Result<f64, String> {
+    let times = text.parse::<f64>().map_err(|_| "a number such as 2".to_owned())?;
+    (0.1..=10.0).contains(&times).then_some(times).ok_or_else(|| "0.1 to 10".to_owned())
 }
 
 /// Largest seed that a plan can hold: TOML has integers with a sign.
@@ -220,9 +228,9 @@ fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputF
 
 /// The confusion matrix over the kinds of rig asked for, and a row for each group of them; or another chapter's table.
 fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
-    if arguments.experiments {
+    if let Some(factor) = arguments.experiments {
         let mut study = ExperimentStudy::default();
-        let run = |case: &Case, seed| run_experiment_case(case, seed, Levels::default());
+        let run = |case: &Case, seed| run_experiment_case(case, seed, factor, Levels::default());
         let cases = (0..).zip(experiment_cases()).collect();
         each_case(arguments, seeds, cases, run, |case, outcomes| study.add(case, outcomes))?;
         return print(study.table().as_bytes());

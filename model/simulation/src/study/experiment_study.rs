@@ -63,10 +63,10 @@ pub fn experiment_cases() -> Vec<Case> {
     .to_vec()
 }
 
-/// The plan of a kind and a seed: the form is the fitter's, and the size its share of that drawn.
-fn open_plan(case: &Case, seed: u64) -> Plan {
+/// The plan of a kind and a seed: the form is the fitter's, and the size its share of that drawn, times `factor`.
+fn open_plan(case: &Case, seed: u64, factor: f64) -> Plan {
     let mut plan = plan_of(case, seed);
-    let share = OPEN.iter().find(|(id, _)| *id == case.name).map_or(1.0, |(_, share)| *share);
+    let share = OPEN.iter().find(|(id, _)| *id == case.name).map_or(1.0, |(_, share)| factor * *share);
     for effect in &mut plan.effects {
         effect.form = 0;
         let has_size = effect_named(&effect.id).is_some_and(|e| e.description().study.size.is_some());
@@ -75,10 +75,15 @@ fn open_plan(case: &Case, seed: u64) -> Plan {
     plan
 }
 
-/// Calibrates one rig, proposes a session where something is open, makes it, and calibrates both tables together. `None` if a
-/// table cannot be used.
-pub fn run_experiment_case(case: &Case, seed: u64, levels: Levels) -> Option<ExperimentOutcome> {
-    let plan = open_plan(case, seed);
+/// Calibrates one rig whose effect is `factor` times as large as this chapter's, proposes a session where something is open,
+/// makes it, and calibrates both tables together. `None` if a table cannot be used.
+pub fn run_experiment_case(
+    case: &Case,
+    seed: u64,
+    factor: f64,
+    levels: Levels,
+) -> Option<ExperimentOutcome> {
+    let plan = open_plan(case, seed, factor);
     let rows = simulate(&plan).rows;
     let found = calibrate(&rows, levels).ok()?;
     let ids: Vec<Vec<&str>> = found.selection.effects.iter().map(FoundEffect::ids).collect();
@@ -191,7 +196,7 @@ mod tests {
     fn a_proposed_hour_settles_what_the_paper_leaves_open() {
         let case = experiment_cases().remove(0);
         let outcomes: Vec<_> = (900_001..900_004)
-            .filter_map(|seed| run_experiment_case(&case, seed, Levels::default()))
+            .filter_map(|seed| run_experiment_case(&case, seed, 1.0, Levels::default()))
             .collect();
         assert_eq!(outcomes.len(), 3);
         let open: Vec<_> = outcomes.iter().filter(|o| o.first == Standing::Open).collect();

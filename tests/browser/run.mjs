@@ -6,6 +6,8 @@
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
 import { Browser, Findings, Visit } from './drive.mjs';
 import { moduleSite, viewSite } from './engines.mjs';
 import * as around from './around.mjs';
@@ -28,6 +30,8 @@ async function fromFile(visit, site, { findings }) {
   await visit.click('#mirror-pins');
   await visit.settled();
   findings.check('a file that was opened by a double click works', (await visit.text('#friction-words')).includes('of load'));
+  const sent = gzipSync(readFileSync(fileURLToPath(site.file)), { level: 9 }).length;
+  findings.check('page and module weigh at most 1.2 MB as a server sends them', sent <= 1.2e6, `${sent} bytes`);
 }
 
 function scenarios() {

@@ -7,12 +7,27 @@ use crate::inference::{Fit, Screen, Selection, Term, Weighed, dot, fit, with_wha
 
 /// Cosine of two visible traces from which they are one.
 const SAME_TRACE: f64 = 0.95;
+/// Cosine from which two effects are the same thing under two names, which no table tells apart.
+const SAME_THING: f64 = 0.999;
+/// Squares of the noise by which one of two explanations must fit better to be told from the other.
+const TOLD_APART: f64 = 9.0;
 
 /// What a table says of a claim, beside what else it holds.
 pub(super) struct Beside {
     pub(super) found: Found,
     /// Where structure lies that stood beside the claim, since it explains what the claim does not.
     pub(super) structure: Option<&'static str>,
+    /// A name that explains the table in place of the claim, and how well.
+    pub(super) rival: Option<(String, InItsPlace)>,
+}
+
+/// How well a name explains what a claim is asked about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum InItsPlace {
+    /// As well: the table cannot tell which of both it is.
+    AsWell,
+    /// Better: it stood beside the claim.
+    Better,
 }
 
 /// Asks for a claim. Names that are its rivals, or leave its very trace, would take over what is on trial: they stand
@@ -46,8 +61,22 @@ pub(super) fn beside(
     }
     let is_aside = |term: &Term| matches!(term, Term::Named(e) if aside.contains(&e.id()));
     let named = fit(&all.without_terms(|t| is_aside(t) || matches!(t, Term::Structure(_))), weighed);
+    let is_the_same = |other: &'static dyn Effect| {
+        screen.effect(other).is_some_and(|score| cosine(&own, &score.column) > SAME_THING)
+    };
+    let known = named.model.named_effects();
+    let is_another = |(_, other, _): &(String, Fit, InItsPlace)| {
+        let mut added = other.model.named_effects().into_iter();
+        added.all(|e| known.iter().any(|k| k.id() == e.id()) || !is_the_same(e))
+    };
+    let rival = in_its_place(definition, effect, selection, &named, &aside, weighed).filter(is_another);
+    if let Some((name, other, InItsPlace::Better)) = rival {
+        let found = ask(definition, effect, &other, weighed)?;
+        return Some(Beside { found, structure: None, rival: Some((name, InItsPlace::Better)) });
+    }
+    let rival = rival.map(|(name, _, how)| (name, how));
     let first = ask(definition, effect, &named, weighed)?;
-    let plain = Beside { found: first, structure: None };
+    let plain = Beside { found: first, structure: None, rival };
     if selection.structure.is_none() && !all.terms.iter().any(|t| matches!(t, Term::Structure(_))) {
         return Some(plain);
     }
@@ -59,6 +88,39 @@ pub(super) fn beside(
         return Some(plain);
     }
     Some(beside_structure(definition, effect, with, weighed).unwrap_or(plain))
+}
+
+/// The name that explains most in place of the claim, with its fit, unless the claim explains it better: those that stand
+/// aside, and the rivals of the claim where that was found. Shapes of the claim are free, as theirs are.
+fn in_its_place(
+    definition: &EffectDefinition,
+    effect: &'static dyn Effect,
+    selection: &Selection,
+    named: &Fit,
+    aside: &[&'static str],
+    weighed: &Weighed<'_>,
+) -> Option<(String, Fit, InItsPlace)> {
+    let all = &selection.augmented.model;
+    let others: Vec<&str> = aside.iter().copied().filter(|id| *id != definition.id).collect();
+    let mut found: Vec<(String, Fit)> = Vec::new();
+    if !others.is_empty() {
+        let is_other = |term: &Term| matches!(term, Term::Named(e) if e.id() != definition.id);
+        found.push((others.join(" and "), fit(&all.without_terms(|term| !is_other(term)), weighed)));
+    }
+    let claims = selection.effects.iter().filter(|e| e.effect.id() == definition.id);
+    for rival in claims.flat_map(|e| &e.rivals) {
+        let start = rival.effect.starts(&all.frame).into_iter().next()?;
+        let with = fit(&named.model.with_term(Term::Named(rival.effect), &start), weighed);
+        found.push((rival.effect.id().to_owned(), with));
+    }
+    let (name, other) = found.into_iter().min_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost))?;
+    let free = fit(&named.model.with_term(Term::Named(effect), &claimed(definition)), weighed);
+    let claim = with_claim(definition, effect, &named.model, weighed).cost.min(free.cost);
+    match claim - other.cost {
+        behind if behind > TOLD_APART => Some((name, other, InItsPlace::Better)),
+        behind if behind > -TOLD_APART => Some((name, other, InItsPlace::AsWell)),
+        _ => None,
+    }
 }
 
 /// The same beside the structure that is left once the claim is in the model; `None` if there is none.
@@ -77,7 +139,7 @@ fn beside_structure(
     let without =
         fit(&left.model.without_terms(|t| matches!(t, Term::Named(e) if e.id() == definition.id)), weighed);
     let found = ask(definition, effect, &without, weighed)?;
-    Some(Beside { found, structure: Some(structure) })
+    Some(Beside { found, structure: Some(structure), rival: None })
 }
 
 fn cosine(a: &[f64], b: &[f64]) -> f64 {

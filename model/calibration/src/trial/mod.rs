@@ -14,7 +14,7 @@ use crate::inference::{Observations, Selection, Weighed};
 use crate::report::{Estimate, UnequalReport};
 use crate::table::{PlateauRow, sessions_told};
 
-use beside::{Beside, beside};
+use beside::{Beside, InItsPlace, beside};
 use claim::Found;
 
 /// Probability by chance below which an effect counts as confirmed, if it has at least [`CONFIRMED_SHARE`] of its start
@@ -144,7 +144,7 @@ fn trial(
         return Some(TrialReport { note: Some(note.to_owned()), ..told });
     }
     let weighed = Weighed::new(data, selection.noise);
-    let Beside { found, structure } = beside(definition, selection, &weighed)?;
+    let Beside { found, structure, rival } = beside(definition, selection, &weighed)?;
     let outcome = claim.outcome(found, structure.is_some());
     let is_named = selection.effects.iter().any(|e| e.ids().contains(&definition.id.as_str()));
     let (outcome, note) = match (outcome, structure) {
@@ -157,6 +157,16 @@ fn trial(
             (outcome, Some(format!("beside structure along {covariate} that it does not explain")))
         }
         (outcome, None) => (outcome, None),
+    };
+    // One of two that explain a table alike is not confirmed by it.
+    let (outcome, note) = match (rival, outcome) {
+        (Some((name, InItsPlace::AsWell)), TrialOutcome::Confirmed) => {
+            (TrialOutcome::Open, Some(format!("{name} explains the table as well in its place")))
+        }
+        (Some((name, InItsPlace::Better)), outcome) => {
+            (outcome, Some(format!("beside {name}, which explains more in its place")))
+        }
+        (_, outcome) => (outcome, note),
     };
     let Found { value, half, p_value } = found;
     let size = Estimate { value, ci95: [value - half, value + half], unit: first.unit.clone() };

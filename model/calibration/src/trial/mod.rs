@@ -261,6 +261,20 @@ mod tests {
         report.trials[0].clone()
     }
 
+    /// A drag that is the same at every speed is no drag that grows with it, however much both move the readings alike.
+    #[test]
+    fn what_a_name_explains_better_is_not_confirmed() {
+        let viscous =
+            file("speed", "tension\"\ncombine = \"add", "a*direction*(0.4 + 0.6*speed_pct/52)", 0.5, "N");
+        let vocabulary = Vocabulary::built_in().read(&viscous, "mine.toml").unwrap();
+        let told = |effect| tried_in(&session_with(5, &[(Term::Named(effect), &[0.5])]), &viscous);
+        let there = told(vocabulary.named("mine").unwrap());
+        assert_eq!(there.outcome, TrialOutcome::Confirmed, "{there:?}");
+        let constant = told(effect_named("guide_drag").unwrap());
+        assert_eq!(constant.outcome, TrialOutcome::Refuted, "{constant:?}");
+        assert!(constant.note.as_ref().unwrap().contains("guide_drag"), "{constant:?}");
+    }
+
     #[test]
     fn what_is_there_is_confirmed_and_what_is_not_is_refuted() {
         let offset = effect_named("load_cell_offset").unwrap();

@@ -15,7 +15,7 @@ fn unpack(name: &str, folder: &Path) -> PathBuf {
     flate2::read::MultiGzDecoder::new(std::fs::File::open(packed).unwrap())
         .read_to_string(&mut text)
         .unwrap();
-    let path = folder.join(format!("{name}.csv"));
+    let path = folder.join(format!("{}.csv", name.replace('/', "-")));
     std::fs::write(&path, text).unwrap();
     path
 }
@@ -235,4 +235,24 @@ fn a_real_machine_needs_a_drag_and_its_bad_run_is_flagged() {
     let judged = &report["extrapolation"];
     assert!(judged["rmse_after_without_bad_N"].as_f64().unwrap() < 2.0, "{judged}");
     assert!(judged["rmse_before_N"].as_f64().unwrap() > 15.0, "{judged}");
+}
+
+/// Tables by a simulator of another hand, of what the catalogue does not have. `none` was said of the first two, and a `run_in`
+/// of negative size of the third.
+#[test]
+fn what_nobody_imagined_is_neither_none_nor_a_name_turned_round() {
+    let told = |name: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let table = unpack(&format!("third-hand/{name}"), folder.path());
+        calibrate(&table, &folder.path().join("out"))
+    };
+    // The guides' drag dies away within the session: 0.3 N at first, 10 % of the lightest load.
+    let decaying = told("decaying-drag");
+    assert_ne!(decaying["verdict"], "none", "{}", decaying["limits"]);
+    // Pins rub less by a quarter, which passes for mounts that scatter by as much as may be called scatter.
+    let pins = told("pins-that-rub-less");
+    assert_ne!(pins["verdict"], "none", "{}", pins["noise"]);
+    // The reading creeps with the logarithm of the repetitions; friction that is higher before it settles does not.
+    let creeping = told("creeping-reading");
+    assert!(!ids(&creeping).iter().any(|id| id == "run_in"), "{}", creeping["effects"]);
 }

@@ -454,6 +454,31 @@ pub struct SessionReport {
     pub promise_n: Option<f64>,
 }
 
+impl Report {
+    /// Why nothing is excluded although every limit is below what is of consequence.
+    pub fn reservations(&self) -> Vec<String> {
+        let unsettled = self.candidates.iter().filter(|c| c.fate == Fate::Unsettled).take(3);
+        let ids: Vec<&str> = unsettled.map(|c| c.id.as_str()).collect();
+        let mut told = Vec::new();
+        if !ids.is_empty() {
+            told.push(format!(
+                "{} would gain more than chance makes, and change nothing by 5 %",
+                ids.join(" or ")
+            ));
+        }
+        if self.noise.mounts_at_their_most() {
+            let percent = 100.0 * self.noise.mount_scale;
+            told.push(format!(
+                "mounts scatter by {percent:.0} %, the most that passes for scatter, which hides what layouts have of their own"
+            ));
+        }
+        if !self.adequate {
+            told.push("the error on data held out stays above the noise".to_owned());
+        }
+        told
+    }
+}
+
 impl SessionReport {
     /// What a report says after `table`.
     pub fn after(table: String, report: &Report) -> Self {
@@ -477,7 +502,7 @@ impl SessionReport {
         let word = self.verdict.as_str();
         match (found.is_empty(), self.verdict) {
             (false, _) => format!("{word}: {}", found.join(", ")),
-            (true, Verdict::Inconclusive) => {
+            (true, Verdict::Inconclusive) if !self.not_excluded.is_empty() => {
                 format!("{word}: not excluded are {}", self.not_excluded.join(", "))
             }
             (true, _) => word.to_owned(),

@@ -62,7 +62,8 @@ fn verdict(report: &Report) -> String {
                 report.trials.iter().filter(is_confirmed).map(|t| t.id.as_str()).collect();
             let told = format!("inconclusive: {believed} is believed");
             match (open.is_empty(), confirmed.is_empty()) {
-                (_, true) => format!("{told}, and not excluded are {}", listed(&open)),
+                (true, true) => format!("{told}, and nothing excluded: {}", report.reservations().join("; ")),
+                (false, true) => format!("{told}, and not excluded are {}", listed(&open)),
                 (true, false) => {
                     format!(
                         "{told} of all that was searched; asked for alone, there is {}",

@@ -135,10 +135,11 @@ fn inconclusive(report: &Report) -> String {
     let open = open_limits(report);
     let settles =
         if report.changes.is_empty() { "This data settles nothing" } else { "It settles nothing else" };
-    let mut html = format!(
-        "<p>{settles}: no effect gains more than chance may, yet effects of consequence are not excluded. \
-         To know more, record more.</p><ul>"
-    );
+    let why = match (open.is_empty(), report.reservations()) {
+        (true, told) if !told.is_empty() => escape(&told.join("; ")),
+        _ => "no effect gains more than chance may, yet effects of consequence are not excluded".into(),
+    };
+    let mut html = format!("<p>{settles}: {why}. To know more, record more.</p><ul>");
     for limit in open.iter().take(NAMED) {
         let _ = write!(
             html,

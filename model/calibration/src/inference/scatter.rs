@@ -10,6 +10,13 @@ use super::weighed::Weighed;
 /// Largest scatter of the friction from mount to mount that is called scatter: beyond it, something is wrong.
 const MOST_MOUNT_SCALE: f64 = 0.06;
 
+impl Noise {
+    /// Whether mounts scatter by as much as is called scatter: what layouts have of their own may be in it.
+    pub fn mounts_at_their_most(self) -> bool {
+        self.mount_scale >= MOST_MOUNT_SCALE - LEAST_SCALE
+    }
+}
+
 /// A scatter that competes with effects, since few groups tell it: its effects are alike to its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scatter {

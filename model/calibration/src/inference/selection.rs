@@ -209,7 +209,8 @@ fn departs(now: &[f64], before: &[f64]) -> bool {
     apart > ANOTHER_FRICTION.powi(2) * length
 }
 
-/// A model without the names whose sizes may as well be zero.
+/// A model without the names whose sizes may as well be zero, or are such as their physics does not allow: shapes that came
+/// after a name may have turned it round.
 fn without_uncertain_names(mut current: Fit, weighed: &Weighed<'_>) -> Fit {
     while let Some(index) = uncertain_name(&current, weighed) {
         current = as_claimed(&current, index, weighed)
@@ -218,14 +219,15 @@ fn without_uncertain_names(mut current: Fit, weighed: &Weighed<'_>) -> Fit {
     current
 }
 
-/// Index of a named term whose size may as well be zero.
+/// Index of a named term whose size may as well be zero, or has a sign that it cannot have.
 fn uncertain_name(fitted: &Fit, weighed: &Weighed<'_>) -> Option<usize> {
     let (values, widths) = (fitted.model.values(), interval_half_widths(fitted, weighed));
     (0..fitted.model.terms.len()).find(|index| {
         let at = fitted.model.term_offset(*index);
         let Term::Named(effect) = &fitted.model.terms[*index] else { return false };
         let free = effect.parameters().first().is_some_and(|p| p.bounds.is_none());
-        free && effect.description().scales && values[at].abs() <= widths[at]
+        let is_turned = effect.description().one_sided && values[at] <= 0.0;
+        free && effect.description().scales && (values[at].abs() <= widths[at] || is_turned)
     })
 }
 

@@ -12,7 +12,7 @@ use crate::aliasing::aliasing;
 use crate::held_out::{HeldOut, held_out};
 use crate::inference::{Levels, Observations, Selection, Weighed, averaged_intervals, interval_half_widths};
 use crate::promise::Promise;
-use crate::report::{DataSummary, Report, UnequalReport, Verdict};
+use crate::report::{DataSummary, Fate, Report, UnequalReport, Verdict};
 use crate::table::PlateauRow;
 use crate::trial::trials;
 
@@ -63,9 +63,11 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
         trials(rows, selection, data).into_iter().map(|trial| trial.beside(&unequal)).collect::<Vec<_>>();
     let adequate =
         is_adequate(augmented.heldout_series_rmse_n, noise.floor_n(data), data) && hidden.is_empty();
+    let candidates = candidates(selection, data, levels);
+    let is_unsettled = candidates.iter().any(|candidate| candidate.fate == Fate::Unsettled);
     let verdict = match Verdict::of(selection).beside(&trials) {
-        // Where something is left nothing is excluded.
-        Verdict::None if !adequate => Verdict::Inconclusive,
+        // Where something is left, a gain is no chance, or scatter could hide it, nothing is excluded, however small it is.
+        Verdict::None if !adequate || is_unsettled || noise.mounts_at_their_most() => Verdict::Inconclusive,
         verdict => verdict,
     };
     Report {
@@ -95,7 +97,7 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
         unequal,
         baseline,
         augmented,
-        candidates: candidates(selection, data, levels),
+        candidates,
         effects,
         family_probability: selection.family_probability,
         invisible: invisible(selection),

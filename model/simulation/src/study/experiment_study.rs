@@ -77,12 +77,7 @@ fn open_plan(case: &Case, seed: u64, factor: f64) -> Plan {
 
 /// Calibrates one rig whose effect is `factor` times as large as this chapter's, proposes a session where something is open,
 /// makes it, and calibrates both tables together. `None` if a table cannot be used.
-pub fn run_experiment_case(
-    case: &Case,
-    seed: u64,
-    factor: f64,
-    levels: Levels,
-) -> Option<ExperimentOutcome> {
+pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) -> Option<ExperimentOutcome> {
     let plan = open_plan(case, seed, factor);
     let rows = simulate(&plan).rows;
     let found = calibrate(&rows, levels).ok()?;

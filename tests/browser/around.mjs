@@ -24,6 +24,20 @@ export async function embedded(visit, site) {
   await hears('what is no design is told', () => heard.some((m) => /holds no design/.test(m.said)));
   await say({ type: 'pinswitch-set', values: { 'layout.pins': [4, 11] } });
   await hears('each state comes with its own answer', () => heard.some((m) => m.hash.includes('layout.pins=4,11') && m.said === null));
+  // A model takes time to be read; what was said after it counts all the same.
+  const long = await visit.page.frames()[1].evaluate(async () => (await packModel('slow', Array.from({ length: 4000 }, (_, i) => `# ${Math.sin(i)}`).join('\n'))).packed);
+  await visit.page.evaluate((hash) => {
+    heard.length = 0;
+    frames[0].postMessage({ type: 'pinswitch-set', hash }, '*');
+    frames[0].postMessage({ type: 'pinswitch-set', hash: '#v=1&layout.pins=7' }, '*');
+  }, `#v=1&layout.pins=2,3&model=${long}`);
+  await hears('the later of two messages counts', () => heard.at(-1)?.hash === '#v=1&layout.pins=7');
+  for (const [what, message] of [['neither', {}], ['a number for an address', { hash: 5 }], ['a list for values', { values: [] }], ['half a character', { values: { 'label.text': '\ud800' } }]]) {
+    await say({ type: 'pinswitch-set', ...message });
+    await hears(`${what} is told`, () => heard.some((m) => /neither an address nor values/.test(m.said)));
+  }
+  await say({ type: 'pinswitch-set', values: { 'layout.pins=3&x': 1 } });
+  await hears('a name is no part of an address', () => heard.some((m) => /names layout/.test(m.said) && !/pins=3&/.test(m.hash)));
   // Many changes in a row: the friction of a layout is always that layout's.
   const pairs = await visit.page.evaluate(async () => {
     heard.length = 0;

@@ -126,6 +126,17 @@ async function violations(visit) {
   return visit.page.evaluate(async () => (await axe.run(document, { resultTypes: ['violations'] })).violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target.join(' ')).slice(0, 3).join(', ')}`));
 }
 
+// Within another page, where there is no header.
+export async function accessibleEmbedded(visit, site) {
+  await visit.open(`${site.address}?embed${START}`);
+  await visit.page.evaluate(visit.browser.axeText);
+  for (const name of ['desk', 'phone']) {
+    await visit.look(...WIDTHS[name], false);
+    const found = await violations(visit);
+    visit.findings.check(`axe-core finds nothing on an embedded ${name}`, found.length === 0, found.join('; '));
+  }
+}
+
 export async function accessible(visit, site) {
   await visit.open(site.address + START);
   // As the debugger evaluates it: the page's policy lets no script in.

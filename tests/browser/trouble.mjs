@@ -133,3 +133,13 @@ export async function serverGone(visit, site, { anotherView }) {
   visit.findings.check('the last design stays', await visit.text('#friction-words') === words);
   await visit.addressHas('silicone.thickness_mm=3');
 }
+
+// Whatever lies in the store, by an earlier version or by somebody's hand: the page begins.
+export async function damagedStore(visit, site) {
+  for (const left of ['{"kept":{"name":"a","values":{},"curve":{}}}', '{"hash":5}', '{', '[]', 'null', '{"kept":7,"hash":null}']) {
+    await visit.open(site.address);
+    await visit.page.evaluate((text) => localStorage.setItem('pinswitch.configurator.1', text), left);
+    await visit.open(site.address);
+    visit.findings.check(`a page begins with ${left} in its store`, await visit.page.$eval('body', (b) => b.dataset.errors === '0'));
+  }
+}

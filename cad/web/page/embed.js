@@ -12,14 +12,21 @@ class Embed {
     this.isOn = isEmbedded();
     document.body.classList.toggle('embed', this.isOn);
     if (!this.isOn) return;
-    addEventListener('message', async ({ source, data }) => {
+    // The header is left out, and with it the name of the page, which a screen reader looks for.
+    byId('main').prepend(make('h1', WORDS.brand, { class: 'unseen' }));
+    // One after the other: an address with a model takes longer to be read than the next message to come.
+    let turn = Promise.resolve();
+    addEventListener('message', ({ source, data }) => {
       if (source !== parent || data?.type !== 'pinswitch-set') return;
-      if (typeof data.hash === 'string') await takeParts(data.hash);
-      else if (data.values && typeof data.values === 'object' && !Array.isArray(data.values)) {
-        // Through the address, so that what cannot be is told in the same words.
-        await takeParts(encodeHash({ ...state.now, values: data.values }));
-      }
+      turn = turn.then(() => this.set(data, takeParts, state)).catch(() => this.took(WORDS.noMessage, true));
     });
+  }
+
+  set(data, takeParts, state) {
+    if (typeof data.hash === 'string') return takeParts(data.hash);
+    if (!data.values || typeof data.values !== 'object' || Array.isArray(data.values)) throw new TypeError('neither a hash nor values');
+    // Through the address, so that what cannot be is told in the same words.
+    return takeParts(encodeHash({ ...state.now, values: data.values }));
   }
 
   // A message of the page around was taken, but for what is `said`; where it changed nothing no design will tell.

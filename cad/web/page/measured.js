@@ -75,7 +75,10 @@ class Measured {
   }
 
   async take() {
-    this.state.change({ model: await packModel(this.found.name, this.found.toml) });
+    const model = await packModel(this.found.name, this.found.toml);
+    // The address holds the whole state: what it cannot hold would be gone with the next visit.
+    if (model.packed.length > LONGEST_MODEL) { showNotice(WORDS.modelTooLong(model.name, model.packed.length, LONGEST_MODEL)); return; }
+    this.state.change({ model });
   }
 
   // A model.toml of an earlier calibration.

@@ -104,7 +104,14 @@ class Page {
     this.state.begin({ values: { ...this.published()?.values } });
   }
 
-  async take(hash) {
+  // One address after the other: one that holds a model takes longer to be read than the next one to come.
+  take(hash) {
+    const turn = (this.taking ?? Promise.resolve()).then(() => this.takeNow(hash));
+    this.taking = turn.catch(() => {});
+    return turn;
+  }
+
+  async takeNow(hash) {
     const given = await decodeHash(hash, this.state.fields);
     const said = [...(given?.said ?? []), ...(given?.broken ? [WORDS.hash.stays] : [])].join(' ');
     showNoticeAbout('address', said);

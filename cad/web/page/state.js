@@ -84,7 +84,7 @@ class State extends EventTarget {
 function encodeHash(now) {
   const pairs = [`v=${HASH_VERSION}`];
   const text = (value) => encodeURIComponent(Array.isArray(value) ? value.join(',') : String(value)).replaceAll('%2C', ',');
-  for (const [path, value] of Object.entries(now.values)) pairs.push(`${path}=${text(value)}`);
+  for (const [path, value] of Object.entries(now.values)) pairs.push(`${encodeURIComponent(path)}=${text(value)}`);
   if (now.ask.threshold_n !== null) pairs.push(`ask.threshold_n=${now.ask.threshold_n}`);
   if (now.ask.friction.length) pairs.push(`ask.friction=${now.ask.friction.map((f) => `${f.load_n}:${f.friction_n}`).join(',')}`);
   if (now.model) pairs.push(`model=${now.model.packed}`);
@@ -202,5 +202,13 @@ function remember(what) {
 }
 function remembered() {
   if (isEmbedded()) return {};
-  try { return JSON.parse(localStorage.getItem(STORE)) ?? {}; } catch { return {}; }
+  try {
+    const { hash, kept, ...rest } = JSON.parse(localStorage.getItem(STORE)) ?? {};
+    // Whatever was left there, by an earlier version or by somebody's hand, the page begins.
+    const isCurve = (curve) => ['load_n', 'friction_n'].every((name) => Array.isArray(curve?.[name]));
+    const isKept = kept && typeof kept.name === 'string' && kept.values && typeof kept.values === 'object' && isCurve(kept.curve);
+    return { ...rest, ...(typeof hash === 'string' && { hash }), ...(isKept && { kept }) };
+  } catch {
+    return {};
+  }
 }

@@ -134,6 +134,8 @@ const WORDS = {
     model: 'The address holds a calibrated model that is cut off. The published constants are used.',
   },
 
+  noMessage: 'The message holds neither an address nor values that can be written as one.',
+  modelTooLong: (name, length, most) => `${name} was not taken: packed it has ${length} characters, and an address holds ${most}. Take out comments and what is not of the model.`,
   setPage: 'The page of the set that this server follows',
   saveTo: (file) => `Save to ${file}`, savedTo: (file) => `Saved to ${file}.`, notSaved: (file) => `${file} was not saved: `, fileChanged: (file) => `${file} was changed: its values are shown. Undo goes back.`,
   fileDiffers: (file) => `The page shows a design of its address, and ${file} has other values now.`,

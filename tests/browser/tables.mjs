@@ -98,3 +98,22 @@ export async function calibration(visit, site, { table, binary, scratch }) {
   await visit.check('it can be given back', (before) => document.querySelector('#friction-words').textContent === before, published);
   await visit.settled();
 }
+
+// A fit that takes long is stopped, and what waited for it goes on.
+export async function fitStopped(visit, site, { table }) {
+  const [head, ...rows] = table.trim().split('\n');
+  const force = head.split(',').indexOf('force_N');
+  // As many series again and again, none a copy of another.
+  const again = (k) => rows.map((row) => row.split(',').map((cell, i) => (i === 0 ? `${k}-${cell}` : i === force ? (Number(cell) + 0.013 * k * Math.sin(Number(cell) * 1e4 + k)).toFixed(4) : cell)).join(','));
+  const long = [head, ...Array.from({ length: 12 }, (_, k) => again(k)).flat()].join('\n');
+  await visit.open(site.address + START);
+  await visit.drop('long.csv', long);
+  await visit.page.waitForSelector('#stop-fit:not([hidden])');
+  // By key: the page still glides to where the verdict will stand.
+  await visit.focus('#stop-fit');
+  await visit.page.keyboard.press('Enter');
+  await visit.check('a fit that was stopped says so', () => /Stopped/.test(document.querySelector('#verdict').textContent));
+  await visit.check('and leaves nothing to stop', () => document.querySelector('#stop-fit').hidden);
+  await visit.click('#download');
+  await visit.page.waitForSelector('#file-list button', { timeout: SLOW_MS });
+}

@@ -6,6 +6,7 @@ class Measured {
     byId('table-file').addEventListener('change', (event) => { this.chosen?.(event.target.files); event.target.value = ''; });
     byId('choose-table').addEventListener('click', () => byId('table-file').click());
     byId('take-model').addEventListener('click', () => this.take());
+    byId('stop-fit').addEventListener('click', () => this.engine.stop('calibrate'));
     byId('drop-model').addEventListener('click', () => this.state.change({ model: null }));
     this.again = later(() => this.preview(), CALM_MS);
     state.addEventListener('change', () => this.show());
@@ -35,6 +36,7 @@ class Measured {
   async calibrate(csv, file) {
     const turn = this.begin();
     const endTime = tellTime((seconds) => this.tell([WORDS.calibrating(file, seconds)]));
+    byId('stop-fit').hidden = false;
     byId('measured').scrollIntoView({ block: 'nearest', behavior: 'smooth' });
     try {
       const answer = await this.engine.ask({ ask: 'calibrate', csv, file }).finally(endTime);
@@ -51,6 +53,9 @@ class Measured {
     } catch (problem) {
       if (turn !== this.turn) return;
       this.tell([problem instanceof Stale ? WORDS.stopped : problem.message], undefined, !(problem instanceof Stale));
+    } finally {
+      // A table dropped meanwhile is fitted by now.
+      if (turn === this.turn) byId('stop-fit').hidden = true;
     }
   }
 
@@ -92,6 +97,7 @@ class Measured {
       return;
     }
     this.begin();
+    byId('stop-fit').hidden = true;
     this.tell([WORDS.opened(file)]);
     this.found = { name: file, toml };
     await this.take();

@@ -18,7 +18,7 @@ const WORDS = {
   pinsHelp: 'Click a groove to set or lift a pin, drag a pin to move it. From the keyboard: arrows walk, Space sets or lifts, Shift and an arrow carry the pin along.',
   checks: 'Checks', bill: 'You will need', parts: 'Printed parts', bed: 'On the print bed',
   ask: 'Ask backwards', found: 'Designs that come near', askHelp: 'Drag the marks on the curve, or type: where it should switch, how much friction it should make.',
-  askThreshold: 'Switches at', askFriction: 'Friction of', askLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', take: 'Take this',
+  askThreshold: 'Switches at', askFriction: 'Friction of', askLoad: 'at a load of', addFriction: 'Add a friction', search: 'Find designs', stop: 'Stop', stopFit: 'Stop the fit', take: 'Take this',
   measured: 'Your measurements', chooseTable: 'Choose a table', takeModel: 'Use this model in the design', dropModel: 'Back to the published constants',
   measuredHelp: 'Drop a table of plateaus (CSV) anywhere on the page. It says whether the model holds for your switch, and what it misses.',
   filesTitle: 'Download', everything: 'Everything, as ZIP', configuration: 'Configuration (TOML)', dropHere: 'Drop a table of plateaus (CSV), a configuration (TOML) or a model.toml',
@@ -111,7 +111,7 @@ const WORDS = {
   notText: (name) => `${name} holds no text. It may be packed, or of another program: export it as CSV.`,
   empty: (name) => `${name} is empty.`, unreadable: (name) => `${name} could not be read. Is it still there?`, manyFiles: 'One file at a time: the first was taken.',
 
-  waitsFor: { search: 'Waits for the search for designs to end, or to be stopped.', calibrate: 'Waits for the fit to your table to end.' },
+  waitsFor: { search: 'Waits for the search for designs to end, or to be stopped.', calibrate: 'Waits for the fit to your table to end, or to be stopped.' },
   makingFiles: 'Making the files …', filesFail: 'The files were not made: ', saving: (name) => `Making ${name} …`, saved: (name) => `${name} is saved.`, noFiles: 'This design cannot be built, so that it has no files. Mend it first.',
   megabytes: (bytes) => (bytes < 1000 ? `${bytes} B` : bytes < 1e6 ? `${Math.round(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`),
   kinds: { stl: 'Printed parts, one by one', '3mf': 'All parts on a plate', step: 'For CAD, exact', dxf: 'Drawings', svg: 'Drawings and figures', pdf: 'Drawings', glb: 'For viewers and web pages', png: 'Pictures', md: 'Guide', csv: 'Tables', json: 'Tables', html: 'Pages', ini: 'Printer', toml: 'Configuration', other: 'Other' },

@@ -139,7 +139,8 @@ fn inconclusive(report: &Report) -> String {
         (true, told) if !told.is_empty() => escape(&told.join("; ")),
         _ => "no effect gains more than chance may, yet effects of consequence are not excluded".into(),
     };
-    let mut html = format!("<p>{settles}: {why}. To know more, record more.</p><ul>");
+    let mut html = format!("<p>{settles}: {why}. To know more, record more.</p>");
+    html.push_str(if open.is_empty() { "" } else { "<ul>" });
     for limit in open.iter().take(NAMED) {
         let _ = write!(
             html,
@@ -150,7 +151,7 @@ fn inconclusive(report: &Report) -> String {
             escape(&limit.experiment)
         );
     }
-    html.push_str("</ul>");
+    html.push_str(if open.is_empty() { "" } else { "</ul>" });
     if let Some(group) = report.noise_parts.iter().find(|part| part.part == "group") {
         let _ = write!(
             html,

@@ -40,7 +40,7 @@ pub enum TrialOutcome {
     /// It is not there. Of what was drawn before: not at the size that was drawn, which the interval does not reach. Of what
     /// somebody wrote down, whose start value is what is typical: not at half of that, in no direction that it can have.
     Refuted,
-    /// Neither: the table cannot tell.
+    /// Neither: the table cannot tell, or a name explains it as well in its place.
     Open,
     /// The effect was drawn from these very readings, which cannot confirm it.
     Drawn,

@@ -43,8 +43,9 @@ class Pins {
     const pitch = 2 * contact * Math.sin(span / n / 2);
     const pin = v('pins.diameter_mm', 0.1, 5) / 2;
     const rope = v('tendon.rope_diameter_mm', 0.1, 6) / 2 + v('tendon.coating_mm', 0, 2);
-    // What can be clicked must be seen, however fine the grooves are.
-    return { shell, contact, n, span, pin: Math.max(pin, 0.42 * Math.min(pitch, 1.5)), rope, inner: shell - clamp(v('shell.wall_mm', 1, 60), 2, 4.5),
+    // What can be clicked must be seen, however fine the grooves are, and however large the drawing's scale.
+    const shown = Math.max(pin, 0.42 * Math.min(pitch, Math.max(1.5, 0.045 * contact)));
+    return { shell, contact, n, span, pin: shown, rope, inner: shell - clamp(v('shell.wall_mm', 1, 60), 2, Math.max(4.5, 0.2 * shell)),
       wrap: v('layout.wrap_angle_deg', 1, 340) * Math.PI / 180 };
   }
 
@@ -85,7 +86,7 @@ class Pins {
     const width = Math.max(reach, ends[1][0]) + 1.2;
     const lowest = Math.max(...[s.inner, s.contact].map((radius) => -radius * Math.cos(s.span / 2)), ends[0][1]) + 1;
     const top = -(axis + s.rope) - 0.6;
-    const drawing = svg('svg', { viewBox: `${-width} ${top} ${2 * width} ${lowest - top}`, role: 'group', 'aria-label': WORDS.pinsName, class: 'strip' });
+    const drawing = svg('svg', { viewBox: `${-width} ${top} ${2 * width} ${lowest - top}`, role: 'group', 'aria-label': WORDS.pinsName, class: s.span > Math.PI ? 'strip tall' : 'strip' });
     const bed = this.state.value('layout.substrate') === 'abs' ? 'shell' : 'layer';
     const rope = `M${ends[0]}L${l}A${axis} ${axis} 0 ${s.wrap > Math.PI ? 1 : 0} 1 ${r}L${ends[1]}`;
     drawing.append(svg('path', { d: sector(s.inner, s.shell), class: 'shell' }), svg('path', { d: sector(s.shell, s.contact), class: bed }),
@@ -104,7 +105,7 @@ class Pins {
     mark.append(svg('circle', { cx: x, cy: y, r: s.pin * 1.75, class: 'halo' }), svg('circle', { cx: x, cy: y, r: s.pin, class: 'dot' }));
     if (s.n <= NUMBERED || i % 5 === 0 || i === 1) {
       const [tx, ty] = point((s.inner + s.shell) / 2, angle);
-      mark.append(svg('text', { x: tx, y: ty, 'font-size': clamp(0.055 * s.contact, 0.5, 1.25), 'text-anchor': 'middle', 'dominant-baseline': 'central' }, i));
+      mark.append(svg('text', { x: tx, y: ty, 'font-size': clamp(0.055 * s.contact, 0.5, Math.max(1.25, 0.45 * (s.shell - s.inner))), 'text-anchor': 'middle', 'dominant-baseline': 'central' }, i));
     }
     this.marks.push(mark);
     return mark;

@@ -125,6 +125,12 @@ export async function outOfBounds(visit, site) {
   await visit.type('#f-shell-wall_mm', '1e9');
   await visit.check('a value out of its range is told', () => /to|range|most/.test(document.querySelector('#f-shell-wall_mm-error').textContent));
   await visit.settled();
+  await visit.click('#f-shell-wall_mm-error .mend');
+  await visit.addressHas('shell.wall_mm=60');
+  await visit.settled();
+  await visit.click('#f-shell-wall_mm-error .mend');
+  await visit.settled();
+  await visit.check('a value out of its range is mended to the nearest that can be built', () => document.querySelector('#trouble').hidden && Number(document.querySelector('#f-shell-wall_mm').value) < 60);
   await visit.type('#f-segment-grooves', '7.5');
   await visit.check('what is no whole number is told at once', () => document.querySelector('#f-segment-grooves-error').textContent === 'A whole number goes here.');
 }

@@ -61,20 +61,27 @@ export async function focusOnAPhone(visit, site) {
   await visit.look(375, 812, false);
   await visit.open(site.address + START);
   const covered = new Set();
-  let walked = 0;
+  const jumps = [];
+  let walked = 0, before;
   for (; walked < 120; walked += 1) {
     await visit.page.keyboard.press('Tab');
     const what = await visit.page.evaluate(async () => {
       await new Promise((done) => { requestAnimationFrame(done); });
       const [e, bar] = [document.activeElement, document.querySelector('.floating')];
-      if (!e || e === document.body) return 'end';
-      if (e === bar || e.matches('.group *, aside *')) return '';
+      if (!e || e === document.body) return null;
+      if (e === bar || e.matches('.group *, aside *')) return {};
       const [a, b] = [e.getBoundingClientRect(), bar.getBoundingClientRect()];
-      return a.right > b.left && a.left < b.right && a.bottom > b.top + 1 && a.top < b.bottom ? e.id || e.outerHTML.slice(0, 80) : '';
+      const isCovered = a.right > b.left && a.left < b.right && a.bottom > b.top + 1 && a.top < b.bottom;
+      return { name: e.id || e.outerHTML.slice(0, 80), isCovered, place: { top: a.top + scrollY, bottom: a.bottom + scrollY, left: a.left, scrolls: Boolean(e.closest('#chips')) } };
     });
-    if (what === 'end') break;
-    if (what) covered.add(what);
+    if (what === null) break;
+    if (what.isCovered) covered.add(what.name);
+    const { place } = what;
+    // What is scrolled sideways moves as one walks.
+    if (place && before && !(place.scrolls && before.scrolls) && (place.bottom <= before.top || (place.left < before.left && place.top < before.bottom - 1 && place.bottom > before.top + 1))) jumps.push(what.name);
+    before = place ?? before;
   }
+  visit.findings.check('the focus goes down the page, and in a row to the right', jumps.length === 0, jumps.join(' '));
   visit.findings.check('nothing that has the focus is covered', walked > 20 && covered.size === 0, [...covered].join(' '));
 }
 

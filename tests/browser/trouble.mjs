@@ -10,6 +10,8 @@ const FILES = {
   'a table of 50 MB': ['huge.csv', 50e6, /50\.0 MB.*under 20 MB.*pinswitch/s],
   'a configuration of 2 MB': ['huge.toml', 2e6, /no configuration of pinswitch/],
   'a configuration that is none': ['broken.toml', '[shell\nwall', /could not be opened/],
+  'a sweep': ['many.toml', '[sweep]\nbase = "three-double"\n', /many\.toml could not be opened.*a sweep.*pinswitch batch many\.toml/s],
+  'a file of effects': ['mine.toml', 'schema = "pinswitch.effects/1"\n[[effect]]\nid = "a"\n', /calibrate TABLE --effects mine\.toml/],
   'a configuration with an unknown field': ['broken.toml', '[shell]\nwal_mm = 3\n', /could not be opened.*wal_mm/s],
 };
 

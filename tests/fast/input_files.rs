@@ -1,6 +1,6 @@
 //! Files that are not what they are given as: each is one short error with a remedy, exit code 2.
 
-use crate::harness::{done, ended, repository, with_sweep};
+use crate::harness::{done, ended, files, repository, with_sweep};
 use crate::readers::{LONGEST, RIG};
 
 #[test]
@@ -118,6 +118,33 @@ fn another_kind_of_file_is_recognised_before_it_is_read() {
         };
         let (code, said) = ended(folder.path(), &["check", &path.to_string_lossy()]);
         assert!(code == Some(2) && said.contains(word), "{}: {said}", path.display());
+    }
+}
+
+#[test]
+fn a_file_for_another_command_is_told_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let asks = repository("templates/asks");
+    let mut given: Vec<_> =
+        files(&asks).into_keys().map(|ask| (asks.join(ask).display().to_string(), "design --ask")).collect();
+    for (kind, command) in [
+        ("sweep", "batch"),
+        ("plan", "simulate"),
+        ("run", "segment"),
+        ("rig", "experiment"),
+        ("effects", "--effects"),
+    ] {
+        let file = format!("{kind}.toml");
+        done(folder.path(), &["-q", "init", kind, "--out", &file]);
+        given.push((file, command));
+    }
+    assert!(given.len() > 6);
+    for (file, command) in given {
+        let (code, said) = ended(folder.path(), &["generate", &file]);
+        assert!(
+            code == Some(2) && said.contains(command) && said.contains("of no configuration"),
+            "{file}: {said}"
+        );
     }
 }
 

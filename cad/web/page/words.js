@@ -86,7 +86,7 @@ const WORDS = {
   removeFriction: (i) => `Remove friction ${i}`, designName: (i) => `Design ${i}`,
   forgetThreshold: 'Ask for no threshold',
 
-  calibrating: (file, s) => `Fitting the model to ${file}, ${s} s. Thousands of rows take half a minute and more; the page stays yours meanwhile.`,
+  calibrating: (file, s) => `Fitting the model to ${file}, ${s} s. Thousands of rows take half a minute, tens of thousands some minutes; the page stays yours meanwhile.`,
   calibrated: (before, after, promise) => `Held-out error ${before} N before, ${after} N after; a new session: ${promise} N.`,
   modelTaken: 'The design uses your calibrated model. The address carries it, and is long.', modelName: (file) => `model from ${file}`,
   verdictOf: (file, verdict) => `${file}: ${verdict}`,

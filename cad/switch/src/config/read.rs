@@ -33,7 +33,8 @@ pub fn read_over(
     for (table, item) in document.as_table().iter() {
         let place = at(key_span(document.as_table(), table));
         if !sections().contains(&table) {
-            return Err(unknown(table, &sections(), "table", place));
+            return Err(another_kind(document.as_table(), &place)
+                .unwrap_or_else(|| unknown(table, &sections(), "table", place)));
         }
         let Some(entries) = item.as_table_like() else {
             return Err(
@@ -126,8 +127,57 @@ fn set(
     parameter: &Parameter<Configuration>,
     value: &Value,
 ) -> Result<(), ConfigError> {
-    (parameter.set)(c, value).map_err(|remedy| {
-        ConfigError::new(parameter.path(), value.clone().decorated("", "").to_string(), remedy)
+    (parameter.set)(c, value).map_err(|remedy| ConfigError {
+        changes: nearest(parameter, value).into_iter().collect(),
+        ..ConfigError::new(parameter.path(), value.clone().decorated("", "").to_string(), remedy)
+    })
+}
+
+/// The nearest number that `parameter` takes, as the change that mends a number beyond its ends.
+fn nearest(parameter: &Parameter<Configuration>, value: &Value) -> Option<(String, String)> {
+    #[allow(clippy::cast_precision_loss)]
+    let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64))?;
+    let [low, high] = (parameter.ends)()?;
+    let taken = if number.is_nan() { return None } else { number.clamp(low, high) };
+    // Whole numbers between the ends of a list are asked for in words.
+    (taken != number).then(|| (parameter.path(), taken.to_string()))
+}
+
+/// Tables and keys that only another kind of file has, with what it is and which command reads it (FILE stands for it).
+const OTHER_KINDS: [(&[&str], &str, &str); 7] = [
+    (&["sweep", "axes", "constraints", "set"], "a sweep", "`pinswitch batch FILE` makes its variants"),
+    (&["ask"], "an ask for a design", "`pinswitch design --ask FILE` reads it"),
+    (&["effect"], "a file of effects", "`pinswitch calibrate TABLE --effects FILE` reads it"),
+    (
+        &["effects", "noise", "protocol", "weights_g", "repetitions", "constants"],
+        "a rig to simulate",
+        "`pinswitch simulate FILE` reads it",
+    ),
+    (&["series", "rig"], "a run with its logs", "`pinswitch segment FILE` reads it"),
+    (
+        &["loads_g", "minutes_per_load_change", "minutes_per_mount_change"],
+        "what a rig can do",
+        "`pinswitch experiment DIR --rig FILE` reads it",
+    ),
+    (
+        &["schema"],
+        "a file that pinswitch wrote",
+        "a model.toml goes with `--model FILE`, discovered.toml with `calibrate TABLE --effects FILE`",
+    ),
+];
+
+/// Says so where a whole file is of another kind: no word in it is near one of a configuration.
+fn another_kind(document: &dyn TableLike, place: &Place) -> Option<ConfigError> {
+    let (key, kind, remedy) = OTHER_KINDS.iter().find_map(|(keys, kind, remedy)| {
+        keys.iter().find(|key| document.contains_key(key)).map(|key| (key, kind, remedy))
+    })?;
+    Some(ConfigError {
+        field: (*key).to_owned(),
+        value: None,
+        problem: format!("is of no configuration: this is {kind}"),
+        remedy: remedy.replace("FILE", &place.file),
+        changes: Vec::new(),
+        place: Some(place.clone()),
     })
 }
 

@@ -106,6 +106,20 @@ mod tests {
             let error = read(text, "a.toml").unwrap_err().to_string();
             assert!(error.starts_with(expected), "{error}");
         }
+        for (text, mends) in [
+            ("[shell]\nwidth_mm = -3\n", Some("2")),
+            ("[shell]\nwidth_mm = 1e9\n", Some("100")),
+            ("[segment]\ngrooves = 0\n", Some("1")),
+            ("[segment]\ngrooves = 3.5\n", None),
+            ("[shell]\nwidth_mm = nan\n", None),
+        ] {
+            let changes = read(text, "a.toml").unwrap_err().changes;
+            assert_eq!(changes.first().map(|(_, value)| value.as_str()), mends, "{text}");
+            let mended = changes.iter().all(|(path, value)| {
+                assign(&mut Configuration::default(), &format!("{path}={value}")).is_ok()
+            });
+            assert!(mended, "{text}: {changes:?}");
+        }
         let error = assign(&mut Configuration::default(), "shell.width_mm").unwrap_err().to_string();
         assert!(error.starts_with("--set: syntax"), "{error}");
     }

@@ -32,7 +32,9 @@ const SAMPLES = 600;
 const TENDON_STEP = 11;
 // Without a graphics card the processor fills every pixel: few while something moves, and all once it has stood still so long.
 const QUICK_RATIO = 0.5, STILL_MS = 700;
-const SHARP = Math.cos(25 * Math.PI / 180);
+// Facets of a round edge turn by 30 degrees at most, in coarse designs too; edges of the parts by more.
+const SHARP_DEG = 35;
+const SHARP = Math.cos(SHARP_DEG * Math.PI / 180);
 
 // What counts, where a body is cut, the faces seen from inside less those from outside: what is left over is cut material.
 // Nothing is seen of it, so that it needs no light: that of lines will do.
@@ -57,7 +59,7 @@ function cap(geometry, material) {
   return mesh;
 }
 
-// Edges whose two triangles turn by more than 25 degrees. Meshes of a set share their vertices, so that an edge is a pair
+// Edges whose two triangles turn by more than `SHARP_DEG`. Meshes of a set share their vertices, so that an edge is a pair
 // of indices; EdgesGeometry, which compares places as text, takes most of the time of a design.
 function sharpEdges(geometry) {
   const places = geometry.getAttribute('position').array;
@@ -311,7 +313,7 @@ class Assembly {
     // A point close by keeps the long ends straight.
     points.unshift(straight(first, -1, contact.lead_mm[0]), straight(first, -1, 2));
     points.push(straight(last, 1, 2), straight(last, 1, contact.lead_mm[1]));
-    const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 240, contact.tendon_radius_mm, 10);
+    const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 120, contact.tendon_radius_mm, 8);
     const rope = this.kept('rope', () => new THREE.MeshStandardMaterial({ roughness: 0.6 }));
     rope.color.set(isDark() ? 0x8296ab : 0x3a4a5c);
     this.tendon = new THREE.Mesh(tube, rope);

@@ -12,6 +12,8 @@ use crate::table::{Condition, Frame, Point};
 pub enum Channel {
     /// Adds newtons to the reading, alike in both directions.
     Reading,
+    /// Scales the reading, as a cell does whose gain changes.
+    Gain,
     /// Adds newtons of friction, opposite in the two directions.
     Drag,
     /// Scales the friction exponent.
@@ -205,13 +207,13 @@ impl Structure {
 
     /// Acts on the contact with size `k`.
     pub fn on_contact(&self, k: f64, point: &Point, state: &mut ContactState) {
-        if self.channel == Channel::Reading {
+        if self.is_of_reading() {
             return;
         }
         let value = k * self.value(point);
         let factor = (1.0 + value).max(0.0);
         match self.channel {
-            Channel::Reading => {}
+            Channel::Reading | Channel::Gain => {}
             Channel::Drag => state.drag_n += value,
             Channel::Friction => state.exponent_factor *= factor,
             Channel::Pins => {
@@ -224,14 +226,23 @@ impl Structure {
 
     /// Acts on the reading with size `k`.
     pub fn on_reading(&self, k: f64, point: &Point, reading_n: f64) -> f64 {
-        if self.channel == Channel::Reading { reading_n + k * self.value(point) } else { reading_n }
+        match self.channel {
+            Channel::Reading => reading_n + k * self.value(point),
+            Channel::Gain => reading_n * (1.0 + k * self.value(point)),
+            _ => reading_n,
+        }
+    }
+
+    /// Whether it acts on the reading alone, and on nothing that the tendon does.
+    pub fn is_of_reading(&self) -> bool {
+        matches!(self.channel, Channel::Reading | Channel::Gain)
     }
 
     /// Unit of its size.
     pub fn unit(&self) -> &'static str {
         match self.channel {
             Channel::Reading | Channel::Drag => "N",
-            Channel::Friction | Channel::Pins | Channel::Silicone => "1",
+            Channel::Gain | Channel::Friction | Channel::Pins | Channel::Silicone => "1",
         }
     }
 
@@ -239,6 +250,7 @@ impl Structure {
     pub fn describe(&self, frame: &Frame) -> String {
         let on = match self.channel {
             Channel::Reading => "the reading",
+            Channel::Gain => "the gain of the load cell",
             Channel::Drag => "the friction force",
             Channel::Friction => "the friction exponent",
             Channel::Pins => "the friction of the pins",

@@ -25,7 +25,9 @@ pub(super) struct Candidate {
 impl Candidate {
     /// Whether both are one shape on one thing, with other starts.
     pub(super) fn is_like(&self, other: &Self) -> bool {
-        self.form.shape == other.form.shape && self.definition.acts_on == other.definition.acts_on
+        self.form.shape == other.form.shape
+            && self.definition.acts_on == other.definition.acts_on
+            && self.definition.combine == other.definition.combine
     }
 }
 
@@ -39,11 +41,21 @@ pub(super) fn acts_on_word(of: ActsOn) -> &'static str {
     }
 }
 
+/// What a form acts on, and how.
+pub(super) type Acting = (ActsOn, Combine);
+
 /// What forms are first tried on.
-pub(super) const FIRST: [ActsOn; 2] = [ActsOn::Mu, ActsOn::Reading];
-/// What the best of them are tried on then: on the tension as a force against the motion.
-pub(super) const ALL: [ActsOn; 6] =
-    [ActsOn::Mu, ActsOn::MuPins, ActsOn::MuSilicone, ActsOn::Threshold, ActsOn::Tension, ActsOn::Reading];
+pub(super) const FIRST: [Acting; 2] = [(ActsOn::Mu, Combine::Factor), (ActsOn::Reading, Combine::Sum)];
+/// What the best of them are tried on then: on the tension as a force against the motion, and on the cell's gain.
+pub(super) const ALL: [Acting; 7] = [
+    (ActsOn::Mu, Combine::Factor),
+    (ActsOn::MuPins, Combine::Factor),
+    (ActsOn::MuSilicone, Combine::Factor),
+    (ActsOn::Threshold, Combine::Factor),
+    (ActsOn::Tension, Combine::Sum),
+    (ActsOn::Reading, Combine::Sum),
+    (ActsOn::Reading, Combine::Factor),
+];
 
 /// Sizes to start from: a twentieth of the friction, a tenth of a newton.
 const START_SHARE: f64 = 0.05;
@@ -59,13 +71,13 @@ impl Form {
     }
 
     /// The form on one thing; `number` makes its id.
-    pub(super) fn on(&self, acts_on: ActsOn, covariate: Covariate, number: usize) -> Candidate {
-        let is_force = matches!(acts_on, ActsOn::Reading | ActsOn::Tension);
-        let (combine, side, unit, start) = if is_force {
-            (Combine::Sum, Side::Rig, "N", START_N)
-        } else {
-            (Combine::Factor, Side::Switch, "1", START_SHARE)
+    pub(super) fn on(&self, (acts_on, combine): Acting, covariate: Covariate, number: usize) -> Candidate {
+        let (unit, start) = match combine {
+            Combine::Sum => ("N", START_N),
+            Combine::Factor => ("1", START_SHARE),
         };
+        let side =
+            if matches!(acts_on, ActsOn::Reading | ActsOn::Tension) { Side::Rig } else { Side::Switch };
         let formula = match acts_on {
             ActsOn::Tension => self.formula.replacen("a*", "a*direction*", 1),
             _ => self.formula.clone(),
@@ -202,7 +214,10 @@ fn memory() -> Vec<Form> {
 
 fn speed(frame: &Frame) -> Vec<Form> {
     let mean = frame.reference_speed_pct;
-    let mut forms = vec![Form::new("power", "a*ln(speed_pct/mean_speed_pct)", &[])];
+    let mut forms = vec![
+        Form::new("power", "a*ln(speed_pct/mean_speed_pct)", &[]),
+        Form::new("ramp", "a*speed_pct/mean_speed_pct", &[]),
+    ];
     for i in 0..=10 {
         let c = mean * (0.6 + 0.08 * f64::from(i));
         let (low, high) = (0.4 * mean, 2.0 * mean);
@@ -281,8 +296,8 @@ mod tests {
         for covariate in Covariate::ALL {
             let forms = library(covariate, &frame);
             assert!(!forms.is_empty(), "{covariate:?}");
-            for (form, acts_on) in forms.iter().flat_map(|form| ALL.map(|acts_on| (form, acts_on))) {
-                let definition = form.on(acts_on, covariate, 1).definition;
+            for (form, acting) in forms.iter().flat_map(|form| ALL.map(|acting| (form, acting))) {
+                let definition = form.on(acting, covariate, 1).definition;
                 let checked = OwnEffect::new(definition.clone());
                 assert!(checked.is_ok(), "{:?}: {}", definition.formula, checked.unwrap_err());
             }

@@ -12,14 +12,14 @@ use serde::{Deserialize, Serialize};
 
 use pinswitch_friction::sort_by_number;
 
-use crate::effects::{ActsOn, Covariate, EffectDefinition, OwnEffect, Vocabulary};
+use crate::effects::{Covariate, EffectDefinition, OwnEffect, Vocabulary};
 use crate::held_out::held_out;
 use crate::inference::{
     EffectScore, Fit, Model, Noise, Observations, Screen, Selection, Term, Weighed, fit, interval_half_widths,
 };
 use crate::report::Estimate;
 use crate::table::{PlateauRow, readings_by_session};
-use library::{ALL, Candidate, FIRST, Form, acts_on_word, library, where_shapes_lie};
+use library::{ALL, Acting, Candidate, FIRST, Form, acts_on_word, library, where_shapes_lie};
 
 /// Starts of each form that are tried on everything, and fitted to the end.
 const FITTED_STARTS: usize = 2;
@@ -157,9 +157,9 @@ fn best(covariate: Covariate, with_shapes: &Model, weighed: &Weighed<'_>) -> Opt
     let bare = with_shapes.model.without_terms(|term| matches!(term, Term::Structure(_)));
     let without = fit(&bare, weighed);
     forms.extend(library(covariate, &bare.frame));
-    let on = |forms: &mut dyn Iterator<Item = &Form>, things: &[ActsOn]| -> Vec<Candidate> {
-        let pairs = forms.flat_map(|form| things.iter().map(move |acts_on| (form, *acts_on)));
-        pairs.enumerate().map(|(i, (form, acts_on))| form.on(acts_on, covariate, i)).collect()
+    let on = |forms: &mut dyn Iterator<Item = &Form>, things: &[Acting]| -> Vec<Candidate> {
+        let pairs = forms.flat_map(|form| things.iter().map(move |acting| (form, *acting)));
+        pairs.enumerate().map(|(i, (form, acting))| form.on(acting, covariate, i)).collect()
     };
     let first = on(&mut forms.iter(), &FIRST);
     let promising = promising(&ranked(&without, weighed, &first)?);

@@ -244,6 +244,7 @@ impl Screen<'_> {
     fn channels(&self) -> Channels {
         let sensitivity = |channel: Channel| match channel {
             Channel::Reading => vec![1.0; self.predicted.len()],
+            Channel::Gain => self.predicted.clone(),
             Channel::Drag => self.data().points.iter().map(|p| p.sign).collect(),
             _ => {
                 let everywhere = Structure {
@@ -261,9 +262,9 @@ impl Screen<'_> {
                 column
             }
         };
-        [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone]
-            .map(|channel| (channel, sensitivity(channel)))
-            .to_vec()
+        let all = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone];
+        // The first three are those on which stretches of time are tried.
+        all.into_iter().chain([Channel::Gain]).map(|channel| (channel, sensitivity(channel))).collect()
     }
 
     /// The best stretch of whole series, at another level than the rest: every pair of ends is tried, by sums over

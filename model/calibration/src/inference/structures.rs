@@ -114,6 +114,8 @@ fn push_wave(
 /// Repetitions over which a memory that lasts is forgotten: more than a series has.
 const LASTING: f64 = 1e4;
 
+/// With the gain of the load cell, or of what carries its force, which may change with all but the load itself.
+const ALL_AND_GAIN: [Channel; 4] = [Channel::Reading, Channel::Gain, Channel::Drag, Channel::Friction];
 const READING_AND_FRICTION: [Channel; 2] = [Channel::Reading, Channel::Friction];
 const ALL: [Channel; 3] = [Channel::Reading, Channel::Drag, Channel::Friction];
 
@@ -130,7 +132,8 @@ fn by_material(frame: &Frame) -> Vec<Channel> {
 }
 
 fn time(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]) {
-    let channels = by_material(frame);
+    let mut channels = by_material(frame);
+    channels.push(Channel::Gain);
     let mut times: Vec<f64> = points.iter().map(|p| p.time).collect();
     times.sort_by(f64::total_cmp);
     // Sixty places for a step, at equal numbers of rows.
@@ -147,7 +150,7 @@ fn time(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]) {
         });
     }
     for power in 1..=3 {
-        push(groups, Covariate::Time, &ALL, &Shape::TimePower { power });
+        push(groups, Covariate::Time, &ALL_AND_GAIN, &Shape::TimePower { power });
     }
 }
 
@@ -157,7 +160,10 @@ fn position(groups: &mut Vec<Group>, points: &[Point]) {
     }
     for i in 2..48 {
         let cycles = 0.25 * f64::from(i);
-        push_wave(groups, Covariate::Position, &ALL, |quarter| Shape::PositionWave { cycles, quarter });
+        push_wave(groups, Covariate::Position, &ALL_AND_GAIN, |quarter| Shape::PositionWave {
+            cycles,
+            quarter,
+        });
     }
     for i in 0..=20 {
         for width in [0.025, 0.05, 0.1] {
@@ -166,10 +172,10 @@ fn position(groups: &mut Vec<Group>, points: &[Point]) {
         }
     }
     for power in 1..=3 {
-        push(groups, Covariate::Position, &ALL, &Shape::PositionPower { power });
+        push(groups, Covariate::Position, &ALL_AND_GAIN, &Shape::PositionPower { power });
     }
     for r0 in [0.6, 1.5, 4.0, 10.0] {
-        push(groups, Covariate::Repetition, &ALL, &Shape::Repetition { r0 });
+        push(groups, Covariate::Repetition, &ALL_AND_GAIN, &Shape::Repetition { r0 });
     }
 }
 
@@ -203,7 +209,7 @@ fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]
     for power in 0..=3 {
         push(groups, Covariate::Direction, &[Channel::Reading], &Shape::DirectionLoad { power, unit_n });
     }
-    push(groups, Covariate::Sweep, &ALL, &Shape::Descending);
+    push(groups, Covariate::Sweep, &ALL_AND_GAIN, &Shape::Descending);
     for r0 in [3.0, 8.0, 20.0, 60.0, LASTING] {
         push(groups, Covariate::Load, &channels, &Shape::Memory { r0, unit_n });
     }
@@ -243,13 +249,13 @@ fn rates(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]) {
             }
         }
         for power in 1..=2 {
-            push(groups, Covariate::Speed, &READING_AND_FRICTION, &Shape::SpeedPower { power });
+            push(groups, Covariate::Speed, &ALL_AND_GAIN, &Shape::SpeedPower { power });
         }
     }
     let dwells = levels(points, |p| p.log_dwell, 0.02);
     if dwells.len() > 1 {
         for log_dwell in on_a_grid(dwells) {
-            push(groups, Covariate::Dwell, &ALL, &Shape::DwellLevel { log_dwell });
+            push(groups, Covariate::Dwell, &ALL_AND_GAIN, &Shape::DwellLevel { log_dwell });
         }
     }
 }

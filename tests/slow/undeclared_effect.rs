@@ -255,4 +255,23 @@ fn what_nobody_imagined_is_neither_none_nor_a_name_turned_round() {
     // The reading creeps with the logarithm of the repetitions; friction that is higher before it settles does not.
     let creeping = told("creeping-reading");
     assert!(!ids(&creeping).iter().any(|id| id == "run_in"), "{}", creeping["effects"]);
+    // Three things on the rig, each of which looks like a name or two: a drag of 0.25 N at 52 %, in proportion to speed; a reading
+    // that is 1 % too high at first and settles over 2 s of the dwell; a gain that is 1.2 % higher from the half of the session on.
+    for (name, covariate, shape, size) in [
+        ("drag-that-grows-with-speed", "speed", "ramp", 0.25),
+        ("reading-that-settles-in-its-dwell", "dwell", "forgetting", 0.01),
+        ("gain-of-the-second-half", "time", "step", 0.012),
+    ] {
+        let found = told(name);
+        assert_eq!(ids(&found), ["unattributed"], "{name}: {}", found["effects"]);
+        let effect = &found["effects"][0];
+        let form = &effect["form"];
+        assert_eq!(
+            (&effect["covariate"], &form["shape"]),
+            (&covariate.into(), &shape.into()),
+            "{name}: {form}"
+        );
+        let [low, high] = [0, 1].map(|end| form["parameters"]["a"]["ci95"][end].as_f64().unwrap());
+        assert!(low < size && size < high, "{name}: {low} to {high}");
+    }
 }

@@ -62,6 +62,7 @@ impl Context<'_> {
             Some(score) => self.instead_of(baseline, &found, score, bent_gain, on_top),
             None => on_top,
         };
+        let best = self.in_place_of_one(&found, bent_gain, least, best);
         match best {
             Some((with, structure)) => {
                 let corrected = with_what_is_left(with, weighed);
@@ -123,6 +124,34 @@ impl Context<'_> {
         } else {
             so_far
         }
+    }
+
+    /// What is there `so_far`, or the structure that stands in the place of one name of several and explains more than that name
+    /// does however it bends: a drag that grows with speed looks like a drag, and like friction that does.
+    fn in_place_of_one(
+        &self,
+        found: &Fit,
+        bent_gain: f64,
+        least: f64,
+        so_far: Option<(Fit, FoundStructure)>,
+    ) -> Option<(Fit, FoundStructure)> {
+        let is_name = |index: &usize| matches!(found.model.terms[*index], Term::Named(_));
+        let names: Vec<usize> = (0..found.model.terms.len()).filter(is_name).collect();
+        if so_far.is_some() || names.len() < 2 {
+            return so_far;
+        }
+        let best = names
+            .into_iter()
+            .filter_map(|index| {
+                let without = fit(&found.model.without_term(index), self.weighed);
+                let score = Screen::new(&without, self.weighed).structures().into_iter().next()?;
+                let with = with_structure(&without, &score, self.weighed);
+                let gain = without.cost - with.cost - score.penalty();
+                let structure = FoundStructure { covariate: score.group[0].covariate, gain };
+                (gain > least).then_some((with, structure))
+            })
+            .min_by(|a, b| a.0.cost.total_cmp(&b.0.cost))?;
+        (best.0.cost < found.cost - bent_gain - self.levels.outright).then_some(best)
     }
 
     /// Beside something that has no name, a name is believed only if more shapes cannot stand in its place: it may be

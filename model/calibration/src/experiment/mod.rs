@@ -192,8 +192,8 @@ pub fn propose(
         .map(|q| QuestionOutlook {
             between: q.between.clone(),
             size: q.size,
-            resolved_probability: rounded(q.probability(&with_runs)),
-            by_repeating: rounded(q.probability(&repeated)),
+            resolved_probability: rounded(q.answer_probability(&with_runs)),
+            by_repeating: rounded(q.answer_probability(&repeated)),
         })
         .collect();
     sort_by_number(&mut questions, |q| -q.resolved_probability);

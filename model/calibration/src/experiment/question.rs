@@ -20,6 +20,10 @@ pub(crate) const FRICTION_ABOVE: &str = "friction_above_";
 /// Gain, in squares of the noise, by which an effect is seen and told from none: four standard deviations, as for what
 /// counts as visible at all.
 const SEEN: f64 = 16.0;
+/// Standard deviations by which the limits of an effect that is not there lie off zero, to either side: those of 95 %.
+const EXCLUDED: f64 = 1.96;
+/// Probability, before the data to come, that an effect is there that could not be excluded: most are not.
+const THERE: f64 = 0.2;
 /// How much less an effect counts that nobody suspects.
 const UNSUSPECTED: f64 = 0.3;
 /// How much more a form counts that was drawn: what it stands for is there, and has no name yet.
@@ -67,8 +71,9 @@ impl Question {
         self.ways.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 
-    /// Probability that data with this information answer it: the difference of squares of two models scatters about its
-    /// expectation `d^2` with a standard deviation of `2 d`.
+    /// Probability that data with this information show what is true of the two, which is what runs are chosen by: the difference
+    /// of squares of two models scatters about its expectation `d^2` with a standard deviation of `2 d`, and an estimate about its
+    /// size by one where that size is `d` (`model/doc/next-experiment.md`).
     pub(super) fn probability(&self, information: &DMatrix<f64>) -> f64 {
         let squares = self.squares(information);
         if !(squares > 1e-12 && squares.is_finite()) {
@@ -80,6 +85,17 @@ impl Question {
         } else {
             normal.cdf((squares - self.needed) / (2.0 * squares.sqrt()))
         }
+    }
+
+    /// Probability that they answer it, which is also that there is no such effect: its limits lie within the size asked about.
+    pub(super) fn answer_probability(&self, information: &DMatrix<f64>) -> f64 {
+        let seen = self.probability(information);
+        let squares = self.squares(information);
+        if self.size.is_none() || !squares.is_finite() {
+            return seen;
+        }
+        let excluded = (2.0 * Normal::standard().cdf(squares.max(0.0).sqrt() - EXCLUDED) - 1.0).max(0.0);
+        THERE * seen + (1.0 - THERE) * excluded
     }
 
     /// The same question where these columns are not fitted.
@@ -382,6 +398,22 @@ fn surely(effect: &dyn Effect, parameters: &BTreeMap<String, Estimate>) -> f64 {
 mod tests {
     use super::*;
     use crate::effects::effect_named;
+
+    /// An effect that is not there is excluded by less than what shows one that is.
+    #[test]
+    fn an_answer_is_also_that_there_is_none() {
+        let asked = |size| Question {
+            between: ["adhesion".to_owned(), NONE.to_owned()],
+            size,
+            ways: vec![Way { truth: 0, size: 1.0, nuisance: Vec::new() }],
+            needed: SEEN,
+            weight: 1.0,
+        };
+        let told = |size, d: f64| asked(size).answer_probability(&DMatrix::from_element(1, 1, d * d));
+        assert!((told(None, 4.0) - 0.5).abs() < 1e-6);
+        assert!((told(Some(0.2), 4.0) - (0.1 + 0.8 * 0.9586)).abs() < 1e-3, "{}", told(Some(0.2), 4.0));
+        assert!(told(Some(0.2), 1.9) < 0.02 && told(Some(0.2), 8.0) > 0.999);
+    }
 
     #[test]
     fn it_is_the_size_that_must_be_sure_and_no_shape() {

@@ -7,6 +7,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::fit::{Fit, Slopes, interval_half_widths};
 use super::model::{Model, Term};
+use super::open_bounds::open_bounds;
 use super::projection::dot;
 use super::screening::{EffectScore, Screen};
 use super::weighed::Weighed;
@@ -32,7 +33,7 @@ struct OneMore {
 }
 
 /// 95 % intervals of all constants about their values, in the constants' own units: how far below and above the value
-/// they reach.
+/// they reach; infinity where the data leave a bound of the constant open.
 ///
 /// With one effect more of size `s` the constants move by `-(J' V^-1 J)^-1 J' V^-1 x s`, where `x` is its trace per unit
 /// of size. The odds of an effect are the ratio of the marginal likelihoods (linear in `s`, whose prior is normal, as wide
@@ -64,6 +65,7 @@ pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> 
             one_more(score, choices, -solver.solve(&along))
         })
         .collect();
+    let open = open_bounds(fitted, weighed);
     half_widths
         .into_iter()
         .enumerate()
@@ -81,7 +83,8 @@ pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> 
                 // What may be missing makes nothing better known than it is without it.
                 quantile_above(&mirrored, half).max(half)
             };
-            [reach(-1.0), reach(1.0)]
+            let to_bound = |is_open: bool, reach: f64| if is_open { f64::INFINITY } else { reach };
+            [to_bound(open[i][0], reach(-1.0)), to_bound(open[i][1], reach(1.0))]
         })
         .collect()
 }

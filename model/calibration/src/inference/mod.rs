@@ -21,6 +21,7 @@ mod model;
 mod new_mounts;
 mod noise;
 mod observations;
+mod open_bounds;
 mod outliers;
 mod projection;
 mod reliability;

@@ -2,7 +2,7 @@
 
 use pinswitch_friction::{LayoutLaw, published};
 
-use crate::effects::{Channel, Covariate, Effect, Shape, Structure, Vocabulary};
+use crate::effects::{Covariate, Effect, Shape, Structure, Vocabulary};
 use crate::table::{Change, Frame};
 
 /// Id of a structure that no named effect explains.
@@ -49,7 +49,7 @@ impl Term {
         self.moves_along_a_series()
             && match self {
                 Term::Named(effect) => effect.acts_on_contact(),
-                Term::Structure(structure) => structure.channel != Channel::Reading,
+                Term::Structure(structure) => !structure.is_of_reading(),
             }
     }
 
@@ -232,6 +232,17 @@ impl Model {
             }
         }
         model
+    }
+
+    /// The same model with one bounded constant held at a share of the way between its bounds; `None` for a constant without.
+    pub(crate) fn held_at(&self, index: usize, share: f64) -> Option<Self> {
+        let (low, high) = self.bounds_of(index);
+        let bounds = (low.is_finite() && high.is_finite()).then_some((low, high))?;
+        let mean = to_coordinate(low + share * (high - low), Some(bounds));
+        let mut model = self.clone();
+        model.coordinates[index] = mean;
+        model.priors[index] = Prior { mean, sd: HELD };
+        Some(model)
     }
 
     /// Whether a constant is held where it is: data have no say in it.

@@ -1,0 +1,60 @@
+//! Constants that the data do not keep off their bounds. The logit of a bounded constant has a prior in the middle of its range,
+//! and a curvature there that says nothing about the ends.
+
+use super::fit::{Fit, fit};
+use super::weighed::Weighed;
+use crate::parallel::map_each;
+
+/// Squares by which a constant held at its bound may fit worse and still lie within the 95 % interval: the quantile of
+/// chi-square with one degree of freedom.
+const NOT_EXCLUDED: f64 = 3.84;
+/// Share of the range that lies between the bound itself, where the logit has no end, and where the constant is held.
+const BESIDE_THE_BOUND: f64 = 0.02;
+
+/// Whether the lower and the upper bound of each constant lie in its interval, by the likelihood with all else refitted; `false`
+/// for constants without bounds, and for those that are held.
+pub(super) fn open_bounds(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[bool; 2]> {
+    let model = &fitted.model;
+    let prior = |i: usize| ((model.coordinates[i] - model.priors()[i].mean) / model.priors()[i].sd).powi(2);
+    let is_open = |i: usize, share: f64| {
+        if model.is_held(i) {
+            return false;
+        }
+        let held = model.held_at(i, share).map(|held| fit(&held, weighed));
+        held.is_some_and(|held| held.cost - (fitted.cost - prior(i)) < NOT_EXCLUDED)
+    };
+    let indices = (0..model.coordinates.len()).collect();
+    map_each(indices, |i| [is_open(i, BESIDE_THE_BOUND), is_open(i, 1.0 - BESIDE_THE_BOUND)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::effect_named;
+    use crate::inference::{Model, Noise, Observations, Term};
+    use crate::table::Frame;
+    use crate::test_session::session_with;
+
+    /// A friction that saturates as a power law does (h = 0) and as a hyperbola does (h = 1): its own bound is never excluded,
+    /// and the other one is where the effect is large.
+    #[test]
+    fn the_bound_that_is_true_is_open() {
+        let saturation = effect_named("substrate_saturation").unwrap();
+        for h in [0.0, 1.0] {
+            let rows = session_with(3, &[(Term::Named(saturation), &[0.33, h])]);
+            let frame = Frame::new(&rows);
+            let data = Observations::new(&frame, &rows).unwrap();
+            let fitted = |sd| {
+                let weighed = Weighed::new(&data, Noise::constant(sd, 0.001));
+                let model = Model::baseline(frame.clone()).with_term(Term::Named(saturation), &[0.3, 0.5]);
+                let found = fit(&model, &weighed);
+                *open_bounds(&found, &weighed).last().unwrap()
+            };
+            let (plain, noisy) = (fitted(0.05), fitted(6.0));
+            assert!(plain[h as usize], "h = {h}: {plain:?}");
+            assert_eq!(noisy, [true, true], "h = {h}: nothing is excluded under much noise");
+        }
+        let model = Model::baseline(Frame::new(&session_with(1, &[])));
+        assert!(model.held_at(0, 0.5).is_none(), "friction coefficients have no upper bound");
+    }
+}

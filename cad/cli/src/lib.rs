@@ -130,6 +130,7 @@ commands! {
     Simulate: simulate,
     Power: power,
     Completions: completions,
+    Answer: answer,
 }
 
 /// Runs the command that the arguments name. Exit codes: 0 done, 1 failed, 2 bad input.

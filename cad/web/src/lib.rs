@@ -39,7 +39,7 @@ use serde::Serialize;
 
 pub use calibrated_curve::calibrated_curve;
 pub use calibrated_switch::CalibratedSwitch;
-pub use request::Values;
+pub use request::{Pace, Values, pace};
 pub use values::{configuration, values};
 
 /// What a question is answered with.

@@ -47,6 +47,33 @@ pub(crate) enum Request {
     Calibrate { csv: String, file: String },
 }
 
+/// How long a question takes, at the most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// Somebody moves a slider: some hundredths of a second.
+    Quick,
+    /// The files of a design.
+    Files,
+    /// A search or a calibration: seconds, and minutes for a long table.
+    Long,
+}
+
+/// What a question asks, whatever else it holds.
+#[derive(Deserialize)]
+struct Asks<'a> {
+    #[serde(borrow)]
+    ask: std::borrow::Cow<'a, str>,
+}
+
+/// How long a question may take; what is none is answered at once.
+pub fn pace(question: &[u8]) -> Pace {
+    match serde_json::from_slice::<Asks<'_>>(question).as_ref().map(|asks| &*asks.ask) {
+        Ok("search" | "calibrate") => Pace::Long,
+        Ok("files" | "file" | "zip") => Pace::Files,
+        _ => Pace::Quick,
+    }
+}
+
 /// A design that a question is about.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 pub(crate) struct Asked {

@@ -6,9 +6,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use http_body_util::{BodyExt, Limited};
 use hyper::body::{Bytes, Incoming};
 use pinswitch_switch::config::{Configuration, parameter::Parameter, rewritten};
-use pinswitch_web::{Answer, Engine, Values, configuration, values};
+use pinswitch_web::{Answer, Engine, Pace, Values, configuration, pace, values};
 use serde::Deserialize;
 
+use super::apart::answered_apart;
 use super::stamp;
 use crate::input::read_text_file;
 use crate::source::Source;
@@ -17,10 +18,15 @@ use crate::write::write_back;
 /// Largest question: a table that is too large is refused by the engine, with what to do instead.
 const LARGEST: usize = 64 << 20;
 
-/// The engine, for one question at a time, and what the server was started with.
+/// The engines, each for one question at a time, and what the server was started with.
 #[derive(Debug)]
 pub(super) struct Configurator {
-    engine: Mutex<Engine>,
+    /// Designs: a page waits for each.
+    quick: Mutex<Engine>,
+    /// Files, which nobody's sliders wait for.
+    files: Mutex<Engine>,
+    /// This program, which answers in a process of its own what takes longer; without one the second engine does.
+    program: Option<PathBuf>,
     source: Source,
     file: Option<Followed>,
 }
@@ -78,7 +84,8 @@ pub(super) async fn question(body: Incoming) -> Result<Bytes, String> {
 
 impl Configurator {
     pub(super) fn new(source: Source, file: Option<Followed>) -> Self {
-        Self { engine: Mutex::default(), source, file }
+        let program = std::env::current_exe().ok();
+        Self { quick: Mutex::default(), files: Mutex::default(), program, source, file }
     }
 
     /// What the server was started with, as JSON: the file that is followed, whether it can be saved, and whether the command
@@ -92,10 +99,19 @@ impl Configurator {
         })
     }
 
-    /// The engine's answer. It computes beside the server, which goes on answering.
+    /// An engine's answer. It computes beside the server, which goes on answering. A search or a calibration ends where the page
+    /// no longer waits for it.
     pub(super) async fn answer(self: Arc<Self>, question: Bytes) -> Answer {
+        let pace = pace(&question);
+        if let (Pace::Long, Some(program)) = (pace, &self.program) {
+            match answered_apart(program, question.clone()).await {
+                Ok(text) => return Answer::Json(text),
+                Err(e) => log::warn!("{}: {e}; answering without it", program.display()),
+            }
+        }
         let answered = tokio::task::spawn_blocking(move || {
-            let mut engine = self.engine.lock().unwrap_or_else(PoisonError::into_inner);
+            let engine = if pace == Pace::Quick { &self.quick } else { &self.files };
+            let mut engine = engine.lock().unwrap_or_else(PoisonError::into_inner);
             engine.answer(&String::from_utf8_lossy(&question))
         });
         answered.await.unwrap_or_else(|e| Answer::Json(error(&format!("the engine stopped: {e}"))))

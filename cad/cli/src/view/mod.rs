@@ -1,5 +1,6 @@
 //! `pinswitch view CONFIG`: the page of a set, following its configuration.
 
+mod apart;
 mod configure;
 mod follow;
 mod server;

@@ -57,6 +57,7 @@ fn said(csv: &str, file: &str) -> Result<Said, String> {
         ));
     }
     let table = PlateauTable::read(csv.as_bytes(), file).map_err(|e| e.to_string())?;
+    table.require_baseline(file).map_err(|e| e.to_string())?;
     let calibration = calibrate_among(&table.rows, &Vocabulary::built_in(), Levels::default())
         .map_err(|e| format!("{file}: {e}"))?;
     let (report, selection) = (&calibration.report, &calibration.selection);
@@ -86,6 +87,48 @@ mod tests {
         let effects = vocabulary.effects().map(|effect| effect.description().id);
         for word in effects.chain(["none", "inconclusive", "attributed", "ambiguous", "unattributed"]) {
             assert!(words.contains(&format!("{word}: ")), "{word} has no words in words.js");
+        }
+    }
+
+    /// Silicone at twelve loads, with readings that `force` makes of a load and a direction (1: concentric).
+    fn table(force: impl Fn(f64, f64) -> f64) -> String {
+        let mut text =
+            "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,\
+                        position_mm,time_s,force_N\n"
+                .to_owned();
+        for row in 0..72 {
+            let (series, repetition) = (row / 6, row % 6 / 2 + 1);
+            let load_n = 5.0 + 4.0 * f64::from(series);
+            let (direction, sign) = [("eccentric", -1.0), ("concentric", 1.0)][row as usize % 2];
+            let wobble = 0.01 * f64::from(row * 37 % 11 - 5);
+            text.push_str(&format!(
+                "{series},silicone,,up,{:.1},{load_n},52,3,{direction},{repetition},{},{},{:.4}\n",
+                load_n / 9.80665e-3,
+                20 * repetition,
+                10 * row,
+                force(load_n, sign) + wobble,
+            ));
+        }
+        text
+    }
+
+    /// What no switch and no rig can give is refused as the command line refuses it, and makes no model.
+    #[test]
+    fn what_is_impossible_is_refused() {
+        let told = |force: &dyn Fn(f64, f64) -> f64| match answer(&table(force), "x.csv") {
+            Answer::Json(text) => text,
+            Answer::Bytes(_) => panic!("bytes"),
+        };
+        let sound = told(&|load, sign| load * (1.0 + 0.25 * sign));
+        assert!(sound.contains("\"model\":\""), "{sound}");
+        for impossible in [
+            told(&|load, sign| load * (1.0 - 0.25 * sign)),
+            told(&|load, sign| 102.0 * load * (1.0 + 0.25 * sign)),
+            told(&|load, sign| -load * (1.0 + 0.25 * sign)),
+            told(&|_, _| 0.0),
+            told(&|_, sign| 20.0 * (1.0 + 0.25 * sign)),
+        ] {
+            assert!(impossible.contains("\"error\"") && impossible.contains("x.csv"), "{impossible}");
         }
     }
 

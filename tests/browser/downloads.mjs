@@ -92,9 +92,24 @@ export async function downloads(visit, site, { binary, scratch, findings }) {
     const differ = [...new Set([...line.keys(), ...own.keys()])].filter((file) => line.get(file) !== own.get(file));
     findings.check(`the files of ${name} have the names of the command line's`, own.size > 20 && [...line.keys()].every((file) => own.has(file)), [...own.keys()]);
     findings.check(`${own.size} files of ${name} are those of the command line`, differ.length === 0, differ.join(' '));
+    await liesAsInTheFiles(visit, JSON.parse(files.get('manifest.json').toString()).plates, name);
     if (i === 0) await oneByOne(visit, wait, own, findings);
     await visit.click('#files-close');
   }
+}
+
+// The beds of the page are the plates of the files, with each part where it lies there.
+async function liesAsInTheFiles(visit, plates, name) {
+  const drawn = await visit.page.$$eval('#bed svg', (beds) => beds.map((bed) => {
+    const side = Number(bed.querySelector('.plate').getAttribute('width'));
+    return [...bed.querySelectorAll('.outline')].map((outline) => {
+      const [x, y, width, height] = ['x', 'y', 'width', 'height'].map((of) => Number(outline.getAttribute(of)));
+      return [x + width / 2, side - y - height / 2];
+    });
+  }));
+  const isThere = (lies, { x_mm, y_mm }) => lies.some(([x, y]) => Math.hypot(x - x_mm, y - y_mm) < 0.05);
+  const agree = drawn.length === plates.length && plates.every((plate, k) => plate.parts.length === drawn[k].length && plate.parts.every((part) => isThere(drawn[k], part)));
+  visit.findings.check(`the parts of ${name} lie on the bed as in its files`, agree, JSON.stringify([drawn, plates]));
 }
 
 // With a calibrated model, too.

@@ -3,6 +3,7 @@
 use pinswitch_switch::built::Built;
 use pinswitch_switch::config::{Configuration, to_toml};
 use pinswitch_switch::design::Design;
+use pinswitch_switch::documents::plate_entries;
 use pinswitch_switch::formats::page::PageData;
 use pinswitch_switch::output::{BuildError, SetError};
 use pinswitch_switch::prediction::Prediction;
@@ -45,7 +46,9 @@ fn shown(kept: &mut Kept, asked: &Asked, quality: Quality) -> Result<(PageData, 
     }
     let (built, prediction) = built(kept, seen, asked.model.as_deref())?;
     // What is looked at needs no files, which take longer than the parts.
-    let set = Set::new(&built, &prediction, &[]).map_err(trouble)?;
+    let mut set = Set::new(&built, &prediction, &[]).map_err(trouble)?;
+    // As they lie in those that would be made.
+    set.manifest.plates = plate_entries(&built);
     let data = PageData::new(&built, &prediction, &set.manifest, Some(1));
     if quality == Quality::Coarse {
         kept.built = Some(built);

@@ -13,6 +13,7 @@ export async function embedded(visit, site) {
   await visit.open(`${site.origin}/around.html`, { settles: false });
   const hears = (what, test, ...given) => visit.check(what, test, ...given);
   await hears('a page around hears of the first design', () => heard.some((m) => m.type === 'pinswitch-state' && m.version === 1 && m.friction_n > 0));
+  await hears('a message at the frame\'s load is taken', () => heard.some((m) => String(m.values?.['layout.pins']) === '2,8,14'));
   const say = (message) => visit.page.evaluate((m) => { heard.length = 0; frames[0].postMessage(m, '*'); }, message);
   await say({ type: 'pinswitch-set', values: { 'layout.pins': [3, 8, 13] } });
   await hears('values go in, and the state comes out', () => heard.some((m) => String(m.values?.['layout.pins']) === '3,8,13' && m.hash.includes('layout.pins=3,8,13')));
@@ -20,6 +21,12 @@ export async function embedded(visit, site) {
   await hears('an address goes in', () => heard.some((m) => String(m.values?.['layout.pins']) === '7,9' && m.trust));
   await say({ type: 'pinswitch-set', values: { 'segment.grooves': 40 } });
   await hears('trouble comes out in words', () => heard.some((m) => /segment\.grooves/.test(m.trouble)));
+  await say({ type: 'pinswitch-set', hash: '#v=1&layout.pins=7,9' });
+  await hears('the design is shown again', () => heard.some((m) => m.hash === '#v=1&layout.pins=7,9' && m.trust && !m.trouble));
+  await say({ type: 'pinswitch-set', hash: '#v=1&layout.pins=7,9&ask.threshold_n=25&nonsense=1' });
+  await hears('what is asked for is told, with what could not be taken', () => heard.some((m) => m.hash.includes('ask.threshold_n=25') && /nonsense/.test(m.said) && m.trust));
+  await say({ type: 'pinswitch-set', hash: '#' });
+  await hears('an empty address is told', () => heard.some((m) => /neither an address/.test(m.said)));
   await say({ type: 'pinswitch-set', hash: '#cut' });
   await hears('what is no design is told', () => heard.some((m) => /holds no design/.test(m.said)));
   await say({ type: 'pinswitch-set', values: { 'layout.pins': [4, 11] } });

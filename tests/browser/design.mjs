@@ -174,6 +174,22 @@ export async function undoAndRedo(visit, site) {
   await visit.settled();
 }
 
+// However quickly pins are set, each is a step of its own.
+export async function undoOfQuickPins(visit, site) {
+  await visit.open(`${site.address}#v=1&layout.pins=8`);
+  for (const groove of [3, 6, 12]) {
+    await visit.focus(`[data-groove="${groove}"]`);
+    await visit.page.keyboard.press('Space');
+  }
+  await visit.addressHas('layout.pins=3,6,8,12');
+  for (const before of ['3,6,8', '3,8', '8']) {
+    await visit.click('#undo');
+    await visit.addressHas(`layout.pins=${before}`);
+  }
+  await visit.check('then nothing is left to undo', () => document.querySelector('#undo').disabled);
+  await visit.settled();
+}
+
 export async function undoOfAnAsk(visit, site) {
   await visit.open(site.address + START);
   const undo = async () => {

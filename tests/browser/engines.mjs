@@ -21,7 +21,7 @@ export async function served(files) {
 export async function moduleSite(folder) {
   const page = readFileSync(join(folder, 'index.html'), 'utf8');
   const inModule = (change) => page.replace(/(<script type="text\/plain" id="module"[^>]*>)([^<]*)/, (_, tag, text) => tag + change(text));
-  const around = '<!doctype html><title>around</title><link rel="icon" href="data:,"><script>window.heard = []; addEventListener("message", (e) => heard.push(e.data));</script><iframe src="/?embed" width="1200" height="800"></iframe>';
+  const around = '<!doctype html><title>around</title><link rel="icon" href="data:,"><script>window.heard = []; addEventListener("message", (e) => heard.push(e.data));</script><iframe src="/?embed" width="1200" height="800" onload="this.contentWindow.postMessage({ type: \'pinswitch-set\', values: { \'layout.pins\': [2, 8, 14] } }, \'*\')"></iframe>';
   const server = await served({ '/': page, '/cut.html': inModule((text) => text.slice(0, text.length / 2)), '/none.html': inModule(() => ''), '/around.html': around });
   return { name: 'module', address: `${server.origin}/`, origin: server.origin, file: `file://${join(folder, 'index.html')}`, end: server.end };
 }

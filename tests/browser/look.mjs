@@ -85,6 +85,32 @@ export async function focusOnAPhone(visit, site) {
   visit.findings.check('nothing that has the focus is covered', walked > 20 && covered.size === 0, [...covered].join(' '));
 }
 
+// Who walks back through the parameters sees what has the focus: the bar above them covers none of it.
+export async function focusAmongParameters(visit, site) {
+  for (const [width, height] of [[1440, 900], [375, 812]]) {
+    await visit.look(width, height, false);
+    await visit.open(site.address + START);
+    if (width < 1000) await visit.click('#parameters');
+    await visit.page.evaluate(() => { document.querySelectorAll('.group').forEach((group) => { group.open = true; }); [...document.querySelectorAll('.group input:not([type=range])')].at(-1).focus(); });
+    const covered = new Set();
+    let walked = 0;
+    for (; walked < 90; walked += 1) {
+      await visit.page.keyboard.down('Shift');
+      await visit.page.keyboard.press('Tab');
+      await visit.page.keyboard.up('Shift');
+      const what = await visit.page.evaluate(async () => {
+        await new Promise((done) => { requestAnimationFrame(done); });
+        const [e, bar] = [document.activeElement, document.querySelector('.finder')];
+        if (!e.closest('.group')) return null;
+        return e.getBoundingClientRect().top < bar.getBoundingClientRect().bottom - 1 ? e.id || e.outerHTML.slice(0, 80) : '';
+      });
+      if (what === null) break;
+      if (what) covered.add(what);
+    }
+    visit.findings.check(`${width}: no parameter that has the focus is covered`, walked > 60 && covered.size === 0, `${walked} ${[...covered].join(' ')}`);
+  }
+}
+
 // The reasons are opened and closed by hand, by key, and by a click elsewhere, at every width.
 export async function reasonsClose(visit, site) {
   await visit.open(site.address + START);

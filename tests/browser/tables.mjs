@@ -99,9 +99,18 @@ export async function calibration(visit, site, { table, binary, scratch }) {
   await visit.settled();
 }
 
+// The page stays the visitor's: what takes long holds up no design.
+async function designsMeanwhile(visit, what, pins) {
+  await visit.page.evaluate((to) => { location.hash = `#v=1&layout.pins=${to}`; }, pins);
+  const began = performance.now();
+  await visit.check(`a design is answered beside ${what}`, (to) => document.querySelector('#pins-say').textContent.includes(to.replace(',', ', ')) && document.body.dataset.answered === document.body.dataset.asked, pins);
+  const took = performance.now() - began;
+  visit.findings.check(`and does not wait for ${what}`, took < 4000 && await visit.page.evaluate(() => ['#stop', '#stop-fit'].some((id) => !document.querySelector(id).hidden)), `${Math.round(took)} ms`);
+}
+
 // A fit that takes long is stopped, and what waited for it goes on.
 export async function fitStopped(visit, site, { table }) {
-  const [head, ...rows] = table.trim().split('\n');
+  const [head, ...rows] = table.trim().split(/\r?\n/);
   const force = head.split(',').indexOf('force_N');
   // As many series again and again, none a copy of another.
   const again = (k) => rows.map((row) => row.split(',').map((cell, i) => (i === 0 ? `${k}-${cell}` : i === force ? (Number(cell) + 0.013 * k * Math.sin(Number(cell) * 1e4 + k)).toFixed(4) : cell)).join(','));
@@ -109,11 +118,47 @@ export async function fitStopped(visit, site, { table }) {
   await visit.open(site.address + START);
   await visit.drop('long.csv', long);
   await visit.page.waitForSelector('#stop-fit:not([hidden])');
+  await designsMeanwhile(visit, 'a fit', '5,9');
   // By key: the page still glides to where the verdict will stand.
   await visit.focus('#stop-fit');
   await visit.page.keyboard.press('Enter');
   await visit.check('a fit that was stopped says so', () => /Stopped/.test(document.querySelector('#verdict').textContent));
   await visit.check('and leaves nothing to stop', () => document.querySelector('#stop-fit').hidden);
+  // A model that is dropped during a fit is taken at once, and what is dropped after it has the word.
+  await visit.drop('long.csv', long);
+  await visit.page.waitForSelector('#stop-fit:not([hidden])');
+  await visit.drop('model.toml', 'schema = "pinswitch.model/1"\n');
+  await visit.check('what is no model is told while a table is fitted', () => /model\.toml could not be opened/.test(document.querySelector('#notice').textContent));
+  await visit.focus('#stop-fit');
+  await visit.page.keyboard.press('Enter');
   await visit.click('#download');
   await visit.page.waitForSelector('#file-list button', { timeout: SLOW_MS });
+}
+
+// What no switch and no rig can give is refused, in the words of the command line, and offers no model.
+export async function impossibleTables(visit, site, { table, binary, scratch }) {
+  const [head, ...all] = table.trim().split(/\r?\n/);
+  const columns = head.split(',');
+  const rows = all.slice(0, 300).map((row) => row.split(','));
+  const [direction, force, load] = ['direction', 'force_N', 'load_N'].map((name) => columns.indexOf(name));
+  const changed = (change) => [head, ...rows.map((row) => change([...row]).join(','))].join('\n');
+  const put = (row, column, value) => { row[column] = value; return row; };
+  const tables = {
+    'directions exchanged': changed((row) => put(row, direction, row[direction] === 'eccentric' ? 'concentric' : 'eccentric')),
+    'forces in grams': changed((row) => put(row, force, (Number(row[force]) / 9.80665e-3).toFixed(2))),
+    'forces of the wrong sign': changed((row) => put(row, force, -Number(row[force]))),
+    'no forces': changed((row) => put(row, force, 0)),
+    'loads in grams': changed((row) => put(row, load, (Number(row[load]) / 9.80665e-3).toFixed(2))),
+  };
+  await visit.open(site.address + START);
+  for (const [what, csv] of Object.entries(tables)) {
+    const folder = mkdtempSync(join(scratch, 'impossible-'));
+    writeFileSync(join(folder, 'impossible.csv'), csv);
+    const { code, stderr } = await promisify(execFile)(binary, ['-q', 'calibrate', 'impossible.csv', '--out', 'rig'], { cwd: folder }).catch((refused) => refused);
+    visit.findings.check(`${what} are refused by the command line`, code === 2, stderr);
+    await visit.drop('impossible.csv', csv);
+    const said = stderr.replace(/^error: /, '').trim().slice(0, 60);
+    await visit.check(`${what} are refused in its words`, (words) => document.querySelector('#verdict .error')?.textContent.includes(words), said);
+    visit.findings.check(`${what} make no model`, !(await visit.shown('#take-model')));
+  }
 }

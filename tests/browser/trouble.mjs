@@ -90,6 +90,40 @@ export async function oddAddresses(visit, site) {
   await visit.settled();
 }
 
+// The way past the parameters is none into another design, and names of the language are no values.
+export async function wordsThatAreNoValues(visit, site) {
+  await visit.open(site.address + START);
+  await visit.focus('.skip');
+  await visit.page.keyboard.press('Enter');
+  await visit.check('the way past the parameters leads to the design', () => document.activeElement.id === 'main');
+  visit.findings.check('and raises no alarm', await visit.page.$eval('#notice', (e) => e.hidden) && (await visit.page.evaluate(() => location.hash)).startsWith('#v=1'));
+  for (const word of ['constructor', 'toString', '__proto__', 'hasOwnProperty']) {
+    await visit.page.evaluate((flag) => { location.hash = `#v=1&layout.pins=4,8,12&parts.proxy=${flag}`; }, word);
+    await visit.check(`${word} is no flag`, () => /parts\.proxy a value that cannot be/.test(document.querySelector('#notice').textContent) && !/proxy/.test(location.hash));
+  }
+  await visit.settled();
+}
+
+// What is said of a file is seen where the person is who chose it, and so is what is wrong with the pins.
+export async function toldWhereOneIs(visit, site) {
+  const isSeen = (selector) => { const box = document.querySelector(selector).getBoundingClientRect(); return box.height > 0 && box.top >= 0 && box.bottom <= innerHeight; };
+  for (const [width, height] of [[375, 812], [820, 1180], [1440, 900]]) {
+    await visit.look(width, height, false);
+    await visit.open(site.address + START);
+    await visit.page.$eval('#choose-table', (e) => e.scrollIntoView({ block: 'end' }));
+    await visit.drop('packed.csv', 'PK\u0003\u0004\u0000\u0000');
+    await visit.check(`${width}: a refusal is seen where the file was chosen`, isSeen, '#notice');
+    await visit.click('#download');
+    await visit.drop('holiday.png', 'PNG');
+    await visit.check(`${width}: and not behind the files`, () => !document.querySelector('#files').open && /holiday/.test(document.querySelector('#notice').textContent));
+    await visit.page.$eval('#notice button', (e) => e.click());
+    await visit.page.evaluate(() => { location.hash = '#v=1&layout.substrate=abs&layout.pins='; });
+    await visit.page.waitForSelector('#pins-error:not([hidden])');
+    await visit.page.$eval('#pins-say', (e) => e.scrollIntoView({ block: 'center' }));
+    await visit.check(`${width}: what is wrong with the pins stands beside them`, isSeen, '#pins-error');
+  }
+}
+
 export async function moduleThatDoesNotLoad(visit, site) {
   if (!site.file) return;
   const words = { 'cut.html': /engine does not start in this browser.*pinswitch view/s, 'none.html': /holds no engine.*pinswitch view/s };

@@ -19,7 +19,9 @@ class Ask {
     const load_n = friction.length ? friction.at(-1).load_n / 2 : this.handles.frictions()[0]?.load_n ?? 40;
     const curve = this.curve.data?.curve;
     const friction_n = curve ? at(curve.load_n, curve.friction_n, load_n) : 5;
-    this.handles.ask({ friction: [...friction, { load_n: Number(load_n.toFixed(1)), friction_n: Number(friction_n.toFixed(2)) }] });
+    // As few digits as can be, and never so few that nothing is asked.
+    const short = (value, digits) => Number(value.toFixed(digits)) || Math.max(Number(value.toPrecision(2)), LEAST_ASKED_N);
+    this.handles.ask({ friction: [...friction, { load_n: short(load_n, 1), friction_n: short(friction_n, 2) }] });
   }
 
   // A box of newtons: what cannot be asked is told while it is written, and gone once the box is left.

@@ -20,6 +20,13 @@ function showChecks(data) {
   byId('fine-list').replaceChildren(...(problems.length > 2 ? fine.map((c) => line('✓', 'fine', c.words)) : []));
 }
 
+// Trouble with the layout stands at the drawing of its pins, too, which may be far below the picture.
+function showAtPins(trouble, mend) {
+  const line = byId('pins-error');
+  line.hidden = !trouble;
+  line.replaceChildren(...(trouble ? [`${troubleWords(trouble, WORDS.groups.layout)}. `, mend() ?? ''] : []));
+}
+
 // Trouble with a design: over the picture, and at the control of its field, with a button that mends it. `instead` is what is
 // shown where no design of this visit could be.
 function showTrouble(trouble, controls, state, instead) {
@@ -35,6 +42,7 @@ function showTrouble(trouble, controls, state, instead) {
     }, { class: 'btn mend', 'data-heir': controls.idOf(fits[0].path) });
   };
   controls.trouble(trouble, mend());
+  showAtPins(trouble?.field.startsWith('layout.') ? trouble : null, mend);
   host.replaceChildren();
   if (!trouble) return;
   const field = state.fields.get(trouble.field);

@@ -141,7 +141,7 @@ class Curve {
 
   words() {
     const { curve, manifest } = this.data;
-    const isOurs = Boolean(this.state.now.model);
+    const isOurs = this.model !== null;
     const trust = WORDS.trust[curve.trust] ?? curve.trust;
     const words = isOurs ? WORDS.calibratedTrust(trust) : trust;
     byId('trust').textContent = `${WORDS.trustMark[curve.trust] ?? ''} ${words}`;

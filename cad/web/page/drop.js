@@ -26,6 +26,8 @@ class Drop {
 
   async files(files) {
     if (!files.length) return;
+    // What is said of them would lie behind it.
+    if (byId('files').open) byId('files').close();
     if (files.length > 1) say(WORDS.manyFiles);
     const [file] = files;
     const kind = /\.(csv|tsv|txt)$/i.test(file.name) ? 'table' : /\.toml$/i.test(file.name) ? 'toml' : null;

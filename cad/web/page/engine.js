@@ -122,7 +122,7 @@ class Engine {
 
   // The answer; an EngineError in words if there is none, Stale if a newer design was asked for meanwhile.
   async ask(request) {
-    const isSlow = ['search', 'files', 'file', 'zip', 'calibrate', 'model'].includes(request.ask);
+    const isSlow = ['search', 'files', 'file', 'zip', 'calibrate'].includes(request.ask);
     const newest = request.ask === 'design' && !request.aside ? 'design' : undefined;
     const { aside: _, ...question } = request;
     this.underWay.add(request);

@@ -29,6 +29,12 @@ function showNotice(words, ...acts) {
   host.append(button('×', () => showNotice(''), { class: 'tiny', 'aria-label': WORDS.close }));
 }
 
+// Where the picture is out of sight, what is said of something else that a person did follows them there.
+function followPicture() {
+  const away = ([{ isIntersecting }]) => byId('notice').classList.toggle('away', !isIntersecting);
+  new IntersectionObserver(away, { rootMargin: '-60px 0px 0px 0px' }).observe(document.querySelector('.picture'));
+}
+
 // The same about something that may pass: `forgetNotice` takes it away, and leaves any other.
 function showNoticeAbout(about, words, ...acts) {
   showNotice(words, ...acts);
@@ -47,6 +53,7 @@ function fillWords() {
 class Page {
   async start() {
     fillWords();
+    followPicture();
     new Focus();
     this.engine = new Engine();
     byId('busy').textContent = WORDS.starting;
@@ -64,6 +71,8 @@ class Page {
     const started = await Served.start();
     await this.first(started);
     this.view = new View();
+    // The design is asked for once more, which brings a picture in its place.
+    this.view.lost = () => this.design('exact');
     this.curve = new Curve(state);
     this.curve.moved = (load_n) => this.view.load(load_n);
     this.handles = new Handles(this.curve, state);
@@ -116,6 +125,8 @@ class Page {
     const said = [...(given?.said ?? []), ...(given?.broken ? [WORDS.hash.stays] : [])].join(' ');
     showNoticeAbout('address', said);
     const before = this.state.now;
+    // Before the change, which may tell it.
+    this.embed.said = said || null;
     if (given?.parts) this.state.change(given.parts);
     this.embed.took(said, this.state.now === before);
     this.address();
@@ -135,7 +146,7 @@ class Page {
     this.markTemplate();
     const asked = JSON.stringify([this.state.now.values, this.state.now.model?.packed]);
     // A mark of the ask changes no part.
-    if (asked === this.asked) return;
+    if (asked === this.asked) { this.embed.asked(this.state.now); return; }
     this.asked = asked;
     document.body.dataset.asked = Number(document.body.dataset.asked) + 1;
     this.design('coarse');
@@ -157,7 +168,7 @@ class Page {
       showTrouble(answer.trouble, this.controls, this.state, this.instead);
       this.downloads.refresh();
       document.body.dataset.answered = question;
-      this.embed.tell(now, answer.data, answer.trouble);
+      this.embed.tell(now, this.state.now, answer.data, answer.trouble);
       if (quality === 'exact' && asked === this.asked) document.body.dataset.pending = 'false';
       if (this.isGone) { this.isGone = false; showNotice(''); }
     } catch (problem) {
@@ -271,6 +282,8 @@ class Page {
 
   buttons() {
     const { state } = this;
+    // The address is that of the design, and none of a place on the page.
+    document.querySelector('.skip').addEventListener('click', (event) => { event.preventDefault(); byId('main').focus(); });
     byId('undo').addEventListener('click', () => state.undo());
     byId('redo').addEventListener('click', () => state.redo());
     byId('share').addEventListener('click', () => this.share());

@@ -12,24 +12,25 @@ class Pins {
     this.state = state;
     this.focused = null;
     state.addEventListener('change', () => this.draw());
-    byId('clear-pins').addEventListener('click', () => state.change({ values: { ...state.now.values, 'layout.pins': [] } }, 'pins'));
+    byId('clear-pins').addEventListener('click', () => state.change({ values: { ...state.now.values, 'layout.pins': [] } }));
     byId('mirror-pins').addEventListener('click', () => this.set(this.pins().map((i) => this.grooves() + 1 - i)));
     this.draw();
   }
 
   grooves() { return clamp(Math.round(this.state.value('segment.grooves')) || 1, 1, 60); }
   pins() { return this.state.value('layout.pins').filter((i) => i >= 1); }
-  set(pins) { this.state.set('layout.pins', [...new Set(pins)].sort((a, b) => a - b)); }
+  // Each is a step of its own, however quickly they follow each other, but for what `what` joins.
+  set(pins, what) { this.state.change({ values: { ...this.state.now.values, 'layout.pins': [...new Set(pins)].sort((a, b) => a - b) } }, what); }
 
   toggle(i) {
     const pins = this.pins();
     this.set(pins.includes(i) ? pins.filter((p) => p !== i) : [...pins, i]);
   }
 
-  carry(from, to) {
+  carry(from, to, what) {
     const pins = this.pins();
     if (from === to || !pins.includes(from) || pins.includes(to) || to < 1 || to > this.grooves()) return false;
-    this.set(pins.map((p) => (p === from ? to : p)));
+    this.set(pins.map((p) => (p === from ? to : p)), what);
     return true;
   }
 
@@ -164,7 +165,7 @@ class Pins {
       let free = i + step;
       while (this.pins().includes(free)) free += step;
       this.focused = free >= 1 && free <= this.grooves() ? free : i;
-      this.carry(i, free);
+      this.carry(i, free, 'pins.carried');
     } else if (step || event.key === 'Home' || event.key === 'End') {
       this.focused = to;
       this.marks.forEach((mark, k) => mark.setAttribute('tabindex', k + 1 === to ? 0 : -1));

@@ -9,6 +9,7 @@ const ONE_STEP_MS = 700;
 // Frictions that can be asked for at once, and loads and frictions that can, in newtons.
 const MOST_FRICTIONS = 4;
 const MOST_ASKED_N = 1000;
+const LEAST_ASKED_N = 0.001;
 const isAsked = (value) => Number.isFinite(value) && value > 0 && value <= MOST_ASKED_N;
 const sameValue = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
@@ -100,7 +101,7 @@ function wholeNumbers(texts) {
 
 // A value of the address as the field's kind wants it; undefined if it cannot be one. Ranges are the engine's affair.
 function readValue(field, text) {
-  if (field.kind === 'flag') return { true: true, false: false }[text];
+  if (field.kind === 'flag') return text === 'true' || (text === 'false' ? false : undefined);
   if (field.kind === 'list') {
     return wholeNumbers(text.trim() === '' ? [] : text.split(','));
   }

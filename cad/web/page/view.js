@@ -11,7 +11,7 @@ class View {
         byId('turn').value = turn * 180 / Math.PI;
         byId('tilt').value = tilt * 180 / Math.PI;
       };
-      this.assembly.renderer.domElement.addEventListener('webglcontextlost', () => this.fail());
+      this.assembly.renderer.domElement.addEventListener('webglcontextlost', () => { this.fail(); this.lost?.(); });
     } catch {
       this.fail();
     }

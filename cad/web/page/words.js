@@ -11,7 +11,7 @@ const WORDS = {
   find: 'Find a parameter', changedOnly: 'Changed only', noField: 'No parameter has these words.',
   intro: 'A tendon runs over steel pins in silicone. As load grows, the pins sink, the tendon meets silicone, and friction rises.',
   assembly: 'Assembly', apart: 'Pull apart', cut: 'Cut open', cutAt: 'Cut at', turn: 'Turn', tilt: 'Tilt', show: 'Show', look: 'View',
-  assemblyName: 'The assembly in three dimensions. Drag to turn, wheel or pinch to zoom; under View, sliders do the same from the keyboard.',
+  assemblyName: 'The assembly in three dimensions. Drag to turn, wheel or pinch to zoom; under View, sliders turn and cut it from the keyboard.',
   curve: 'Friction over load', load: 'Load', rivals: 'Other laws', keep: 'Keep to compare', letGo: 'Forget the kept',
   curveTable: 'The curve as a table', why: 'How far to trust it, and why',
   pins: 'Pins', clearPins: 'Lift all', mirror: 'Mirror',

@@ -24,6 +24,7 @@ function stubs(module) {
 }
 
 async function started(packed, holes) {
+  if (typeof WebAssembly === 'undefined') throw new Error('it runs no WebAssembly');
   const bytes = new Uint8Array(await unpacked(packed));
   // What the page holds, too, was left out of the module.
   for (const [place, text] of holes) bytes.set(new TextEncoder().encode(text), place);

@@ -16,7 +16,7 @@ pub fn calibrated_curve(design: &Design, model: &ModelFile, name: &str) -> Resul
     let pins = rig_grooves(&configuration.layout.pins, configuration.segment.grooves).ok_or_else(|| {
         format!(
             "layout.pins = {:?} of {} grooves: the calibrated rig has {} grooves, and some of these have no counterpart \
-             there by their place from the middle; leave out --model",
+             there by their place from the middle; their curve is known by the published constants, without a model",
             configuration.layout.pins,
             configuration.segment.grooves,
             published::GROOVES

@@ -66,7 +66,8 @@ pub use model_file::{ModelFile, ModelFileError};
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
     BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate,
-    Invisible, LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, Verdict,
+    Invisible, LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, SizeInSession,
+    UnequalReport, Verdict,
 };
 pub use toml_text::toml_error;
 pub use trial::{CERTAIN_P, CONFIRMED_P, CONFIRMED_SHARE, TrialOutcome, TrialReport, trials};

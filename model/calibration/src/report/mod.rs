@@ -5,64 +5,15 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::aliasing::Aliasing;
-use crate::asked::Asked;
 use crate::forms::FormReport;
-use crate::inference::{Noise, Selection};
-use crate::trial::{TrialOutcome, TrialReport};
+use crate::inference::Noise;
+use crate::trial::TrialReport;
 
-/// What the data say about the paper's model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Verdict {
-    /// The paper's model explains the data down to its noise, and no visible effect of consequence is left possible.
-    None,
-    /// Nothing is believed, and a visible effect of consequence is not excluded.
-    Inconclusive,
-    /// Every effect found is named and has no rival.
-    Attributed,
-    /// At least one effect has rivals that this data cannot tell apart.
-    Ambiguous,
-    /// Structure is left that no named effect explains.
-    Unattributed,
-}
+mod sessions;
+mod verdict;
 
-impl Verdict {
-    /// Its word in the report.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Verdict::None => "none",
-            Verdict::Inconclusive => "inconclusive",
-            Verdict::Attributed => "attributed",
-            Verdict::Ambiguous => "ambiguous",
-            Verdict::Unattributed => "unattributed",
-        }
-    }
-
-    /// The verdict of a selection.
-    pub fn of(selection: &Selection) -> Self {
-        if selection.structure.is_some() {
-            Verdict::Unattributed
-        } else if selection.effects.is_empty() {
-            let hidden = selection.limits.iter().any(|limit| !limit.is_excluded());
-            if hidden { Verdict::Inconclusive } else { Verdict::None }
-        } else if selection.effects.iter().any(|e| !e.rivals.is_empty()) {
-            Verdict::Ambiguous
-        } else {
-            Verdict::Attributed
-        }
-    }
-
-    /// The verdict beside the trials of effects of one's own: what is confirmed is not excluded.
-    #[must_use]
-    pub fn beside(self, trials: &[TrialReport]) -> Self {
-        match self {
-            Verdict::None if trials.iter().any(|t| t.outcome == TrialOutcome::Confirmed) => {
-                Verdict::Inconclusive
-            }
-            verdict => verdict,
-        }
-    }
-}
+pub use sessions::{ChangeReport, SessionReport, SizeInSession, UnequalReport};
+pub use verdict::Verdict;
 
 /// A constant with its interval.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -249,95 +200,6 @@ pub struct NoisePart {
     pub unit: String,
 }
 
-/// A constant of the switch that some sessions or specimens have otherwise than the latest one, whose constants the model
-/// predicts with.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ChangeReport {
-    /// `mu_p`, `mu_s`, or `F_half`: the half loads of all layouts.
-    pub constant: String,
-    /// `session` or `specimen`.
-    pub by: String,
-    /// The names of those that have it otherwise.
-    pub groups: Vec<String>,
-    /// The names of the others, the latest among them.
-    pub others: Vec<String>,
-    /// Their constant over that of the others.
-    pub factor: Estimate,
-    /// The constant of the others, where it is one; absent for half loads.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub latest: Option<f64>,
-}
-
-impl ChangeReport {
-    /// In words: what is how large where.
-    pub fn words(&self) -> String {
-        let Estimate { value, ci95, .. } = &self.factor;
-        let percent = |factor: f64| format!("{:+.1}", 100.0 * (factor - 1.0));
-        let than = self
-            .latest
-            .map_or_else(String::new, |latest| format!(" ({:.3} instead of {latest:.3})", value * latest));
-        let name = if self.constant == "F_half" { "the half load of every layout" } else { &self.constant };
-        format!(
-            "{name} differs by {} % [{}, {}] in {} {}{than} from that in {}",
-            percent(*value),
-            percent(ci95[0]),
-            percent(ci95[1]),
-            self.by,
-            self.groups.join(", "),
-            self.others.join(", "),
-        )
-    }
-}
-
-/// A named effect whose size is not the same in all sessions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct UnequalReport {
-    /// Its id.
-    pub id: String,
-    /// The size.
-    pub parameter: String,
-    /// What the model has, which is true of no session; 0 of an effect that sessions alone show and all together do not.
-    pub in_the_model: f64,
-    /// Probability by chance that sizes differ so much.
-    pub p_value: f64,
-    /// The size in each session that tells it.
-    pub sizes: Vec<SizeInSession>,
-}
-
-/// A size in one session.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SizeInSession {
-    /// The session.
-    pub session: String,
-    /// The size there, shapes held as all sessions together have them.
-    pub size: Estimate,
-}
-
-impl UnequalReport {
-    /// In words: how large it is where.
-    pub fn words(&self) -> String {
-        let each: Vec<String> = self
-            .sizes
-            .iter()
-            .map(|SizeInSession { session, size }| {
-                let [low, high] = size.ci95;
-                format!("{:.4} [{low:.4}, {high:.4}] {} in {session}", size.value, size.unit)
-            })
-            .collect();
-        let in_the_model = if self.in_the_model == 0.0 {
-            "together they name none, and the model has none of it".to_owned()
-        } else {
-            format!("the {:.4} that the model has is true of none", self.in_the_model)
-        };
-        format!(
-            "{} is not the same in all sessions: {} = {}; {in_the_model}",
-            self.id,
-            self.parameter,
-            each.join(", ")
-        )
-    }
-}
-
 /// Sizes of an effect that the data do not exclude.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitReport {
@@ -433,27 +295,6 @@ pub struct Report {
     pub extrapolation: Option<Extrapolation>,
 }
 
-/// What was known after one of several tables, and those before it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SessionReport {
-    /// The table that came last.
-    pub table: String,
-    /// What the runs of this table were proposed for, if a plan was given, and what came of it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub asked: Option<Asked>,
-    /// Rows up to here.
-    pub rows: usize,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// What was found, each with its rivals.
-    pub effects: Vec<Vec<String>>,
-    /// Effects of consequence that were not excluded.
-    pub not_excluded: Vec<String>,
-    /// Error to expect on a new session, in newtons.
-    #[serde(rename = "promise_N", default, skip_serializing_if = "Option::is_none")]
-    pub promise_n: Option<f64>,
-}
-
 impl Report {
     /// Why nothing is excluded although every limit is below what is of consequence.
     pub fn reservations(&self) -> Vec<String> {
@@ -476,37 +317,6 @@ impl Report {
             told.push("the error on data held out stays above the noise".to_owned());
         }
         told
-    }
-}
-
-impl SessionReport {
-    /// What a report says after `table`.
-    pub fn after(table: String, report: &Report) -> Self {
-        let ids = |effect: &EffectReport| {
-            std::iter::once(effect.id.clone()).chain(effect.rivals.iter().map(|r| r.id.clone())).collect()
-        };
-        Self {
-            table,
-            asked: None,
-            rows: report.data.rows,
-            verdict: report.verdict,
-            effects: report.effects.iter().map(ids).collect(),
-            not_excluded: report.limits.iter().filter(|l| !l.excluded).map(|l| l.id.clone()).collect(),
-            promise_n: report.promise_n,
-        }
-    }
-
-    /// In words: the verdict, and what it is about.
-    pub fn words(&self) -> String {
-        let found: Vec<String> = self.effects.iter().map(|ids| ids.join(" or ")).collect();
-        let word = self.verdict.as_str();
-        match (found.is_empty(), self.verdict) {
-            (false, _) => format!("{word}: {}", found.join(", ")),
-            (true, Verdict::Inconclusive) if !self.not_excluded.is_empty() => {
-                format!("{word}: not excluded are {}", self.not_excluded.join(", "))
-            }
-            (true, _) => word.to_owned(),
-        }
     }
 }
 

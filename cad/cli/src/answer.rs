@@ -48,7 +48,9 @@ mod tests {
     #[test]
     fn a_question_is_as_long_as_is_said() {
         assert_eq!(asked(&mut &b"3\n{}\nmore"[..]).unwrap(), "{}\n");
-        for (given, problem) in [(&b"9\n{}"[..], "ends after 2 of 9"), (b"{}", "length"), (b"", "length"), (b"1\n\xff", "utf-8")] {
+        for (given, problem) in
+            [(&b"9\n{}"[..], "ends after 2 of 9"), (b"{}", "length"), (b"", "length"), (b"1\n\xff", "utf-8")]
+        {
             let error = asked(&mut &*given).unwrap_err();
             assert!(error.contains(problem), "{error}");
         }

@@ -85,6 +85,7 @@ fn in_words(group: Group, outcomes: &[&CaseOutcome]) -> Vec<String> {
             format!("{what} named exactly: {exact}"),
             format!("... of those that the session could show: {}", share(&visible, |o| o.exact)),
             format!("{what} named or among the rivals: {honest}"),
+            format!("... of those that the session could show: {}", share(&visible, |o| o.exact || o.honest)),
             format!(
                 "... or left open: within the limits told, or told as invisible: {}",
                 share(outcomes, |o| o.exact || o.honest || o.open)

@@ -222,7 +222,7 @@ mod tests {
         assert!(text.contains(row) && text.lines().count() == 3, "{text}");
         let words = study.summary();
         assert!(words.contains("95 % intervals that hold the true size: 1 of 3"), "{words}");
-        assert_eq!(words.lines().count(), 5, "{words}");
+        assert_eq!(words.lines().count(), 6, "{words}");
         assert!(words.contains("... of those that the session could show: 1 of 1"), "{words}");
         let mut promised = outcome(true, &[]);
         promised.promise_ratio = Some(1.1);

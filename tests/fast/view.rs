@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::time::Duration;
 
-use crate::harness::done;
 use crate::harness::preview::Preview;
+use crate::harness::{binary, done};
 
 #[test]
 fn the_preview_answers_its_own_page_only() {
@@ -37,15 +37,19 @@ fn the_preview_answers_its_own_page_only() {
     assert!(head.starts_with("HTTP/1.1 200") && head.ends_with("\r\n\r\n"), "{head:.200}");
 }
 
-/// The answer to a question of the configurator.
-fn asked(preview: &Preview, path: &str, question: &str) -> String {
-    let headers = format!(
+/// A question of the configurator with the headers that its page sends.
+fn with_headers(preview: &Preview, question: &str) -> String {
+    format!(
         "{}Origin: http://{}\r\nContent-Length: {}\r\n\r\n{question}",
         preview.host(),
         preview.address,
         question.len()
-    );
-    let answer = preview.ask(&format!("POST {path}"), &headers);
+    )
+}
+
+/// The answer to a question of the configurator.
+fn asked(preview: &Preview, path: &str, question: &str) -> String {
+    let answer = preview.ask(&format!("POST {path}"), &with_headers(preview, question));
     answer.split_once("\r\n\r\n").map_or(answer.clone(), |(_, body)| body.to_owned())
 }
 
@@ -103,6 +107,54 @@ fn the_configurator_asks_and_saves_into_the_file_that_is_followed() {
     // Another page cannot ask.
     let foreign = format!("{}Origin: http://evil.example\r\nContent-Length: 2\r\n\r\n{{}}", preview.host());
     assert!(preview.ask("POST /save", &foreign).starts_with("HTTP/1.1 403"));
+}
+
+/// A search that takes many seconds: among 40 grooves.
+const LONG_SEARCH: &str =
+    r#"{"ask": "search", "values": {"segment.grooves": 40, "shell.outer_radius_mm": 45}, "threshold_n": 24}"#;
+
+/// Whether `holds` comes true.
+fn comes_true(holds: impl Fn() -> bool) -> bool {
+    (0..600).any(|_| {
+        std::thread::sleep(Duration::from_millis(50));
+        holds()
+    })
+}
+
+#[test]
+fn what_takes_long_holds_up_no_design_and_ends_with_whoever_waits_for_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let preview = Preview::start(folder.path(), "three-double");
+    if preview.children().is_none() {
+        eprintln!("SKIPPED: this system does not tell the children of a process");
+        return;
+    }
+    let are = |number: usize| comes_true(|| preview.children() == Some(number));
+    let mut stream = preview.connect();
+    write!(stream, "POST /answer HTTP/1.1\r\n{}", with_headers(&preview, LONG_SEARCH)).unwrap();
+    assert!(are(1), "a search has a process of its own");
+    let design = asked(&preview, "/answer", r#"{"ask": "design", "values": {}}"#);
+    assert!(design.contains(r#""trouble":null"#), "{design:.300}");
+    assert_eq!(preview.children(), Some(1), "a design is answered while it goes on");
+    drop(stream);
+    assert!(are(0), "nobody waits for the search, and it ends");
+}
+
+#[test]
+fn an_answer_apart_is_given_while_its_input_is_open() {
+    let answer = |question: &str, waits: bool| {
+        let piped = std::process::Stdio::piped;
+        let mut child = binary().args(["-q", "answer"]).stdin(piped()).stdout(piped()).spawn().unwrap();
+        let mut asks = child.stdin.take().unwrap();
+        write!(asks, "{}\n{question}", question.len()).unwrap();
+        let held = waits.then_some(asks);
+        let output = child.wait_with_output().unwrap();
+        drop(held);
+        (output.status.code(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (code, text) = answer(r#"{"ask": "search", "values": {}, "threshold_n": 24}"#, true);
+    assert!(code == Some(0) && text.contains("layout.pins"), "{code:?} {text:.300}");
+    assert_eq!(answer(LONG_SEARCH, false), (Some(1), String::new()), "whoever asked has gone");
 }
 
 #[test]

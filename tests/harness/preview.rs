@@ -73,6 +73,13 @@ impl Preview {
         serde_json::from_str(&self.get(&format!("/state?after={after}"))).unwrap()
     }
 
+    /// Processes that it has started and that have not ended; `None` where the system does not tell.
+    pub(crate) fn children(&self) -> Option<usize> {
+        let threads = std::fs::read_dir(format!("/proc/{}/task", self.child.id())).ok()?;
+        let of_each = threads.flatten().map(|thread| std::fs::read_to_string(thread.path().join("children")));
+        of_each.collect::<Result<String, _>>().ok().map(|all| all.split_whitespace().count())
+    }
+
     /// Threads of the process, where the system tells.
     pub(crate) fn threads(&self) -> usize {
         std::fs::read_dir(format!("/proc/{}/task", self.child.id())).map_or(0, Iterator::count)

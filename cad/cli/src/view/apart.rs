@@ -8,9 +8,9 @@ use hyper::body::Bytes;
 
 /// A process that is ended with this.
 #[derive(Debug)]
-struct Ended(Child);
+pub(super) struct Apart(Child);
 
-impl Drop for Ended {
+impl Drop for Apart {
     fn drop(&mut self) {
         // It may have ended by itself.
         let _ = self.0.kill();
@@ -18,28 +18,41 @@ impl Drop for Ended {
     }
 }
 
-/// The answer of `program` in JSON. Dropping the future ends the program, and so does the end of this process, with which the
-/// program's standard input ends.
-///
-/// # Errors
-/// If it cannot be started, or ends without an answer.
-pub(super) async fn answered_apart(program: &Path, question: Bytes) -> std::io::Result<String> {
-    let started = Command::new(program)
-        .args(["--quiet", "answer"])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()?;
-    let mut process = Ended(started);
-    let ends = process.0.stdin.take().zip(process.0.stdout.take());
-    let (mut asks, mut answers) = ends.ok_or_else(|| std::io::Error::other("its ends are closed"))?;
-    let told = tokio::task::spawn_blocking(move || {
-        asks.write_all(format!("{}\n", question.len()).as_bytes())?;
-        asks.write_all(&question)?;
-        asks.flush()?;
-        let mut text = String::new();
-        answers.read_to_string(&mut text)?;
-        if text.is_empty() { Err(std::io::Error::other("it ended without an answer")) } else { Ok(text) }
-    });
-    told.await.map_err(std::io::Error::other)?
+impl Apart {
+    /// Starts `program`, which waits for its question.
+    ///
+    /// # Errors
+    /// If it cannot be started.
+    pub(super) fn start(program: &Path) -> std::io::Result<Self> {
+        let mut command = Command::new(program);
+        command
+            .args(["--quiet", "answer"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null());
+        command.spawn().map(Self)
+    }
+
+    /// Its answer in JSON. Dropping the future ends the process, and so does the end of this one, with which the process's
+    /// standard input ends.
+    ///
+    /// # Errors
+    /// If it ends without an answer, or before its answer does.
+    pub(super) async fn answer(mut self, question: Bytes) -> std::io::Result<String> {
+        let ends = self.0.stdin.take().zip(self.0.stdout.take());
+        let (mut asks, mut answers) = ends.ok_or_else(|| std::io::Error::other("its ends are closed"))?;
+        let told = tokio::task::spawn_blocking(move || {
+            asks.write_all(format!("{}\n", question.len()).as_bytes())?;
+            asks.write_all(&question)?;
+            asks.flush()?;
+            let mut text = String::new();
+            answers.read_to_string(&mut text)?;
+            std::io::Result::Ok((text, asks))
+        });
+        // Held until it has ended: whose standard input ends has nobody to answer.
+        let (text, asks) = told.await.map_err(std::io::Error::other)??;
+        let ended = self.0.wait()?;
+        drop(asks);
+        if ended.success() { Ok(text) } else { Err(std::io::Error::other(format!("it ended with {ended}"))) }
+    }
 }

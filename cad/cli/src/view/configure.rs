@@ -9,7 +9,7 @@ use pinswitch_switch::config::{Configuration, parameter::Parameter, rewritten};
 use pinswitch_web::{Answer, Engine, Pace, Values, configuration, pace, values};
 use serde::Deserialize;
 
-use super::apart::answered_apart;
+use super::apart::Apart;
 use super::stamp;
 use crate::input::read_text_file;
 use crate::source::Source;
@@ -104,8 +104,9 @@ impl Configurator {
     pub(super) async fn answer(self: Arc<Self>, question: Bytes) -> Answer {
         let pace = pace(&question);
         if let (Pace::Long, Some(program)) = (pace, &self.program) {
-            match answered_apart(program, question.clone()).await {
-                Ok(text) => return Answer::Json(text),
+            match Apart::start(program) {
+                // What ended a process would end the server, or hold up what others ask: it is not tried again here.
+                Ok(apart) => return Answer::Json(apart.answer(question).await.unwrap_or_else(stopped)),
                 Err(e) => log::warn!("{}: {e}; answering without it", program.display()),
             }
         }
@@ -114,7 +115,7 @@ impl Configurator {
             let mut engine = engine.lock().unwrap_or_else(PoisonError::into_inner);
             engine.answer(&String::from_utf8_lossy(&question))
         });
-        answered.await.unwrap_or_else(|e| Answer::Json(error(&format!("the engine stopped: {e}"))))
+        answered.await.unwrap_or_else(|e| Answer::Json(stopped(e)))
     }
 
     /// Writes values into the file: what it says otherwise, and nothing else. A file that was changed since the page last
@@ -169,6 +170,10 @@ fn hidden(source: &Source, shown: &Configuration, wanted: &Configuration) -> Vec
         .filter(|(_, field)| differs(field))
         .map(|(option, field)| (option, field.to_owned()))
         .collect()
+}
+
+fn stopped(why: impl std::fmt::Display) -> String {
+    error(&format!("the engine stopped: {why}"))
 }
 
 fn error(reason: &str) -> String {

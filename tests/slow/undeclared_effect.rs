@@ -273,5 +273,11 @@ fn what_nobody_imagined_is_neither_none_nor_a_name_turned_round() {
         );
         let [low, high] = [0, 1].map(|end| form["parameters"]["a"]["ci95"][end].as_f64().unwrap());
         assert!(low < size && size < high, "{name}: {low} to {high}");
+        // No constant of a form that is known this well is told as anything between its bounds.
+        let constants = found["augmented"]["parameters"].as_object().unwrap();
+        if let Some((_, told)) = constants.iter().find(|(name, _)| name.ends_with("forgetting.t")) {
+            let [low, high] = [0, 1].map(|end| told["ci95"][end].as_f64().unwrap());
+            assert!(low > 0.2 && low < 2.0 && 2.0 < high && high < 20.0, "{name}: {told}");
+        }
     }
 }

@@ -8,8 +8,10 @@ use crate::parallel::map_each;
 /// Squares by which a constant held at its bound may fit worse and still lie within the 95 % interval: the quantile of
 /// chi-square with one degree of freedom.
 const NOT_EXCLUDED: f64 = 3.84;
-/// Share of the range that lies between the bound itself, where the logit has no end, and where the constant is held.
-const BESIDE_THE_BOUND: f64 = 0.02;
+/// Share of the range that lies between the bound itself, where the logit has no end, and where the constant is held at the most;
+/// and that of the way from the bound to the estimate: what lies between bounds of many sizes, such as a time of 0.05 to 200 s, has
+/// its estimate close to one of them.
+const BESIDE_THE_BOUND: (f64, f64) = (0.02, 0.1);
 
 /// Whether the lower and the upper bound of each constant lie in its interval, by the likelihood with all else refitted; `false`
 /// for constants without bounds, and for those that are held.
@@ -23,8 +25,14 @@ pub(super) fn open_bounds(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[bool; 2]>
         let held = model.held_at(i, share).map(|held| fit(&held, weighed));
         held.is_some_and(|held| held.cost - (fitted.cost - prior(i)) < NOT_EXCLUDED)
     };
+    let beside = |way: f64| BESIDE_THE_BOUND.0.min(BESIDE_THE_BOUND.1 * way);
     let indices = (0..model.coordinates.len()).collect();
-    map_each(indices, |i| [is_open(i, BESIDE_THE_BOUND), is_open(i, 1.0 - BESIDE_THE_BOUND)])
+    map_each(indices, |i| {
+        // Of the way between the bounds; whatever it is for a constant without them, which is never held.
+        let (low, high) = model.bounds_of(i);
+        let way = (model.value(i).0 - low) / (high - low);
+        [is_open(i, beside(way)), is_open(i, 1.0 - beside(1.0 - way))]
+    })
 }
 
 #[cfg(test)]
@@ -35,8 +43,8 @@ mod tests {
     use crate::table::Frame;
     use crate::test_session::session_with;
 
-    /// A friction that saturates as a power law does (h = 0) and as a hyperbola does (h = 1): its own bound is never excluded,
-    /// and the other one is where the effect is large.
+    /// A friction that saturates as a power law does (h = 0) and as a hyperbola does (h = 1): its own bound is open, and
+    /// the other one is excluded where the effect is large.
     #[test]
     fn the_bound_that_is_true_is_open() {
         let saturation = effect_named("substrate_saturation").unwrap();
@@ -50,10 +58,20 @@ mod tests {
                 let found = fit(&model, &weighed);
                 *open_bounds(&found, &weighed).last().unwrap()
             };
-            let (plain, noisy) = (fitted(0.05), fitted(6.0));
-            assert!(plain[h as usize], "h = {h}: {plain:?}");
+            let (plain, noisy) = (fitted(0.5), fitted(6.0));
+            assert_eq!(plain, [h == 0.0, h == 1.0], "h = {h}");
             assert_eq!(noisy, [true, true], "h = {h}: nothing is excluded under much noise");
         }
+        // A share of the range is a long way where the estimate is close to a bound.
+        let drift = effect_named("wear_drift").unwrap();
+        let rows = session_with(3, &[(Term::Named(drift), &[0.5, 0.12])]);
+        let frame = Frame::new(&rows);
+        let data = Observations::new(&frame, &rows).unwrap();
+        let weighed = Weighed::new(&data, Noise::constant(0.05, 0.001));
+        let found = fit(&Model::baseline(frame.clone()).with_term(Term::Named(drift), &[0.4, 0.3]), &weighed);
+        let (low, _) = found.model.bounds_of(found.model.values().len() - 1);
+        assert!(found.model.values().last().unwrap() - low < 0.1, "{:?}", found.model.values());
+        assert_eq!(open_bounds(&found, &weighed).last(), Some(&[false, false]));
         let model = Model::baseline(Frame::new(&session_with(1, &[])));
         assert!(model.held_at(0, 0.5).is_none(), "friction coefficients have no upper bound");
     }

@@ -7,7 +7,7 @@ use super::lanes::{LANES, Lanes};
 use super::model::Term;
 use super::projection::dot;
 use super::screening::Screen;
-use super::structures::Group;
+use super::structures::{ALL, Group};
 use crate::effects::{Channel, Covariate, Shape, Structure};
 use crate::parallel::map_each;
 
@@ -162,7 +162,7 @@ impl Screen<'_> {
         let batches = batches(&catalogue.groups);
         let dealt = batches.chunks(batches.len().div_ceil(SHARES).max(1)).collect();
         let mut scores: Vec<StructureScore> = map_each(dealt, score).into_iter().flatten().collect();
-        for (channel, along) in &channels[..3] {
+        for (channel, along) in channels.iter().filter(|(channel, _)| ALL.contains(channel)) {
             scores.extend(self.best_window(*channel, along));
         }
         sort_by_number(&mut scores, |s| -s.gain);
@@ -262,9 +262,9 @@ impl Screen<'_> {
                 column
             }
         };
-        let all = [Channel::Reading, Channel::Drag, Channel::Friction, Channel::Pins, Channel::Silicone];
-        // The first three are those on which stretches of time are tried.
-        all.into_iter().chain([Channel::Gain]).map(|channel| (channel, sensitivity(channel))).collect()
+        use Channel::{Drag, Friction, Gain, Pins, Reading, Silicone};
+        let all = [Reading, Gain, Drag, Friction, Pins, Silicone];
+        all.map(|channel| (channel, sensitivity(channel))).to_vec()
     }
 
     /// The best stretch of whole series, at another level than the rest: every pair of ends is tried, by sums over

@@ -117,7 +117,8 @@ const LASTING: f64 = 1e4;
 /// With the gain of the load cell, or of what carries its force, which may change with all but the load itself.
 const ALL_AND_GAIN: [Channel; 4] = [Channel::Reading, Channel::Gain, Channel::Drag, Channel::Friction];
 const READING_AND_FRICTION: [Channel; 2] = [Channel::Reading, Channel::Friction];
-const ALL: [Channel; 3] = [Channel::Reading, Channel::Drag, Channel::Friction];
+/// Channels on which everything is tried, stretches of time too.
+pub(super) const ALL: [Channel; 3] = [Channel::Reading, Channel::Drag, Channel::Friction];
 
 /// All channels, with those of one material where a condition has it: another tendon may rub less on silicone and more on pins.
 fn by_material(frame: &Frame) -> Vec<Channel> {

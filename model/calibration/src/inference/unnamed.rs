@@ -62,7 +62,7 @@ impl Context<'_> {
             Some(score) => self.instead_of(baseline, &found, score, bent_gain, on_top),
             None => on_top,
         };
-        let best = self.in_place_of_one(&found, bent_gain, least, best);
+        let best = best.or_else(|| self.in_place_of_one(&found, bent_gain, least));
         match best {
             Some((with, structure)) => {
                 let corrected = with_what_is_left(with, weighed);
@@ -126,19 +126,13 @@ impl Context<'_> {
         }
     }
 
-    /// What is there `so_far`, or the structure that stands in the place of one name of several and explains more than that name
-    /// does however it bends: a drag that grows with speed looks like a drag, and like friction that does.
-    fn in_place_of_one(
-        &self,
-        found: &Fit,
-        bent_gain: f64,
-        least: f64,
-        so_far: Option<(Fit, FoundStructure)>,
-    ) -> Option<(Fit, FoundStructure)> {
+    /// The structure that stands in the place of one name of several and explains more than that name does however it bends: a
+    /// drag that grows with speed looks like a drag, and like friction that does.
+    fn in_place_of_one(&self, found: &Fit, bent_gain: f64, least: f64) -> Option<(Fit, FoundStructure)> {
         let is_name = |index: &usize| matches!(found.model.terms[*index], Term::Named(_));
         let names: Vec<usize> = (0..found.model.terms.len()).filter(is_name).collect();
-        if so_far.is_some() || names.len() < 2 {
-            return so_far;
+        if names.len() < 2 {
+            return None;
         }
         let best = names
             .into_iter()

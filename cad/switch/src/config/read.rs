@@ -32,15 +32,9 @@ pub fn read_over(
     let mut places = Places::default();
     for (table, item) in document.as_table().iter() {
         let place = at(key_span(document.as_table(), table));
-        if !sections().contains(&table) {
-            return Err(another_kind(document.as_table(), &place)
-                .unwrap_or_else(|| unknown(table, &sections(), "table", place)));
-        }
-        let Some(entries) = item.as_table_like() else {
-            return Err(
-                ConfigError::new(table, display(item), format!("write it as a table: [{table}]")).at(place)
-            );
-        };
+        let entries = item.as_table_like().filter(|_| sections().contains(&table)).ok_or_else(|| {
+            another_kind(document.as_table(), &place).unwrap_or_else(|| no_table(table, item, place.clone()))
+        })?;
         for (key, item) in entries.iter() {
             let place = at(item.span().or_else(|| key_span(entries, key)));
             let parameter = find(table, key, at(key_span(entries, key)))?;
@@ -139,8 +133,16 @@ fn nearest(parameter: &Parameter<Configuration>, value: &Value) -> Option<(Strin
     let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64))?;
     let [low, high] = (parameter.ends)()?;
     let taken = if number.is_nan() { return None } else { number.clamp(low, high) };
-    // Whole numbers between the ends of a list are asked for in words.
+    // What lies between them and is refused nevertheless, such as 3.5 grooves, words alone mend.
     (taken != number).then(|| (parameter.path(), taken.to_string()))
+}
+
+/// The error of a name at the top that is none of a table, or holds none.
+fn no_table(name: &str, item: &Item, place: Place) -> ConfigError {
+    if !sections().contains(&name) {
+        return unknown(name, &sections(), "table", place);
+    }
+    ConfigError::new(name, display(item), format!("write it as a table: [{name}]")).at(place)
 }
 
 /// Tables and keys that only another kind of file has, with what it is and which command reads it (FILE stands for it).
@@ -166,8 +168,13 @@ const OTHER_KINDS: [(&[&str], &str, &str); 7] = [
     ),
 ];
 
-/// Says so where a whole file is of another kind: no word in it is near one of a configuration.
+/// Says so where a whole file is of another kind. One that has a table of a configuration is a configuration, with a word in it that
+/// is none.
 fn another_kind(document: &dyn TableLike, place: &Place) -> Option<ConfigError> {
+    let has_table = |section: &&str| document.get(section).is_some_and(Item::is_table_like);
+    if sections().iter().any(has_table) {
+        return None;
+    }
     let (key, kind, remedy) = OTHER_KINDS.iter().find_map(|(keys, kind, remedy)| {
         keys.iter().find(|key| document.contains_key(key)).map(|key| (key, kind, remedy))
     })?;

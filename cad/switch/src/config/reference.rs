@@ -89,6 +89,11 @@ mod tests {
             ),
             ("[shell]\nwith_mm = 3\n", "a.toml:2: shell.with_mm is no known key; did you mean \"width_mm\"?"),
             ("\n\n[shel]\nwidth_mm = 3\n", "a.toml:3: shel is no known table; did you mean \"shell\"?"),
+            ("[shell]\nwidth_mm = 3\n[noise]\n", "a.toml:3: noise is no known table"),
+            (
+                "silicone = true\n[noise]\n",
+                "a.toml:1: noise is of no configuration: this is a rig to simulate",
+            ),
             (
                 "[support]\nslots = \"some\"\n",
                 "a.toml:2: support.slots = \"some\" is not accepted; give \"all\" or \"occupied\"",

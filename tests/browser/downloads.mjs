@@ -135,6 +135,11 @@ export async function downloadsByAModel(visit, site, { binary, scratch, findings
   const differ = [...new Set([...line.keys(), ...own.keys()])].filter((file) => line.get(file) !== own.get(file));
   findings.check(`${own.size} files by a model are those of the command line`, own.size > 20 && differ.length === 0, differ.join(' '));
   await visit.click('#files-close');
+  // What stands in for a design that the model cannot be carried to is by the published constants, and says so.
+  const address = await visit.page.evaluate(() => location.hash);
+  await visit.page.goto('about:blank');
+  await visit.open(`${site.address}${address}&segment.grooves=14`);
+  await visit.check('a published curve is not called that of a model', () => !document.querySelector('#trouble').hidden && !/your model/.test(document.querySelector('#trust').textContent));
 }
 
 // Chromium drops what a page saves beyond ten files a second; no hand is so fast.

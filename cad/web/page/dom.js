@@ -34,7 +34,7 @@ function later(act, pause_ms) {
 }
 
 // A number as one would write it: no digits that say nothing.
-const plain = (value, digits = 4) => (typeof value === 'number' ? String(Number(value.toFixed(digits)) === value || Math.abs(value) >= 1 ? Number(value.toFixed(digits)) : Number(value.toPrecision(digits))) : String(value));
+const plain = (value, digits = 4) => (typeof value === 'number' ? String(Number(Math.abs(value) < 1 ? value.toPrecision(digits) : value.toFixed(digits))) : String(value));
 
 function shownValue(value) {
   if (Array.isArray(value)) return `[${value.join(', ')}]`;

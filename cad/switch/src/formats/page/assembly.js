@@ -32,7 +32,8 @@ const SAMPLES = 600;
 const TENDON_STEP = 11;
 // Without a graphics card the processor fills every pixel: few while something moves, and all once it has stood still so long.
 const QUICK_RATIO = 0.5, STILL_MS = 700;
-// Facets of a round edge turn by 30 degrees at most, in coarse designs too; edges of the parts by more.
+// Facets of round edges turn by less as a rule, in coarse designs too; edges of the parts by more. None of those with pins in 4, 8
+// and 12 turns by 30 to 40 degrees.
 const SHARP_DEG = 35;
 const SHARP = Math.cos(SHARP_DEG * Math.PI / 180);
 

@@ -1,5 +1,5 @@
-//! What nobody has named: steps, waves, worn spots, resonances, one defective layout, a material that remembers, another
-//! tendon, two operators.
+//! What nobody has named: steps, waves, worn spots, resonances, Stribeck's dip, one defective layout, a material that
+//! remembers, another tendon, two operators.
 
 use std::f64::consts::{PI, TAU};
 
@@ -91,6 +91,14 @@ pub enum Course {
         /// Half width at half height, in percent of full speed.
         width_pct: f64,
     },
+    /// Stribeck's dip: friction falls to its lowest at a speed, where `size` of it is missing, and rises beyond; a bell
+    /// over the logarithm of the speed.
+    Stribeck {
+        /// Speed of least friction in percent.
+        speed_pct: f64,
+        /// Ratio of speeds, as its logarithm, at which a share of 1/e is left of the dip.
+        width: f64,
+    },
     /// One layout, wherever its pins stand.
     Layout {
         /// Its occupied grooves.
@@ -134,7 +142,7 @@ impl Disturbance {
                 &[Covariate::Time]
             }
             Course::StrokeWave { .. } | Course::Spot { .. } => &[Covariate::Position],
-            Course::Resonance { .. } => &[Covariate::Speed],
+            Course::Resonance { .. } | Course::Stribeck { .. } => &[Covariate::Speed],
             Course::Layout { .. } => &[Covariate::Condition],
             Course::Memory { .. } => &[Covariate::Load, Covariate::Repetition],
             // Groups of series at random go along with everything a little, and with nothing clearly.
@@ -152,6 +160,7 @@ impl Disturbance {
             }
             Course::Spot { at, width, .. } => (vec![at, width], vec![width]),
             Course::Resonance { speed_pct, width_pct } => (vec![speed_pct, width_pct], vec![width_pct]),
+            Course::Stribeck { speed_pct, width } => (vec![speed_pct, width], vec![speed_pct, width]),
             Course::Layout { .. }
             | Course::Swap { .. }
             | Course::Operators { .. }
@@ -182,6 +191,9 @@ impl Disturbance {
             }
             Course::Resonance { speed_pct: v, width_pct } => {
                 1.0 / (1.0 + ((speed_pct - v) / width_pct).powi(2))
+            }
+            Course::Stribeck { speed_pct: lowest, width } => {
+                -(-((speed_pct / lowest).ln() / width).powi(2)).exp()
             }
             Course::Layout { pins: defective } => flag(pins == defective.as_slice()),
             Course::Memory { repetitions } => at.step_down * (-(at.through - 1.0) / repetitions).exp(),
@@ -234,6 +246,10 @@ mod tests {
         assert_eq!((on(step(), 0.39, 0.0, 50.0), on(step(), 0.41, 0.0, 50.0)), (1.0, 1.5));
         let resonance = Course::Resonance { speed_pct: 50.0, width_pct: 1.0 };
         assert_eq!(on(resonance, 0.0, 0.0, 51.0), 1.25);
+        let dip = || Course::Stribeck { speed_pct: 50.0, width: 0.5 };
+        assert_eq!(on(dip(), 0.0, 0.0, 50.0), 0.5);
+        let beside = on(dip(), 0.0, 0.0, 50.0 * 0.5f64.exp());
+        assert!((beside - 1.0 + 0.5 / 1f64.exp()).abs() < 1e-12, "{beside}");
     }
 
     #[test]

@@ -44,6 +44,6 @@ pub use rehearse::rehearse;
 pub use series_marks::{SeriesMark, SeriesMarks};
 pub use simulate::{Simulated, simulate, simulate_rows};
 pub use study::{
-    Case, CaseOutcome, ExperimentOutcome, ExperimentStudy, FormOutcome, FormStudy, Group, Standing, Study,
-    Truth, experiment_cases, plan_of, run_case, run_experiment_case, run_form_case, study_cases,
+    Case, CaseOutcome, ExperimentOutcome, ExperimentStudy, FormOutcome, FormStudy, Group, Promised, Standing,
+    Study, Truth, experiment_cases, plan_of, run_case, run_experiment_case, run_form_case, study_cases,
 };

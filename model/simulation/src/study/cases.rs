@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::masks::{drag_n, masked, sizes};
 use super::nulls::{self, NULLS, OFTEN};
-use super::outside::{OUTSIDE, outside};
+use super::outside::{LATER, OUTSIDE, outside};
 use crate::effect_forms::forms_of;
 use crate::plan::{EffectPlan, Plan, Protocol};
 
@@ -121,7 +121,16 @@ const SMALL: [(&str, &str, f64); 2] =
 
 /// All kinds of rig. Effects that a protocol cannot show are left out of it.
 pub fn study_cases() -> Vec<Case> {
-    [Protocol::Paper, Protocol::Randomised].into_iter().flat_map(cases_of).collect()
+    let protocols = || [Protocol::Paper, Protocol::Randomised].into_iter();
+    let later = protocols()
+        .flat_map(|protocol| LATER.map(|(name, covariates)| outside_case(name, covariates, protocol)));
+    protocols().flat_map(cases_of).chain(later).collect()
+}
+
+fn outside_case(name: &str, covariates: &'static [Covariate], protocol: Protocol) -> Case {
+    let or_named = (name == "two operators").then_some("load_cell_offset");
+    let truth = Truth::Outside { covariates, or_named };
+    Case { name: name.to_owned(), protocol, group: Group::Outside, truth, every_noise: false }
 }
 
 fn cases_of(protocol: Protocol) -> Vec<Case> {
@@ -157,10 +166,7 @@ fn cases_of(protocol: Protocol) -> Vec<Case> {
             push(Group::Confounded, format!("small {id} of {size}"), Truth::SmallConfounded([id, rival]));
         }
     }
-    for (name, covariates) in OUTSIDE {
-        let or_named = (name == "two operators").then_some("load_cell_offset");
-        push(Group::Outside, name.to_owned(), Truth::Outside { covariates, or_named });
-    }
+    cases.extend(OUTSIDE.map(|(name, covariates)| outside_case(name, covariates, protocol)));
     cases
 }
 

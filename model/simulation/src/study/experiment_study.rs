@@ -2,12 +2,15 @@
 //! makes of them, beside as many minutes of the paper's protocol.
 
 use pinswitch_calibration::effects::{Vocabulary, effect_named};
-use pinswitch_calibration::experiment::{Known, PlannedRun, RigLimits, paper_runs, propose, rows_of};
-use pinswitch_calibration::inference::{FoundEffect, Levels, Model, Observations, select};
-use pinswitch_calibration::table::{Frame, PlateauRow, PlateauTable};
-use pinswitch_calibration::{Calibration, ModelFile, Verdict, calibrate};
+use pinswitch_calibration::experiment::{
+    Known, PlannedRun, Proposal, QuestionOutlook, RigLimits, paper_runs, propose, rows_of,
+};
+use pinswitch_calibration::inference::{FoundEffect, Levels};
+use pinswitch_calibration::table::{PlateauRow, PlateauTable};
+use pinswitch_calibration::{Answer, Asked, AskedQuestion, Calibration, ModelFile, Verdict, calibrate};
 
 use super::cases::{Case, Group, Truth, plan_of};
+use super::told_probability::{Promised, table_of};
 use crate::next_session::plan_for;
 use crate::plan::{Plan, Protocol};
 use crate::simulate::{simulate, simulate_rows};
@@ -49,6 +52,10 @@ pub struct ExperimentOutcome {
     pub repeated: Option<Standing>,
     /// Minutes that the proposal took.
     pub minutes: f64,
+    /// What was told of each question, and whether the proposed session answered it.
+    pub told: Vec<Promised>,
+    /// The same of the paper's protocol.
+    pub told_of_repeating: Vec<Promised>,
 }
 
 /// The kinds of rig of this chapter.
@@ -81,49 +88,63 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
     let plan = open_plan(case, seed, factor);
     let rows = simulate(&plan).rows;
     let found = calibrate(&rows, levels).ok()?;
-    let ids: Vec<Vec<&str>> = found.selection.effects.iter().map(FoundEffect::ids).collect();
-    let first = standing(case, found.report.verdict, &ids);
+    let first = standing(case, &found);
     if first != Standing::Open {
-        return Some(ExperimentOutcome { first, proposed: None, repeated: None, minutes: 0.0 });
+        return Some(ExperimentOutcome {
+            first,
+            proposed: None,
+            repeated: None,
+            minutes: 0.0,
+            told: Vec::new(),
+            told_of_repeating: Vec::new(),
+        });
     }
     let rig = RigLimits::default();
     let proposal = proposed(&found, &rows, &rig, levels)?;
-    let after = |runs: &[PlannedRun]| {
-        let joined = joined(&rows, session(&plan, runs, &rig)?)?;
-        let frame = Frame::new(&joined);
-        let mut data = Observations::new(&frame, &joined)?;
-        let both = select(&Model::baseline(frame), &mut data, levels);
-        let ids: Vec<Vec<&str>> = both.effects.iter().map(FoundEffect::ids).collect();
-        Some(standing(case, Verdict::of(&both), &ids))
+    let after = |runs: &[PlannedRun], told: fn(&QuestionOutlook) -> f64| {
+        let asked = Asked {
+            minutes: proposal.minutes,
+            questions: proposal.questions.iter().map(|q| asked(q, told(q))).collect(),
+        };
+        let Some(session) = session(&plan, runs, &rig) else { return (None, Vec::new()) };
+        let Some(rows) = joined(&rows, session) else { return (None, Vec::new()) };
+        let Ok(both) = calibrate(&rows, levels) else { return (None, Vec::new()) };
+        let highest_n = rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
+        let answers = asked.answered(&both.report, highest_n).questions;
+        let promised = answers
+            .iter()
+            .map(|q| Promised { probability: q.resolved_probability, is_answered: q.answer != Answer::Open });
+        (Some(standing(case, &both)), promised.collect())
     };
-    Some(ExperimentOutcome {
-        first,
-        proposed: after(&proposal.0),
-        repeated: after(&paper_runs(&rig, proposal.1)),
-        minutes: proposal.1,
-    })
+    let (proposed, told) = after(&proposal.runs, |q| q.resolved_probability);
+    let (repeated, told_of_repeating) = after(&paper_runs(&rig, proposal.minutes), |q| q.by_repeating);
+    Some(ExperimentOutcome { first, proposed, repeated, minutes: proposal.minutes, told, told_of_repeating })
 }
 
-fn standing(case: &Case, verdict: Verdict, named: &[Vec<&str>]) -> Standing {
-    match verdict {
+/// A question as a plan's file holds it.
+fn asked(question: &QuestionOutlook, resolved_probability: f64) -> AskedQuestion {
+    AskedQuestion {
+        between: question.between.clone(),
+        size: question.size,
+        resolved_probability,
+        answer: Answer::Open,
+    }
+}
+
+fn standing(case: &Case, found: &Calibration) -> Standing {
+    let named: Vec<Vec<&str>> = found.selection.effects.iter().map(FoundEffect::ids).collect();
+    match found.report.verdict {
         Verdict::Attributed if named == [vec![case.name.as_str()]] => Standing::Alone,
         Verdict::Ambiguous | Verdict::Inconclusive => Standing::Open,
         _ => Standing::Other,
     }
 }
 
-/// Runs and their minutes.
-fn proposed(
-    found: &Calibration,
-    rows: &[PlateauRow],
-    rig: &RigLimits,
-    levels: Levels,
-) -> Option<(Vec<PlannedRun>, f64)> {
+fn proposed(found: &Calibration, rows: &[PlateauRow], rig: &RigLimits, levels: Levels) -> Option<Proposal> {
     let model = ModelFile::new(&found.selection.augmented, &found.data, found.selection.noise);
     let vocabulary = Vocabulary::built_in();
     let known = Known { report: &found.report, model: &model, rows, vocabulary: &vocabulary, name: "study" };
-    let proposal = propose(known, rig, MINUTES, levels).ok()?;
-    Some((proposal.runs, proposal.minutes))
+    propose(known, rig, MINUTES, levels).ok()
 }
 
 /// The runs made on the rig of a plan, as a later session.
@@ -166,7 +187,10 @@ impl ExperimentStudy {
         }
         let all: Vec<&ExperimentOutcome> = self.outcomes.iter().flat_map(|(_, o)| o).collect();
         text.push_str(&row("all", &all));
-        text
+        let promised = |of: fn(&ExperimentOutcome) -> &Vec<Promised>| -> Vec<Promised> {
+            all.iter().flat_map(|outcome| of(outcome)).copied().collect()
+        };
+        format!("{text}\n{}", table_of(&promised(|o| &o.told), &promised(|o| &o.told_of_repeating)))
     }
 }
 

@@ -10,6 +10,7 @@ mod outside;
 mod said;
 mod shown;
 mod summary;
+mod told_probability;
 mod true_form;
 
 use std::collections::BTreeMap;
@@ -20,6 +21,7 @@ pub use experiment_study::{
 };
 pub use form_study::{FormOutcome, FormStudy, run_form_case};
 pub use outcome::{CaseOutcome, run_case};
+pub use told_probability::Promised;
 
 use summary::{median_of, said};
 

@@ -23,6 +23,9 @@ pub(super) const OUTSIDE: [(&str, &[Covariate]); 12] = [
     ("two operators", &Covariate::ALL),
 ];
 
+/// Kinds that came later: they stand behind all others, whose seeds go by their places.
+pub(super) const LATER: [(&str, &[Covariate]); 1] = [("Stribeck's dip", &[Covariate::Speed])];
+
 /// Something outside the vocabulary.
 pub(super) fn outside(
     name: &str,
@@ -96,6 +99,14 @@ pub(super) fn outside(
         "two operators" => {
             let turns = if even { Turns::Series } else { Turns::Half };
             of(Course::Operators { turns }, DisturbanceTarget::Reading, sign * newtons)
+        }
+        "Stribeck's dip" => {
+            // Speeds that follow the load lie within a fifth of each other.
+            let (speed_pct, width) = match protocol {
+                Protocol::Paper => (random.random_range(50.0..54.0), random.random_range(0.015..0.04)),
+                Protocol::Randomised => (random.random_range(45.0..65.0), random.random_range(0.1..0.35)),
+            };
+            of(Course::Stribeck { speed_pct, width }, DisturbanceTarget::Friction, friction)
         }
         _ => {
             let (least, most, width_pct) = match protocol {

@@ -74,6 +74,9 @@ fn course(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
         Course::Resonance { speed_pct, width_pct } => {
             format!("1/(1 + ((speed_pct - {speed_pct})/{width_pct})^2)")
         }
+        Course::Stribeck { speed_pct, width } => {
+            format!("(0 - exp(-(ln(speed_pct/{speed_pct})/{width})^2))")
+        }
         Course::Layout { pins } => {
             let condition = frame.conditions.iter().find(|c| c.pins == *pins)?;
             format!(
@@ -104,7 +107,7 @@ pub(super) fn true_shapes(disturbance: &Disturbance) -> &'static [&'static str] 
                 &["bump", "dip"]
             }
         }
-        Course::Resonance { .. } => &["bump", "dip"],
+        Course::Resonance { .. } | Course::Stribeck { .. } => &["bump", "dip"],
         Course::Memory { .. } => &["memory"],
         Course::Operators { .. } => &[],
     }

@@ -1,0 +1,66 @@
+//! Whether questions come out answered as often as was told before the session: a forecast is right if of those told with
+//! 80 % four in five come true.
+
+/// One question of a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Promised {
+    /// Probability of an answer that was told.
+    pub probability: f64,
+    /// Whether there was one.
+    pub is_answered: bool,
+}
+
+/// Where the rows of the table end.
+const UP_TO: [f64; 7] = [0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
+
+/// What was told against what came, of the proposed sessions and of the protocol repeated, by what was told; in Markdown.
+pub(super) fn table_of(proposed: &[Promised], repeated: &[Promised]) -> String {
+    let mut text = String::from(
+        "| told probability of an answer | questions of proposed sessions | told, mean | answered | questions of the protocol repeated | told, mean | answered |\n|---|---|---|---|---|---|---|\n",
+    );
+    let mut from = 0.0;
+    for to in UP_TO {
+        let is_last = to >= 1.0;
+        let within = |p: f64| p >= from && (p < to || is_last);
+        let cells = [proposed, repeated].map(|all| cells(all, within));
+        text.push_str(&format!(
+            "| {:.0} to {:.0} % | {} | {} |\n",
+            100.0 * from,
+            100.0 * to,
+            cells[0],
+            cells[1]
+        ));
+        from = to;
+    }
+    text.push_str(&format!("| all | {} | {} |\n", cells(proposed, |_| true), cells(repeated, |_| true)));
+    text
+}
+
+fn cells(all: &[Promised], within: impl Fn(f64) -> bool) -> String {
+    let told: Vec<&Promised> = all.iter().filter(|p| within(p.probability)).collect();
+    if told.is_empty() {
+        return "0 |  | ".to_owned();
+    }
+    let mean = told.iter().map(|p| p.probability).sum::<f64>() / told.len() as f64;
+    let answered = told.iter().filter(|p| p.is_answered).count();
+    let share = 100.0 * answered as f64 / told.len() as f64;
+    format!("{} | {:.1} % | {answered} ({share:.1} %)", told.len(), 100.0 * mean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_question_is_counted_once_by_what_was_told() {
+        let of = |probability, is_answered| Promised { probability, is_answered };
+        let table =
+            table_of(&[of(0.0, false), of(0.8, true), of(0.9, false), of(1.0, true)], &[of(0.5, true)]);
+        let rows: Vec<&str> = table.lines().skip(2).collect();
+        assert_eq!(rows[0], "| 0 to 5 % | 1 | 0.0 % | 0 (0.0 %) | 0 |  |  |");
+        assert_eq!(rows[3], "| 50 to 80 % | 0 |  |  | 1 | 50.0 % | 1 (100.0 %) |");
+        assert_eq!(rows[4], "| 80 to 95 % | 2 | 85.0 % | 1 (50.0 %) | 0 |  |  |");
+        assert_eq!(rows[6], "| 99 to 100 % | 1 | 100.0 % | 1 (100.0 %) | 0 |  |  |");
+        assert_eq!(rows[7], "| all | 4 | 67.5 % | 2 (50.0 %) | 1 | 50.0 % | 1 (100.0 %) |");
+    }
+}

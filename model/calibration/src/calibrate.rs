@@ -104,13 +104,13 @@ pub fn calibrate_among(
     vocabulary: &Vocabulary,
     levels: Levels,
 ) -> Result<Calibration, CalibrationError> {
-    let found = calibrated(rows, vocabulary, levels)?;
+    let found = with_own(rows, vocabulary, levels)?;
     let barred = only_drawn(&found, vocabulary);
     if barred.is_empty() {
         return Ok(found);
     }
     let confirmed = vocabulary.retaining(|own| !barred.contains(&own.definition().id));
-    let mut again = calibrated(rows, &confirmed, levels)?;
+    let mut again = with_own(rows, &confirmed, levels)?;
     let tried = std::mem::take(&mut again.report.trials);
     // In the order in which they were read; what is not in the vocabulary now keeps its trial.
     again.report.trials = found
@@ -132,20 +132,43 @@ fn only_drawn(found: &Calibration, vocabulary: &Vocabulary) -> Vec<String> {
     drawn.filter(|own| is_named(&own.id) && !is_confirmed(&own.id)).map(|own| own.id.clone()).collect()
 }
 
-fn calibrated(
+/// Share by which the held-out error may be larger with an effect of one's own among the names than without it in the search.
+const WORSE_WITH_OWN: f64 = 1.25;
+
+/// Searches with the effects of one's own, and without. What they are no part of must not depend on them: where none of them
+/// is named, or with them the held-out error is clearly larger, what the built-in effects and the shapes say is told, with the
+/// trials, limits and rivals of all.
+fn with_own(
     rows: &[PlateauRow],
     vocabulary: &Vocabulary,
     levels: Levels,
 ) -> Result<Calibration, CalibrationError> {
+    let found = calibrated(rows, [vocabulary, vocabulary], levels)?;
+    if vocabulary.own().next().is_none() {
+        return Ok(found);
+    }
+    let without = calibrated(rows, [&Vocabulary::built_in(), vocabulary], levels)?;
+    let is_own = |id: &str| vocabulary.own().any(|own| own.definition().id == id);
+    let names_own = found.selection.effects.iter().any(|effect| is_own(effect.effect.id()));
+    let error_n = |c: &Calibration| c.report.augmented.heldout_rmse_n;
+    Ok(if names_own && error_n(&found) <= WORSE_WITH_OWN * error_n(&without) { found } else { without })
+}
+
+/// Searches among one vocabulary, and tells what was found beside another one that holds more.
+fn calibrated(
+    rows: &[PlateauRow],
+    [searched, told]: [&Vocabulary; 2],
+    levels: Levels,
+) -> Result<Calibration, CalibrationError> {
     let frame = Frame::new(rows);
-    let start = Model::baseline(frame.clone()).among(vocabulary);
+    let start = Model::baseline(frame.clone()).among(searched);
     let needed = start.values().len() + ROWS_FOR_NOISE;
     let too_few = CalibrationError::TooFewRows { found: rows.len(), needed };
     let mut whole = Observations::new(&frame, rows).ok_or_else(|| too_few.clone())?;
     if rows.len() < needed {
         return Err(too_few);
     }
-    has_values(&start, &whole, rows)?;
+    has_values(&start.clone().among(told), &whole, rows)?;
     let mut data = if whole.points.len() > MOST_ROWS {
         let rough = fit(&start, &Weighed::new(&whole, Noise::constant(0.1, 0.03)));
         let sd = whole.weigh_outliers(&rough.residual_n);
@@ -158,7 +181,7 @@ fn calibrated(
     let as_it_came = data.clone();
     let learned_of = |part| learn(part, &start, &as_it_came, levels);
     let search = || {
-        let selection = select(&start, &mut data, levels);
+        let selection = select(&start, &mut data, levels).told_among(told, &data, levels);
         let held = held_out(&selection.augmented.model, &Weighed::new(&data, selection.noise));
         let form = drawn(rows, &selection, &data, held);
         (selection, held, form)

@@ -40,6 +40,8 @@ pub(super) struct Question {
     pub(super) between: [String; 2],
     /// Size of an effect that is asked about, in the unit of its first constant; none where there is no such size.
     pub(super) size: Option<f64>,
+    /// Whether it cannot be negative.
+    is_one_sided: bool,
     /// Each way to ask it: if one is true, by how much does the other fit worse.
     ways: Vec<Way>,
     /// Squares by which the wrong one must fit worse.
@@ -87,14 +89,16 @@ impl Question {
         }
     }
 
-    /// Probability that they answer it, which is also that there is no such effect: its limits lie within the size asked about.
+    /// Probability that they answer it, which is also that there is no such effect: its limits lie within the size asked about,
+    /// the upper one alone where it cannot be negative.
     pub(super) fn answer_probability(&self, information: &DMatrix<f64>) -> f64 {
         let seen = self.probability(information);
         let squares = self.squares(information);
         if self.size.is_none() || !squares.is_finite() {
             return seen;
         }
-        let excluded = (2.0 * Normal::standard().cdf(squares.max(0.0).sqrt() - EXCLUDED) - 1.0).max(0.0);
+        let within = Normal::standard().cdf(squares.max(0.0).sqrt() - EXCLUDED);
+        let excluded = if self.is_one_sided { within } else { (2.0 * within - 1.0).max(0.0) };
         THERE * seen + (1.0 - THERE) * excluded
     }
 
@@ -211,7 +215,7 @@ impl Agenda {
             let Some(values) = of_consequence(effect, limit, model) else { continue };
             let column = agenda.absent(effect, values, model);
             agenda.ask_whether(effect.id(), column, 1.0, &own, 1.0);
-            agenda.of_size(limit.typical);
+            agenda.of_size(effect, limit.typical);
         }
         for invisible in &report.invisible {
             let Some(effect) = model.vocabulary.named(&invisible.id) else { continue };
@@ -222,7 +226,7 @@ impl Agenda {
                 let size = values.first().copied().unwrap_or(1.0);
                 let column = agenda.absent(effect, values, model);
                 agenda.ask_whether(effect.id(), column, 1.0, &own, UNSUSPECTED);
-                agenda.of_size(size);
+                agenda.of_size(effect, size);
             }
         }
         agenda.ask_again(report, model);
@@ -260,6 +264,7 @@ impl Agenda {
             agenda.questions.push(Question {
                 between: [found.id.clone(), effect.id().to_owned()],
                 size: None,
+                is_one_sided: false,
                 ways,
                 needed: levels.rival,
                 weight: 1.0,
@@ -316,10 +321,11 @@ impl Agenda {
         information
     }
 
-    /// Tells the size that the last question is about.
-    fn of_size(&mut self, size: f64) {
+    /// Tells the size of the effect that the last question is about.
+    fn of_size(&mut self, effect: &dyn Effect, size: f64) {
         if let Some(question) = self.questions.last_mut() {
             question.size = Some(size.abs());
+            question.is_one_sided = effect.description().one_sided;
         }
     }
 
@@ -327,6 +333,7 @@ impl Agenda {
         self.questions.push(Question {
             between: [id.to_owned(), NONE.to_owned()],
             size: None,
+            is_one_sided: false,
             ways: vec![Way { truth: column, size, nuisance: own.to_vec() }],
             needed: SEEN,
             weight,
@@ -402,17 +409,23 @@ mod tests {
     /// An effect that is not there is excluded by less than what shows one that is.
     #[test]
     fn an_answer_is_also_that_there_is_none() {
-        let asked = |size| Question {
+        let asked = |size, is_one_sided| Question {
             between: ["adhesion".to_owned(), NONE.to_owned()],
             size,
+            is_one_sided,
             ways: vec![Way { truth: 0, size: 1.0, nuisance: Vec::new() }],
             needed: SEEN,
             weight: 1.0,
         };
-        let told = |size, d: f64| asked(size).answer_probability(&DMatrix::from_element(1, 1, d * d));
+        let of =
+            |question: Question, d: f64| question.answer_probability(&DMatrix::from_element(1, 1, d * d));
+        let told = |size, d| of(asked(size, false), d);
         assert!((told(None, 4.0) - 0.5).abs() < 1e-6);
         assert!((told(Some(0.2), 4.0) - (0.1 + 0.8 * 0.9586)).abs() < 1e-3, "{}", told(Some(0.2), 4.0));
         assert!(told(Some(0.2), 1.9) < 0.02 && told(Some(0.2), 8.0) > 0.999);
+        // Noise alone brings the upper limit of one that cannot be negative below the size, one time in six.
+        let above = of(asked(Some(0.2), true), 1.0);
+        assert!((above - 0.8 * 0.1685).abs() < 1e-3, "{above}");
     }
 
     #[test]

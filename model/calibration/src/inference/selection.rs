@@ -17,7 +17,7 @@ use super::search::{VISIBLE_SHARE, flips};
 use super::unnamed::FoundStructure;
 use super::variance_components::estimate;
 use super::weighed::Weighed;
-use crate::effects::Effect;
+use crate::effects::{Effect, Vocabulary};
 
 /// An effect that explains what a named one explains as well.
 #[derive(Clone, Debug)]
@@ -136,6 +136,27 @@ impl Selection {
             isolated: None,
         };
         finish(bare, data, levels)
+    }
+
+    /// The same table, told beside the effects of another vocabulary, which holds all that was found.
+    #[must_use]
+    pub(crate) fn told_among(self, vocabulary: &Vocabulary, data: &Observations, levels: Levels) -> Self {
+        if *vocabulary == self.augmented.model.vocabulary {
+            return self;
+        }
+        let among = |fitted: Fit| Fit { model: fitted.model.among(vocabulary), ..fitted };
+        let augmented = among(self.augmented);
+        let same = Explanation {
+            named: augmented.model.clone(),
+            augmented,
+            baseline: among(self.baseline),
+            structure: self.structure,
+            structure_gain: self.structure_gain,
+            structures_tried: self.structures_tried,
+            noise: self.noise,
+            isolated: None,
+        };
+        finish(same, data, levels)
     }
 
     /// Effects that this data cannot show, in the order in which they act.

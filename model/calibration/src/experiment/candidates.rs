@@ -1,14 +1,14 @@
 //! Every run that a rig could make: contact, load, speed, dwell, repetitions, and where a question asks for it the order
 //! of the loads and the time in the session.
 
-use pinswitch_friction::published;
+use pinswitch_friction::{Substrate, published};
 
 use super::question::Agenda;
 use super::rig::RigLimits;
 use super::runs::{PlannedRun, append};
 use super::settings::{dwells_s, speeds_pct};
-use crate::effects::Covariate;
-use crate::inference::Model;
+use crate::effects::{Covariate, Stage};
+use crate::inference::{Model, Term};
 use crate::table::{PlateauRow, Sweep};
 
 /// Repetitions to choose from, eccentric and concentric.
@@ -26,6 +26,8 @@ pub(super) struct Candidate {
     pub(super) late: bool,
     /// The weight that hung before it, in grams, where a question is about that.
     pub(super) after_g: Option<f64>,
+    /// Of a run with descending loads, the next heavier weight in grams: one such must hang before it in its mount.
+    pub(super) down_from_g: Option<f64>,
 }
 
 impl Candidate {
@@ -41,6 +43,16 @@ impl Candidate {
             && self.run.load_mass_g == other.run.load_mass_g
     }
 
+    /// The run that loads descend from, as short as runs are, where nothing heavier stands before.
+    pub(super) fn lift(&self) -> Option<PlannedRun> {
+        Some(PlannedRun {
+            sweep: Sweep::Up,
+            load_mass_g: self.down_from_g?,
+            repetitions: REPETITIONS[0],
+            ..self.run.clone()
+        })
+    }
+
     /// Minutes of it beside `others`: recording, and what has to be changed for it alone.
     pub(super) fn minutes<'a>(
         &self,
@@ -48,8 +60,12 @@ impl Candidate {
         rig: &RigLimits,
     ) -> f64 {
         let is_loaded = others.clone().any(|other| other.shares_load(self));
+        let is_heavier = |other: &Self| other.run.load_mass_g > self.run.load_mass_g;
+        let can_descend = others.clone().any(|other| other.shares_mount(self) && is_heavier(other));
         let is_mounted = is_loaded || others.any(|other| other.shares_mount(self));
+        let lift = self.lift().filter(|_| !can_descend);
         self.run.recording_minutes(rig)
+            + lift.map_or(0.0, |lift| lift.recording_minutes(rig) + rig.minutes_per_load_change)
             + if is_loaded { 0.0 } else { rig.minutes_per_load_change }
             + if is_mounted { 0.0 } else { rig.minutes_per_mount_change }
     }
@@ -94,7 +110,7 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
                                 let after_g = agenda
                                     .asks_of_the_load_before()
                                     .then(|| neighbour_g(&loads_g, *load_mass_g, *sweep));
-                                all.push(Candidate { run, late: *late, after_g });
+                                all.push(Candidate { run, late: *late, after_g, down_from_g: None });
                             }
                         }
                     }
@@ -102,11 +118,53 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
             }
         }
     }
-    // The force is greatest while the load is raised; a tenth is left for what the model lacks.
     let rows: Vec<PlateauRow> = all.iter().filter_map(|c| alone(c, "1", rig, 0.0).pop()).collect();
-    let forces = model.frame.points(&rows).map(|points| model.predict(&points)).unwrap_or_default();
-    let fits: Vec<bool> = forces.iter().map(|force| force * 1.1 <= rig.cell_limit_n).collect();
-    all.into_iter().zip(fits).filter(|(_, fits)| *fits).map(|(candidate, _)| candidate).collect()
+    let fits: Vec<bool> = within_cell(model, &rows, rig);
+    let all: Vec<Candidate> =
+        all.into_iter().zip(fits).filter(|(_, fits)| *fits).map(|(candidate, _)| candidate).collect();
+    descending_from_somewhere(all)
+}
+
+/// Whether the cell bears each row: what pulls at it, and what it would say. The force is greatest while the load is raised; a
+/// tenth is left for what the model lacks.
+pub(super) fn within_cell(model: &Model, rows: &[PlateauRow], rig: &RigLimits) -> Vec<bool> {
+    let is_of_the_cell = |term: &Term| match term {
+        Term::Named(effect) => {
+            matches!(effect.description().stage, Stage::CellScale | Stage::CellZero | Stage::CellLimit)
+        }
+        Term::Structure(_) => false,
+    };
+    // A cell at the end of its range says less than what pulls at it.
+    let pulled = model.without_terms(is_of_the_cell);
+    let Ok(points) = model.frame.points(rows).ok_or(()) else { return Vec::new() };
+    let bears = |force_n: f64| force_n * 1.1 <= rig.cell_limit_n;
+    pulled
+        .predict(&points)
+        .into_iter()
+        .zip(model.predict(&points))
+        .map(|(a, b)| bears(a) && bears(b))
+        .collect()
+}
+
+/// The candidates, those with descending loads only where a heavier weight can hang before them.
+fn descending_from_somewhere(all: Vec<Candidate>) -> Vec<Candidate> {
+    let mut loads: Vec<(Substrate, Vec<usize>, Vec<f64>)> = Vec::new();
+    for run in all.iter().map(|c| &c.run) {
+        match loads.iter_mut().find(|(substrate, pins, _)| *substrate == run.substrate && *pins == run.pins) {
+            Some((.., of_contact)) => of_contact.push(run.load_mass_g),
+            None => loads.push((run.substrate, run.pins.clone(), vec![run.load_mass_g])),
+        }
+    }
+    let heavier_g = |run: &PlannedRun| {
+        let (.., of_contact) = loads.iter().find(|(s, pins, _)| *s == run.substrate && *pins == run.pins)?;
+        of_contact.iter().copied().filter(|g| *g > run.load_mass_g).min_by(f64::total_cmp)
+    };
+    all.into_iter()
+        .filter_map(|candidate| match candidate.run.sweep {
+            Sweep::Up => Some(candidate),
+            Sweep::Down => heavier_g(&candidate.run).map(|g| Candidate { down_from_g: Some(g), ..candidate }),
+        })
+        .collect()
 }
 
 /// The weight that hangs before one, as the runs of a mount are ordered: the next lighter one while loads ascend, before the
@@ -181,6 +239,31 @@ pub(super) fn paper_protocol(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::effect_named;
+    use crate::table::Frame;
+    use crate::test_session::session;
+
+    /// What a cell says at the end of its range is less than what pulls at it.
+    #[test]
+    fn a_cell_at_the_end_of_its_range_is_not_loaded_beyond_its_limit() {
+        let rig = RigLimits { cell_limit_n: 58.0, ..RigLimits::default() };
+        let model = Model::baseline(Frame::new(&session(1)));
+        let saturated = model.with_term(Term::Named(effect_named("load_cell_saturation").unwrap()), &[50.0]);
+        let heaviest = |model: &Model| {
+            let all = candidates(model, &rig, &Agenda::default());
+            all.iter().map(|c| c.run.load_mass_g).fold(0.0, f64::max)
+        };
+        let rows: Vec<PlateauRow> = paper_protocol(&rig, f64::INFINITY)
+            .iter()
+            .filter(|run| run.pins.is_empty())
+            .flat_map(|run| super::super::runs::rows_of(std::slice::from_ref(run), &rig, ""))
+            .collect();
+        let rows: Vec<PlateauRow> =
+            rows.into_iter().filter(|row| model.frame.points(std::slice::from_ref(row)).is_some()).collect();
+        assert_eq!(within_cell(&model, &rows, &rig), within_cell(&saturated, &rows, &rig));
+        assert!(within_cell(&model, &rows, &rig).contains(&false));
+        assert!(heaviest(&saturated) <= heaviest(&model));
+    }
 
     #[test]
     fn of_many_loads_the_ends_and_some_between_are_chosen_from() {

@@ -21,6 +21,11 @@ pub(super) enum Trace {
         /// Its constants.
         values: Vec<f64>,
     },
+    /// What another value of one of the model's own constants adds: a switch that was mounted anew may have changed.
+    Renewed {
+        /// Place of the constant.
+        constant: usize,
+    },
     /// What friction would be off by at loads beyond those recorded: nothing at the first load, and in proportion to
     /// what is beyond it [`CONSEQUENCE`] of the friction at the second.
     Beyond {
@@ -83,6 +88,10 @@ impl Design<'_> {
                 Trace::Found { term } => (predicted.clone(), model.without_term(*term).predict(&data.points)),
                 Trace::Absent { effect, values } => {
                     (model.with_term(Term::Named(*effect), values).predict(&data.points), predicted.clone())
+                }
+                Trace::Renewed { constant } => {
+                    columns.push(columns[*constant].clone());
+                    continue;
                 }
                 Trace::Beyond { from_n, to_n } => {
                     let share = |load_n: f64| CONSEQUENCE * ((load_n - from_n) / (to_n - from_n)).max(0.0);

@@ -264,7 +264,8 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
     });
     let mut runs: Vec<PlannedRun> = Vec::new();
     let mut before: Option<&Candidate> = None;
-    for (candidate, asks) in ordered {
+    let lifted = with_lifts(ordered);
+    for (candidate, asks) in &lifted {
         let is_mounted = before.is_some_and(|b| b.shares_mount(candidate));
         let mount = runs.last().map_or(0, |run| run.mount) + usize::from(!is_mounted);
         let is_loaded = is_mounted && before.is_some_and(|b| b.run.load_mass_g == candidate.run.load_mass_g);
@@ -273,10 +274,30 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
             + if is_mounted { 0.0 } else { rig.minutes_per_mount_change };
         // As it is written, so that the file adds up to what is told.
         let minutes = (100.0 * minutes).floor() / 100.0;
-        runs.push(PlannedRun { mount, minutes, asks, ..candidate.run.clone() });
+        runs.push(PlannedRun { mount, minutes, asks: asks.clone(), ..candidate.run.clone() });
         before = Some(candidate);
     }
     runs
+}
+
+/// What a run is for that loads descend from.
+const LIFT: &str = "loads descend from here";
+
+/// The same in order, with a heavier run before the first of descending loads in each mount where there is none: nothing descends
+/// from itself.
+fn with_lifts(ordered: Vec<(&Candidate, String)>) -> Vec<(Candidate, String)> {
+    let mut all: Vec<(Candidate, String)> = Vec::new();
+    for (candidate, asks) in ordered {
+        let is_heavier = |(other, _): &(Candidate, String)| other.run.load_mass_g > candidate.run.load_mass_g;
+        let in_mount = all.iter().rev().take_while(|(other, _)| other.shares_mount(candidate));
+        if let Some(run) = candidate.lift()
+            && !in_mount.into_iter().any(is_heavier)
+        {
+            all.push((Candidate { run, down_from_g: None, ..candidate.clone() }, LIFT.to_owned()));
+        }
+        all.push((candidate.clone(), asks));
+    }
+    all
 }
 
 fn unanswerable(
@@ -314,6 +335,8 @@ fn rounded(probability: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
     use crate::calibrate;
     use crate::test_session::session;
@@ -324,6 +347,43 @@ mod tests {
         let s = &found.selection;
         let file = ModelFile::new(&s.augmented, &found.data, s.noise);
         (found, file, rows)
+    }
+
+    /// Whether before each run of descending loads a heavier one stands in its mount.
+    fn descends_from_somewhere(runs: &[PlannedRun]) -> bool {
+        (0..runs.len()).filter(|i| runs[*i].sweep == Sweep::Down).all(|i| {
+            let before = runs[..i].iter().filter(|run| run.mount == runs[i].mount);
+            before.into_iter().any(|run| run.load_mass_g > runs[i].load_mass_g)
+        })
+    }
+
+    /// A run of descending loads has something to descend from, at the cost of a run where nothing heavier stands before it.
+    #[test]
+    fn loads_descend_from_a_heavier_one() {
+        let rig = RigLimits::default();
+        let run = PlannedRun { minutes: 0.0, ..paper_runs(&rig, 30.0).remove(0) };
+        let of = |load_mass_g, sweep, down_from_g| Candidate {
+            run: PlannedRun { load_mass_g, sweep, ..run.clone() },
+            late: false,
+            after_g: None,
+            down_from_g,
+        };
+        let (up, down) = (of(2005.0, Sweep::Up, None), of(2005.0, Sweep::Down, Some(3007.2)));
+        let heavier = of(4007.8, Sweep::Up, None);
+        let planned = |chosen: &[&Candidate]| {
+            let runs = in_order(chosen.iter().map(|c| (*c, "asked".to_owned())), &rig);
+            assert!(descends_from_somewhere(&runs), "{runs:?}");
+            let before = |i: usize| chosen[..i].iter().copied();
+            let told: f64 = (0..chosen.len()).map(|i| chosen[i].minutes(before(i), &rig)).sum();
+            let spent: f64 = runs.iter().map(|run| run.minutes).sum();
+            assert!(spent <= told + 1e-9, "{spent} {told}");
+            runs
+        };
+        let lifted = planned(&[&up, &down]);
+        assert_eq!(lifted.iter().map(|run| run.load_mass_g).collect::<Vec<_>>(), [2005.0, 3007.2, 2005.0]);
+        assert!(lifted[1].sweep == Sweep::Up && lifted[1].asks == LIFT);
+        assert_eq!(planned(&[&down, &heavier]).len(), 2);
+        assert_eq!(planned(&[&down]).len(), 2);
     }
 
     #[test]
@@ -338,12 +398,22 @@ mod tests {
         for (proposal, minutes) in [(&short, 9.0), (&long, 60.0)] {
             assert!(proposal.minutes <= minutes + 1e-9 && !proposal.runs.is_empty(), "{proposal:?}");
             assert!(proposal.runs.iter().all(|run| !run.asks.is_empty()));
+            assert!(descends_from_somewhere(&proposal.runs), "{proposal:?}");
         }
         let sum = |p: &Proposal| p.questions.iter().map(|q| q.resolved_probability).sum::<f64>();
         assert!(sum(&long) >= sum(&short), "{:?} {:?}", short.questions, long.questions);
         let repeated: f64 = long.questions.iter().map(|q| q.by_repeating).sum();
         assert!(sum(&long) > repeated, "{:?}", long.questions);
         assert_eq!(propose(known, &rig, 60.0, Levels::default()).unwrap(), long);
+        // A dwell that is the session's own cannot be told from another specimen.
+        let dwells =
+            |runs: &[PlannedRun]| runs.iter().map(|run| run.dwell_s.to_bits()).collect::<BTreeSet<_>>();
+        let is_asked = |p: &Proposal| {
+            p.questions.iter().any(|q| q.between[0] == "dwell_relaxation" && q.resolved_probability > 0.5)
+        };
+        for proposal in [&short, &long].into_iter().filter(|p| is_asked(p)) {
+            assert!(dwells(&proposal.runs).len() > 1, "{proposal:?}");
+        }
         let nothing = propose(known, &rig, 1.0, Levels::default()).unwrap_err().to_string();
         assert!(nothing.contains("give more --minutes"), "{nothing}");
     }

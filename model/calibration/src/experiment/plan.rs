@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 
 use pinswitch_friction::sort_by_number;
 
-use super::candidates::{Candidate, paper_protocol};
+use super::candidates::{Candidate, paper_protocol, within_cell};
 use super::in_order;
 use super::information::Design;
 use super::question::Question;
@@ -124,9 +124,9 @@ impl Planner<'_> {
     /// The paper's protocol for so many minutes, as far as the cell reads it, with the question that each run does most for.
     fn protocol(&self, minutes: f64) -> Vec<PlannedRun> {
         let mut runs = paper_protocol(self.rig, minutes);
-        let (rows, model) = (rows_of(&runs, self.rig, "next"), self.design.model);
-        let forces = model.frame.points(&rows).map(|points| model.predict(&points)).unwrap_or_default();
-        if forces.len() != rows.len() || forces.iter().any(|force| force * 1.1 > self.rig.cell_limit_n) {
+        let rows = rows_of(&runs, self.rig, "next");
+        let bears = within_cell(self.design.model, &rows, self.rig);
+        if bears.len() != rows.len() || bears.contains(&false) {
             return Vec::new();
         }
         let Some(each) = self.design.by_series(&rows).filter(|each| each.len() == runs.len()) else {

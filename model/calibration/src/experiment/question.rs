@@ -30,6 +30,8 @@ const UNSUSPECTED: f64 = 0.3;
 const DRAWN: f64 = 3.0;
 /// Share of the loads of a curve up to which data must reach, so that it needs no carrying on.
 pub(crate) const COVERED: f64 = 0.9;
+/// Standard deviation of the change of a coefficient of friction from one session to the next, as a share of it.
+const RENEWED: f64 = 0.05;
 /// Largest size of a rival, in units of the size at which a fit of it starts: beyond it, no rig is that wrong.
 const LARGEST_SHARE: f64 = 30.0;
 
@@ -155,6 +157,8 @@ pub(super) struct Agenda {
     pub(super) effects: Vec<&'static dyn Effect>,
     /// Columns of which only data to come may tell: what was drawn from the data so far is not confirmed by them.
     ahead: Vec<usize>,
+    /// Columns of the constants of friction that the data to come may have otherwise.
+    renewed: Vec<usize>,
     /// Ids of forms that stand for structure without a name.
     forms: Vec<String>,
     /// Whether one of the effects remembers the load before.
@@ -185,7 +189,9 @@ impl Agenda {
         known: impl Fn(&[Trace]) -> DMatrix<f64>,
     ) -> Self {
         let mut agenda = Self::default();
-        let own: Vec<usize> = (0..model.values().len()).collect();
+        agenda.may_change(model);
+        let own: Vec<usize> = (0..model.values().len()).chain(agenda.renewed.iter().copied()).collect();
+        let first = model.values().len();
         let mut pairs = Vec::new();
         for found in &report.effects {
             let Some(term) =
@@ -197,7 +203,7 @@ impl Agenda {
                 continue;
             }
             agenda.traces.push(Trace::Found { term });
-            let column = own.len() + agenda.traces.len() - 1;
+            let column = first + agenda.traces.len() - 1;
             if let Term::Named(effect) = &model.terms[term] {
                 agenda.effects.push(*effect);
             }
@@ -235,11 +241,11 @@ impl Agenda {
             own.any(|own| own.id == id && own.formula.contains(LOAD_BEFORE))
         };
         agenda.remembers = agenda.effects.iter().any(|effect| remembers(effect.id()));
-        agenda.ask_beyond(highest_n, &own);
+        agenda.ask_beyond(highest_n, first, &own);
         if pairs.is_empty() {
             return agenda;
         }
-        let information = known(&agenda.traces);
+        let information = agenda.before(known(&agenda.traces));
         for (found, term, column, other) in pairs {
             let at = model.term_offset(term);
             let constants: Vec<usize> = (at..at + model.terms[term].constants()).collect();
@@ -260,7 +266,7 @@ impl Agenda {
                     nuisance: own.clone(),
                 },
             ];
-            let Trace::Absent { effect, .. } = &agenda.traces[other - own.len()] else { continue };
+            let Trace::Absent { effect, .. } = &agenda.traces[other - first] else { continue };
             agenda.questions.push(Question {
                 between: [found.id.clone(), effect.id().to_owned()],
                 size: None,
@@ -271,6 +277,16 @@ impl Agenda {
             });
         }
         agenda
+    }
+
+    /// Friction on pins and silicone may be another one in the session to come: an effect that differs only from session to
+    /// session cannot be told from that.
+    fn may_change(&mut self, model: &Model) {
+        let names = model.names();
+        for constant in (0..names.len()).filter(|i| matches!(names[*i].0.as_str(), "mu_p" | "mu_s")) {
+            self.renewed.push(names.len() + self.traces.len());
+            self.traces.push(Trace::Renewed { constant });
+        }
     }
 
     /// Whether the form of what has no name will be seen again.
@@ -291,7 +307,8 @@ impl Agenda {
                 .filter(|t| stands_for_it(*t))
                 .flat_map(|t| (0..model.terms[t].constants()).map(move |i| model.term_offset(t) + i))
                 .collect();
-            let base: Vec<usize> = (0..model.values().len()).filter(|i| !for_it.contains(i)).collect();
+            let own = (0..model.values().len()).filter(|i| !for_it.contains(i));
+            let base: Vec<usize> = own.chain(self.renewed.iter().copied()).collect();
             let column = model.values().len() + self.traces.len();
             self.traces.push(trace);
             self.effects.push(effect);
@@ -302,21 +319,24 @@ impl Agenda {
     }
 
     /// Whether friction beyond the loads recorded is what the model predicts, where curves and designs go beyond them.
-    fn ask_beyond(&mut self, highest_n: f64, own: &[usize]) {
+    fn ask_beyond(&mut self, highest_n: f64, first: usize, own: &[usize]) {
         let to_n = published::heaviest_load_n();
         if highest_n > COVERED * to_n {
             return;
         }
-        let column = own.len() + self.traces.len();
+        let column = first + self.traces.len();
         self.traces.push(Trace::Beyond { from_n: highest_n, to_n });
         self.ask_whether(&format!("{FRICTION_ABOVE}{highest_n:.0}_N"), column, 1.0, own, 1.0);
     }
 
     /// What is known before any data to come.
     pub(super) fn before(&self, mut information: DMatrix<f64>) -> DMatrix<f64> {
-        for column in &self.ahead {
+        for column in self.ahead.iter().chain(&self.renewed) {
             information.row_mut(*column).fill(0.0);
             information.column_mut(*column).fill(0.0);
+        }
+        for column in &self.renewed {
+            information[(*column, *column)] = RENEWED.powi(-2);
         }
         information
     }

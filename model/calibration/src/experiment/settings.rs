@@ -65,7 +65,7 @@ fn with_more(
             Trace::Absent { effect, values } => {
                 (model.with_term(Term::Named(*effect), values), model.clone())
             }
-            Trace::Beyond { .. } => continue,
+            Trace::Beyond { .. } | Trace::Renewed { .. } => continue,
         };
         let course: Vec<f64> =
             with.predict(&points).iter().zip(without.predict(&points)).map(|(w, o)| w - o).collect();
@@ -130,7 +130,7 @@ fn rows_at(value: f64, set: &impl Fn(&mut PlannedRun, f64), rig: &RigLimits) -> 
                 wrap_angle_deg: rig.own_wrap_deg(),
             };
             set(&mut run, value);
-            alone(&Candidate { run, late: false, after_g: None }, "1", rig, 0.0).pop()
+            alone(&Candidate { run, late: false, after_g: None, down_from_g: None }, "1", rig, 0.0).pop()
         })
         .collect()
 }

@@ -57,6 +57,7 @@ pub(crate) use projection::dot;
 pub use reliability::NoiseFactors;
 pub(crate) use reliability::Reliability;
 pub(crate) use screening::{EffectScore, Screen};
+pub(crate) use search::VISIBLE_SHARE;
 pub(crate) use selection::selected_model;
 pub use selection::{CandidateEffect, FoundEffect, Rival, Selection, select};
 pub(crate) use significance::gain_at;

@@ -12,6 +12,12 @@ use super::weighed::Weighed;
 use crate::effects::Effect;
 use crate::parallel::map_each;
 
+/// Share of its start size at which the trace of an effect of one's own is taken: what somebody gives as typical may be so large
+/// that its curvature looks like something that the model's constants cannot take over.
+const TANGENT: f64 = 1e-3;
+/// Share of the squares of a visible trace without which it is seen by priors, and not by data.
+const SEEN_BY_DATA: f64 = 0.5;
+
 /// A fitted model with its whitened residual and the directions its constants can take.
 pub(crate) struct Screen<'a> {
     pub(super) fitted: &'a Fit,
@@ -144,17 +150,29 @@ impl<'a> Screen<'a> {
 
     fn best_of(&self, effect: &'static dyn Effect, starts: Vec<Vec<f64>>) -> Option<EffectScore> {
         let mut best: Option<EffectScore> = None;
+        let sizes = self.sizes_of_ones_own(effect);
         let traces: Vec<Vec<f64>> = starts
             .iter()
             .map(|start| {
+                let mut small = start.clone();
+                let step = sizes.map_or(1.0, |sizes| {
+                    small.iter_mut().take(sizes).for_each(|size| *size *= TANGENT);
+                    TANGENT
+                });
                 let changed =
-                    self.fitted.model.with_term(Term::Named(effect), start).predict(&self.data().points);
-                changed.iter().zip(&self.predicted).map(|(c, p)| c - p).collect()
+                    self.fitted.model.with_term(Term::Named(effect), &small).predict(&self.data().points);
+                changed.iter().zip(&self.predicted).map(|(c, p)| (c - p) / step).collect()
             })
             .collect();
         let visible = self.all_visible(traces.iter().cloned());
         for ((start, trace_n), (column, visible_share)) in starts.into_iter().zip(traces).zip(visible) {
             let length2 = dot(&column, &column);
+            // What only the priors of the model's own constants see of it, no data can show.
+            let by_data = dot(&column[..self.predicted.len()], &column[..self.predicted.len()]);
+            let visible_share = match sizes {
+                Some(_) if by_data < SEEN_BY_DATA * length2 => 0.0,
+                _ => visible_share,
+            };
             let along = dot(&column, &self.residual);
             let scales = effect.description().scales;
             let gain = if length2 < 1e-9 {
@@ -189,6 +207,13 @@ impl<'a> Screen<'a> {
             }
         }
         best
+    }
+
+    /// How many sizes an effect of one's own has; `None` of a built-in one.
+    fn sizes_of_ones_own(&self, effect: &'static dyn Effect) -> Option<usize> {
+        let mut own = self.fitted.model.vocabulary.own().map(|own| own.definition());
+        let own = own.find(|own| own.id == effect.id())?;
+        Some(own.parameters.iter().filter(|p| p.bounds.is_none()).count())
     }
 
     /// Gain of free offsets of each series, one per direction, for the series that are not excluded.

@@ -19,7 +19,7 @@ const FITTED: usize = 6;
 /// that fitted best had never less than 0.9.
 const WORTH_A_FIT: f64 = 0.4;
 /// Share of its length that a trace must keep after the refit to be called visible.
-pub(super) const VISIBLE_SHARE: f64 = 2e-3;
+pub(crate) const VISIBLE_SHARE: f64 = 2e-3;
 
 /// Whether the effect just added, the last term, has a size that its physics allows.
 pub(super) fn possible(effect: &dyn Effect, fitted: &Fit) -> bool {

@@ -2,8 +2,8 @@
 
 use crate::effects::{Effect, EffectDefinition};
 use crate::inference::{
-    Fit, Model, Reliability, Screen, Term, Weighed, coordinate_covariance, family_p_value, fit, gain_at,
-    jacobian,
+    Fit, Model, Reliability, Screen, Term, VISIBLE_SHARE, Weighed, coordinate_covariance, family_p_value,
+    fit, gain_at, jacobian,
 };
 
 /// Length of a trace in standard deviations below which the table does not see the effect.
@@ -32,7 +32,7 @@ pub(super) fn ask(
     let claimed: Vec<f64> = claimed(definition);
     let score = Screen::new(without, weighed)
         .effect_at(effect, claimed.clone())
-        .filter(|s| s.strength > LEAST_STRENGTH)?;
+        .filter(|s| s.strength > LEAST_STRENGTH && s.visible_share > VISIBLE_SHARE)?;
     let predicted: Vec<f64> = data.force_n.iter().zip(&without.residual_n).map(|(y, r)| y - r).collect();
     let own = jacobian(&without.model, data, &predicted);
     let degrees =

@@ -244,6 +244,28 @@ impl EffectDefinition {
         })
     }
 
+    /// Why small sizes are in no proportion to what they do; `None` if they are. Of `k^2`, `abs(k)` or `sqrt(k)` no linear fit can
+    /// begin at zero, and an interval about zero means nothing.
+    fn not_in_proportion(&self, node: &Node) -> Option<String> {
+        const SMALL: f64 = 1e-4;
+        let at = |size: f64| -> Vec<f64> {
+            let values: Vec<f64> =
+                self.parameters.iter().map(|p| p.bounds.map_or(size * p.start, |_| p.start)).collect();
+            probes().iter().map(|probe| node.value(&values, &probe.moment())).collect()
+        };
+        let [small, twice, turned] = [SMALL, 2.0 * SMALL, -SMALL].map(at);
+        let length = |values: &[f64]| values.iter().map(|v| v.abs()).filter(|v| v.is_finite()).sum::<f64>();
+        let with = |other: &[f64], factor: f64| -> Vec<f64> {
+            small.iter().zip(other).map(|(a, b)| factor * a - b).collect()
+        };
+        let off = length(&with(&twice, 2.0)).max(length(&with(&turned, -1.0)));
+        (off > 0.05 * length(&small) && off > 1e-12).then(|| {
+            "small sizes must act in proportion to themselves, and the other way round where they are negative, as in k*f or \
+             exp(k*f) - 1; with k^2, abs(k), sqrt(k) or max(k, 0) no interval means anything"
+                .to_owned()
+        })
+    }
+
     /// With all sizes zero nothing is left, and at the start there is a number, on rows that span what a rig does.
     fn check_values(&self, node: &Node) -> Result<(), DefinitionError> {
         let formula = |problem| DefinitionError { part: Part::Formula(0), problem };
@@ -256,6 +278,9 @@ impl EffectDefinition {
             pick(0.0, |_, (low, high)| high - 0.01 * (high - low)),
         ];
         let there = pick(1.0, |start, _| start);
+        if let Some(problem) = self.not_in_proportion(node) {
+            return Err(formula(problem));
+        }
         // What acts in a narrow range only may act in none of these rows.
         let mut acts = node.has_condition();
         for probe in probes() {

@@ -259,7 +259,12 @@ fn with_confirmed(
     stands.then(|| selection.clone().with_names(best, data, levels))
 }
 
-/// The form of what has no name. It goes into the model if it predicts held-out data no worse than the shapes do.
+/// Share of the structure from which a form is all of it, and by which its held-out error may then be larger than that of the
+/// shapes: what one formula says carries over to another session, and what several shapes follow of this one may not.
+const IS_ALL_OF_IT: (f64, f64) = (0.95, 1.1);
+
+/// The form of what has no name. It goes into the model if it predicts held-out data no worse than the shapes do, or hardly worse
+/// where it explains all that they do.
 fn drawn(
     rows: &[PlateauRow],
     selection: &Selection,
@@ -267,7 +272,8 @@ fn drawn(
     shapes: HeldOut,
 ) -> Option<DrawnForm> {
     let mut form = draw_form(rows, selection, data)?;
-    form.report.in_model = form.report.heldout_rmse_n <= shapes.both_n();
+    let least = if form.report.explains >= IS_ALL_OF_IT.0 { IS_ALL_OF_IT.1 } else { 1.0 };
+    form.report.in_model = form.report.heldout_rmse_n <= least * shapes.both_n();
     Some(form)
 }
 

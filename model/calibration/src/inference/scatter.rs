@@ -7,13 +7,16 @@ use super::variance_components::{LEAST_SCALE, ROUNDS, indicator};
 use super::wandering::{walk_cost, wandering};
 use super::weighed::Weighed;
 
+/// Scatter of the friction from mount to mount in which a step of a twentieth of the friction, which is of consequence, can hide.
+const HIDING_MOUNT_SCALE: f64 = 0.04;
 /// Largest scatter of the friction from mount to mount that is called scatter: beyond it, something is wrong.
 const MOST_MOUNT_SCALE: f64 = 0.06;
 
 impl Noise {
-    /// Whether mounts scatter by as much as is called scatter: what layouts have of their own may be in it.
-    pub fn mounts_at_their_most(self) -> bool {
-        self.mount_scale >= MOST_MOUNT_SCALE - LEAST_SCALE
+    /// Whether mounts scatter by so much that a step of friction of consequence between two of them, or what a layout has of its
+    /// own, may be in it.
+    pub fn mounts_hide(self) -> bool {
+        self.mount_scale >= HIDING_MOUNT_SCALE
     }
 }
 

@@ -307,10 +307,10 @@ impl Report {
                 ids.join(" or ")
             ));
         }
-        if self.noise.mounts_at_their_most() {
+        if self.noise.mounts_hide() {
             let percent = 100.0 * self.noise.mount_scale;
             told.push(format!(
-                "mounts scatter by {percent:.0} %, the most that passes for scatter, which hides what layouts have of their own"
+                "mounts scatter by {percent:.1} %, in which a step of friction between two of them, or what a layout has of its own, could hide"
             ));
         }
         if !self.adequate {

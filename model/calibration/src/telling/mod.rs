@@ -67,7 +67,7 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
     let is_unsettled = candidates.iter().any(|candidate| candidate.fate == Fate::Unsettled);
     let verdict = match Verdict::of(selection).beside(&trials) {
         // Where something is left, a gain is no chance, or scatter could hide it, nothing is excluded, however small it is.
-        Verdict::None if !adequate || is_unsettled || noise.mounts_at_their_most() => Verdict::Inconclusive,
+        Verdict::None if !adequate || is_unsettled || noise.mounts_hide() => Verdict::Inconclusive,
         verdict => verdict,
     };
     Report {

@@ -19,6 +19,8 @@ pub(super) struct Beside {
     pub(super) structure: Option<&'static str>,
     /// A name that explains the table in place of the claim, and how well.
     pub(super) rival: Option<(String, InItsPlace)>,
+    /// Share of what shapes without a name do that the claim explains in their place, where there are such.
+    pub(super) explains: Option<f64>,
 }
 
 /// How well a name explains what a claim is asked about.
@@ -62,7 +64,8 @@ pub(super) fn beside(
     let is_aside = |term: &Term| matches!(term, Term::Named(e) if aside.contains(&e.id()));
     let named = fit(&all.without_terms(|t| is_aside(t) || matches!(t, Term::Structure(_))), weighed);
     let is_the_same = |other: &'static dyn Effect| {
-        screen.effect(other).is_some_and(|score| cosine(&own, &score.column) > SAME_THING)
+        let mut anywhere = other.starts(&all.frame).into_iter().filter_map(|s| screen.effect_at(other, s));
+        anywhere.any(|score| cosine(&own, &score.column) > SAME_THING)
     };
     let known = named.model.named_effects();
     let is_another = |(_, other, _): &(String, Fit, InItsPlace)| {
@@ -72,11 +75,16 @@ pub(super) fn beside(
     let rival = in_its_place(definition, effect, selection, &named, &aside, weighed).filter(is_another);
     if let Some((name, other, InItsPlace::Better)) = rival {
         let found = ask(definition, effect, &other, weighed)?;
-        return Some(Beside { found, structure: None, rival: Some((name, InItsPlace::Better)) });
+        return Some(Beside {
+            found,
+            structure: None,
+            rival: Some((name, InItsPlace::Better)),
+            explains: None,
+        });
     }
     let rival = rival.map(|(name, _, how)| (name, how));
     let first = ask(definition, effect, &named, weighed)?;
-    let plain = Beside { found: first, structure: None, rival };
+    let mut plain = Beside { found: first, structure: None, rival, explains: None };
     if selection.structure.is_none() && !all.terms.iter().any(|t| matches!(t, Term::Structure(_))) {
         return Some(plain);
     }
@@ -84,7 +92,9 @@ pub(super) fn beside(
     let with_shapes = fit(&all.without_terms(is_aside), weighed);
     let with = with_claim(definition, effect, &named.model, weighed);
     let share = IS_THAT[usize::from(definition.drawn_from.is_empty())];
-    if named.cost - with.cost >= share * (named.cost - with_shapes.cost) {
+    let explained = (named.cost - with.cost) / (named.cost - with_shapes.cost).max(1e-9);
+    if explained >= share {
+        plain.explains = Some(explained);
         return Some(plain);
     }
     Some(beside_structure(definition, effect, with, weighed).unwrap_or(plain))
@@ -139,7 +149,7 @@ fn beside_structure(
     let without =
         fit(&left.model.without_terms(|t| matches!(t, Term::Named(e) if e.id() == definition.id)), weighed);
     let found = ask(definition, effect, &without, weighed)?;
-    Some(Beside { found, structure: Some(structure), rival: None })
+    Some(Beside { found, structure: Some(structure), rival: None, explains: None })
 }
 
 fn cosine(a: &[f64], b: &[f64]) -> f64 {

@@ -6,6 +6,7 @@
 
 mod beside;
 mod claim;
+mod nearby;
 
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +17,7 @@ use crate::table::{PlateauRow, sessions_told};
 
 use beside::{Beside, InItsPlace, beside};
 use claim::Found;
+use nearby::nearby;
 
 /// Probability by chance below which an effect counts as confirmed, if it has at least [`CONFIRMED_SHARE`] of its start
 /// value.
@@ -27,6 +29,8 @@ pub const CERTAIN_P: f64 = 1e-5;
 /// Share of what stands in its place that a form drawn before must explain to be what was found there, whose ends or phase may
 /// be others; and one that somebody wrote down.
 const IS_THAT: [f64; 2] = [0.5, 0.75];
+/// Share of it below which something is there, and not quite what was claimed.
+const IS_ALL: f64 = 0.85;
 /// Readings of sessions that had no part in drawing a form without which nothing is asked.
 const LEAST_ROWS: usize = 20;
 
@@ -144,7 +148,7 @@ fn trial(
         return Some(TrialReport { note: Some(note.to_owned()), ..told });
     }
     let weighed = Weighed::new(data, selection.noise);
-    let Some(Beside { found, structure, rival }) = beside(definition, selection, &weighed) else {
+    let Some(Beside { found, structure, rival, explains }) = beside(definition, selection, &weighed) else {
         let note =
             "this table cannot show it: the constants of the model take it over, or it acts nowhere here";
         return Some(TrialReport { outcome: TrialOutcome::Open, note: Some(note.to_owned()), ..told });
@@ -157,8 +161,18 @@ fn trial(
             let note = "not where its shapes start: what the table has of it is named above";
             (TrialOutcome::Open, Some(note.to_owned()))
         }
+        // Where something lies is less sure than what it is: what another session shows a little elsewhere is not absent.
+        (TrialOutcome::Refuted, _) if let Some(note) = nearby(definition, claim, selection, &weighed) => {
+            (TrialOutcome::Open, Some(note))
+        }
         (outcome, Some(covariate)) => {
             (outcome, Some(format!("beside structure along {covariate} that it does not explain")))
+        }
+        (TrialOutcome::Confirmed, None) => {
+            let part = explains.filter(|share| *share < IS_ALL).map(|share| {
+                format!("it explains {:.0} % of what shapes without a name do there: something is there, but not quite this", 100.0 * share)
+            });
+            (outcome, part)
         }
         (outcome, None) => (outcome, None),
     };

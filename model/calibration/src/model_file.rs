@@ -4,7 +4,7 @@ use pinswitch_friction::{excerpt, published};
 use serde::{Deserialize, Serialize};
 
 use crate::beyond_range::error_beyond_range;
-use crate::effects::{Side, Structure, Vocabulary, effects_of_model, own_effect_blocks};
+use crate::effects::{Shape, Side, Structure, Vocabulary, effects_of_model, own_effect_blocks};
 use crate::inference::{
     Fit, Model, Noise, Observations, Term, Weighed, coordinate_covariance, prediction_sd_n,
 };
@@ -160,6 +160,16 @@ pub struct ModelFile {
     vocabulary: Vocabulary,
 }
 
+/// Whether a term says something of operators.
+fn knows_operators(term: &Term, vocabulary: &Vocabulary) -> bool {
+    match term {
+        Term::Structure(structure) => matches!(structure.form, Shape::OperatorIs { .. }),
+        Term::Named(effect) => vocabulary
+            .own()
+            .any(|own| own.definition().id == effect.id() && own.definition().formula.contains("operator")),
+    }
+}
+
 impl ModelFile {
     /// The file of a fit.
     pub fn new(fitted: &Fit, data: &Observations, noise: Noise) -> Self {
@@ -172,6 +182,9 @@ impl ModelFile {
         if frame.changes.is_empty() {
             // Nothing of the model depends on who they were.
             (frame.sessions, frame.specimens) = (Vec::new(), Vec::new());
+        }
+        if !model.terms.iter().any(|term| knows_operators(term, &model.vocabulary)) {
+            frame.operators = Vec::new();
         }
         let used = |id: &str| model.terms.iter().any(|term| term.id() == id);
         Self {

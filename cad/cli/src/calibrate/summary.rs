@@ -156,8 +156,8 @@ fn drawn(form: &FormReport) -> String {
     let rivals: Vec<String> = form.rivals.iter().map(|r| format!("{} on {}", r.shape, r.acts_on)).collect();
     let rivals = if rivals.is_empty() { String::new() } else { format!("; or {}", listed(&rivals)) };
     format!(
-        "    looks like a {} on {}: {}; {:.0} % of it{rivals}; {}; see discovered.toml\n",
-        form.shape,
+        "    looks like {} on {}: {}; {:.0} % of it{rivals}; {}; see discovered.toml\n",
+        form.words(),
         form.acts_on,
         constants.join(", "),
         100.0 * form.explains,

@@ -185,9 +185,9 @@ fn found(report: &Report) -> String {
 /// What a structure without a name looks like, and how that is confirmed or refuted.
 fn drawn(form: &FormReport) -> String {
     let mut html = format!(
-        "<p>It looks like a <b>{}</b> on {}: <code>{}</code>. That explains {:.0} % of what the smooth correction does; held-out \
+        "<p>It looks like <b>{}</b> on {}: <code>{}</code>. That explains {:.0} % of what the smooth correction does; held-out \
          error with it in place of the correction: {}.</p>{}",
-        escape(&form.shape),
+        escape(&form.words()),
         escape(&form.acts_on),
         escape(&form.formula),
         100.0 * form.explains,

@@ -123,6 +123,11 @@ pub enum Shape {
         /// Indices of the conditions.
         conditions: Vec<usize>,
     },
+    /// 1 for one operator, numbered from 1.
+    OperatorIs {
+        /// The number.
+        operator: usize,
+    },
     /// `exp(-(r - 1)/r0)` over the repetitions.
     Repetition {
         /// `r0`.
@@ -177,6 +182,7 @@ impl Shape {
                 flag(p.condition == *condition) * (p.load_n / unit_n).powi(*power)
             }
             Shape::ConditionIs { conditions } => flag(conditions.contains(&p.condition)),
+            Shape::OperatorIs { operator } => flag(p.operator == *operator as f64),
             Shape::Repetition { r0 } => libm::exp(-(p.repetition - 1.0) / r0),
             Shape::Memory { r0, unit_n } => {
                 (p.previous_load_n - p.load_n) / unit_n * libm::exp(-p.through / r0)
@@ -294,6 +300,10 @@ impl Structure {
             }
             Shape::ConditionIs { conditions } => {
                 format!("another level on {}", conditions.iter().map(name).collect::<Vec<_>>().join(" and "))
+            }
+            Shape::OperatorIs { operator } => {
+                let name = operator.checked_sub(1).and_then(|i| frame.operators.get(i));
+                format!("another level of operator {}", name.map_or("?", String::as_str))
             }
             Shape::Repetition { r0 } => format!("a settling over {r0} repetitions"),
             Shape::Memory { r0, .. } if *r0 > 1e3 => "a lasting memory of the load before".to_owned(),

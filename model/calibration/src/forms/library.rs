@@ -262,7 +262,10 @@ fn load(frame: &Frame) -> Vec<Form> {
     forms
 }
 
-/// A level on one kind of contact, or on one condition alone.
+/// Operators beyond whom no form of one is tried.
+const MOST_OPERATORS: usize = 8;
+
+/// A level on one kind of contact, on one condition alone, or of one operator.
 fn conditions(frame: &Frame) -> Vec<Form> {
     let mut forms = vec![
         Form::new("level", "a*is_silicone", &[]),
@@ -281,6 +284,8 @@ fn conditions(frame: &Frame) -> Vec<Form> {
             forms.push(Form::new("level", of_layout, &[]));
         }
     }
+    let groups = |operator| Form::new("groups", format!("a*(operator == {operator})"), &[]);
+    forms.extend((1..=frame.operators.len().min(MOST_OPERATORS)).map(groups));
     forms
 }
 

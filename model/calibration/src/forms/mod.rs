@@ -43,7 +43,7 @@ pub struct FormRival {
 /// What a structure without a name looks like.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FormReport {
-    /// `level` (also between two ends), `step`, `ramp`, `sine`, `bump`, `dip`, `power`, `forgetting` or `memory`.
+    /// `level` (also between two ends), `step`, `ramp`, `sine`, `bump`, `dip`, `power`, `forgetting`, `memory` or `groups`.
     pub shape: String,
     /// `friction`, `reading`, `wrap` or `threshold`.
     pub acts_on: String,
@@ -64,6 +64,16 @@ pub struct FormReport {
     pub in_model: bool,
     /// Other forms that fit as well.
     pub rivals: Vec<FormRival>,
+}
+
+impl FormReport {
+    /// The shape as a thing, with its article.
+    pub fn words(&self) -> String {
+        match self.shape.as_str() {
+            "groups" => "a level of one operator".to_owned(),
+            shape => format!("a {shape}"),
+        }
+    }
 }
 
 /// A form with the effect that it is.

@@ -131,6 +131,9 @@ pub struct Frame {
     /// Names of the specimens in order of appearance; empty with fewer than two.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub specimens: Vec<String>,
+    /// Names of the operators in their order; empty with fewer than two.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub operators: Vec<String>,
     /// Constants that some of them have otherwise than the last one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<Change>,
@@ -177,6 +180,9 @@ pub struct Point {
     pub session: f64,
     /// The number of the mount, or its place in the order of the table, from 1.
     pub mount: f64,
+    /// The operator, numbered from 1 in the order of [`Frame::operators`]: 1 where there is but one, 0 of one who is not among
+    /// them.
+    pub operator: f64,
     /// Place of its session in [`Frame::sessions`], if it is one of them.
     pub session_group: Option<usize>,
     /// Place of its specimen in [`Frame::specimens`], if it is one of them.
@@ -230,6 +236,7 @@ impl Frame {
             conditions: Vec::new(),
             sessions: several(rows, |labels| &labels.session),
             specimens: several(rows, |labels| &labels.specimen),
+            operators: sorted(several(rows, |labels| &labels.operator)),
             changes: Vec::new(),
         };
         for row in rows {
@@ -294,6 +301,11 @@ impl Frame {
         Some(points)
     }
 
+    fn operator_of(&self, row: &PlateauRow) -> f64 {
+        let place = self.operators.iter().position(|name| *name == row.labels.operator);
+        if self.operators.is_empty() { 1.0 } else { place.map_or(0.0, |place| (place + 1) as f64) }
+    }
+
     fn point(&self, row: &PlateauRow, time_s: f64) -> Option<Point> {
         let log_ratio = |v: f64, v0: f64| if v > 0.0 && v0 > 0.0 { libm::log(v / v0) } else { 0.0 };
         Some(Point {
@@ -316,6 +328,7 @@ impl Frame {
             time_s,
             session: 1.0,
             mount: 1.0,
+            operator: self.operator_of(row),
             session_group: self.sessions.iter().position(|name| *name == row.labels.session),
             specimen_group: self.specimens.iter().position(|name| *name == row.labels.specimen),
         })
@@ -366,6 +379,12 @@ fn several(rows: &[PlateauRow], label: impl Fn(&Labels) -> &String) -> Vec<Strin
         names[group].clone_from(label(&row.labels));
     }
     if count > 1 { names } else { Vec::new() }
+}
+
+/// In the order of their names, so that a number means the same person in the next table.
+fn sorted(mut names: Vec<String>) -> Vec<String> {
+    names.sort();
+    names
 }
 
 /// Place of a name among those seen so far, from 1.

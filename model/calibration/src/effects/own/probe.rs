@@ -70,6 +70,7 @@ pub(super) fn probes() -> Vec<Probe> {
                     through: repetition - 1.0,
                     session: 1.0 + (i % 2) as f64,
                     mount: 1.0 + j as f64,
+                    operator: 1.0 + (i % 3) as f64,
                     ..Point::default()
                 };
                 let tension_n = load_n * (1.0 + 0.25 * sign);
@@ -126,6 +127,7 @@ pub(super) fn spread_probes() -> Vec<Probe> {
                 through: (60.0 * along(31.0)).floor(),
                 session: 1.0 + (4.0 * along(37.0)).floor(),
                 mount: 1.0 + (9.0 * along(41.0)).floor(),
+                operator: 1.0 + (3.0 * along(47.0)).floor(),
                 ..Point::default()
             };
             let tension_n = load_n * libm::exp(0.3 * sign * along(43.0));

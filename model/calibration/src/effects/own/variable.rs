@@ -59,7 +59,7 @@ const fn moving(
 pub(super) const TENSION: &str = "tension_n";
 
 /// All variables.
-pub(super) static VARIABLES: [Variable; 22] = [
+pub(super) static VARIABLES: [Variable; 23] = [
     fixed("load_n", "N", "load, with what effects on the load have changed", |m| m.load_n),
     fixed(TENSION, "N", "tension or reading so far; only where it acts on tension or reading", |m| {
         m.tension_n
@@ -104,6 +104,7 @@ pub(super) static VARIABLES: [Variable; 22] = [
     ),
     moving("session", "1", "1, 2, ... in the order of the table", |m| m.point.session),
     moving("mount", "1", "the number of the mount; 1 where the table names none", |m| m.point.mount),
+    moving("operator", "1", "1, 2, ... in the order of their names; 1 where there is but one", |m| m.point.operator),
 ];
 
 /// The variable of a name.

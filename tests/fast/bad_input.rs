@@ -1,6 +1,6 @@
 //! Bad input: one clear error that names field, value, bound and remedy, exit code 2, and nothing written.
 
-use crate::harness::ended;
+use crate::harness::{binary, ended};
 
 /// Runs `generate` on `text`; returns the exit code, standard error, and what was written.
 fn generate(text: &str) -> (Option<i32>, String, usize) {
@@ -124,4 +124,29 @@ fn arguments_and_places_that_cannot_be_used() {
     let (code, error) = ended(folder.path(), &["generate", "three-double", "--out", "taken"]);
     assert!(code == Some(1) && error.contains("taken"), "{error}");
     assert_eq!(std::fs::read_to_string(folder.path().join("taken")).unwrap(), "mine");
+}
+
+/// Who reads no errors is no reason to panic: the exit code is that of the error.
+#[test]
+#[cfg(target_os = "linux")]
+fn an_error_that_cannot_be_written_has_its_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = format!("simulate --effect {} --out k1 --seed {}", "x".repeat(2000), "y".repeat(2000));
+    for arguments in ["simulate --effect nosuch=1 --out k1", "--nosuch", &long] {
+        let code = |stderr: std::process::Stdio| {
+            let mut command = binary();
+            command.args(arguments.split(' ')).current_dir(folder.path()).stderr(stderr);
+            command.status().unwrap().code()
+        };
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        assert_eq!(code(full.into()), Some(2), "{arguments}");
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        assert_eq!(code(writer.into()), Some(2), "{arguments}");
+    }
+    // What only warns does its work.
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let mut command = binary();
+    command.args(["-v", "simulate", "--out", "k2"]).current_dir(folder.path()).stderr(full);
+    assert_eq!(command.status().unwrap().code(), Some(0));
 }

@@ -1,6 +1,7 @@
 //! How a command ends when it cannot do what was asked.
 
 use std::fmt::Display;
+use std::io::Write;
 use std::process::ExitCode;
 
 use pinswitch_friction::excerpt;
@@ -47,9 +48,15 @@ impl Failure {
             Self::Failed(message) => (message, 1),
             Self::BadInput(message) => (message, 2),
         };
-        eprintln!("error: {message}");
+        say(format_args!("error: {message}"));
         ExitCode::from(code)
     }
+}
+
+/// Writes a line on standard error. Where nobody listens or the disk is full there is no one to tell, and the exit code says
+/// enough: `eprintln!` would panic.
+pub(super) fn say(line: impl Display) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Prints what is wrong with the arguments, or the help that they ask for, and returns the exit code.
@@ -57,7 +64,7 @@ pub(super) fn report_usage(error: &clap::Error) -> ExitCode {
     let text = error.render().to_string();
     if error.use_stderr() && text.chars().count() > MAX_CHARACTERS {
         // An argument of any length may stand in it.
-        eprintln!("{}", bounded_lines(text.trim_end()));
+        say(bounded_lines(text.trim_end()));
     } else {
         // Nobody may listen any more, as after `head`.
         let _ = error.print();

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::failure::say;
 use super::{Failure, print, print_json, slicing};
 use pinswitch_batch::{
     CountedSweep, Destination, Estimate, Observer, Options, Reach, RunError, Shard, SweepSource, Tally,
@@ -190,7 +191,7 @@ impl Progress {
                 // Asked twice: every file on disk is whole at any moment.
                 std::process::exit(1);
             }
-            eprintln!("finishing what is begun; once more stops at once");
+            say("finishing what is begun; once more stops at once");
         })
         .map_err(Failure::failed)?;
         Ok(Self {

@@ -108,6 +108,83 @@ fn what_a_plan_cannot_be_made_of_is_one_error() {
     }
 }
 
+/// Four runs, as `experiment` writes them.
+const RUNS: &str = "series,substrate,pins,sweep,load_mass_g,speed_pct,dwell_s,repetitions_eccentric,repetitions_concentric,mount,minutes,asks
+1,silicone,5;8;11,up,1003.2,40,3,4,4,1,9,x
+2,silicone,5;8;11,up,2005,70,3,4,4,1,3,x
+3,silicone,5;8;11,down,2005,40,3,4,4,1,3,x
+4,abs,5;8;11,up,1003.2,40,10,4,4,2,9,x
+";
+
+/// What the plan asks, with a field that is otherwise.
+fn asks(from: &str, to: &str) -> String {
+    let plan = r#"{"schema": "pinswitch.experiment/1", "minutes": 24.0, "questions": [
+        {"between": ["friction_above_26_N", "none"], "resolved_probability": 0.7},
+        {"between": ["rate_dependence", "wear_drift"], "resolved_probability": 0.9}]}"#;
+    assert!(plan.contains(from), "{from}");
+    plan.replacen(from, to, 1)
+}
+
+#[test]
+fn a_table_that_was_not_recorded_by_a_plan_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    std::fs::create_dir(path.join("plan")).unwrap();
+    std::fs::write(path.join("plan/experiment.json"), asks("0.7", "0.7")).unwrap();
+    std::fs::write(path.join("plan/next-runs.csv"), RUNS).unwrap();
+    let lines: Vec<&str> = RUNS.lines().collect();
+    // The runs that a table is made of.
+    let made = |name: &str, of: &[&str]| {
+        let runs: Vec<&str> = lines[..1].iter().chain(of).copied().collect();
+        std::fs::write(path.join("runs.csv"), runs.join("\n")).unwrap();
+        done(path, &["-q", "simulate", "--runs", "runs.csv", "--out", name]);
+    };
+    // What is said of the plan comes first; nothing is calibrated, since there is no first table.
+    let said = |name: &str| {
+        let table = format!("{name}/plateaus.csv");
+        let (code, said) =
+            ended(path, &["-q", "calibrate", "absent.csv", &table, "--plan", "plan", "--out", "x"]);
+        assert_eq!(code, Some(2), "{said}");
+        said
+    };
+    done(path, &["-q", "simulate", "--seed", "2", "--out", "before"]);
+    made("whole", &lines[1..]);
+    made("part", &lines[1..4]);
+    made("half", &lines[1..3]);
+    // Other speeds, and one run twice, are not the runs.
+    let fast: Vec<String> =
+        lines[1..].iter().map(|line| line.replace(",40,", ",55,").replace(",70,", ",55,")).collect();
+    made("fast", &fast.iter().map(String::as_str).collect::<Vec<_>>());
+    let twice = format!("5{}", &lines[1][1..]);
+    made("twice", &[lines[1], &twice]);
+    made("turned", &[lines[4], lines[1], lines[2], lines[3]]);
+    assert!(!said("whole").contains("runs of plan"), "{}", said("whole"));
+    let runs = Path::new("plan/next-runs.csv").display();
+    for (name, words) in [
+        ("part", format!("part/plateaus.csv: 1 of the 4 runs of {runs} are not in it")),
+        ("half", format!("half/plateaus.csv: 2 of the 4 runs of {runs} are not in it")),
+        ("before", format!("before/plateaus.csv: none of the 4 runs of {runs} is in it; give the table")),
+        ("fast", format!("fast/plateaus.csv: none of the 4 runs of {runs} is in it; give the table")),
+        ("twice", format!("twice/plateaus.csv: only 1 of the 4 runs of {runs} are in it; give the table")),
+        ("turned", format!("turned/plateaus.csv: its series stand in another order than the runs of {runs}")),
+    ] {
+        assert!(said(name).contains(&words), "{name}: {}", said(name));
+    }
+    for (from, to, words) in [
+        ("0.9", "1.9", "questions[1].resolved_probability = 1.9 is outside 0..1"),
+        ("24.0", "-1", "minutes = -1 is not above 0"),
+        ("wear_drift", "gravity", "questions[1].between[1] = \"gravity\" is no effect that is known here"),
+    ] {
+        std::fs::write(path.join("plan/experiment.json"), asks(from, to)).unwrap();
+        let said = said("whole");
+        assert!(said.contains(words) && said.contains("experiment.json") && said.len() < 600, "{said}");
+    }
+    std::fs::write(path.join("plan/experiment.json"), asks("0.7", "0.7")).unwrap();
+    std::fs::remove_file(path.join("plan/next-runs.csv")).unwrap();
+    let said = said("whole");
+    assert!(said.contains(&format!("{runs}: is not there")) && !path.join("x").exists(), "{said}");
+}
+
 /// A plan of the randomised protocol with something that no effect is.
 fn rig(disturbance: &str) -> String {
     format!(

@@ -1,6 +1,7 @@
 //! `pinswitch calibrate TABLE --out DIR`.
 
 mod plans;
+mod recorded;
 mod summary;
 mod waiting;
 
@@ -84,7 +85,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return published(&arguments.out);
     }
     let vocabulary = with_forms(arguments.own.vocabulary()?, &arguments.plan)?;
-    let plans = plans(&arguments.plan, &arguments.tables)?;
+    let plans = plans(&arguments.plan, &arguments.tables, &vocabulary)?;
     let (mut table, name) = joined(&arguments.tables)?;
     let sessions = match arguments.tables.split_last() {
         Some((_, before)) if !before.is_empty() => before_the_last(before, &plans, &vocabulary)?,

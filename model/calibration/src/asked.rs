@@ -1,6 +1,6 @@
 //! What a plan asked before a table was recorded, and what the table answers: an expectation is to be held against what came.
 
-use pinswitch_friction::published;
+use pinswitch_friction::{excerpt, published};
 use serde::{Deserialize, Serialize};
 
 use crate::experiment::{COVERED, FRICTION_ABOVE, NONE};
@@ -61,7 +61,48 @@ pub struct Asked {
     pub questions: Vec<AskedQuestion>,
 }
 
+/// Why a plan asks nothing that can be answered.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{field} = {value} is {fault}")]
+pub struct AskedError {
+    /// The field, as `questions[0].between[1]`.
+    pub field: String,
+    /// Its value.
+    pub value: String,
+    /// What is wrong with it, and what may stand there.
+    pub fault: String,
+}
+
 impl Asked {
+    /// Whether each field holds what a plan may hold. `is_known` says which ids are those of an effect.
+    ///
+    /// # Errors
+    /// [`AskedError`] at the first field that no plan has.
+    pub fn check(&self, is_known: impl Fn(&str) -> bool) -> Result<(), AskedError> {
+        let refused = |field: String, value: String, fault: &str| {
+            Err(AskedError { field, value, fault: fault.to_owned() })
+        };
+        if !(self.minutes > 0.0 && self.minutes.is_finite()) {
+            return refused("minutes".to_owned(), self.minutes.to_string(), "not above 0");
+        }
+        for (i, question) in self.questions.iter().enumerate() {
+            let of = |key: &str| format!("questions[{i}].{key}");
+            let probability = question.resolved_probability;
+            if !(0.0..=1.0).contains(&probability) {
+                return refused(of("resolved_probability"), probability.to_string(), "outside 0..1");
+            }
+            for (at, id) in question.between.iter().enumerate() {
+                let stands_for_none = at == 1 && id == NONE;
+                if !(is_known(id) || id.starts_with(FRICTION_ABOVE) || stands_for_none) {
+                    let value = format!("\"{}\"", excerpt(id, 60));
+                    let fault = "no effect that is known here: where it is one of your own, give its file by --effects";
+                    return refused(of(&format!("between[{at}]")), value, fault);
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// The same with what a report of rows up to a load of `highest_n` answers.
     #[must_use]
     pub fn answered(mut self, report: &Report, highest_n: f64) -> Self {
@@ -110,4 +151,46 @@ fn answer(question: &AskedQuestion, report: &Report, highest_n: f64) -> Answer {
         .any(|hidden| hidden.id == *of && hidden.possible.is_some_and(|[low, high]| is_smaller(low, high)));
     let is_out = is_out || is_below;
     if or == NONE && !is_named(of) && is_out { Answer::Excluded } else { Answer::Open }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_field_that_no_plan_has_is_named() {
+        let asked = |minutes: f64, between: [&str; 2], resolved_probability: f64| Asked {
+            minutes,
+            questions: vec![
+                AskedQuestion {
+                    between: ["friction_above_26_N".to_owned(), NONE.to_owned()],
+                    size: None,
+                    resolved_probability: 1.0,
+                    answer: Answer::Open,
+                },
+                AskedQuestion {
+                    between: between.map(str::to_owned),
+                    size: None,
+                    resolved_probability,
+                    answer: Answer::Open,
+                },
+            ],
+        };
+        let check = |asked: Asked| asked.check(|id| id == "adhesion" || id == "wear_drift");
+        assert_eq!(check(asked(9.0, ["adhesion", "wear_drift"], 0.0)), Ok(()));
+        for (asked, words) in [
+            (asked(0.0, ["adhesion", "none"], 0.5), "minutes = 0 is not above 0"),
+            (asked(f64::NAN, ["adhesion", "none"], 0.5), "minutes = NaN"),
+            (
+                asked(9.0, ["adhesion", "none"], 1.5),
+                "questions[1].resolved_probability = 1.5 is outside 0..1",
+            ),
+            (asked(9.0, ["gravity", "none"], 0.5), "questions[1].between[0] = \"gravity\" is no effect"),
+            (asked(9.0, ["none", "adhesion"], 0.5), "questions[1].between[0] = \"none\""),
+            (asked(9.0, ["adhesion", "gravity"], 0.5), "questions[1].between[1] = \"gravity\""),
+        ] {
+            let error = check(asked).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+    }
 }

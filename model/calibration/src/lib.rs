@@ -55,7 +55,7 @@ mod toml_text;
 mod trial;
 
 pub use aliasing::{Aliasing, aliasing};
-pub use asked::{Answer, Asked, AskedQuestion};
+pub use asked::{Answer, Asked, AskedError, AskedQuestion};
 pub use calibrate::{Calibration, CalibrationError, calibrate, calibrate_among};
 pub use extrapolation::calibrate_below;
 pub use forms::{DrawnForm, FormReport, FormRival, draw_form};

@@ -5,22 +5,20 @@ use std::path::{Path, PathBuf};
 use pinswitch_calibration::Asked;
 use pinswitch_calibration::effects::{EffectDefinition, Vocabulary};
 use pinswitch_calibration::experiment::{PlannedRun, SCHEMA, read_runs};
-use pinswitch_calibration::table::{PlateauRow, PlateauTable};
-use pinswitch_friction::published::load_n;
+use pinswitch_calibration::table::PlateauTable;
 
 use super::super::Failure;
 use super::FORM;
+use super::recorded::Recorded;
 use crate::input::{read_file, read_text_file};
-
-/// Share of a load by which a weight may differ from the one planned, hook and scale included.
-const SAME_LOAD: f64 = 0.05;
-
-/// Differences by which speed and dwell of a reading may differ from those planned, as shares of them.
-const SAME_SETTING: f64 = 0.05;
 
 /// What each table after the first was recorded for, if a plan was given for it. Plans come in the order of their tables; which
 /// table one belongs to, its runs tell.
-pub(super) fn plans(plans: &[PathBuf], tables: &[PathBuf]) -> Result<Vec<Option<Asked>>, Failure> {
+pub(super) fn plans(
+    plans: &[PathBuf],
+    tables: &[PathBuf],
+    vocabulary: &Vocabulary,
+) -> Result<Vec<Option<Asked>>, Failure> {
     let later = tables.get(1..).unwrap_or_default();
     if plans.len() > later.len() {
         return Err(Failure::bad_input(format!(
@@ -32,11 +30,10 @@ pub(super) fn plans(plans: &[PathBuf], tables: &[PathBuf]) -> Result<Vec<Option<
     let mut found = vec![None; later.len()];
     let mut next = 0;
     for (i, folder) in plans.iter().enumerate() {
-        let asked = plan(folder)?;
+        let asked = plan(folder, vocabulary)?;
         // Each plan still to come needs a table of its own.
         let possible = next..later.len() - (plans.len() - 1 - i);
         let at = recorded_in(folder, &later[possible])? + next;
-        recorded_by(folder, &later[at])?;
         found[at] = Some(asked);
         next = at + 1;
     }
@@ -44,7 +41,7 @@ pub(super) fn plans(plans: &[PathBuf], tables: &[PathBuf]) -> Result<Vec<Option<
 }
 
 /// What the plan in a folder asks.
-fn plan(folder: &Path) -> Result<Asked, Failure> {
+fn plan(folder: &Path, vocabulary: &Vocabulary) -> Result<Asked, Failure> {
     #[derive(serde::Deserialize)]
     struct PlanFile {
         schema: String,
@@ -60,19 +57,30 @@ fn plan(folder: &Path) -> Result<Asked, Failure> {
     if plan.schema != SCHEMA {
         return Err(refused(format!("schema = \"{}\" is not {SCHEMA}", plan.schema)));
     }
+    // That a plan has no runs is said before what it says of them.
+    runs_of(folder)?;
+    let form = form_of(folder)?;
+    let is_known = |id: &str| {
+        vocabulary.named(id).is_some() || form.as_ref().is_some_and(|form| form.named(id).is_some())
+    };
+    plan.asked.check(is_known).map_err(|e| refused(e.to_string()))?;
     Ok(plan.asked)
+}
+
+/// The built-in effects with the form that a plan asks about, if there is one.
+fn form_of(folder: &Path) -> Result<Option<Vocabulary>, Failure> {
+    let path = folder_of(folder).join(FORM);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let (text, name) = (read_text_file(&path)?, path.display().to_string());
+    Vocabulary::built_in().read(&text, &name).map(Some).map_err(Failure::bad_input)
 }
 
 /// A vocabulary with the forms whose coming again the plans ask about, unless they are in it under whatever name.
 pub(super) fn with_forms(vocabulary: Vocabulary, plans: &[PathBuf]) -> Result<Vocabulary, Failure> {
     plans.iter().try_fold(vocabulary, |vocabulary, folder| {
-        let folder = if folder.is_file() { folder.parent().unwrap_or(folder) } else { folder };
-        let path = folder.join(FORM);
-        if !path.is_file() {
-            return Ok(vocabulary);
-        }
-        let (text, name) = (read_text_file(&path)?, path.display().to_string());
-        let forms = Vocabulary::built_in().read(&text, &name).map_err(Failure::bad_input)?;
+        let Some(forms) = form_of(folder)? else { return Ok(vocabulary) };
         let is_known = |form: &EffectDefinition| {
             let is_it = |own: &EffectDefinition| {
                 own.id == form.id || (own.formula == form.formula && own.drawn_from == form.drawn_from)
@@ -82,66 +90,66 @@ pub(super) fn with_forms(vocabulary: Vocabulary, plans: &[PathBuf]) -> Result<Vo
         if forms.own().any(|form| is_known(form.definition())) {
             return Ok(vocabulary);
         }
-        vocabulary.read(&text, &name).map_err(Failure::bad_input)
+        let path = folder_of(folder).join(FORM);
+        vocabulary.read(&read_text_file(&path)?, &path.display().to_string()).map_err(Failure::bad_input)
     })
 }
 
-/// The runs of a plan, and the file that they stand in; `None` where only its questions were kept.
-fn runs_of(folder: &Path) -> Result<Option<(Vec<PlannedRun>, String)>, Failure> {
-    let folder = if folder.is_file() { folder.parent().unwrap_or(folder) } else { folder };
-    let path = folder.join("next-runs.csv");
+/// The folder of a plan, which may be given by a file in it.
+fn folder_of(plan: &Path) -> &Path {
+    if plan.is_file() { plan.parent().unwrap_or(plan) } else { plan }
+}
+
+/// The runs of a plan, and the file that they stand in.
+fn runs_of(folder: &Path) -> Result<(Vec<PlannedRun>, String), Failure> {
+    let path = folder_of(folder).join("next-runs.csv");
+    let name = path.display().to_string();
     if !path.is_file() {
-        return Ok(None);
-    }
-    let plan = path.display().to_string();
-    let runs = read_runs(&read_text_file(&path)?, &plan).map_err(Failure::bad_input)?;
-    Ok(Some((runs, plan)))
-}
-
-fn rows_of(table: &Path) -> Result<Vec<PlateauRow>, Failure> {
-    let name = table.display().to_string();
-    Ok(PlateauTable::read(read_file(table)?.as_slice(), &name).map_err(Failure::bad_input)?.rows)
-}
-
-/// Whether a row was recorded on the contact and at the load of a run.
-fn is_at(run: &PlannedRun, row: &PlateauRow) -> bool {
-    let load_n = load_n(run.load_mass_g);
-    row.substrate == Some(run.substrate)
-        && row.pins == run.pins
-        && (row.load_n - load_n).abs() <= SAME_LOAD * load_n.max(1.0)
-}
-
-/// Place of the table that holds most of a plan's runs, with their speeds and dwells; of equals the first.
-fn recorded_in(folder: &Path, tables: &[PathBuf]) -> Result<usize, Failure> {
-    let Some((runs, _)) = runs_of(folder)?.filter(|_| tables.len() > 1) else { return Ok(0) };
-    let is_made = |run: &PlannedRun, row: &PlateauRow| {
-        is_at(run, row)
-            && (row.speed_pct - run.speed_pct).abs() <= SAME_SETTING * run.speed_pct
-            && (row.dwell_s - run.dwell_s).abs() <= SAME_SETTING * run.dwell_s
-    };
-    let mut best = (0, 0);
-    for (at, table) in tables.iter().enumerate() {
-        let rows = rows_of(table)?;
-        let made = runs.iter().filter(|run| rows.iter().any(|row| is_made(run, row))).count();
-        if made > best.1 {
-            best = (at, made);
-        }
-    }
-    Ok(best.0)
-}
-
-/// Whether a table holds the runs of a plan: contacts and loads that were proposed.
-fn recorded_by(folder: &Path, table: &Path) -> Result<(), Failure> {
-    let Some((runs, plan)) = runs_of(folder)? else { return Ok(()) };
-    let (rows, name) = (rows_of(table)?, table.display());
-    let missing = runs.iter().filter(|run| !rows.iter().any(|row| is_at(run, row))).count();
-    if missing == runs.len() {
         return Err(Failure::bad_input(format!(
-            "{name}: none of the {missing} runs of {plan} is in it; give the table that was recorded by the plan, or leave --plan out"
+            "{name}: is not there, and it alone says which runs were planned; give the folder as `experiment` wrote it"
         )));
     }
-    if missing > 0 {
-        log::warn!("{name}: {missing} of the {} runs of {plan} are not in it", runs.len());
+    let runs = read_runs(&read_text_file(&path)?, &name).map_err(Failure::bad_input)?;
+    Ok((runs, name))
+}
+
+/// What a table holds of the runs of a plan.
+fn recorded(runs: &[PlannedRun], table: &Path) -> Result<Recorded, Failure> {
+    let name = table.display().to_string();
+    let table = PlateauTable::read(read_file(table)?.as_slice(), &name).map_err(Failure::bad_input)?;
+    Ok(Recorded::of(runs, &table.rows))
+}
+
+/// Place of the table that holds most of a plan's runs; of equals the first. One that holds fewer than half of them was not
+/// recorded by it.
+fn recorded_in(folder: &Path, tables: &[PathBuf]) -> Result<usize, Failure> {
+    let (runs, plan) = runs_of(folder)?;
+    let mut best: Option<(usize, Recorded)> = None;
+    for (at, table) in tables.iter().enumerate() {
+        let found = recorded(&runs, table)?;
+        if best.is_none_or(|(_, most)| found.made > most.made) {
+            best = Some((at, found));
+        }
     }
-    Ok(())
+    let Some((at, found)) = best else { return Ok(0) };
+    let Recorded { planned, made, .. } = found;
+    let name = tables[at].display();
+    if !found.is_by_plan() {
+        let holds = match made {
+            0 => format!("none of the {planned} runs of {plan} is in it"),
+            _ => format!("only {made} of the {planned} runs of {plan} are in it"),
+        };
+        return Err(Failure::bad_input(format!(
+            "{name}: {holds}; give the table of the planned session, with the loads, sweeps, speeds and dwells planned, or leave --plan out"
+        )));
+    }
+    if made < planned {
+        log::warn!("{name}: {} of the {planned} runs of {plan} are not in it", planned - made);
+    }
+    if !found.is_in_order() {
+        log::warn!(
+            "{name}: its series stand in another order than the runs of {plan}; the order is part of the experiment, and what comes with time or with the load before is told less surely"
+        );
+    }
+    Ok(at)
 }

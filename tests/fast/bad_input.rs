@@ -126,6 +126,22 @@ fn arguments_and_places_that_cannot_be_used() {
     assert_eq!(std::fs::read_to_string(folder.path().join("taken")).unwrap(), "mine");
 }
 
+#[test]
+fn a_file_that_is_missing_has_a_kind_to_start_from() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, words) in [
+        ("power", "tip: `pinswitch init plan --out plan.toml` writes one to start from"),
+        ("segment --out x.csv", "tip: `pinswitch init run --out run.toml` writes one to start from"),
+        ("segment", "pinswitch init run"),
+        ("batch --out x", "pinswitch init sweep"),
+        ("init rigs", "the nearest is `pinswitch init rig`; the kinds are sweep, effects, plan, run, rig,"),
+        ("init power", "`power` needs `pinswitch init plan`"),
+    ] {
+        let (code, said) = ended(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+        assert!(code == Some(2) && said.contains(words), "{arguments}: {said}");
+    }
+}
+
 /// Who reads no errors is no reason to panic: the exit code is that of the error.
 #[test]
 #[cfg(target_os = "linux")]

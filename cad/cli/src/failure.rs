@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::Write;
 use std::process::ExitCode;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use pinswitch_friction::excerpt;
 
 /// What stands between several errors of one command.
@@ -59,8 +60,23 @@ pub(super) fn say(line: impl Display) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
+/// Files that a command cannot do without, and the kind of each that `init` writes.
+const KINDS: [(&str, &str); 3] = [("<PLAN>", "plan"), ("<RUN>", "run"), ("<SWEEP>", "sweep")];
+
+/// The error with where a file comes from that was not given.
+fn with_kind_of_file(mut error: clap::Error) -> clap::Error {
+    let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else { return error };
+    let kind = KINDS.iter().find(|(name, _)| missing.iter().any(|argument| argument == name));
+    if let Some((_, kind)) = kind.filter(|_| error.kind() == ErrorKind::MissingRequiredArgument) {
+        let tip = format!("`pinswitch init {kind} --out {kind}.toml` writes one to start from");
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    }
+    error
+}
+
 /// Prints what is wrong with the arguments, or the help that they ask for, and returns the exit code.
-pub(super) fn report_usage(error: &clap::Error) -> ExitCode {
+pub(super) fn report_usage(error: clap::Error) -> ExitCode {
+    let error = with_kind_of_file(error);
     let text = error.render().to_string();
     if error.use_stderr() && text.chars().count() > MAX_CHARACTERS {
         // An argument of any length may stand in it.

@@ -137,7 +137,7 @@ commands! {
 pub fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(e) => return failure::report_usage(&e),
+        Err(e) => return failure::report_usage(e),
     };
     env_logger::Builder::new()
         .filter_level(cli.verbosity.log_level_filter())

@@ -239,6 +239,10 @@ mod tests {
             ("stroke_mm = nan", "stroke_mm = NaN"),
             ("cell_limit_n = 0", "cell_limit_n"),
             ("colour = 3", "rig.toml:1: unknown field `colour`"),
+            ("loads_g = [\"a\"]", "rig.toml:1: loads_g[0] = \"a\" must be a number"),
+            ("speeds_pct = [40]", "rig.toml:1: speeds_pct = [40] must be two values in brackets"),
+            ("silicone = 1", "rig.toml:1: silicone = 1 must be true or false"),
+            ("layouts = [[1.5, 3]]", "rig.toml:1: layouts[0][0] = 1.5 must be a whole number"),
         ] {
             let error = RigLimits::parse(text, "rig.toml").unwrap_err().to_string();
             assert!(error.contains(words) && error.contains("init rig"), "{error}");

@@ -119,6 +119,10 @@ fn arguments_and_places_that_cannot_be_used() {
     assert!(code == Some(2) && error.contains("--tolerance: mesh.chord_tolerance_mm"), "{error}");
     let (code, _) = ended(folder.path(), &["generate"]);
     assert_eq!(code, Some(2));
+    // The paper's maxima are explained by what is built in.
+    let (code, error) =
+        ended(folder.path(), &["calibrate", "--published", "--effects", "mine.toml", "--out", "x"]);
+    assert!(code == Some(2) && error.contains("cannot be used with '--effects <FILE>'"), "{error}");
     // A file stands where the folder should be: the work cannot be done, which is no fault of the configuration.
     std::fs::write(folder.path().join("taken"), "mine").unwrap();
     let (code, error) = ended(folder.path(), &["generate", "three-double", "--out", "taken"]);

@@ -110,6 +110,14 @@ fn power_tries_effects_of_ones_own_and_effects_lists_them() {
     let at = folder.path();
     let listed = printed(at, &["effects", "--effects", "mine.toml"]);
     assert!(listed.contains("rate_dependence") && listed.contains("lubricant_dip"), "{listed}");
+    // Written out, they stand after the built-in ones; all can be read once those have ids of their own.
+    let written = printed(at, &["effects", "--toml", "--effects", "mine.toml"]);
+    let ids: Vec<&str> = written.lines().filter(|line| line.starts_with("id = ")).collect();
+    assert_eq!((ids.len(), ids[16]), (17, "id = \"lubricant_dip\""), "{written}");
+    let renamed = written.replace("\nid = \"", "\nid = \"own_");
+    std::fs::write(at.join("all.toml"), &renamed).unwrap();
+    let again = printed(at, &["effects", "--effects", "all.toml"]);
+    assert!(again.contains("own_rate_dependence") && again.contains("own_lubricant_dip"), "{again}");
     let small =
         "layouts = []\nweights_g = [1000, 3000, 5000]\nrepetitions = [3, 3]\nrepetitions_spread = 0\n";
     std::fs::write(at.join("small.toml"), small).unwrap();

@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Calibrate on the seven maxima printed in the paper instead of a table.
-    #[arg(long, conflicts_with_all = ["tables", "fit_below"])]
+    #[arg(long, conflicts_with_all = ["tables", "fit_below", "own_effects"])]
     published: bool,
     /// Fit only loads up to this percentage of the highest one and judge both models on the rest.
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..100))]

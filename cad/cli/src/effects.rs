@@ -56,15 +56,19 @@ fn variables() -> String {
 
 fn toml(vocabulary: &Vocabulary) -> String {
     let (mut said, mut unsaid) = (Vec::new(), String::new());
-    for effect in vocabulary.effects() {
+    for effect in Vocabulary::built_in().effects() {
         match EffectDefinition::of(effect) {
             Ok(definition) => said.push(definition),
             Err(why) => unsaid.push_str(&format!("#   {}: {why}\n", effect.id())),
         }
     }
-    let mut text = "# The built-in effects as formulas. Their ids are taken: give those that you keep ids of your own.\n\
-                    # No formula of one row can say these:\n"
-        .to_owned();
+    let built_in = said.len();
+    said.extend(vocabulary.own().map(|own| own.definition().clone()));
+    let mut text = "# The built-in effects as formulas. Their ids are taken: give those that you keep ids of your own.\n".to_owned();
+    if said.len() > built_in {
+        text.push_str("# Those of your own stand after them, under their ids.\n");
+    }
+    text.push_str("# No formula of one row can say these:\n");
     text.push_str(&unsaid);
     text.push_str(&own_effects_text(&said));
     text

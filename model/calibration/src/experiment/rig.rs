@@ -86,6 +86,9 @@ pub enum RigError {
 
 /// The wraps that a table may have, in words.
 pub(super) const WRAPS: &str = "1 to 720 deg";
+/// Lowest and highest speed of a run, in percent of full speed.
+pub(super) const MIN_SPEED_PCT: f64 = 0.1;
+pub(super) const MAX_SPEED_PCT: f64 = 100.0;
 /// Most weights, and most layouts, of a rig: the search grows with both.
 const MOST: usize = 40;
 
@@ -120,11 +123,11 @@ impl RigLimits {
         if let Some(weight) = repeated(loads) {
             return Some(("loads_g", format!("{weight}, given twice,"), "one entry a weight"));
         }
-        if !pair(self.speeds_pct, 0.1, 1000.0) {
+        if !pair(self.speeds_pct, MIN_SPEED_PCT, MAX_SPEED_PCT) {
             return Some((
                 "speeds_pct",
                 format!("{:?}", self.speeds_pct),
-                "[lowest, highest] within 0.1 to 1000 %",
+                "[lowest, highest] within 0.1 to 100 %, of full speed",
             ));
         }
         if !pair(self.dwells_s, 0.01, 3600.0) {
@@ -231,6 +234,10 @@ mod tests {
             ("loads_g = [100, 200, 100]", "loads_g = 100, given twice,"),
             ("layouts = [[5, 8], [3], [5, 8]]", "layouts = [5, 8], given twice,"),
             ("silicone = true\nspeeds_pct = [70, 40]", "rig.toml:2: speeds_pct"),
+            (
+                "speeds_pct = [40, 400]",
+                "speeds_pct = [40.0, 400.0] is outside [lowest, highest] within 0.1 to 100 %",
+            ),
             ("dwells_s = [0.0, 3.0]", "dwells_s"),
             ("layouts = [[16]]", "grooves 1..15"),
             ("layouts = [[8, 5]]", "ascending"),

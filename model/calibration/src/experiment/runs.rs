@@ -1,8 +1,10 @@
 //! `next-runs.csv`: series to record, in order, and the rows that they will give.
 
+use std::collections::HashMap;
+
 use pinswitch_friction::{Direction, Substrate, published};
 
-use super::rig::{RigLimits, WRAPS};
+use super::rig::{MAX_SPEED_PCT, MIN_SPEED_PCT, RigLimits, WRAPS};
 use crate::table::{Labels, MAX_WRAP_DEG, MIN_WRAP_DEG, PlateauRow, Sweep, substrate_word};
 
 /// One series to record.
@@ -90,6 +92,20 @@ pub enum RunsError {
         /// What may stand there.
         bound: &'static str,
     },
+    /// A series that stands in the plan already.
+    #[error(
+        "{file}:{line}: series = '{series}' stands in line {before} already; give each run a number of its own"
+    )]
+    Repeated {
+        /// File name as given.
+        file: String,
+        /// Its line.
+        line: u64,
+        /// The series, shortened.
+        series: String,
+        /// The line before that has it.
+        before: u64,
+    },
     /// A plan of nothing.
     #[error(
         "{file}: the plan has no run, since `experiment` found none worth making: there is nothing to rehearse or to record"
@@ -156,7 +172,7 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, RunsError> {
         *place = found.ok_or_else(|| RunsError::MissingColumn { file: file.to_owned(), column })?;
     }
     let wrap = header.iter().position(|name| name == WRAP);
-    let mut runs = Vec::new();
+    let (mut runs, mut series) = (Vec::new(), HashMap::new());
     for record in reader.records() {
         let record = record.map_err(|e| malformed(e.to_string()))?;
         let line = record.position().map_or(0, csv::Position::line);
@@ -211,7 +227,7 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, RunsError> {
                 _ => return Err(refuse(3, "up or down")),
             },
             load_mass_g: number(4, 0.0, 1e6, "0 to 1000000 g")?,
-            speed_pct: number(5, 0.1, 1e3, "0.1 to 1000 %")?,
+            speed_pct: number(5, MIN_SPEED_PCT, MAX_SPEED_PCT, "0.1 to 100 %, of full speed")?,
             dwell_s: number(6, 0.01, 3600.0, "0.01 to 3600 s")?,
             repetitions: [count(7)?, count(8)?],
             mount: cell(9).parse().ok().filter(|n| *n <= MOST_RUNS).ok_or_else(|| refuse(9, "1 to 10000"))?,
@@ -224,6 +240,10 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, RunsError> {
         }
         if run.repetitions == [0, 0] {
             return Err(refuse(7, "1 to 1000, or some concentric ones"));
+        }
+        if let Some(before) = series.insert(cell(0).to_owned(), line) {
+            let series = cell(0).chars().take(60).collect();
+            return Err(RunsError::Repeated { file: file.to_owned(), line, series, before });
         }
         runs.push(run);
         if runs.len() > MOST_RUNS {
@@ -352,10 +372,17 @@ mod tests {
             (",4,5,", ",4,5000,", "repetitions_concentric = '5000' is outside 0 to 1000"),
             ("dwell_s", "dwell", "column 'dwell_s' is missing"),
             ("down", "sideways", "up or down"),
+            (",40,", ",400,", "2: speed_pct = '400' is outside 0.1 to 100 %, of full speed"),
         ] {
             let error = read_runs(&good.replacen(from, to, 1), "r.csv").unwrap_err().to_string();
             assert!(error.starts_with("r.csv") && error.contains(words), "{error}");
         }
+        let twice = write_runs(&[run(251.2), run(503.6)]).replace("\n2,", "\n1,");
+        let error = read_runs(&twice, "r.csv").unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "r.csv:3: series = '1' stands in line 2 already; give each run a number of its own"
+        );
         assert!(read_runs(&good[..good.find('\n').unwrap() + 1], "r.csv").is_err());
     }
 }

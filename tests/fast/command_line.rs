@@ -293,6 +293,33 @@ fn a_study_of_nothing_is_refused_with_what_there_is() {
     }
 }
 
+/// An option that does nothing is a misunderstanding.
+#[test]
+fn options_of_simulate_that_would_be_ignored_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, option) in [
+        ("--only nulls --out x", "--only"),
+        ("--first-seed 3 --out x", "--first-seed"),
+        ("--every-noise --out x", "--every-noise"),
+        ("--promises --out x", "--promises"),
+        ("--forms --out x", "--forms"),
+        ("--experiments --out x", "--experiments"),
+        ("--randomised --runs next-runs.csv --out x", "--randomised"),
+        ("--model model.toml --raw --out x", "--model"),
+        ("--model model.toml --study 1", "--model"),
+        ("--model model.toml --runs r.csv --effects mine.toml --out x", "--effects"),
+        ("--rig rig.toml --next --out x", "--rig"),
+        ("--rig rig.toml --study 1", "--rig"),
+        ("--effects mine.toml --study 1", "--effects"),
+    ] {
+        let arguments: Vec<&str> = ["simulate"].into_iter().chain(arguments.split(' ')).collect();
+        let (code, said) = ended(folder.path(), &arguments);
+        assert!(code == Some(2) && said.contains(option), "{arguments:?}: {said}");
+        assert!(said.contains("cannot be used with"), "{arguments:?}: {said}");
+        assert!(!folder.path().join("x").exists(), "{arguments:?}");
+    }
+}
+
 #[test]
 fn a_rig_has_the_noise_of_a_calibration() {
     let folder = tempfile::tempdir().unwrap();

@@ -35,6 +35,8 @@ use pinswitch_switch::output::OutputFile;
   pinswitch simulate --runs next/next-runs.csv --model calibration/model.toml --out rehearsal
   pinswitch simulate --study 20
   pinswitch simulate --study 20 --only nulls --only 'worn spot'")]
+// clap does not ask for an argument that is required if another one that is given conflicts with it: those that need --study conflict
+// with --out themselves, and those that need --runs with what --runs conflicts with.
 pub(super) struct Arguments {
     /// The plan: layouts, loads, sweeps, speeds, dwells, effects with their sizes, noise, seed. Without one, the paper's rig.
     plan: Option<PathBuf>,
@@ -45,7 +47,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     own: OwnEffects,
     /// Without a plan: loads up and down, several speeds and dwells, instead of the paper's protocol.
-    #[arg(long, conflicts_with_all = ["plan", "study"])]
+    #[arg(long, conflicts_with_all = ["plan", "study", "runs"])]
     randomised: bool,
     /// Folder for the tables.
     #[arg(long, value_name = "DIR", required_unless_present = "study")]
@@ -60,40 +62,43 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "CSV", conflicts_with_all = ["study", "raw", "next"])]
     runs: Option<PathBuf>,
     /// With --runs: a model.toml is the rig, with its constants, effects and noise.
-    #[arg(long, value_name = "TOML", requires = "runs", conflicts_with_all = ["plan", "effects", "randomised"])]
+    #[arg(long, value_name = "TOML", requires = "runs")]
+    #[arg(conflicts_with_all = ["plan", "effects", "own_effects", "randomised", "study", "raw", "next"])]
     model: Option<PathBuf>,
     /// The model.toml of a calibration whose noise the rig has, instead of the plan's.
     #[arg(long, value_name = "TOML", conflicts_with_all = ["model", "study"])]
     noise: Option<PathBuf>,
     /// With --runs: the rig that they were planned for, if it is not the paper's.
-    #[arg(long, value_name = "TOML", requires = "runs")]
+    #[arg(long, value_name = "TOML", requires = "runs", conflicts_with_all = ["study", "raw", "next"])]
     rig: Option<PathBuf>,
     /// Seed of the noise [default: 1, or that of the plan].
     #[arg(long, value_name = "SEED", conflicts_with = "study", value_parser = clap::value_parser!(u64).range(..=MAX_SEED))]
     seed: Option<u64>,
     /// Calibrate this many rigs of every kind and print what was said of them.
-    #[arg(long, value_name = "SEEDS", conflicts_with_all = ["plan", "out"], value_parser = clap::value_parser!(u64).range(1..=MOST_SEEDS))]
+    #[arg(long, value_name = "SEEDS", value_parser = clap::value_parser!(u64).range(1..=MOST_SEEDS))]
+    #[arg(conflicts_with_all = ["plan", "out", "own_effects"])]
     study: Option<u64>,
     /// In a study, the first seed; others than those a level was tuned on give a fair figure.
-    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "study", value_parser = clap::value_parser!(u64).range(..=MAX_FIRST_SEED))]
+    #[arg(long, value_name = "SEED", default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=MAX_FIRST_SEED))]
+    #[arg(requires = "study", conflicts_with = "out")]
     first_seed: u64,
     /// In a study, give every rig all noise at once: scatter of mounts and seatings, walking offsets, chains, heavy tails, a cell with
     /// steps, missing rows.
-    #[arg(long, requires = "study", conflicts_with = "experiments")]
+    #[arg(long, requires = "study", conflicts_with_all = ["out", "experiments"])]
     every_noise: bool,
     /// In a study, ask for the error promised for a new session, too: five times the time.
-    #[arg(long, requires = "study")]
+    #[arg(long, requires = "study", conflicts_with = "out")]
     promises: bool,
     /// In a study, draw the forms of what has no name, and let other sessions confirm or refute them.
-    #[arg(long, requires = "study", conflicts_with = "promises")]
+    #[arg(long, requires = "study", conflicts_with_all = ["out", "promises"])]
     forms: bool,
     /// In a study, propose a session where the paper's protocol leaves something open, make it, and calibrate both; a number makes
     /// the effects so many times as large.
     #[arg(long, value_name = "TIMES", num_args = 0..=1, default_missing_value = "1", value_parser = times)]
-    #[arg(requires = "study", conflicts_with_all = ["promises", "forms"])]
+    #[arg(requires = "study", conflicts_with_all = ["out", "promises", "forms"])]
     experiments: Option<f64>,
     /// In a study, only these kinds of rig: a group (nulls, singles, scattered, pairs, masks, confounded, outside) or a part of a name.
-    #[arg(long, value_name = "GROUP|NAME", requires = "study")]
+    #[arg(long, value_name = "GROUP|NAME", requires = "study", conflicts_with = "out")]
     only: Vec<String>,
 }
 

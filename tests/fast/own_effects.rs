@@ -148,7 +148,8 @@ fn faults_are_placed_and_the_cause_is_named() {
     let log = good.replace("-a * exp(-((speed_pct - c)/w)^2)", "a*c/w*sqrt(1 - previous_load_n/49.4)");
     std::fs::write(at.join("log.toml"), log).unwrap();
     let (code, said) = ended(at, &["calibrate", "rig/plateaus.csv", "--effects", "log.toml", "--out", "x"]);
-    assert!(code == Some(2) && said.contains("has no number at its start values in row"), "{said}");
+    assert!(code == Some(2) && said.contains("has no number where a = "), "{said}");
+    assert!(said.contains(", at which a fit may begin, in row "), "{said}");
     assert!(!at.join("x").exists());
     // Formulas that say something else than they seem to, or nothing.
     for (from, to, words) in [

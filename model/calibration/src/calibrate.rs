@@ -32,11 +32,13 @@ pub enum CalibrationError {
     },
     /// An effect of one's own has no value on the table.
     #[error(
-        "effect '{id}' has no number at its start values in row {row} ({told}); guard its formula with max or min"
+        "effect '{id}' has no number where {values}, at which a fit may begin, in row {row} ({told}); guard its formula with max or min, or narrow the bounds of its constants"
     )]
     NoValue {
         /// Its id.
         id: String,
+        /// Its constants, as `k = 1, h = 2`.
+        values: String,
         /// Row of the table, from 1.
         row: usize,
         /// Where that row lies.

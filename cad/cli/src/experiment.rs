@@ -147,6 +147,11 @@ fn percent(probability: f64) -> String {
     }
 }
 
+/// A count with its noun.
+fn counted(count: f64, noun: &str) -> String {
+    format!("{count:.0} {noun}{}", if count == 1.0 { "" } else { "s" })
+}
+
 fn summary(proposal: &Proposal, out: &Path) -> String {
     let mut text = String::new();
     if proposal.questions.is_empty() && proposal.unanswerable.is_empty() {
@@ -173,10 +178,23 @@ fn summary(proposal: &Proposal, out: &Path) -> String {
         text.push_str("no run is worth making for it\n");
     }
     text.push_str(&format!(
-        "{} runs, {:.0} minutes: {}\n",
-        proposal.runs.len(),
-        proposal.minutes,
+        "{}, {}: {}\n",
+        counted(proposal.runs.len() as f64, "run"),
+        counted(proposal.minutes.round(), "minute"),
         out.join("run-sheet.html").display()
     ));
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_is_no_plural() {
+        assert_eq!(
+            (counted(1.0, "run"), counted(0.0, "minute")),
+            ("1 run".to_owned(), "0 minutes".to_owned())
+        );
+    }
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::expression::{Fault, Node};
+use super::parser::is_function;
 use super::probe::probes;
 use super::unit::Unit;
 use super::unit_check::check_units;
@@ -224,6 +225,9 @@ impl EffectDefinition {
         require(variable(name).is_none(), part(), || {
             let names: Vec<&str> = VARIABLES.iter().map(|v| v.name).collect();
             format!("parameter '{name}' has the name of a variable; taken are {}", names.join(", "))
+        })?;
+        require(!is_function(name), part(), || {
+            format!("parameter '{name}' has the name of a function; give it another one, such as my_{name}")
         })?;
         let usable = |v: f64| v.is_finite() && v.abs() <= MAX_VALUE;
         require(

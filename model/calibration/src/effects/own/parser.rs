@@ -174,6 +174,10 @@ impl<'a> Parser<'a> {
             let problem = "tension_n is known only where acts_on is \"tension\" or \"reading\"; use load_n";
             return Err(Fault::new(at, problem));
         }
+        if is_function(name) {
+            let values = if PAIRS.iter().any(|pair| pair.0 == name) { "a, b" } else { "x" };
+            return Err(Fault::new(at, format!("the function {name} needs brackets: {name}({values})")));
+        }
         match variable(name) {
             Some(variable) => Node::new(at, Kind::Variable(variable)),
             None => {
@@ -182,6 +186,11 @@ impl<'a> Parser<'a> {
             }
         }
     }
+}
+
+/// Whether a name is that of a function.
+pub(super) fn is_function(name: &str) -> bool {
+    FUNCTIONS.iter().any(|f| f.0 == name) || PAIRS.iter().any(|f| f.0 == name)
 }
 
 /// The sign of [`Token::Sign`] that reads so.
@@ -258,7 +267,10 @@ mod tests {
             ("a = 1", 2, "compare by =="),
             ("1e999", 0, "is no number"),
             ("1.2.3", 0, "is no number"),
-            ("\u{3bc} * 2", 0, "begins nothing"),
+            ("\u{3bc} * 2", 0, "'\u{3bc}' begins nothing"),
+            ("2 \u{d7} a", 2, "'\u{d7}' begins nothing"),
+            ("a*exp load_n/50", 2, "the function exp needs brackets: exp(x)"),
+            ("a + max", 4, "the function max needs brackets: max(a, b)"),
         ] {
             let fault = Node::parse(text, &["a", "b"], true).unwrap_err();
             assert!(fault.at == at && fault.problem.contains(part), "{text}: {fault:?}");

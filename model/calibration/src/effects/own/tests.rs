@@ -157,6 +157,7 @@ fn faults_are_placed() {
         ("size = true, ", "size = true, low = 0, ", "a size has no bounds"),
         ("unit = \"%\" }\nparameters.w", "unit = \"kg\" }\nparameters.w", "20:12: unit 'kg' is unknown"),
         ("parameters.w =", "parameters.load_n =", "21:12: parameter 'load_n' has the name of a variable"),
+        ("parameters.w =", "parameters.exp =", "21:12: parameter 'exp' has the name of a function"),
         (
             "parameters.w =",
             "parameters.v = { start = 1, low = 0, high = 2, unit = \"1\" }\nparameters.w =",

@@ -48,7 +48,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token<'_>, Range<usize>)>, Fault
                 '&' | '|' | '!' => "; multiply comparisons for 'and', take their max for 'or'",
                 _ => "; a formula has numbers, names, + - * / ^ < > ( ) and commas",
             };
-            return Err(Fault::new(at, format!("'{}' begins nothing{remedy}", first.escape_default())));
+            return Err(Fault::new(at, format!("'{}' begins nothing{remedy}", first.escape_debug())));
         };
         found.push((token, at..at + length));
         at += length;

@@ -73,7 +73,7 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
     );
     assert!(said.contains("second/plateaus.csv answers "), "{said}");
     let page = std::fs::read_to_string(path.join("joined/report.html")).unwrap();
-    assert!(page.contains("rate_dependence or none at a size of 0.100 (99 %): <b>found</b>"));
+    assert!(page.contains("rate_dependence or none at a size of 0.100 (&gt;99 %): <b>found</b>"));
 }
 
 #[test]

@@ -75,12 +75,21 @@ fn story(report: &Report) -> String {
     html
 }
 
+/// A probability in percent, as `experiment` prints it: nothing is certain.
+fn percent(probability: f64) -> String {
+    match probability {
+        p if p > 0.99 => ">99".to_owned(),
+        p if p < 0.01 => "<1".to_owned(),
+        p => format!("{:.0}", 100.0 * p),
+    }
+}
+
 /// What a session was made for, how probably it was to be answered, and what came of it.
 fn asked(plan: &Asked) -> String {
     let told = |q: &AskedQuestion| {
-        let percent = (100.0 * q.resolved_probability).clamp(1.0, 99.0);
+        let percent = percent(q.resolved_probability);
         let size = q.size.map_or_else(String::new, |size| format!(" at a size of {}", short(size)));
-        let words = format!("{} or {}{size} ({percent:.0} %)", q.between[0], q.between[1]);
+        let words = format!("{} or {}{size} ({percent} %)", q.between[0], q.between[1]);
         // What is smaller than what was asked about may still be of consequence, and then stands in the verdict.
         let at = if q.answer == Answer::Excluded && q.size.is_some() { " at this size" } else { "" };
         format!("<li>{}: <b>{}{at}</b></li>", escape(&words), q.answer.as_str())
@@ -212,4 +221,14 @@ fn adequacy(report: &Report) -> String {
         newtons(error),
         newtons(noise)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_certain() {
+        assert_eq!([0.001, 0.014, 0.5, 0.99, 0.996].map(percent), ["<1", "1", "50", "99", ">99"]);
+    }
 }

@@ -1,7 +1,8 @@
 //! `rig.toml`: what a rig can do, and what its time costs.
 
 use pinswitch_friction::{Substrate, excerpt, published};
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::table::{MAX_WRAP_DEG, MIN_WRAP_DEG};
 use crate::toml_text::{place_of, toml_error};
@@ -13,8 +14,10 @@ pub struct RigLimits {
     /// Weights at hand, in grams.
     pub loads_g: Vec<f64>,
     /// Lowest and highest speed of the actuator, in percent.
+    #[serde(deserialize_with = "exactly_two")]
     pub speeds_pct: [f64; 2],
     /// Shortest and longest pause before a reading, in seconds.
+    #[serde(deserialize_with = "exactly_two")]
     pub dwells_s: [f64; 2],
     /// Layouts at hand, as lists of occupied grooves.
     pub layouts: Vec<Vec<usize>>,
@@ -210,6 +213,12 @@ impl RigLimits {
     }
 }
 
+/// Two numbers: of a longer list serde would read the first two, and pass over the rest.
+fn exactly_two<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 2], D::Error> {
+    let all = Vec::<f64>::deserialize(from)?;
+    <[f64; 2]>::try_from(all).map_err(|all| D::Error::invalid_length(all.len(), &"an array of length 2"))
+}
+
 /// The first entry that stands in a list before.
 fn repeated<T: PartialEq>(all: &[T]) -> Option<&T> {
     all.iter().enumerate().find(|(i, entry)| all[..*i].contains(entry)).map(|(_, entry)| entry)
@@ -248,6 +257,7 @@ mod tests {
             ("colour = 3", "rig.toml:1: unknown field `colour`"),
             ("loads_g = [\"a\"]", "rig.toml:1: loads_g[0] = \"a\" must be a number"),
             ("speeds_pct = [40]", "rig.toml:1: speeds_pct = [40] must be two values in brackets"),
+            ("dwells_s = [1, 3, 10]", "rig.toml:1: dwells_s = [1, 3, 10] must be two values in brackets"),
             ("silicone = 1", "rig.toml:1: silicone = 1 must be true or false"),
             ("layouts = [[1.5, 3]]", "rig.toml:1: layouts[0][0] = 1.5 must be a whole number"),
         ] {

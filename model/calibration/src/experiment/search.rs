@@ -6,11 +6,14 @@ use nalgebra::DMatrix;
 use super::candidates::Candidate;
 use super::question::{Projections, Question};
 use super::rig::RigLimits;
+use crate::parallel::map_each;
 
 /// Squares beyond which an answer is as good as certain, in units of those needed.
 const ENOUGH: f64 = 3.0;
 /// Worth per minute below which a run is not worth making.
 const LEAST: f64 = 1e-4;
+/// Candidates that are looked at one after the other, others beside them.
+const AT_ONCE: usize = 256;
 /// Rounds of exchanges.
 const ROUNDS: usize = 2;
 /// Runs up to which they are exchanged: of a longer plan, one run decides little.
@@ -85,17 +88,25 @@ impl Search<'_> {
         if chosen.len() >= MOST_RUNS {
             return None;
         }
-        let mut best = None;
-        for (i, candidate) in self.candidates.iter().enumerate() {
-            let minutes = candidate.minutes(chosen.iter().map(|c| &self.candidates[*c]), self.rig);
-            if minutes > left || chosen.contains(&i) {
-                continue;
+        let best_among = |from: usize| {
+            let mut best = None;
+            for i in from..self.candidates.len().min(from + AT_ONCE) {
+                let minutes =
+                    self.candidates[i].minutes(chosen.iter().map(|c| &self.candidates[*c]), self.rig);
+                if minutes > left || chosen.contains(&i) {
+                    continue;
+                }
+                let with = worth(self.questions, &(total + &self.information[i]));
+                let gain = (with - before) / minutes.max(0.1);
+                if gain > LEAST && best.is_none_or(|(most, _)| gain > most) {
+                    best = Some((gain, i));
+                }
             }
-            let gain = (worth(self.questions, &(total + &self.information[i])) - before) / minutes.max(0.1);
-            if gain > LEAST && best.is_none_or(|(most, _)| gain > most) {
-                best = Some((gain, i));
-            }
-        }
+            best
+        };
+        let parts = map_each((0..self.candidates.len()).step_by(AT_ONCE).collect(), best_among);
+        // Of equals the first, however many are looked at side by side.
+        let best = parts.into_iter().flatten().reduce(|a, b| if b.0 > a.0 { b } else { a });
         best.map(|(_, i)| i)
     }
 

@@ -10,6 +10,7 @@ use super::information::Design;
 use super::question::{Projections, Question};
 use super::rig::RigLimits;
 use crate::inference::Wandering;
+use crate::parallel::map_each;
 use crate::table::PlateauRow;
 
 /// Most runs that are all searched among: as many as the paper's rig can make.
@@ -41,7 +42,11 @@ impl Shortlist {
         let each = if all.len() > MOST { KEPT / questions.len().max(1) } else { all.len() };
         let mut kept: Vec<(Candidate, DMatrix<f64>, Vec<f64>)> = Vec::new();
         for chunk in all.chunks(AT_ONCE) {
-            let information = of_candidates(design, chunk, rig, minutes)?;
+            let parts = map_each(chunk.chunks(AT_ONCE / 4).collect(), |part: &[Candidate]| {
+                of_candidates(design, part, rig, minutes)
+            });
+            let information: Vec<DMatrix<f64>> =
+                parts.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
             for (candidate, information) in chunk.iter().zip(information) {
                 everything += &information;
                 let alone_minutes = candidate.minutes(std::iter::empty(), rig).max(0.1);

@@ -73,7 +73,15 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
     );
     assert!(said.contains("second/plateaus.csv answers "), "{said}");
     let page = std::fs::read_to_string(path.join("joined/report.html")).unwrap();
-    assert!(page.contains("rate_dependence or none at a size of 0.100 (&gt;99 %): <b>found</b>"));
+    assert!(page.contains("rate_dependence or none at a size of 0.100 (&gt;99 %; by the paper's protocol repeated &lt;1 %): <b>found</b>"));
+    // The runs are told with the story, and descending loads come from a heavier one in their mount.
+    assert!(page.contains("proposed runs:<ul><li>") && page.contains("with loads descending"));
+    let runs = std::fs::read_to_string(path.join("next/next-runs.csv")).unwrap();
+    let cells: Vec<Vec<&str>> = runs.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let load = |run: &[&str]| run[4].parse::<f64>().unwrap();
+    for (i, run) in cells.iter().enumerate().filter(|(_, run)| run[3] == "down") {
+        assert!(cells[..i].iter().any(|before| before[9] == run[9] && load(before) > load(run)), "{run:?}");
+    }
 }
 
 #[test]

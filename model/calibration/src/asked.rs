@@ -43,6 +43,9 @@ pub struct AskedQuestion {
     pub size: Option<f64>,
     /// Probability that was expected of an answer.
     pub resolved_probability: f64,
+    /// The same of the paper's protocol repeated for as long.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_repeating: Option<f64>,
     /// What came of it.
     #[serde(default = "not_yet")]
     pub answer: Answer,
@@ -57,6 +60,9 @@ fn not_yet() -> Answer {
 pub struct Asked {
     /// Minutes that the plan took.
     pub minutes: f64,
+    /// Its runs in words, contact by contact.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub runs: Vec<String>,
     /// Its questions.
     pub questions: Vec<AskedQuestion>,
 }
@@ -161,17 +167,20 @@ mod tests {
     fn a_field_that_no_plan_has_is_named() {
         let asked = |minutes: f64, between: [&str; 2], resolved_probability: f64| Asked {
             minutes,
+            runs: Vec::new(),
             questions: vec![
                 AskedQuestion {
                     between: ["friction_above_26_N".to_owned(), NONE.to_owned()],
                     size: None,
                     resolved_probability: 1.0,
+                    by_repeating: None,
                     answer: Answer::Open,
                 },
                 AskedQuestion {
                     between: between.map(str::to_owned),
                     size: None,
                     resolved_probability,
+                    by_repeating: None,
                     answer: Answer::Open,
                 },
             ],

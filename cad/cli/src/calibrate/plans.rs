@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pinswitch_calibration::Asked;
 use pinswitch_calibration::effects::{EffectDefinition, Vocabulary};
-use pinswitch_calibration::experiment::{PlannedRun, SCHEMA, read_runs};
+use pinswitch_calibration::experiment::{PlannedRun, SCHEMA, by_contact, read_runs};
 use pinswitch_calibration::table::PlateauTable;
 
 use super::super::Failure;
@@ -58,13 +58,13 @@ fn plan(folder: &Path, vocabulary: &Vocabulary) -> Result<Asked, Failure> {
         return Err(refused(format!("schema = \"{}\" is not {SCHEMA}", plan.schema)));
     }
     // That a plan has no runs is said before what it says of them.
-    runs_of(folder)?;
+    let (runs, _) = runs_of(folder)?;
     let form = form_of(folder)?;
     let is_known = |id: &str| {
         vocabulary.named(id).is_some() || form.as_ref().is_some_and(|form| form.named(id).is_some())
     };
     plan.asked.check(is_known).map_err(|e| refused(e.to_string()))?;
-    Ok(plan.asked)
+    Ok(Asked { runs: by_contact(&runs), ..plan.asked })
 }
 
 /// The built-in effects with the form that a plan asks about, if there is one.

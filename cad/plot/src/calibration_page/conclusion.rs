@@ -89,14 +89,19 @@ fn asked(plan: &Asked) -> String {
     let told = |q: &AskedQuestion| {
         let percent = percent(q.resolved_probability);
         let size = q.size.map_or_else(String::new, |size| format!(" at a size of {}", short(size)));
-        let words = format!("{} or {}{size} ({percent} %)", q.between[0], q.between[1]);
+        let repeated = q.by_repeating.map_or_else(String::new, |p| {
+            format!("; by the paper's protocol repeated {} %", self::percent(p))
+        });
+        let words = format!("{} or {}{size} ({percent} %{repeated})", q.between[0], q.between[1]);
         // What is smaller than what was asked about may still be of consequence, and then stands in the verdict.
         let at = if q.answer == Answer::Excluded && q.size.is_some() { " at this size" } else { "" };
         format!("<li>{}: <b>{}{at}</b></li>", escape(&words), q.answer.as_str())
     };
     let questions: String = plan.questions.iter().map(told).collect();
+    let runs: String = plan.runs.iter().map(|run| format!("<li>{}</li>", escape(run))).collect();
+    let runs = if runs.is_empty() { runs } else { format!("proposed runs:<ul>{runs}</ul>") };
     format!(
-        "<tr><td colspan=\"4\">asked for in {:.0} minutes, with the probability of an answer that was expected, and what \
+        "<tr><td colspan=\"4\">{runs}asked for in {:.0} minutes, with the probability of an answer that was expected, and what \
          came of it:<ul>{questions}</ul></td></tr>",
         plan.minutes
     )

@@ -20,7 +20,7 @@ use pinswitch_friction::{published, sort_by_number};
 use serde::Serialize;
 
 pub use rig::{RigError, RigLimits};
-pub use runs::{PlannedRun, RunsError, contact_words, read_runs, rows_of, write_runs};
+pub use runs::{PlannedRun, RunsError, by_contact, contact_words, read_runs, rows_of, write_runs};
 
 use crate::effects::{Covariate, Vocabulary};
 use crate::inference::{Levels, Model, Noise};

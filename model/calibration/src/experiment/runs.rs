@@ -307,6 +307,35 @@ pub(super) fn append(
     }
 }
 
+/// What runs hold, contact by contact in their order: `silicone 5;8;11: 24 runs, 503.6 to 4007.8 g, 40 to 70 %, 1 to 10 s`.
+pub fn by_contact(runs: &[PlannedRun]) -> Vec<String> {
+    let mut contacts: Vec<String> = Vec::new();
+    for words in runs.iter().map(contact_words) {
+        if !contacts.contains(&words) {
+            contacts.push(words);
+        }
+    }
+    let told = |contact: String| {
+        let of: Vec<&PlannedRun> = runs.iter().filter(|run| contact_words(run) == contact).collect();
+        let span = |value: fn(&PlannedRun) -> f64, unit: &str| {
+            let low = of.iter().map(|run| value(run)).fold(f64::INFINITY, f64::min);
+            let high = of.iter().map(|run| value(run)).fold(f64::NEG_INFINITY, f64::max);
+            if low < high { format!("{low} to {high} {unit}") } else { format!("{low} {unit}") }
+        };
+        let down = of.iter().filter(|run| run.sweep == Sweep::Down).count();
+        let down = if down > 0 { format!(" ({down} with loads descending)") } else { String::new() };
+        format!(
+            "{contact}: {} {}{down}, {}, {}, {}",
+            of.len(),
+            if of.len() == 1 { "run" } else { "runs" },
+            span(|run| run.load_mass_g, "g"),
+            span(|run| run.speed_pct, "%"),
+            span(|run| run.dwell_s, "s")
+        )
+    };
+    contacts.into_iter().map(told).collect()
+}
+
 /// A contact in words: `silicone`, `abs 5;8;11`, `silicone 5;8;11, wrap 120 deg`.
 pub fn contact_words(run: &PlannedRun) -> String {
     let pins: Vec<String> = run.pins.iter().map(usize::to_string).collect();
@@ -344,6 +373,19 @@ mod tests {
         assert_eq!(rows.len(), 18);
         assert!(rows.is_sorted_by(|a, b| a.time_s < b.time_s));
         assert_eq!((rows[9].series.as_str(), rows[9].labels.mount.as_str()), ("2", "2"));
+    }
+
+    #[test]
+    fn runs_are_told_contact_by_contact() {
+        let up = PlannedRun { sweep: Sweep::Up, dwell_s: 1.0, ..run(5002.5) };
+        let bare = PlannedRun { pins: Vec::new(), ..up.clone() };
+        assert_eq!(
+            by_contact(&[up, run(251.2), bare]),
+            [
+                "silicone 5;8;11: 2 runs (1 with loads descending), 251.2 to 5002.5 g, 40 %, 1 to 3 s",
+                "silicone: 1 run, 5002.5 g, 40 %, 1 s"
+            ]
+        );
     }
 
     #[test]

@@ -210,7 +210,12 @@ fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]
     let first = if frame.operators.len() == 2 { 2 } else { 1 };
     for operator in first..=frame.operators.len().min(MOST_OPERATORS) {
         // What each reads is scatter of the reading, by the table's own labels.
-        push(groups, Covariate::Condition, &[Channel::Friction, Channel::Gain], &Shape::OperatorIs { operator });
+        push(
+            groups,
+            Covariate::Condition,
+            &[Channel::Friction, Channel::Gain],
+            &Shape::OperatorIs { operator },
+        );
     }
     let channels = by_material(frame);
     for power in 1..=3 {

@@ -104,6 +104,7 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
     let after = |runs: &[PlannedRun], told: fn(&QuestionOutlook) -> f64| {
         let asked = Asked {
             minutes: proposal.minutes,
+            runs: Vec::new(),
             questions: proposal.questions.iter().map(|q| asked(q, told(q))).collect(),
         };
         let Some(session) = session(&plan, runs, &rig) else { return (None, Vec::new()) };
@@ -127,6 +128,7 @@ fn asked(question: &QuestionOutlook, resolved_probability: f64) -> AskedQuestion
         between: question.between.clone(),
         size: question.size,
         resolved_probability,
+        by_repeating: None,
         answer: Answer::Open,
     }
 }

@@ -104,7 +104,9 @@ pub(super) static VARIABLES: [Variable; 23] = [
     ),
     moving("session", "1", "1, 2, ... in the order of the table", |m| m.point.session),
     moving("mount", "1", "the number of the mount; 1 where the table names none", |m| m.point.mount),
-    moving("operator", "1", "1, 2, ... in the order of their names; 1 where there is but one", |m| m.point.operator),
+    moving("operator", "1", "1, 2, ... in the order of their names; 1 where there is but one", |m| {
+        m.point.operator
+    }),
 ];
 
 /// The variable of a name.

@@ -12,6 +12,7 @@ mod batch_kill;
 mod bounds;
 mod campaign;
 mod closed_loop;
+mod effects_aside;
 mod generate_kill;
 mod random_configurations;
 mod second_rig;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 /// Unpacks a rig set into a folder.
-fn unpack(name: &str, folder: &Path) -> PathBuf {
+pub(super) fn unpack(name: &str, folder: &Path) -> PathBuf {
     let packed = repository("tests/data").join(format!("{name}.csv.gz"));
     let mut text = String::new();
     flate2::read::MultiGzDecoder::new(std::fs::File::open(packed).unwrap())

@@ -279,6 +279,23 @@ mod tests {
         report.trials[0].clone()
     }
 
+    /// A constant factor on the wrap, or on thresholds that are free, is in no table, however large it is said to be.
+    #[test]
+    fn what_the_constants_take_over_is_neither_refuted_nor_excluded() {
+        for (acts_on, start) in [("threshold", 0.3), ("threshold", 2.0), ("wrap", 0.3), ("wrap", 1.0)] {
+            let text = file("load", &format!("{acts_on}\"\ncombine = \"factor"), "a", start, "1");
+            let vocabulary = Vocabulary::built_in().read(&text, "mine.toml").unwrap();
+            let report = calibrate_among(&session(2), &vocabulary, Levels::default()).unwrap().report;
+            let trial = &report.trials[0];
+            assert_eq!(trial.outcome, TrialOutcome::Open, "{acts_on} {start}: {trial:?}");
+            assert!(
+                !report.limits.iter().any(|limit| limit.id == "mine"),
+                "{acts_on} {start}: {:?}",
+                report.limits
+            );
+        }
+    }
+
     /// A drag that is the same at every speed is no drag that grows with it, however much both move the readings alike.
     #[test]
     fn what_a_name_explains_better_is_not_confirmed() {

@@ -250,7 +250,7 @@ impl EffectDefinition {
 
     /// Why small sizes are in no proportion to what they do; `None` if they are. Of `k^2`, `abs(k)` or `sqrt(k)` no linear fit can
     /// begin at zero, and an interval about zero means nothing.
-    fn not_in_proportion(&self, node: &Node) -> Option<String> {
+    pub(super) fn not_in_proportion(&self, node: &Node) -> Option<String> {
         const SMALL: f64 = 1e-4;
         let at = |size: f64| -> Vec<f64> {
             let values: Vec<f64> =
@@ -282,9 +282,6 @@ impl EffectDefinition {
             pick(0.0, |_, (low, high)| high - 0.01 * (high - low)),
         ];
         let there = pick(1.0, |start, _| start);
-        if let Some(problem) = self.not_in_proportion(node) {
-            return Err(formula(problem));
-        }
         // What acts in a narrow range only may act in none of these rows.
         let mut acts = node.has_condition();
         for probe in probes() {

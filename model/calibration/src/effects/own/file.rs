@@ -118,6 +118,9 @@ pub fn read_own_effects(
             );
             return Err(source.error(effect.formula_at, problem));
         }
+        if let Some(problem) = effect.own.sizes_out_of_proportion() {
+            return Err(source.error(effect.formula_at, problem));
+        }
         let id = &effect.own.definition().id;
         let twice = found[..i].iter().any(|other| other.own.definition().id == *id);
         if twice || vocabulary.named(id).is_some() {

@@ -100,6 +100,11 @@ impl OwnEffect {
         determined::jumps_only(&self.formula, &self.definition.parameters)
     }
 
+    /// What is wrong with sizes that act in no proportion while they are small, if they do.
+    pub(super) fn sizes_out_of_proportion(&self) -> Option<String> {
+        self.definition.not_in_proportion(&self.formula)
+    }
+
     /// The start, and the same with the shapes elsewhere within their bounds: a formula that is not linear in a shape must
     /// not be missed because its fit began on the wrong side.
     pub(super) fn starts(&self) -> Vec<Vec<f64>> {

@@ -149,8 +149,7 @@ fn trial(
     }
     let weighed = Weighed::new(data, selection.noise);
     let Some(Beside { found, structure, rival, explains }) = beside(definition, selection, &weighed) else {
-        let note =
-            "this table cannot show it: the constants of the model take it over, or it acts nowhere here";
+        let note = "this table cannot show it";
         return Some(TrialReport { outcome: TrialOutcome::Open, note: Some(note.to_owned()), ..told });
     };
     let outcome = claim.outcome(found, structure.is_some());
@@ -170,7 +169,7 @@ fn trial(
         }
         (TrialOutcome::Confirmed, None) => {
             let part = explains.filter(|share| *share < IS_ALL).map(|share| {
-                format!("it explains {:.0} % of what shapes without a name do there: something is there, but not quite this", 100.0 * share)
+                format!("it explains {:.0} % of what shapes do there: it is not quite this", 100.0 * share)
             });
             (outcome, part)
         }

@@ -264,8 +264,7 @@ impl EffectDefinition {
         };
         let off = length(&with(&twice, 2.0)).max(length(&with(&turned, -1.0)));
         (off > 0.05 * length(&small) && off > 1e-12).then(|| {
-            "small sizes must act in proportion to themselves, and the other way round where they are negative, as in k*f or \
-             exp(k*f) - 1; with k^2, abs(k), sqrt(k) or max(k, 0) no interval means anything"
+            "small sizes must act in proportion, and the other way round where negative: k*f or exp(k*f) - 1, not k^2, abs(k), sqrt(k)"
                 .to_owned()
         })
     }

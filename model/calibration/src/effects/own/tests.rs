@@ -137,9 +137,9 @@ fn faults_are_placed() {
         ("exp(-((speed_pct - c)/w)^2)", "exq(1)*c*w", "12:17: unknown function 'exq'; did you mean exp?"),
         ("speed_pct - c", "load_n - c", "12:31: the units N and % meet here"),
         ("-a * exp", "1 + a * exp", "12:12: with all sizes zero it must be zero, and is 1.0000"),
-        ("-a * exp", "-a^2 * exp", "12:11: small sizes must act in proportion to themselves"),
-        ("-a * exp", "-abs(a) * exp", "12:11: small sizes must act in proportion to themselves"),
-        ("-a * exp", "-sqrt(abs(a)) * exp", "12:11: small sizes must act in proportion to themselves"),
+        ("-a * exp", "-a^2 * exp", "12:11: small sizes must act in proportion"),
+        ("-a * exp", "-abs(a) * exp", "12:11: small sizes must act in proportion"),
+        ("-a * exp", "-sqrt(abs(a)) * exp", "12:11: small sizes must act in proportion"),
         ("\"-a * exp", "\"-a*ln(0*direction)*exp", "12:12: no number at its start values"),
         ("combine = \"factor\" ", "combine = \"sum\" ", ""),
         (

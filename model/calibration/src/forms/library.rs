@@ -262,9 +262,6 @@ fn load(frame: &Frame) -> Vec<Form> {
     forms
 }
 
-/// Operators beyond whom no form of one is tried.
-const MOST_OPERATORS: usize = 8;
-
 /// A level on one kind of contact, on one condition alone, or of one operator.
 fn conditions(frame: &Frame) -> Vec<Form> {
     let mut forms = vec![
@@ -285,7 +282,7 @@ fn conditions(frame: &Frame) -> Vec<Form> {
         }
     }
     let groups = |operator| Form::new("groups", format!("a*(operator == {operator})"), &[]);
-    forms.extend((1..=frame.operators.len().min(MOST_OPERATORS)).map(groups));
+    forms.extend(frame.operator_numbers().map(groups));
     forms
 }
 

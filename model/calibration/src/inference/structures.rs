@@ -97,9 +97,6 @@ fn push(groups: &mut Vec<Group>, covariate: Covariate, channels: &[Channel], for
     groups.extend(channels.iter().map(|c| vec![Structure { covariate, channel: *c, form: form.clone() }]));
 }
 
-/// Operators beyond which a table asks nothing of each.
-const MOST_OPERATORS: usize = 8;
-
 /// Pushes a wave: sine and cosine together.
 fn push_wave(
     groups: &mut Vec<Group>,
@@ -207,8 +204,7 @@ fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]
         }
     }
     // Of two operators the second differs from the first.
-    let first = if frame.operators.len() == 2 { 2 } else { 1 };
-    for operator in first..=frame.operators.len().min(MOST_OPERATORS) {
+    for operator in frame.operator_numbers().skip(usize::from(frame.operators.len() == 2)) {
         // What each reads is scatter of the reading, by the table's own labels.
         push(
             groups,

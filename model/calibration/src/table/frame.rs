@@ -301,6 +301,13 @@ impl Frame {
         Some(points)
     }
 
+    /// Numbers of the operators of whom each is asked for; none where there is but one.
+    pub(crate) fn operator_numbers(&self) -> std::ops::RangeInclusive<usize> {
+        /// Operators beyond whom nothing is asked of each.
+        const MOST: usize = 8;
+        1..=self.operators.len().min(MOST)
+    }
+
     fn operator_of(&self, row: &PlateauRow) -> f64 {
         let place = self.operators.iter().position(|name| *name == row.labels.operator);
         if self.operators.is_empty() { 1.0 } else { place.map_or(0.0, |place| (place + 1) as f64) }

@@ -1,6 +1,6 @@
 //! Joins the tables of shards into the products of the whole sweep.
 
-use pinswitch_friction::excerpt;
+use pinswitch_diagnostic::excerpt;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 

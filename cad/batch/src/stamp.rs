@@ -1,6 +1,6 @@
 //! `batch.json`: which sweep a destination holds, with all that is needed to resume it.
 
-use pinswitch_friction::excerpt;
+use pinswitch_diagnostic::excerpt;
 use serde::{Deserialize, Serialize};
 
 use super::destination::{Destination, DestinationError};

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use pinswitch_friction::excerpt;
+use pinswitch_diagnostic::excerpt;
 
 /// What stands between several errors of one command.
 const BETWEEN: &str = "\nerror: ";

@@ -7,7 +7,7 @@ use clap::Args;
 use super::source::read_text;
 use super::{Failure, print};
 use crate::write::write_file;
-use pinswitch_friction::excerpt;
+use pinswitch_diagnostic::excerpt;
 use pinswitch_switch::templates::{STARTERS, names};
 
 /// Write a template out, to start a configuration of your own.

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::str::FromStr;
 
-use pinswitch_friction::excerpt;
+use pinswitch_diagnostic::excerpt;
 
 /// A range with both ends, the first no greater than the second.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::Failure;
 use crate::write::source_of_set_with;
-use pinswitch_friction::excerpt;
+use pinswitch_diagnostic::excerpt;
 use pinswitch_solid::files::read_three_mf;
 use pinswitch_switch::config::{
     ConfigError, Configuration, Name, Place, Places, assign, read, read_over, text,

@@ -1,6 +1,7 @@
 //! What a plan asked before a table was recorded, and what the table answers: an expectation is to be held against what came.
 
-use pinswitch_friction::{excerpt, published};
+use pinswitch_diagnostic::excerpt;
+use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
 use crate::experiment::{COVERED, FRICTION_ABOVE, NONE};

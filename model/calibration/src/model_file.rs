@@ -1,6 +1,7 @@
 //! `baseline.toml` and `model.toml`: a fitted model that predicts rows later.
 
-use pinswitch_friction::{excerpt, published};
+use pinswitch_diagnostic::excerpt;
+use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
 use crate::beyond_range::error_beyond_range;

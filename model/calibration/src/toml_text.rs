@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pinswitch_friction::excerpt;
+use pinswitch_diagnostic::excerpt;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 

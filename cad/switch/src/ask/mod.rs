@@ -9,7 +9,8 @@ mod target;
 mod tolerance;
 
 use phrase::short;
-use pinswitch_friction::{excerpt, sort_by_number};
+use pinswitch_diagnostic::excerpt;
+use pinswitch_friction::sort_by_number;
 use serde::{Deserialize, Serialize};
 
 pub use parameter::Parameter;

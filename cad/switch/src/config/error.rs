@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use pinswitch_friction::excerpt;
+use pinswitch_diagnostic::excerpt;
 
 /// Most characters of an error behind its place.
 const LONGEST: usize = 520;

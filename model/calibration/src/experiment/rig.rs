@@ -1,6 +1,7 @@
 //! `rig.toml`: what a rig can do, and what its time costs.
 
-use pinswitch_friction::{Substrate, excerpt, published};
+use pinswitch_diagnostic::excerpt;
+use pinswitch_friction::{Substrate, published};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 

@@ -1,6 +1,7 @@
 //! `run.toml`: the rig and the series of a raw run.
 
-use pinswitch_friction::{Substrate, excerpt, published};
+use pinswitch_diagnostic::excerpt;
+use pinswitch_friction::{Substrate, published};
 use serde::Deserialize;
 use toml::de::DeTable;
 

@@ -1,6 +1,6 @@
 //! Why a plateau table cannot be used.
 
-use pinswitch_friction::excerpt;
+use pinswitch_diagnostic::excerpt;
 
 use super::columns::COLUMNS;
 

@@ -1,6 +1,6 @@
 //! Why a plan cannot be run.
 
-use pinswitch_friction::excerpt;
+use pinswitch_diagnostic::excerpt;
 
 /// Why a plan cannot be run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

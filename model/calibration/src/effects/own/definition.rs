@@ -312,5 +312,5 @@ impl EffectDefinition {
 
 /// A text of any length as an error shows it.
 fn shown(text: &str) -> String {
-    pinswitch_friction::excerpt(text, 60)
+    pinswitch_diagnostic::excerpt(text, 60)
 }

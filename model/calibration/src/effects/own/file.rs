@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use pinswitch_friction::{excerpt, sort_by_number};
+use pinswitch_diagnostic::excerpt;
+use pinswitch_friction::sort_by_number;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 

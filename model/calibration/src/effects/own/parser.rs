@@ -201,7 +201,7 @@ fn sign_of(sign: &str) -> &'static str {
 /// Says that a name is unknown, with the nearest one that is known, or all.
 pub(crate) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
-    let shown = pinswitch_friction::excerpt(name, 40);
+    let shown = pinswitch_diagnostic::excerpt(name, 40);
     let near = known
         .iter()
         .map(|k| (strsim::damerau_levenshtein(k, name), k))

@@ -1,9 +1,9 @@
-//! What an error shows of a text that may be of any length.
+//! Shortened texts of any length.
 
-/// The text, if it has at most `most` characters; else its beginning and its end, where a remedy stands.
+/// The text, if it has at most `most` characters; else its beginning and its end, with its length between them.
 ///
 /// ```
-/// use pinswitch_friction::excerpt;
+/// use pinswitch_diagnostic::excerpt;
 ///
 /// assert_eq!(excerpt("a short one", 60), "a short one");
 /// let long = excerpt(&"x".repeat(1_000_000), 60);

@@ -1,0 +1,263 @@
+//! The diagnostic, and how a person reads it.
+
+use std::error::Error;
+use std::fmt;
+use std::sync::Arc;
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use crate::{Location, excerpt, neutral};
+
+/// Most characters of a problem, of a help and of each cause: more would not be read.
+const LONGEST: usize = 520;
+/// Most causes that are shown.
+const MAX_CAUSES: usize = 5;
+
+/// A field and the value that it takes, as TOML.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Change {
+    /// Field, such as `shell.width_mm`.
+    pub field: String,
+    /// Value as TOML.
+    pub value: String,
+}
+
+/// What is wrong, where, and what to do about it.
+///
+/// Its [`Display`](fmt::Display) is one line, `location: problem; help`, for logs and tables; [`Diagnostic::render`] is
+/// what a person reads, and its serialisation what a program does.
+#[derive(Clone, Debug, Default)]
+pub struct Diagnostic {
+    location: Option<Box<Location>>,
+    problem: String,
+    help: Option<String>,
+    changes: Vec<Change>,
+    source: Option<Arc<dyn Error + Send + Sync>>,
+}
+
+impl Diagnostic {
+    /// A problem, in lower case and without a full stop, with the bound that was broken.
+    pub fn new(problem: impl Into<String>) -> Self {
+        Self { problem: problem.into(), ..Self::default() }
+    }
+
+    /// The message of an error of another library, which stays its source.
+    pub fn from_error(error: impl Error + Send + Sync + 'static) -> Self {
+        let source: Arc<dyn Error + Send + Sync> = Arc::new(error);
+        let problem = source.to_string();
+        // The error itself is the problem; what caused it follows.
+        Self { problem, source: Some(source), ..Self::default() }
+    }
+
+    /// The same diagnostic at this location.
+    #[must_use]
+    pub fn with_location(mut self, location: Location) -> Self {
+        self.location = Some(Box::new(location));
+        self
+    }
+
+    /// The same diagnostic at this location, unless it has a file.
+    #[must_use]
+    pub fn or_in_file(mut self, file: &str) -> Self {
+        let location = self.location.take().map_or_else(Location::default, |location| *location);
+        self.location = Some(Box::new(location.in_file(file)));
+        self
+    }
+
+    /// The same diagnostic with what to do about it.
+    #[must_use]
+    pub fn with_help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into()).filter(|help| !help.is_empty());
+        self
+    }
+
+    /// The same diagnostic with values that solve the problem when all of them are set.
+    #[must_use]
+    pub fn with_changes(mut self, changes: Vec<Change>) -> Self {
+        self.changes = changes;
+        self
+    }
+
+    /// The same diagnostic with the error that caused it.
+    #[must_use]
+    pub fn with_source(mut self, source: impl Error + Send + Sync + 'static) -> Self {
+        self.source = Some(Arc::new(source));
+        self
+    }
+
+    /// Where the problem is.
+    pub fn location(&self) -> Option<&Location> {
+        self.location.as_deref()
+    }
+
+    /// What is wrong, with the bound that was broken.
+    pub fn problem(&self) -> &str {
+        &self.problem
+    }
+
+    /// What to do about it.
+    pub fn help(&self) -> Option<&str> {
+        self.help.as_deref()
+    }
+
+    /// Values that solve the problem when all of them are set; empty where only words can describe the way out.
+    pub fn changes(&self) -> &[Change] {
+        &self.changes
+    }
+
+    /// `LABEL: location: problem`, the line of the file with a caret, and `  help: ...`, without control characters and of
+    /// bounded length. The label is `error` or `warning`.
+    pub fn render(&self, label: &str) -> String {
+        let mut text = format!("{label}: {}", self.headline());
+        if let Some(location) = &self.location {
+            text.push_str(&location.shown_snippet());
+        }
+        for cause in self.causes() {
+            text.push_str("\n  cause: ");
+            text.push_str(&shown(&cause));
+        }
+        if let Some(help) = &self.help {
+            text.push_str("\n  help: ");
+            text.push_str(&shown(help).replace('\n', "\n        "));
+        }
+        text
+    }
+
+    /// `location: problem`.
+    fn headline(&self) -> String {
+        let problem = shown(&self.problem);
+        match self.location.as_ref().map(ToString::to_string).filter(|place| !place.is_empty()) {
+            Some(place) => format!("{place}: {problem}"),
+            None => problem,
+        }
+    }
+
+    /// Messages of the sources, outermost first, without those that only repeat the one before.
+    fn causes(&self) -> Vec<String> {
+        let mut messages: Vec<String> = Vec::new();
+        let mut next: Option<&(dyn Error + 'static)> = self.source.as_ref().map(|e| e.as_ref() as _);
+        while let Some(error) = next.filter(|_| messages.len() < MAX_CAUSES) {
+            let message = error.to_string();
+            let before = messages.last().unwrap_or(&self.problem);
+            if !before.contains(&message) {
+                messages.push(message);
+            }
+            next = error.source();
+        }
+        messages
+    }
+}
+
+/// A text of bounded length without control characters.
+fn shown(text: &str) -> String {
+    neutral(&excerpt(text, LONGEST)).into_owned()
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.headline())?;
+        match &self.help {
+            Some(help) => write!(f, "; {}", shown(help)),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Error for Diagnostic {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.source.as_ref().map(|source| source.as_ref() as _)
+    }
+}
+
+impl PartialEq for Diagnostic {
+    /// Sources are compared by their messages.
+    fn eq(&self, other: &Self) -> bool {
+        (&self.location, &self.problem, &self.help, &self.changes)
+            == (&other.location, &other.problem, &other.help, &other.changes)
+            && self.causes() == other.causes()
+    }
+}
+
+impl Serialize for Diagnostic {
+    /// An object with the keys `location`, `problem`, `help`, `changes` and `causes`; those without content are absent.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        if let Some(location) = &self.location {
+            map.serialize_entry("location", location)?;
+        }
+        map.serialize_entry("problem", &self.problem)?;
+        if let Some(help) = &self.help {
+            map.serialize_entry("help", help)?;
+        }
+        if !self.changes.is_empty() {
+            map.serialize_entry("changes", &self.changes)?;
+        }
+        let causes = self.causes();
+        if !causes.is_empty() {
+            map.serialize_entry("causes", &causes)?;
+        }
+        map.end()
+    }
+}
+
+impl From<String> for Diagnostic {
+    fn from(problem: String) -> Self {
+        Self::new(problem)
+    }
+}
+
+impl From<&str> for Diagnostic {
+    fn from(problem: &str) -> Self {
+        Self::new(problem)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_diagnostic_is_two_parts() {
+        let diagnostic = Diagnostic::new("grooves overlap")
+            .with_location(Location::field("segment.grooves", "40"))
+            .with_help("lower it to 20");
+        assert_eq!(diagnostic.render("error"), "error: segment.grooves = 40: grooves overlap\n  help: lower it to 20");
+        assert_eq!(diagnostic.to_string(), "segment.grooves = 40: grooves overlap; lower it to 20");
+    }
+
+    #[test]
+    fn causes_follow_the_problem() {
+        let cause = std::io::Error::other("disk full");
+        let diagnostic = Diagnostic::new("cannot write shell.stl").with_source(cause);
+        assert_eq!(diagnostic.render("error"), "error: cannot write shell.stl\n  cause: disk full");
+        let same = Diagnostic::from_error(std::io::Error::other("disk full"));
+        assert_eq!(same.render("error"), "error: disk full");
+    }
+
+    #[test]
+    fn foreign_text_is_short_and_neutral() {
+        let problem = format!("\u{1b}[31m{}", "x".repeat(100_000));
+        let diagnostic = Diagnostic::new(problem).with_location(Location::file("\u{7}.csv"));
+        let text = diagnostic.render("error");
+        assert!(text.chars().count() < 600 && !text.contains(char::is_control), "{text}");
+    }
+
+    #[test]
+    fn json_names_every_part() {
+        let change = Change { field: "segment.grooves".to_owned(), value: "20".to_owned() };
+        let diagnostic = Diagnostic::new("grooves overlap")
+            .with_location(Location::line("mine.toml", 2).with_field("segment.grooves", "40"))
+            .with_help("lower it to 20")
+            .with_changes(vec![change]);
+        assert_eq!(
+            serde_json::to_value(&diagnostic).unwrap(),
+            serde_json::json!({
+                "location": {"file": "mine.toml", "line": 2, "field": "segment.grooves", "value": "40"},
+                "problem": "grooves overlap",
+                "help": "lower it to 20",
+                "changes": [{"field": "segment.grooves", "value": "20"}],
+            })
+        );
+    }
+}

@@ -1,0 +1,35 @@
+//! Diagnostics: what is wrong, where, and what to do about it.
+//!
+//! Every reader of the workspace reports a [`Diagnostic`]: a [`Location`], a problem, a remedy and the errors that caused
+//! it. A front end decides how to show one: [`Diagnostic::render`] prints it for a person in two parts, with the line of
+//! the file where there is one, and [`serde`] writes it as JSON for a program.
+//!
+//! ```
+//! use pinswitch_diagnostic::{Diagnostic, Location};
+//!
+//! let text = "[segment]\ngrooves = 40\n";
+//! let location = Location::in_text("mine.toml", text, 20..22).with_field("segment.grooves", "40");
+//! let diagnostic = Diagnostic::new("grooves overlap (0.781 mm apart, at least 1.450 mm needed)")
+//!     .with_location(location)
+//!     .with_help("lower it to 20");
+//! assert_eq!(
+//!     diagnostic.render("error"),
+//!     "error: mine.toml:2:11: segment.grooves = 40: grooves overlap (0.781 mm apart, at least 1.450 mm needed)\n\
+//!      \x20 2 | grooves = 40\n\
+//!      \x20   |           ^^\n\
+//!      \x20 help: lower it to 20"
+//! );
+//! ```
+//!
+//! Text from strangers' files may contain control characters that move a terminal's cursor or change its title.
+//! [`neutral`] is the boundary that all text for people passes.
+
+mod diagnostic;
+mod excerpt;
+mod location;
+mod neutral;
+
+pub use diagnostic::{Change, Diagnostic};
+pub use excerpt::excerpt;
+pub use location::{Location, Snippet};
+pub use neutral::neutral;

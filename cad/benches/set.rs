@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used)]
 
 use divan::{Bencher, black_box};
-use pinswitch::write::write_set;
+use pinswitch_cli::write::write_set;
 use pinswitch_solid::files::stl_bytes;
 use pinswitch_solid::validity::{Expectation, examine};
 use pinswitch_switch::built::Built;

@@ -5,10 +5,10 @@
 
 use std::time::Instant;
 
-use pinswitch_switch::ask::Ask;
-use pinswitch_switch::config::Configuration;
-use pinswitch_switch::design::Design;
-use pinswitch_switch::design_search::{Found, Options, PublishedPhysics, Silent, search, simulated};
+use pinswitch::switch::ask::Ask;
+use pinswitch::switch::config::Configuration;
+use pinswitch::switch::design::Design;
+use pinswitch::switch::design_search::{Found, Options, PublishedPhysics, Silent, search, simulated};
 
 /// Prints that are simulated, with a seed that the search does not use.
 const PRINTS: usize = 2000;

@@ -5,10 +5,10 @@
 //!
 //! `cargo run --release --example calibrate`
 
-use pinswitch_calibration::calibrate;
-use pinswitch_calibration::inference::Levels;
-use pinswitch_calibration::table::PlateauTable;
-use pinswitch_simulation::{EffectPlan, Plan, simulate};
+use pinswitch::calibration::calibrate;
+use pinswitch::calibration::inference::Levels;
+use pinswitch::calibration::table::PlateauTable;
+use pinswitch::simulation::{EffectPlan, Plan, simulate};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A session whose load cell reads 0.8 N too much, with noise.

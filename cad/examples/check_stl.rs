@@ -5,10 +5,10 @@
 use std::fs::File;
 use std::io::{BufReader, Cursor};
 
-use pinswitch_solid::files::{StlFile, read_stl, stl_bytes};
-use pinswitch_solid::profile::{ChordTolerance, Contour, Point2};
-use pinswitch_solid::solid::Solid;
-use pinswitch_solid::validity::{Expectation, examine};
+use pinswitch::solid::files::{StlFile, read_stl, stl_bytes};
+use pinswitch::solid::profile::{ChordTolerance, Contour, Point2};
+use pinswitch::solid::solid::Solid;
+use pinswitch::solid::validity::{Expectation, examine};
 
 /// A cube from which one triangle is missing, through its file.
 fn broken_cube() -> Result<StlFile, Box<dyn std::error::Error>> {

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example curve [DEGREES …]`: angles of the pins about the middle of the wrap.
 
-use pinswitch_friction::{
+use pinswitch::friction::{
     Contact, FrictionCurve, Law, PinPattern, Substrate, Transition, other_laws, predict, published,
 };
 

@@ -5,14 +5,14 @@
 //!
 //! `cargo run --release --example custom_effect`
 
-use pinswitch_calibration::effects::{
+use pinswitch::calibration::effects::{
     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
-use pinswitch_calibration::inference::{
+use pinswitch::calibration::inference::{
     Model, Noise, Observations, Term, Weighed, fit, interval_half_widths,
 };
-use pinswitch_calibration::table::{Condition, Frame, Point};
-use pinswitch_simulation::{Plan, simulate};
+use pinswitch::calibration::table::{Condition, Frame, Point};
+use pinswitch::simulation::{Plan, simulate};
 
 #[derive(Debug)]
 struct Creep;

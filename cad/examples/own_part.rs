@@ -7,10 +7,10 @@
 
 use std::path::PathBuf;
 
-use pinswitch_solid::files::{StepPart, step_part, stl_bytes};
-use pinswitch_solid::profile::{ChordTolerance, Contour, Pen, Point2};
-use pinswitch_solid::solid::Solid;
-use pinswitch_solid::validity::{Expectation, examine};
+use pinswitch::solid::files::{StepPart, step_part, stl_bytes};
+use pinswitch::solid::profile::{ChordTolerance, Contour, Pen, Point2};
+use pinswitch::solid::solid::Solid;
+use pinswitch::solid::validity::{Expectation, examine};
 
 /// A rectangle about the origin whose corners are rounded, counter-clockwise.
 fn plate(width_mm: f64, depth_mm: f64, corner_mm: f64) -> Contour {

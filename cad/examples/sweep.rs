@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example sweep`
 
-use pinswitch_batch::{
+use pinswitch::batch::{
     Destination, Observer, Options, Shard, Sweep, SweepSource, VariantOutcome, Variants, mesh_file,
     partial_folder, run,
 };

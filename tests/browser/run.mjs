@@ -1,6 +1,6 @@
 // Drives the configurator in a real browser, with `pinswitch view` and with the module: node run.mjs JOB.json, where the job
 // names `binary` (pinswitch), `browser`, `tools` (a folder with puppeteer-core and axe-core), `table` (a table of plateaus),
-// `pictures` (a folder for screenshots) and, where there is one, `site` (the folder that cad/web/build made). Exit code 1
+// `pictures` (a folder for screenshots) and, where there is one, `site` (the folder that cad/app/build made). Exit code 1
 // if anything did not hold; `only` runs the scenarios whose names hold one of its words.
 
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

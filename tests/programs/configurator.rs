@@ -2,7 +2,7 @@
 //! the module; what both give is what the command line writes, byte for byte.
 //!
 //! Needs chromium, node, and puppeteer-core and axe-core in `/tmp/pinswitch-browser`, where `.ci/run` puts them. The module
-//! is that of the site in `PINSWITCH_SITE`, a folder that `cad/web/build` made, which takes many minutes.
+//! is that of the site in `PINSWITCH_SITE`, a folder that `cad/app/build` made, which takes many minutes.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -18,7 +18,7 @@ fn site() -> Option<PathBuf> {
     let site = std::env::var_os("PINSWITCH_SITE");
     if site.is_none() {
         say_skipped(
-            "the module is not tried, the server is: run cad/web/build site, and give PINSWITCH_SITE=site as an absolute path",
+            "the module is not tried, the server is: run cad/app/build site, and give PINSWITCH_SITE=site as an absolute path",
         );
     }
     site.map(PathBuf::from)

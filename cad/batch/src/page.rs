@@ -1,6 +1,6 @@
 //! `index.html`: one self-contained page to look through a sweep, without a network or a server.
 
-use pinswitch_plot::html::{escape, filled, json_in_script, policy};
+use pinswitch_report::html::{escape, filled, json_in_script, policy};
 use serde_json::json;
 
 use super::gallery::Gallery;

@@ -4,7 +4,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::gallery::{Gallery, GalleryEntry, SettingValue};
-use pinswitch_plot::{PlotError, drawable};
+use pinswitch_report::{PlotError, drawable};
 
 /// The drawing library rounds to whole units: it draws this many to a pixel, so that lines are smooth.
 const FINE: i32 = 8;

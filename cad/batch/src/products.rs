@@ -14,7 +14,7 @@ use super::table::{Row, Schema};
 use super::table_files::{BatchTableError, TableWriter};
 use super::tally::Tally;
 use super::variant::Variants;
-use pinswitch_plot::PlotError;
+use pinswitch_report::PlotError;
 
 /// The table, in both its forms.
 pub(super) const TABLES: [&str; 2] = ["variants.csv", "variants.parquet"];

@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read};
 
 use clap::Args;
-use pinswitch_web::{Answer, Engine};
+use pinswitch_app::{Answer, Engine};
 
 use super::{Failure, print};
 

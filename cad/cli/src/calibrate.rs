@@ -19,7 +19,7 @@ use super::own_effects::OwnEffects;
 use super::{Failure, print};
 use crate::input::was_read;
 use crate::write::write_set;
-use pinswitch_plot::{UNEXPLAINED, page, plots, published_page, published_plot};
+use pinswitch_report::{UNEXPLAINED, page, plots, published_page, published_plot};
 use pinswitch_switch::output::OutputFile;
 use plans::{plans, with_forms};
 use summary::summary;

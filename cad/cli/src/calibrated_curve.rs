@@ -16,5 +16,5 @@ pub(super) fn calibrated_curve(design: &Design, model: &Path) -> Result<Friction
     let name = model.display().to_string();
     let text = crate::input::read_text_file(model)?;
     let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
-    pinswitch_web::calibrated_curve(design, &file, &name).map_err(Failure::bad_input)
+    pinswitch_app::calibrated_curve(design, &file, &name).map_err(Failure::bad_input)
 }

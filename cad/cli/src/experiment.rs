@@ -10,7 +10,7 @@ use pinswitch_calibration::experiment::{
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{ModelFile, Report};
-use pinswitch_plot::run_sheet;
+use pinswitch_report::run_sheet;
 use pinswitch_switch::output::OutputFile;
 
 use super::calibrate::{FORM, forget_form};

@@ -9,7 +9,7 @@ use pinswitch_friction::finger::{
 };
 use pinswitch_friction::published::{HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG};
 use pinswitch_friction::{Contact, FrictionCurve, Law, Trust};
-use pinswitch_plot::{FingerLayout, finger_svg};
+use pinswitch_report::{FingerLayout, finger_svg};
 use serde::Serialize;
 
 use super::finger_text::{csv, table};

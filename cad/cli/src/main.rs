@@ -1,7 +1,7 @@
-//! The command line of pinswitch; see [`pinswitch::run`].
+//! The command line of pinswitch; see [`pinswitch_cli::run`].
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    pinswitch::run()
+    pinswitch_cli::run()
 }

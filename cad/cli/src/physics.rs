@@ -14,7 +14,7 @@ use serde::Serialize;
 use super::source::Source;
 use super::{Failure, print, print_json};
 use crate::write::write_set;
-use pinswitch_plot::contact_svg;
+use pinswitch_report::contact_svg;
 use pinswitch_switch::output::OutputFile;
 
 /// Squared standard deviations from which a fact tells against a hypothesis.

@@ -10,7 +10,7 @@ use pinswitch_calibration::table::PlateauTable;
 
 use super::{Failure, print};
 use crate::write::write_set;
-use pinswitch_plot::log_svg;
+use pinswitch_report::log_svg;
 use pinswitch_switch::config::Name;
 use pinswitch_switch::output::OutputFile;
 

@@ -1,7 +1,7 @@
 //! What is handed from one step to the next on the way to a set: a file in memory, or why there is none.
 
 use crate::config::ConfigError;
-use pinswitch_plot::PlotError;
+use pinswitch_report::PlotError;
 use pinswitch_solid::solid::CapError;
 use pinswitch_solid::validity::Fault;
 

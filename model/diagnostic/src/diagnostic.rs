@@ -222,7 +222,10 @@ mod tests {
         let diagnostic = Diagnostic::new("grooves overlap")
             .with_location(Location::field("segment.grooves", "40"))
             .with_help("lower it to 20");
-        assert_eq!(diagnostic.render("error"), "error: segment.grooves = 40: grooves overlap\n  help: lower it to 20");
+        assert_eq!(
+            diagnostic.render("error"),
+            "error: segment.grooves = 40: grooves overlap\n  help: lower it to 20"
+        );
         assert_eq!(diagnostic.to_string(), "segment.grooves = 40: grooves overlap; lower it to 20");
     }
 

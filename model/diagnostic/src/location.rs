@@ -106,12 +106,7 @@ impl Location {
         let before = width(&mut text.chars().take(marked.start));
         let under = width(&mut text.chars().skip(marked.start).take(marked.len())).max(1);
         let margin = " ".repeat(number.len());
-        format!(
-            "\n  {number} | {}\n  {margin} | {}{}",
-            neutral(text),
-            " ".repeat(before),
-            "^".repeat(under)
-        )
+        format!("\n  {number} | {}\n  {margin} | {}{}", neutral(text), " ".repeat(before), "^".repeat(under))
     }
 }
 
@@ -165,7 +160,10 @@ mod tests {
     #[test]
     fn a_location_names_what_is_known() {
         assert_eq!(Location::file("a.csv").to_string(), "a.csv");
-        assert_eq!(Location::line("a.csv", 3).with_field("load_N", "abc").to_string(), "a.csv:3: load_N = abc");
+        assert_eq!(
+            Location::line("a.csv", 3).with_field("load_N", "abc").to_string(),
+            "a.csv:3: load_N = abc"
+        );
         assert_eq!(Location::field("shell.width_mm", "1").in_file("b").to_string(), "b: shell.width_mm = 1");
     }
 }

@@ -112,11 +112,11 @@ pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<
 const SHARED_MM: f64 = 0.05;
 
 /// Solids of a STEP lie this many chord tolerances inside one another before they share space.
-#[cfg(feature = "brep")]
+#[cfg(feature = "truck")]
 const SHARED_TOLERANCES: f64 = 5.0;
 
 /// Examines each solid of a STEP, and whether those of an assembly share space.
-#[cfg(feature = "brep")]
+#[cfg(feature = "truck")]
 pub(super) fn step(
     mut reader: impl Read,
     expected: &Expectation,
@@ -174,7 +174,7 @@ pub(super) fn step(
 }
 
 /// Where truck gives up on a file, it panics; that is caught and told in one sentence. A panic of our own is still heard.
-#[cfg(feature = "brep")]
+#[cfg(feature = "truck")]
 fn say_nothing_of_truck() {
     static ONCE: std::sync::Once = std::sync::Once::new();
     ONCE.call_once(|| {
@@ -189,7 +189,7 @@ fn say_nothing_of_truck() {
 }
 
 /// STEP is read through truck, which this build was made without.
-#[cfg(not(feature = "brep"))]
+#[cfg(not(feature = "truck"))]
 pub(super) fn step(_: impl Read, _: &Expectation, _: f64) -> Result<Parts, String> {
     Err("a STEP file, and this build reads none; build with --features brep".to_owned())
 }

@@ -15,15 +15,15 @@ use super::source::Source;
 use super::{Failure, print, print_json};
 use crate::write::write_set;
 use flags::AskFlags;
+use pinswitch_app::CalibratedSwitch;
 use pinswitch_friction::published::GROOVES;
-use pinswitch_plot::{AskedRegion, pareto_svg};
+use pinswitch_report::{AskedRegion, pareto_svg};
 use pinswitch_switch::ask::{Ask, Parameter, Quantity};
 use pinswitch_switch::config::{Configuration, Name, to_toml};
 use pinswitch_switch::design_search::{
     Belief, Blocked, Found, Options, Proposal, PublishedPhysics, load_range_n, search,
 };
 use pinswitch_switch::output::OutputFile;
-use pinswitch_web::CalibratedSwitch;
 use progress::Bar;
 
 /// Find switches that do what you ask: pins, grooves, silicone.

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use http_body_util::{BodyExt, Limited};
 use hyper::body::{Bytes, Incoming};
+use pinswitch_app::{Answer, Engine, Pace, Values, configuration, pace, values};
 use pinswitch_switch::config::{Configuration, parameter::Parameter, rewritten};
-use pinswitch_web::{Answer, Engine, Pace, Values, configuration, pace, values};
 use serde::Deserialize;
 
 use super::apart::Apart;

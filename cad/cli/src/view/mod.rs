@@ -18,12 +18,12 @@ use super::law::LawChoice;
 use super::source::Source;
 use super::{Failure, print};
 use configure::{Configurator, Followed};
+use pinswitch_app::values;
 use pinswitch_switch::built::Built;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::formats::named;
 use pinswitch_switch::formats::page::{PageData, page_html};
 use pinswitch_switch::set::Set;
-use pinswitch_web::values;
 use state::State;
 
 /// Show the page of a configuration on this machine, rebuilt whenever the file changes, and a configurator that changes it.

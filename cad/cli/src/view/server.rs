@@ -17,9 +17,9 @@ use tokio::sync::{Semaphore, watch};
 
 use super::configure::{Configurator, question};
 use super::state::{State, after, values_after};
+use pinswitch_app::Answer;
+use pinswitch_app::page::{configurator_html, configurator_policy};
 use pinswitch_switch::formats::page::page_policy;
-use pinswitch_web::Answer;
-use pinswitch_web::page::{configurator_html, configurator_policy};
 
 /// How long a request for the next state is held before the browser repeats it.
 const LONG_POLL_TIMEOUT: Duration = Duration::from_secs(20);

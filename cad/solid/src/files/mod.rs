@@ -14,7 +14,7 @@ mod vertex_join;
 pub use dxf::dxf;
 pub use glb::{GlbBody, GlbError, GlbMaterial, glb};
 pub use plate::{BED_EDGE_MM, Box3, PART_GAP_MM, Placement, lay_out, needed_bed_mm};
-#[cfg(feature = "brep")]
+#[cfg(feature = "truck")]
 pub use step::{ReadSolid, StepFile, StepReadError, read_step};
 pub use step::{StepPart, step_assembly, step_part};
 pub use stl::{StlError, StlFile, read_stl, stl_bytes};

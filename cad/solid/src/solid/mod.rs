@@ -3,7 +3,7 @@
 //! The same [`Solid`] yields the closed-form volume, the mesh (watertight by construction: walls and caps share
 //! their ring's vertices by index) and, with the feature `brep`, the exact boundary representation.
 
-#[cfg(feature = "brep")]
+#[cfg(feature = "truck")]
 mod brep;
 mod cap;
 mod cap_cache;
@@ -14,7 +14,7 @@ mod volume;
 
 use crate::profile::{Contour, OffsetError};
 
-#[cfg(feature = "brep")]
+#[cfg(feature = "truck")]
 pub use brep::{BrepError, BrepMesh};
 pub use cap::CapError;
 pub use cap_cache::CapCache;

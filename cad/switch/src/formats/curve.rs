@@ -6,7 +6,7 @@ use crate::design::Design;
 use crate::documents::{Manifest, friction_csv};
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
-use pinswitch_plot::friction_svg;
+use pinswitch_report::friction_svg;
 
 pub(super) const FORMAT: Format = Format {
     name: "curve",

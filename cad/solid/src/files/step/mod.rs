@@ -3,13 +3,13 @@
 //! Written here because truck writes arcs as B-splines and no time stamp of ours (cad/doc/meshes.md, "Files"); a
 //! solid of contours at heights needs a dozen kinds of entity only.
 
-#[cfg(feature = "brep")]
+#[cfg(feature = "truck")]
 mod read;
 mod shell;
 mod surface;
 mod writer;
 
-#[cfg(feature = "brep")]
+#[cfg(feature = "truck")]
 pub use read::{ReadSolid, StepFile, StepReadError, read_step};
 
 use crate::mesh::{Point3, Vector3};

@@ -4,7 +4,7 @@ use super::body::{Body, Side};
 use super::features::lettering;
 use super::plan::{Trace, plan, traces};
 use crate::parts::{Part, Role};
-use pinswitch_plot::drawing::Layer;
+use pinswitch_drafting::Layer;
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Arc, Contour, Point2, Vector2};
 use pinswitch_solid::solid::Facing;

@@ -4,7 +4,7 @@ use super::elevation::Stroke;
 use super::plan::Trace;
 use crate::config::MountKind;
 use crate::design::{Design, Thread};
-use pinswitch_plot::drawing::Layer;
+use pinswitch_drafting::Layer;
 use pinswitch_solid::profile::{Point2, Vector2, polar};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 

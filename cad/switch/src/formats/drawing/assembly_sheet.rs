@@ -14,7 +14,7 @@ use super::words;
 use crate::built::Built;
 use crate::design::Design;
 use crate::parts::{Part, Role};
-use pinswitch_plot::drawing::{
+use pinswitch_drafting::{
     Callout, Draft, Extent, Layer, Leader, Linear, Paper, Point, Projection, Shape, Sheet, Table, TitleBlock,
 };
 use pinswitch_solid::pose::Pose;

@@ -4,7 +4,7 @@ use super::body::Side;
 use super::features::Features;
 use super::plan::{Place, Trace, draw, within};
 use super::words;
-use pinswitch_plot::drawing::{Draft, Extent, Layer, Point, Shape, Sheet};
+use pinswitch_drafting::{Draft, Extent, Layer, Point, Shape, Sheet};
 use pinswitch_solid::profile::{Point2, polar};
 
 /// Scales of details, the largest first.

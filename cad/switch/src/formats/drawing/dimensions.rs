@@ -13,7 +13,7 @@ use super::plan::Place;
 use super::words;
 use crate::design::Design;
 use crate::parts::Part;
-use pinswitch_plot::drawing::{Angular, Callout, Draft, Extent, Label, Leader, Linear, Point};
+use pinswitch_drafting::{Angular, Callout, Draft, Extent, Label, Leader, Linear, Point};
 use pinswitch_solid::profile::{Arc, Point2};
 
 /// A dimension that is to be written.

@@ -7,7 +7,7 @@ use super::dimensions::Wanted;
 use super::features::Features;
 use super::plan::Place;
 use super::words::number;
-use pinswitch_plot::drawing::{Label, Table};
+use pinswitch_drafting::{Label, Table};
 use pinswitch_solid::profile::Point2;
 
 /// Widths of the columns of the table, mm.

@@ -1,6 +1,6 @@
 //! Where the views of a part lie on its sheet.
 
-use pinswitch_plot::drawing::{Draft, Extent, Paper, Point, Projection};
+use pinswitch_drafting::{Draft, Extent, Paper, Point, Projection};
 
 /// Scales of views (ISO 5455), the largest first.
 const SCALES: [f64; 9] = [5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01];

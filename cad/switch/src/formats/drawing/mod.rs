@@ -30,7 +30,7 @@ use crate::parts::{Part, Role};
 use crate::prediction::Prediction;
 use part_sheet::part_sheet;
 use parts_list::{designation, part_number};
-use pinswitch_plot::drawing::{Paper, Projection, Sheet, TitleBlock, drawing_dxf, drawing_pdf, drawing_svg};
+use pinswitch_drafting::{Paper, Projection, Sheet, TitleBlock, drawing_dxf, drawing_pdf, drawing_svg};
 use pinswitch_solid::profile::{Contour, Point2};
 use pinswitch_solid::solid::Solid;
 
@@ -58,7 +58,7 @@ fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<Output
 ///
 /// let sheets = sheets(&Built::new(Design::new(Configuration::default())?)?);
 /// assert_eq!(sheets[0].name, "assembly");
-/// assert!(sheets.iter().all(|s| pinswitch_plot::drawing::collisions(s).is_empty()));
+/// assert!(sheets.iter().all(|s| pinswitch_drafting::collisions(s).is_empty()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[must_use]

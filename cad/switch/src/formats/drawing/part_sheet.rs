@@ -17,7 +17,7 @@ use super::sides;
 use super::words;
 use crate::design::Design;
 use crate::parts::{Part, Role};
-use pinswitch_plot::drawing::{
+use pinswitch_drafting::{
     Draft, Extent, Layer, Linear, Paper, Point, Projection, Shape, Sheet, Table, Text, TitleBlock,
 };
 use pinswitch_solid::pose::Pose;

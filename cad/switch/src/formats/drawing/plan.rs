@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::features::{circle, lettering, same};
-use pinswitch_plot::drawing::{Draft, Layer, Point, Shape};
+use pinswitch_drafting::{Draft, Layer, Point, Shape};
 use pinswitch_solid::profile::{Arc, Contour, Edge, Point2, Vector2};
 use pinswitch_solid::solid::{Facing, Solid};
 

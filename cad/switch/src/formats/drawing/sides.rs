@@ -6,7 +6,7 @@ use super::dimensions::Wanted;
 use super::features::{Features, same};
 use super::plan::Place;
 use super::words::number;
-use pinswitch_plot::drawing::{Extent, Linear};
+use pinswitch_drafting::{Extent, Linear};
 use pinswitch_solid::profile::Point2;
 
 /// With more dimensions below the front view its length goes above: another view may lie below.

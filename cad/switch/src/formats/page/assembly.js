@@ -1,5 +1,5 @@
 // The assembly in three dimensions, with cut faces that are filled: of report.html, which shows one, and of the configurator
-// (cad/web/page), which shows hundreds. Needs three.js as THREE; the data is that of `PageData`.
+// (cad/app/page), which shows hundreds. Needs three.js as THREE; the data is that of `PageData`.
 
 // Bytes of a text in base64.
 function bytesOf(base64) {

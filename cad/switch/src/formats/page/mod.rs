@@ -11,7 +11,7 @@ use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
 use crate::scene::exploded_png;
-use pinswitch_plot::html::{escape, filled, json_in_script, policy};
+use pinswitch_report::html::{escape, filled, json_in_script, policy};
 
 pub use data::PageData;
 

@@ -8,7 +8,7 @@ use super::super::words::number;
 use super::{built, known};
 use crate::built::Built;
 use crate::parts::Part;
-use pinswitch_plot::drawing::{Shape, Sheet};
+use pinswitch_drafting::{Shape, Sheet};
 use pinswitch_solid::profile::{Contour, Edge, Point2};
 use std::f64::consts::PI;
 

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::super::features::features;
 use super::built;
 use crate::config::MouldKind;
-use pinswitch_plot::drawing::{Layer, Point, Shape, Sheet};
+use pinswitch_drafting::{Layer, Point, Shape, Sheet};
 
 /// Whether two straight lines cross within both.
 fn cross([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {

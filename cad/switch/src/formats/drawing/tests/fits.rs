@@ -1,7 +1,7 @@
 //! Every hole and every peg that meets another body has a tolerance and says what it is for.
 
 use super::{built, text_of};
-use pinswitch_plot::drawing::Sheet;
+use pinswitch_drafting::Sheet;
 
 /// What makes a tolerance of its own.
 const TOLERANCES: [&str; 6] = ["+0.1/0", "+0.2/0", "0/-0.2", "H12", "H13", "H14"];

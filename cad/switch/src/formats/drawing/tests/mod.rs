@@ -18,7 +18,7 @@ use crate::built::Built;
 use crate::config::{self, Configuration};
 use crate::design::Design;
 use crate::templates::TEMPLATES;
-use pinswitch_plot::drawing::{Shape, Sheet, collisions};
+use pinswitch_drafting::{Shape, Sheet, collisions};
 
 /// The built set of a configuration, if it is a valid one.
 fn built(text: &str) -> Option<Built> {
@@ -282,7 +282,7 @@ fn both_supports_are_seen_alike_from_above() {
         let all = sheets(&built(text).unwrap());
         let view = all[0].views.iter().position(|v| v.name == "ABOVE");
         let lines = all[0].entities.iter().filter(|e| e.view == view);
-        let level = |e: &pinswitch_plot::drawing::Entity| match &e.shape {
+        let level = |e: &pinswitch_drafting::Entity| match &e.shape {
             Shape::Line { from, to } if (from.y - to.y).abs() < 1e-6 && (from.x - to.x).abs() > 20.0 => {
                 Some(from.y)
             }

@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use pinswitch_friction::{Contact, PinPattern, Substrate, other_laws, predict, published};
-//! use pinswitch_plot::friction_svg;
+//! use pinswitch_report::friction_svg;
 //!
 //! let pins = PinPattern::even(4, 14f64.to_radians());
 //! let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
@@ -22,7 +22,6 @@
 mod calibration;
 mod calibration_page;
 mod contact;
-pub mod drawing;
 mod finger;
 mod friction;
 mod front;

@@ -1,5 +1,5 @@
-//! Writes the configurator as one file: `cargo run -p pinswitch-web --example site -- MODULE.wasm FOLDER`. The module is
-//! packed into the page, so that a double click opens it. `cad/web/build` makes both.
+//! Writes the configurator as one file: `cargo run -p pinswitch-app --example site -- MODULE.wasm FOLDER`. The module is
+//! packed into the page, so that a double click opens it. `cad/app/build` makes both.
 
 use std::error::Error;
 use std::io::Write;
@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use lzma_rust2::{CheckType, LzmaOptions, XzOptions, XzWriter};
-use pinswitch_web::page::{LIBRARIES, Packed, configurator_html};
-use pinswitch_web::slim::slim;
+use pinswitch_app::page::{LIBRARIES, Packed, configurator_html};
+use pinswitch_app::slim::slim;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();

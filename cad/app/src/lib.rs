@@ -3,7 +3,7 @@
 //! files are those of the command line, byte for byte. `cad/doc/configurator.md` lists the questions.
 //!
 //! ```
-//! use pinswitch_web::{Answer, Engine};
+//! use pinswitch_app::{Answer, Engine};
 //!
 //! let mut engine = Engine::default();
 //! let Answer::Json(text) = engine.answer(r#"{"ask": "design", "values": {"layout.pins": [5, 8, 11]}}"#) else {

@@ -1,6 +1,6 @@
 //! The page of the configurator: one file with everything in it, which a file server or a double click opens.
 
-use pinswitch_plot::html::{filled, policy};
+use pinswitch_report::html::{filled, policy};
 use pinswitch_switch::formats::page::{ASSEMBLY, THREE, UPLOT, UPLOT_CSS};
 
 const HTML: &str = include_str!("../page/configurator.html");

@@ -6,15 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 
-/// Text that cannot be taken for markup, in an element or a quoted attribute.
-#[must_use]
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
-        .replace('\'', "&#39;")
-}
+pub use pinswitch_drafting::escape;
 
 /// JSON that can stand in a script element: it holds no `<`, so that neither an end tag nor `<!--<script>`, after which a
 /// browser does not look for the end tag, can occur.

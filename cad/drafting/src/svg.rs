@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::font::CAPITAL_PER_EM;
 use super::sheet::{Entity, Layer, Shape, Sheet, Text};
-use crate::html::escape;
+use crate::escape;
 
 /// Between two sheets, mm.
 const GAP_MM: f64 = 8.0;

@@ -1,7 +1,5 @@
 //! A sheet in the making: what is written on it finds room where nothing else lies.
 
-use pinswitch_friction::sort_by_number;
-
 use super::frame::{TITLE_HEIGHT_MM, TITLE_WIDTH_MM};
 use super::geometry::{Extent, Point, lines_cover, lines_cross};
 use super::index::{Index, Piece};
@@ -167,7 +165,7 @@ impl Draft {
 
     /// Draws the cheapest of `candidates` that touches nothing; whether there was one.
     pub(super) fn place(&mut self, key: &str, mut candidates: Vec<Candidate>) -> bool {
-        sort_by_number(&mut candidates, |(cost, _)| *cost);
+        candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut best: Option<Candidate> = None;
         for (base, shapes) in candidates {
             if best.as_ref().is_some_and(|b| b.0 <= base) {

@@ -4,10 +4,13 @@
 //! the origin in the sheet's lower left corner and y up; a [`View`] says how its lines follow from the millimetres of the
 //! part. One list of [`Sheet`]s becomes `drawing.svg`, `drawing.pdf` and `drawing.dxf`.
 
+#![warn(clippy::disallowed_methods)]
+
 mod annotation;
 mod clearance;
 mod draft;
 mod dxf;
+mod escape;
 mod font;
 mod frame;
 mod geometry;
@@ -21,6 +24,7 @@ pub use annotation::{Angular, Callout, Label, Leader, Linear};
 pub use clearance::{Collision, collisions};
 pub use draft::Draft;
 pub use dxf::drawing_dxf;
+pub use escape::escape;
 pub use font::{CAPITAL_PER_EM, fitted, text_width_mm};
 pub use frame::{Projection, TitleBlock};
 pub use geometry::{Extent, Point};

@@ -8,7 +8,7 @@ use super::source::read_text;
 use super::{Failure, print};
 use crate::write::write_file;
 use pinswitch_diagnostic::excerpt;
-use pinswitch_switch::templates::{STARTERS, names};
+use pinswitch_switch::templates::{EXAMPLES, names};
 
 /// Write a template out, to start a configuration of your own.
 #[derive(Args, Debug)]
@@ -35,7 +35,7 @@ const NEEDS: [(&str, &str); 5] =
 /// What to write instead of a name that nothing has.
 fn unknown(name: &str) -> Failure {
     let lower = name.to_lowercase();
-    let kinds: Vec<&str> = STARTERS.iter().map(|starter| starter.0).collect();
+    let kinds: Vec<&str> = EXAMPLES.iter().map(|starter| starter.0).collect();
     let meant = match NEEDS.iter().find(|(command, _)| *command == lower) {
         Some((command, kind)) => format!("`{command}` needs `pinswitch init {kind}`"),
         None => {
@@ -54,7 +54,7 @@ fn unknown(name: &str) -> Failure {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.name.as_str();
-    let text = match STARTERS.iter().find(|starter| starter.0 == name) {
+    let text = match EXAMPLES.iter().find(|starter| starter.0 == name) {
         Some((_, text)) => (*text).to_owned(),
         None => match read_text(name) {
             Ok((text, _)) => text,

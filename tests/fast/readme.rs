@@ -1,4 +1,4 @@
-//! README and cad/doc/walk.md as a stranger follows them: every block is run in order in one folder, and shows what they show.
+//! Runs every block of README and of cad/doc/tutorial.md, in order and in one folder, and compares its output.
 
 use std::path::Path;
 
@@ -59,12 +59,12 @@ fn every_block_does_what_readme_shows() {
     follow("README.md", 15, None);
 }
 
-/// A slicer that stands in says in no time what the real one would; its table is shown in the walk as text.
+/// A substitute for the slicer answers at once; the tutorial shows the table of the real one as text.
 #[cfg(unix)]
 #[test]
-fn every_block_does_what_the_walk_shows() {
+fn every_block_does_what_the_tutorial_shows() {
     let folder = tempfile::tempdir().unwrap();
-    follow("cad/doc/walk.md", 6, Some(&crate::slicing::stand_in(folder.path())));
+    follow("cad/doc/tutorial.md", 6, Some(&crate::slicing::stand_in(folder.path())));
 }
 
 /// Runs all commands of a document, at least so many, and compares what they print with what it shows.

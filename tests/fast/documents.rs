@@ -107,3 +107,22 @@ fn readme_lists_every_command() {
         );
     }
 }
+
+/// The members of the workspace, as Cargo.toml lists them.
+fn workspace_members() -> Vec<String> {
+    let manifest: toml_edit::DocumentMut =
+        std::fs::read_to_string(repository("Cargo.toml")).unwrap().parse().unwrap();
+    let members = manifest["workspace"]["members"].as_array().unwrap();
+    members.iter().map(|member| member.as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn contributing_maps_every_crate() {
+    let contributing = std::fs::read_to_string(repository("CONTRIBUTING.md")).unwrap();
+    let (_, table) = contributing.split_once("| crate | content |\n").unwrap();
+    let rows = table.lines().skip(1).take_while(|line| line.starts_with('|'));
+    let mapped: Vec<_> = rows.filter_map(|row| row.split('`').nth(1).map(str::to_owned)).collect();
+    let mut members = workspace_members();
+    members.sort();
+    assert_eq!(mapped, members);
+}

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use pinswitch_calibration::table::{PlateauRow, PlateauTable, TableError, substrate_word};
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;
 use pinswitch_simulation::{EffectPlan, Plan, plan_of, simulate, study_cases};
 use proptest::prelude::*;
@@ -64,12 +65,13 @@ const PAIRS: [[&str; 2]; 10] = [
     ["position_mm", "time_s"],
 ];
 
-/// A table that reads, but is refused as a whole: in one sentence or two, with file, column and remedy.
+/// Asserts that a table is refused as a whole, with file, column and help.
 fn assert_refused(text: &str, what: &str) {
-    let error = judged(text).expect_err(what).to_string();
-    assert!(error.starts_with("t.csv") && error.contains("column"), "{what}: {error}");
-    assert!(error.contains(';') || error.contains(". "), "{what}: {error}");
-    assert!(error.chars().count() < LONGEST, "{what}: {error}");
+    let error = Diagnostic::from(judged(text).expect_err(what));
+    let location = error.location().expect(what);
+    assert!(location.file.as_deref() == Some("t.csv") && location.field.is_some(), "{what}: {error}");
+    assert!(error.help().is_some(), "{what}: {error}");
+    assert!(error.to_string().chars().count() < LONGEST, "{what}: {error}");
 }
 
 #[test]
@@ -149,7 +151,9 @@ fn the_command_says_why_and_writes_nothing() {
     std::fs::write(folder.path().join("turned.csv"), written(&rows)).unwrap();
     let (code, said) = ended(folder.path(), &["-q", "calibrate", "turned.csv", "--out", "out"]);
     assert_eq!(code, Some(2), "{said}");
-    assert!(said.contains("turned.csv, column 'direction': in 7 of 7 condition(s)"), "{said}");
+    let words =
+        "turned.csv: direction: the concentric readings are below the eccentric ones in 7 of 7 condition(s)";
+    assert!(said.contains(words), "{said}");
     assert!(said.chars().count() < LONGEST && !folder.path().join("out").exists(), "{said}");
 }
 

@@ -143,19 +143,19 @@ fn faults_are_placed_and_the_cause_is_named() {
         );
     }
     let (code, said) = ended(at, &["effects", "--effects", "mine.toml", "--effects", "mine.toml"]);
-    assert!(code == Some(2) && said.contains("id 'lubricant_dip' is given twice"), "{said}");
+    assert!(code == Some(2) && said.contains("duplicate id 'lubricant_dip'"), "{said}");
     // The heaviest load of this table was not among those that any formula is tried on.
     let log = good.replace("-a * exp(-((speed_pct - c)/w)^2)", "a*c/w*sqrt(1 - previous_load_n/49.4)");
     std::fs::write(at.join("log.toml"), log).unwrap();
     let (code, said) = ended(at, &["calibrate", "rig/plateaus.csv", "--effects", "log.toml", "--out", "x"]);
-    assert!(code == Some(2) && said.contains("has no number where a = "), "{said}");
-    assert!(said.contains(", at which a fit may begin, in row "), "{said}");
+    assert!(code == Some(2) && said.contains("is not finite at its start value a = "), "{said}");
+    assert!(said.contains(" (row "), "{said}");
     assert!(!at.join("x").exists());
     // Formulas that say something else than they seem to, or nothing.
     for (from, to, words) in [
-        ("id = \"lubricant_dip\"", "id = \"none\"", "id 'none' is what reports call"),
+        ("id = \"lubricant_dip\"", "id = \"none\"", "id 'none' means the absence of every effect"),
         ("-a * exp(-((speed_pct - c)/w)^2)", "-a*(40 < speed_pct < c)*w/w", "a comparison of a comparison"),
-        ("-a * exp(-((speed_pct - c)/w)^2)", "0*a*speed_pct/(c + w)", "such an effect does nothing"),
+        ("-a * exp(-((speed_pct - c)/w)^2)", "0*a*speed_pct/(c + w)", "so the effect does nothing"),
     ] {
         assert!(good.contains(from), "{from}");
         std::fs::write(at.join("odd.toml"), good.replace(from, to)).unwrap();

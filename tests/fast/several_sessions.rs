@@ -144,9 +144,12 @@ fn what_does_not_belong_together_is_one_error() {
         ("calibrate a/plateaus.csv b/plateaus.csv --plan foreign --out x", "b/plateaus.csv: none of the"),
         (
             "experiment cut --out x",
-            "cut: report.json, model.toml and residuals.csv are not of one calibration",
+            "cut: report.json, model.toml and residuals.csv are incomplete or from different calibrations",
         ),
-        ("experiment other --out x", "other: report.json, model.toml and residuals.csv are not of one"),
+        (
+            "experiment other --out x",
+            "other: report.json, model.toml and residuals.csv are incomplete or from",
+        ),
         ("experiment mine --out x", "mine/report.json: it was calibrated with the effect 'lubricant_dip'"),
     ] {
         let arguments: Vec<&str> = ["-q"].into_iter().chain(command.split(' ')).collect();

@@ -66,8 +66,8 @@ fn a_reading_may_stand_in_two_sessions_but_not_twice_in_one() {
     assert_eq!(of("tuesday").unwrap().rows.len(), 2 * rows.len());
     let error = of("monday").unwrap_err().to_string();
     let line = rows.len() + 2;
-    assert!(error.starts_with(&format!("t.csv, line {line}, column 'repetition'")), "{error}");
-    assert!(error.contains("stands in line 2 too"), "{error}");
+    assert!(error.starts_with(&format!("t.csv:{line}: repetition = 1: ")), "{error}");
+    assert!(error.contains("repeats the series, direction and time of line 2"), "{error}");
 }
 
 #[test]

@@ -131,10 +131,13 @@ fn predictions_come_from_the_better_model() {
     // The same part by a model with the rig's offset and by one without: the offset is out of both.
     let output = pinswitch(0, at, "generate three-double --model cal/model.toml --out set -v");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("effects of the switch are in the curve: coating_ploughing"), "{said}");
-    assert!(said.contains("effects of the measurement stay out of it: load_cell_offset"), "{said}");
+    assert!(said.contains("the curve includes effects of the switch: coating_ploughing"), "{said}");
+    assert!(said.contains("the curve excludes effects of the measurement: load_cell_offset"), "{said}");
     let manifest = std::fs::read_to_string(at.join("set/manifest.json")).unwrap();
-    assert!(manifest.contains("stay out of it: load_cell_offset"), "{manifest}");
+    assert!(
+        manifest.contains("the curve excludes effects of the measurement: load_cell_offset"),
+        "{manifest}"
+    );
     let curve = std::fs::read_to_string(at.join("set/friction.csv")).unwrap();
     let header: Vec<&str> = curve.lines().next().unwrap().split(',').collect();
     let at_column = |name: &str| {

@@ -181,7 +181,7 @@ fn unusable_tables_are_refused_and_nothing_is_written() {
     let cases = [
         (String::new(), "no rows"),
         (good.replacen("force_N", "force", 1), "force_N"),
-        (good.replacen(",silicone,", ",rubber,", 1), "line 2"),
+        (good.replacen(",silicone,", ",rubber,", 1), "csv:2: substrate = rubber"),
         (one_load.join("\n"), "load_N"),
     ];
     for (i, (text, expected)) in cases.iter().enumerate() {

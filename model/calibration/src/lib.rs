@@ -27,7 +27,6 @@
 #![warn(clippy::disallowed_methods)]
 
 mod aliasing;
-mod asked;
 mod beyond_range;
 mod calibrate;
 pub mod effects;
@@ -47,6 +46,7 @@ mod promise;
 mod published_maxima;
 mod report;
 pub mod segmentation;
+mod session_plan;
 pub mod table;
 mod telling;
 #[cfg(test)]
@@ -55,19 +55,20 @@ mod toml_text;
 mod trial;
 
 pub use aliasing::{Aliasing, aliasing};
-pub use asked::{Answer, Asked, AskedError, AskedQuestion};
+
 pub use calibrate::{Calibration, CalibrationError, calibrate, calibrate_among};
 pub use extrapolation::calibrate_below;
 pub use forms::{DrawnForm, FormReport, FormRival, draw_form};
 pub use held_out::{HeldOut, held_out};
 pub use layouts_left_out::layouts_left_out;
 pub use median::median;
-pub use model_file::{ModelFile, ModelFileError};
+pub use model_file::ModelFile;
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
     BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate,
     Invisible, LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, SizeInSession,
     UnequalReport, Verdict,
 };
+pub use session_plan::{Answer, PlanQuestion, SessionPlan};
 pub use toml_text::toml_error;
 pub use trial::{CERTAIN_P, CONFIRMED_P, CONFIRMED_SHARE, TrialOutcome, TrialReport, trials};

@@ -105,7 +105,7 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
                                     mount: 1,
                                     minutes: 0.0,
                                     asks: String::new(),
-                                    wrap_angle_deg: rig.own_wrap_deg(),
+                                    wrap_angle_deg: rig.other_wrap_deg(),
                                 };
                                 let after_g = agenda
                                     .asks_of_the_load_before()
@@ -221,7 +221,7 @@ pub(super) fn paper_protocol(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
                 mount: mount + 1,
                 minutes: 0.0,
                 asks: String::new(),
-                wrap_angle_deg: rig.own_wrap_deg(),
+                wrap_angle_deg: rig.other_wrap_deg(),
             };
             let change = if i == 0 { rig.minutes_per_mount_change } else { 0.0 };
             let takes = run.recording_minutes(rig) + rig.minutes_per_load_change + change;

@@ -16,15 +16,16 @@ mod settings;
 mod shortlist;
 
 use nalgebra::DMatrix;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::{published, sort_by_number};
 use serde::Serialize;
 
-pub use rig::{RigError, RigLimits};
-pub use runs::{PlannedRun, RunsError, by_contact, contact_words, read_runs, rows_of, write_runs};
+pub use rig::RigLimits;
+pub use runs::{PlannedRun, by_contact, contact_words, read_runs, rows_of, write_runs};
 
 use crate::effects::{Covariate, Vocabulary};
 use crate::inference::{Levels, Model, Noise};
-use crate::model_file::{ModelFile, ModelFileError};
+use crate::model_file::ModelFile;
 use crate::report::Report;
 use crate::table::{PlateauRow, Sweep};
 use candidates::{Candidate, candidates, paper_protocol};
@@ -81,37 +82,69 @@ pub struct Proposal {
     pub runs: Vec<PlannedRun>,
 }
 
-/// Why nothing is proposed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+/// Reason why no runs can be proposed; converts to a [`Diagnostic`].
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ExperimentError {
-    /// The model on file cannot be used.
-    #[error(transparent)]
-    Model(#[from] ModelFileError),
-    /// Rows and model are not of one calibration.
-    #[error(
-        "{0}: report.json, model.toml and residuals.csv are not of one calibration, or not whole; calibrate again"
-    )]
-    Rows(String),
-    /// No run is possible at any length.
-    #[error(
-        "cell_limit_n = {limit_n}: at every load, on every layout of the rig, the cell would read more than it, less a tenth to spare; raise it, or list lighter weights"
-    )]
+    /// The model file is invalid.
+    Model(Diagnostic),
+    /// Report, model and rows are not of one calibration; contains its name.
+    Mismatch(String),
+    /// No load is within the range of the load cell.
     CellTooSmall {
-        /// Force at which the rig's cell ends, in newtons.
+        /// Upper end of the range in newtons.
         limit_n: f64,
     },
-    /// Not one run fits.
-    #[error(
-        "no run fits into {minutes} minutes on this rig, the shortest takes {shortest:.1}; give more --minutes, or mend rig.toml"
-    )]
+    /// No run fits into the time.
     NoTime {
-        /// Minutes there are.
+        /// Available time in minutes.
         minutes: f64,
-        /// Minutes of the shortest run.
+        /// Duration of the shortest run in minutes.
         shortest: f64,
     },
 }
+
+impl From<&ExperimentError> for Diagnostic {
+    fn from(error: &ExperimentError) -> Self {
+        match error {
+            ExperimentError::Model(error) => error.clone(),
+            ExperimentError::Mismatch(name) => Self::new(
+                "report.json, model.toml and residuals.csv are incomplete or from different calibrations",
+            )
+            .with_location(Location::file(name))
+            .with_help("calibrate again"),
+            ExperimentError::CellTooSmall { limit_n } => Self::new(
+                "the load cell would exceed 90 % of its range at every load on every layout of the rig",
+            )
+            .with_location(Location::field("cell_limit_n", limit_n.to_string()))
+            .with_help("raise it, or list lighter weights"),
+            ExperimentError::NoTime { minutes, shortest } => Self::new(format!(
+                "no run fits into {minutes} minutes on this rig (the shortest takes {shortest:.1})"
+            ))
+            .with_help("give more --minutes, or shorter times in rig.toml"),
+        }
+    }
+}
+
+impl From<ExperimentError> for Diagnostic {
+    fn from(error: ExperimentError) -> Self {
+        Self::from(&error)
+    }
+}
+
+impl From<Diagnostic> for ExperimentError {
+    fn from(error: Diagnostic) -> Self {
+        Self::Model(error)
+    }
+}
+
+impl std::fmt::Display for ExperimentError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        Diagnostic::from(self).fmt(f)
+    }
+}
+
+impl std::error::Error for ExperimentError {}
 
 /// What a calibration has left: its report, its model and its rows.
 #[derive(Clone, Copy, Debug)]
@@ -138,7 +171,7 @@ pub fn propose(
     minutes: f64,
     levels: Levels,
 ) -> Result<Proposal, ExperimentError> {
-    let foreign = || ExperimentError::Rows(known.name.to_owned());
+    let foreign = || ExperimentError::Mismatch(known.name.to_owned());
     // The rig is wrapped as it was, unless its file says otherwise.
     let rig = &rig.clone().wrapped_by(usual_wrap_deg(known.rows));
     let (model, noise) = extended(known, rig)?;
@@ -228,7 +261,7 @@ pub fn paper_runs(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
 }
 
 /// The model of a calibration with the contacts of the rig, and its noise.
-fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), ModelFileError> {
+fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), Diagnostic> {
     let model = known.model.model(known.name)?;
     // Those in the model came with it.
     let beside = known.vocabulary.retaining(|own| model.vocabulary.named(&own.definition().id).is_none());

@@ -127,7 +127,7 @@ fn rows_at(value: f64, set: &impl Fn(&mut PlannedRun, f64), rig: &RigLimits) -> 
                 mount: 1,
                 minutes: 0.0,
                 asks: String::new(),
-                wrap_angle_deg: rig.own_wrap_deg(),
+                wrap_angle_deg: rig.other_wrap_deg(),
             };
             set(&mut run, value);
             alone(&Candidate { run, late: false, after_g: None, down_from_g: None }, "1", rig, 0.0).pop()

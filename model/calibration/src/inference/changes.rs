@@ -73,7 +73,7 @@ fn effect_of_one_session(found: &Explanation, data: &Observations) -> f64 {
     let without = fit(&found.augmented.model.without_last_change(), &weighed);
     let screen = Screen::new(&without, &weighed);
     let predicted: Vec<f64> = data.force_n.iter().zip(&without.residual_n).map(|(y, r)| y - r).collect();
-    let holds: Vec<bool> = data.points.iter().map(|point| change.holds(point)).collect();
+    let holds: Vec<bool> = data.points.iter().map(|point| change.applies_to(point)).collect();
     let model = &without.model;
     let mut traces = Vec::new();
     for effect in model.vocabulary.acting_order().iter().filter(|e| e.description().scales) {

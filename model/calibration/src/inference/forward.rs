@@ -164,7 +164,7 @@ impl Model {
         let factors = if changes.is_empty() { &[] } else { &values[self.first_change()..] };
         for (change, factor) in changes.iter().zip(factors) {
             match change.constant {
-                _ if !change.holds(point) => {}
+                _ if !change.applies_to(point) => {}
                 Changing::Pins => state.mu_pins *= factor,
                 Changing::Silicone => state.mu_silicone *= factor,
                 Changing::HalfLoad => state.half_load_n *= factor,

@@ -1,15 +1,15 @@
-//! `hook_omitted`: the declared load leaves out the hook's weight.
+//! `hook_omitted`: the declared load omits the weight of the hook.
 
 use pinswitch_friction::published;
 
 use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange, Written};
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct HookOmitted;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &HookOmitted;
 
 static DESCRIPTION: Description = Description {

@@ -17,8 +17,7 @@ pub struct Aliasing {
     /// Names of the covariates.
     pub covariates: [String; 2],
     /// Correlation of the values or of their ranks, whichever is larger in magnitude. For the
-    /// condition, which has no order, the correlation ratio, corrected for the number of
-    /// conditions.
+    /// unordered condition, the correlation ratio, corrected for the number of conditions.
     pub correlation: f64,
 }
 

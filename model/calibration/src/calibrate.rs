@@ -1,4 +1,5 @@
-//! Calibration of a table: search for effects, formula of unattributed structure, expected error of a new session, and report.
+//! Calibration of a table: search for effects, formula of unattributed structure, expected error of
+//! a new session, and report.
 
 use std::fmt;
 
@@ -141,8 +142,8 @@ pub fn calibrate_among(
     let confirmed = vocabulary.retaining(|own| !barred.contains(&own.definition().id));
     let mut again = with_own(rows, &confirmed, levels)?;
     let tried = std::mem::take(&mut again.report.trials);
-    // In the order in which they were read; an effect that is no longer in the vocabulary keeps its
-    // trial.
+    // In the order in which they were read; an effect that was removed from the vocabulary keeps
+    // its trial.
     again.report.trials = found
         .report
         .trials
@@ -433,7 +434,7 @@ mod tests {
 
     /// Start of the clock: time of day, and seconds since 1970.
     #[test]
-    fn the_start_of_the_clock_is_irrelevant() {
+    fn the_clock_start_is_irrelevant() {
         let drift = Term::Named(crate::effects::effect_named("thermal_drift").unwrap());
         let rows = session_with(7, &[(drift, &[0.8])]);
         let size = |begins_s: f64| {

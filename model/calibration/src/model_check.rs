@@ -1,4 +1,5 @@
-//! Checks of a model file: finite numbers within bounds, and a covariance that is positive semidefinite.
+//! Checks of a model file: finite numbers within bounds, and a covariance that is positive
+//! semidefinite.
 
 use nalgebra::DMatrix;
 use pinswitch_diagnostic::{Diagnostic, Location};
@@ -88,8 +89,8 @@ pub(crate) fn check_beyond_range(beyond_range: f64) -> Result<(), Diagnostic> {
     within("beyond_range", beyond_range, 0.0, MAX_CONSTANT)
 }
 
-/// Converts the random walk of earlier files, one size in newtons, to an offset of the series, which predicts the same.
-/// Returns whether there was one.
+/// Converts the random walk of earlier files, one size in newtons, to an offset of the series,
+/// which predicts the same. Returns whether there was one.
 pub(crate) fn walk_to_offset(file: &mut toml::Table) -> Result<bool, Diagnostic> {
     let noise = file.get_mut("noise").and_then(toml::Value::as_table_mut);
     let Some((walk, noise)) = noise.and_then(|noise| Some((noise.remove("walk_N")?, noise))) else {
@@ -134,7 +135,8 @@ pub(crate) fn check_noise(noise: &Noise) -> Result<(), Diagnostic> {
     within("noise.correlation", noise.correlation, -1.0, 1.0)
 }
 
-/// Checks that divisors are above zero, shares within 0..1, and grooves and times in ascending order.
+/// Checks that divisors are above zero, shares within 0..1, and grooves and times in ascending
+/// order.
 pub(crate) fn check_frame(frame: &Frame) -> Result<(), Diagnostic> {
     let positive = f64::MIN_POSITIVE;
     within("frame.stroke_mm", frame.stroke_mm, positive, MAX_CONSTANT)?;
@@ -239,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn infinite_numbers_are_located_at_any_depth() {
+    fn infinite_numbers_are_located() {
         let value: toml::Value = toml::from_str("[a]\nb = [1.0, { c = inf }]").unwrap();
         let error = check_finite("", &value).unwrap_err();
         assert_eq!(error.location(), Some(&Location::field("a.b[1].c", "inf")));

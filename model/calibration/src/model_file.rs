@@ -228,8 +228,8 @@ impl ModelFile {
         Ok(model)
     }
 
-    /// Predicts readings and their standard deviations in newtons. A condition that was not calibrated is predicted by the
-    /// layout law, with a larger standard deviation.
+    /// Predicts readings and their standard deviations in newtons. A condition that was not
+    /// calibrated is predicted by the layout law, with a larger standard deviation.
     ///
     /// # Errors
     /// As [`ModelFile::model`], and if a prediction is not finite.
@@ -264,7 +264,8 @@ impl ModelFile {
         wrapped.map_or(published::WRAP_ANGLE_DEG, |c| (1e9 * c.wrap_rad.to_degrees()).round() / 1e9)
     }
 
-    /// Returns the effects that terms may name: the built-in ones, and the user-defined ones in the file.
+    /// Returns the effects that terms may name: the built-in ones, and the user-defined ones in the
+    /// file.
     pub fn vocabulary(&self) -> &Vocabulary {
         &self.vocabulary
     }
@@ -282,10 +283,11 @@ impl ModelFile {
         self.frame.reference_speed_pct
     }
 
-    /// Returns the ids of the terms that are excluded from the curve of a printed part, and of those that are included.
+    /// Returns the ids of the terms that are excluded from the curve of a printed part, and of
+    /// those that are included.
     ///
-    /// The side is that of the effect; the side in the file is for readers. Unattributed structure has no side and is
-    /// excluded.
+    /// The side is that of the effect; the side in the file is for readers. Unattributed structure
+    /// is excluded.
     pub fn sides(&self) -> (Vec<&str>, Vec<&str>) {
         let stays =
             |id: &str| self.vocabulary.named(id).is_some_and(|e| e.description().side == Side::Switch);

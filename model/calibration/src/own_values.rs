@@ -1,4 +1,5 @@
-//! Check that user-defined effects are finite on a table, where a formula may take the logarithm of zero.
+//! Check that user-defined effects are finite on a table, where a formula may take the logarithm of
+//! zero.
 
 use crate::calibrate::CalibrationError;
 use crate::inference::{Model, Observations, Term};
@@ -50,8 +51,8 @@ mod tests {
     #[test]
     fn infinite_start_values_are_named() {
         let good = include_str!("../../../templates/rig/effects.toml");
-        // The formula is finite on every row at the start c = 52. At the heaviest load, above those of the probe rows, it is not
-        // finite at a larger start of c.
+        // The formula is finite on every row at the start c = 52. At the heaviest load, above those
+        // of the probe rows, it is not finite at a larger start of c.
         let text = good.replace(
             "-a * exp(-((speed_pct - c)/w)^2)",
             "a*exp(-((speed_pct - 50)/w)^2)*sqrt(1 - load_n*c/6000)",

@@ -4,7 +4,7 @@
 #[cfg(feature = "parallel")]
 pub(crate) fn map_each<I: Send, T: Send>(items: Vec<I>, of: impl Fn(I) -> T + Sync + Send) -> Vec<T> {
     use rayon::prelude::*;
-    // There are few items, each of which takes long: idle threads take one at a time.
+    // Items are few and slow: idle threads take one at a time.
     items.into_par_iter().with_max_len(1).map(of).collect()
 }
 

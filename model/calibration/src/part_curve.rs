@@ -1,4 +1,5 @@
-//! Friction curve of a printed part from a calibrated model: includes effects of the switch, excludes those of the rig.
+//! Friction curve of a printed part from a calibrated model: includes effects of the switch,
+//! excludes those of the rig.
 
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::{Direction, FrictionCurve, Law, Substrate, Trust, published};
@@ -11,7 +12,8 @@ use crate::table::{Frame, Labels, PlateauRow, Point, Sweep};
 /// Number of repetitions after which all transients have settled.
 const SETTLED: u32 = 1000;
 
-/// Converts the rows of a part to points without history, as if each had always been pulled at its load.
+/// Converts the rows of a part to points without history, as if each had always been pulled at its
+/// load.
 fn settled_points(frame: &Frame, rows: &[PlateauRow]) -> Vec<Point> {
     let mut points = frame.points(rows).unwrap_or_default();
     for point in &mut points {
@@ -23,11 +25,12 @@ fn settled_points(frame: &Frame, rows: &[PlateauRow]) -> Vec<Point> {
 }
 
 impl ModelFile {
-    /// Returns the curve of pins in these grooves, numbered from 1, on `substrate` at ascending `loads_n` in newtons.
+    /// Returns the curve of pins in these grooves, numbered from 1, on `substrate` at ascending
+    /// `loads_n` in newtons.
     ///
-    /// It applies to a slow pull at the reference speed and the paper's wrap angle, without run-in or drift and with
-    /// ascending loads. A model of a rig with another wrap angle predicts it as an unmeasured layout. `file` is the name
-    /// of the model in errors.
+    /// It applies to a slow pull at the reference speed and the paper's wrap angle, without run-in
+    /// or drift and with ascending loads. A model of a rig with another wrap angle predicts it as
+    /// an unmeasured layout. `file` is the name of the model in errors.
     ///
     /// # Errors
     /// As [`ModelFile::model`], and if the predicted friction is impossible.
@@ -49,7 +52,8 @@ impl ModelFile {
         let model = known.in_frame(frame);
         let points = settled_points(&model.frame, &rows);
         let tension = model.predict_part(&points);
-        // The band is the uncertainty of the model only: half the gap of two independent readings, without their noise.
+        // The band is the uncertainty of the model only: half the gap of two independent readings,
+        // without their noise.
         let no_noise = crate::inference::Noise::constant(0.0, 0.0);
         let sd = prediction_sd_n(&model, &points, self.covariance(), no_noise);
         let n = loads_n.len();
@@ -111,8 +115,9 @@ impl ModelFile {
         self.covariance().len()
     }
 
-    /// Returns friction in newtons and the silicone's share at `loads_n`, as [`Self::part_curve`], for constants drawn
-    /// from their covariance with standard normal variates `z`; zeros give the fitted constants.
+    /// Returns friction in newtons and the silicone's share at `loads_n`, as [`Self::part_curve`],
+    /// for constants drawn from their covariance with standard normal variates `z`; zeros give the
+    /// fitted constants.
     ///
     /// # Errors
     /// As [`ModelFile::model`].
@@ -132,7 +137,8 @@ impl ModelFile {
         if z.iter().any(|z| *z != 0.0) {
             let n = self.covariance().len();
             let covariance = nalgebra::DMatrix::from_fn(n, n, |i, j| self.covariance()[i][j]);
-            // Eigenvalues rather than a Cholesky factor: confounded constants make the covariance singular.
+            // Eigenvalues rather than a Cholesky factor: confounded constants make the covariance
+            // singular.
             let parts = nalgebra::SymmetricEigen::new(covariance);
             for (j, z) in z.iter().take(n).enumerate() {
                 let sd = parts.eigenvalues[j].max(0.0).sqrt();

@@ -98,7 +98,8 @@ impl SessionPlan {
         Ok(())
     }
 
-    /// Returns the plan with the answers of a report, whose rows have loads up to `highest_n` in newtons.
+    /// Returns the plan with the answers of a report, whose rows have loads up to `highest_n` in
+    /// newtons.
     #[must_use]
     pub fn answered(mut self, report: &Report, highest_n: f64) -> Self {
         for question in &mut self.questions {
@@ -139,7 +140,8 @@ fn answer(question: &PlanQuestion, report: &Report, highest_n: f64) -> Answer {
         .limits
         .iter()
         .any(|limit| limit.id == *of && (limit.excluded || is_smaller(limit.low, limit.high)));
-    // An effect that is not identifiable at a typical size may still be smaller than the size in question.
+    // An effect that is not identifiable at a typical size may still be smaller than the size in
+    // question.
     let is_below = report
         .invisible
         .iter()

@@ -37,7 +37,8 @@ pub fn toml_error(file: &str, text: &str, error: &Error) -> Diagnostic {
     Diagnostic::new(problem).with_location(location)
 }
 
-/// Translates the type that serde expects from Rust's names; `None` where serde's own words are plain.
+/// Translates the type that serde expects from Rust's names; `None` where serde's own words are
+/// plain.
 fn expected_type(expected: &str, message: &str, is_negative: bool) -> Option<String> {
     let is_unsigned = matches!(expected, "u8" | "u16" | "u32" | "u64" | "usize");
     let is_whole = is_unsigned || matches!(expected, "i8" | "i16" | "i32" | "i64" | "isize");
@@ -80,15 +81,17 @@ fn field_at(value: &Spanned<DeValue<'_>>, part: &Range<usize>, field: &str) -> O
     inner.or_else(|| (span.start <= part.start && part.end <= span.end).then(|| field.to_owned()))
 }
 
-/// Returns the location of a field such as `frame.conditions[0].pins` in a TOML text, without its name and value.
+/// Returns the location of a field such as `frame.conditions[0].pins` in a TOML text, without its
+/// name and value.
 ///
-/// A field that is absent has the location of its innermost parent that is present. Anything after a space in `field` is
-/// ignored.
+/// A field that is absent has the location of its innermost parent that is present. Anything after
+/// a space in `field` is ignored.
 pub(crate) fn field_location(file: &str, text: &str, field: &str) -> Location {
     field_span(text, field).map_or_else(|| Location::file(file), |span| Location::in_text(file, text, span))
 }
 
-/// Returns the diagnostic of a field's value with file, line and column of that field in a TOML text.
+/// Returns the diagnostic of a field's value with file, line and column of that field in a TOML
+/// text.
 pub(crate) fn locate_field(diagnostic: Diagnostic, file: &str, text: &str) -> Diagnostic {
     let Some(Location { field: Some(field), value, .. }) = diagnostic.location().cloned() else {
         return diagnostic.or_in_file(file);
@@ -124,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_field_is_located_at_any_depth() {
+    fn fields_are_located_at_any_depth() {
         let text = "a = 1\n[[b]]\nc = [1,\n 2]\n[[b]]\nd.e = 3\n[f]\ng = 4\n";
         // The last two are absent: their innermost parents are located.
         for (field, line) in
@@ -136,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_syntax_error_is_shown_with_a_caret() {
+    fn syntax_errors_show_a_caret() {
         let text = "a = 1\nb = = 2\n";
         let error = toml::from_str::<toml::Table>(text).unwrap_err();
         let shown = toml_error("m.toml", text, &error).render("error");
@@ -145,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_type_error_names_field_and_type() {
+    fn type_errors_name_field_and_type() {
         #[derive(Debug, serde::Deserialize)]
         #[serde(default, deny_unknown_fields)]
         #[allow(dead_code)]

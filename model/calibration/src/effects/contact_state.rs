@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_mean_tension_is_between_the_ends() {
+    fn mean_tension_is_between_the_ends() {
         for ratio in [0.7, 1.0, 1.3] {
             let mean = mean_tension_n(10.0, ratio);
             assert!(mean >= 10.0 * ratio.min(1.0) - 1e-9 && mean <= 10.0 * ratio.max(1.0) + 1e-9);

@@ -18,7 +18,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::Load,
     formula: "F + 0.613 N: the hook of 62.53 g; no free constant",
-    written: Written::No("it has no constant"),
+    written: Written::No("it is without constants"),
     parameters: &[],
     one_sided: false,
     bends: false,

@@ -16,7 +16,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Direction,
     stage: Stage::Switch,
     formula: "S(mean tension over the wrap) instead of S(F); no free constant",
-    written: Written::No("it has no constant, and depends on the tension along the wrap"),
+    written: Written::No("it is without constants, and depends on the tension along the wrap"),
     parameters: &[],
     one_sided: false,
     bends: true,

@@ -113,7 +113,8 @@ impl Vocabulary {
         CATALOGUE.iter().copied().chain(self.own.iter().map(|effect| *effect as &dyn Effect))
     }
 
-    /// Returns all effects in the order in which they act, from the load to the end of the load cell's range.
+    /// Returns all effects in the order in which they act, from the load to the end of the load
+    /// cell's range.
     pub fn acting_order(&self) -> &[&'static dyn Effect] {
         &self.acting
     }
@@ -130,9 +131,9 @@ impl Vocabulary {
 
     /// Returns the number of candidates for the correction of multiple tests.
     ///
-    /// A user-defined effect counts once for each start of its shapes, since the best of several starts gains more by chance.
-    /// A built-in one counts once; false positives of the built-in effects and their shapes are calibrated on rigs without
-    /// effect (`model/doc/calibration.md`).
+    /// A user-defined effect counts once for each start of its shapes, since the best of several
+    /// starts gains more by chance. A built-in one counts once; false positives of the built-in
+    /// effects and their shapes are calibrated on rigs without effect (`model/doc/calibration.md`).
     pub fn tries(&self) -> usize {
         let places: usize = self.own().map(|own| own.starts().len()).sum();
         self.count() - self.own.len() + places

@@ -45,8 +45,8 @@ pub struct RigLimits {
 }
 
 impl Default for RigLimits {
-    /// Returns the paper's rig. The times are assumptions, and so is the range of the load cell: 1.5 times the paper's
-    /// largest reading.
+    /// Returns the paper's rig. The times are assumptions, and so is the range of the load cell:
+    /// 1.5 times the paper's largest reading.
     fn default() -> Self {
         Self {
             loads_g: published::WEIGHTS_G.to_vec(),
@@ -153,7 +153,8 @@ impl RigLimits {
         wrong.map(|(field, x, _, _, problem)| (field, x.to_string(), problem))
     }
 
-    /// Returns the contacts that can be mounted: silicone without pins, then each layout on the proxy and on silicone.
+    /// Returns the contacts that can be mounted: silicone without pins, then each layout on the
+    /// proxy and on silicone.
     pub(super) fn contacts(&self) -> Vec<(Substrate, Vec<usize>)> {
         let mut all = Vec::new();
         if self.silicone {
@@ -183,8 +184,8 @@ impl RigLimits {
         distinct([self.speeds_pct[0], self.speeds_pct[0].midpoint(self.speeds_pct[1]), self.speeds_pct[1]])
     }
 
-    /// Returns the dwells to choose from: the paper's, a shorter and a longer one, clamped to the rig's range. A dwell above
-    /// ten seconds costs more time than its information is worth.
+    /// Returns the dwells to choose from: the paper's, a shorter and a longer one, clamped to the
+    /// rig's range. A dwell above ten seconds costs more time than its information is worth.
     pub(super) fn dwells(&self) -> Vec<f64> {
         let [low, high] = self.dwells_s;
         distinct([1.0, published::DWELL_S, 10.0].map(|s: f64| s.clamp(low, high)))

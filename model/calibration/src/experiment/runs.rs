@@ -1,4 +1,5 @@
-//! Planned runs (`next-runs.csv`): the series to record, in order, and the rows that they will give.
+//! Planned runs (`next-runs.csv`): the series to record, in order, and the rows that they will
+//! give.
 
 use std::collections::HashMap;
 
@@ -184,7 +185,7 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, Diagnostic> 
             return Err(refuse(2, "abs needs at least one groove"));
         }
         if run.repetitions == [0, 0] {
-            return Err(refuse(7, "the run has no repetitions in either direction"));
+            return Err(refuse(7, "zero repetitions in both directions"));
         }
         if let Some(before) = series.insert(cell(0).to_owned(), line) {
             return Err(refuse(0, &format!("the series is also in line {before}"))
@@ -196,7 +197,7 @@ pub fn read_runs(text: &str, file: &str) -> Result<Vec<PlannedRun>, Diagnostic> 
         }
     }
     if runs.is_empty() {
-        let problem = "the plan has no runs, since `experiment` found none that answers a question";
+        let problem = "the plan contains no runs, since `experiment` found none that answers a question";
         return Err(Diagnostic::new(problem).with_location(Location::file(file)));
     }
     Ok(runs)
@@ -256,7 +257,8 @@ pub(super) fn append(
     }
 }
 
-/// Summarizes runs by contact, in their order: `silicone 5;8;11: 24 runs, 503.6 to 4007.8 g, 40 to 70 %, 1 to 10 s`.
+/// Summarizes runs by contact, in their order: `silicone 5;8;11: 24 runs, 503.6 to 4007.8 g, 40 to
+/// 70 %, 1 to 10 s`.
 pub fn by_contact(runs: &[PlannedRun]) -> Vec<String> {
     let mut contacts: Vec<String> = Vec::new();
     for words in runs.iter().map(contact_words) {
@@ -285,7 +287,8 @@ pub fn by_contact(runs: &[PlannedRun]) -> Vec<String> {
     contacts.into_iter().map(summary).collect()
 }
 
-/// Returns the contact of a run in words: `silicone`, `abs 5;8;11`, `silicone 5;8;11, wrap 120 deg`.
+/// Returns the contact of a run in words: `silicone`, `abs 5;8;11`, `silicone 5;8;11, wrap 120
+/// deg`.
 pub fn contact_words(run: &PlannedRun) -> String {
     let pins: Vec<String> = run.pins.iter().map(usize::to_string).collect();
     let contact = format!("{} {}", substrate_word(Some(run.substrate)), pins.join(";"));
@@ -359,7 +362,7 @@ mod tests {
             ("silicone", "glass", "r.csv:2: substrate = glass: expected silicone or abs"),
             ("5;8;11", "5;16", "r.csv:2: pins = 5;16: expected ascending grooves 1..15"),
             ("251.2", "nan", "r.csv:2: load_mass_g = nan: outside 0 to 1000000 g"),
-            (",4,5,", ",0,0,", "r.csv:2: repetitions_eccentric = 0: the run has no repetitions"),
+            (",4,5,", ",0,0,", "r.csv:2: repetitions_eccentric = 0: zero repetitions"),
             (",4,5,", ",4,5000,", "r.csv:2: repetitions_concentric = 5000: outside 0 to 1000"),
             ("dwell_s", "dwell", "r.csv: column 'dwell_s' is missing"),
             ("down", "sideways", "r.csv:2: sweep = sideways: expected up or down"),

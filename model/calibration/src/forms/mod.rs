@@ -45,7 +45,8 @@ pub struct FormRival {
 /// Form of unattributed structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FormReport {
-    /// `level` (also between two ends), `step`, `ramp`, `sine`, `bump`, `dip`, `power`, `forgetting`, `memory` or `groups`.
+    /// `level` (also between two ends), `step`, `ramp`, `sine`, `bump`, `dip`, `power`,
+    /// `forgetting`, `memory` or `groups`.
     pub shape: String,
     /// `friction`, `reading`, `wrap` or `threshold`.
     pub acts_on: String,
@@ -91,8 +92,8 @@ pub struct DrawnForm {
     pub fitted: Fit,
 }
 
-/// Derives the form of the unattributed structure of a calibration; `None` if there is no such
-/// structure, or no form of the library explains part of it.
+/// Derives the form of the unattributed structure of a calibration; `None` without such structure,
+/// or if no form of the library explains part of it.
 pub fn draw_form(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Option<DrawnForm> {
     let data = data.compacted();
     let weighed = Weighed::new(&data, selection.noise);

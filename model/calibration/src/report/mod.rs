@@ -190,7 +190,8 @@ impl BadSeries {
 /// A component of the noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NoisePart {
-    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount`, `walk`, `group` or `specimen`.
+    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount`, `walk`, `group` or
+    /// `specimen`.
     pub part: String,
     /// Description.
     pub what: String,

@@ -14,7 +14,7 @@ pub enum Verdict {
     None,
     /// No effect is attributed, and a relevant effect is not excluded.
     Inconclusive,
-    /// Every effect of the model is named and has no rival.
+    /// Every effect of the model is named and without rivals.
     Attributed,
     /// At least one effect has rivals that this table cannot separate.
     Ambiguous,

@@ -13,7 +13,8 @@ pub struct Log {
     pub position_mm: Vec<f64>,
     /// Actuator power in watts.
     pub power_w: Vec<f64>,
-    /// Number of lines without four finite numbers, or with a time that is not later; they are skipped.
+    /// Number of lines without four finite numbers, or with a time that is not later; they are
+    /// skipped.
     pub unusable: usize,
 }
 
@@ -22,7 +23,8 @@ const COLUMNS: [&str; 4] = ["time_s", "force_N", "position_mm", "power_W"];
 const MIN_SAMPLES: usize = 100;
 
 impl Log {
-    /// Parses a log. `file` is its name in errors. Unusable lines are counted and skipped, since real logs have them.
+    /// Parses a log. `file` is its name in errors. Unusable lines are counted and skipped, since
+    /// real logs have them.
     ///
     /// # Errors
     /// If the text is UTF-16, a column is missing, or there are fewer than 100 usable samples.

@@ -1,4 +1,5 @@
-//! Plateaus of one log: moves are found by the actuator's power, then the settled force of each rest is read.
+//! Plateaus of one log: moves are found by the actuator's power, then the settled force of each
+//! rest is read.
 
 use pinswitch_friction::Direction;
 use serde::Serialize;
@@ -124,7 +125,8 @@ fn level(log: &Log, from_s: f64, to_s: f64) -> f64 {
     median(&mut values)
 }
 
-/// Returns the mean of the samples within 4.5 robust standard deviations of the median, and their number.
+/// Returns the mean of the samples within 4.5 robust standard deviations of the median, and their
+/// number.
 fn settled_force(force_n: &[f64]) -> Option<(f64, usize)> {
     if force_n.len() < 20 {
         return None;

@@ -70,8 +70,8 @@ impl<'a> RunSegmentation<'a> {
         Self { plan, rows: Vec::new(), series: Vec::new(), start_s: 0.0 }
     }
 
-    /// Adds the log of the next series, in the order of the plan. Returns the log and its plateaus, for a plot. `file` is
-    /// the name of the log in errors.
+    /// Adds the log of the next series, in the order of the plan. Returns the log and its plateaus,
+    /// for a plot. `file` is the name of the log in errors.
     ///
     /// # Errors
     /// As [`Log::parse`].
@@ -111,8 +111,8 @@ impl<'a> RunSegmentation<'a> {
     }
 }
 
-/// Segments a run, given the text of its `run.toml`. `read` returns the text of a log by its name in that file; `file` is
-/// the name of the description in errors.
+/// Segments a run, given the text of its `run.toml`. `read` returns the text of a log by its name
+/// in that file; `file` is the name of the description in errors.
 ///
 /// ```
 /// use pinswitch_calibration::segmentation::segment_run;
@@ -165,7 +165,8 @@ pub fn segment_run<E: Error + Send + Sync + 'static>(
     run.finish(file)
 }
 
-/// Converts the plateaus of one log to rows of the table; `start_s` is the start of the log in the session.
+/// Converts the plateaus of one log to rows of the table; `start_s` is the start of the log in the
+/// session.
 fn rows<'a>(
     plan: &'a RunPlan,
     series: &'a SeriesPlan,

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_session_counts_as_the_latest() {
+    fn unknown_sessions_count_as_the_latest() {
         let frame = frame(2);
         let change = Change { constant: Changing::Silicone, by: Grouping::Session, groups: vec![0] };
         let mut rows = session(1);

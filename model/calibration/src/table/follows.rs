@@ -78,7 +78,7 @@ impl Following {
 pub(super) fn conditions(rows: &[PlateauRow]) -> Vec<Vec<&PlateauRow>> {
     let mut found: BTreeMap<(&str, &[usize], u64), Vec<&PlateauRow>> = BTreeMap::new();
     for row in rows {
-        // The wrap angle of `plain` has no meaning.
+        // The wrap angle of `plain` is meaningless.
         let wrap = row.substrate.map_or(0, |_| row.wrap_angle_deg.to_bits());
         found.entry((substrate_word(row.substrate), &row.pins, wrap)).or_default().push(row);
     }

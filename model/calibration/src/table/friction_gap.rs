@@ -25,7 +25,8 @@ pub(super) struct Gap {
     pub(super) load_n: f64,
     /// Median eccentric reading in newtons.
     pub(super) eccentric_n: f64,
-    /// Median concentric reading in newtons, interpolated between neighbouring loads where it is missing.
+    /// Median concentric reading in newtons, interpolated between neighbouring loads where it is
+    /// missing.
     pub(super) concentric_n: f64,
 }
 
@@ -178,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn swapped_labels_of_most_conditions_are_detected() {
+    fn swapped_labels_are_detected() {
         let mut rows = session(2);
         assert_eq!(of(&rows), Friction::Measured);
         rows.iter_mut().filter(|r| r.pins.is_empty()).for_each(|r| r.direction = turn(r.direction));

@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_a_session_by_default() {
+    fn files_are_sessions_by_default() {
         let first = table(&format!("{HEADER},room"), ",cold");
         let second = table(&format!("{HEADER},session,mount"), ",tuesday,2");
         let all =

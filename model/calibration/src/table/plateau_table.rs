@@ -81,7 +81,7 @@ impl PlateauTable {
             let (problem, help) = match error.kind() {
                 csv::ErrorKind::UnequalLengths { expected_len, len, .. } => (
                     format!("{len} cells, but the header has {expected_len}"),
-                    "give a cell for every column, an empty one where there is no value, and quote cells that contain a comma",
+                    "give a cell for every column, empty without a value, and quote cells that contain a comma",
                 ),
                 csv::ErrorKind::Utf8 { .. } => {
                     ("the text is not UTF-8".to_owned(), "save the table as CSV in UTF-8")

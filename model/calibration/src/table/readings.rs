@@ -19,8 +19,8 @@ const DIGITS: usize = 8;
 const SAME: f64 = 0.2;
 
 /// Returns the fingerprint of each session by its name (empty where the table names none), in
-/// hexadecimal digits. It detects a table that was seen before, or a part of it; it is no
-/// protection against forgery.
+/// hexadecimal digits. It detects a table that was seen before, or a part of it; it does not
+/// protect against forgery.
 pub fn readings_by_session(rows: &[PlateauRow]) -> BTreeMap<String, String> {
     let written =
         |hashes: BTreeSet<u32>| hashes.iter().take(SKETCH).map(|hash| format!("{hash:08x}")).collect();
@@ -103,18 +103,18 @@ mod tests {
     #[test]
     fn only_known_readings_are_recognised() {
         let rows = session(1);
-        let mut turned = rows.clone();
-        turned.reverse();
-        turned.iter_mut().for_each(|r| {
+        let mut reordered = rows.clone();
+        reordered.reverse();
+        reordered.iter_mut().for_each(|r| {
             r.labels.session = "b".to_owned();
             r.series = format!("again-{}", r.series);
             r.time_s += 86_400.0;
         });
-        assert!(is_recognised(&turned, &rows) && is_recognised(&rows, &turned));
+        assert!(is_recognised(&reordered, &rows) && is_recognised(&rows, &reordered));
         for seed in 2..12 {
             assert!(!is_recognised(&session(seed), &rows), "{seed}");
         }
-        let both = readings_by_session(&[rows.clone(), turned].concat());
+        let both = readings_by_session(&[rows.clone(), reordered].concat());
         assert_eq!(both.keys().map(String::as_str).collect::<Vec<_>>(), ["", "b"]);
         assert!(!is_fingerprint("x") && !is_fingerprint("") && !is_fingerprint("1234567"));
     }

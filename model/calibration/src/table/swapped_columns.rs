@@ -169,7 +169,7 @@ mod tests {
     use crate::test_session::session;
 
     #[test]
-    fn a_sound_table_has_no_columns_swapped() {
+    fn sound_tables_have_no_swapped_columns() {
         let rows = session(4);
         assert_eq!(evident(&rows), None);
         assert!(is_clock(&rows, TIME.1) && !is_clock(&rows, POSITION.1));

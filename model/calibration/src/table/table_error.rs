@@ -74,7 +74,8 @@ pub enum TableError {
     Unrelated {
         /// File name as given.
         file: String,
-        /// Change of the reading in newtons per newton of load: median over the conditions that do not follow.
+        /// Change of the reading in newtons per newton of load: median over the conditions that do
+        /// not follow.
         slope: f64,
         /// Rank correlation of readings and loads: median over all conditions.
         correlation: f64,
@@ -253,7 +254,7 @@ impl TableError {
         let name = |text: &str| excerpt(text, LONGEST_NAME);
         let range = |bounds: &RangeInclusive<f64>| format!("{} to {}", bounds.start(), bounds.end());
         match self {
-            Self::Empty { .. } => "the table has no rows".to_owned(),
+            Self::Empty { .. } => "the table contains no rows".to_owned(),
             Self::Session { other, session, .. } => {
                 format!("session '{}' is also in {}", name(session), name(other))
             }

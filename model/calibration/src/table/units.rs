@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrap_angle_per_row_is_refused() {
+    fn varying_wrap_angles_are_refused() {
         let mut at = 0.0;
         let mut rows = session(4);
         for row in &mut rows {

@@ -1,4 +1,5 @@
-//! Consistency of each series: one condition, similar loads, its own readings, and correct directions.
+//! Consistency of each series: one condition, similar loads, its own readings, and correct
+//! directions.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -9,14 +10,16 @@ use super::substrate_word::substrate_word;
 use super::table_error::TableError;
 use crate::median::median;
 
-/// Largest ratio of the loads within a series. A machine that pulls against a spring varies its load by some tenths.
+/// Largest ratio of the loads within a series. A machine that pulls against a spring varies its
+/// load by some tenths.
 const MOST_SPREAD: f64 = 2.5;
-/// Number of different readings that another series cannot repeat by chance. A coarse load cell repeats a few values.
+/// Number of different readings that another series cannot repeat by chance. A coarse load cell
+/// repeats a few values.
 const COPIED: usize = 12;
 /// Most series with exchanged directions that are left to the fit, which excludes them.
 const LEFT_TO_FIT: usize = 3;
-/// Share of the load, and number of standard errors, by which pulled readings must be below released ones before a series
-/// counts as exchanged.
+/// Share of the load, and number of standard errors, by which pulled readings must be below
+/// released ones before a series counts as exchanged.
 const BACKWARDS: (f64, f64) = (0.02, 5.0);
 /// Most series that are named in an error.
 const NAMED: usize = 8;

@@ -41,7 +41,7 @@ pub(super) fn bad_series(
                 direction: row.direction.as_str().to_owned(),
                 offset_n,
                 standard_deviations: offset_n / sd,
-                // A row that represents several has no repetition of its own.
+                // The repetition of a row that represents several is undefined.
                 repetition: alone.filter(|r| data.counts[*r] <= 1.0).map(|_| row.repetition),
                 readings: alone.map(|_| off.len()),
             });

@@ -340,7 +340,7 @@ mod tests {
     /// Forces are not linear in friction coefficients: an effect five times the hypothesised size
     /// is reported at its true size.
     #[test]
-    fn estimates_do_not_depend_on_hypothesised_size() {
+    fn estimates_are_independent_of_hypothesised_size() {
         let friction = |start| file("position", "mu\"\ncombine = \"factor", "a*stroke", start, "1");
         let vocabulary = Vocabulary::built_in().read(&friction(0.5), "mine.toml").unwrap();
         for seed in 1..=3 {
@@ -375,7 +375,7 @@ mod tests {
     /// The hypothesis is the shape at its start values, whether or not its constants are free in a
     /// fit: the best of many places is found by chance more often than a particular one.
     #[test]
-    fn free_shapes_are_tested_at_their_start() {
+    fn free_shapes_are_tested_at_start() {
         let wave = "sin(6.2831853*TIMES*stroke + PHASE)";
         for seed in 1..=6 {
             let free = tried_as(

@@ -63,8 +63,8 @@ pub struct EffectDefinition {
     pub confused_with: Vec<String>,
     /// Experiment that identifies the effect; empty for one that varies the covariate.
     pub experiment: String,
-    /// Fingerprints ([`crate::table::readings_by_session`]) of the sessions from which `calibrate` derived the formula; empty
-    /// for an effect that a person wrote.
+    /// Fingerprints ([`crate::table::readings_by_session`]) of the sessions from which `calibrate`
+    /// derived the formula; empty for an effect that a person wrote.
     pub drawn_from: Vec<String>,
     /// Constants.
     pub parameters: Vec<OwnParameter>,
@@ -289,8 +289,8 @@ impl EffectDefinition {
         })
     }
 
-    /// Returns whether the effect is nonlinear in small sizes, as `k^2`, `abs(k)` or `sqrt(k)` are. A linear fit cannot start
-    /// from zero then, and an interval around zero has no meaning.
+    /// Returns whether the effect is nonlinear in small sizes, as `k^2`, `abs(k)` or `sqrt(k)` are.
+    /// A linear fit cannot start from zero then, and an interval around zero is meaningless.
     pub(super) fn is_nonlinear_in_sizes(&self, node: &Node) -> bool {
         const SMALL: f64 = 1e-4;
         let at = |size: f64| -> Vec<f64> {
@@ -298,16 +298,17 @@ impl EffectDefinition {
                 self.parameters.iter().map(|p| p.bounds.map_or(size * p.start, |_| p.start)).collect();
             probes().iter().map(|probe| node.value(&values, &probe.moment())).collect()
         };
-        let [small, twice, turned] = [SMALL, 2.0 * SMALL, -SMALL].map(at);
+        let [small, twice, negative] = [SMALL, 2.0 * SMALL, -SMALL].map(at);
         let length = |values: &[f64]| values.iter().map(|v| v.abs()).filter(|v| v.is_finite()).sum::<f64>();
         let with = |other: &[f64], factor: f64| -> Vec<f64> {
             small.iter().zip(other).map(|(a, b)| factor * a - b).collect()
         };
-        let off = length(&with(&twice, 2.0)).max(length(&with(&turned, -1.0)));
+        let off = length(&with(&twice, 2.0)).max(length(&with(&negative, -1.0)));
         off > 0.05 * length(&small) && off > 1e-12
     }
 
-    /// Checks on probe rows that the formula is zero if all sizes are, and finite and not always zero at the start values.
+    /// Checks on probe rows that the formula is zero if all sizes are, and finite and not always
+    /// zero at the start values.
     fn check_values(&self, node: &Node) -> Result<(), DefinitionError> {
         let pick = |size: f64, shape: fn(f64, (f64, f64)) -> f64| -> Vec<f64> {
             self.parameters.iter().map(|p| p.bounds.map_or(size * p.start, |b| shape(p.start, b))).collect()
@@ -318,7 +319,8 @@ impl EffectDefinition {
             pick(0.0, |_, (low, high)| high - 0.01 * (high - low)),
         ];
         let present = pick(1.0, |start, _| start);
-        // A formula with a condition may act in a narrow range that contains none of the probe rows.
+        // A formula with a condition may act in a narrow range that contains none of the probe
+        // rows.
         let mut acts = node.has_condition();
         for probe in probes() {
             let moment = probe.moment();

@@ -42,7 +42,8 @@ impl Source<'_> {
         diagnostic.with_location(Location::in_text(self.file, self.text, at..at))
     }
 
-    /// Returns the position in the text of byte `at` of a string; of a string with escapes, its start.
+    /// Returns the position in the text of byte `at` of a string; of a string with escapes, its
+    /// start.
     fn inside(&self, string: Range<usize>, at: usize) -> usize {
         let raw = self.text.get(string.clone()).unwrap_or_default();
         let quote = if raw.starts_with("\"\"\"") || raw.starts_with("'''") { 3 } else { 1 };
@@ -60,8 +61,8 @@ impl Source<'_> {
     }
 }
 
-/// Reads the effects of a file, in addition to those of a vocabulary, to which [`Vocabulary::with`] adds them. `file` is the
-/// name of the file in errors.
+/// Reads the effects of a file, in addition to those of a vocabulary, to which [`Vocabulary::with`]
+/// adds them. `file` is the name of the file in errors.
 ///
 /// # Errors
 /// A [`Diagnostic`] of the first problem, with line and column.
@@ -85,7 +86,7 @@ pub fn read_own_effects(
     }
     if !root.get_ref().contains_key("effect") {
         return Err(source
-            .error(0, "the file has no effect")
+            .error(0, "the file contains no effect")
             .with_help("start one with [[effect]]; `pinswitch init effects` writes an example"));
     }
     let effects = blocks(&source, root.get_ref())?;
@@ -203,7 +204,7 @@ impl<'a> Table<'a> {
     }
 
     fn missing(&self, key: &str, help: &str) -> Diagnostic {
-        self.source.error(self.at, format!("{} has no {key}", self.what)).with_help(help)
+        self.source.error(self.at, format!("{} lacks {key}", self.what)).with_help(help)
     }
 
     fn wrong(&self, key: &str, value: &Value<'_>, expected: &str) -> Diagnostic {

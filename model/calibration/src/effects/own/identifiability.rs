@@ -1,4 +1,5 @@
-//! Identifiability of a formula's constants: no data determine `a` and `b` of `(a + b)*f`, only their sum.
+//! Identifiability of a formula's constants: no data determine `a` and `b` of `(a + b)*f`, only
+//! their sum.
 
 use nalgebra::DMatrix;
 
@@ -6,20 +7,21 @@ use super::definition::OwnParameter;
 use super::expression::Node;
 use super::probe::spread_probes;
 
-/// Smallest singular value of the sensitivities, as a share of the largest, below which a combination of constants has no
-/// effect. Finite differences of equal formulas agree to 1e-8.
+/// Smallest singular value of the sensitivities, as a share of the largest, below which a
+/// combination of constants changes nothing. Finite differences of equal formulas agree to 1e-8.
 const NEGLIGIBLE: f64 = 1e-6;
 /// Smallest component of such a combination that makes a constant part of it.
 const SMALLEST_COMPONENT: f64 = 0.05;
 /// Rows per constant in which a formula must act for a decision.
 const ROWS_EACH: usize = 3;
 
-/// Returns the names of constants that no data can identify at any values; `None` if there are none, or the probe rows do
-/// not decide it.
+/// Returns the names of constants that no data can identify at any values; `None` if there are
+/// none, or the probe rows do not decide it.
 pub(super) fn unidentifiable<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<Vec<&'a str>> {
     // Constants may be confounded at the start values only, which is acceptable.
     let places = [(1.0, 0.5), (1.37, 0.31), (0.71, 0.68)];
-    // A different share for each constant, since exchangeable constants are confounded where they are equal.
+    // A different share for each constant, since exchangeable constants are confounded where they
+    // are equal.
     let between = |share: f64, k: usize| 0.1 + 0.8 * libm::modf(share + 0.618 * k as f64).0;
     let mut confounded: Option<Vec<usize>> = None;
     for (i, (size, shape)) in places.into_iter().enumerate() {
@@ -62,7 +64,8 @@ pub(super) fn step_parameter<'a>(node: &Node, parameters: &'a [OwnParameter]) ->
     parameters.iter().enumerate().find(jumps).map(|(_, parameter)| parameter.name.as_str())
 }
 
-/// Returns the constants of a combination without effect at these values; `None` if there is none, or too few rows decide.
+/// Returns the constants of a combination without effect at these values; `None` if there is none,
+/// or too few rows decide.
 fn confounded_at(node: &Node, parameters: &[OwnParameter], values: &[f64]) -> Option<Vec<usize>> {
     let rows = spread_probes();
     let mut columns: Vec<(usize, Vec<f64>)> = Vec::new();

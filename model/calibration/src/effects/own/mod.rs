@@ -1,7 +1,8 @@
 //! User-defined effects: formulas in a file that are used like the built-in effects.
 //!
-//! A file ([`file`]) is parsed to definitions; a definition is checked and its formula compiled, which gives an [`Effect`] of
-//! a [`Vocabulary`](super::Vocabulary). `model/doc/own-effects.md` explains to users how to write one.
+//! A file ([`file`]) is parsed to definitions; a definition is checked and its formula compiled,
+//! which gives an [`Effect`] of a [`Vocabulary`](super::Vocabulary). `model/doc/own-effects.md`
+//! explains to users how to write one.
 
 mod definition;
 mod expression;
@@ -107,8 +108,8 @@ impl OwnEffect {
         self.definition.is_nonlinear_in_sizes(&self.formula)
     }
 
-    /// Returns the start values, followed by variants with the shapes at other places within their bounds, so that a fit of a
-    /// nonlinear shape does not end in a local minimum.
+    /// Returns the start values, followed by variants with the shapes at other places within their
+    /// bounds, so that a fit of a nonlinear shape does not end in a local minimum.
     pub(super) fn starts(&self) -> Vec<Vec<f64>> {
         let parameters = &self.definition.parameters;
         let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
@@ -129,8 +130,8 @@ impl OwnEffect {
         all
     }
 
-    /// Returns a reference for the lifetime of the program, since descriptions are shared by static reference. The memory is
-    /// bounded by the size of the files read.
+    /// Returns a reference for the lifetime of the program, since descriptions are shared by static
+    /// reference. The memory is bounded by the size of the files read.
     pub(super) fn leaked(self) -> &'static LeakedEffect {
         let description = Box::leak(Box::new(self.description()));
         Box::leak(Box::new(LeakedEffect { own: self, description }))
@@ -192,7 +193,8 @@ impl OwnEffect {
     }
 }
 
-/// Returns why a table may not identify an effect along a covariate, and an experiment that identifies it.
+/// Returns why a table may not identify an effect along a covariate, and an experiment that
+/// identifies it.
 fn of_covariate(covariate: Covariate) -> (&'static str, &'static str) {
     match covariate {
         Covariate::Load => ("the load hardly varies", "several loads, all else equal"),

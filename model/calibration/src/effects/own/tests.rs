@@ -37,13 +37,14 @@ fn varied(effect: &'static dyn Effect, values: &[f64]) -> Vec<PlateauRow> {
 }
 
 #[test]
-fn sixteen_built_in_effects_can_be_written_out() {
+fn sixteen_effects_have_a_formula() {
     assert_eq!(written_out().len(), 16);
 }
 
-/// The formula of a built-in effect predicts the same, and its fit finds the same constants and residuals.
+/// The formula of a built-in effect predicts the same, and its fit finds the same constants and
+/// residuals.
 #[test]
-fn formulas_of_built_in_effects_are_equivalent() {
+fn formulas_and_built_in_effects_agree() {
     for (effect, own) in written_out() {
         let id = own.definition().id.clone();
         let vocabulary = Vocabulary::built_in().with(vec![own]).unwrap();
@@ -156,7 +157,7 @@ fn problems_are_located() {
         ("start = 52", "start = 20", "20:12: start = 20 of 'c' must be between low = 35 and high = 75"),
         ("start = 52", "start = nan", "20:12: start, low and high of 'c' must be numbers"),
         ("start = 0.1", "start = -0.1", "19:12: start = -0.1 of the size 'a' must be above 0"),
-        ("size = true, ", "", "parameter 'a' has no low and high"),
+        ("size = true, ", "", "parameter 'a' lacks low and high"),
         ("size = true, ", "size = true, low = 0, ", "a size cannot have bounds"),
         ("unit = \"%\" }\nparameters.w", "unit = \"kg\" }\nparameters.w", "20:12: unknown unit 'kg'"),
         ("parameters.w =", "parameters.load_n =", "21:12: parameter 'load_n' has the name of a variable"),
@@ -251,7 +252,7 @@ proptest! {
         }
     }
 
-    /// No text makes the reader panic or report an error that is long or has no location.
+    /// No text makes the reader panic, or report a long error or one without a location.
     #[test]
     fn any_text_is_read_or_refused(text in "\\PC{0,60}", at in 0usize..2000) {
         let at = (0..=at.min(VALID.len())).rev().find(|i| VALID.is_char_boundary(*i)).unwrap_or(0);

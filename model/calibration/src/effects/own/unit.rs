@@ -23,7 +23,8 @@ impl Unit {
     /// The unit `1`.
     pub(super) const NONE: Unit = Unit([0.0; BASE.len()]);
 
-    /// Parses `1`, `N`, `N^-0.5`, `1/N`, `N mm`, `%/s`: factors with a power, divided by `/`, multiplied by a space or `*`.
+    /// Parses `1`, `N`, `N^-0.5`, `1/N`, `N mm`, `%/s`: factors with a power, divided by `/`,
+    /// multiplied by a space or `*`.
     ///
     /// # Errors
     /// If the text is not a unit.

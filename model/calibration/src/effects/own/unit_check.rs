@@ -1,8 +1,10 @@
-//! Unit check of formulas: operands of sums and comparisons have equal units, arguments of functions have none.
+//! Unit check of formulas: operands of sums and comparisons have equal units, arguments of
+//! functions have none.
 //!
-//! A bare number that is added, compared or divided has the unit that makes the formula consistent, as in `load_n/50` or
-//! `speed_pct > 50`; a number that multiplies has none. The unit of such a number is an unknown of linear equations between
-//! powers of units, which are solved one by one (Kennedy, Types for units-of-measure, 2010).
+//! A bare number that is added, compared or divided has the unit that makes the formula consistent,
+//! as in `load_n/50` or `speed_pct > 50`; a number that multiplies has none. The unit of such a
+//! number is an unknown of linear equations between powers of units, which are solved one by one
+//! (Kennedy, Types for units-of-measure, 2010).
 
 use pinswitch_diagnostic::Diagnostic;
 
@@ -56,7 +58,8 @@ struct Solver {
     solved: Vec<Option<Quantity>>,
 }
 
-/// Checks a formula whose constants have these units; the formula must have the unit `needed`. `what` names its use.
+/// Checks a formula whose constants have these units; the formula must have the unit `needed`.
+/// `what` names its use.
 ///
 /// # Errors
 /// The first inconsistency.
@@ -204,7 +207,8 @@ impl Solver {
         }
     }
 
-    /// Returns the unit of a power. Unless the exponent is a number, base and exponent must be dimensionless.
+    /// Returns the unit of a power. Unless the exponent is a number, base and exponent must be
+    /// dimensionless.
     fn power(&mut self, a: &Node, b: &Node, constants: &[Unit]) -> Result<Quantity, UnitError> {
         let base = self.unit_of(a, constants)?;
         let none = Quantity::known(Unit::NONE);

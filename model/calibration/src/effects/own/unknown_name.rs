@@ -2,7 +2,8 @@
 
 use pinswitch_diagnostic::{Diagnostic, excerpt};
 
-/// Returns a diagnostic of an unknown name whose help suggests the closest known name, or lists all.
+/// Returns a diagnostic of an unknown name whose help suggests the closest known name, or lists
+/// all.
 pub(crate) fn unknown_name<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> Diagnostic {
     let known: Vec<&str> = known.collect();
     let nearest = known

@@ -100,7 +100,7 @@ pub(super) static VARIABLES: [Variable; 23] = [
         m.point.through
     }),
     moving("session", "1", "1, 2, ... in the order of the table", |m| m.point.session),
-    moving("mount", "1", "number of the mount; 1 if the table has no mounts", |m| m.point.mount),
+    moving("mount", "1", "number of the mount; 1 without mounts in the table", |m| m.point.mount),
     moving("operator", "1", "1, 2, ... in the order of the operators' names; 1 if there is only one", |m| {
         m.point.operator
     }),

@@ -1,4 +1,4 @@
-//! A table with few series names what it shows.
+//! Calibration of a table with few series.
 
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
@@ -6,11 +6,12 @@ use pinswitch_calibration::{Verdict, calibrate};
 
 use crate::harness::repository;
 
-/// Found by an attack: 24 series of three conditions, by a simulator of another hand, with `rate_dependence` of 0.3. What names
-/// explain is not taken out of so few series before the noise is estimated: the effect passed for scatter of the series, and a course
-/// with the logarithm of speed, which is its very formula, for structure without a name.
+/// 24 series of three conditions from an independent simulator, with `rate_dependence` of 0.3. With
+/// so few series the effects are not projected out before the noise is estimated: the effect once
+/// counted as scatter of the series, and its trend with the logarithm of speed as unattributed
+/// structure.
 #[test]
-fn an_effect_is_named_beside_the_noise_that_it_leaves() {
+fn an_effect_is_found_in_few_series() {
     let file = repository("tests/corpus/plateaus/accepted-few-series.csv");
     let table = PlateauTable::read(std::fs::File::open(file).unwrap(), "few-series.csv").unwrap();
     let report = calibrate(&table.rows, Levels::default()).unwrap().report;
@@ -18,6 +19,6 @@ fn an_effect_is_named_beside_the_noise_that_it_leaves() {
     assert_eq!((report.verdict, effect.id.as_str()), (Verdict::Attributed, "rate_dependence"));
     let [low, high] = effect.parameters["k"].ci95;
     assert!(low < 0.3 && 0.3 < high, "{low} {high}");
-    // The folds of the promise have fewer series still, and find it all the same.
+    // The folds of the expected error have even fewer series, and still find it.
     assert!(report.promise_n.unwrap() < 0.6 * report.promise_baseline_n.unwrap(), "{:?}", report.promise_n);
 }

@@ -1,8 +1,9 @@
-//! Plateau tables that no rig can have measured are refused with a reason, and those that one can have are not.
+//! Plateau tables that no rig can have measured are refused; plausible ones are accepted.
 
 use std::path::PathBuf;
 
 use pinswitch_calibration::table::{PlateauRow, PlateauTable, TableError, substrate_word};
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;
 use pinswitch_simulation::{EffectPlan, Plan, plan_of, simulate, study_cases};
 use proptest::prelude::*;
@@ -16,19 +17,19 @@ fn written(rows: &[PlateauRow]) -> String {
     PlateauTable::write(rows)
 }
 
-/// The verdict on the text of a table, or on the first cell of it that cannot be read.
+/// Checks the text of a table; returns the first error of reading it or of its plausibility.
 fn judged(text: &str) -> Result<(), TableError> {
     PlateauTable::read(text.as_bytes(), "t.csv")?.require_baseline("t.csv")
 }
 
-fn turned(direction: Direction) -> Direction {
+fn opposite(direction: Direction) -> Direction {
     match direction {
         Direction::Eccentric => Direction::Concentric,
         Direction::Concentric => Direction::Eccentric,
     }
 }
 
-/// All tables of rigs and machines that lie beside this repository.
+/// Returns all tables of rigs and machines in the folders next to this repository.
 fn measured() -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> = ["data/rig", "data/rig2", "data/real"]
         .iter()
@@ -40,7 +41,7 @@ fn measured() -> Vec<PathBuf> {
     found
 }
 
-/// The text of a table with two columns in each other's place.
+/// Returns the text of a table with two column names swapped.
 fn exchanged(text: &str, first: &str, second: &str) -> String {
     let (header, rest) = text.split_once('\n').unwrap();
     let name = |column: &str| match column {
@@ -64,16 +65,17 @@ const PAIRS: [[&str; 2]; 10] = [
     ["position_mm", "time_s"],
 ];
 
-/// A table that reads, but is refused as a whole: in one sentence or two, with file, column and remedy.
+/// Asserts that a table is refused as a whole, with file, column and help.
 fn assert_refused(text: &str, what: &str) {
-    let error = judged(text).expect_err(what).to_string();
-    assert!(error.starts_with("t.csv") && error.contains("column"), "{what}: {error}");
-    assert!(error.contains(';') || error.contains(". "), "{what}: {error}");
-    assert!(error.chars().count() < LONGEST, "{what}: {error}");
+    let error = Diagnostic::from(judged(text).expect_err(what));
+    let location = error.location().expect(what);
+    assert!(location.file.as_deref() == Some("t.csv") && location.field.is_some(), "{what}: {error}");
+    assert!(error.help().is_some(), "{what}: {error}");
+    assert!(error.to_string().chars().count() < LONGEST, "{what}: {error}");
 }
 
 #[test]
-fn every_measured_table_passes_and_so_does_each_direction_of_it() {
+fn measured_tables_and_directions_are_accepted() {
     for path in measured() {
         let table = PlateauTable::read(std::fs::File::open(&path).unwrap(), "t.csv").unwrap();
         table.require_baseline("t.csv").unwrap_or_else(|e| panic!("{}: {e}", path.display()));
@@ -86,7 +88,7 @@ fn every_measured_table_passes_and_so_does_each_direction_of_it() {
 }
 
 #[test]
-fn swapped_labels_and_copied_loads_are_refused_in_every_measured_table() {
+fn implausible_changes_are_refused() {
     for path in measured() {
         let table = PlateauTable::read(std::fs::File::open(&path).unwrap(), "t.csv").unwrap();
         let name = path.display().to_string();
@@ -95,7 +97,7 @@ fn swapped_labels_and_copied_loads_are_refused_in_every_measured_table() {
             changed.rows.iter_mut().for_each(change);
             changed.require_baseline("t.csv")
         };
-        let labels = of(&|r| r.direction = turned(r.direction));
+        let labels = of(&|r| r.direction = opposite(r.direction));
         assert!(matches!(labels, Err(TableError::SwappedDirections { .. })), "{name}: {labels:?}");
         let copied = of(&|r| r.force_n = r.load_n);
         assert!(matches!(copied, Err(TableError::NoFriction { .. })), "{name}: {copied:?}");
@@ -105,7 +107,7 @@ fn swapped_labels_and_copied_loads_are_refused_in_every_measured_table() {
 }
 
 #[test]
-fn columns_in_each_others_place_are_refused_in_every_rig_table() {
+fn swapped_columns_are_refused() {
     for path in measured().into_iter().filter(|p| !p.to_string_lossy().contains("real")) {
         let text = std::fs::read_to_string(&path).unwrap();
         for masses in [true, false] {
@@ -121,7 +123,7 @@ fn columns_in_each_others_place_are_refused_in_every_rig_table() {
     }
 }
 
-/// The same table where no mass is known.
+/// Returns the table with unknown masses.
 fn without_masses(text: &str) -> String {
     let mut table = PlateauTable::read(text.as_bytes(), "t.csv").unwrap();
     table.rows.iter_mut().for_each(|r| r.load_mass_g = 0.0);
@@ -129,7 +131,7 @@ fn without_masses(text: &str) -> String {
 }
 
 #[test]
-fn the_two_columns_are_named() {
+fn swapped_columns_are_named() {
     let text = written(&simulate(&Plan::randomised()).rows);
     for [first, second] in PAIRS {
         match judged(&exchanged(&text, first, second)) {
@@ -142,18 +144,20 @@ fn the_two_columns_are_named() {
 }
 
 #[test]
-fn the_command_says_why_and_writes_nothing() {
+fn a_refused_table_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut rows = simulate(&Plan::randomised()).rows;
-    rows.iter_mut().for_each(|r| r.direction = turned(r.direction));
+    rows.iter_mut().for_each(|r| r.direction = opposite(r.direction));
     std::fs::write(folder.path().join("turned.csv"), written(&rows)).unwrap();
     let (code, said) = ended(folder.path(), &["-q", "calibrate", "turned.csv", "--out", "out"]);
     assert_eq!(code, Some(2), "{said}");
-    assert!(said.contains("turned.csv, column 'direction': in 7 of 7 condition(s)"), "{said}");
+    let words =
+        "turned.csv: direction: the concentric readings are below the eccentric ones in 7 of 7 condition(s)";
+    assert!(said.contains(words), "{said}");
     assert!(said.chars().count() < LONGEST && !folder.path().join("out").exists(), "{said}");
 }
 
-/// Every kind of rig of the study, effects and disturbances included.
+/// Covers every kind of rig of the study, including effects and disturbances.
 #[test]
 fn no_rig_of_the_study_is_refused() {
     for case in study_cases() {
@@ -164,14 +168,15 @@ fn no_rig_of_the_study_is_refused() {
     }
 }
 
-/// One condition, or three series, may be as wrong as they like, but for directions: no friction makes a pull read less than a
-/// release, and with more than three such series nothing that is said of the others would be true.
+/// A single condition, or up to three series, is left to the fit whatever is wrong with it. Swapped
+/// directions are the exception: pulled readings are never below released ones, and more than three
+/// such series would invalidate the results of the others.
 #[test]
-fn one_odd_condition_or_series_is_left_to_the_fit() {
+fn single_errors_are_left_to_the_fit() {
     let rows = simulate(&Plan::randomised()).rows;
     type Wrong = fn(&mut PlateauRow);
     let wrongs: [Wrong; 4] = [
-        |r| r.direction = turned(r.direction),
+        |r| r.direction = opposite(r.direction),
         |r| r.force_n = r.load_n,
         |r| r.force_n = 20.0,
         |r| r.force_n = -r.force_n,
@@ -188,9 +193,10 @@ fn one_odd_condition_or_series_is_left_to_the_fit() {
     }
 }
 
-/// Found by [`no_simulated_rig_is_refused`]: loads too alike to tell in any layout, whose frictions differ tenfold.
+/// Found by [`no_simulated_rig_is_refused`]: the loads of each layout hardly vary, while friction
+/// differs tenfold between layouts.
 #[test]
-fn layouts_of_unlike_friction_are_not_mixed_to_judge_their_loads() {
+fn different_layouts_are_judged_separately() {
     let mut plan = Plan::default();
     plan.noise.series_n = 0.0;
     let weights_g = vec![4293.4, 5074.1, 5419.3, 5448.2, 6639.8];
@@ -227,9 +233,9 @@ fn plans() -> impl Strategy<Value = Plan> {
         )
 }
 
-/// Found by trying every table of an attack: a cell with coarse steps reads the same few values in two series.
+/// A coarse load cell reads the same few values in two series.
 #[test]
-fn coarse_readings_that_come_again_are_no_copies() {
+fn coarse_readings_are_not_copies() {
     for seed in 1..=6 {
         let mut rows = simulate(&Plan { seed, ..Plan::randomised() }).rows;
         rows.iter_mut().for_each(|r| r.force_n = (2.0 * r.force_n).round() / 2.0);
@@ -237,9 +243,9 @@ fn coarse_readings_that_come_again_are_no_copies() {
     }
 }
 
-/// Found by an attack: each was accepted, and most of them named an effect that is not there.
+/// Each of these tables was once accepted, and most of them gave an effect that is absent.
 #[test]
-fn mixed_up_series_and_foreign_units_are_refused_without_masses() {
+fn wrong_units_and_series_are_refused() {
     let rows = simulate(&Plan { seed: 5, ..Plan::randomised() }).rows;
     let refused = |what: &str, change: &dyn Fn(&mut Vec<PlateauRow>)| {
         let mut rows = rows.clone();
@@ -268,27 +274,28 @@ fn mixed_up_series_and_foreign_units_are_refused_without_masses() {
     for kept in [Direction::Eccentric, Direction::Concentric] {
         refused("one direction under the other's name", &|rows| {
             rows.retain(|r| r.direction == kept);
-            rows.iter_mut().for_each(|r| r.direction = turned(r.direction));
+            rows.iter_mut().for_each(|r| r.direction = opposite(r.direction));
         });
     }
     refused("four exchanged series", &|rows| {
         let heavy =
             |r: &&mut PlateauRow| ["30", "31", "32", "33", "34", "35", "36"].contains(&r.series.as_str());
-        rows.iter_mut().filter(heavy).for_each(|r| r.direction = turned(r.direction));
+        rows.iter_mut().filter(heavy).for_each(|r| r.direction = opposite(r.direction));
     });
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Any wrap, weights, conditions and noise; with the masses or without; both directions or one; as `plain` too.
+    /// Any wrap, weights, conditions and noise; with or without masses; both directions or one;
+    /// also as `plain`.
     #[test]
     fn no_simulated_rig_is_refused(plan in plans(), masses: bool, plain: bool, only: Option<bool>, offset_n in -2.0..2.0f64) {
         let mut plan = plan;
         plan.effects.push(EffectPlan { id: "load_cell_offset".to_owned(), values: vec![offset_n], form: 0 });
         let mut rows = simulate(&plan).rows;
         rows.retain(|r| only.is_none_or(|up| up == (r.direction == Direction::Concentric)));
-        // Tables with nearly one load are refused for that.
+        // Tables with nearly one load are refused for that reason.
         let ends = rows.iter().fold((f64::INFINITY, 0.0f64), |(a, b), r| (a.min(r.load_n), b.max(r.load_n)));
         prop_assume!(!rows.is_empty() && ends.1 - ends.0 > 3.0);
         for row in &mut rows {
@@ -307,11 +314,11 @@ proptest! {
         }
     }
 
-    /// Directions the wrong way round, however the rig is, unless it has so little friction that noise may hide it.
+    /// Swapped directions on any rig, unless it has so little friction that noise may hide it.
     #[test]
-    fn swapped_labels_are_refused_on_any_rig(plan in plans()) {
+    fn swapped_labels_are_always_refused(plan in plans()) {
         let mut rows = simulate(&plan).rows;
-        rows.iter_mut().for_each(|r| r.direction = turned(r.direction));
+        rows.iter_mut().for_each(|r| r.direction = opposite(r.direction));
         prop_assume!(rows.len() > 30 && plan.weights_g.len() > 3 && plan.wrap_angle_deg > 40.0);
         prop_assert!(judged(&written(&rows)).is_err());
     }

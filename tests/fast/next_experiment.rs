@@ -1,5 +1,5 @@
-//! The loop as a whole: a first table that cannot tell, the runs that are proposed, a second table, the verdict. And forms that are drawn
-//! from one session and decided on by another.
+//! The loop: a first table that is not conclusive, the proposed runs, a second table, and the
+//! verdict. Also forms that are derived from one session and tested with another.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ fn json(path: &Path) -> Value {
 
 /// The worked example of `model/doc/next-experiment.md`.
 #[test]
-fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed() {
+fn proposed_runs_resolve_a_confounded_effect() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     let truth = ["--effect", "rate_dependence=0.2"];
@@ -28,15 +28,18 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
     assert!(asked["by_repeating"].as_f64() < Some(0.2), "{asked}");
     let sheet = std::fs::read_to_string(path.join("next/run-sheet.html")).unwrap();
     assert!(sheet.contains("mount 1: ") && sheet.contains("rate_dependence or none"));
-    // The same model makes the same plan, and the runs can be rehearsed on it.
+    // The same model gives the same plan, and the runs can be rehearsed with it.
     done(path, &["-q", "experiment", "calibration", "--minutes", "60", "--out", "again"]);
     let bytes = |name: &str| std::fs::read(path.join(name)).unwrap();
     assert_eq!(bytes("next/next-runs.csv"), bytes("again/next-runs.csv"));
-    // A cell that no load fits is no want of minutes.
+    // A load cell that no load fits is not a lack of time.
     std::fs::write(path.join("tiny.toml"), "cell_limit_n = 0.1\n").unwrap();
     let (code, said) =
         ended(path, &["-q", "experiment", "calibration", "--rig", "tiny.toml", "--out", "none"]);
-    assert!(code == Some(2) && said.contains("tiny.toml: cell_limit_n = 0.1: at every load"), "{said}");
+    assert!(
+        code == Some(2) && said.contains("tiny.toml: cell_limit_n = 0.1: the load cell would exceed"),
+        "{said}"
+    );
     assert!(!said.contains("minutes") && !path.join("none").exists(), "{said}");
     let runs = ["--runs", "next/next-runs.csv"];
     done(
@@ -44,7 +47,7 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
         &[&["-q", "simulate"], &runs[..], &["--model", "calibration/model.toml", "--out", "rehearsal"]]
             .concat(),
     );
-    // The rig that has the effect makes them.
+    // The runs are made on the rig with the effect.
     done(path, &[&["-q", "simulate"], &runs[..], &truth, &["--seed", "5", "--out", "second"]].concat());
     let both =
         ["-q", "calibrate", "first/plateaus.csv", "second/plateaus.csv", "--plan", "next", "--out", "joined"];
@@ -60,7 +63,7 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
     assert!(low < 0.2 && 0.2 < high && high - low < 0.1, "{size}");
     let sessions = report["sessions"].as_array().unwrap();
     assert_eq!((sessions.len(), &sessions[1]["verdict"]), (2, &"attributed".into()));
-    // What was expected is held against what came: what is sure to be settled is.
+    // Expected answers are compared with the actual ones: certain answers are given.
     let answers = sessions[1]["asked"]["questions"].as_array().unwrap();
     let answer = |id: &str| &answers.iter().find(|q| q["between"][0] == id).unwrap()["answer"];
     assert_eq!(
@@ -74,7 +77,7 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
     assert!(said.contains("second/plateaus.csv answers "), "{said}");
     let page = std::fs::read_to_string(path.join("joined/report.html")).unwrap();
     assert!(page.contains("rate_dependence or none at a size of 0.100 (&gt;99 %; by the paper&#39;s protocol repeated &lt;1 %): <b>found</b>"));
-    // The runs are told with the story, and descending loads come from a heavier one in their mount.
+    // The report lists the runs; a heavier load precedes descending ones in their mount.
     assert!(page.contains("proposed runs:<ul><li>") && page.contains("with loads descending"));
     let runs = std::fs::read_to_string(path.join("next/next-runs.csv")).unwrap();
     let cells: Vec<Vec<&str>> = runs.lines().skip(1).map(|line| line.split(',').collect()).collect();
@@ -85,7 +88,7 @@ fn what_the_paper_s_protocol_cannot_tell_is_told_by_the_runs_that_are_proposed()
 }
 
 #[test]
-fn what_a_plan_cannot_be_made_of_is_one_error() {
+fn invalid_input_gives_one_error() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     std::fs::create_dir(path.join("empty")).unwrap();
@@ -98,7 +101,10 @@ fn what_a_plan_cannot_be_made_of_is_one_error() {
     for (arguments, words) in [
         ("experiment empty --out next", "empty/report.json: cannot read"),
         ("experiment other --out next", "other/report.json: missing field"),
-        ("experiment other --rig rig.toml --out next", "rig.toml:1: loads_g = 0 weights is outside"),
+        (
+            "experiment other --rig rig.toml --out next",
+            "rig.toml:1:11: loads_g = 0 weights: 1 to 40 weights are possible",
+        ),
         ("experiment other --minutes 0 --out next", "minutes"),
         ("experiment other --minutes nan --out next", "minutes"),
         ("simulate --runs runs.csv --out x", "runs.csv: column 'pins' is missing"),
@@ -124,7 +130,7 @@ const RUNS: &str = "series,substrate,pins,sweep,load_mass_g,speed_pct,dwell_s,re
 4,abs,5;8;11,up,1003.2,40,10,4,4,2,9,x
 ";
 
-/// What the plan asks, with a field that is otherwise.
+/// Returns a plan with one field changed.
 fn asks(from: &str, to: &str) -> String {
     let plan = r#"{"schema": "pinswitch.experiment/1", "minutes": 24.0, "questions": [
         {"between": ["friction_above_26_N", "none"], "resolved_probability": 0.7},
@@ -134,20 +140,20 @@ fn asks(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn a_table_that_was_not_recorded_by_a_plan_is_told() {
+fn tables_that_differ_from_the_plan_warn() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     std::fs::create_dir(path.join("plan")).unwrap();
     std::fs::write(path.join("plan/experiment.json"), asks("0.7", "0.7")).unwrap();
     std::fs::write(path.join("plan/next-runs.csv"), RUNS).unwrap();
     let lines: Vec<&str> = RUNS.lines().collect();
-    // The runs that a table is made of.
+    // Simulates a table of some of the runs.
     let made = |name: &str, of: &[&str]| {
         let runs: Vec<&str> = lines[..1].iter().chain(of).copied().collect();
         std::fs::write(path.join("runs.csv"), runs.join("\n")).unwrap();
         done(path, &["-q", "simulate", "--runs", "runs.csv", "--out", name]);
     };
-    // What is said of the plan comes first; nothing is calibrated, since there is no first table.
+    // The plan is checked before the tables; the first table is missing, so nothing is calibrated.
     let said = |name: &str| {
         let table = format!("{name}/plateaus.csv");
         let (code, said) =
@@ -159,7 +165,7 @@ fn a_table_that_was_not_recorded_by_a_plan_is_told() {
     made("whole", &lines[1..]);
     made("part", &lines[1..4]);
     made("half", &lines[1..3]);
-    // Other speeds, and one run twice, are not the runs.
+    // Other speeds, or one run twice, are not the planned runs.
     let fast: Vec<String> =
         lines[1..].iter().map(|line| line.replace(",40,", ",55,").replace(",70,", ",55,")).collect();
     made("fast", &fast.iter().map(String::as_str).collect::<Vec<_>>());
@@ -179,9 +185,9 @@ fn a_table_that_was_not_recorded_by_a_plan_is_told() {
         assert!(said(name).contains(&words), "{name}: {}", said(name));
     }
     for (from, to, words) in [
-        ("0.9", "1.9", "questions[1].resolved_probability = 1.9 is outside 0..1"),
-        ("24.0", "-1", "minutes = -1 is not above 0"),
-        ("wear_drift", "gravity", "questions[1].between[1] = \"gravity\" is no effect that is known here"),
+        ("0.9", "1.9", "questions[1].resolved_probability = 1.9: outside 0 to 1"),
+        ("24.0", "-1", "minutes = -1: must be above 0"),
+        ("wear_drift", "gravity", "questions[1].between[1] = \"gravity\": unknown effect"),
     ] {
         std::fs::write(path.join("plan/experiment.json"), asks(from, to)).unwrap();
         let said = said("whole");
@@ -193,7 +199,7 @@ fn a_table_that_was_not_recorded_by_a_plan_is_told() {
     assert!(said.contains(&format!("{runs}: is not there")) && !path.join("x").exists(), "{said}");
 }
 
-/// A plan of the randomised protocol with something that no effect is.
+/// Returns a plan of the randomised protocol with a disturbance that is not an effect.
 fn rig(disturbance: &str) -> String {
     format!(
         "seed = 7\nprotocol = \"randomised\"\nspeeds_pct = [40.0, 50.0, 60.0, 70.0]\ndwells_s = [1.0, 3.0, 10.0]\n\
@@ -202,7 +208,7 @@ fn rig(disturbance: &str) -> String {
 }
 
 #[test]
-fn a_form_drawn_from_one_session_is_confirmed_by_another_and_refuted_by_one_without_it() {
+fn derived_forms_are_tested_by_other_sessions() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     let step = "size = 0.15\ntarget = \"friction\"\nkind.step = { at = 0.45, over = 0.0 }";
@@ -213,12 +219,13 @@ fn a_form_drawn_from_one_session_is_confirmed_by_another_and_refuted_by_one_with
     let form = json(&path.join("first/report.json"))["effects"][0]["form"].clone();
     assert_eq!((&form["shape"], &form["acts_on"]), (&"step".into(), &"friction".into()), "{form}");
     let id = form["id"].as_str().unwrap();
-    // Whether it comes again is the first thing to ask of another session; what it was drawn from does not answer that.
+    // The first question is whether it is seen in another session; the data it was derived from do
+    // not answer it.
     done(path, &["-q", "experiment", "first", "--minutes", "240", "--out", "plan"]);
     let plan = json(&path.join("plan/experiment.json"));
     let asked = plan["questions"].as_array().unwrap().iter().find(|q| q["between"][0] == id);
     assert!(asked.is_some_and(|q| q["resolved_probability"].as_f64() > Some(0.9)), "{plan}");
-    // The plan carries the form, so that whether it came again is answered without its file.
+    // The plan contains the form, so that the question is answered without its file.
     assert_eq!(
         std::fs::read(path.join("plan/discovered.toml")).unwrap(),
         std::fs::read(path.join("first/discovered.toml")).unwrap()
@@ -228,15 +235,16 @@ fn a_form_drawn_from_one_session_is_confirmed_by_another_and_refuted_by_one_with
     done(path, &[&["-q", "calibrate"], &tables[..], &["--plan", "plan", "--out", "joined"]].concat());
     let answers = json(&path.join("joined/report.json"))["sessions"][1]["asked"]["questions"].clone();
     let answer = answers.as_array().unwrap().iter().find(|q| q["between"][0] == id).unwrap();
-    // A step lies at a share of its own session: in one of another length it is not where it was drawn.
+    // The place of a step is a share of its session, so it differs in a session of another length.
     assert_ne!(answer["answer"], "open", "{answers}");
-    // What it was drawn from names nothing, and is not taken away from under the calibration that reads it.
+    // The data from which it was derived do not attribute it, and its file is not overwritten by
+    // the calibration that reads it.
     let own = ["-q", "calibrate", "step/plateaus.csv", "--effects", "first/discovered.toml", "--out"];
     let said = printed(path, &[&own[..], &["own"]].concat());
     assert!(said.starts_with("verdict: unattributed") && said.contains("on trial: drawn"), "{said}");
     let (code, said) = ended(path, &[&own[..], &["first"]].concat());
     assert!(code == Some(2) && path.join("first/discovered.toml").exists(), "{said}");
-    // The step came after three hours: an hour cannot show it, and says so.
+    // The step is after three hours, so one hour cannot show it.
     done(path, &["-q", "experiment", "first", "--minutes", "60", "--out", "short"]);
     let short = json(&path.join("short/experiment.json"));
     let never = short["unanswerable"].as_array().unwrap().iter().find(|q| q["between"][0] == id).unwrap();
@@ -248,20 +256,20 @@ fn a_form_drawn_from_one_session_is_confirmed_by_another_and_refuted_by_one_with
     assert!(said.starts_with("verdict: attributed") && said.contains(id), "{said}");
     let size = json(&path.join("second/report.json"))["effects"][0]["parameters"]["a"].clone();
     assert!((size["value"].as_f64().unwrap() - 0.15).abs() < 0.04, "{size}");
-    // On a rig without it nothing of the kind is named, and a size like that is excluded or said to be open.
+    // On a rig without it, the effect is not attributed, and its size is excluded or open.
     std::fs::write(path.join("none.toml"), rig("").replace("[[disturbances]]", "")).unwrap();
     done(path, &["-q", "simulate", "none.toml", "--out", "none"]);
     done(path, &[&["-q", "calibrate", "none/plateaus.csv"], &discovered[..], &["--out", "third"]].concat());
     let report = json(&path.join("third/report.json"));
     assert!(report["effects"].as_array().unwrap().iter().all(|e| e["id"] != id), "{}", report["effects"]);
-    // A folder is not left with the form of an earlier calibration.
+    // The form of an earlier calibration is removed from a folder.
     done(path, &["-q", "calibrate", "none/plateaus.csv", "--out", "first"]);
     assert!(!path.join("first/discovered.toml").exists());
 }
 
-/// Curves go to the heaviest load of the paper, whatever was recorded.
+/// Curves extend to the heaviest load of the paper, whatever was recorded.
 #[test]
-fn loads_that_curves_need_and_nobody_recorded_are_asked_for() {
+fn unrecorded_loads_of_curves_are_proposed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     done(path, &["-q", "simulate", "--out", "whole"]);

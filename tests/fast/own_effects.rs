@@ -1,14 +1,15 @@
-//! Effects of one's own, end to end: found where they are, silent where they are not, carried by the model.
+//! User-defined effects, end to end: detected where present, not reported where absent, and
+//! contained in the model.
 
 use std::path::Path;
 
 use crate::harness::{done, ended, expect_code, json, printed};
 
-/// A session in which the speed varies apart from the load.
+/// A session in which the speed varies independently of the load.
 const PLAN: &str = "seed = 2\nprotocol = \"randomised\"\nlayouts = [[5, 8, 11]]\nweights_g = [251.2, 1003.2, 2005.0, 3007.2, 4007.8, 5002.5]
 speeds_pct = [40, 44, 48, 52, 56, 60, 64, 70]\ndwells_s = [3]\nrepetitions = [6, 6]\n";
 
-/// A folder with the plan and the effects that `init` writes.
+/// Creates a folder with the plan and the effects that `init` writes.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("plan.toml"), PLAN).unwrap();
@@ -21,13 +22,13 @@ fn report(folder: &Path, calibrated: &str) -> serde_json::Value {
     serde_json::from_slice(&text).unwrap()
 }
 
-/// Ids of what was found.
+/// Returns the ids of the effects.
 fn found(report: &serde_json::Value) -> Vec<&str> {
     report["effects"].as_array().unwrap().iter().filter_map(|e| e["id"].as_str()).collect()
 }
 
 #[test]
-fn an_effect_of_ones_own_is_found_and_its_model_predicts_without_its_file() {
+fn a_user_defined_effect_is_found() {
     let folder = folder();
     let at = folder.path();
     let simulate = [
@@ -52,7 +53,7 @@ fn an_effect_of_ones_own_is_found_and_its_model_predicts_without_its_file() {
     }
     let page = std::fs::read_to_string(at.join("with/report.html")).unwrap();
     assert!(page.contains("lubricant_dip"));
-    // The model is all that is needed from here on.
+    // From here on only the model is needed.
     std::fs::remove_file(at.join("mine.toml")).unwrap();
     let rows = printed(at, &["predict", "--model", "with/model.toml", "--rows", "rig/plateaus-fresh.csv"]);
     let misses: Vec<f64> = rows
@@ -66,7 +67,7 @@ fn an_effect_of_ones_own_is_found_and_its_model_predicts_without_its_file() {
     let rms = (misses.iter().map(|m| m * m).sum::<f64>() / misses.len() as f64).sqrt();
     assert!(rms < 0.4, "{rms} N on rows without noise");
     done(at, &["-q", "generate", "three-double", "--model", "with/model.toml", "--out", "part"]);
-    // What the vocabulary lacks is no name, but it is not overlooked either.
+    // Without the effect in the vocabulary, its residual is reported as unattributed structure.
     done(at, &["-q", "calibrate", "rig/plateaus.csv", "--out", "without"]);
     let without = report(at, "without");
     assert!(!found(&without).contains(&"lubricant_dip"));
@@ -74,7 +75,7 @@ fn an_effect_of_ones_own_is_found_and_its_model_predicts_without_its_file() {
 }
 
 #[test]
-fn an_effect_that_is_absent_raises_no_alarm() {
+fn an_absent_effect_is_not_reported() {
     let folder = folder();
     let at = folder.path();
     done(at, &["-q", "simulate", "plan.toml", "--out", "rig"]);
@@ -86,9 +87,9 @@ fn an_effect_that_is_absent_raises_no_alarm() {
     assert!(candidates.iter().any(|c| c["id"] == "lubricant_dip"));
 }
 
-/// Written out under another id, a built-in effect is its own rival: no data can tell the two apart.
+/// Under another id, the formula of a built-in effect is confounded with it.
 #[test]
-fn a_built_in_effect_written_out_is_its_rival() {
+fn the_formula_of_an_effect_is_its_rival() {
     let folder = folder();
     let at = folder.path();
     let all = printed(at, &["effects", "--toml"]);
@@ -105,12 +106,12 @@ fn a_built_in_effect_written_out_is_its_rival() {
 }
 
 #[test]
-fn power_tries_effects_of_ones_own_and_effects_lists_them() {
+fn power_and_effects_include_user_defined_effects() {
     let folder = folder();
     let at = folder.path();
     let listed = printed(at, &["effects", "--effects", "mine.toml"]);
     assert!(listed.contains("rate_dependence") && listed.contains("lubricant_dip"), "{listed}");
-    // Written out, they stand after the built-in ones; all can be read once those have ids of their own.
+    // As formulas, they follow the built-in ones; all can be read once those have other ids.
     let written = printed(at, &["effects", "--toml", "--effects", "mine.toml"]);
     let ids: Vec<&str> = written.lines().filter(|line| line.starts_with("id = ")).collect();
     assert_eq!((ids.len(), ids[16]), (17, "id = \"lubricant_dip\""), "{written}");
@@ -127,7 +128,7 @@ fn power_tries_effects_of_ones_own_and_effects_lists_them() {
 }
 
 #[test]
-fn faults_are_placed_and_the_cause_is_named() {
+fn problems_are_located() {
     let folder = folder();
     let at = folder.path();
     done(at, &["-q", "simulate", "plan.toml", "--out", "rig"]);
@@ -143,19 +144,19 @@ fn faults_are_placed_and_the_cause_is_named() {
         );
     }
     let (code, said) = ended(at, &["effects", "--effects", "mine.toml", "--effects", "mine.toml"]);
-    assert!(code == Some(2) && said.contains("id 'lubricant_dip' is given twice"), "{said}");
-    // The heaviest load of this table was not among those that any formula is tried on.
+    assert!(code == Some(2) && said.contains("duplicate id 'lubricant_dip'"), "{said}");
+    // The heaviest load of this table exceeds those of the probe rows.
     let log = good.replace("-a * exp(-((speed_pct - c)/w)^2)", "a*c/w*sqrt(1 - previous_load_n/49.4)");
     std::fs::write(at.join("log.toml"), log).unwrap();
     let (code, said) = ended(at, &["calibrate", "rig/plateaus.csv", "--effects", "log.toml", "--out", "x"]);
-    assert!(code == Some(2) && said.contains("has no number where a = "), "{said}");
-    assert!(said.contains(", at which a fit may begin, in row "), "{said}");
+    assert!(code == Some(2) && said.contains("is not finite at its start value a = "), "{said}");
+    assert!(said.contains(" (row "), "{said}");
     assert!(!at.join("x").exists());
-    // Formulas that say something else than they seem to, or nothing.
+    // Formulas that are valid but do not mean what they seem to.
     for (from, to, words) in [
-        ("id = \"lubricant_dip\"", "id = \"none\"", "id 'none' is what reports call"),
+        ("id = \"lubricant_dip\"", "id = \"none\"", "id 'none' means the absence of every effect"),
         ("-a * exp(-((speed_pct - c)/w)^2)", "-a*(40 < speed_pct < c)*w/w", "a comparison of a comparison"),
-        ("-a * exp(-((speed_pct - c)/w)^2)", "0*a*speed_pct/(c + w)", "such an effect does nothing"),
+        ("-a * exp(-((speed_pct - c)/w)^2)", "0*a*speed_pct/(c + w)", "so the effect does nothing"),
     ] {
         assert!(good.contains(from), "{from}");
         std::fs::write(at.join("odd.toml"), good.replace(from, to)).unwrap();
@@ -174,14 +175,14 @@ fn faults_are_placed_and_the_cause_is_named() {
     std::fs::write(at.join("kind.toml"), "[[disturbances]]\nkind = \"resonance\"\nsize = 0.1\n").unwrap();
     let (code, said) = ended(at, &["simulate", "kind.toml", "--out", "x"]);
     assert!(code == Some(2) && said.contains("kind.resonance = {"), "{said}");
-    // The field that was the cause, and no flag that was not.
+    // The error names the field that caused it, and no other flag.
     let (code, said) = ended(at, &["simulate", "--randomised", "--raw", "--out", "raw"]);
     assert!(code == Some(2) && said.contains("dwells_s") && !said.contains("--effect"), "{said}");
 }
 
-/// What `init` writes is accepted as it stands.
+/// Files written by `init` are accepted unchanged.
 #[test]
-fn starters_are_accepted_by_their_commands() {
+fn starter_files_are_accepted() {
     let folder = folder();
     let at = folder.path();
     for name in ["effects", "plan", "run", "rig", "sweep"] {
@@ -189,7 +190,7 @@ fn starters_are_accepted_by_their_commands() {
     }
     done(at, &["-q", "simulate", "start-plan.toml", "--effects", "start-effects.toml", "--out", "rig"]);
     done(at, &["-q", "calibrate", "rig/plateaus.csv", "--effects", "start-effects.toml", "--out", "found"]);
-    // The logs that the run names, from a simulated rig.
+    // The logs named by the run, from a simulated rig.
     let raw = "layouts = [[5, 8, 11]]\nweights_g = [2505.4, 5002.5]\nrepetitions = [5, 5]\nrepetitions_spread = 0\nproxy = false\n";
     std::fs::write(at.join("raw.toml"), raw).unwrap();
     done(at, &["-q", "simulate", "raw.toml", "--raw", "--out", "raw"]);

@@ -1,8 +1,8 @@
-//! Raw logs to plateaus, end to end, judged by the true plateaus.
+//! Segmentation of raw logs, end to end, compared with the true plateaus.
 
 use crate::harness::{binary, repository};
 
-/// True plateaus of the two logs kept here: `tests/data/raw` are copies from the rig data.
+/// True plateaus of the two logs in `tests/data/raw`, which are copies of rig data.
 const TRUTH: &str = include_str!("../data/raw/truth.csv");
 
 fn run_toml(files: [&str; 2]) -> String {
@@ -16,7 +16,7 @@ fn run_toml(files: [&str; 2]) -> String {
 }
 
 #[test]
-fn every_repetition_is_found_within_a_fiftieth_of_a_newton() {
+fn plateaus_are_accurate() {
     let files = ["silicone_5002g.csv.gz", "device-three-double_2505g.csv.gz"];
     let folder = tempfile::tempdir().unwrap();
     let raw = repository("tests/data/raw");
@@ -51,7 +51,7 @@ fn every_repetition_is_found_within_a_fiftieth_of_a_newton() {
 }
 
 #[test]
-fn a_missing_log_or_column_is_named_and_nothing_is_written() {
+fn missing_logs_and_columns_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("run.toml");
     std::fs::write(&run, run_toml(["a.csv", "b.csv"])).unwrap();

@@ -1,4 +1,5 @@
-//! Several sessions of one rig: what they share, what changed between them, and files that do not belong together.
+//! Several sessions of one rig: common constants, changes between sessions, and files that do not
+//! match.
 
 use std::path::Path;
 
@@ -9,9 +10,10 @@ fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
-/// Another specimen of silicone in the second session: its constant is told, and no scatter or effect is made of it.
+/// Another specimen of silicone in the second session: its constant is reported as a change, not as
+/// scatter or an effect.
 #[test]
-fn a_constant_that_changed_is_a_finding_and_sessions_of_one_switch_share_theirs() {
+fn changed_constants_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     std::fs::write(path.join("other.toml"), "[constants]\nmu_s = 0.31\n").unwrap();
@@ -19,8 +21,8 @@ fn a_constant_that_changed_is_a_finding_and_sessions_of_one_switch_share_theirs(
     done(path, &["-q", "simulate", "--seed", "122", "--out", "b"]);
     done(path, &["-q", "simulate", "other.toml", "--seed", "121", "--out", "c"]);
     let said = printed(path, &["-q", "calibrate", "a/plateaus.csv", "c/plateaus.csv", "--out", "changed"]);
-    let told = "changed: mu_s differs by -2";
-    assert!(said.contains(told) && said.contains("in session a/plateaus.csv (0.2"), "{said}");
+    let change = "changed: mu_s differs by -2";
+    assert!(said.contains(change) && said.contains("in session a/plateaus.csv (0.2"), "{said}");
     let report = json(&path.join("changed/report.json"));
     let change = &report["changes"][0];
     let end = |i: usize| change["factor"]["ci95"][i].as_f64().unwrap();
@@ -31,7 +33,8 @@ fn a_constant_that_changed_is_a_finding_and_sessions_of_one_switch_share_theirs(
     let page = std::fs::read_to_string(path.join("changed/report.html")).unwrap();
     assert!(page.contains("The switch is not the same in all tables") && !page.contains("settles nothing:"));
     assert!(!said.contains("nothing is believed"), "{said}");
-    // What is predicted is the switch as it is now; rows of the first session, by their name, as it was.
+    // Predictions are for the current switch; for rows of the first session, by its name, for the
+    // earlier one.
     let rms = |table: &str| {
         done(path, &["-q", "predict", "--model", "changed/model.toml", "--rows", table, "--out", "p.csv"]);
         let text = std::fs::read_to_string(path.join("p.csv")).unwrap();
@@ -72,9 +75,9 @@ fn a_constant_that_changed_is_a_finding_and_sessions_of_one_switch_share_theirs(
     assert!(json(&path.join("same/report.json"))["changes"].is_null());
 }
 
-/// What one session names is not lost by another that shows the same.
+/// Sessions with the same effect do not weaken each other.
 #[test]
-fn an_offset_that_comes_back_in_every_session_is_one_of_the_cell() {
+fn recurring_offsets_stay_attributed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     for (seed, name) in [("51", "a"), ("52", "b"), ("53", "c")] {
@@ -94,7 +97,7 @@ fn an_offset_that_comes_back_in_every_session_is_one_of_the_cell() {
 }
 
 #[test]
-fn what_does_not_belong_together_is_one_error() {
+fn mismatched_files_give_one_error() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     done(path, &["-q", "simulate", "--effect", "rate_dependence=0.2", "--out", "a"]);
@@ -104,7 +107,7 @@ fn what_does_not_belong_together_is_one_error() {
     done(path, &["-q", "calibrate", "a/plateaus.csv", "--effects", "mine.toml", "--out", "mine"]);
     done(path, &["-q", "experiment", "plain", "--minutes", "30", "--out", "next"]);
     done(path, &["-q", "experiment", "mine", "--effects", "mine.toml", "--minutes", "30", "--out", "own"]);
-    // Runs of other weights than the table has.
+    // Runs with other weights than the table.
     let runs = std::fs::read_to_string(path.join("next/next-runs.csv")).unwrap();
     std::fs::create_dir(path.join("foreign")).unwrap();
     std::fs::copy(path.join("next/experiment.json"), path.join("foreign/experiment.json")).unwrap();
@@ -144,9 +147,12 @@ fn what_does_not_belong_together_is_one_error() {
         ("calibrate a/plateaus.csv b/plateaus.csv --plan foreign --out x", "b/plateaus.csv: none of the"),
         (
             "experiment cut --out x",
-            "cut: report.json, model.toml and residuals.csv are not of one calibration",
+            "cut: report.json, model.toml and residuals.csv are incomplete or from different calibrations",
         ),
-        ("experiment other --out x", "other: report.json, model.toml and residuals.csv are not of one"),
+        (
+            "experiment other --out x",
+            "other: report.json, model.toml and residuals.csv are incomplete or from",
+        ),
         ("experiment mine --out x", "mine/report.json: it was calibrated with the effect 'lubricant_dip'"),
     ] {
         let arguments: Vec<&str> = ["-q"].into_iter().chain(command.split(' ')).collect();
@@ -156,9 +162,9 @@ fn what_does_not_belong_together_is_one_error() {
     }
 }
 
-/// A rig of another wrap is asked for runs of that wrap, and rehearsed with it.
+/// The runs for a rig with another wrap have that wrap, and are rehearsed with it.
 #[test]
-fn runs_are_proposed_and_made_around_the_wrap_of_the_table() {
+fn runs_have_the_wrap_of_the_table() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     std::fs::write(path.join("wide.toml"), "wrap_angle_deg = 95.0\n").unwrap();
@@ -175,7 +181,7 @@ fn runs_are_proposed_and_made_around_the_wrap_of_the_table() {
     };
     done(path, &["-q", "simulate", "wide.toml", "--runs", "next/next-runs.csv", "--out", "b"]);
     done(path, &["-q", "simulate", "--model", "c/model.toml", "--runs", "next/next-runs.csv", "--out", "d"]);
-    // A plan without the column is of the rig's own wrap.
+    // A plan without the column has the rig's own wrap.
     let bare: Vec<&str> = runs.lines().map(|line| line.rsplit_once(',').unwrap().0).collect();
     std::fs::write(path.join("bare.csv"), bare.join("\n")).unwrap();
     done(path, &["-q", "simulate", "wide.toml", "--runs", "bare.csv", "--out", "e"]);

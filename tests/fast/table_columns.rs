@@ -1,4 +1,4 @@
-//! Optional and unknown columns of a plateau table: what is read, what is listed, and which readings stand twice.
+//! Optional and unknown columns of a plateau table, and repeated readings.
 
 use serde_json::Value;
 
@@ -7,7 +7,7 @@ use pinswitch_simulation::{Plan, simulate};
 
 use crate::harness::pinswitch;
 
-/// The text of a table with columns added at its end.
+/// Returns the text of a table with columns added at its end.
 fn with_columns(
     rows: &[PlateauRow],
     names: &[&str],
@@ -22,7 +22,7 @@ fn with_columns(
     out
 }
 
-/// What the command says of a table, and its report.
+/// Calibrates a table; returns the printed text and the report.
 fn calibrated(text: &str) -> (String, Value) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("t.csv"), text).unwrap();
@@ -30,7 +30,7 @@ fn calibrated(text: &str) -> (String, Value) {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let said = String::from_utf8(output.stdout).unwrap();
     let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-    assert!(!page.contains("NaN") && !page.contains("inf "), "the page shows what is no number");
+    assert!(!page.contains("NaN") && !page.contains("inf "), "the page contains a number that is not finite");
     assert!(page.contains("The noise by its parts") && page.contains("What this data excludes"));
     let report = std::fs::read(folder.path().join("out/report.json")).unwrap();
     (said, serde_json::from_slice(&report).unwrap())
@@ -41,7 +41,7 @@ fn small() -> Plan {
 }
 
 #[test]
-fn columns_that_are_not_read_are_listed_and_said() {
+fn ignored_columns_are_listed() {
     let rows = simulate(&small()).rows;
     let text = with_columns(&rows, &["humidity", "session", "note"], |_, _| {
         ["41", "monday", "ok"].map(str::to_owned).to_vec()
@@ -55,7 +55,7 @@ fn columns_that_are_not_read_are_listed_and_said() {
 }
 
 #[test]
-fn a_reading_may_stand_in_two_sessions_but_not_twice_in_one() {
+fn readings_are_unique_in_a_session() {
     let rows = simulate(&small()).rows;
     let of = |second: &str| {
         let monday = with_columns(&rows, &["session"], |_, _| vec!["monday".to_owned()]);
@@ -66,12 +66,12 @@ fn a_reading_may_stand_in_two_sessions_but_not_twice_in_one() {
     assert_eq!(of("tuesday").unwrap().rows.len(), 2 * rows.len());
     let error = of("monday").unwrap_err().to_string();
     let line = rows.len() + 2;
-    assert!(error.starts_with(&format!("t.csv, line {line}, column 'repetition'")), "{error}");
-    assert!(error.contains("stands in line 2 too"), "{error}");
+    assert!(error.starts_with(&format!("t.csv:{line}: repetition = 1: ")), "{error}");
+    assert!(error.contains("repeats the series, direction and time of line 2"), "{error}");
 }
 
 #[test]
-fn session_mount_operator_and_specimen_are_read() {
+fn labels_are_read() {
     let rows = simulate(&small()).rows;
     let text = with_columns(&rows, &["specimen", "operator", "mount", "session"], |i, _| {
         ["b", "ann", "7", if i == 0 { "" } else { "monday" }].map(str::to_owned).to_vec()
@@ -86,9 +86,9 @@ fn session_mount_operator_and_specimen_are_read() {
     assert!(table.ignored_columns().is_empty());
 }
 
-/// Two operators who zero the cell differently scatter; that is no offset of the cell.
+/// Two operators who zero the load cell differently are scatter, not an offset of the load cell.
 #[test]
-fn operators_who_zero_differently_are_noise_and_no_offset_of_the_cell() {
+fn differences_between_operators_are_noise() {
     let mut rows = simulate(&Plan { seed: 32, ..Plan::randomised() }).rows;
     let ann = |row: &PlateauRow| row.series.parse::<usize>().unwrap() % 2 == 0;
     for row in &mut rows {

@@ -1,28 +1,29 @@
-//! Tables on which `attributed` would be a lie.
+//! Conditions that `attributed` implies.
 //!
-//! Covered: what lies outside the vocabulary (courses in time and along the stroke, a memory, a resonance) is never said to
-//! be attributed; an effect that the protocol cannot tell from another one has its rival beside it; and whatever is
-//! attributed has a size whose interval does not hold zero, no rival, and does better than the baseline on series that had
-//! no part in finding it, also where effects are as small as may just be seen. Not covered: a step of friction, another
-//! tendon and half a wave of friction, which can look exactly like scatter or like `wear_drift`
-//! (`model/doc/calibration.md` says how often).
+//! Covered: effects outside the vocabulary (trends in time and along the stroke, a memory, a
+//! resonance) are never attributed; a confounded effect is reported with its rival; and an
+//! attributed effect has a size whose interval excludes zero, no rival, and a smaller error than
+//! the baseline on series that were not used to find it, also for effects near the detection limit.
+//! Not covered: a step of friction, another tendon, and half a wave of friction, which may be
+//! indistinguishable from scatter or from `wear_drift` (`model/doc/calibration.md` gives the
+//! frequencies).
 
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{Report, Verdict, calibrate};
 use pinswitch_simulation::{EffectPlan, Plan, plan_of, simulate, study_cases};
 
-/// The first of the seeds, which nothing was tuned on.
+/// First seed; nothing was tuned on these seeds.
 const SEED: u64 = 810_000;
 
-/// What is said of a simulated rig.
-fn said(plan: &Plan) -> Report {
+/// Calibrates a simulated rig.
+fn calibrated(plan: &Plan) -> Report {
     let text = PlateauTable::write(&simulate(plan).rows);
     let table = PlateauTable::read(text.as_bytes(), "rig.csv").unwrap();
     calibrate(&table.rows, Levels::default()).unwrap().report
 }
 
-/// Plans of the cases of the study that have one of these names.
+/// Returns the plans of the study's cases with these names.
 fn plans(names: &[&str]) -> Vec<(String, Plan)> {
     study_cases()
         .iter()
@@ -31,7 +32,7 @@ fn plans(names: &[&str]) -> Vec<(String, Plan)> {
         .collect()
 }
 
-/// What `attributed` says of a report must be so.
+/// Asserts the conditions that `attributed` implies.
 fn check_word(name: &str, report: &Report) {
     if report.verdict != Verdict::Attributed {
         return;
@@ -50,7 +51,7 @@ fn check_word(name: &str, report: &Report) {
 }
 
 #[test]
-fn what_lies_outside_the_vocabulary_is_not_attributed() {
+fn unknown_effects_are_not_attributed() {
     let names = [
         "step of the reading in mid-session",
         "wave in time",
@@ -59,41 +60,41 @@ fn what_lies_outside_the_vocabulary_is_not_attributed() {
         "memory of the load before",
     ];
     for (name, plan) in plans(&names) {
-        let report = said(&plan);
+        let report = calibrated(&plan);
         assert_eq!(report.verdict, Verdict::Unattributed, "{name}: {:?}", report.effects);
     }
 }
 
 #[test]
-fn an_effect_with_a_rival_is_not_attributed() {
+fn confounded_effects_are_not_attributed() {
     let confounded = ["rate_dependence", "fixture_compliance"];
     for (name, plan) in plans(&confounded).into_iter().filter(|(name, _)| name.starts_with("Paper")) {
-        let report = said(&plan);
+        let report = calibrated(&plan);
         assert_ne!(report.verdict, Verdict::Attributed, "{name}: {:?}", report.effects);
     }
 }
 
 #[test]
-fn what_is_attributed_has_a_size_and_helps() {
+fn attributed_effects_have_a_size() {
     let effects = ["load_cell_offset", "load_cell_gain", "guide_drag", "stroke_position", "thermal_drift"];
     for (name, plan) in plans(&effects).into_iter().filter(|(name, _)| name.starts_with("Randomised")) {
-        // From clearly there to hardly.
+        // From clearly detectable to hardly detectable.
         for share in [1.0, 0.15, 0.05] {
             let mut plan = plan.clone();
             plan.effects.iter_mut().filter_map(|e| e.values.first_mut()).for_each(|size| *size *= share);
-            check_word(&format!("{name} times {share}"), &said(&plan));
+            check_word(&format!("{name} times {share}"), &calibrated(&plan));
         }
     }
 }
 
-/// A drag of 10 N and a cell that reads less: shapes of the same two traces once took the place of both names, since a size
-/// of 10 N was a shade more probable for a shape than for a drag.
+/// A drag of 10 N and a load cell that reads less: shapes with the same two traces once replaced
+/// both effects, since a size of 10 N was slightly more probable for a shape than for a drag.
 #[test]
-fn a_huge_drag_keeps_its_name_beside_a_gain() {
+fn a_huge_drag_stays_attributed() {
     for (seed, gain) in [(1, -0.035), (2, -0.03), (2, -0.045)] {
         let effects = [("guide_drag", 10.0), ("load_cell_gain", gain)];
         let effects = effects.map(|(id, size)| EffectPlan { id: id.to_owned(), values: vec![size], form: 0 });
-        let report = said(&Plan { seed, effects: effects.to_vec(), ..Plan::default() });
+        let report = calibrated(&Plan { seed, effects: effects.to_vec(), ..Plan::default() });
         let named: Vec<&str> = report.effects.iter().map(|e| e.id.as_str()).collect();
         assert_eq!(named, ["guide_drag", "load_cell_gain"], "seed {seed}, gain {gain}");
         assert_eq!(report.verdict, Verdict::Attributed, "seed {seed}, gain {gain}");

@@ -1,11 +1,12 @@
-//! The closed loop on simulated rigs, by the command line: simulate, segment, calibrate, predict, generate.
+//! The closed loop on simulated rigs, with the command line: simulate, segment, calibrate, predict,
+//! generate.
 
 use crate::harness::expect_code;
 use serde_json::Value;
 use std::path::Path;
 use std::process::Output;
 
-/// Runs the command line in a folder, which must end with this exit code.
+/// Runs the command line in a folder and asserts its exit code.
 fn pinswitch(code: i32, folder: &Path, arguments: &str) -> Output {
     expect_code(code, folder, &arguments.split_whitespace().collect::<Vec<_>>())
 }
@@ -33,7 +34,8 @@ fn verdict(folder: &Path, options: &str) -> (String, Vec<String>, Value) {
     (report["verdict"].as_str().unwrap().to_owned(), ids, report)
 }
 
-/// The verdict; `nothing` where nothing is believed, which is `none` only if every visible effect is excluded.
+/// Returns the verdict; `nothing` without effects, which is `none` only if every identifiable
+/// effect is excluded.
 fn believed<'a>(verdict: &'a str, report: &serde_json::Value) -> &'a str {
     let open = report["limits"].as_array().unwrap().iter().any(|limit| limit["excluded"] == false);
     match verdict {
@@ -78,9 +80,9 @@ fn every_verdict_is_reached_on_simulated_rigs() {
     }
 }
 
-/// A weight written down wrong must not be given the name of an effect, and is listed.
+/// A wrong weight must not be attributed to an effect; its series is listed.
 #[test]
-fn a_mislabelled_weight_is_set_aside_and_listed() {
+fn a_mislabelled_weight_is_listed() {
     let folder = tempfile::tempdir().unwrap();
     for (seed, protocol) in [(11, "paper"), (12, "randomised")] {
         let plan = format!("seed = {seed}\nprotocol = \"{protocol}\"\n[noise]\nmislabelled_series = 1\n");
@@ -88,7 +90,7 @@ fn a_mislabelled_weight_is_set_aside_and_listed() {
         let (verdict, ids, report) = verdict(folder.path(), "plan.toml");
         assert_eq!(believed(&verdict, &report), "nothing", "{ids:?}");
         let bad = report["bad_series"].as_array().unwrap();
-        // Beside single bad readings, one series is off in both directions.
+        // In addition to single bad readings, one series is wrong in both directions.
         let of = |direction: &str| -> Vec<&str> {
             bad.iter()
                 .filter(|b| b["direction"] == direction)
@@ -101,7 +103,8 @@ fn a_mislabelled_weight_is_set_aside_and_listed() {
     }
 }
 
-/// Effects of the switch reach the curve of a printed part, effects of the rig do not, and the output says which.
+/// The curve of a printed part includes effects of the switch and excludes those of the rig, which
+/// the output reports.
 #[test]
 fn predictions_come_from_the_better_model() {
     let folder = tempfile::tempdir().unwrap();
@@ -128,13 +131,16 @@ fn predictions_come_from_the_better_model() {
         (misses.iter().sum::<f64>() / misses.len() as f64).sqrt()
     });
     assert!(errors[1] < 0.1 * errors[0], "{errors:?}");
-    // The same part by a model with the rig's offset and by one without: the offset is out of both.
+    // The offset of the rig is excluded from the part's curve.
     let output = pinswitch(0, at, "generate three-double --model cal/model.toml --out set -v");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("effects of the switch are in the curve: coating_ploughing"), "{said}");
-    assert!(said.contains("effects of the measurement stay out of it: load_cell_offset"), "{said}");
+    assert!(said.contains("the curve includes effects of the switch: coating_ploughing"), "{said}");
+    assert!(said.contains("the curve excludes effects of the measurement: load_cell_offset"), "{said}");
     let manifest = std::fs::read_to_string(at.join("set/manifest.json")).unwrap();
-    assert!(manifest.contains("stay out of it: load_cell_offset"), "{manifest}");
+    assert!(
+        manifest.contains("the curve excludes effects of the measurement: load_cell_offset"),
+        "{manifest}"
+    );
     let curve = std::fs::read_to_string(at.join("set/friction.csv")).unwrap();
     let header: Vec<&str> = curve.lines().next().unwrap().split(',').collect();
     let at_column = |name: &str| {
@@ -144,13 +150,14 @@ fn predictions_come_from_the_better_model() {
         curve.lines().last().unwrap().split(',').map(|c| c.parse().unwrap_or(f64::NAN)).collect();
     let (load, eccentric, concentric) =
         (last[at_column("load")], last[at_column("eccentric")], last[at_column("concentric")]);
-    // An offset of 1.2 N would shift both directions alike: G = sqrt(Fe Fc) equals the load whatever the friction is.
+    // An offset of 1.2 N would shift both directions alike: without it, G = sqrt(Fe Fc) equals the
+    // load for any friction.
     assert!(((eccentric * concentric).sqrt() - load).abs() < 0.6, "{load} {eccentric} {concentric}");
 }
 
-/// Raw logs with bad moves, through segmentation, to a calibration.
+/// Raw logs with faulty moves, from segmentation to calibration.
 #[test]
-fn raw_logs_go_round_the_whole_loop() {
+fn raw_logs_pass_the_whole_loop() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let plan = "seed = 3\nlayouts = [[5, 8, 11]]\nweights_g = [503.6, 1503.9, 2505.4, 3508.6, 5002.5]\n\
@@ -183,12 +190,12 @@ fn raw_logs_go_round_the_whole_loop() {
     assert_eq!(report(at)["effects"][0]["id"], "load_cell_offset", "{}", report(at)["effects"]);
 }
 
-/// Which lines of a table are kept.
+/// Predicate for the lines of a table to keep.
 type Rows<'a> = &'a dyn Fn(&[&str]) -> bool;
 
-/// Two loads, one direction or one condition: an answer that names what it leaves open.
+/// Two loads, one direction or one condition: the report lists what is open.
 #[test]
-fn too_little_data_gets_an_answer_with_open_questions() {
+fn little_data_leaves_open_questions() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     pinswitch(0, at, "simulate --out rig");
@@ -236,7 +243,7 @@ fn too_little_data_gets_an_answer_with_open_questions() {
 }
 
 #[test]
-fn effects_asked_for_are_checked() {
+fn requested_effects_are_checked() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
         ("--effect gravity=1", "known are"),

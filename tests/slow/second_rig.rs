@@ -1,5 +1,6 @@
-//! A rig by another hand, with scatter that the study's twin was not tuned on: re-seated tendons, mounts, masks, a memory,
-//! a slow sine, another tendon, two operators. Each table has a later session of the same rig to hold the promise against.
+//! An independent rig with scatter on which the study was not tuned: tendon seatings, mounts,
+//! masks, a memory, a slow sine, another tendon, two operators. The expected error of each table is
+//! compared with a later session of the same rig.
 
 use std::ffi::OsStr;
 use std::io::Read;
@@ -25,7 +26,7 @@ fn run(arguments: &[&dyn AsRef<OsStr>]) {
     expect_code(0, Path::new("."), &arguments);
 }
 
-/// Readings of a column of a table.
+/// Returns the readings of a column of a table.
 fn column(path: &Path, name: &str) -> Vec<f64> {
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
@@ -33,7 +34,8 @@ fn column(path: &Path, name: &str) -> Vec<f64> {
     lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
 }
 
-/// The report of a set, with its promise over the error of its model on the later session.
+/// Returns the report of a set, and the ratio of its expected error to the error of its model on
+/// the later session.
 fn judged(name: &str) -> (Value, f64) {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
@@ -50,7 +52,7 @@ fn judged(name: &str) -> (Value, f64) {
     (report, promised / error)
 }
 
-/// Names, with `unattributed:covariate` for what has none.
+/// Returns the ids of the effects, with `unattributed:covariate` for unattributed structure.
 fn named(report: &Value) -> Vec<String> {
     let name = |e: &Value| match e["id"].as_str().unwrap() {
         "unattributed" => format!("unattributed:{}", e["covariate"].as_str().unwrap()),
@@ -62,7 +64,7 @@ fn named(report: &Value) -> Vec<String> {
 }
 
 #[test]
-fn nothing_false_is_said_and_the_promise_is_kept() {
+fn verdicts_and_expected_errors_are_correct() {
     let sets: [(&str, &[&str]); 10] = [
         ("set-01", &[]),
         ("set-02", &[]),
@@ -78,9 +80,10 @@ fn nothing_false_is_said_and_the_promise_is_kept() {
     for (name, truth) in sets {
         let (report, kept) = judged(name);
         assert_eq!(named(&report), truth, "{name}");
-        // Friction of every mount is another in the later session of set 03: no promise from one session holds. The step of set 08
-        // is drawn anew in each fold of the promise, which three quarters of the series do worse: 0.206 N are promised, and 0.145 N
-        // come (0.219 N while the model kept the shapes that follow it).
+        // In set 03 the friction of every mount differs in the later session, so a single session
+        // cannot predict its error. In set 08 each fold estimates the step again, from three
+        // quarters of the series, with a larger error: 0.206 N are expected, and 0.145 N are
+        // observed (0.219 N while the model kept the shapes that follow it).
         let most = match name {
             "set-03" => 1.4,
             "set-08" => 1.5,
@@ -94,19 +97,19 @@ fn nothing_false_is_said_and_the_promise_is_kept() {
             (true, false) => assert_eq!(verdict, "none", "{name}"),
             _ => assert!(["attributed", "unattributed"].contains(&verdict), "{name}: {verdict}"),
         }
-        // A small effect in a protocol that confounds it is never nothing.
+        // A small effect in a protocol that confounds it never gives `none`.
         assert!(name != "set-10" || verdict == "inconclusive", "{name}");
     }
 }
 
 #[test]
-fn scatter_is_named_as_a_part_of_the_noise() {
+fn scatter_is_a_component_of_noise() {
     let part = |name: &str, part: &str| {
         let (report, _) = judged(name);
         let parts = report["noise_parts"].as_array().unwrap().clone();
         parts.iter().find(|p| p["part"] == part).map(|p| p["size"].as_f64().unwrap())
     };
-    // The rigs have 3 and 2 % from series to series and 4 % from mount to mount.
+    // The rigs have 3 and 2 % between series, and 4 % between mounts.
     assert!((0.02..0.05).contains(&part("set-01", "series_scale").unwrap()));
     assert!((0.012..0.032).contains(&part("set-02", "series_scale").unwrap()));
     assert!((0.02..0.061).contains(&part("set-03", "mount").unwrap()));

@@ -1,5 +1,6 @@
-//! The undeclared-effect test: the calibrator gets a plateau table only, and must say what the paper's model lacks.
-//! The tables are copies of rig sets (their README allows it); what was put into each stands beside its test.
+//! Blind test: the calibration receives only a plateau table, and must report what the paper's
+//! model lacks. The tables are copies of rig sets (permitted by their README); each test states
+//! what its table contains.
 
 use crate::harness::{beside_repository, expect_code, repository};
 use serde_json::Value;
@@ -20,7 +21,7 @@ pub(super) fn unpack(name: &str, folder: &Path) -> PathBuf {
     path
 }
 
-/// Runs the command line, which must end with this exit code.
+/// Runs the command line and asserts its exit code.
 fn pinswitch(code: i32, arguments: &[&dyn AsRef<OsStr>]) -> Output {
     let arguments: Vec<&OsStr> = arguments.iter().map(|a| a.as_ref()).collect();
     expect_code(code, Path::new("."), &arguments)
@@ -42,7 +43,7 @@ fn ids(report: &Value) -> Vec<String> {
     ids
 }
 
-/// Root mean square error of a model on fresh rows, by the command line.
+/// Returns the root mean square error of a model on fresh rows, from the command line.
 fn fresh_error(model: &Path, fresh: &Path, folder: &Path) -> f64 {
     let out = folder.join("predicted.csv");
     pinswitch(0, &[&"predict", &"--model", &model, &"--rows", &fresh, &"--out", &out]);
@@ -61,7 +62,7 @@ fn fresh_error(model: &Path, fresh: &Path, folder: &Path) -> f64 {
     f64::sqrt(sum / count)
 }
 
-/// One set: verdict, effects, and by how much the error on fresh rows falls.
+/// Checks one set: verdict, effects, and the ratio of the errors on fresh rows.
 fn judge(name: &str, verdict: &str, effects: &[&str], ratio: f64) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
@@ -77,23 +78,24 @@ fn judge(name: &str, verdict: &str, effects: &[&str], ratio: f64) -> Value {
 }
 
 #[test]
-fn a_rig_without_any_effect_is_left_alone() {
+fn no_effect_is_reported_without_one() {
     judge("set-01", "none or inconclusive", &[], 1.0);
 }
 
 #[test]
-fn ploughing_is_named_and_the_error_falls() {
+fn ploughing_is_attributed() {
     judge("set-04", "attributed", &["coating_ploughing"], 0.1);
 }
 
 #[test]
-fn hysteresis_is_named_where_loads_descend() {
+fn hysteresis_is_attributed_with_descending_loads() {
     judge("set-09", "attributed", &["switching_hysteresis"], 0.5);
 }
 
-/// Speed follows load in this protocol: no fit can tell, and the report says which experiment would.
+/// Speed follows load in this protocol, which confounds the two; the report names the experiment
+/// that separates them.
 #[test]
-fn a_confounded_design_is_called_ambiguous_with_the_experiment_that_settles_it() {
+fn a_confounded_design_is_ambiguous() {
     let folder = tempfile::tempdir().unwrap();
     let report = calibrate(&unpack("set-13", folder.path()), &folder.path().join("out"));
     assert_eq!(report["verdict"], "ambiguous");
@@ -105,22 +107,22 @@ fn a_confounded_design_is_called_ambiguous_with_the_experiment_that_settles_it()
 }
 
 #[test]
-fn two_effects_at_once_are_both_named() {
+fn two_effects_are_both_attributed() {
     judge("set-14", "attributed", &["substrate_saturation", "thermal_drift"], 0.15);
 }
 
 #[test]
-fn what_no_name_explains_is_unattributed_with_its_covariate() {
+fn unknown_structure_is_reported_with_covariate() {
     for (name, covariate, ratio) in [("set-15", "time", 0.3), ("set-16", "position", 0.3)] {
         let report = judge(name, "unattributed", &["unattributed"], ratio);
         assert_eq!(report["effects"][0]["covariate"], covariate, "{name}");
     }
 }
 
-/// Readings dealt out anew among the rows of one kind (condition, load, direction) keep the baseline and lose
-/// every trace of time, speed, repetition and position.
+/// Readings permuted among the rows of one kind (condition, load, direction) preserve the baseline,
+/// but not the traces of time, speed, repetition and position.
 #[test]
-fn permuted_data_gives_no_effect_of_time_speed_or_place() {
+fn permuted_readings_show_no_effect() {
     let folder = tempfile::tempdir().unwrap();
     let path = unpack("set-16", folder.path());
     let text = std::fs::read_to_string(&path).unwrap();
@@ -131,7 +133,7 @@ fn permuted_data_gives_no_effect_of_time_speed_or_place() {
     for (i, l) in lines.iter().enumerate() {
         groups.entry((l[1].clone(), l[2].clone(), l[5].clone(), l[8].clone())).or_default().push(i);
     }
-    // A fixed shuffle: a multiplicative generator orders the rows of each kind.
+    // A deterministic shuffle: a multiplicative generator orders the rows of each kind.
     let mut state = 12_345u64;
     for rows in groups.values() {
         let mut order: Vec<(u64, usize)> = rows
@@ -156,7 +158,7 @@ fn permuted_data_gives_no_effect_of_time_speed_or_place() {
 }
 
 #[test]
-fn the_same_table_gives_the_same_bytes() {
+fn calibration_is_deterministic() {
     let folder = tempfile::tempdir().unwrap();
     let table = unpack("set-09", folder.path());
     let (one, two) = (folder.path().join("one"), folder.path().join("two"));
@@ -173,7 +175,7 @@ fn the_same_table_gives_the_same_bytes() {
 }
 
 #[test]
-fn unusable_tables_are_refused_and_nothing_is_written() {
+fn invalid_tables_write_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let good = std::fs::read_to_string(unpack("set-01", folder.path())).unwrap();
     let lines: Vec<&str> = good.lines().collect();
@@ -181,7 +183,7 @@ fn unusable_tables_are_refused_and_nothing_is_written() {
     let cases = [
         (String::new(), "no rows"),
         (good.replacen("force_N", "force", 1), "force_N"),
-        (good.replacen(",silicone,", ",rubber,", 1), "line 2"),
+        (good.replacen(",silicone,", ",rubber,", 1), "csv:2: substrate = rubber"),
         (one_load.join("\n"), "load_N"),
     ];
     for (i, (text, expected)) in cases.iter().enumerate() {
@@ -195,9 +197,9 @@ fn unusable_tables_are_refused_and_nothing_is_written() {
     }
 }
 
-/// One condition, few loads, one direction: an answer that says what it leaves open.
+/// One condition, few loads, one direction: the report lists what is open.
 #[test]
-fn little_data_gets_an_answer_with_its_blind_spots() {
+fn unidentifiable_effects_are_listed() {
     let folder = tempfile::tempdir().unwrap();
     let good = std::fs::read_to_string(unpack("set-01", folder.path())).unwrap();
     let mut lines = good.lines();
@@ -216,9 +218,9 @@ fn little_data_gets_an_answer_with_its_blind_spots() {
     }
 }
 
-/// A real machine: the data may not be copied, so it is read where it is and skipped where it is not.
+/// A real machine: the data may not be copied, so the test is skipped where they are absent.
 #[test]
-fn a_real_machine_needs_a_drag_and_its_bad_run_is_flagged() {
+fn a_bad_run_of_a_machine_is_listed() {
     let Some(table) = beside_repository("data/real/davinci_tool4.csv") else { return };
     let folder = tempfile::tempdir().unwrap();
     let report = calibrate(&table, &folder.path().join("out"));
@@ -237,32 +239,34 @@ fn a_real_machine_needs_a_drag_and_its_bad_run_is_flagged() {
     assert!(judged["rmse_before_N"].as_f64().unwrap() > 15.0, "{judged}");
 }
 
-/// Tables by a simulator of another hand, of what the catalogue does not have. `none` was said of the first two, and a `run_in`
-/// of negative size of the third.
+/// Tables of an independent simulator with effects that are not in the catalogue. The first two
+/// once gave `none`, and the third a `run_in` of negative size.
 #[test]
-fn what_nobody_imagined_is_neither_none_nor_a_name_turned_round() {
-    let told = |name: &str| {
+fn unknown_effects_are_not_missed() {
+    let report_on = |name: &str| {
         let folder = tempfile::tempdir().unwrap();
         let table = unpack(&format!("third-hand/{name}"), folder.path());
         calibrate(&table, &folder.path().join("out"))
     };
-    // The guides' drag dies away within the session: 0.3 N at first, 10 % of the lightest load.
-    let decaying = told("decaying-drag");
+    // The drag of the guides decays within the session: 0.3 N at first, 10 % of the lightest load.
+    let decaying = report_on("decaying-drag");
     assert_ne!(decaying["verdict"], "none", "{}", decaying["limits"]);
-    // Pins rub less by a quarter, which passes for mounts that scatter by as much as may be called scatter.
-    let pins = told("pins-that-rub-less");
+    // A quarter less friction on the pins, which the largest admissible mount effect explains.
+    let pins = report_on("pins-that-rub-less");
     assert_ne!(pins["verdict"], "none", "{}", pins["noise"]);
-    // The reading creeps with the logarithm of the repetitions; friction that is higher before it settles does not.
-    let creeping = told("creeping-reading");
+    // The reading creeps with the logarithm of the repetitions, unlike friction that is higher
+    // before it settles.
+    let creeping = report_on("creeping-reading");
     assert!(!ids(&creeping).iter().any(|id| id == "run_in"), "{}", creeping["effects"]);
-    // Three things on the rig, each of which looks like a name or two: a drag of 0.25 N at 52 %, in proportion to speed; a reading
-    // that is 1 % too high at first and settles over 2 s of the dwell; a gain that is 1.2 % higher from the half of the session on.
+    // Three effects that each resemble one or two of the catalogue: a drag of 0.25 N at 52 %, in
+    // proportion to speed; a reading that is 1 % too high at first and settles over 2 s of the
+    // dwell; a gain that is 1.2 % higher in the second half of the session.
     for (name, covariate, shape, size) in [
         ("drag-that-grows-with-speed", "speed", "ramp", 0.25),
         ("reading-that-settles-in-its-dwell", "dwell", "forgetting", 0.01),
         ("gain-of-the-second-half", "time", "step", 0.012),
     ] {
-        let found = told(name);
+        let found = report_on(name);
         assert_eq!(ids(&found), ["unattributed"], "{name}: {}", found["effects"]);
         let effect = &found["effects"][0];
         let form = &effect["form"];
@@ -273,11 +277,11 @@ fn what_nobody_imagined_is_neither_none_nor_a_name_turned_round() {
         );
         let [low, high] = [0, 1].map(|end| form["parameters"]["a"]["ci95"][end].as_f64().unwrap());
         assert!(low < size && size < high, "{name}: {low} to {high}");
-        // No constant of a form that is known this well is told as anything between its bounds.
+        // Every constant of a form that is this well determined has a finite interval.
         let constants = found["augmented"]["parameters"].as_object().unwrap();
-        if let Some((_, told)) = constants.iter().find(|(name, _)| name.ends_with("forgetting.t")) {
-            let [low, high] = [0, 1].map(|end| told["ci95"][end].as_f64().unwrap());
-            assert!(low > 0.2 && low < 2.0 && 2.0 < high && high < 20.0, "{name}: {told}");
+        if let Some((_, constant)) = constants.iter().find(|(name, _)| name.ends_with("forgetting.t")) {
+            let [low, high] = [0, 1].map(|end| constant["ci95"][end].as_f64().unwrap());
+            assert!(low > 0.2 && low < 2.0 && 2.0 < high && high < 20.0, "{name}: {constant}");
         }
     }
 }

@@ -12,7 +12,7 @@ use pinswitch_calibration::effects::{Vocabulary, own_effects_text};
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
-    Asked, Calibration, ModelFile, SessionReport, calibrate_among, calibrate_below, explain_published,
+    Calibration, ModelFile, SessionPlan, SessionReport, calibrate_among, calibrate_below, explain_published,
 };
 
 use super::own_effects::OwnEffects;
@@ -142,7 +142,7 @@ fn joined(paths: &[PathBuf]) -> Result<(PlateauTable, String), Failure> {
 /// What was known after each table but the last.
 fn before_the_last(
     paths: &[PathBuf],
-    plans: &[Option<Asked>],
+    plans: &[Option<SessionPlan>],
     vocabulary: &Vocabulary,
 ) -> Result<Vec<SessionReport>, Failure> {
     let until = |count: usize| {
@@ -158,7 +158,7 @@ fn before_the_last(
 /// What a calibration says after these tables, the last of them recorded by a plan.
 fn so_far(
     paths: &[PathBuf],
-    plans: &[Option<Asked>],
+    plans: &[Option<SessionPlan>],
     table: &PlateauTable,
     calibration: &Calibration,
 ) -> SessionReport {

@@ -64,8 +64,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             files.push(OutputFile { name, bytes: svg.into_bytes() });
         }
     }
-    let SegmentedRun { rows, report } =
-        run.finish::<std::convert::Infallible>(&name).map_err(Failure::bad_input)?;
+    let SegmentedRun { rows, report } = run.finish(&name).map_err(Failure::bad_input)?;
     // Through a value, whose keys are sorted: the bytes of the report before it had a type.
     let value = serde_json::to_value(&report).map_err(Failure::failed)?;
     let mut json = serde_json::to_vec_pretty(&value).map_err(Failure::failed)?;

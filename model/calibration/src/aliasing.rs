@@ -1,4 +1,4 @@
-//! Covariates that move together in a table: what lies in one of them may as well lie in the other.
+//! Confounded covariates of a table.
 
 use std::collections::BTreeMap;
 
@@ -8,23 +8,23 @@ use pinswitch_friction::sort_by_number;
 
 use crate::table::PlateauRow;
 
-/// Correlation beyond which two covariates are told to move together.
+/// Correlation above which two covariates count as confounded.
 const TOGETHER: f64 = 0.95;
 
-/// Two covariates that move together.
+/// Two confounded covariates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Aliasing {
-    /// Their names.
+    /// Names of the covariates.
     pub covariates: [String; 2],
-    /// Their correlation, of the values or of their ranks, whichever is larger in size. Between the condition, which has no
-    /// order, and another one: the correlation ratio, with as many degrees of freedom less as there are conditions.
+    /// Correlation of the values or of their ranks, whichever is larger in magnitude. For the
+    /// unordered condition, the correlation ratio, corrected for the number of conditions.
     pub correlation: f64,
 }
 
-/// A covariate of a row by its name.
+/// A covariate of a row with its name.
 type Column = (&'static str, fn(&PlateauRow) -> f64);
 
-/// All pairs of a table, over its rows.
+/// Returns all confounded pairs of a table.
 pub fn aliasing(rows: &[PlateauRow]) -> Vec<Aliasing> {
     let columns: [Column; 8] = [
         ("load", |r| r.load_n),
@@ -64,7 +64,7 @@ pub fn aliasing(rows: &[PlateauRow]) -> Vec<Aliasing> {
     found
 }
 
-/// The number of each row's condition.
+/// Returns the index of each row's condition.
 fn conditions(rows: &[PlateauRow]) -> Vec<usize> {
     let mut numbers = BTreeMap::new();
     rows.iter()
@@ -75,8 +75,8 @@ fn conditions(rows: &[PlateauRow]) -> Vec<usize> {
         .collect()
 }
 
-/// How well the group of a row tells its value: `sqrt(1 - V_within/V_all)` of the unbiased variances, so that many small
-/// groups tell nothing by chance; zero where the value does not vary. (Kelley's epsilon, 1935.)
+/// Returns the correlation ratio `sqrt(1 - V_within/V_all)` with unbiased variances, so that many
+/// small groups explain nothing by chance (Kelley's epsilon, 1935); zero if the values do not vary.
 fn correlation_ratio(group: &[usize], values: &[f64]) -> f64 {
     let groups = group.iter().max().map_or(0, |most| most + 1);
     let (mut sum, mut count) = (vec![0.0; groups], vec![0.0; groups]);
@@ -95,12 +95,12 @@ fn correlation_ratio(group: &[usize], values: &[f64]) -> f64 {
     (1.0 - (within / free) / (all / (n - 1.0))).max(0.0).sqrt()
 }
 
-/// Correlation of the ranks of two columns.
+/// Returns the rank correlation of two columns.
 pub(crate) fn rank_correlation(a: &[f64], b: &[f64]) -> f64 {
     correlation(&ranks(a), &ranks(b))
 }
 
-/// Ranks from 0; equal values share their mean rank.
+/// Returns ranks from 0; equal values share their mean rank.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     sort_by_number(&mut order, |i| values[*i]);
@@ -115,7 +115,7 @@ fn ranks(values: &[f64]) -> Vec<f64> {
     ranks
 }
 
-/// Pearson's correlation; zero where one of both does not vary.
+/// Returns Pearson's correlation; zero if either column does not vary.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().max(1) as f64;
     let (mean_a, mean_b) = (a.iter().sum::<f64>() / n, b.iter().sum::<f64>() / n);
@@ -134,30 +134,31 @@ mod tests {
     use crate::test_session::session;
 
     #[test]
-    fn speed_that_follows_the_load_is_told_and_independent_speed_is_not() {
+    fn speed_that_follows_load_is_confounded() {
         let mut rows = session(1);
-        // Conditions follow each other in this session; here they do not.
+        // The conditions of the test session are consecutive; this clock makes them independent of
+        // time.
         rows.iter_mut().enumerate().for_each(|(i, r)| r.time_s = ((i * 7919) % 1009) as f64);
         assert!(aliasing(&rows).is_empty(), "{:?}", aliasing(&rows));
         rows.iter_mut().for_each(|r| r.speed_pct = 40.0 + r.load_n.powi(3) * 1e-4);
         let found = aliasing(&rows);
         assert_eq!(found.len(), 1, "{found:?}");
         assert_eq!(found[0].covariates, ["load", "speed"]);
-        assert!(found[0].correlation > 0.999, "as ranks they are one");
+        assert!(found[0].correlation > 0.999, "the ranks are equal");
     }
 
     #[test]
-    fn conditions_that_follow_each_other_move_with_time() {
+    fn consecutive_conditions_are_confounded_with_time() {
         let rows = session(1);
         let found = aliasing(&rows);
         assert_eq!(found.len(), 1, "{found:?}");
         assert_eq!(found[0].covariates, ["condition", "time"]);
-        // Five equal stretches: 1 - 1/25 of the variance lies between them.
+        // Five equal parts of the time: a share 1 - 1/25 of the variance is between them.
         assert!((found[0].correlation - 0.96f64.sqrt()).abs() < 1e-3, "{found:?}");
     }
 
     #[test]
-    fn groups_of_one_row_tell_nothing() {
+    fn groups_of_one_row_explain_nothing() {
         let values: Vec<f64> = (0..40).map(|i| f64::from((i * 17) % 41)).collect();
         let alone: Vec<usize> = (0..40).collect();
         assert_eq!(correlation_ratio(&alone, &values), 0.0);

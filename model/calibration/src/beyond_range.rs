@@ -1,15 +1,15 @@
-//! What a prediction costs beyond the loads that were fitted: the model is asked to do the same inside the table.
+//! Growth of the prediction error beyond the fitted loads, estimated within the table.
 
 use crate::inference::{Model, Weighed, fit};
 
-/// Share of the highest load up to which the model is fitted when it is asked.
+/// Share of the highest load up to which the model is refitted for the estimate.
 const INNER: f64 = 0.6;
-/// Cells further off than this many times the middle one do not decide.
+/// Residuals of cells above this multiple of the median are ignored.
 const FURTHEST: f64 = 6.0;
 
-/// Growth of the error with the distance from the loads fitted, in newtons per newton, as the table's own upper loads
-/// show it: the model is refitted to the loads up to six tenths of the highest and judged above. Zero if the loads are too
-/// few to be asked.
+/// Returns the growth of the error with the distance from the fitted loads, in newtons per newton.
+/// The model is refitted to loads up to 60 % of the highest one and evaluated above. Zero if there
+/// are too few loads.
 pub(crate) fn error_beyond_range(model: &Model, weighed: &Weighed<'_>) -> f64 {
     let data = weighed.data;
     let highest = data.points.iter().map(|p| p.load_n).fold(0.0, f64::max);

@@ -1,4 +1,9 @@
-//! From rows to a report: the search, the form of what has no name, the promise, and what of it is kept.
+//! Calibration of a table: search for effects, formula of unattributed structure, expected error of
+//! a new session, and report.
+
+use std::fmt;
+
+use pinswitch_diagnostic::Diagnostic;
 
 use crate::effects::Vocabulary;
 use crate::forms::{DrawnForm, draw_form};
@@ -7,59 +12,81 @@ use crate::inference::{
     Levels, MOST_ROWS, Model, Noise, Observations, Selection, Term, UNATTRIBUTED, Weighed,
     averaged_intervals, fit, select,
 };
-use crate::own_values::has_values;
+use crate::own_values::check_finite_effects;
 use crate::parallel::{both, map_each};
 use crate::promise::{learn, parts, promise};
 use crate::report::Report;
 use crate::table::{Frame, PlateauRow};
-use crate::telling::{Told, model_report, report};
+use crate::telling::{ReportInputs, model_report, report};
 use crate::trial::{TrialOutcome, trials};
 
-/// Why rows cannot be calibrated.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+/// Reason why a table cannot be calibrated; converts to a [`Diagnostic`].
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CalibrationError {
-    /// Too few rows for the baseline's constants and the noise beside them.
-    #[error(
-        "{found} rows cannot fix the baseline's constants and tell the noise beside them, {needed} can; \
-         record more loads or repetitions"
-    )]
+    /// Too few rows to estimate the baseline and its noise.
     TooFewRows {
-        /// Rows given.
+        /// Number of rows.
         found: usize,
-        /// Rows that could.
+        /// Number that is needed.
         needed: usize,
     },
-    /// An effect of one's own has no value on the table.
-    #[error(
-        "effect '{id}' has no number where {values}, at which a fit may begin, in row {row} ({told}); guard its formula with max or min, or narrow the bounds of its constants"
-    )]
-    NoValue {
-        /// Its id.
+    /// A user-defined effect is not finite at a start value of its fit.
+    NotFinite {
+        /// Id of the effect.
         id: String,
-        /// Its constants, as `k = 1, h = 2`.
+        /// Start values, as `k = 1, h = 2`.
         values: String,
         /// Row of the table, from 1.
         row: usize,
-        /// Where that row lies.
-        told: String,
+        /// Load, speed, dwell, repetition and time of the row.
+        conditions: String,
     },
 }
+
+impl From<&CalibrationError> for Diagnostic {
+    fn from(error: &CalibrationError) -> Self {
+        match error {
+            CalibrationError::TooFewRows { found, needed } => Self::new(format!(
+                "{found} rows are too few to estimate the baseline and its noise; at least {needed} are needed"
+            ))
+            .with_help("record more loads or repetitions"),
+            CalibrationError::NotFinite { id, values, row, conditions } => Self::new(format!(
+                "effect '{id}' is not finite at its start value {values} (row {row}: {conditions})"
+            ))
+            .with_help("guard its formula with max or min, or narrow the bounds of its constants"),
+        }
+    }
+}
+
+impl From<CalibrationError> for Diagnostic {
+    fn from(error: CalibrationError) -> Self {
+        Self::from(&error)
+    }
+}
+
+impl fmt::Display for CalibrationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Diagnostic::from(self).fmt(f)
+    }
+}
+
+impl std::error::Error for CalibrationError {}
 
 /// A report with the fits behind it.
 #[derive(Clone, Debug)]
 pub struct Calibration {
     /// The report.
     pub report: Report,
-    /// The selection behind it.
+    /// The selected model.
     pub selection: Selection,
-    /// The rows as they were fitted.
+    /// The rows as fitted.
     pub data: Observations,
-    /// The form of the structure that no effect explains, if there is any.
+    /// Formula of the unattributed structure, if there is any.
     pub form: Option<DrawnForm>,
 }
 
-/// Rows beyond the baseline's constants without which any misfit would be many times a noise that nobody knows.
+/// Rows in excess of the baseline's constants that are needed to estimate the noise.
 const ROWS_FOR_NOISE: usize = 8;
 
 /// Calibrates a table, with the built-in effects.
@@ -91,16 +118,17 @@ const ROWS_FOR_NOISE: usize = 8;
 /// ```
 ///
 /// # Errors
-/// [`CalibrationError::TooFewRows`] if the rows cannot fix the baseline.
+/// [`CalibrationError::TooFewRows`] if the rows do not determine the baseline.
 pub fn calibrate(rows: &[PlateauRow], levels: Levels) -> Result<Calibration, CalibrationError> {
     calibrate_among(rows, &Vocabulary::built_in(), levels)
 }
 
-/// Calibrates a table, with the effects of a vocabulary. What was drawn before is named only where readings that it was not
-/// drawn from confirm it.
+/// Calibrates a table, with the effects of a vocabulary. An effect that `calibrate` derived before
+/// is attributed only if readings other than those it was derived from confirm it.
 ///
 /// # Errors
-/// [`CalibrationError`] if the rows cannot fix the baseline, or if an effect of one's own has no value on them.
+/// [`CalibrationError`] if the rows do not determine the baseline, or if a user-defined effect is
+/// not finite on them.
 pub fn calibrate_among(
     rows: &[PlateauRow],
     vocabulary: &Vocabulary,
@@ -114,7 +142,8 @@ pub fn calibrate_among(
     let confirmed = vocabulary.retaining(|own| !barred.contains(&own.definition().id));
     let mut again = with_own(rows, &confirmed, levels)?;
     let tried = std::mem::take(&mut again.report.trials);
-    // In the order in which they were read; what is not in the vocabulary now keeps its trial.
+    // In the order in which they were read; an effect that was removed from the vocabulary keeps
+    // its trial.
     again.report.trials = found
         .report
         .trials
@@ -124,7 +153,7 @@ pub fn calibrate_among(
     Ok(again)
 }
 
-/// Ids of effects that were drawn before, stand among the names, and are confirmed by nothing.
+/// Returns the ids of derived effects that are in the model without having been confirmed.
 fn only_drawn(found: &Calibration, vocabulary: &Vocabulary) -> Vec<String> {
     let is_confirmed = |id: &str| {
         found.report.trials.iter().any(|trial| trial.id == id && trial.outcome == TrialOutcome::Confirmed)
@@ -134,12 +163,13 @@ fn only_drawn(found: &Calibration, vocabulary: &Vocabulary) -> Vec<String> {
     drawn.filter(|own| is_named(&own.id) && !is_confirmed(&own.id)).map(|own| own.id.clone()).collect()
 }
 
-/// Share by which the held-out error may be larger with an effect of one's own among the names than without it in the search.
+/// Factor by which the held-out error may increase if a user-defined effect is in the model.
 const WORSE_WITH_OWN: f64 = 1.25;
 
-/// Searches with the effects of one's own, and without. What they are no part of must not depend on them: where none of them
-/// is named, or with them the held-out error is clearly larger, what the built-in effects and the shapes say is told, with the
-/// trials, limits and rivals of all.
+/// Searches with and without the user-defined effects. If none of them is in the model, or the
+/// held-out error is clearly larger with them, the result of the built-in effects and shapes is
+/// reported, with trials, limits and rivals of all effects, so that it does not depend on the
+/// user-defined ones.
 fn with_own(
     rows: &[PlateauRow],
     vocabulary: &Vocabulary,
@@ -156,7 +186,7 @@ fn with_own(
     Ok(if names_own && error_n(&found) <= WORSE_WITH_OWN * error_n(&without) { found } else { without })
 }
 
-/// Searches among one vocabulary, and tells what was found beside another one that holds more.
+/// Searches in one vocabulary, and reports for another one that contains it.
 fn calibrated(
     rows: &[PlateauRow],
     [searched, told]: [&Vocabulary; 2],
@@ -170,7 +200,7 @@ fn calibrated(
     if rows.len() < needed {
         return Err(too_few);
     }
-    has_values(&start.clone().among(told), &whole, rows)?;
+    check_finite_effects(&start.clone().among(told), &whole, rows)?;
     let mut data = if whole.points.len() > MOST_ROWS {
         let rough = fit(&start, &Weighed::new(&whole, Noise::constant(0.1, 0.03)));
         let sd = whole.weigh_outliers(&rough.residual_n);
@@ -190,12 +220,13 @@ fn calibrated(
     };
     let ((mut selection, mut held, mut form), mut learned) = both(search, || map_each(parts(), learned_of));
     if data.excluded_series() > 0 {
-        // What is known to be wrong as a whole teaches nothing.
+        // The folds are refitted without the excluded series.
         learned = map_each(parts(), |part| learn(part, &start, &data, levels));
     }
     let with_form = form.as_ref().is_some_and(|f| f.report.in_model);
     let promised = promise(learned, &selection, &data, with_form);
-    // What does not help on series that had no part in finding it, or in fitting it, is not kept.
+    // Terms are dropped that do not reduce the error on series that were used neither to find nor
+    // to fit them.
     let is_worse = || {
         let of_baseline = held_out(&selection.baseline.model, &Weighed::new(&data, selection.noise));
         promised.is_some_and(|p| p.augmented_n > p.baseline_n) || held.both_n() > of_baseline.both_n()
@@ -213,11 +244,11 @@ fn calibrated(
         whole = data.clone();
     }
     let outliers = (0..whole.points.len()).filter(|i| !whole.is_sound(*i)).count();
-    let mut report = report(rows, &selection, &data, Told { levels, promised, outliers, held });
+    let mut report = report(rows, &selection, &data, ReportInputs { levels, promised, outliers, held });
     if let Some(form) = &form {
         tell_form(form, &mut report, &mut selection, &data);
     }
-    // What is told row by row is told of every row.
+    // Reports per row include all rows.
     for fitted in [&mut selection.baseline, &mut selection.augmented] {
         let predicted = fitted.model.predict(&whole.points);
         fitted.residual_n = whole.force_n.iter().zip(predicted).map(|(y, p)| y - p).collect();
@@ -226,12 +257,13 @@ fn calibrated(
     Ok(Calibration { report, selection, data, form })
 }
 
-/// Share of what shapes without a name explain from which a confirmed effect of the same covariate stands in their place, and by
-/// which its held-out error may be larger: shapes follow a course more closely than any one formula.
+/// Smallest share of the unattributed structure that a confirmed effect of the same covariate must
+/// explain to replace it, and the factor by which its held-out error may be larger, since shapes
+/// are more flexible than one formula.
 const STANDS_FOR: (f64, f64) = (0.85, 1.05);
 
-/// The selection with an effect of one's own in place of the structure along its covariate, if the table confirms the effect and
-/// that structure is what it does.
+/// Returns the selection with a user-defined effect in place of the structure along its covariate,
+/// if the table confirms the effect and it explains that structure.
 fn with_confirmed(
     rows: &[PlateauRow],
     selection: &Selection,
@@ -261,12 +293,14 @@ fn with_confirmed(
     stands.then(|| selection.clone().with_names(best, data, levels))
 }
 
-/// Share of the structure from which a form is all of it, and by which its held-out error may then be larger than that of the
-/// shapes: what one formula says carries over to another session, and what several shapes follow of this one may not.
+/// Share of the structure above which a form explains all of it, and the factor by which its
+/// held-out error may then exceed that of the shapes, since one formula generalises better to
+/// another session than several shapes.
 const IS_ALL_OF_IT: (f64, f64) = (0.95, 1.1);
 
-/// The form of what has no name. It goes into the model if it predicts held-out data no worse than the shapes do, or hardly worse
-/// where it explains all that they do.
+/// Returns the form of the unattributed structure. It is used in the model if its held-out error
+/// does not exceed that of the shapes, or hardly exceeds it while the form explains all of the
+/// structure.
 fn drawn(
     rows: &[PlateauRow],
     selection: &Selection,
@@ -279,7 +313,8 @@ fn drawn(
     Some(form)
 }
 
-/// Tells a form beside the structure that it was drawn from, and puts it into the model if it belongs there.
+/// Adds a form to the report of the structure from which it was derived, and to the model if it is
+/// used there.
 fn tell_form(form: &DrawnForm, report: &mut Report, selection: &mut Selection, data: &Observations) {
     let in_model = form.report.in_model;
     if in_model {
@@ -310,13 +345,14 @@ mod tests {
         report.candidates.iter().map(|c| c.fate).collect()
     }
 
-    /// The level at which a gain counts as more than chance is the caller's, in the search and in the report alike.
+    /// The caller's level for chance applies to the search and to the report.
     #[test]
-    fn the_fate_of_a_candidate_follows_the_levels_given() {
+    fn outcomes_follow_the_given_levels() {
         let usual = fates(Levels::default());
         assert!(usual.contains(&Fate::Chance) && usual.contains(&Fate::Invisible), "{usual:?}");
         assert!(!usual.contains(&Fate::Superfluous), "{usual:?}");
-        // Flips at zero keep the search from naming anything; what chance could explain is then the level's to say.
+        // Without sign flips the search selects nothing; the level alone then decides what chance
+        // explains.
         let credulous = fates(Levels { first_p: 1.0, flips: 0.0, ..Levels::default() });
         assert!(!credulous.contains(&Fate::Chance), "{credulous:?}");
     }
@@ -325,7 +361,7 @@ mod tests {
         Term::Named(crate::effects::effect_named("load_cell_offset").unwrap())
     }
 
-    /// A session of that name with an offset of the cell.
+    /// Returns a session of that name with an offset of the load cell.
     fn day(name: &str, seed: u64, offset_n: f64) -> Vec<PlateauRow> {
         let mut rows = session_with(seed, &[(offset(), &[offset_n])]);
         rows.iter_mut().for_each(|r| r.labels.session = name.to_owned());
@@ -333,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn what_one_session_has_the_other_way_round_is_no_scatter() {
+    fn opposite_sizes_are_not_scatter() {
         let told = |second_n| {
             let rows = [day("a", 1, 0.6), day("b", 2, second_n)].concat();
             calibrate(&rows, Levels::default()).unwrap().report
@@ -346,14 +382,14 @@ mod tests {
             assert!((sizes[0] - 0.6).abs() < 0.1 && (sizes[1] - second_n).abs() < 0.1, "{sizes:?}");
             assert!(report.verdict != Verdict::None, "{second_n}");
             let is_named = report.effects.iter().any(|e| e.id == "load_cell_offset");
-            assert!(is_named || !report.adequate, "{second_n}: what is left is no noise");
+            assert!(is_named || !report.adequate, "{second_n}: the residual is not noise");
         }
         let same = told(0.6);
         assert!(same.unequal.is_empty() && same.verdict == Verdict::Attributed, "{:?}", same.unequal);
     }
 
     #[test]
-    fn what_was_only_drawn_is_not_attributed() {
+    fn derived_effects_need_confirmation() {
         let rows = session_with(3, &[(offset(), &[0.5])]);
         let file = |start: f64, drawn_from: &str| {
             format!(
@@ -371,10 +407,10 @@ mod tests {
         };
         let first = rows_with(4, 0.5);
         let named = |report: &Report| report.effects.iter().any(|e| e.id == "mine");
-        assert!(named(&report(&first, plain.clone())), "claimed by somebody, it is found");
+        assert!(named(&report(&first, plain.clone())), "a hypothesis is found");
         let told: Vec<String> = crate::table::readings_by_session(&first).into_values().collect();
         let drawn = || vocabulary(file(0.5, &format!("drawn_from = [\"{}\"]\n", told[0])));
-        // The readings that it was drawn from, and parts of them.
+        // The readings that it was derived from, and parts of them.
         for rows in [&first[..], &first[20..], &first[..first.len() / 2]] {
             let report = report(rows, drawn());
             assert!(
@@ -383,7 +419,7 @@ mod tests {
                 report.trials
             );
         }
-        // Others confirm it, or refute it: absent, or the other way round.
+        // Other readings confirm it, or refute it where it is absent or has the opposite sign.
         let again = report(&rows_with(5, 0.5), drawn());
         assert!(named(&again) && again.trials[0].outcome == TrialOutcome::Confirmed, "{:?}", again.trials);
         for other in [rows, rows_with(6, -0.5)] {
@@ -396,9 +432,9 @@ mod tests {
         }
     }
 
-    /// The time of day, and seconds since 1970.
+    /// Start of the clock: time of day, and seconds since 1970.
     #[test]
-    fn where_a_clock_stood_when_the_session_began_changes_nothing() {
+    fn the_clock_start_is_irrelevant() {
         let drift = Term::Named(crate::effects::effect_named("thermal_drift").unwrap());
         let rows = session_with(7, &[(drift, &[0.8])]);
         let size = |begins_s: f64| {
@@ -416,7 +452,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_cannot_fix_the_baseline_are_refused_with_the_number_that_could() {
+    fn too_few_rows_are_refused() {
         let rows = session(1);
         let error = calibrate(&rows[..5], Levels::default()).unwrap_err();
         assert_eq!(error, CalibrationError::TooFewRows { found: 5, needed: 2 + ROWS_FOR_NOISE });

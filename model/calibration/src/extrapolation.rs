@@ -1,4 +1,4 @@
-//! Fitted at low loads, judged at higher ones.
+//! Extrapolation test: fit at low loads, evaluation at higher ones.
 
 use crate::calibrate::{Calibration, CalibrationError, calibrate_among};
 use crate::effects::Vocabulary;
@@ -8,10 +8,10 @@ use crate::report::Extrapolation;
 use crate::table::PlateauRow;
 use crate::telling::BAD_READING_SD;
 
-/// Calibrates on loads up to a share of the highest one and judges both models on the rest.
+/// Calibrates on loads up to a share of the highest one and evaluates both models on the rest.
 ///
 /// # Errors
-/// [`CalibrationError::TooFewRows`] if the rows below cannot fix the baseline.
+/// [`CalibrationError::TooFewRows`] if too few rows are below that load.
 pub fn calibrate_below(
     rows: &[PlateauRow],
     share: f64,

@@ -1,25 +1,26 @@
-//! Errors on data held out from the fit: whole series, then whole loads.
+//! Held-out errors: each quarter of the series, then each quarter of the loads, is left out of the
+//! fit.
 
 use crate::inference::{Model, Weighed, fit};
 
-/// Root mean square errors in newtons on rows that the fit did not see.
+/// Root mean square errors in newtons on rows that are left out of the fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeldOut {
-    /// Each fourth of the series left out in turn.
+    /// Error on each quarter of the series, left out in turn.
     pub series_n: f64,
-    /// Each fourth of the loads left out in turn.
+    /// Error on each quarter of the loads, left out in turn.
     pub loads_n: f64,
 }
 
 impl HeldOut {
-    /// Both together, as one root mean square.
+    /// Returns the root mean square of both errors.
     pub fn both_n(self) -> f64 {
         (0.5 * (self.series_n.powi(2) + self.loads_n.powi(2))).sqrt()
     }
 }
 
 const FOLDS: usize = 4;
-/// Held-out errors of a model that is refitted from where it stands.
+/// Returns the held-out errors of a model, which is refitted from its current constants.
 pub fn held_out(model: &Model, weighed: &Weighed<'_>) -> HeldOut {
     let data = weighed.data;
     let mut loads: Vec<f64> = data.points.iter().map(|p| p.load_n).collect();
@@ -36,7 +37,8 @@ pub fn held_out(model: &Model, weighed: &Weighed<'_>) -> HeldOut {
 }
 
 impl HeldOut {
-    /// With too few loads, or series, to leave any out, the others stand for both.
+    /// Replaces an error that could not be determined, for lack of series or loads, by the other
+    /// one.
     fn without_gaps(self) -> Self {
         let either = |a: f64, b: f64| if a.is_nan() { b } else { a };
         Self { series_n: either(self.series_n, self.loads_n), loads_n: either(self.loads_n, self.series_n) }

@@ -1,13 +1,13 @@
-//! Whether what was found on some layouts holds on another: each layout left out in turn.
+//! Leave-one-layout-out error.
 
 use std::collections::BTreeSet;
 
 use crate::inference::{Model, Weighed, fit};
 
-/// Root mean square error in newtons on layouts that the fit did not see. Each layout is left out in turn, with its
-/// pins on both substrates; all friction coefficients and effects come from the other layouts, and only the layout's
-/// own threshold and range, which no other layout can know, are then fitted to it (`model/doc/naming-an-effect.md`).
-/// `None` with fewer than two layouts.
+/// Returns the root mean square error in newtons on layouts that are left out of the fit, with
+/// their pins on both substrates, in turn. Friction coefficients and effects come from the other
+/// layouts; the layout's own threshold and range, which no other layout determines, are then fitted
+/// to it (`model/doc/naming-an-effect.md`). `None` with fewer than two layouts.
 pub fn layouts_left_out(model: &Model, weighed: &Weighed<'_>) -> Option<f64> {
     let (data, noise) = (weighed.data, weighed.noise);
     let conditions = &model.frame.conditions;
@@ -27,7 +27,8 @@ pub fn layouts_left_out(model: &Model, weighed: &Weighed<'_>) -> Option<f64> {
             .flat_map(Model::device_constants)
             .collect();
         let hidden = data.subset(inside);
-        // The layout's own constants start from the layout law: the fit of the others has not seen them.
+        // The layout's own constants start from the layout law, since the fit of the others did not
+        // use its rows.
         let refitted = fit(&others.model.frozen_except(&own), &Weighed::new(&hidden, noise));
         let sound = (0..hidden.points.len()).filter(|i| hidden.is_sound(*i));
         let n: f64 = sound.clone().map(|i| hidden.counts[i]).sum();

@@ -1,33 +1,66 @@
-//! Measured friction data: from raw logs to plateau tables, from a table to the effects that the paper's model lacks on
-//! it, and to a model that predicts. The crate knows data and what explains it; it must not know how a rig is
-//! simulated, nor parts, files or plots.
+//! Calibration of the friction model with measured data.
 //!
-//! The way of the data, each step usable alone:
+//! The crate converts raw logs to plateau tables, selects the effects that the paper's model lacks
+//! on a table, and writes a model that predicts readings. It knows nothing about simulated rigs,
+//! parts, files or plots.
 //!
-//! 1. [`segmentation`]: `run.toml` and its 200 Hz logs become the rows of a plateau table.
-//! 2. [`table`]: a plateau table is read and checked; errors name file, line and column.
-//! 3. [`calibrate`] refits the paper's model, names the effects that it lacks ([`effects`], [`inference`]) and returns a
-//!    [`Report`] with the errors before and after, on data held out from the fit.
-//! 4. [`ModelFile`] keeps the fitted model: it predicts readings, and the curve of a printed part without the effects
-//!    that belong to the rig.
+//! Each step can be used alone:
+//!
+//! 1. [`segmentation`] converts `run.toml` and its 200 Hz logs to the rows of a plateau table.
+//! 2. [`table`] reads and checks a plateau table.
+//! 3. [`calibrate`] refits the paper's model, selects effects ([`effects`], [`inference`]) and returns
+//!    a [`Report`] with the held-out errors before and after.
+//! 4. [`ModelFile`] stores the fitted model. It predicts readings, and the friction curve of a printed
+//!    part without the effects of the rig.
+//! 5. [`experiment`] proposes the runs that answer most of the open questions.
+//!
+//! # Model
+//!
+//! The baseline predicts the tension `T` of the tendon at a load `F`. On one material it is the
+//! capstan equation; on a device (pins in silicone) friction passes from the pins to the silicone:
+//!
+//! ```text
+//! one material:  T = F exp(d mu a)
+//! device:        T = F + (1 + w) (1 - S) F (exp(d mu_p a) - 1) + (1 - w) S F (exp(d mu_s a) - 1)
+//!                S = 1/(1 + exp(-s (F/F_half - 1)))
+//! ```
+//!
+//! `d` is -1 for the eccentric and +1 for the concentric direction, `a` the wrap angle in radians,
+//! `mu_p` and `mu_s` the friction coefficients of pins and silicone, `w = n/30` for `n` pins, `S`
+//! the silicone's share of the friction, `F_half` the threshold and `s` the steepness
+//! (`model/doc/friction-laws.md`). A reading is this tension after the effects of the model, plus
+//! hierarchical noise ([`inference::Noise`]).
+//!
+//! # Examples
+//!
+//! Which effect explains most of the model's errors on the paper's seven maxima?
 //!
 //! ```
 //! use pinswitch_calibration::explain_published;
 //!
-//! // The loop on the paper's own seven maxima: what explains most of what its model misses?
 //! let explanations = explain_published();
 //! assert_eq!(explanations[1].id, "coating_ploughing");
 //! assert!(explanations[1].left_out_rms_pct < Some(0.3 * explanations[0].rms_pct));
 //! ```
 //!
-//! Readers take text, bytes or [`std::io::Read`], writers return text: nothing here opens a file, starts a thread, or
-//! reads a clock or the environment. `model/doc/file-formats.md` describes the files, `model/doc/effect-catalogue.md`
-//! the effects and `model/doc/naming-an-effect.md` how one is named.
+//! Readers report a [`Diagnostic`](pinswitch_diagnostic::Diagnostic) with location, problem and
+//! help:
+//!
+//! ```
+//! use pinswitch_calibration::experiment::RigLimits;
+//!
+//! let error = RigLimits::parse("stroke_mm = 0\n", "rig.toml").unwrap_err();
+//! assert_eq!(error.problem(), "outside 1 to 10000 mm");
+//! assert_eq!(error.location().and_then(|location| location.line), Some(1));
+//! ```
+//!
+//! Readers take text, bytes or [`std::io::Read`], and writers return text: the crate opens no
+//! files, reads no clock and no environment. `model/doc/file-formats.md` describes the files,
+//! `model/doc/effect-catalogue.md` the effects and `model/doc/naming-an-effect.md` their selection.
 
 #![warn(clippy::disallowed_methods)]
 
 mod aliasing;
-mod asked;
 mod beyond_range;
 mod calibrate;
 pub mod effects;
@@ -47,6 +80,7 @@ mod promise;
 mod published_maxima;
 mod report;
 pub mod segmentation;
+mod session_plan;
 pub mod table;
 mod telling;
 #[cfg(test)]
@@ -55,19 +89,20 @@ mod toml_text;
 mod trial;
 
 pub use aliasing::{Aliasing, aliasing};
-pub use asked::{Answer, Asked, AskedError, AskedQuestion};
+
 pub use calibrate::{Calibration, CalibrationError, calibrate, calibrate_among};
 pub use extrapolation::calibrate_below;
 pub use forms::{DrawnForm, FormReport, FormRival, draw_form};
 pub use held_out::{HeldOut, held_out};
 pub use layouts_left_out::layouts_left_out;
 pub use median::median;
-pub use model_file::{ModelFile, ModelFileError};
+pub use model_file::ModelFile;
 pub use published_maxima::{Explanation, explain_published};
 pub use report::{
     BadSeries, CandidateReport, ChangeReport, DataSummary, EffectReport, Estimate, Extrapolation, Fate,
     Invisible, LimitReport, ModelReport, NoisePart, Report, RivalReport, SessionReport, SizeInSession,
     UnequalReport, Verdict,
 };
+pub use session_plan::{Answer, PlanQuestion, SessionPlan};
 pub use toml_text::toml_error;
 pub use trial::{CERTAIN_P, CONFIRMED_P, CONFIRMED_SHARE, TrialOutcome, TrialReport, trials};

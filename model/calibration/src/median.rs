@@ -1,6 +1,6 @@
-//! The median.
+//! Median.
 
-/// Median of the values; they are reordered. Zero without values.
+/// Returns the median of the values, which are reordered; zero without values.
 pub fn median(values: &mut [f64]) -> f64 {
     if values.is_empty() {
         return 0.0;

@@ -1,47 +1,45 @@
-//! What a model on file must be to predict anything: finite, within bounds, with the covariance of something.
+//! Checks of a model file: finite numbers within bounds, and a covariance that is positive
+//! semidefinite.
 
 use nalgebra::DMatrix;
+use pinswitch_diagnostic::{Diagnostic, Location};
 
 use crate::inference::{Model, Noise};
 use crate::table::Frame;
 
-/// Largest constant in its own unit: far above any, and far below what overflows.
+/// Largest constant in its own unit: far above any real one, and far below overflow.
 const MAX_CONSTANT: f64 = 1e9;
-/// Largest wrap angle: two turns.
+/// Largest wrap angle: two revolutions.
 const MAX_WRAP_RAD: f64 = 4.0 * std::f64::consts::PI;
 /// Rounding of a covariance, relative to its largest variance.
 const ROUNDING: f64 = 1e-6;
+/// Advice for every invalid model file.
+pub(crate) const HELP: &str = "use the file as `calibrate` wrote it, or calibrate again";
 
-/// A value that no model has: where it stands, what it is, and what it may be.
-#[derive(Debug)]
-pub(crate) struct Flaw {
-    pub(crate) field: String,
-    pub(crate) value: String,
-    pub(crate) bound: String,
+/// Returns the diagnostic of a field's value.
+pub(crate) fn invalid(
+    field: impl Into<String>,
+    value: impl ToString,
+    problem: impl Into<String>,
+) -> Diagnostic {
+    Diagnostic::new(problem).with_location(Location::field(field, value.to_string())).with_help(HELP)
 }
 
-impl Flaw {
-    fn new(field: impl Into<String>, value: impl ToString, bound: impl Into<String>) -> Self {
-        Self { field: field.into(), value: value.to_string(), bound: bound.into() }
-    }
-}
-
-/// `value` must lie within `low..=high`; NaN lies nowhere.
-fn within(field: &str, value: f64, low: f64, high: f64) -> Result<(), Flaw> {
+/// Checks that `value` is within `low..=high`, which NaN is not.
+fn within(field: &str, value: f64, low: f64, high: f64) -> Result<(), Diagnostic> {
     if (low..=high).contains(&value) && value.is_finite() {
-        Ok(())
-    } else {
-        // The least positive number has over three hundred digits.
-        let low = if low == f64::MIN_POSITIVE { "above 0".to_owned() } else { low.to_string() };
-        Err(Flaw::new(field, value, format!("{low} to {high}")))
+        return Ok(());
     }
+    // The smallest positive number has over three hundred digits.
+    let bound = if low == f64::MIN_POSITIVE { "above 0".to_owned() } else { format!("at least {low}") };
+    Err(invalid(field, value, format!("must be {bound} and at most {high}")))
 }
 
-/// The first number of `value` that is not finite.
-pub(crate) fn check_finite(field: &str, value: &toml::Value) -> Result<(), Flaw> {
+/// Checks that all numbers of `value` are finite.
+pub(crate) fn check_finite(field: &str, value: &toml::Value) -> Result<(), Diagnostic> {
     let below = |key: &str| if field.is_empty() { key.to_owned() } else { format!("{field}.{key}") };
     match value {
-        toml::Value::Float(number) if !number.is_finite() => Err(Flaw::new(field, number, "a finite number")),
+        toml::Value::Float(number) if !number.is_finite() => Err(invalid(field, number, "not finite")),
         toml::Value::Array(all) => {
             all.iter().enumerate().try_for_each(|(i, v)| check_finite(&format!("{field}[{i}]"), v))
         }
@@ -50,17 +48,18 @@ pub(crate) fn check_finite(field: &str, value: &toml::Value) -> Result<(), Flaw>
     }
 }
 
-/// Constants are those of the model, by name and unit, each within its bounds.
+/// Checks that the constants have the names and units of the model's, and are within their bounds.
 pub(crate) fn check_constants<'a>(
     model: &Model,
     constants: impl Iterator<Item = (&'a str, &'a str, f64)>,
-) -> Result<(), Flaw> {
+) -> Result<(), Diagnostic> {
     let names = model.names();
-    for (i, ((name, unit, value), (own_name, own_unit))) in constants.zip(&names).enumerate() {
+    for (i, ((name, unit, value), (model_name, model_unit))) in constants.zip(&names).enumerate() {
         let field = format!("constants[{i}]");
-        if (name, unit) != (own_name.as_str(), *own_unit) {
-            let bound = format!("{own_name:?} in {own_unit:?}, by the terms and conditions listed");
-            return Err(Flaw::new(field, format!("{name:?} in {unit:?}"), bound));
+        if (name, unit) != (model_name.as_str(), *model_unit) {
+            let problem =
+                format!("expected {model_name:?} in {model_unit:?}, from the listed terms and conditions");
+            return Err(invalid(field, format!("{name:?} in {unit:?}"), problem));
         }
         let (low, high) = model.bounds_of(i);
         within(&format!("{field} ({name})"), value, low.max(-MAX_CONSTANT), high.min(MAX_CONSTANT))?;
@@ -68,35 +67,38 @@ pub(crate) fn check_constants<'a>(
     Ok(())
 }
 
-/// Friction in newtons of friction per newton of load beyond which no tendon over any wrap gets.
+/// Largest friction in newtons per newton of load, above that of any tendon over any wrap.
 const MAX_FRICTION: f64 = 1000.0;
 
-/// Friction and its half band in newtons are such as a tendon can have at these loads.
-pub(crate) fn check_friction(loads_n: &[f64], friction_n: &[f64], half_n: &[f64]) -> Result<(), Flaw> {
+/// Checks that friction and half width of its band in newtons are possible at these loads.
+pub(crate) fn check_friction(loads_n: &[f64], friction_n: &[f64], half_n: &[f64]) -> Result<(), Diagnostic> {
     for ((load, friction), half) in loads_n.iter().zip(friction_n).zip(half_n) {
         let most = MAX_FRICTION * load.max(1.0);
         if !(friction.abs() <= most && half.abs() <= most) {
-            let value =
-                format!("a friction of {friction:.3e} N (half band {half:.3e} N) at a load of {load:.2} N");
-            return Err(Flaw::new("constants or covariance", value, "a thousand times the load"));
+            let problem = format!(
+                "the predicted friction is {friction:.3e} N (half band {half:.3e} N) at a load of {load:.2} N, more than {MAX_FRICTION} times the load"
+            );
+            return Err(Diagnostic::new(problem).with_help(HELP));
         }
     }
     Ok(())
 }
 
-/// A growth of errors is one.
-pub(crate) fn check_beyond_range(beyond_range: f64) -> Result<(), Flaw> {
+/// Checks the growth of the error beyond the loads fitted.
+pub(crate) fn check_beyond_range(beyond_range: f64) -> Result<(), Diagnostic> {
     within("beyond_range", beyond_range, 0.0, MAX_CONSTANT)
 }
 
-/// Earlier files have a walk of one size in newtons. For a prediction it is an offset of the series like any other, and
-/// becomes one. Whether there was one.
-pub(crate) fn walk_to_offset(file: &mut toml::Table) -> Result<bool, Flaw> {
+/// Converts the random walk of earlier files, one size in newtons, to an offset of the series,
+/// which predicts the same. Returns whether there was one.
+pub(crate) fn walk_to_offset(file: &mut toml::Table) -> Result<bool, Diagnostic> {
     let noise = file.get_mut("noise").and_then(toml::Value::as_table_mut);
     let Some((walk, noise)) = noise.and_then(|noise| Some((noise.remove("walk_N")?, noise))) else {
         return Ok(false);
     };
-    let size_n = walk.as_float().ok_or_else(|| Flaw::new("noise.walk_N", &walk, "newtons, as 0.1"))?;
+    let size_n = walk
+        .as_float()
+        .ok_or_else(|| invalid("noise.walk_N", &walk, "expected a size in newtons, such as 0.1"))?;
     within("noise.walk_N", size_n, 0.0, MAX_CONSTANT)?;
     let none = || {
         toml::Table::from_iter(
@@ -110,8 +112,8 @@ pub(crate) fn walk_to_offset(file: &mut toml::Table) -> Result<bool, Flaw> {
     Ok(true)
 }
 
-/// The noise is one: no negative spread, no correlation beyond one.
-pub(crate) fn check_noise(noise: &Noise) -> Result<(), Flaw> {
+/// Checks that spreads are not negative and correlations not beyond 1.
+pub(crate) fn check_noise(noise: &Noise) -> Result<(), Diagnostic> {
     for (name, size) in [
         ("series_scale", noise.series_scale),
         ("mount_scale", noise.mount_scale),
@@ -133,8 +135,9 @@ pub(crate) fn check_noise(noise: &Noise) -> Result<(), Flaw> {
     within("noise.correlation", noise.correlation, -1.0, 1.0)
 }
 
-/// Reference values that others are divided by are above zero, shares within one, grooves and times in order.
-pub(crate) fn check_frame(frame: &Frame) -> Result<(), Flaw> {
+/// Checks that divisors are above zero, shares within 0..1, and grooves and times in ascending
+/// order.
+pub(crate) fn check_frame(frame: &Frame) -> Result<(), Diagnostic> {
     let positive = f64::MIN_POSITIVE;
     within("frame.stroke_mm", frame.stroke_mm, positive, MAX_CONSTANT)?;
     within("frame.session_s", frame.session_s, positive, MAX_CONSTANT)?;
@@ -143,11 +146,8 @@ pub(crate) fn check_frame(frame: &Frame) -> Result<(), Flaw> {
     within("frame.load_range_n[1]", frame.load_range_n.1, frame.load_range_n.0, MAX_CONSTANT)?;
     let (times, shares) = (&frame.travel_time_s, &frame.travel_share);
     if times.len() != shares.len() {
-        return Err(Flaw::new(
-            "frame.travel_share",
-            format!("{} shares", shares.len()),
-            format!("{}, as many as travel_time_s", times.len()),
-        ));
+        let problem = format!("expected {} shares, as many as travel_time_s", times.len());
+        return Err(invalid("frame.travel_share", format!("{} shares", shares.len()), problem));
     }
     for (i, (time, share)) in times.iter().zip(shares).enumerate() {
         let before = i.checked_sub(1).and_then(|i| times.get(i)).copied().unwrap_or(-MAX_CONSTANT);
@@ -157,18 +157,20 @@ pub(crate) fn check_frame(frame: &Frame) -> Result<(), Flaw> {
     for (i, change) in frame.changes.iter().enumerate() {
         let count = frame.groups_by(change.by).len();
         if change.groups.is_empty() || change.groups.iter().any(|group| group + 1 >= count) {
-            return Err(Flaw::new(
-                format!("frame.changes[{i}].groups"),
-                format!("{:?}", change.groups),
-                format!("some of the {count} {}s but the last, counted from 0", change.by.as_str()),
-            ));
+            let field = format!("frame.changes[{i}].groups");
+            let problem = format!(
+                "expected indices from 0 into the {count} {}s, without the last one",
+                change.by.as_str()
+            );
+            return Err(invalid(field, format!("{:?}", change.groups), problem));
         }
     }
     let mut devices = 0;
     for (i, condition) in frame.conditions.iter().enumerate() {
         let field = |name: &str| format!("frame.conditions[{i}].{name}");
         if !condition.pins.is_sorted_by(|a, b| a < b) {
-            return Err(Flaw::new(field("pins"), format!("{:?}", condition.pins), "grooves in rising order"));
+            let pins = format!("{:?}", condition.pins);
+            return Err(invalid(field("pins"), pins, "grooves are not in ascending order"));
         }
         within(&field("wrap_rad"), condition.wrap_rad, positive, MAX_WRAP_RAD)?;
         within(&field("weight"), condition.weight, 0.0, 1.0)?;
@@ -176,7 +178,7 @@ pub(crate) fn check_frame(frame: &Frame) -> Result<(), Flaw> {
         within(&field("ploughing"), condition.ploughing, 0.0, 1e3)?;
         if let Some(device) = condition.device {
             if device != devices {
-                return Err(Flaw::new(field("device"), device, format!("{devices}, counted from 0")));
+                return Err(invalid(field("device"), device, format!("expected {devices}, counted from 0")));
             }
             devices += 1;
         }
@@ -184,15 +186,12 @@ pub(crate) fn check_frame(frame: &Frame) -> Result<(), Flaw> {
     Ok(())
 }
 
-/// The covariance is square, symmetric and positive semidefinite, but for rounding.
-pub(crate) fn check_covariance(rows: &[Vec<f64>], needed: usize) -> Result<(), Flaw> {
+/// Checks that the covariance is square, symmetric and positive semidefinite up to rounding.
+pub(crate) fn check_covariance(rows: &[Vec<f64>], needed: usize) -> Result<(), Diagnostic> {
     if let Some(length) = std::iter::once(rows.len()).chain(rows.iter().map(Vec::len)).find(|n| *n != needed)
     {
-        return Err(Flaw::new(
-            "covariance",
-            format!("{length} numbers"),
-            format!("{needed} rows of {needed}"),
-        ));
+        let problem = format!("expected {needed} rows of {needed} numbers");
+        return Err(invalid("covariance", format!("{length} numbers"), problem));
     }
     let matrix = DMatrix::from_fn(needed, needed, |i, j| rows[i][j]);
     let largest = matrix.diagonal().iter().copied().fold(0.0, f64::max);
@@ -202,13 +201,17 @@ pub(crate) fn check_covariance(rows: &[Vec<f64>], needed: usize) -> Result<(), F
             let (a, b) = (matrix[(i, j)], matrix[(j, i)]);
             let apart = (a - b).abs();
             if apart.is_nan() || apart > ROUNDING * largest {
-                return Err(Flaw::new(format!("covariance[{i}][{j}]"), a, format!("{b}, as at [{j}][{i}]")));
+                let problem = format!("not symmetric: covariance[{j}][{i}] is {b}");
+                return Err(invalid(format!("covariance[{i}][{j}]"), a, problem));
             }
         }
     }
     let least = matrix.symmetric_eigenvalues().iter().copied().fold(f64::INFINITY, f64::min);
     if needed > 0 && (least.is_nan() || least < -ROUNDING * largest) {
-        return Err(Flaw::new("covariance", format!("eigenvalue {least}"), "none below zero"));
+        let problem = format!("not positive semidefinite: its smallest eigenvalue is {least}");
+        return Err(Diagnostic::new(problem)
+            .with_location(Location { field: Some("covariance".to_owned()), ..Location::default() })
+            .with_help(HELP));
     }
     Ok(())
 }
@@ -218,7 +221,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_covariance_is_one_of_something() {
+    fn covariances_must_be_positive_semidefinite() {
         let refused = |rows: &[Vec<f64>]| check_covariance(rows, 2).is_err();
         assert!(!refused(&[vec![1.0, 0.5], vec![0.5, 1.0]]));
         assert!(!refused(&[vec![0.0, 0.0], vec![0.0, 0.0]]));
@@ -230,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn friction_that_no_tendon_has_is_refused() {
+    fn impossible_friction_is_refused() {
         assert!(check_friction(&[10.0], &[3.0], &[0.1]).is_ok());
         for (friction, half) in [(f64::NAN, 0.1), (-1e12, 0.1), (3.0, f64::INFINITY), (f64::INFINITY, 0.1)] {
             assert!(check_friction(&[10.0], &[friction], &[half]).is_err(), "{friction} {half}");
@@ -238,9 +241,9 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_is_not_finite_is_found_at_any_depth() {
+    fn infinite_numbers_are_located() {
         let value: toml::Value = toml::from_str("[a]\nb = [1.0, { c = inf }]").unwrap();
-        let flaw = check_finite("", &value).unwrap_err();
-        assert_eq!((flaw.field.as_str(), flaw.value.as_str()), ("a.b[1].c", "inf"));
+        let error = check_finite("", &value).unwrap_err();
+        assert_eq!(error.location(), Some(&Location::field("a.b[1].c", "inf")));
     }
 }

@@ -1,6 +1,6 @@
-//! `baseline.toml` and `model.toml`: a fitted model that predicts rows later.
+//! Model files (`baseline.toml` and `model.toml`): a fitted model that predicts rows later.
 
-use pinswitch_diagnostic::excerpt;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
 
@@ -10,91 +10,16 @@ use crate::inference::{
     Fit, Model, Noise, Observations, Term, Weighed, coordinate_covariance, prediction_sd_n,
 };
 use crate::model_check::{
-    Flaw, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
-    walk_to_offset,
+    HELP, check_beyond_range, check_constants, check_covariance, check_finite, check_frame, check_noise,
+    invalid, walk_to_offset,
 };
 use crate::table::{Frame, PlateauRow};
-use crate::toml_text::{place_of, toml_error};
+use crate::toml_text::{locate_field, toml_error};
 
 /// Name and version of the format.
 const SCHEMA: &str = "pinswitch.model/1";
 
-/// Why a model file cannot be used.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ModelFileError {
-    /// The text is no such TOML.
-    #[error("{file}: {}; use the file as `calibrate` wrote it, or calibrate again", excerpt(problem, 240))]
-    Malformed {
-        /// File name as given, with the line.
-        file: String,
-        /// What is wrong.
-        problem: String,
-    },
-    /// Another format or version.
-    #[error("{file}: schema '{}' is unknown; this version reads '{SCHEMA}'", excerpt(found, 80))]
-    Schema {
-        /// File name as given.
-        file: String,
-        /// The schema found.
-        found: String,
-    },
-    /// An effect that the library does not have.
-    #[error("{file}: effect '{}' is unknown; use the ids of the effect vocabulary", excerpt(id, 80))]
-    Effect {
-        /// File name as given.
-        file: String,
-        /// The id found.
-        id: String,
-    },
-    /// A value that no calibration writes.
-    #[error(
-        "{file}: {} = {} is out of bounds ({}); use the file as `calibrate` wrote it, or calibrate again",
-        excerpt(field, 100),
-        excerpt(value, 100),
-        excerpt(bound, 160)
-    )]
-    Value {
-        /// File name as given, with the line.
-        file: String,
-        /// Where it stands.
-        field: String,
-        /// What stands there.
-        value: String,
-        /// What may stand there.
-        bound: String,
-    },
-    /// The constants do not belong to the terms.
-    #[error("{file}: {found} constants, the terms listed need {needed} finite ones; calibrate again")]
-    Constants {
-        /// File name as given.
-        file: String,
-        /// How many there are.
-        found: usize,
-        /// How many are needed.
-        needed: usize,
-    },
-}
-
-impl ModelFileError {
-    /// The flaw of a file.
-    pub(crate) fn of(file: &str) -> impl Fn(Flaw) -> Self + '_ {
-        |Flaw { field, value, bound }| Self::Value { file: file.to_owned(), field, value, bound }
-    }
-
-    /// The error with the line of its field.
-    fn placed(mut self, name: &str, text: &str) -> Self {
-        match &mut self {
-            Self::Value { file, field, .. } => *file = place_of(name, text, field),
-            Self::Constants { file, .. } => *file = place_of(name, text, "constants"),
-            Self::Effect { file, .. } => *file = place_of(name, text, "terms"),
-            Self::Malformed { .. } | Self::Schema { .. } => {}
-        }
-        self
-    }
-}
-
-/// One term as it is written.
+/// A term in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct TermEntry {
     id: String,
@@ -106,7 +31,7 @@ struct TermEntry {
     structure: Option<Structure>,
 }
 
-/// One constant as it is written.
+/// A constant in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Constant {
     name: String,
@@ -114,7 +39,7 @@ struct Constant {
     unit: String,
 }
 
-/// A model on file.
+/// A model file.
 ///
 /// ```
 /// use pinswitch_calibration::inference::Levels;
@@ -156,13 +81,13 @@ pub struct ModelFile {
     frame: Frame,
     /// Covariance of the constants' coordinates, row by row.
     covariance: Vec<Vec<f64>>,
-    /// The effects that the terms name; those of one's own stand in the file as in a file of theirs.
+    /// The effects of the terms; user-defined ones are written in the file as in a file of effects.
     #[serde(skip)]
     vocabulary: Vocabulary,
 }
 
-/// Whether a term says something of operators.
-fn knows_operators(term: &Term, vocabulary: &Vocabulary) -> bool {
+/// Returns whether a term depends on the operator.
+fn depends_on_operator(term: &Term, vocabulary: &Vocabulary) -> bool {
     match term {
         Term::Structure(structure) => matches!(structure.form, Shape::OperatorIs { .. }),
         Term::Named(effect) => vocabulary
@@ -172,7 +97,7 @@ fn knows_operators(term: &Term, vocabulary: &Vocabulary) -> bool {
 }
 
 impl ModelFile {
-    /// The file of a fit.
+    /// Returns the file of a fit.
     pub fn new(fitted: &Fit, data: &Observations, noise: Noise) -> Self {
         let model = &fitted.model;
         let data = &data.compacted();
@@ -181,10 +106,10 @@ impl ModelFile {
         let beyond_range = error_beyond_range(model, &weighed);
         let mut frame = model.frame.clone();
         if frame.changes.is_empty() {
-            // Nothing of the model depends on who they were.
+            // The model does not depend on them.
             (frame.sessions, frame.specimens) = (Vec::new(), Vec::new());
         }
-        if !model.terms.iter().any(|term| knows_operators(term, &model.vocabulary)) {
+        if !model.terms.iter().any(|term| depends_on_operator(term, &model.vocabulary)) {
             frame.operators = Vec::new();
         }
         let used = |id: &str| model.terms.iter().any(|term| term.id() == id);
@@ -224,94 +149,94 @@ impl ModelFile {
         }
     }
 
-    /// Reads a file's text. `file` is the name used in errors.
+    /// Parses a model file. `file` is its name in errors.
     ///
     /// # Errors
-    /// [`ModelFileError`] if the text is no model of this version.
-    pub fn parse(text: &str, file: &str) -> Result<Self, ModelFileError> {
-        let malformed = |e: toml::de::Error| {
-            let (file, problem) = toml_error(file, text, &e);
-            ModelFileError::Malformed { file, problem }
-        };
-        let placed = |flaw: Flaw| ModelFileError::of(&place_of(file, text, &flaw.field))(flaw);
+    /// A [`Diagnostic`] of the first field that is not that of a model of this version.
+    pub fn parse(text: &str, file: &str) -> Result<Self, Diagnostic> {
+        let malformed = |e: toml::de::Error| toml_error(file, text, &e).with_help(HELP);
+        let located = |e: Diagnostic| locate_field(e, file, text);
         let mut table: toml::Table = toml::from_str(text).map_err(malformed)?;
-        check_finite("", &toml::Value::Table(table.clone())).map_err(placed)?;
-        let is_earlier = walk_to_offset(&mut table).map_err(placed)?;
-        // Text has the lines of what is wrong in it.
+        check_finite("", &toml::Value::Table(table.clone())).map_err(located)?;
+        let is_earlier = walk_to_offset(&mut table).map_err(located)?;
+        // Errors of the text have line numbers, those of the table do not.
         let mut parsed: Self =
             if is_earlier { table.try_into() } else { toml::from_str(text) }.map_err(malformed)?;
         if parsed.schema != SCHEMA {
-            return Err(ModelFileError::Schema {
-                file: place_of(file, text, "schema"),
-                found: parsed.schema,
-            });
+            let error = invalid("schema", &parsed.schema, "unknown schema")
+                .with_help(format!("use a file with schema = \"{SCHEMA}\""));
+            return Err(located(error));
         }
-        let unusable = |problem: String| ModelFileError::Malformed { file: file.to_owned(), problem };
-        let own = effects_of_model(text, file).map_err(|e| ModelFileError::Malformed {
-            file: format!("{file}:{}:{}", e.line, e.column),
-            problem: e.problem,
-        })?;
-        parsed.vocabulary = Vocabulary::built_in().with(own).map_err(|e| unusable(e.to_string()))?;
-        let constants = parsed.model(file).map_err(|e| e.placed(file, text))?.values().len();
-        check_covariance(&parsed.covariance, constants).map_err(placed)?;
+        let own = effects_of_model(text, file)?;
+        parsed.vocabulary =
+            Vocabulary::built_in().with(own).map_err(|e| Diagnostic::from(e).or_in_file(file))?;
+        let constants = parsed.checked_model().map_err(located)?.values().len();
+        check_covariance(&parsed.covariance, constants).map_err(located)?;
         Ok(parsed)
     }
 
-    /// The file's text.
+    /// Returns the text of the file.
     ///
     /// # Errors
-    /// [`ModelFileError::Malformed`] if a value cannot be written as TOML.
-    pub fn to_text(&self) -> Result<String, ModelFileError> {
+    /// If a value cannot be written as TOML.
+    pub fn to_text(&self) -> Result<String, Diagnostic> {
         let own = own_effect_blocks(self.vocabulary.own().map(|own| own.definition()));
         toml::to_string(self)
             .map(|text| text + &own)
-            .map_err(|e| ModelFileError::Malformed { file: "model.toml".to_owned(), problem: e.to_string() })
+            .map_err(|e| Diagnostic::from_error(e).with_location(Location::file("model.toml")))
     }
 
-    /// The model. `file` is the name used in errors.
+    /// Returns the model. `file` is the name of the file in errors.
     ///
     /// # Errors
-    /// [`ModelFileError`] if an effect is unknown or constants are missing.
-    pub fn model(&self, file: &str) -> Result<Model, ModelFileError> {
-        let flawed = ModelFileError::of(file);
+    /// If a value is out of bounds, an effect is unknown, or the constants do not match the terms.
+    pub fn model(&self, file: &str) -> Result<Model, Diagnostic> {
+        self.checked_model().map_err(|e| e.or_in_file(file))
+    }
+
+    fn checked_model(&self) -> Result<Model, Diagnostic> {
         check_frame(&self.frame)
             .and_then(|()| check_noise(&self.noise))
-            .and_then(|()| check_beyond_range(self.beyond_range))
-            .map_err(&flawed)?;
+            .and_then(|()| check_beyond_range(self.beyond_range))?;
         let mut model = Model::baseline(self.frame.clone()).among(&self.vocabulary);
-        for entry in &self.terms {
-            let term =
-                match &entry.structure {
-                    Some(structure) => Term::Structure(structure.clone()),
-                    None => Term::Named(self.vocabulary.named(&entry.id).ok_or_else(|| {
-                        ModelFileError::Effect { file: file.to_owned(), id: entry.id.clone() }
-                    })?),
-                };
+        for (i, entry) in self.terms.iter().enumerate() {
+            let unknown = || {
+                invalid(format!("terms[{i}].id"), &entry.id, "unknown effect")
+                    .with_help("use the ids of `pinswitch effects`")
+            };
+            let term = match &entry.structure {
+                Some(structure) => Term::Structure(structure.clone()),
+                None => Term::Named(self.vocabulary.named(&entry.id).ok_or_else(unknown)?),
+            };
             let zeros = vec![0.0; term.constants()];
             model = model.with_term(term, &zeros);
         }
         let values: Vec<f64> = self.constants.iter().map(|c| c.value).collect();
         let needed = model.values().len();
+        let mismatch = || {
+            let problem = format!("the listed terms need {needed} finite constants");
+            invalid("constants", format!("{} constants", values.len()), problem)
+        };
         if values.len() != needed {
-            return Err(ModelFileError::Constants { file: file.to_owned(), found: values.len(), needed });
+            return Err(mismatch());
         }
         let constants = self.constants.iter().map(|c| (c.name.as_str(), c.unit.as_str(), c.value));
-        check_constants(&model, constants).map_err(&flawed)?;
+        check_constants(&model, constants)?;
         if !model.set_values(&values) {
-            return Err(ModelFileError::Constants { file: file.to_owned(), found: values.len(), needed });
+            return Err(mismatch());
         }
         Ok(model)
     }
 
-    /// Predicted readings and their standard deviations in newtons; a condition that the calibration has not
-    /// seen is predicted with the layout law and said to be wide.
+    /// Predicts readings and their standard deviations in newtons. A condition that was not
+    /// calibrated is predicted by the layout law, with a larger standard deviation.
     ///
     /// # Errors
-    /// [`ModelFileError`] as in [`ModelFile::model`].
-    pub fn predict(&self, rows: &[PlateauRow], file: &str) -> Result<(Vec<f64>, Vec<f64>), ModelFileError> {
-        let (mut frame, known) = (self.frame.clone(), self.model(file)?);
+    /// As [`ModelFile::model`], and if a prediction is not finite.
+    pub fn predict(&self, rows: &[PlateauRow], file: &str) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
+        let (mut frame, model) = (self.frame.clone(), self.model(file)?);
         rows.iter().for_each(|row| frame.extend(row));
-        let model = known.in_frame(frame);
+        let model = model.in_frame(frame);
         let points = model.frame.points(rows).unwrap_or_default();
         let predicted = model.predict(&points);
         let mut sd = prediction_sd_n(&model, &points, &self.covariance, self.noise);
@@ -321,28 +246,31 @@ impl ModelFile {
             *sd = libm::hypot(*sd, self.beyond_range * beyond);
         }
         if let Some(row) = predicted.iter().zip(&sd).position(|(n, sd)| !n.is_finite() || !sd.is_finite()) {
-            return Err(ModelFileError::of(file)(Flaw {
-                field: "constants".to_owned(),
-                value: format!("a prediction of {} N (sd {} N) at row {}", predicted[row], sd[row], row + 1),
-                bound: "finite predictions".to_owned(),
-            }));
+            let problem = format!(
+                "the prediction of row {} is not finite: {} N (standard deviation {} N)",
+                row + 1,
+                predicted[row],
+                sd[row]
+            );
+            return Err(Diagnostic::new(problem).with_location(Location::file(file)).with_help(HELP));
         }
         Ok((predicted, sd))
     }
 
-    /// Wrap in degrees of the first contact that was fitted and has one.
+    /// Returns the wrap angle in degrees of the first fitted condition that has one.
     pub fn usual_wrap_deg(&self) -> f64 {
         let wrapped = self.frame.conditions.iter().find(|c| c.substrate.is_some());
-        // Degrees are written in tables, and come back as they were.
+        // Rounded to the degrees that the table had before the conversion to radians.
         wrapped.map_or(published::WRAP_ANGLE_DEG, |c| (1e9 * c.wrap_rad.to_degrees()).round() / 1e9)
     }
 
-    /// The effects that its terms may name: the built-in ones, and those of one's own that are in it.
+    /// Returns the effects that terms may name: the built-in ones, and the user-defined ones in the
+    /// file.
     pub fn vocabulary(&self) -> &Vocabulary {
         &self.vocabulary
     }
 
-    /// The noise of the table that was fitted.
+    /// Returns the noise of the fitted table.
     pub fn noise(&self) -> Noise {
         self.noise
     }
@@ -355,8 +283,11 @@ impl ModelFile {
         self.frame.reference_speed_pct
     }
 
-    /// Ids of the terms that stay out of the curve of a printed part, and of those that stay in. The side is that of the
-    /// effect; what stands in the file is for a reader. Structure without a name has none, and stays out.
+    /// Returns the ids of the terms that are excluded from the curve of a printed part, and of
+    /// those that are included.
+    ///
+    /// The side is that of the effect; the side in the file is for readers. Unattributed structure
+    /// is excluded.
     pub fn sides(&self) -> (Vec<&str>, Vec<&str>) {
         let stays =
             |id: &str| self.vocabulary.named(id).is_some_and(|e| e.description().side == Side::Switch);
@@ -372,8 +303,9 @@ mod tests {
     use crate::test_session::session;
 
     fn text() -> String {
-        let found = crate::calibrate(&session(3), Levels::default()).unwrap();
-        ModelFile::new(&found.selection.augmented, &found.data, found.selection.noise).to_text().unwrap()
+        let calibration = crate::calibrate(&session(3), Levels::default()).unwrap();
+        let selection = calibration.selection;
+        ModelFile::new(&selection.augmented, &calibration.data, selection.noise).to_text().unwrap()
     }
 
     fn sd_n(text: &str) -> f64 {
@@ -381,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn a_walk_of_an_earlier_file_is_an_offset_of_the_series() {
+    fn walks_of_earlier_files_become_offsets() {
         let text = text();
         let (before, walk) = text.split_once("[noise.walk]\n").unwrap();
         let after = walk.split_once("\n\n").map_or("", |(_, after)| after);
@@ -391,12 +323,12 @@ mod tests {
         assert!((sd_n(&earlier("walk_N = 0.2")) / libm::hypot(sd_n(&text), 0.2) - 1.0).abs() < 1e-9);
         for walk in ["walk_N = -0.2", "walk_N = \"much\""] {
             let error = ModelFile::parse(&earlier(walk), "model.toml").unwrap_err().to_string();
-            assert!(error.contains("noise.walk_N = ") && error.contains("out of bounds"), "{error}");
+            assert!(error.starts_with("model.toml:") && error.contains(": noise.walk_N = "), "{error}");
         }
     }
 
     #[test]
-    fn noise_that_is_unknown_is_refused_by_its_name() {
+    fn unknown_noise_is_refused() {
         let text = text();
         for table in ["[noise]\n", "[noise.walk]\n", "[noise.series]\n"] {
             let wrong = text.replace(table, &format!("{table}mount_scael = 0.01\n"));

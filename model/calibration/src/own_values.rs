@@ -1,11 +1,12 @@
-//! Whether effects of one's own have values on a table: a formula may take the logarithm of what is zero there.
+//! Check that user-defined effects are finite on a table, where a formula may take the logarithm of
+//! zero.
 
 use crate::calibrate::CalibrationError;
 use crate::inference::{Model, Observations, Term};
 use crate::table::PlateauRow;
 
-/// Every effect of one's own has a number on every row, wherever its fit may start.
-pub(crate) fn has_values(
+/// Checks that every user-defined effect is finite on every row at all start values of its fit.
+pub(crate) fn check_finite_effects(
     baseline: &Model,
     data: &Observations,
     rows: &[PlateauRow],
@@ -16,18 +17,18 @@ pub(crate) fn has_values(
             let predicted = baseline.with_term(Term::Named(effect), &start).predict(&data.points);
             if let Some(row) = predicted.iter().position(|n| !n.is_finite()) {
                 let PlateauRow { load_n, speed_pct, dwell_s, repetition, time_s, .. } = &rows[row];
-                let told = format!(
+                let conditions = format!(
                     "load_n {load_n}, speed_pct {speed_pct}, dwell_s {dwell_s}, repetition {repetition}, time_s {time_s}"
                 );
                 let constants = effect.parameters().iter().zip(&start);
                 let values: Vec<String> = constants
                     .map(|(constant, value)| format!("{} = {}", constant.name, rounded(*value)))
                     .collect();
-                return Err(CalibrationError::NoValue {
+                return Err(CalibrationError::NotFinite {
                     id: effect.id().to_owned(),
                     values: values.join(", "),
                     row: row + 1,
-                    told,
+                    conditions,
                 });
             }
         }
@@ -35,7 +36,7 @@ pub(crate) fn has_values(
     Ok(())
 }
 
-/// A number with four digits, which say where a fit begins.
+/// Rounds to four significant digits, which suffice to show a start value.
 fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
@@ -48,10 +49,10 @@ mod tests {
     use crate::test_session::session;
 
     #[test]
-    fn the_place_at_which_a_fit_would_begin_is_named() {
+    fn infinite_start_values_are_named() {
         let good = include_str!("../../../templates/rig/effects.toml");
-        // With c at its start of 52 it has numbers on every row. At the heaviest load, beyond what a formula is tried on when it is
-        // read, it has none with a greater c, where a fit may begin, too.
+        // The formula is finite on every row at the start c = 52. At the heaviest load, above those
+        // of the probe rows, it is not finite at a larger start of c.
         let text = good.replace(
             "-a * exp(-((speed_pct - c)/w)^2)",
             "a*exp(-((speed_pct - 50)/w)^2)*sqrt(1 - load_n*c/6000)",
@@ -63,9 +64,10 @@ mod tests {
         rows.iter_mut().for_each(|row| row.load_n *= 100.0 / heaviest);
         let baseline = Model::baseline(Frame::new(&rows)).among(&vocabulary);
         let data = Observations::new(&baseline.frame, &rows).unwrap();
-        let said = has_values(&baseline, &data, &rows).unwrap_err().to_string();
-        assert!(said.starts_with("effect 'lubricant_dip' has no number where a = 0.1, c = "), "{said}");
-        let c: f64 = said.split("c = ").nth(1).unwrap().split(',').next().unwrap().parse().unwrap();
-        assert!(c > 60.0 && said.contains(", w = 8, at which a fit may begin, in row "), "{said}");
+        let error = check_finite_effects(&baseline, &data, &rows).unwrap_err();
+        let CalibrationError::NotFinite { id, values, .. } = error else { panic!("{error}") };
+        assert!(id == "lubricant_dip" && values.starts_with("a = 0.1, c = "), "{id}: {values}");
+        let c: f64 = values.split("c = ").nth(1).unwrap().split(',').next().unwrap().parse().unwrap();
+        assert!(c > 60.0 && values.ends_with(", w = 8"), "{values}");
     }
 }

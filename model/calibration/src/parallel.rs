@@ -1,26 +1,26 @@
-//! Independent work side by side, on as many threads as there are processors; results in the order of what was given.
+//! Parallel evaluation on all processors; results are in the order of the items.
 
-/// `of` each item.
+/// Applies `of` to each item.
 #[cfg(feature = "parallel")]
 pub(crate) fn map_each<I: Send, T: Send>(items: Vec<I>, of: impl Fn(I) -> T + Sync + Send) -> Vec<T> {
     use rayon::prelude::*;
-    // Items are few and each takes long: whoever is idle takes one.
+    // Items are few and slow: idle threads take one at a time.
     items.into_par_iter().with_max_len(1).map(of).collect()
 }
 
-/// The results of two.
+/// Runs two closures and returns their results.
 #[cfg(feature = "parallel")]
 pub(crate) fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     rayon::join(a, b)
 }
 
-/// `of` each item.
+/// Applies `of` to each item.
 #[cfg(not(feature = "parallel"))]
 pub(crate) fn map_each<I, T>(items: Vec<I>, of: impl Fn(I) -> T) -> Vec<T> {
     items.into_iter().map(of).collect()
 }
 
-/// The results of two.
+/// Runs two closures and returns their results.
 #[cfg(not(feature = "parallel"))]
 pub(crate) fn both<A, B>(a: impl FnOnce() -> A, b: impl FnOnce() -> B) -> (A, B) {
     (a(), b())
@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn results_come_in_the_order_of_the_items_also_of_work_within_work() {
+    fn results_keep_the_order_when_nested() {
         let squares = |upto: u32| map_each((0..upto).collect(), |i| i * i);
         let expected = |upto: u32| (0..upto).map(|i| i * i).collect::<Vec<_>>();
         assert_eq!(map_each((0..20).collect(), squares), (0..20).map(expected).collect::<Vec<_>>());

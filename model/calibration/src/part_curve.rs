@@ -1,16 +1,19 @@
-//! The curve of a printed part by a calibrated model: effects of the switch in, effects of the rig out.
+//! Friction curve of a printed part from a calibrated model: includes effects of the switch,
+//! excludes those of the rig.
 
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::{Direction, FrictionCurve, Law, Substrate, Trust, published};
 
 use crate::inference::prediction_sd_n;
 use crate::model_check::check_friction;
-use crate::model_file::{ModelFile, ModelFileError};
+use crate::model_file::ModelFile;
 use crate::table::{Frame, Labels, PlateauRow, Point, Sweep};
 
-/// Repetitions after which whatever settles has settled.
+/// Number of repetitions after which all transients have settled.
 const SETTLED: u32 = 1000;
 
-/// The rows of a part as points without a history: each as if it had been pulled at its load all the while.
+/// Converts the rows of a part to points without history, as if each had always been pulled at its
+/// load.
 fn settled_points(frame: &Frame, rows: &[PlateauRow]) -> Vec<Point> {
     let mut points = frame.points(rows).unwrap_or_default();
     for point in &mut points {
@@ -22,19 +25,22 @@ fn settled_points(frame: &Frame, rows: &[PlateauRow]) -> Vec<Point> {
 }
 
 impl ModelFile {
-    /// Curve of pins in these grooves, numbered from 1, on `substrate` at ascending `loads_n`, for a slow first pull at
-    /// the reference speed and the paper's wrap angle: no run-in, no drift, loads ascending. A model of a rig with
-    /// another wrap angle predicts it as a layout that nobody measured. `file` is the name used in errors.
+    /// Returns the curve of pins in these grooves, numbered from 1, on `substrate` at ascending
+    /// `loads_n` in newtons.
+    ///
+    /// It applies to a slow pull at the reference speed and the paper's wrap angle, without run-in
+    /// or drift and with ascending loads. A model of a rig with another wrap angle predicts it as
+    /// an unmeasured layout. `file` is the name of the model in errors.
     ///
     /// # Errors
-    /// [`ModelFileError`] as in [`ModelFile::model`].
+    /// As [`ModelFile::model`], and if the predicted friction is impossible.
     pub fn part_curve(
         &self,
         substrate: Substrate,
         pins: &[usize],
         loads_n: &[f64],
         file: &str,
-    ) -> Result<FrictionCurve, ModelFileError> {
+    ) -> Result<FrictionCurve, Diagnostic> {
         let rows: Vec<PlateauRow> = [Direction::Eccentric, Direction::Concentric]
             .iter()
             .flat_map(|d| loads_n.iter().map(|load| self.row(substrate, pins, *load, *d)))
@@ -46,9 +52,10 @@ impl ModelFile {
         let model = known.in_frame(frame);
         let points = settled_points(&model.frame, &rows);
         let tension = model.predict_part(&points);
-        // Half the gap of two independent readings without their noise; the model's own uncertainty only.
-        let silent = crate::inference::Noise::constant(0.0, 0.0);
-        let sd = prediction_sd_n(&model, &points, self.covariance(), silent);
+        // The band is the uncertainty of the model only: half the gap of two independent readings,
+        // without their noise.
+        let no_noise = crate::inference::Noise::constant(0.0, 0.0);
+        let sd = prediction_sd_n(&model, &points, self.covariance(), no_noise);
         let n = loads_n.len();
         let friction: Vec<f64> = (0..n).map(|i| 0.5 * (tension[n + i] - tension[i])).collect();
         let half: Vec<f64> = (0..n).map(|i| 1.96 * 0.5 * (sd[i] + sd[n + i])).collect();
@@ -58,14 +65,11 @@ impl ModelFile {
         let (outside, inside) = self.sides();
         let mut reasons = Vec::new();
         if !measured {
-            reasons.push(
-                "the layout was not among the conditions calibrated: its switch follows the layout law"
-                    .to_owned(),
-            );
+            reasons.push("the layout was not calibrated: its threshold follows the layout law".to_owned());
         }
         if !within {
             reasons.push(format!(
-                "loads reach beyond those calibrated, {:.2} to {:.2} N",
+                "some loads are outside the calibrated range of {:.2} to {:.2} N",
                 model.frame.load_range_n.0, model.frame.load_range_n.1
             ));
         }
@@ -76,22 +80,22 @@ impl ModelFile {
                     .own()
                     .any(|own| own.definition().id == id && !own.definition().drawn_from.is_empty())
             };
-            let told: Vec<String> = inside
+            let names: Vec<String> = inside
                 .iter()
                 .map(|id| {
                     if drawn(id) {
-                        format!("{id} (a form drawn from measured data)")
+                        format!("{id} (a formula derived from measured data)")
                     } else {
                         (*id).to_owned()
                     }
                 })
                 .collect();
-            reasons.push(format!("effects of the switch are in the curve: {}", told.join(", ")));
+            reasons.push(format!("the curve includes effects of the switch: {}", names.join(", ")));
         }
         if !outside.is_empty() {
-            reasons.push(format!("effects of the measurement stay out of it: {}", outside.join(", ")));
+            reasons.push(format!("the curve excludes effects of the measurement: {}", outside.join(", ")));
         }
-        check_friction(loads_n, &friction, &half).map_err(ModelFileError::of(file))?;
+        check_friction(loads_n, &friction, &half).map_err(|e| e.or_in_file(file))?;
         Ok(FrictionCurve {
             law: Law::Calibrated,
             trust: if measured && within { Trust::Interpolated } else { Trust::Extrapolated },
@@ -106,16 +110,17 @@ impl ModelFile {
         })
     }
 
-    /// How many standard normals draw the constants of [`Self::drawn_part`].
+    /// Returns the number of standard normal variates that [`Self::drawn_part`] needs.
     pub fn constants_drawn(&self) -> usize {
         self.covariance().len()
     }
 
-    /// Friction and the silicone's share at `loads_n`, as in [`Self::part_curve`] but with constants drawn from their
-    /// covariance by standard normals `z`; all zero are the fitted ones.
+    /// Returns friction in newtons and the silicone's share at `loads_n`, as [`Self::part_curve`],
+    /// for constants drawn from their covariance with standard normal variates `z`; zeros give the
+    /// fitted constants.
     ///
     /// # Errors
-    /// [`ModelFileError`] as in [`ModelFile::model`].
+    /// As [`ModelFile::model`].
     pub fn drawn_part(
         &self,
         substrate: Substrate,
@@ -123,7 +128,7 @@ impl ModelFile {
         loads_n: &[f64],
         z: &[f64],
         file: &str,
-    ) -> Result<(Vec<f64>, Vec<f64>), ModelFileError> {
+    ) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
         let rows: Vec<PlateauRow> = [Direction::Eccentric, Direction::Concentric]
             .iter()
             .flat_map(|d| loads_n.iter().map(|load| self.row(substrate, pins, *load, *d)))
@@ -132,7 +137,8 @@ impl ModelFile {
         if z.iter().any(|z| *z != 0.0) {
             let n = self.covariance().len();
             let covariance = nalgebra::DMatrix::from_fn(n, n, |i, j| self.covariance()[i][j]);
-            // Eigenvalues rather than a Cholesky root: constants that the data tie together leave it singular.
+            // Eigenvalues rather than a Cholesky factor: confounded constants make the covariance
+            // singular.
             let parts = nalgebra::SymmetricEigen::new(covariance);
             for (j, z) in z.iter().take(n).enumerate() {
                 let sd = parts.eigenvalues[j].max(0.0).sqrt();

@@ -1,6 +1,6 @@
-//! The error to expect on a new session of the same rig: the whole procedure, from the noise to the names, is run
-//! without a fourth of the series, and judged on them; and what mounts that are put on anew add, whose scatter the other
-//! series of a mount share.
+//! Expected error of a new session of the same rig: the whole procedure, from noise to effects, is
+//! repeated without a quarter of the series and evaluated on it. The scatter of new mounts is
+//! added, since the series of one mount share it.
 
 use crate::forms::with_best_form;
 use crate::inference::{
@@ -9,21 +9,21 @@ use crate::inference::{
 };
 use crate::parallel::map_each;
 
-/// Parts into which the series are dealt.
+/// Number of folds.
 const FOLDS: usize = 4;
-/// Readings further off than this many standard deviations count as if they were this far off.
+/// Residuals above this number of standard deviations are clipped.
 const FURTHEST_SD: f64 = 20.0;
 
-/// Root mean square errors in newtons on series that had no part in anything.
+/// Root mean square errors in newtons on series that were not used in any way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Promise {
-    /// Of the refitted baseline.
+    /// Error of the refitted baseline.
     pub(crate) baseline_n: f64,
-    /// Of what the procedure made of the other series.
+    /// Error of the model that the procedure selected on the other series.
     pub(crate) augmented_n: f64,
 }
 
-/// What the procedure makes of a table without one part of its series.
+/// Result of the procedure on a table without one fold.
 pub(crate) struct Learned {
     left_out: usize,
     seen: Observations,
@@ -32,12 +32,12 @@ pub(crate) struct Learned {
     structure: Option<FoundStructure>,
 }
 
-/// The parts that are left out in turn.
+/// Returns the indices of the folds.
 pub(crate) fn parts() -> Vec<usize> {
     (0..FOLDS).collect()
 }
 
-/// Runs the procedure without one part; `None` if the rest cannot fix the baseline.
+/// Runs the procedure without one fold; `None` if the other rows do not determine the baseline.
 pub(crate) fn learn(left_out: usize, start: &Model, data: &Observations, levels: Levels) -> Option<Learned> {
     let parts = data.parts_of_series(FOLDS);
     let mut seen = data.subset(|row| parts[row] != left_out);
@@ -48,9 +48,10 @@ pub(crate) fn learn(left_out: usize, start: &Model, data: &Observations, levels:
     Some(Learned { left_out, seen, model, noise, structure })
 }
 
-/// The promise for a table, from what was learned of its parts; `None` if no part could be judged.
+/// Returns the expected errors of a table from the results of its folds; `None` if no fold could be
+/// evaluated.
 ///
-/// `with_form` says that the model takes a drawn form in place of shapes.
+/// `with_form` is true if the model contains a derived formula in place of shapes.
 pub(crate) fn promise(
     learned: Vec<Option<Learned>>,
     whole: &Selection,
@@ -69,7 +70,8 @@ pub(crate) fn promise(
     (rows > 0.0).then(|| Promise { baseline_n: expected_n(baseline), augmented_n: expected_n(augmented) })
 }
 
-/// Sums of squares on the part that was left out, and its readings; `None` if it has none that count.
+/// Returns the sums of squares on the fold that was left out, and its number of readings; `None` if
+/// none of them counts.
 fn judge(
     learned: Learned,
     whole: &Selection,

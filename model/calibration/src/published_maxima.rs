@@ -1,4 +1,5 @@
-//! The loop on the paper's own numbers: which effect explains most of what its model misses of its seven maxima.
+//! Calibration on the paper's seven published maxima: which effect explains most of the model's
+//! errors.
 
 use std::convert::Infallible;
 
@@ -9,23 +10,24 @@ use serde::Serialize;
 
 use crate::table::Condition;
 
-/// What one explanation makes of the seven maxima.
+/// Result of one explanation of the seven maxima.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Explanation {
     /// Id of the effect; `as printed` or `refitted` for the paper's model.
     pub id: &'static str,
-    /// Fitted constants: name and value.
+    /// Fitted constants, by name.
     pub constants: Vec<(&'static str, f64)>,
-    /// Root mean square relative error on the seven maxima, in percent.
+    /// Root mean square relative error on the seven maxima in percent.
     pub rms_pct: f64,
-    /// The same, each layout's maxima predicted with nothing of it given, in percent: its constants are fitted to the
-    /// others' maxima, its threshold follows from theirs. `None` for the model as printed, whose constants are its own.
+    /// Leave-one-layout-out error in percent: the constants are fitted to the maxima of the other
+    /// layouts, from which the layout's threshold also follows. `None` for the model as printed,
+    /// whose constants are not fitted.
     pub left_out_rms_pct: Option<f64>,
-    /// Relative error of each maximum in percent: name and error.
+    /// Relative error of each maximum in percent, by name.
     pub errors_pct: Vec<(String, f64)>,
 }
 
-/// How friction on the pins depends on the layout.
+/// Dependence of the friction on the pins on the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pins {
     Constant,
@@ -34,10 +36,10 @@ enum Pins {
     Stiffening,
 }
 
-/// Turn per pin to which the coefficient of bending refers: 20 degrees.
+/// Deflection angle per pin to which the coefficient of bending refers: 20 degrees.
 const TYPICAL_TURN_RAD: f64 = 0.349;
 
-/// One published maximum.
+/// A published maximum.
 struct Maximum {
     layout: Option<usize>,
     substrate: Substrate,
@@ -62,8 +64,8 @@ fn maxima() -> Vec<Maximum> {
     all
 }
 
-/// Friction at the heaviest load in newtons. Coordinates: `ln(mu_s/0.24)`, `ln(pins constant/typical)`,
-/// `ln` of the factor on the published thresholds.
+/// Returns friction at the heaviest load in newtons. The coordinates are `ln(mu_s/0.24)`, `ln(pins
+/// constant/typical)` and the logarithm of the factor on the published thresholds.
 fn predict(kind: Pins, at: &[f64], maximum: &Maximum, scale_free: bool) -> f64 {
     let switched = |layout: &PublishedLayout| {
         let factor = if scale_free { libm::exp(at[2]) } else { 1.0 };
@@ -72,7 +74,7 @@ fn predict(kind: Pins, at: &[f64], maximum: &Maximum, scale_free: bool) -> f64 {
     predict_switched(kind, at, maximum, switched)
 }
 
-/// The same, with the share that has switched at the heaviest load from `switched`.
+/// Returns friction for a given silicone's share at the heaviest load.
 fn predict_switched(
     kind: Pins,
     at: &[f64],
@@ -91,8 +93,9 @@ fn predict_switched(
     (1.0 + layout.weight) * (1.0 - s) * pins + (1.0 - layout.weight) * s * silicone
 }
 
-/// Friction exponent of the pins: constant, `kappa sqrt(T) sum theta^1.5` (`model/doc/friction-laws.md`), in proportion
-/// to the mean turn per pin, or growing with load (which at one load is the constant again).
+/// Returns the friction exponent of the pins: constant, `kappa sqrt(T) sum theta^1.5`
+/// (`model/doc/friction-laws.md`), proportional to the mean deflection angle per pin, or increasing
+/// with load (which at one load is the constant again).
 fn pins_exponent(kind: Pins, factor: f64, layout: &PublishedLayout, load_n: f64, wrap: f64) -> f64 {
     match kind {
         Pins::Constant | Pins::Stiffening => published::MU_PINS * factor * wrap,
@@ -106,13 +109,14 @@ fn pins_exponent(kind: Pins, factor: f64, layout: &PublishedLayout, load_n: f64,
     }
 }
 
-/// Least squares of the relative errors over the maxima for which `keep` holds, with weak priors, which leave
-/// nothing undetermined.
+/// Fits the relative errors of the maxima for which `keep` returns true by least squares, with weak
+/// priors that make every coordinate identifiable.
 fn fit(kind: Pins, data: &[Maximum], keep: impl Fn(&Maximum) -> bool) -> Vec<f64> {
     let used: Vec<&Maximum> = data.iter().filter(|m| keep(m)).collect();
     let residuals = |at: &[f64]| -> Result<Vec<f64>, Infallible> {
         let misses = used.iter().map(|m| (predict(kind, at, m, true) / m.friction_n - 1.0) / 0.05);
-        // What is known beforehand: half of a factor e on friction, a fifth on the thresholds.
+        // Prior standard deviations: half a unit of the logarithm of friction, a fifth for the
+        // thresholds.
         Ok(misses.chain([at[0] / 0.5, at[1] / 0.5, at[2] / 0.2]).collect())
     };
     let start = [0.0; 3];
@@ -120,12 +124,13 @@ fn fit(kind: Pins, data: &[Maximum], keep: impl Fn(&Maximum) -> bool) -> Vec<f64
     found.map_or(start.to_vec(), |solution| solution.at)
 }
 
-/// Root mean square of relative errors, in percent.
+/// Returns the root mean square of relative errors in percent.
 fn rms(errors: &[f64]) -> f64 {
     100.0 * (errors.iter().map(|e| e * e).sum::<f64>() / errors.len().max(1) as f64).sqrt()
 }
 
-/// Explanations of the seven maxima, the paper's model first, then by their error on layouts left out.
+/// Returns the explanations of the seven maxima: the paper's model first, then by their
+/// leave-one-layout-out error.
 pub fn explain_published() -> Vec<Explanation> {
     let data = maxima();
     let miss = |kind, at: &[f64], m: &Maximum, free| predict(kind, at, m, free) / m.friction_n - 1.0;
@@ -174,8 +179,9 @@ pub fn explain_published() -> Vec<Explanation> {
     all
 }
 
-/// How far a layout has switched at the heaviest load if its own threshold is not given: by the rule that the thresholds
-/// of the other layouts follow, its half load times the factor that their maxima ask for.
+/// Returns the silicone's share of a layout at the heaviest load without using its own threshold:
+/// from the rule that the thresholds of the other layouts follow, times the factor fitted to their
+/// maxima.
 fn switched_by_others(left_out: usize, layout: &PublishedLayout, factor: f64) -> f64 {
     let others: Vec<PublishedLayout> =
         (0..published::LAYOUTS.len()).filter(|i| *i != left_out).map(|i| published::LAYOUTS[i]).collect();
@@ -189,9 +195,10 @@ fn switched_by_others(left_out: usize, layout: &PublishedLayout, factor: f64) ->
 mod tests {
     use super::*;
 
-    /// `model/doc/friction-laws.md`: 31 % as printed; ploughing explains most of it and holds for layouts left out.
+    /// `model/doc/friction-laws.md`: 31 % as printed; ploughing explains most of it, also for
+    /// layouts left out.
     #[test]
-    fn ploughing_explains_most_of_what_the_paper_misses() {
+    fn ploughing_explains_most_published_errors() {
         let all = explain_published();
         assert_eq!(format!("{:.0}", all[0].rms_pct), "31");
         assert_eq!(all[1].id, "coating_ploughing");

@@ -1,4 +1,5 @@
-//! A small session for unit tests: the baseline's own readings with seeded noise, at two layouts and bare silicone.
+//! A small session for unit tests: readings of the baseline with seeded noise, for two layouts and
+//! bare silicone.
 
 use pinswitch_friction::{Direction, Substrate, published};
 use rand::{RngExt, SeedableRng};
@@ -7,15 +8,16 @@ use rand_chacha::ChaCha8Rng;
 use crate::inference::{Model, Term};
 use crate::table::{Frame, Labels, PlateauRow, Sweep};
 
-/// Repetitions of each series and direction.
+/// Number of repetitions of each series and direction.
 pub(crate) const REPETITIONS: u32 = 9;
 
-/// Rows of a session without any effect; loads go up and down, the speed varies and the noise is 0.05 N.
+/// Returns the rows of a session without effects: ascending and descending loads, varying speed,
+/// noise of 0.05 N.
 pub(crate) fn session(seed: u64) -> Vec<PlateauRow> {
     session_with(seed, &[])
 }
 
-/// The same with terms on top of the baseline.
+/// Returns the rows of a session with additional terms.
 pub(crate) fn session_with(seed: u64, terms: &[(Term, &[f64])]) -> Vec<PlateauRow> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let conditions: [(Option<Substrate>, &[usize]); 5] = [
@@ -67,7 +69,7 @@ pub(crate) fn session_with(seed: u64, terms: &[(Term, &[f64])]) -> Vec<PlateauRo
         .fold(Model::baseline(frame), |model, (term, values)| model.with_term(term.clone(), values));
     let readings = model.predict(&model.frame.points(&rows).unwrap());
     for (row, reading) in rows.iter_mut().zip(readings) {
-        // Twelve uniform numbers make a normal one to a good approximation.
+        // The sum of twelve uniform variates approximates a normal one.
         let normal = (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
         row.force_n = reading + 0.05 * normal;
     }

@@ -94,7 +94,7 @@ fn the_wrap_angle_of_a_run_reaches_the_table() {
             logs.iter()
                 .find(|log| log.file == file)
                 .map(|log| log.text.clone().into_bytes())
-                .ok_or("no such log")
+                .ok_or(std::io::Error::from(std::io::ErrorKind::NotFound))
         })
         .unwrap();
         assert_eq!(found.report.series.len(), 2);

@@ -50,7 +50,7 @@ pub struct RawLog {
 /// let rows = simulate(&plan).rows;
 /// let run = RawRun::new(&plan, &rows, "plan.toml")?;
 /// let log = run.log(0).ok_or("a run of one log")?;
-/// let found = segment_run(&run.description(""), "run.toml", |_| Ok::<_, String>(log.text.clone().into_bytes()))?;
+/// let found = segment_run(&run.description(""), "run.toml", |_| Ok::<_, std::io::Error>(log.text.clone().into_bytes()))?;
 /// assert_eq!(found.rows.len(), log.truth.len(), "every repetition is found again");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use pinswitch_calibration::ModelFile;
 use pinswitch_calibration::table::{Frame, PlateauRow};
-use pinswitch_calibration::{ModelFile, ModelFileError};
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -13,13 +14,13 @@ use rand_distr::{Distribution, StandardNormal};
 /// to series are drawn for each by itself. The same seed gives the same readings.
 ///
 /// # Errors
-/// [`ModelFileError`] as in [`ModelFile::model`]. `file` is the name of the model, used in errors.
+/// As [`ModelFile::model`]. `file` is the name of the model in errors.
 pub fn rehearse(
     model: &ModelFile,
     file: &str,
     mut rows: Vec<PlateauRow>,
     seed: u64,
-) -> Result<Vec<PlateauRow>, ModelFileError> {
+) -> Result<Vec<PlateauRow>, Diagnostic> {
     let (readings_n, _) = model.predict(&rows, file)?;
     let (known, noise) = (model.model(file)?, model.noise());
     let mut frame: Frame = known.frame.clone();

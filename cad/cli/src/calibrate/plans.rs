@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use pinswitch_calibration::Asked;
+use pinswitch_calibration::SessionPlan;
 use pinswitch_calibration::effects::{EffectDefinition, Vocabulary};
 use pinswitch_calibration::experiment::{PlannedRun, SCHEMA, by_contact, read_runs};
 use pinswitch_calibration::table::PlateauTable;
@@ -18,7 +18,7 @@ pub(super) fn plans(
     plans: &[PathBuf],
     tables: &[PathBuf],
     vocabulary: &Vocabulary,
-) -> Result<Vec<Option<Asked>>, Failure> {
+) -> Result<Vec<Option<SessionPlan>>, Failure> {
     let later = tables.get(1..).unwrap_or_default();
     if plans.len() > later.len() {
         return Err(Failure::bad_input(format!(
@@ -41,12 +41,12 @@ pub(super) fn plans(
 }
 
 /// What the plan in a folder asks.
-fn plan(folder: &Path, vocabulary: &Vocabulary) -> Result<Asked, Failure> {
+fn plan(folder: &Path, vocabulary: &Vocabulary) -> Result<SessionPlan, Failure> {
     #[derive(serde::Deserialize)]
     struct PlanFile {
         schema: String,
         #[serde(flatten)]
-        asked: Asked,
+        asked: SessionPlan,
     }
     // The file in the folder is meant as well.
     let path = if folder.is_file() { folder.to_owned() } else { folder.join("experiment.json") };
@@ -64,7 +64,7 @@ fn plan(folder: &Path, vocabulary: &Vocabulary) -> Result<Asked, Failure> {
         vocabulary.named(id).is_some() || form.as_ref().is_some_and(|form| form.named(id).is_some())
     };
     plan.asked.check(is_known).map_err(|e| refused(e.to_string()))?;
-    Ok(Asked { runs: by_contact(&runs), ..plan.asked })
+    Ok(SessionPlan { runs: by_contact(&runs), ..plan.asked })
 }
 
 /// The built-in effects with the form that a plan asks about, if there is one.

@@ -44,7 +44,7 @@ fn asked(session: &SessionReport) -> String {
         format!(
             "{} answers {} of the {} questions it was made for\n",
             session.table,
-            plan.settled(),
+            plan.answered_count(),
             plan.questions.len()
         )
     })

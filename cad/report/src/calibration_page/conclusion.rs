@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use pinswitch_calibration::{Answer, Asked, AskedQuestion, EffectReport, Report, TrialReport, Verdict};
+use pinswitch_calibration::{Answer, EffectReport, PlanQuestion, Report, SessionPlan, TrialReport, Verdict};
 
 use super::super::html::escape;
 use super::limits::{open_limits, possible, typical};
@@ -85,8 +85,8 @@ fn percent(probability: f64) -> String {
 }
 
 /// What a session was made for, how probably it was to be answered, and what came of it.
-fn asked(plan: &Asked) -> String {
-    let told = |q: &AskedQuestion| {
+fn asked(plan: &SessionPlan) -> String {
+    let told = |q: &PlanQuestion| {
         let percent = percent(q.resolved_probability);
         let size = q.size.map_or_else(String::new, |size| format!(" at a size of {}", short(size)));
         let repeated = q.by_repeating.map_or_else(String::new, |p| {

@@ -1,15 +1,15 @@
-//! `adhesion`: a constant friction force on silicone, there at zero load.
+//! `adhesion`: a constant friction force on silicone, present at zero load.
 
 use super::{
     ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct Adhesion;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &Adhesion;
 
 static DESCRIPTION: Description = Description {
@@ -18,7 +18,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Direction,
     stage: Stage::Drag,
     formula: "T + d c on silicone, T + d c S on a device",
-    written: Written::No("on a device it needs the share of the friction that has passed to the silicone"),
+    written: Written::No("on a device it depends on the silicone's share of the friction"),
     parameters: &[Parameter::free("c", "N")],
     // It opposes every move.
     one_sided: true,

@@ -1,15 +1,15 @@
-//! `coating_ploughing`: the coating is ploughed by the force at each pin.
+//! `coating_ploughing`: the force at each pin ploughs the coating.
 
 use super::{
     ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written,
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct CoatingPloughing;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &CoatingPloughing;
 
 static DESCRIPTION: Description = Description {
@@ -18,7 +18,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::AddedFriction,
     formula: "x_p + kappa sqrt(F) sum theta_i^1.5",
-    written: Written::No("it needs the turn of the tendon at every single pin"),
+    written: Written::No("it depends on the deflection angle at every pin"),
     parameters: &[Parameter::free("kappa", "N^-0.5")],
     // Ploughing only adds friction.
     one_sided: true,

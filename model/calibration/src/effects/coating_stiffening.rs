@@ -1,4 +1,4 @@
-//! `coating_stiffening`: friction of the coating on the pins grows with load.
+//! `coating_stiffening`: friction of the coating on the pins increases with load.
 
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
@@ -6,11 +6,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct CoatingStiffening;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &CoatingStiffening;
 
 static DESCRIPTION: Description = Description {
@@ -21,7 +21,7 @@ static DESCRIPTION: Description = Description {
     formula: "mu_p (1 + k (F/F0)^m), m in 1..2, F0 = 50 N",
     written: Written::factor(ActsOn::MuPins, "k*(load_n/50)^m"),
     parameters: &[Parameter::free("k", "1"), Parameter::bounded("m", "1", 0.9, 2.1)],
-    // The contact grows with load.
+    // The contact area increases with load.
     one_sided: true,
     bends: true,
     scales: true,

@@ -1,42 +1,43 @@
-//! The baseline of one row before and after the effects have changed it.
+//! Contact of one row, which the effects change, and its tension.
 
 use pinswitch_friction::Substrate;
 
 use crate::table::{Condition, Point};
 
-/// Reference load `F0` of `model/doc/effect-catalogue.md`, in newtons.
+/// Reference load `F0` of `model/doc/effect-catalogue.md` in newtons.
 pub const REFERENCE_LOAD_N: f64 = 50.0;
 
-/// Everything that fixes the tension of one row; effects change it before [`ContactState::tension_n`] is read.
+/// Quantities that determine the tension of one row. Effects change them before
+/// [`ContactState::tension_n`] is called.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState {
     /// True load in newtons.
     pub load_n: f64,
-    /// Wrap angle in radians (1 for `plain`).
+    /// Wrap angle in radians; 1 for `plain`.
     pub wrap_rad: f64,
     /// Friction coefficient on the pins.
     pub mu_pins: f64,
-    /// Friction coefficient on the silicone; for `plain` the free exponent.
+    /// Friction coefficient on the silicone; the free exponent for `plain`.
     pub mu_silicone: f64,
-    /// Friction exponent that the pins add to `mu_pins` times the wrap.
+    /// Friction exponent of the pins in addition to `mu_pins` times the wrap.
     pub extra_exponent_pins: f64,
     /// Factor on every friction exponent.
     pub exponent_factor: f64,
-    /// Load in newtons at which a device has switched by half.
+    /// Threshold of a device in newtons.
     pub half_load_n: f64,
-    /// Steepness `s` of the switch, dimensionless.
+    /// Steepness `s` of the transition, dimensionless.
     pub steepness: f64,
-    /// Whether the switch reads the mean tension over the wrap instead of the load.
+    /// Whether the transition follows the mean tension over the wrap instead of the load.
     pub local_tension: bool,
-    /// Constant friction force where silicone carries, in newtons.
+    /// Constant friction force in newtons, in proportion to the silicone's share.
     pub adhesion_n: f64,
-    /// Constant friction force everywhere, in newtons.
+    /// Constant friction force in newtons in every condition.
     pub drag_n: f64,
 }
 
 impl ContactState {
-    /// Tension in newtons: capstan for one material, eq. 4 on `T - F` per direction for a device
-    /// (`model/doc/friction-laws.md`).
+    /// Returns the tension in newtons: the capstan equation for one material; eq. 4 for a device,
+    /// applied to `T - F` in each direction (`model/doc/friction-laws.md`).
     pub fn tension_n(&self, condition: &Condition, point: &Point) -> f64 {
         let (f, d) = (self.load_n, point.sign);
         let x_pins = (self.mu_pins * self.wrap_rad + self.extra_exponent_pins) * self.exponent_factor;
@@ -60,13 +61,14 @@ impl ContactState {
         }
     }
 
-    /// `S = 1/(1 + exp(-s (F/F_half - 1)))` (`model/doc/friction-laws.md`).
+    /// Returns the silicone's share `S = 1/(1 + exp(-s (F/F_half - 1)))` at a load in newtons
+    /// (`model/doc/friction-laws.md`).
     pub fn switched(&self, load_n: f64) -> f64 {
         1.0 / (1.0 + libm::exp(-self.steepness * (load_n / self.half_load_n - 1.0)))
     }
 }
 
-/// Mean of `F exp(x phi/a)` over the wrap in newtons: `F (r - 1)/ln r` with `r = T/F`.
+/// Returns the mean of `F exp(x phi/a)` over the wrap in newtons: `F (r - 1)/ln r` with `r = T/F`.
 fn mean_tension_n(load_n: f64, ratio: f64) -> f64 {
     let ratio = ratio.max(1e-3);
     let x = libm::log(ratio);
@@ -78,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_mean_tension_lies_between_the_ends() {
+    fn mean_tension_is_between_the_ends() {
         for ratio in [0.7, 1.0, 1.3] {
             let mean = mean_tension_n(10.0, ratio);
             assert!(mean >= 10.0 * ratio.min(1.0) - 1e-9 && mean <= 10.0 * ratio.max(1.0) + 1e-9);

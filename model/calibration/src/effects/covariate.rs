@@ -1,8 +1,8 @@
-//! What varies in a table, and so where the trace of an effect can lie.
+//! Covariates of a table.
 
 use serde::{Deserialize, Serialize};
 
-/// Where the trace of an effect lies (`model/doc/effect-catalogue.md`).
+/// Covariate along which an effect shows (`model/doc/effect-catalogue.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Covariate {
@@ -10,7 +10,7 @@ pub enum Covariate {
     Load,
     /// Eccentric or concentric.
     Direction,
-    /// Repetition inside a series and direction.
+    /// Repetition in a series and direction.
     Repetition,
     /// Position along the stroke.
     Position,
@@ -27,7 +27,7 @@ pub enum Covariate {
 }
 
 impl Covariate {
-    /// All of them, in the order of the effect catalogue.
+    /// All covariates, in the order of the effect catalogue.
     pub const ALL: [Covariate; 9] = [
         Covariate::Load,
         Covariate::Direction,
@@ -40,7 +40,7 @@ impl Covariate {
         Covariate::Condition,
     ];
 
-    /// The word in reports and model files.
+    /// Returns the word used in reports and model files.
     pub fn as_str(self) -> &'static str {
         match self {
             Covariate::Load => "load",

@@ -1,4 +1,5 @@
-//! All that is said of an effect besides its formula in code: identity, place in the chain, constants, rivals, study.
+//! Description of an effect: identity, place in the forward model, constants, rivals, and ranges
+//! for the study.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,14 +9,14 @@ use super::{Covariate, Written};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Side {
-    /// Changes the part's own friction: stays in predicted curves.
+    /// The part's own friction; included in predicted curves.
     Switch,
-    /// Belongs to the measurement: stays out of predicted curves.
+    /// The measurement; excluded from predicted curves.
     Rig,
 }
 
 impl Side {
-    /// The word in reports and model files (`model/doc/file-formats.md`).
+    /// Returns the word used in reports and model files (`model/doc/file-formats.md`).
     pub fn as_str(self) -> &'static str {
         match self {
             Side::Switch => "switch",
@@ -24,7 +25,8 @@ impl Side {
     }
 }
 
-/// Where an effect acts between the weight and the reading; effects are tried in this order.
+/// Stage between the weight and the reading at which an effect acts. A search tries effects in this
+/// order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
     /// The load itself.
@@ -33,7 +35,7 @@ pub enum Stage {
     AddedFriction,
     /// A factor on friction coefficients or on the wrap angle.
     ScaledFriction,
-    /// The switching between pins and silicone.
+    /// The transition between pins and silicone.
     Switch,
     /// A force against the motion.
     Drag,
@@ -41,98 +43,104 @@ pub enum Stage {
     CellScale,
     /// The zero of the load cell.
     CellZero,
-    /// The end of the load cell's range: acts on everything before it.
+    /// The end of the load cell's range, which applies after all other stages.
     CellLimit,
 }
 
-/// One constant of an effect.
+/// A constant of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
-    /// Its symbol.
+    /// Symbol.
     pub name: &'static str,
-    /// Its unit; `1` if it has none.
+    /// Unit; `1` if dimensionless.
     pub unit: &'static str,
-    /// Bounds of a shape constant; `None` for a size, which is free.
+    /// Bounds of a shape; `None` for a size, which is free.
     pub bounds: Option<(f64, f64)>,
 }
 
 impl Parameter {
-    /// A size: unbounded, the effect vanishes at zero.
+    /// Returns a size: unbounded, and the effect vanishes at zero.
     pub const fn free(name: &'static str, unit: &'static str) -> Self {
         Self { name, unit, bounds: None }
     }
 
-    /// A shape within bounds.
+    /// Returns a shape within bounds.
     pub const fn bounded(name: &'static str, unit: &'static str, least: f64, most: f64) -> Self {
         Self { name, unit, bounds: Some((least, most)) }
     }
 }
 
-/// What the paper's protocol (loads ascending, one dwell, speed following load) shows of an effect.
+/// Whether the paper's protocol (ascending loads, one dwell, speed following load) identifies an
+/// effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PaperProtocol {
-    /// It can be seen and named.
+    /// Identifiable.
     Shown,
-    /// What it depends on never varies.
+    /// The covariate never varies.
     Hidden,
-    /// It can be seen, but not told from another effect.
+    /// Detectable, but confounded with another effect.
     Confounded,
 }
 
-/// Sizes and shapes that the study of the calibrator draws, and that `power` tries: the upper part of what is typical.
+/// Sizes and shapes that the study of the calibrator and `power` use: the upper part of the typical
+/// range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StudyRange {
-    /// Smallest and largest size, in the unit of the first parameter; `None` without a free constant.
+    /// Smallest and largest size in the unit of the first parameter; `None` without a size.
     pub size: Option<(f64, f64)>,
-    /// Whether either sign is drawn.
+    /// Whether both signs are used.
     pub signed: bool,
-    /// Ranges of the shape constants, in the order of the parameters.
+    /// Ranges of the shapes, in the order of the parameters.
     pub shapes: &'static [(f64, f64)],
-    /// What the paper's protocol shows of it.
+    /// Whether the paper's protocol identifies it.
     pub paper: PaperProtocol,
 }
 
 impl StudyRange {
-    /// Constants of the effect at a size in the middle of its shapes, in the order of its parameters.
+    /// Returns the constants for a size, with shapes in the middle of their ranges, in the order of
+    /// the parameters.
     pub fn values_at(&self, size: Option<f64>) -> Vec<f64> {
         size.into_iter().chain(self.shapes.iter().map(|(least, most)| 0.5 * (least + most))).collect()
     }
 
-    /// The largest size, if the effect has one.
+    /// Returns the largest size, if the effect has one.
     pub fn largest(&self) -> Option<f64> {
         self.size.map(|(_, most)| most)
     }
 }
 
-/// What is known and said of an effect.
+/// Description of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Description {
-    /// Its id: `[a-z][a-z0-9_]*`, a heading of `model/doc/effect-catalogue.md`.
+    /// Id: `[a-z][a-z0-9_]*`, a heading of `model/doc/effect-catalogue.md`.
     pub id: &'static str,
-    /// Part or measurement.
+    /// Whether the effect belongs to the part or to the measurement.
     pub side: Side,
-    /// Where its trace lies.
+    /// Covariate along which the effect shows.
     pub covariate: Covariate,
-    /// Where it acts.
+    /// Stage at which the effect acts.
     pub stage: Stage,
-    /// Its formula, in the symbols of the effect catalogue.
+    /// Formula in the symbols of the effect catalogue.
     pub formula: &'static str,
-    /// Its form as a formula on its own, where the language of formulas can say it.
+    /// Formula in the formula language, if the language can express it.
     pub written: Written,
-    /// Its constants, sizes before shapes.
+    /// Constants, sizes before shapes.
     pub parameters: &'static [Parameter],
-    /// Whether its size can only be positive: what fits with a negative one is something else.
+    /// Whether the size cannot be negative. A fit with a negative size then indicates another
+    /// effect.
     pub one_sided: bool,
-    /// Whether its form is an approximation, so that what it leaves may be its own. A constant force or a scale is none.
+    /// Whether the formula is an approximation that may leave a residual of its own; a constant
+    /// force or a scale is exact.
     pub bends: bool,
-    /// Whether its trace grows in proportion to its first constant, as far as a screening to first order sees.
+    /// Whether the predicted change is proportional to the first constant, to the order of a linear
+    /// screening.
     pub scales: bool,
     /// Ids of effects that may look the same.
     pub confused_with: &'static [&'static str],
-    /// The experiment that shows it apart from those.
+    /// Experiment that separates it from those.
     pub experiment: &'static str,
-    /// What keeps data from showing it.
+    /// Property of a table that prevents its identification.
     pub invisible_because: &'static str,
-    /// What the study draws.
+    /// Ranges for the study.
     pub study: StudyRange,
 }

@@ -1,4 +1,4 @@
-//! `direction_asymmetry`: friction differs between eccentric and concentric.
+//! `direction_asymmetry`: friction differs between the eccentric and the concentric direction.
 
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
@@ -6,11 +6,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct DirectionAsymmetry;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &DirectionAsymmetry;
 
 static DESCRIPTION: Description = Description {

@@ -6,11 +6,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct DwellRelaxation;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &DwellRelaxation;
 
 static DESCRIPTION: Description = Description {
@@ -26,7 +26,7 @@ static DESCRIPTION: Description = Description {
     scales: true,
     confused_with: &[],
     experiment: "one silicone run with dwells of 0.3, 3 and 30 s",
-    invisible_because: "the dwell time never varies, or there is no silicone",
+    invisible_because: "the dwell never varies, or there is no silicone",
     study: StudyRange { size: Some((0.04, 0.12)), signed: true, shapes: &[], paper: PaperProtocol::Hidden },
 };
 

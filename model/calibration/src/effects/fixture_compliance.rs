@@ -1,4 +1,4 @@
-//! `fixture_compliance`: the wrap angle grows with load because the mount bends.
+//! `fixture_compliance`: the wrap angle increases with load because the fixture bends.
 
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
@@ -6,11 +6,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct FixtureCompliance;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &FixtureCompliance;
 
 static DESCRIPTION: Description = Description {
@@ -18,7 +18,7 @@ static DESCRIPTION: Description = Description {
     side: Side::Rig,
     covariate: Covariate::Load,
     stage: Stage::ScaledFriction,
-    formula: "a (1 + k F/F0), every condition alike",
+    formula: "a (1 + k F/F0), in every condition",
     written: Written::factor(ActsOn::Wrap, "k*load_n/50"),
     parameters: &[Parameter::free("k", "1")],
     one_sided: false,

@@ -1,4 +1,4 @@
-//! `guide_drag`: a constant drag of the guide pulleys, in every condition.
+//! `guide_drag`: a constant drag of the guide pulleys in every condition.
 
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
@@ -6,11 +6,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct GuideDrag;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &GuideDrag;
 
 static DESCRIPTION: Description = Description {

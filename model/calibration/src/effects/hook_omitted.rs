@@ -1,15 +1,15 @@
-//! `hook_omitted`: the declared load leaves out the hook's weight.
+//! `hook_omitted`: the declared load omits the weight of the hook.
 
 use pinswitch_friction::published;
 
 use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange, Written};
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct HookOmitted;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &HookOmitted;
 
 static DESCRIPTION: Description = Description {
@@ -18,7 +18,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::Load,
     formula: "F + 0.613 N: the hook of 62.53 g; no free constant",
-    written: Written::No("it has no constant"),
+    written: Written::No("it is without constants"),
     parameters: &[],
     one_sided: false,
     bends: false,

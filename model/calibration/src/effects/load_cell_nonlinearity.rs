@@ -1,4 +1,4 @@
-//! `load_cell_nonlinearity`: the reading bends with its square.
+//! `load_cell_nonlinearity`: the reading has a quadratic error.
 
 use super::{
     ActsOn, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side, Stage,
@@ -6,11 +6,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct LoadCellNonlinearity;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &LoadCellNonlinearity;
 
 static DESCRIPTION: Description = Description {

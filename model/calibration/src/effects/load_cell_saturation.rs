@@ -1,13 +1,13 @@
-//! `load_cell_saturation`: the reading stops rising above some force.
+//! `load_cell_saturation`: the reading saturates above a force.
 
 use super::{Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange, Written};
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct LoadCellSaturation;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &LoadCellSaturation;
 
 static DESCRIPTION: Description = Description {
@@ -16,14 +16,14 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Load,
     stage: Stage::CellLimit,
     formula: "min(reading, limit)",
-    written: Written::No("a limit has no size at which it is gone"),
+    written: Written::No("no value of the limit cancels the effect"),
     parameters: &[Parameter::free("limit", "N")],
     one_sided: false,
     bends: true,
     scales: false,
     confused_with: &["load_cell_nonlinearity"],
     experiment: "dead weights up to 65 N on the cell",
-    invisible_because: "no reading comes near the limit of the cell",
+    invisible_because: "no reading is near the limit of the load cell",
     study: StudyRange { size: Some((46.0, 58.0)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
 };
 

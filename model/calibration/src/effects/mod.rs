@@ -1,7 +1,7 @@
-//! What the paper's model may lack: one file per effect, which carries all that is known of it.
+//! Effects that the paper's model may lack: one file per effect, with everything known about it.
 //!
-//! To add an effect, write its file and add its name to the list below; everything else (fit, report, simulated rigs,
-//! study, power) reads it from there. `model/doc/effect-catalogue.md` explains each to a reader.
+//! To add an effect, write its file and add its name to the list below; fit, report, simulated
+//! rigs, study and power read it from there. `model/doc/effect-catalogue.md` explains each effect.
 
 use std::fmt::Debug;
 
@@ -20,19 +20,19 @@ pub use covariate::Covariate;
 pub use description::{Description, PaperProtocol, Parameter, Side, Stage, StudyRange};
 pub(crate) use own::effects_of_model;
 pub use own::{
-    DefinitionError, EffectDefinition, OwnEffect, OwnEffectError, OwnParameter, formula_variables,
-    own_effect_blocks, own_effects_text, read_own_effects,
+    DefinitionError, EffectDefinition, OwnEffect, OwnParameter, formula_variables, own_effect_blocks,
+    own_effects_text, read_own_effects,
 };
 pub use structure::{Channel, Shape, Structure};
 pub use vocabulary::Vocabulary;
 pub use written::{ActsOn, Combine, Written};
 
-/// Declares the files of the effects and the registry of what they hold.
+/// Declares the files of the effects and the catalogue of their entries.
 macro_rules! effects {
     ($($file:ident,)*) => {
         $(mod $file;)*
 
-        /// Every named effect, in the order of the effect catalogue.
+        /// The built-in effects, in the order of the effect catalogue.
         pub static CATALOGUE: &[&dyn Effect] = &[$($file::EFFECT),*];
     };
 }
@@ -61,7 +61,7 @@ effects! {
     switch_local_tension,
 }
 
-/// The built-in effect of an id; [`Vocabulary::named`] knows those of one's own, too.
+/// Returns the built-in effect of an id; [`Vocabulary::named`] also finds user-defined effects.
 ///
 /// ```
 /// use pinswitch_calibration::effects::{Side, effect_named};
@@ -75,7 +75,7 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
     CATALOGUE.iter().copied().find(|effect| effect.id() == id)
 }
 
-/// A named effect: what is said of it, where a fit of it starts, and where it enters the forward model.
+/// An effect: its description, the start values of its fit, and its place in the forward model.
 ///
 /// ```
 /// use pinswitch_calibration::effects::{
@@ -130,16 +130,17 @@ pub fn effect_named(id: &str) -> Option<&'static dyn Effect> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Effect: Debug + Sync {
-    /// What is known and said of it.
+    /// Returns its description.
     fn description(&self) -> &'static Description;
 
-    /// Values to start a fit from: the sizes typical of this rig, one entry per shape.
+    /// Returns the start values of a fit: sizes typical of this rig, one entry per shape.
     fn starts(&self, frame: &Frame) -> Vec<Vec<f64>>;
 
     /// Changes the contact; `k` are the constants.
     fn on_contact(&self, _k: &[f64], _point: &Point, _condition: &Condition, _state: &mut ContactState) {}
 
-    /// Changes the tension in newtons that the contact leaves, before the load cell; `k` are the constants.
+    /// Changes the tension in newtons after the contact and before the load cell; `k` are the
+    /// constants.
     fn on_tension(&self, _k: &[f64], _point: &Point, _condition: &Condition, tension_n: f64) -> f64 {
         tension_n
     }
@@ -149,28 +150,28 @@ pub trait Effect: Debug + Sync {
         reading_n
     }
 
-    /// Whether it may change from row to row of a series: with the repetition, the position or the time.
+    /// Returns whether it may vary within a series: with the repetition, the position or the time.
     fn moves_along_a_series(&self) -> bool {
         let covariate = self.description().covariate;
         matches!(covariate, Covariate::Repetition | Covariate::Position | Covariate::Time)
     }
 
-    /// Whether it may change the contact, and not the tension or the reading alone.
+    /// Returns whether it may change the contact, and not only the tension or the reading.
     fn acts_on_contact(&self) -> bool {
         !matches!(self.description().stage, Stage::CellScale | Stage::CellZero | Stage::CellLimit)
     }
 
-    /// Its id.
+    /// Returns its id.
     fn id(&self) -> &'static str {
         self.description().id
     }
 
-    /// Its constants; sensitivities to them are differences.
+    /// Returns its constants. Sensitivities to them are finite differences.
     fn parameters(&self) -> &'static [Parameter] {
         self.description().parameters
     }
 
-    /// Its formula with the document that explains it.
+    /// Returns its formula with a reference to the document that explains it.
     fn cited_formula(&self) -> String {
         let Description { formula, id, .. } = self.description();
         format!("{formula} (model/doc/effect-catalogue.md#{id})")
@@ -186,17 +187,22 @@ mod tests {
     fn ids_are_unique_and_rivals_exist() {
         for (i, effect) in CATALOGUE.iter().enumerate() {
             assert!(CATALOGUE[i + 1..].iter().all(|other| other.id() != effect.id()));
-            let told = effect.description();
-            assert!(told.confused_with.iter().all(|id| effect_named(id).is_some()), "{}", told.id);
-            assert!(!told.experiment.is_empty() && told.formula.len() > 8);
-            let constants = usize::from(told.study.size.is_some()) + told.study.shapes.len();
-            assert_eq!(constants, told.parameters.len(), "{}", told.id);
+            let description = effect.description();
+            assert!(
+                description.confused_with.iter().all(|id| effect_named(id).is_some()),
+                "{}",
+                description.id
+            );
+            assert!(!description.experiment.is_empty() && description.formula.len() > 8);
+            let constants = usize::from(description.study.size.is_some()) + description.study.shapes.len();
+            assert_eq!(constants, description.parameters.len(), "{}", description.id);
         }
     }
 
-    /// Each effect changes some reading of a rig that varies everything, and each start has all constants.
+    /// Each effect changes some reading of a rig that varies every covariate, and each start has
+    /// all constants.
     #[test]
-    fn every_effect_can_be_seen_in_some_row() {
+    fn every_effect_changes_some_reading() {
         let frame = Frame {
             stroke_mm: 150.0,
             session_s: 1e4,

@@ -1,4 +1,4 @@
-//! `polygon_bending`: the sharper the tendon turns at one pin, the more friction there.
+//! `polygon_bending`: friction increases with the deflection angle of the tendon at a pin.
 
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
@@ -6,14 +6,14 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// Turn per pin to which `k` refers: 20 degrees.
+/// Deflection angle per pin to which `k` refers: 20 degrees.
 const REFERENCE_TURN_RAD: f64 = 0.349_065_850_398_865_9;
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct PolygonBending;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &PolygonBending;
 
 static DESCRIPTION: Description = Description {
@@ -21,16 +21,16 @@ static DESCRIPTION: Description = Description {
     side: Side::Switch,
     covariate: Covariate::Condition,
     stage: Stage::ScaledFriction,
-    formula: "mu_p (1 + k (a/n) / (20 deg)) with the mean turn a/n per pin",
+    formula: "mu_p (1 + k (a/n) / (20 deg)) with the mean deflection angle a/n per pin",
     written: Written::factor(ActsOn::MuPins, "k*turn_per_pin_rad/0.3490658503988659"),
     parameters: &[Parameter::free("k", "1")],
-    // Sharper turns bend the fibres more.
+    // Sharper deflections bend the fibres more.
     one_sided: true,
     bends: true,
     scales: true,
     confused_with: &["coating_ploughing"],
     experiment: "the same number of loads on a layout with another number of pins",
-    invisible_because: "all pins-only and device layouts have one number of pins",
+    invisible_because: "all pins-only and device layouts have the same number of pins",
     study: StudyRange { size: Some((0.3, 1.5)), signed: false, shapes: &[], paper: PaperProtocol::Shown },
 };
 

@@ -6,11 +6,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct RunIn;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &RunIn;
 
 static DESCRIPTION: Description = Description {
@@ -18,7 +18,7 @@ static DESCRIPTION: Description = Description {
     side: Side::Switch,
     covariate: Covariate::Repetition,
     stage: Stage::ScaledFriction,
-    formula: "mu_s (1 + k exp(-(r - 1)/r0)), times c in the concentric half, 1 if it settles anew there",
+    formula: "mu_s (1 + k exp(-(r - 1)/r0)), times c in the concentric half (c = 1: it settles again there)",
     written: Written::factor(
         ActsOn::MuSilicone,
         "k*exp(-(repetition - 1)/r0) * ((direction < 0) + c*(direction > 0))",
@@ -33,7 +33,7 @@ static DESCRIPTION: Description = Description {
     bends: true,
     scales: true,
     confused_with: &["stroke_position"],
-    experiment: "one series started in the middle of the stroke",
+    experiment: "a series started in the middle of the stroke",
     invisible_because: "one repetition per series, or no silicone",
     study: StudyRange {
         size: Some((0.05, 0.4)),

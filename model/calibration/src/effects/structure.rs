@@ -1,4 +1,4 @@
-//! `unattributed`: structure along one covariate that no named effect explains, as a data-driven term.
+//! `unattributed`: structure along one covariate that no effect explains, as an empirical term.
 
 use pinswitch_friction::published;
 use serde::{Deserialize, Serialize};
@@ -6,15 +6,15 @@ use serde::{Deserialize, Serialize};
 use super::{ContactState, Covariate};
 use crate::table::{Condition, Frame, Point};
 
-/// What a structure acts on.
+/// Quantity that a structure changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Channel {
-    /// Adds newtons to the reading, alike in both directions.
+    /// Adds newtons to the reading, with the same sign in both directions.
     Reading,
-    /// Scales the reading, as a cell does whose gain changes.
+    /// Scales the reading, as a change of the load cell's gain does.
     Gain,
-    /// Adds newtons of friction, opposite in the two directions.
+    /// Adds newtons of friction, with opposite signs in the two directions.
     Drag,
     /// Scales the friction exponent.
     Friction,
@@ -24,51 +24,51 @@ pub enum Channel {
     Silicone,
 }
 
-/// A function of one covariate, dimensionless and of order one.
+/// A dimensionless function of one covariate, of order one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "shape")]
 pub enum Shape {
-    /// 0 before a share of the session, 1 after it.
+    /// 0 before a time, 1 after it.
     TimeStep {
-        /// Share of the session, 0..1.
+        /// Time, as a share of the session, 0..1.
         at: f64,
     },
-    /// 1 between two shares of the session.
+    /// 1 between two times.
     TimeWindow {
-        /// Start, share of the session.
+        /// Start, as a share of the session.
         from: f64,
-        /// End, share of the session.
+        /// End, as a share of the session.
         to: f64,
     },
-    /// A power of the share of the session.
+    /// A power of the time, as a share of the session.
     TimePower {
-        /// The power.
+        /// Exponent.
         power: i32,
     },
     /// Sine over the session.
     TimeWave {
         /// Cycles over the session.
         cycles: f64,
-        /// Phase in quarter turns: 0 sine, 1 cosine.
+        /// Phase in quarter periods: 0 sine, 1 cosine.
         quarter: u8,
     },
     /// Sine along the stroke.
     PositionWave {
         /// Cycles over the stroke.
         cycles: f64,
-        /// Phase in quarter turns: 0 sine, 1 cosine.
+        /// Phase in quarter periods: 0 sine, 1 cosine.
         quarter: u8,
     },
-    /// A bell along the stroke, `exp(-((s - at)/width)^2 / 2)`.
+    /// A Gaussian bump along the stroke, `exp(-((s - at)/width)^2 / 2)`.
     PositionBump {
-        /// Centre, share of the stroke.
+        /// Centre, as a share of the stroke.
         at: f64,
-        /// Width, share of the stroke.
+        /// Width, as a share of the stroke.
         width: f64,
     },
-    /// A power of the position about the middle of the stroke.
+    /// A power of the position relative to the middle of the stroke.
     PositionPower {
-        /// The power.
+        /// Exponent.
         power: i32,
     },
     /// 1 at one speed.
@@ -78,16 +78,16 @@ pub enum Shape {
         /// Half width in `ln v`.
         half_width: f64,
     },
-    /// A bell in the logarithm of speed.
+    /// A Gaussian bump in the logarithm of speed.
     SpeedBump {
         /// Centre, `ln(v/v0)`.
         log_speed: f64,
         /// Width in `ln v`.
         width: f64,
     },
-    /// `ln(v/v0)` to a power.
+    /// A power of `ln(v/v0)`.
     SpeedPower {
-        /// The power.
+        /// Exponent.
         power: i32,
     },
     /// 1 at one dwell.
@@ -102,57 +102,58 @@ pub enum Shape {
         /// Half width in newtons.
         half_width: f64,
     },
-    /// `(F/F_max)` to a power.
+    /// A power of `F/F_max`.
     LoadPower {
-        /// The power.
+        /// Exponent.
         power: i32,
-        /// The highest load in newtons.
+        /// Highest load in newtons.
         unit_n: f64,
     },
-    /// A power of the load in one condition only.
+    /// A power of the load in one condition.
     ConditionLoad {
         /// Index of the condition.
         condition: usize,
-        /// The power.
+        /// Exponent.
         power: i32,
-        /// The highest load in newtons.
+        /// Highest load in newtons.
         unit_n: f64,
     },
-    /// 1 for the conditions listed.
+    /// 1 for the listed conditions.
     ConditionIs {
         /// Indices of the conditions.
         conditions: Vec<usize>,
     },
     /// 1 for one operator, numbered from 1.
     OperatorIs {
-        /// The number.
+        /// Number of the operator.
         operator: usize,
     },
-    /// `exp(-(r - 1)/r0)` over the repetitions.
+    /// `exp(-(r - 1)/r0)` of the repetition `r`.
     Repetition {
         /// `r0`.
         r0: f64,
     },
-    /// What is left of the load before: `(F_before - F)/F_max exp(-r/r0)` after `r` repetitions of the series.
+    /// Remaining influence of the previous load: `(F_before - F)/F_max exp(-r/r0)` after `r`
+    /// repetitions of the series.
     Memory {
-        /// Repetitions after which a share `1/e` is left.
+        /// Number of repetitions after which a share `1/e` remains.
         r0: f64,
-        /// The highest load in newtons.
+        /// Highest load in newtons.
         unit_n: f64,
     },
     /// 1 when the loads descend.
     Descending,
     /// `d` times the load.
     DirectionLoad {
-        /// The power of the load.
+        /// Exponent of the load.
         power: i32,
-        /// The highest load in newtons.
+        /// Highest load in newtons.
         unit_n: f64,
     },
 }
 
 impl Shape {
-    /// Its value at a point.
+    /// Returns its value at a point.
     pub fn value(&self, p: &Point) -> f64 {
         let flag = |b: bool| f64::from(u8::from(b));
         let wave = |share: f64, cycles: f64, quarter: u8| {
@@ -193,25 +194,25 @@ impl Shape {
     }
 }
 
-/// A shape on a channel; its size is the one constant.
+/// A shape of a channel, with its size as the only constant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Structure {
-    /// Where it lies.
+    /// Covariate of the shape.
     pub covariate: Covariate,
-    /// What it acts on.
+    /// Quantity that it changes.
     pub channel: Channel,
-    /// Its course along the covariate.
+    /// Function of the covariate.
     #[serde(flatten)]
     pub form: Shape,
 }
 
 impl Structure {
-    /// Value of the shape at a point.
+    /// Returns the value of the shape at a point.
     pub fn value(&self, p: &Point) -> f64 {
         self.form.value(p)
     }
 
-    /// Acts on the contact with size `k`.
+    /// Changes the contact; `k` is the size.
     pub fn on_contact(&self, k: f64, point: &Point, state: &mut ContactState) {
         if self.is_of_reading() {
             return;
@@ -230,7 +231,7 @@ impl Structure {
         }
     }
 
-    /// Acts on the reading with size `k`.
+    /// Changes the reading in newtons; `k` is the size.
     pub fn on_reading(&self, k: f64, point: &Point, reading_n: f64) -> f64 {
         match self.channel {
             Channel::Reading => reading_n + k * self.value(point),
@@ -239,12 +240,12 @@ impl Structure {
         }
     }
 
-    /// Whether it acts on the reading alone, and on nothing that the tendon does.
+    /// Returns whether it changes only the reading, and not the contact.
     pub fn is_of_reading(&self) -> bool {
         matches!(self.channel, Channel::Reading | Channel::Gain)
     }
 
-    /// Unit of its size.
+    /// Returns the unit of its size.
     pub fn unit(&self) -> &'static str {
         match self.channel {
             Channel::Reading | Channel::Drag => "N",
@@ -252,7 +253,7 @@ impl Structure {
         }
     }
 
-    /// The structure in words, in the units of the frame's session.
+    /// Describes the structure in words, in the units of the frame's session.
     pub fn describe(&self, frame: &Frame) -> String {
         let on = match self.channel {
             Channel::Reading => "the reading",
@@ -267,20 +268,24 @@ impl Structure {
         let what = match &self.form {
             Shape::TimeStep { at } => format!("a step {:.0} s into the session", at * frame.session_s),
             Shape::TimeWindow { from, to } => {
-                format!("another level from {:.0} to {:.0} s", from * frame.session_s, to * frame.session_s)
+                format!(
+                    "a different level from {:.0} to {:.0} s",
+                    from * frame.session_s,
+                    to * frame.session_s
+                )
             }
             Shape::TimePower { power } => format!("a drift with time to the power {power}"),
             Shape::TimeWave { cycles, .. } => format!("a wave of period {:.0} s", frame.session_s / cycles),
             Shape::PositionWave { cycles, .. } => {
-                format!("a wave of {:.1} mm along the stroke", stroke / cycles)
+                format!("a wave of period {:.1} mm along the stroke", stroke / cycles)
             }
             Shape::PositionBump { at, width } => {
                 format!("a bump at {:.0} mm of the stroke, {:.0} mm wide", at * stroke, 2.0 * width * stroke)
             }
-            Shape::PositionPower { power } => format!("a course along the stroke to the power {power}"),
+            Shape::PositionPower { power } => format!("a trend along the stroke to the power {power}"),
             Shape::SpeedLevel { log_speed, .. } => {
                 format!(
-                    "another level at a speed of {:.0} %",
+                    "a different level at a speed of {:.0} %",
                     frame.reference_speed_pct * libm::exp(*log_speed)
                 )
             }
@@ -289,30 +294,33 @@ impl Structure {
                 frame.reference_speed_pct * libm::exp(*log_speed),
                 200.0 * width
             ),
-            Shape::SpeedPower { power } => format!("a course with ln(speed) to the power {power}"),
+            Shape::SpeedPower { power } => format!("a trend with ln(speed) to the power {power}"),
             Shape::DwellLevel { log_dwell } => {
-                format!("another level at a dwell of {:.2} s", published::DWELL_S * libm::exp(*log_dwell))
+                format!("a different level at a dwell of {:.2} s", published::DWELL_S * libm::exp(*log_dwell))
             }
-            Shape::LoadLevel { load_n, .. } => format!("another level at a load of {load_n:.1} N"),
-            Shape::LoadPower { power, .. } => format!("a course with load to the power {power}"),
+            Shape::LoadLevel { load_n, .. } => format!("a different level at a load of {load_n:.1} N"),
+            Shape::LoadPower { power, .. } => format!("a trend with load to the power {power}"),
             Shape::ConditionLoad { condition, power, .. } => {
-                format!("a course with load to the power {power} on {}", name(condition))
+                format!("a trend with load to the power {power} on {}", name(condition))
             }
             Shape::ConditionIs { conditions } => {
-                format!("another level on {}", conditions.iter().map(name).collect::<Vec<_>>().join(" and "))
+                format!(
+                    "a different level on {}",
+                    conditions.iter().map(name).collect::<Vec<_>>().join(" and ")
+                )
             }
             Shape::OperatorIs { operator } => {
                 let name = operator.checked_sub(1).and_then(|i| frame.operators.get(i));
-                format!("another level of operator {}", name.map_or("?", String::as_str))
+                format!("a different level of operator {}", name.map_or("?", String::as_str))
             }
-            Shape::Repetition { r0 } => format!("a settling over {r0} repetitions"),
-            Shape::Memory { r0, .. } if *r0 > 1e3 => "a lasting memory of the load before".to_owned(),
+            Shape::Repetition { r0 } => format!("a transient over {r0} repetitions"),
+            Shape::Memory { r0, .. } if *r0 > 1e3 => "a lasting memory of the previous load".to_owned(),
             Shape::Memory { r0, .. } => {
-                format!("a memory of the load before, forgotten over {r0} repetitions")
+                format!("a memory of the previous load that decays over {r0} repetitions")
             }
-            Shape::Descending => "another level when loads descend".to_owned(),
+            Shape::Descending => "a different level for descending loads".to_owned(),
             Shape::DirectionLoad { power, .. } => {
-                format!("a difference of the directions with load to the power {power}")
+                format!("a difference between the directions with load to the power {power}")
             }
         };
         format!("{what}, in {on}")

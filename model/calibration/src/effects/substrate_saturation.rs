@@ -1,4 +1,4 @@
-//! `substrate_saturation`: the friction of the silicone is bounded, its coefficient falls with load.
+//! `substrate_saturation`: the friction coefficient of the silicone decreases with load.
 
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, REFERENCE_LOAD_N, Side,
@@ -6,11 +6,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct SubstrateSaturation;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &SubstrateSaturation;
 
 static DESCRIPTION: Description = Description {
@@ -24,7 +24,7 @@ static DESCRIPTION: Description = Description {
         "max(load_n/50, 0.001)^(-k*(1 - h)) / max(1 + k*h*load_n/50, 0.05) - 1",
     ),
     parameters: &[Parameter::free("k", "1"), Parameter::bounded("h", "1", -0.02, 1.02)],
-    // The friction of a soft contact falls behind load.
+    // The friction of a soft contact increases less than the load.
     one_sided: true,
     bends: true,
     scales: true,
@@ -50,7 +50,7 @@ impl Effect for SubstrateSaturation {
 
     fn on_contact(&self, k: &[f64], _: &Point, _: &Condition, state: &mut ContactState) {
         let f = (state.load_n / REFERENCE_LOAD_N).max(1e-3);
-        // h = 0: the power law with n = 1 - k; h = 1: the hyperbola. Between them the exponents add.
+        // h = 0: the power law with n = 1 - k; h = 1: the hyperbola. In between, the exponents add.
         let power = libm::pow(f, -k[0] * (1.0 - k[1]));
         let hyperbola = 1.0 / (1.0 + k[0] * k[1] * f).max(0.05);
         state.mu_silicone *= power * hyperbola;

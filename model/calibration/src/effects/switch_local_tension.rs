@@ -1,13 +1,13 @@
-//! `switch_local_tension`: the switch follows the local tension over the wrap, not the load.
+//! `switch_local_tension`: the transition follows the local tension over the wrap, not the load.
 
 use super::{ContactState, Covariate, Description, Effect, PaperProtocol, Side, Stage, StudyRange, Written};
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct SwitchLocalTension;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &SwitchLocalTension;
 
 static DESCRIPTION: Description = Description {
@@ -16,7 +16,7 @@ static DESCRIPTION: Description = Description {
     covariate: Covariate::Direction,
     stage: Stage::Switch,
     formula: "S(mean tension over the wrap) instead of S(F); no free constant",
-    written: Written::No("it has no constant, and needs the tension along the wrap"),
+    written: Written::No("it is without constants, and depends on the tension along the wrap"),
     parameters: &[],
     one_sided: false,
     bends: true,

@@ -1,4 +1,4 @@
-//! `switching_hysteresis`: the switching threshold differs between ascending and descending loads.
+//! `switching_hysteresis`: the threshold differs between ascending and descending loads.
 
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
@@ -6,11 +6,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct SwitchingHysteresis;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &SwitchingHysteresis;
 
 static DESCRIPTION: Description = Description {
@@ -21,7 +21,7 @@ static DESCRIPTION: Description = Description {
     formula: "F_half(down) = F_half(up) - H",
     written: Written::sum(ActsOn::Threshold, "-H*descending"),
     parameters: &[Parameter::free("H", "N")],
-    // The silicone recovers late.
+    // The silicone recovers with a delay.
     one_sided: true,
     bends: true,
     scales: true,

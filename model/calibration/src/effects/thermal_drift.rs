@@ -5,11 +5,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct ThermalDrift;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &ThermalDrift;
 
 static DESCRIPTION: Description = Description {
@@ -17,7 +17,7 @@ static DESCRIPTION: Description = Description {
     side: Side::Rig,
     covariate: Covariate::Time,
     stage: Stage::CellZero,
-    formula: "reading + k u, u share of session time",
+    formula: "reading + k u, u the share of the session's time",
     written: Written::sum(ActsOn::Reading, "k*time"),
     parameters: &[Parameter::free("k", "N")],
     one_sided: false,

@@ -1,13 +1,14 @@
-//! The effects that a calibration tries: the built-in ones, and those of one's own.
+//! The effects that a calibration tries: the built-in and the user-defined ones.
 
 use std::sync::Arc;
 
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::sort_by_number;
 
-use super::own::{DefinitionError, LeakedEffect, OwnEffect, OwnEffectError, duplicate, read_own_effects};
+use super::own::{DefinitionError, LeakedEffect, OwnEffect, duplicate, read_own_effects, unknown_name};
 use super::{CATALOGUE, Effect};
 
-/// A list of effects, in the order of the catalogue and in that in which they act. A clone shares it.
+/// Effects in the order of the catalogue and in the order in which they act. A clone shares them.
 ///
 /// ```
 /// use pinswitch_calibration::effects::Vocabulary;
@@ -30,7 +31,7 @@ use super::{CATALOGUE, Effect};
 /// assert_eq!(vocabulary.count(), 22);
 /// let error = vocabulary.read(&text.replace("speed_pct", "sped_pct"), "mine.toml").unwrap_err();
 /// assert_eq!(error.to_string(), "mine.toml:9:24: unknown variable 'sped_pct'; did you mean speed_pct?");
-/// # Ok::<(), pinswitch_calibration::effects::OwnEffectError>(())
+/// # Ok::<(), pinswitch_diagnostic::Diagnostic>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Vocabulary {
@@ -51,7 +52,7 @@ impl PartialEq for Vocabulary {
 }
 
 impl Vocabulary {
-    /// The effects of the catalogue.
+    /// Returns the effects of the catalogue.
     pub fn built_in() -> Self {
         Self::of(Vec::new())
     }
@@ -63,18 +64,18 @@ impl Vocabulary {
         Self { own: own.into(), acting: acting.into() }
     }
 
-    /// The same with those of a file added. `file` is the name used in errors.
+    /// Adds the user-defined effects of a file. `file` is its name in errors.
     ///
     /// # Errors
-    /// [`OwnEffectError`] with line and column.
-    pub fn read(&self, text: &str, file: &str) -> Result<Self, OwnEffectError> {
+    /// As [`read_own_effects`].
+    pub fn read(&self, text: &str, file: &str) -> Result<Self, Diagnostic> {
         Ok(self.joined(read_own_effects(text, file, self)?))
     }
 
-    /// The same with more effects of one's own. They stay in memory as long as the program runs.
+    /// Adds user-defined effects. They remain in memory until the program ends.
     ///
     /// # Errors
-    /// [`DefinitionError`] if an id is there twice.
+    /// [`DefinitionError`] if an id is not unique.
     pub fn with(&self, own: Vec<OwnEffect>) -> Result<Self, DefinitionError> {
         for (i, effect) in own.iter().enumerate() {
             let id = &effect.definition().id;
@@ -89,47 +90,50 @@ impl Vocabulary {
         Self::of(self.own.iter().copied().chain(own.into_iter().map(OwnEffect::leaked)).collect())
     }
 
-    /// The same with only those of one's own for which this holds.
+    /// Removes the user-defined effects for which `keep` returns false.
     #[must_use]
     pub fn retaining(&self, keep: impl Fn(&OwnEffect) -> bool) -> Self {
         Self::of(self.own.iter().copied().filter(|effect| keep(&effect.own)).collect())
     }
 
-    /// The effect of an id.
+    /// Returns the effect of an id.
     pub fn named(&self, id: &str) -> Option<&'static dyn Effect> {
         self.acting.iter().copied().find(|effect| effect.id() == id)
     }
 
-    /// Says that an id is unknown, with the nearest one that is known, or all.
-    pub fn unknown(&self, id: &str) -> String {
-        // Those of one's own first: an error shows the beginning and the end of a long list.
+    /// Returns the diagnostic of an unknown id, which suggests the closest known id or lists all.
+    pub fn unknown(&self, id: &str) -> Diagnostic {
+        // User-defined effects come first, since a long list is abridged in the middle.
         let own = self.own().map(|own| own.definition().id.as_str());
-        super::own::unknown("effect", id, own.chain(CATALOGUE.iter().map(|effect| effect.id())))
+        unknown_name("effect", id, own.chain(CATALOGUE.iter().map(|effect| effect.id())))
     }
 
-    /// All of them in the order of the catalogue, those of one's own behind.
+    /// Returns all effects in the order of the catalogue, followed by the user-defined ones.
     pub fn effects(&self) -> impl Iterator<Item = &'static dyn Effect> {
         CATALOGUE.iter().copied().chain(self.own.iter().map(|effect| *effect as &dyn Effect))
     }
 
-    /// All of them in the order in which they act: the load first, the end of the load cell's range last.
+    /// Returns all effects in the order in which they act, from the load to the end of the load
+    /// cell's range.
     pub fn acting_order(&self) -> &[&'static dyn Effect] {
         &self.acting
     }
 
-    /// Those of one's own, in the order in which they were read.
+    /// Returns the user-defined effects in the order in which they were read.
     pub fn own(&self) -> impl Iterator<Item = &OwnEffect> {
         self.own.iter().map(|effect| &effect.own)
     }
 
-    /// How many there are.
+    /// Returns the number of effects.
     pub fn count(&self) -> usize {
         self.acting.len()
     }
 
-    /// How many candidates a search tries: one of one's own counts once for each place that its shapes are tried at, since
-    /// the best of many places gains more by chance than one. The built-in ones count once; what chance makes of them and
-    /// their shapes is held against rigs without effect (`model/doc/calibration.md`).
+    /// Returns the number of candidates for the correction of multiple tests.
+    ///
+    /// A user-defined effect counts once for each start of its shapes, since the best of several
+    /// starts gains more by chance. A built-in one counts once; false positives of the built-in
+    /// effects and their shapes are calibrated on rigs without effect (`model/doc/calibration.md`).
     pub fn tries(&self) -> usize {
         let places: usize = self.own().map(|own| own.starts().len()).sum();
         self.count() - self.own.len() + places
@@ -140,7 +144,7 @@ impl Vocabulary {
 mod tests {
     use super::*;
 
-    /// An effect of one's own whose formula has this many shapes with bounds.
+    /// Returns a file with an effect that has this number of shapes.
     fn with_shapes(shapes: usize) -> String {
         let names = ["c", "d", "e"];
         let sum: String = names[..shapes].iter().map(|name| format!(" * (1 + {name} * stroke)")).collect();
@@ -155,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn one_of_one_s_own_counts_once_for_each_place_it_is_tried_at() {
+    fn user_defined_effects_count_per_start() {
         let built_in = Vocabulary::built_in();
         assert_eq!(built_in.tries(), built_in.count());
         let more =

@@ -1,4 +1,4 @@
-//! `wear_drift`: friction drifts with all the travel since the session began.
+//! `wear_drift`: friction drifts with the total travel since the session began.
 
 use super::{
     ActsOn, ContactState, Covariate, Description, Effect, PaperProtocol, Parameter, Side, Stage, StudyRange,
@@ -6,11 +6,11 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// See [`DESCRIPTION`].
+/// Marker type; see [`DESCRIPTION`].
 #[derive(Debug)]
 struct WearDrift;
 
-/// The entry in the registry.
+/// Entry in the catalogue.
 pub(super) const EFFECT: &dyn Effect = &WearDrift;
 
 static DESCRIPTION: Description = Description {
@@ -18,7 +18,7 @@ static DESCRIPTION: Description = Description {
     side: Side::Switch,
     covariate: Covariate::Time,
     stage: Stage::ScaledFriction,
-    formula: "mu (1 + k g(u)), u share of all repetitions, g(u) = u or (1 - exp(-u/t))/(1 - exp(-1/t))",
+    formula: "mu (1 + k g(u)), u the share of all repetitions, g(u) = u or (1 - exp(-u/t))/(1 - exp(-1/t))",
     written: Written::factor(ActsOn::Mu, "k*(1 - exp(-travel/t)) / (1 - exp(-1/t))"),
     parameters: &[Parameter::free("k", "1"), Parameter::bounded("t", "1", 0.08, 3.0)],
     one_sided: false,

@@ -1,30 +1,31 @@
-//! What a formula of an effect acts on, and how: the part of an effect that the language of formulas can say.
+//! Quantity that an effect's formula changes, and how: the part of an effect that the formula
+//! language can express.
 
 use super::{ContactState, Stage};
 
-/// What a formula acts on.
+/// Quantity that a formula changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ActsOn {
-    /// The friction on pins and silicone alike.
+    /// Friction on pins and silicone.
     Mu,
-    /// The friction on the pins.
+    /// Friction on the pins.
     MuPins,
-    /// The friction on the silicone; for `plain` the free exponent.
+    /// Friction on the silicone; the free exponent for `plain`.
     MuSilicone,
-    /// The wrap angle.
+    /// Wrap angle.
     Wrap,
-    /// The load at which a device has switched by half.
+    /// Threshold of a device.
     Threshold,
-    /// The load.
+    /// Load.
     Load,
-    /// The tension that the contact leaves, before the load cell.
+    /// Tension after the contact and before the load cell.
     Tension,
-    /// The reading of the load cell.
+    /// Reading of the load cell.
     Reading,
 }
 
 impl ActsOn {
-    /// All of them, on the way from the load to the reading.
+    /// All of them, in the order from the load to the reading.
     pub const ALL: [ActsOn; 8] = [
         ActsOn::Mu,
         ActsOn::MuPins,
@@ -36,7 +37,7 @@ impl ActsOn {
         ActsOn::Reading,
     ];
 
-    /// The word of the files.
+    /// Returns the word used in files.
     pub fn as_str(self) -> &'static str {
         match self {
             ActsOn::Mu => "mu",
@@ -50,7 +51,7 @@ impl ActsOn {
         }
     }
 
-    /// Unit of what it is: what a formula that is added must have.
+    /// Returns the unit of the quantity, which a formula must have that is added to it.
     pub fn unit(self) -> &'static str {
         match self {
             ActsOn::Mu | ActsOn::MuPins | ActsOn::MuSilicone => "1",
@@ -59,23 +60,23 @@ impl ActsOn {
         }
     }
 
-    /// Whether the tension is known where it acts.
+    /// Returns whether the tension is known at its stage.
     pub fn knows_tension(self) -> bool {
         matches!(self, ActsOn::Tension | ActsOn::Reading)
     }
 }
 
-/// How a formula `f` changes what it acts on.
+/// How a formula `f` changes its quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Combine {
-    /// Times `1 + f`, `f` dimensionless.
+    /// Multiplies it by `1 + f`, with `f` dimensionless.
     Factor,
-    /// Plus `f`, in the unit of what it acts on.
+    /// Adds `f`, in the unit of the quantity.
     Sum,
 }
 
 impl Combine {
-    /// The word of the files.
+    /// Returns the word used in files.
     pub fn as_str(self) -> &'static str {
         match self {
             Combine::Factor => "factor",
@@ -83,7 +84,7 @@ impl Combine {
         }
     }
 
-    /// A value after the formula had the value `f`.
+    /// Applies the value `f` of a formula.
     pub fn applied(self, value: f64, f: f64) -> f64 {
         match self {
             Combine::Factor => value * (1.0 + f),
@@ -92,35 +93,35 @@ impl Combine {
     }
 }
 
-/// An effect's form in the language of formulas (`model/doc/own-effects.md`).
+/// Formula of an effect in the formula language (`model/doc/own-effects.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
-    /// The language can say it.
+    /// The effect has a formula.
     As {
-        /// What it acts on.
+        /// Quantity that it changes.
         acts_on: ActsOn,
-        /// How.
+        /// How it changes the quantity.
         combine: Combine,
         /// The formula.
         formula: &'static str,
     },
-    /// The language cannot, for this reason.
+    /// The language cannot express the effect, for this reason.
     No(&'static str),
 }
 
 impl Written {
-    /// A formula `f` by which something is multiplied, as `1 + f`.
+    /// Returns a formula `f` that multiplies by `1 + f`.
     pub const fn factor(acts_on: ActsOn, formula: &'static str) -> Self {
         Self::As { acts_on, combine: Combine::Factor, formula }
     }
 
-    /// A formula that is added.
+    /// Returns a formula that is added.
     pub const fn sum(acts_on: ActsOn, formula: &'static str) -> Self {
         Self::As { acts_on, combine: Combine::Sum, formula }
     }
 }
 
-/// Where a formula acts between the weight and the reading.
+/// Returns the stage at which a formula acts.
 pub(super) fn stage(acts_on: ActsOn, combine: Combine) -> Stage {
     match (acts_on, combine) {
         (ActsOn::Load, _) => Stage::Load,
@@ -135,11 +136,11 @@ pub(super) fn stage(acts_on: ActsOn, combine: Combine) -> Stage {
     }
 }
 
-/// The least load in newtons at which a device may have switched by half.
+/// Smallest threshold of a device in newtons.
 const LEAST_THRESHOLD_N: f64 = 1.0;
 
-/// Changes the contact by a formula whose value is `f`. Friction, wrap and load are held at zero or above, as by the
-/// built-in effects; what is no number stays none.
+/// Applies the value `f` of a formula to the contact. Friction, wrap and load remain non-negative,
+/// as with the built-in effects; NaN is passed on.
 pub(super) fn on_contact(acts_on: ActsOn, combine: Combine, f: f64, state: &mut ContactState) {
     let changed = |value: f64, least: f64| {
         let value = combine.applied(value, f);
@@ -147,7 +148,8 @@ pub(super) fn on_contact(acts_on: ActsOn, combine: Combine, f: f64, state: &mut 
     };
     if matches!(acts_on, ActsOn::Mu | ActsOn::MuPins) {
         state.mu_pins = changed(state.mu_pins, 0.0);
-        // What ploughing adds is friction of the pins, too; a coefficient that is added leaves it as it is.
+        // Ploughing is friction of the pins, too. It is scaled by a factor, but not changed by an
+        // added coefficient.
         if combine == Combine::Factor {
             state.extra_exponent_pins = changed(state.extra_exponent_pins, 0.0);
         }

@@ -1,5 +1,5 @@
-//! Every run that a rig could make: contact, load, speed, dwell, repetitions, and where a question asks for it the order
-//! of the loads and the time in the session.
+//! Candidate runs of a rig: contact, load, speed, dwell, repetitions, and, if a question depends on
+//! them, the order of the loads and the time in the session.
 
 use pinswitch_friction::{Substrate, published};
 
@@ -11,39 +11,41 @@ use crate::effects::{Covariate, Stage};
 use crate::inference::{Model, Term};
 use crate::table::{PlateauRow, Sweep};
 
-/// Repetitions to choose from, eccentric and concentric.
+/// Numbers of eccentric and concentric repetitions to choose from.
 const REPETITIONS: [[u32; 2]; 2] = [[4, 4], [10, 10]];
 
-/// Pairs of contact and load beyond which only some of the loads are chosen from: five times the paper's.
+/// Number of pairs of contact and load above which only some of the loads are candidates: five
+/// times the paper's.
 const MOST_PLACES: usize = 400;
-/// How many they are then.
+/// Number of these loads.
 const FEW_LOADS: usize = 6;
 
-/// A run, and whether it comes in the second half of the session.
+/// A candidate run, and whether it is in the second half of the session.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     pub(super) run: PlannedRun,
     pub(super) late: bool,
-    /// The weight that hung before it, in grams, where a question is about that.
+    /// Previous weight in grams, if a question depends on it.
     pub(super) after_g: Option<f64>,
-    /// Of a run with descending loads, the next heavier weight in grams: one such must hang before it in its mount.
+    /// For a run with descending loads, the next heavier weight in grams, which must precede it in
+    /// its mount.
     pub(super) down_from_g: Option<f64>,
 }
 
 impl Candidate {
-    /// Whether both are recorded under one mount.
+    /// Returns whether both are recorded in one mount.
     pub(super) fn shares_mount(&self, other: &Self) -> bool {
         self.late == other.late && self.run.is_mounted_as(&other.run)
     }
 
-    /// Whether both are recorded under one mount, one after the other with the same weight.
+    /// Returns whether both are recorded in one mount, consecutively with the same weight.
     pub(super) fn shares_load(&self, other: &Self) -> bool {
         self.shares_mount(other)
             && self.run.sweep == other.run.sweep
             && self.run.load_mass_g == other.run.load_mass_g
     }
 
-    /// The run that loads descend from, as short as runs are, where nothing heavier stands before.
+    /// Returns the shortest run with a heavier load to precede descending loads.
     pub(super) fn lift(&self) -> Option<PlannedRun> {
         Some(PlannedRun {
             sweep: Sweep::Up,
@@ -53,7 +55,8 @@ impl Candidate {
         })
     }
 
-    /// Minutes of it beside `others`: recording, and what has to be changed for it alone.
+    /// Returns the duration in minutes in addition to `others`: recording, and the changes for this
+    /// run alone.
     pub(super) fn minutes<'a>(
         &self,
         mut others: impl Iterator<Item = &'a Self> + Clone,
@@ -71,7 +74,7 @@ impl Candidate {
     }
 }
 
-/// All of them, each within what the load cell may read.
+/// Returns all candidates within the range of the load cell.
 pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec<Candidate> {
     let sweeps: &[Sweep] = if agenda.asks_along(Covariate::Sweep) || agenda.asks_of_the_load_before() {
         &[Sweep::Up, Sweep::Down]
@@ -105,7 +108,7 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
                                     mount: 1,
                                     minutes: 0.0,
                                     asks: String::new(),
-                                    wrap_angle_deg: rig.own_wrap_deg(),
+                                    wrap_angle_deg: rig.other_wrap_deg(),
                                 };
                                 let after_g = agenda
                                     .asks_of_the_load_before()
@@ -125,8 +128,9 @@ pub(super) fn candidates(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec
     descending_from_somewhere(all)
 }
 
-/// Whether the cell bears each row: what pulls at it, and what it would say. The force is greatest while the load is raised; a
-/// tenth is left for what the model lacks.
+/// Returns whether each row is within the range of the load cell: the tension and the predicted
+/// reading. The force is largest while the load is pulled; a margin of 10 % allows for errors of
+/// the model.
 pub(super) fn within_cell(model: &Model, rows: &[PlateauRow], rig: &RigLimits) -> Vec<bool> {
     let is_of_the_cell = |term: &Term| match term {
         Term::Named(effect) => {
@@ -134,7 +138,7 @@ pub(super) fn within_cell(model: &Model, rows: &[PlateauRow], rig: &RigLimits) -
         }
         Term::Structure(_) => false,
     };
-    // A cell at the end of its range says less than what pulls at it.
+    // A saturated load cell reads less than the tension.
     let pulled = model.without_terms(is_of_the_cell);
     let Ok(points) = model.frame.points(rows).ok_or(()) else { return Vec::new() };
     let bears = |force_n: f64| force_n * 1.1 <= rig.cell_limit_n;
@@ -146,7 +150,7 @@ pub(super) fn within_cell(model: &Model, rows: &[PlateauRow], rig: &RigLimits) -
         .collect()
 }
 
-/// The candidates, those with descending loads only where a heavier weight can hang before them.
+/// Removes candidates with descending loads that no heavier weight can precede.
 fn descending_from_somewhere(all: Vec<Candidate>) -> Vec<Candidate> {
     let mut loads: Vec<(Substrate, Vec<usize>, Vec<f64>)> = Vec::new();
     for run in all.iter().map(|c| &c.run) {
@@ -167,8 +171,8 @@ fn descending_from_somewhere(all: Vec<Candidate>) -> Vec<Candidate> {
         .collect()
 }
 
-/// The weight that hangs before one, as the runs of a mount are ordered: the next lighter one while loads ascend, before the
-/// lightest the heaviest, on the contact before.
+/// Returns the previous weight in the order of the runs of a mount: the next lighter one for
+/// ascending loads; for the lightest, the heaviest of the previous contact.
 fn neighbour_g(loads_g: &[f64], load_g: f64, sweep: Sweep) -> f64 {
     let lighter = loads_g.iter().copied().filter(|g| *g < load_g).fold(f64::NEG_INFINITY, f64::max);
     let heavier = loads_g.iter().copied().filter(|g| *g > load_g).fold(f64::INFINITY, f64::min);
@@ -177,7 +181,7 @@ fn neighbour_g(loads_g: &[f64], load_g: f64, sweep: Sweep) -> f64 {
     if found.is_finite() { found } else { most }
 }
 
-/// `most` of the values, evenly spread by rank, the least and the greatest among them.
+/// Returns `most` of the values, evenly spaced by rank, including the extremes.
 fn spread(values: &[f64], most: usize) -> Vec<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -189,8 +193,8 @@ fn spread(values: &[f64], most: usize) -> Vec<f64> {
     kept
 }
 
-/// The rows of a candidate in a session of its own that began `begins_s` seconds before it; where it is asked what hung before,
-/// after one reading of that.
+/// Returns the rows of a candidate in its own session, which began `begins_s` seconds before; if
+/// the previous load matters, after one reading at that load.
 pub(super) fn alone(candidate: &Candidate, series: &str, rig: &RigLimits, begins_s: f64) -> Vec<PlateauRow> {
     let (mut rows, mut time_s) = (Vec::new(), begins_s);
     if let Some(load_mass_g) = candidate.after_g {
@@ -201,7 +205,8 @@ pub(super) fn alone(candidate: &Candidate, series: &str, rig: &RigLimits, begins
     rows
 }
 
-/// The paper's protocol for as many minutes: contact by contact, loads ascending, the speed following the load, one dwell.
+/// Returns the paper's protocol, up to a duration in minutes: contact by contact, ascending loads,
+/// speed following load, one dwell.
 pub(super) fn paper_protocol(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
     let (mut runs, mut spent): (Vec<PlannedRun>, f64) = (Vec::new(), 0.0);
     let mut loads = rig.loads_g.clone();
@@ -221,7 +226,7 @@ pub(super) fn paper_protocol(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
                 mount: mount + 1,
                 minutes: 0.0,
                 asks: String::new(),
-                wrap_angle_deg: rig.own_wrap_deg(),
+                wrap_angle_deg: rig.other_wrap_deg(),
             };
             let change = if i == 0 { rig.minutes_per_mount_change } else { 0.0 };
             let takes = run.recording_minutes(rig) + rig.minutes_per_load_change + change;
@@ -243,9 +248,9 @@ mod tests {
     use crate::table::Frame;
     use crate::test_session::session;
 
-    /// What a cell says at the end of its range is less than what pulls at it.
+    /// A saturated load cell reads less than the tension.
     #[test]
-    fn a_cell_at_the_end_of_its_range_is_not_loaded_beyond_its_limit() {
+    fn saturated_cells_are_not_overloaded() {
         let rig = RigLimits { cell_limit_n: 58.0, ..RigLimits::default() };
         let model = Model::baseline(Frame::new(&session(1)));
         let saturated = model.with_term(Term::Named(effect_named("load_cell_saturation").unwrap()), &[50.0]);
@@ -266,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn of_many_loads_the_ends_and_some_between_are_chosen_from() {
+    fn few_loads_include_the_extremes() {
         let many: Vec<f64> = (0..40).rev().map(|i| 50.0 + 100.0 * f64::from(i)).collect();
         let few = spread(&many, FEW_LOADS);
         assert_eq!(few.len(), FEW_LOADS);

@@ -1,4 +1,5 @@
-//! Fisher information of rows, recorded or planned, about the constants of a model and the sizes of effects beside it.
+//! Fisher information of rows, recorded or planned, about the constants of a model and the sizes of
+//! further effects.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -6,37 +7,38 @@ use crate::effects::Effect;
 use crate::inference::{CONSEQUENCE, Model, Noise, Observations, Term, Weighed, jacobian};
 use crate::table::PlateauRow;
 
-/// A column beside those of the model's own constants: what an effect adds to the readings, at one size.
+/// A column in addition to the model's constants: the change of the readings by an effect of a
+/// given size.
 #[derive(Clone, Debug)]
 pub(super) enum Trace {
-    /// What a term of the model adds.
+    /// Contribution of a term of the model.
     Found {
-        /// Place of the term.
+        /// Index of the term.
         term: usize,
     },
-    /// What an effect would add that the model does not have.
+    /// Contribution of an effect that is not in the model.
     Absent {
         /// The effect.
         effect: &'static dyn Effect,
-        /// Its constants.
+        /// Constants of the effect.
         values: Vec<f64>,
     },
-    /// What another value of one of the model's own constants adds: a switch that was mounted anew may have changed.
+    /// Change of a constant of the model in a new session, since a newly mounted switch may differ.
     Renewed {
-        /// Place of the constant.
+        /// Index of the constant.
         constant: usize,
     },
-    /// What friction would be off by at loads beyond those recorded: nothing at the first load, and in proportion to
-    /// what is beyond it [`CONSEQUENCE`] of the friction at the second.
+    /// Error of friction above the recorded loads: zero at the first load, and increasing linearly
+    /// to [`CONSEQUENCE`] of the friction at the second.
     Beyond {
-        /// Highest load recorded.
+        /// Highest recorded load in newtons.
         from_n: f64,
-        /// Load up to which friction is asked for.
+        /// Highest load of interest in newtons.
         to_n: f64,
     },
 }
 
-/// A model with traces beside it, and the noise that rows have.
+/// A model with additional columns, and the noise of rows.
 #[derive(Debug)]
 pub(super) struct Design<'a> {
     pub(super) model: &'a Model,
@@ -45,17 +47,17 @@ pub(super) struct Design<'a> {
 }
 
 impl Design<'_> {
-    /// Number of the model's own constants: their columns come first.
+    /// Returns the number of the model's constants, whose columns come first.
     pub(super) fn own(&self) -> usize {
         self.model.values().len()
     }
 
-    /// Number of all columns.
+    /// Returns the number of all columns.
     pub(super) fn columns(&self) -> usize {
         self.own() + self.traces.len()
     }
 
-    /// What is known of the constants before any data.
+    /// Returns the information of the priors.
     pub(super) fn priors(&self) -> DMatrix<f64> {
         let mut known = DMatrix::zeros(self.columns(), self.columns());
         for (i, prior) in self.model.priors().iter().enumerate() {
@@ -64,7 +66,8 @@ impl Design<'_> {
         known
     }
 
-    /// Information of a table as a whole; its readings do not matter. `None` if the model lacks a condition.
+    /// Returns the information of a table; its readings are irrelevant. `None` if the model lacks a
+    /// condition.
     pub(super) fn of(&self, rows: &[PlateauRow]) -> Option<DMatrix<f64>> {
         let whole = Observations::new(&self.model.frame, rows)?.compacted();
         let (data, columns) = self.whitened(whole);
@@ -72,7 +75,7 @@ impl Design<'_> {
         Some(gram(&columns, &all))
     }
 
-    /// Information of each series of a table by itself, in the order of their first rows.
+    /// Returns the information of each series of a table, in the order of their first rows.
     pub(super) fn by_series(&self, rows: &[PlateauRow]) -> Option<Vec<DMatrix<f64>>> {
         let (data, columns) = self.whitened(Observations::new(&self.model.frame, rows)?);
         Some(data.series_rows.iter().map(|rows| gram(&columns, rows)).collect())
@@ -108,7 +111,7 @@ impl Design<'_> {
     }
 }
 
-/// Products of all pairs of columns over some rows.
+/// Returns the products of all pairs of columns over some rows.
 fn gram(columns: &[Vec<f64>], rows: &[usize]) -> DMatrix<f64> {
     let n = columns.len();
     let mut products = DMatrix::zeros(n, n);
@@ -122,12 +125,12 @@ fn gram(columns: &[Vec<f64>], rows: &[usize]) -> DMatrix<f64> {
     products
 }
 
-/// Information with the columns `nuisance` taken out of all others: what these can take over is not visible.
+/// Information with the columns `nuisance` projected out of all others.
 #[derive(Debug)]
 pub(super) struct Projected<'a> {
     information: &'a DMatrix<f64>,
     nuisance: &'a [usize],
-    /// Columns are of very different length: each is scaled to one.
+    /// Scale of each column, since their lengths differ widely.
     scale: Vec<f64>,
     factor: Option<Cholesky<f64, Dyn>>,
 }
@@ -139,17 +142,17 @@ impl<'a> Projected<'a> {
             nuisance.iter().map(|i| information[(*i, *i)].max(1e-300).sqrt().recip()).collect();
         let mut inner =
             DMatrix::from_fn(n, n, |i, j| information[(nuisance[i], nuisance[j])] * scale[i] * scale[j]);
-        // A column that others make up is taken out with them.
+        // A column that depends linearly on the others is removed with them.
         (0..n).for_each(|i| inner[(i, i)] += 1e-10);
         Self { information, nuisance, scale, factor: inner.cholesky() }
     }
 
-    /// Whether these are the columns that were taken out.
+    /// Returns whether these are the projected columns.
     pub(super) fn is_without(&self, nuisance: &[usize]) -> bool {
         self.nuisance == nuisance
     }
 
-    /// Product of what is left of two columns.
+    /// Returns the product of the projected parts of two columns.
     pub(super) fn covariance(&self, a: usize, b: usize) -> f64 {
         let Some(factor) = &self.factor else { return 0.0 };
         let side = |c: usize| {
@@ -160,7 +163,7 @@ impl<'a> Projected<'a> {
         self.information[(a, b)] - side(a).dot(&factor.solve(&side(b)))
     }
 
-    /// Squared length, in standard deviations, of what is left of a column.
+    /// Returns the squared norm, in standard deviations, of the projected part of a column.
     pub(super) fn squares(&self, signal: usize) -> f64 {
         self.covariance(signal, signal).max(0.0)
     }
@@ -171,7 +174,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_the_nuisance_takes_over_is_not_visible() {
+    fn projection_removes_confounded_parts() {
         // Columns x, y and x + y + e over four rows.
         let columns = [vec![1.0, 0.0, 0.0, 0.0], vec![0.0, 2.0, 0.0, 0.0], vec![1.0, 2.0, 0.0, 0.5]];
         let information = gram(&columns, &[0, 1, 2, 3]);

@@ -1,9 +1,11 @@
-//! The next experiment: which runs settle most of what a calibration leaves open, per minute of work.
+//! The next experiment: the runs that answer most open questions of a calibration per minute of
+//! work.
 //!
-//! Of each pair of explanations the data could not tell apart, and of each effect that they neither show nor exclude, the
-//! expected squares are known for any runs: what is left of the difference between both when the other one is fitted, in
-//! units of the noise with all its parts (T-optimality, Atkinson and Fedorov 1975; of an effect's own size Ds-optimality).
-//! `model/doc/next-experiment.md` says how runs are chosen by it, and how well that works.
+//! A question is a pair of explanations that the data did not separate, or an effect that is
+//! neither attributed nor excluded. For any runs, the expected deviance is known: the difference of
+//! both explanations after the other one is fitted, in units of all components of the noise
+//! (T-optimality, Atkinson and Fedorov 1975; Ds-optimality for the size of an effect).
+//! `model/doc/next-experiment.md` describes the choice of runs and its performance.
 
 mod candidates;
 mod information;
@@ -16,15 +18,16 @@ mod settings;
 mod shortlist;
 
 use nalgebra::DMatrix;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::{published, sort_by_number};
 use serde::Serialize;
 
-pub use rig::{RigError, RigLimits};
-pub use runs::{PlannedRun, RunsError, by_contact, contact_words, read_runs, rows_of, write_runs};
+pub use rig::RigLimits;
+pub use runs::{PlannedRun, by_contact, contact_words, read_runs, rows_of, write_runs};
 
 use crate::effects::{Covariate, Vocabulary};
 use crate::inference::{Levels, Model, Noise};
-use crate::model_file::{ModelFile, ModelFileError};
+use crate::model_file::ModelFile;
 use crate::report::Report;
 use crate::table::{PlateauRow, Sweep};
 use candidates::{Candidate, candidates, paper_protocol};
@@ -37,109 +40,143 @@ use shortlist::Shortlist;
 
 /// Name and version of `experiment.json`.
 pub const SCHEMA: &str = "pinswitch.experiment/1";
-/// Probability below which all that a rig can do does not answer a question.
+/// Probability below which a question is not answered by all runs of a rig together.
 const ANSWERABLE: f64 = 0.5;
 
-/// A question with what is expected of the runs.
+/// A question with the expected result of the runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct QuestionOutlook {
-    /// What it lies between: two ids, or an id and `none`.
+    /// The two explanations: two ids, or an id and `none`.
     pub between: [String; 2],
-    /// Of an effect against none, the size that is asked about, in the unit of its first constant.
+    /// Size in question in the unit of the effect's first constant, for an effect against none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<f64>,
-    /// Probability that the data of so far and of these runs answer it.
+    /// Probability that the recorded data and these runs answer it.
     pub resolved_probability: f64,
-    /// The same for the paper's protocol repeated for as many minutes.
+    /// The same for the paper's protocol repeated for the same time.
     pub by_repeating: f64,
 }
 
-/// Probability from which data that are there already count as an answer.
+/// Probability above which the recorded data count as an answer.
 const KNOWN: f64 = 0.99;
-/// What no experiment on the rig can settle.
+/// A question that no experiment on the rig answers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Unanswerable {
-    /// What it lies between: two ids, or an id and `none`.
+    /// The two explanations: two ids, or an id and `none`.
     pub between: [String; 2],
     /// Why.
     pub why: String,
 }
 
-/// `experiment.json`, with the runs.
+/// Content of `experiment.json`, and the runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Proposal {
     /// Name and version of the format.
     pub schema: &'static str,
-    /// Minutes that the runs take.
+    /// Duration of the runs in minutes.
     pub minutes: f64,
-    /// What they are for, the most probable answer first.
+    /// Questions of the runs, by descending probability of an answer.
     pub questions: Vec<QuestionOutlook>,
-    /// What they cannot settle.
+    /// Questions that they cannot answer.
     pub unanswerable: Vec<Unanswerable>,
     /// The runs, in order.
     #[serde(skip)]
     pub runs: Vec<PlannedRun>,
 }
 
-/// Why nothing is proposed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+/// Reason why no runs can be proposed; converts to a [`Diagnostic`].
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ExperimentError {
-    /// The model on file cannot be used.
-    #[error(transparent)]
-    Model(#[from] ModelFileError),
-    /// Rows and model are not of one calibration.
-    #[error(
-        "{0}: report.json, model.toml and residuals.csv are not of one calibration, or not whole; calibrate again"
-    )]
-    Rows(String),
-    /// No run is possible at any length.
-    #[error(
-        "cell_limit_n = {limit_n}: at every load, on every layout of the rig, the cell would read more than it, less a tenth to spare; raise it, or list lighter weights"
-    )]
+    /// The model file is invalid.
+    Model(Diagnostic),
+    /// Report, model and rows are not of one calibration; contains its name.
+    Mismatch(String),
+    /// No load is within the range of the load cell.
     CellTooSmall {
-        /// Force at which the rig's cell ends, in newtons.
+        /// Upper end of the range in newtons.
         limit_n: f64,
     },
-    /// Not one run fits.
-    #[error(
-        "no run fits into {minutes} minutes on this rig, the shortest takes {shortest:.1}; give more --minutes, or mend rig.toml"
-    )]
+    /// No run fits into the time.
     NoTime {
-        /// Minutes there are.
+        /// Available time in minutes.
         minutes: f64,
-        /// Minutes of the shortest run.
+        /// Duration of the shortest run in minutes.
         shortest: f64,
     },
 }
 
-/// What a calibration has left: its report, its model and its rows.
+impl From<&ExperimentError> for Diagnostic {
+    fn from(error: &ExperimentError) -> Self {
+        match error {
+            ExperimentError::Model(error) => error.clone(),
+            ExperimentError::Mismatch(name) => Self::new(
+                "report.json, model.toml and residuals.csv are incomplete or from different calibrations",
+            )
+            .with_location(Location::file(name))
+            .with_help("calibrate again"),
+            ExperimentError::CellTooSmall { limit_n } => Self::new(
+                "the load cell would exceed 90 % of its range at every load on every layout of the rig",
+            )
+            .with_location(Location::field("cell_limit_n", limit_n.to_string()))
+            .with_help("raise it, or list lighter weights"),
+            ExperimentError::NoTime { minutes, shortest } => Self::new(format!(
+                "no run fits into {minutes} minutes on this rig (the shortest takes {shortest:.1})"
+            ))
+            .with_help("give more --minutes, or shorter times in rig.toml"),
+        }
+    }
+}
+
+impl From<ExperimentError> for Diagnostic {
+    fn from(error: ExperimentError) -> Self {
+        Self::from(&error)
+    }
+}
+
+impl From<Diagnostic> for ExperimentError {
+    fn from(error: Diagnostic) -> Self {
+        Self::Model(error)
+    }
+}
+
+impl std::fmt::Display for ExperimentError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        Diagnostic::from(self).fmt(f)
+    }
+}
+
+impl std::error::Error for ExperimentError {}
+
+/// Results of a calibration: report, model and rows.
 #[derive(Clone, Copy, Debug)]
 pub struct Known<'a> {
-    /// `report.json`.
+    /// Content of `report.json`.
     pub report: &'a Report,
-    /// `model.toml`.
+    /// Content of `model.toml`.
     pub model: &'a ModelFile,
-    /// The rows that were fitted.
+    /// The fitted rows.
     pub rows: &'a [PlateauRow],
-    /// Effects that it tried.
+    /// The effects of the calibration.
     pub vocabulary: &'a Vocabulary,
-    /// Name of the folder, for errors.
+    /// Name of the folder in errors.
     pub name: &'a str,
 }
 
-/// Proposes runs of at most so many minutes. What is asked of them is empty if the report leaves nothing open.
+/// Proposes runs within a duration in minutes. The proposal is empty if the report leaves nothing
+/// open.
 ///
 /// # Errors
-/// [`ExperimentError`] if report, model and rows do not belong together, or a single run does not fit the cell or the time.
+/// [`ExperimentError`] if report, model and rows are not of one calibration, or no run is within
+/// the load cell's range or the time.
 pub fn propose(
     known: Known<'_>,
     rig: &RigLimits,
     minutes: f64,
     levels: Levels,
 ) -> Result<Proposal, ExperimentError> {
-    let foreign = || ExperimentError::Rows(known.name.to_owned());
-    // The rig is wrapped as it was, unless its file says otherwise.
+    let foreign = || ExperimentError::Mismatch(known.name.to_owned());
+    // The wrap is that of the table, unless the rig's file gives another.
     let rig = &rig.clone().wrapped_by(usual_wrap_deg(known.rows));
     let (model, noise) = extended(known, rig)?;
     let of_rows = |traces: &[Trace]| {
@@ -170,7 +207,7 @@ pub fn propose(
         Shortlist::of(all, &design, &data, &agenda.questions, rig, minutes).ok_or_else(foreign)?;
     let (open, closed): (Vec<Question>, Vec<Question>) =
         agenda.questions.iter().cloned().partition(|q| q.probability(&everything) >= ANSWERABLE);
-    // What the data so far should show by themselves, and did not, no more of the same will.
+    // More of the same runs will not show what the recorded data should show and did not.
     let open: Vec<Question> = open.into_iter().filter(|q| q.probability(&data) < KNOWN).collect();
     let planner = Planner {
         candidates: &all,
@@ -184,7 +221,7 @@ pub fn propose(
     let runs = planner.best_plan().ok_or_else(foreign)?;
     let after = |runs: &[PlannedRun]| planner.after(runs);
     let with_runs = after(&runs).ok_or_else(foreign)?;
-    // An empty sum is minus zero.
+    // Addition avoids the negative zero of an empty sum.
     let spent = 0.0 + runs.iter().map(|run| run.minutes).sum::<f64>();
     let repeated = after(&paper_protocol(rig, spent)).ok_or_else(foreign)?;
     let mut questions: Vec<QuestionOutlook> = open
@@ -202,7 +239,8 @@ pub fn propose(
     Ok(Proposal { schema: SCHEMA, minutes: (100.0 * spent).round() / 100.0, questions, unanswerable, runs })
 }
 
-/// Whether a report tells the constants of a model: those of one calibration.
+/// Returns whether a report contains the constants of a model, which shows that both are of one
+/// calibration.
 fn is_told_in(report: &Report, model: &Model) -> bool {
     let told = &report.augmented.parameters;
     let is_one = |((name, _), value): ((String, &str), f64)| {
@@ -213,7 +251,7 @@ fn is_told_in(report: &Report, model: &Model) -> bool {
         && names.into_iter().zip(model.values()).all(is_one)
 }
 
-/// The wrap in degrees that most rows have.
+/// Returns the wrap angle in degrees of most rows.
 fn usual_wrap_deg(rows: &[PlateauRow]) -> f64 {
     let mut wraps: Vec<f64> =
         rows.iter().filter(|r| r.substrate.is_some()).map(|r| r.wrap_angle_deg).collect();
@@ -222,15 +260,15 @@ fn usual_wrap_deg(rows: &[PlateauRow]) -> f64 {
     longest.map_or(published::WRAP_ANGLE_DEG, |chunk| chunk[0])
 }
 
-/// The paper's protocol from its beginning, as far as it comes in so many minutes.
+/// Returns the paper's protocol from its beginning, up to a duration in minutes.
 pub fn paper_runs(rig: &RigLimits, minutes: f64) -> Vec<PlannedRun> {
     paper_protocol(rig, minutes)
 }
 
-/// The model of a calibration with the contacts of the rig, and its noise.
-fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), ModelFileError> {
+/// Returns the model of a calibration with the contacts of the rig, and its noise.
+fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), Diagnostic> {
     let model = known.model.model(known.name)?;
-    // Those in the model came with it.
+    // User-defined effects of the model are in its vocabulary already.
     let beside = known.vocabulary.retaining(|own| model.vocabulary.named(&own.definition().id).is_none());
     let own: Vec<_> = beside.own().cloned().collect();
     let all = model.vocabulary.with(own).unwrap_or_else(|_| model.vocabulary.clone());
@@ -242,8 +280,8 @@ fn extended(known: Known<'_>, rig: &RigLimits) -> Result<(Model, Noise), ModelFi
     Ok((model.in_frame(frame), known.model.noise()))
 }
 
-/// The runs in the order in which they are made: early ones first, each contact mounted once, its loads ascending and then
-/// descending; with the time of each.
+/// Returns the runs in the order in which they are made: early ones first, each contact mounted
+/// once, with ascending and then descending loads. Includes their durations.
 fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &RigLimits) -> Vec<PlannedRun> {
     let contacts = rig.contacts();
     let place = |run: &PlannedRun| {
@@ -272,7 +310,7 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
         let minutes = candidate.run.recording_minutes(rig)
             + if is_loaded { 0.0 } else { rig.minutes_per_load_change }
             + if is_mounted { 0.0 } else { rig.minutes_per_mount_change };
-        // As it is written, so that the file adds up to what is told.
+        // Rounded as in the file, so that the file adds up to the reported total.
         let minutes = (100.0 * minutes).floor() / 100.0;
         runs.push(PlannedRun { mount, minutes, asks: asks.clone(), ..candidate.run.clone() });
         before = Some(candidate);
@@ -280,11 +318,10 @@ fn in_order<'a>(chosen: impl Iterator<Item = (&'a Candidate, String)>, rig: &Rig
     runs
 }
 
-/// What a run is for that loads descend from.
+/// Purpose of a run with a heavier load before descending ones.
 const LIFT: &str = "loads descend from here";
 
-/// The same in order, with a heavier run before the first of descending loads in each mount where there is none: nothing descends
-/// from itself.
+/// Inserts a heavier run before the first descending load of each mount, if there is none.
 fn with_lifts(ordered: Vec<(&Candidate, String)>) -> Vec<(Candidate, String)> {
     let mut all: Vec<(Candidate, String)> = Vec::new();
     for (candidate, asks) in ordered {
@@ -309,22 +346,22 @@ fn unanswerable(
 ) -> Unanswerable {
     let [of, or] = &question.between;
     let most = 100.0 * question.probability(everything);
-    let does = if or == NONE { format!("show {of}") } else { format!("tell {of} from {or}") };
-    // What comes with time may come later than a short session lasts.
+    let does = if or == NONE { format!("identify {of}") } else { format!("separate {of} from {or}") };
+    // An effect of time may appear later than a short session lasts.
     let within = if agenda.lies_along(of, Covariate::Time) {
-        format!("; none is later than {minutes:.0} minutes into its session, and more --minutes may help")
+        format!("; no run is later than {minutes:.0} minutes into its session, so more --minutes may help")
     } else {
         String::new()
     };
     let shapes = agenda.shapes_of(model);
     if most < 100.0 * ANSWERABLE && question.beside_no(&shapes).probability(everything) >= ANSWERABLE {
         let why = format!(
-            "the model has structure without a name in its place, which no run tells from {of}: calibrate the next table with the effect, which puts it on trial"
+            "the model contains unattributed structure in its place, which no run separates from {of}; calibrate the next table with the effect to test it"
         );
         return Unanswerable { between: question.between.clone(), why };
     }
     let why = format!(
-        "every run that this rig can make, all together, would {does} with a probability of {most:.0} %{within}"
+        "all runs that this rig can make would together {does} with a probability of {most:.0} %{within}"
     );
     Unanswerable { between: question.between.clone(), why }
 }
@@ -349,7 +386,7 @@ mod tests {
         (found, file, rows)
     }
 
-    /// Whether before each run of descending loads a heavier one stands in its mount.
+    /// Returns whether a heavier run of the same mount precedes each run with descending loads.
     fn descends_from_somewhere(runs: &[PlannedRun]) -> bool {
         (0..runs.len()).filter(|i| runs[*i].sweep == Sweep::Down).all(|i| {
             let before = runs[..i].iter().filter(|run| run.mount == runs[i].mount);
@@ -357,7 +394,7 @@ mod tests {
         })
     }
 
-    /// A run of descending loads has something to descend from, at the cost of a run where nothing heavier stands before it.
+    /// Descending loads need a heavier load before them, at the cost of another run.
     #[test]
     fn loads_descend_from_a_heavier_one() {
         let rig = RigLimits::default();
@@ -387,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_invisible_is_asked_for_within_the_time_and_more_time_tells_more() {
+    fn longer_plans_answer_more_questions() {
         let (found, model, rows) = known(1);
         let vocabulary = Vocabulary::built_in();
         let known =
@@ -405,7 +442,7 @@ mod tests {
         let repeated: f64 = long.questions.iter().map(|q| q.by_repeating).sum();
         assert!(sum(&long) > repeated, "{:?}", long.questions);
         assert_eq!(propose(known, &rig, 60.0, Levels::default()).unwrap(), long);
-        // A dwell that is the session's own cannot be told from another specimen.
+        // A dwell that is constant in a session is confounded with the specimen.
         let dwells =
             |runs: &[PlannedRun]| runs.iter().map(|run| run.dwell_s.to_bits()).collect::<BTreeSet<_>>();
         let is_asked = |p: &Proposal| {

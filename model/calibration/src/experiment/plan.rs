@@ -1,5 +1,5 @@
-//! Which of several plans: that of the search, those that give up what stays open, and the paper's protocol with a search after
-//! it, compared by the answers that their real rows give.
+//! Choice between plans: that of the search, those without questions that stay open, and the
+//! paper's protocol followed by a search. They are compared by the expected answers of their rows.
 
 use nalgebra::DMatrix;
 
@@ -13,29 +13,29 @@ use super::rig::RigLimits;
 use super::runs::{PlannedRun, rows_of};
 use super::search::{FEW_RUNS, MOST_RUNS, Search};
 
-/// Probability below which a plan does not answer a question, and may do better without it.
+/// Probability below which a question stays open, so that a plan may be better without it.
 const WITHIN_REACH: f64 = 0.3;
-/// Questions that are each tried alone, at most: the weightiest.
+/// Most questions for which a separate plan is tried: those of the largest weight.
 const ALONE: usize = 4;
-/// Shares of the time for which the paper's protocol is tried before runs that are searched for: what remembers loads shows in
-/// a sequence of them, and no run by itself does.
+/// Shares of the time for which the paper's protocol is tried before searched runs, since an effect
+/// of previous loads shows only in a sequence of runs.
 const PROTOCOL_SHARES: [f64; 3] = [0.35, 0.7, 1.0];
-/// Minutes of it beyond which it repeats itself.
+/// Duration in minutes after which it repeats.
 const MOST_PROTOCOL: f64 = 420.0;
-/// Answers by which another plan must be better.
+/// Number of answers by which another plan must be better.
 const BETTER: f64 = 0.02;
-/// Runs of a plan beyond which others are compared with it before the time that they leave is used.
+/// Number of runs above which plans are compared before their remaining time is used.
 const VERY_MANY_RUNS: usize = 300;
-/// Minutes of a plan that are not worth another search.
+/// Remaining time in minutes that is not worth another search.
 const LITTLE_TIME: f64 = 3.0;
 
-/// What plans are made of, and for.
+/// Input of the planning.
 pub(super) struct Planner<'a> {
     pub(super) candidates: &'a [Candidate],
-    /// Of each candidate by itself.
+    /// Information of each candidate.
     pub(super) information: &'a [DMatrix<f64>],
     pub(super) design: &'a Design<'a>,
-    /// What is known before any run.
+    /// Information before any run.
     pub(super) data: &'a DMatrix<f64>,
     pub(super) questions: &'a [Question],
     pub(super) rig: &'a RigLimits,
@@ -43,7 +43,7 @@ pub(super) struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// What is known after runs; `None` if the model lacks a condition of theirs.
+    /// Returns the information after some runs; `None` if the model lacks one of their conditions.
     pub(super) fn after(&self, runs: &[PlannedRun]) -> Option<DMatrix<f64>> {
         let rows = rows_of(runs, self.rig, "next");
         if rows.is_empty() {
@@ -52,8 +52,9 @@ impl Planner<'_> {
         self.design.of(&rows).map(|more| more + self.data)
     }
 
-    /// The plan that gives most answers. What little is known of questions that stay open is not worth the answer to another,
-    /// and no plan may be worse than the protocol that everybody has.
+    /// Returns the plan with the most expected answers. A little information about a question that
+    /// stays open is not worth the answer to another one, and no plan may be worse than the paper's
+    /// protocol.
     pub(super) fn best_plan(&self) -> Option<Vec<PlannedRun>> {
         if self.questions.is_empty() {
             return Some(Vec::new());
@@ -62,7 +63,7 @@ impl Planner<'_> {
         let with_all = self.after(&best)?;
         let is_within_reach = |q: &&Question| q.probability(&with_all) >= WITHIN_REACH;
         let within_reach: Vec<Question> = self.questions.iter().filter(is_within_reach).cloned().collect();
-        // Of a long plan each search takes seconds, and one protocol of many.
+        // For a long plan each search takes seconds, so only one protocol is tried.
         let is_long = best.len() > FEW_RUNS;
         let mut others = Vec::new();
         if within_reach.len() < self.questions.len() && !is_long {
@@ -87,13 +88,13 @@ impl Planner<'_> {
         self.filled(best)
     }
 
-    /// Answers that are expected of runs, each counted by its weight.
+    /// Returns the expected number of answers, weighted by question.
     fn answers(&self, runs: &[PlannedRun]) -> f64 {
         let of = |with: DMatrix<f64>| self.questions.iter().map(|q| q.weight * q.probability(&with)).sum();
         self.after(runs).map_or(0.0, of)
     }
 
-    /// The runs that a search makes for some questions, where so much is known.
+    /// Returns the runs of a search for some questions, given the information so far.
     fn searched(&self, questions: &[Question], known: &DMatrix<f64>, minutes: f64) -> Vec<PlannedRun> {
         if questions.is_empty() {
             return Vec::new();
@@ -107,7 +108,7 @@ impl Planner<'_> {
         in_order(chosen.iter().map(|c| &candidates[*c]).zip(purposes), rig)
     }
 
-    /// A plan with the time that it leaves used for all questions.
+    /// Uses the remaining time of a plan for all questions.
     fn filled(&self, mut runs: Vec<PlannedRun>) -> Option<Vec<PlannedRun>> {
         let left = self.minutes - runs.iter().map(|run| run.minutes).sum::<f64>();
         if left < LITTLE_TIME || runs.len() >= MOST_RUNS {
@@ -121,7 +122,8 @@ impl Planner<'_> {
         Some(runs)
     }
 
-    /// The paper's protocol for so many minutes, as far as the cell reads it, with the question that each run does most for.
+    /// Returns the paper's protocol for a duration in minutes, within the range of the load cell,
+    /// with the question for which each run matters most.
     fn protocol(&self, minutes: f64) -> Vec<PlannedRun> {
         let mut runs = paper_protocol(self.rig, minutes);
         let rows = rows_of(&runs, self.rig, "next");

@@ -1,4 +1,4 @@
-//! Questions that a calibration leaves open, and how probably given information answers them.
+//! Open questions of a calibration, and the probability that given information answers them.
 
 use std::collections::BTreeMap;
 
@@ -11,73 +11,75 @@ use crate::effects::{Covariate, Effect, Side};
 use crate::inference::{Levels, Model, Term};
 use crate::report::{Estimate, LimitReport, Report};
 
-/// What an answer says no to.
+/// Word for the absence of an effect.
 pub(crate) const NONE: &str = "none";
 
-/// How the question for loads beyond those recorded begins.
+/// Prefix of the question for loads above those recorded.
 pub(crate) const FRICTION_ABOVE: &str = "friction_above_";
 
-/// Gain, in squares of the noise, by which an effect is seen and told from none: four standard deviations, as for what
-/// counts as visible at all.
+/// Reduction of the deviance at which an effect is detected: four standard deviations, as for
+/// identifiable effects.
 const SEEN: f64 = 16.0;
-/// Standard deviations by which the limits of an effect that is not there lie off zero, to either side: those of 95 %.
+/// Half width of a 95 % interval in standard deviations.
 const EXCLUDED: f64 = 1.96;
-/// Probability, before the data to come, that an effect is there that could not be excluded: most are not.
+/// Prior probability that an effect that is not excluded is present: most are not.
 const THERE: f64 = 0.2;
-/// How much less an effect counts that nobody suspects.
+/// Weight of an effect without evidence.
 const UNSUSPECTED: f64 = 0.3;
-/// How much more a form counts that was drawn: what it stands for is there, and has no name yet.
+/// Weight of a derived form, for which there is evidence.
 const DRAWN: f64 = 3.0;
-/// Share of the loads of a curve up to which data must reach, so that it needs no carrying on.
+/// Share of the loads of a curve that data must cover so that no extrapolation is needed.
 pub(crate) const COVERED: f64 = 0.9;
-/// Standard deviation of the change of a coefficient of friction from one session to the next, as a share of it.
+/// Relative standard deviation of the change of a friction coefficient between sessions.
 const RENEWED: f64 = 0.05;
-/// Largest size of a rival, in units of the size at which a fit of it starts: beyond it, no rig is that wrong.
+/// Largest size of a rival, in units of its start value.
 const LARGEST_SHARE: f64 = 30.0;
 
-/// Two explanations between which the data could not decide.
+/// Two explanations that the data do not separate.
 #[derive(Clone, Debug)]
 pub(super) struct Question {
-    /// Ids: the one believed or suspected, and the other or `none`.
+    /// Ids: the attributed or suspected effect, and the other one or `none`.
     pub(super) between: [String; 2],
-    /// Size of an effect that is asked about, in the unit of its first constant; none where there is no such size.
+    /// Size in question in the unit of the effect's first constant; `None` for other questions.
     pub(super) size: Option<f64>,
-    /// Whether it cannot be negative.
+    /// Whether the size cannot be negative.
     is_one_sided: bool,
-    /// Each way to ask it: if one is true, by how much does the other fit worse.
+    /// Cases: either explanation is true, and the other is fitted.
     ways: Vec<Way>,
-    /// Squares by which the wrong one must fit worse.
+    /// Deviance by which the wrong explanation must be worse.
     pub(super) needed: f64,
-    /// How much an answer is worth.
+    /// Weight of an answer.
     pub(super) weight: f64,
 }
 
-/// One of the two is true, at a size; the other is fitted.
+/// A case: one explanation is true at a size, and the other is fitted.
 #[derive(Clone, Debug)]
 struct Way {
-    /// Column of what is true.
+    /// Column of the true explanation.
     truth: usize,
-    /// Its size, in units of the column.
+    /// Its size in units of the column.
     size: f64,
     /// Columns that are fitted.
     nuisance: Vec<usize>,
 }
 
 impl Question {
-    /// Squares by which the wrong explanation is expected to fit worse, whichever is wrong.
+    /// Returns the expected increase of the deviance of the wrong explanation, in the less
+    /// favourable case.
     pub(super) fn squares(&self, information: &DMatrix<f64>) -> f64 {
         self.squares_of(&mut Projections::of(information))
     }
 
-    /// The same of information of which other questions were asked.
+    /// The same, with projections shared between questions.
     pub(super) fn squares_of<'a>(&'a self, projections: &mut Projections<'a>) -> f64 {
         let of = |way: &'a Way| way.size * way.size * projections.without(&way.nuisance).squares(way.truth);
         self.ways.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 
-    /// Probability that data with this information show what is true of the two, which is what runs are chosen by: the difference
-    /// of squares of two models scatters about its expectation `d^2` with a standard deviation of `2 d`, and an estimate about its
-    /// size by one where that size is `d` (`model/doc/next-experiment.md`).
+    /// Returns the probability that data with this information show which explanation is true; runs
+    /// are chosen by it. The difference of deviance of two models scatters about its expectation
+    /// `d^2` with a standard deviation of `2 d`, and an estimate about its size with 1 where that
+    /// size is `d` (`model/doc/next-experiment.md`).
     pub(super) fn probability(&self, information: &DMatrix<f64>) -> f64 {
         let squares = self.squares(information);
         if !(squares > 1e-12 && squares.is_finite()) {
@@ -91,8 +93,8 @@ impl Question {
         }
     }
 
-    /// Probability that they answer it, which is also that there is no such effect: its limits lie within the size asked about,
-    /// the upper one alone where it cannot be negative.
+    /// Returns the probability of an answer, including that the effect is absent: its limits are
+    /// then within the size in question (for a one-sided effect, the upper limit).
     pub(super) fn answer_probability(&self, information: &DMatrix<f64>) -> f64 {
         let seen = self.probability(information);
         let squares = self.squares(information);
@@ -104,7 +106,7 @@ impl Question {
         THERE * seen + (1.0 - THERE) * excluded
     }
 
-    /// The same question where these columns are not fitted.
+    /// Returns the question without fitting these columns.
     pub(super) fn beside_no(&self, columns: &[usize]) -> Self {
         let mut question = self.clone();
         for way in &mut question.ways {
@@ -113,13 +115,13 @@ impl Question {
         question
     }
 
-    /// What an answer loses without some of the information.
+    /// Returns the loss of an answer without part of the information.
     pub(super) fn loss(&self, all: &DMatrix<f64>, without: &DMatrix<f64>) -> f64 {
         let of = |information| libm::log(1.0 + self.squares(information) / self.needed);
         of(all) - of(without)
     }
 
-    /// Words for a run sheet.
+    /// Returns the question in words, for a run sheet.
     pub(super) fn words(&self) -> String {
         match self.between[1].as_str() {
             NONE => format!("{} or none", self.between[0]),
@@ -128,7 +130,7 @@ impl Question {
     }
 }
 
-/// Information without the columns that questions fit, each set of them taken out once: most questions fit the same.
+/// Projections shared between questions, since most fit the same columns.
 #[derive(Debug)]
 pub(super) struct Projections<'a> {
     information: &'a DMatrix<f64>,
@@ -149,24 +151,25 @@ impl<'a> Projections<'a> {
     }
 }
 
-/// The questions of a report, with the traces that they are about and the effects in them.
+/// Questions of a report, with their columns and effects.
 #[derive(Debug, Default)]
 pub(super) struct Agenda {
     pub(super) questions: Vec<Question>,
     pub(super) traces: Vec<Trace>,
     pub(super) effects: Vec<&'static dyn Effect>,
-    /// Columns of which only data to come may tell: what was drawn from the data so far is not confirmed by them.
+    /// Columns that only future data determine, since a derived form is not confirmed by the data
+    /// it was derived from.
     ahead: Vec<usize>,
-    /// Columns of the constants of friction that the data to come may have otherwise.
+    /// Columns of friction constants that may differ in future data.
     renewed: Vec<usize>,
-    /// Ids of forms that stand for structure without a name.
+    /// Ids of forms of unattributed structure.
     forms: Vec<String>,
-    /// Whether one of the effects remembers the load before.
+    /// Whether one of the effects depends on the previous load.
     remembers: bool,
 }
 
 impl Agenda {
-    /// Column of an effect that the model does not have, with these constants.
+    /// Adds the column of an effect that is not in the model, with these constants.
     fn absent(&mut self, effect: &'static dyn Effect, values: Vec<f64>, model: &Model) -> usize {
         let known = self.traces.iter().position(|trace| {
             matches!(trace, Trace::Absent { effect: e, values: v } if e.id() == effect.id() && *v == values)
@@ -179,8 +182,8 @@ impl Agenda {
         model.values().len() + at
     }
 
-    /// Everything that a report leaves open, of rows up to a load of `highest_n`. `known` gives the information of the data
-    /// so far, once the columns stand.
+    /// Returns all open questions of a report, whose rows have loads up to `highest_n` in newtons.
+    /// `known` returns the information of the recorded data for the columns.
     pub(super) fn of(
         report: &Report,
         model: &Model,
@@ -225,7 +228,7 @@ impl Agenda {
         }
         for invisible in &report.invisible {
             let Some(effect) = model.vocabulary.named(&invisible.id) else { continue };
-            // What stays in the rig does not change the curve of a part.
+            // Effects of the rig do not change the curve of a part.
             let asked = agenda.questions.iter().any(|q| q.between[0] == invisible.id);
             if effect.description().side == Side::Switch && !asked {
                 let Some(values) = start(effect, model) else { continue };
@@ -250,7 +253,7 @@ impl Agenda {
             let at = model.term_offset(term);
             let constants: Vec<usize> = (at..at + model.terms[term].constants()).collect();
             let base: Vec<usize> = own.iter().copied().filter(|i| !constants.contains(i)).collect();
-            // The size of the rival that comes nearest to what was found.
+            // Size of the rival that is closest to the effect in the model.
             let left = Projected::new(&information, &base);
             let share = left.covariance(other, column) / left.covariance(other, other).max(1e-12);
             let with_other: Vec<usize> = base.iter().copied().chain([other]).collect();
@@ -279,8 +282,8 @@ impl Agenda {
         agenda
     }
 
-    /// Friction on pins and silicone may be another one in the session to come: an effect that differs only from session to
-    /// session cannot be told from that.
+    /// Adds a possible change of the friction on pins and silicone in the next session, with which
+    /// an effect that only varies between sessions is confounded.
     fn may_change(&mut self, model: &Model) {
         let names = model.names();
         for constant in (0..names.len()).filter(|i| matches!(names[*i].0.as_str(), "mu_p" | "mu_s")) {
@@ -289,7 +292,7 @@ impl Agenda {
         }
     }
 
-    /// Whether the form of what has no name will be seen again.
+    /// Adds the question whether the form of unattributed structure will be seen again.
     fn ask_again(&mut self, report: &Report, model: &Model) {
         for form in report.effects.iter().filter_map(|found| found.form.as_ref()) {
             let Some(effect) = model.vocabulary.named(&form.id) else { continue };
@@ -301,7 +304,7 @@ impl Agenda {
                     Trace::Absent { effect, values }
                 }
             };
-            // The form in the model, or the shapes that it was drawn from, would take it over.
+            // The form in the model, or the shapes from which it was derived, would absorb it.
             let stands_for_it = |t: usize| Some(t) == term || matches!(model.terms[t], Term::Structure(_));
             let for_it: Vec<usize> = (0..model.terms.len())
                 .filter(|t| stands_for_it(*t))
@@ -318,7 +321,8 @@ impl Agenda {
         }
     }
 
-    /// Whether friction beyond the loads recorded is what the model predicts, where curves and designs go beyond them.
+    /// Adds the question whether friction above the recorded loads is as predicted, since curves
+    /// and designs extend beyond them.
     fn ask_beyond(&mut self, highest_n: f64, first: usize, own: &[usize]) {
         let to_n = published::heaviest_load_n();
         if highest_n > COVERED * to_n {
@@ -329,7 +333,7 @@ impl Agenda {
         self.ask_whether(&format!("{FRICTION_ABOVE}{highest_n:.0}_N"), column, 1.0, own, 1.0);
     }
 
-    /// What is known before any data to come.
+    /// Returns the information before any future data.
     pub(super) fn before(&self, mut information: DMatrix<f64>) -> DMatrix<f64> {
         for column in self.ahead.iter().chain(&self.renewed) {
             information.row_mut(*column).fill(0.0);
@@ -341,7 +345,7 @@ impl Agenda {
         information
     }
 
-    /// Tells the size of the effect that the last question is about.
+    /// Sets the size of the effect of the last question.
     fn of_size(&mut self, effect: &dyn Effect, size: f64) {
         if let Some(question) = self.questions.last_mut() {
             question.size = Some(size.abs());
@@ -360,12 +364,12 @@ impl Agenda {
         });
     }
 
-    /// Whether an effect that is asked about lies along this covariate.
+    /// Returns whether an effect in question is one of this covariate.
     pub(super) fn lies_along(&self, id: &str, covariate: Covariate) -> bool {
         self.effects.iter().any(|e| e.id() == id && e.description().covariate == covariate)
     }
 
-    /// Constants of the model that stand for what has no name.
+    /// Returns the constants of the model that describe unattributed structure.
     pub(super) fn shapes_of(&self, model: &Model) -> Vec<usize> {
         let is_nameless = |term: &Term| match term {
             Term::Structure(_) => true,
@@ -377,27 +381,28 @@ impl Agenda {
             .collect()
     }
 
-    /// Whether an effect that is asked about remembers the load before.
+    /// Returns whether an effect in question depends on the previous load.
     pub(super) fn asks_of_the_load_before(&self) -> bool {
         self.remembers
     }
 
-    /// Whether an answer may lie along this covariate.
+    /// Returns whether an effect in question is one of this covariate.
     pub(super) fn asks_along(&self, covariate: Covariate) -> bool {
         self.effects.iter().any(|effect| effect.description().covariate == covariate)
     }
 }
 
-/// The variable of formulas that holds the load of the series before.
+/// Variable of formulas for the load of the previous series.
 const LOAD_BEFORE: &str = "previous_load_n";
 
-/// The constants at which a fit of an effect starts.
+/// Returns the start values of an effect.
 fn start(effect: &dyn Effect, model: &Model) -> Option<Vec<f64>> {
     effect.starts(&model.frame).into_iter().next()
 }
 
-/// The constants of an effect that a report could not exclude: the size that would matter, in the shape at which that size
-/// was told. Reports of earlier versions tell no shape; its start stands in for it.
+/// Returns the constants of an effect that a report does not exclude: the typical size, with the
+/// shape for which it was reported. Reports of earlier versions contain no shape; the start values
+/// are used instead.
 fn of_consequence(effect: &dyn Effect, limit: &LimitReport, model: &Model) -> Option<Vec<f64>> {
     let mut values = start(effect, model)?;
     for (value, parameter) in values.iter_mut().zip(effect.parameters()) {
@@ -411,8 +416,8 @@ fn of_consequence(effect: &dyn Effect, limit: &LimitReport, model: &Model) -> Op
     Some(values)
 }
 
-/// Share of an effect's estimated size that is there with a probability of five in six: a plan must not stand on a size
-/// that was overestimated.
+/// Returns the share of an effect's estimated size that it exceeds with a probability of 5/6, so
+/// that a plan does not rely on an overestimated size.
 fn surely(effect: &dyn Effect, parameters: &BTreeMap<String, Estimate>) -> f64 {
     let size = effect.parameters().first().and_then(|size| parameters.get(size.name));
     size.filter(|p| p.value.abs() > 0.0).map_or(1.0, |p| {
@@ -426,9 +431,9 @@ mod tests {
     use super::*;
     use crate::effects::effect_named;
 
-    /// An effect that is not there is excluded by less than what shows one that is.
+    /// Excluding an absent effect needs less information than detecting a present one.
     #[test]
-    fn an_answer_is_also_that_there_is_none() {
+    fn exclusion_counts_as_an_answer() {
         let asked = |size, is_one_sided| Question {
             between: ["adhesion".to_owned(), NONE.to_owned()],
             size,
@@ -443,13 +448,14 @@ mod tests {
         assert!((told(None, 4.0) - 0.5).abs() < 1e-6);
         assert!((told(Some(0.2), 4.0) - (0.1 + 0.8 * 0.9586)).abs() < 1e-3, "{}", told(Some(0.2), 4.0));
         assert!(told(Some(0.2), 1.9) < 0.02 && told(Some(0.2), 8.0) > 0.999);
-        // Noise alone brings the upper limit of one that cannot be negative below the size, one time in six.
+        // By noise alone, the upper limit of a one-sided effect is below the size once in six
+        // cases.
         let above = of(asked(Some(0.2), true), 1.0);
         assert!((above - 0.8 * 0.1685).abs() < 1e-3, "{above}");
     }
 
     #[test]
-    fn it_is_the_size_that_must_be_sure_and_no_shape() {
+    fn only_the_size_must_be_certain() {
         let of = |value: f64, half: f64| Estimate {
             value,
             ci95: [value - half, value + half],

@@ -1,5 +1,5 @@
-//! Which runs to make in the time there is: those that gain most per minute, one after the other, then each exchanged for
-//! a better one (a greedy batch with exchange, as Fedorov's).
+//! Search for the runs to make in the available time: greedy selection by gain per minute, followed
+//! by exchanges (as Fedorov's algorithm).
 
 use nalgebra::DMatrix;
 
@@ -8,21 +8,22 @@ use super::question::{Projections, Question};
 use super::rig::RigLimits;
 use crate::parallel::map_each;
 
-/// Squares beyond which an answer is as good as certain, in units of those needed.
+/// Ratio of expected to required deviance above which an answer is practically certain.
 const ENOUGH: f64 = 3.0;
-/// Worth per minute below which a run is not worth making.
+/// Gain per minute below which a run is not worth making.
 const LEAST: f64 = 1e-4;
-/// Candidates that are looked at one after the other, others beside them.
+/// Candidates per parallel task.
 const AT_ONCE: usize = 256;
-/// Rounds of exchanges.
+/// Number of rounds of exchanges.
 const ROUNDS: usize = 2;
-/// Runs up to which they are exchanged: of a longer plan, one run decides little.
+/// Largest number of runs for which exchanges are tried, since in a longer plan a single run
+/// matters little.
 pub(super) const FEW_RUNS: usize = 100;
 /// Most runs of a plan: a week of work.
 pub const MOST_RUNS: usize = 400;
 
-/// What information is worth: for each question the logarithm of the squares expected, so that none is answered at the
-/// cost of all others.
+/// Returns the value of information: the sum over questions of the logarithm of the expected
+/// deviance, so that no question is neglected.
 fn worth(questions: &[Question], information: &DMatrix<f64>) -> f64 {
     let mut projections = Projections::of(information);
     questions
@@ -31,7 +32,7 @@ fn worth(questions: &[Question], information: &DMatrix<f64>) -> f64 {
         .sum()
 }
 
-/// Candidates with the information of each, and what there is to ask.
+/// Candidates with their information, and the questions.
 #[derive(Debug)]
 pub(super) struct Search<'a> {
     pub(super) candidates: &'a [Candidate],
@@ -42,7 +43,7 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Places of the candidates to run.
+    /// Returns the indices of the chosen candidates.
     pub(super) fn run(&self, known: &DMatrix<f64>) -> Vec<usize> {
         let (mut chosen, mut total) = (Vec::new(), known.clone());
         while let Some(next) = self.best(&chosen, &total) {
@@ -67,7 +68,7 @@ impl Search<'_> {
                 break;
             }
         }
-        // An exchange may have left time over.
+        // An exchange may have freed time.
         while let Some(next) = self.best(&chosen, &total) {
             total += &self.information[next];
             chosen.push(next);
@@ -75,13 +76,15 @@ impl Search<'_> {
         chosen
     }
 
-    /// Minutes of a choice: recording, and each change of load and contact once.
+    /// Returns the duration of a choice in minutes: recording, and each change of load and contact
+    /// once.
     fn minutes_of(&self, chosen: &[usize]) -> f64 {
         let before = |i: usize| chosen[..i].iter().map(|c| &self.candidates[*c]);
         chosen.iter().enumerate().map(|(i, c)| self.candidates[*c].minutes(before(i), self.rig)).sum()
     }
 
-    /// The candidate that gains most per minute, of those for which there is time; `None` if none gains anything.
+    /// Returns the candidate with the largest gain per minute that fits into the time; `None` if
+    /// none has a gain.
     fn best(&self, chosen: &[usize], total: &DMatrix<f64>) -> Option<usize> {
         let before = worth(self.questions, total);
         let left = self.minutes - self.minutes_of(chosen);
@@ -105,12 +108,13 @@ impl Search<'_> {
             best
         };
         let parts = map_each((0..self.candidates.len()).step_by(AT_ONCE).collect(), best_among);
-        // Of equals the first, however many are looked at side by side.
+        // Ties are resolved in favour of the first, independently of the number of threads.
         let best = parts.into_iter().flatten().reduce(|a, b| if b.0 > a.0 { b } else { a });
         best.map(|(_, i)| i)
     }
 
-    /// The question that a chosen run does most for: the one that suffers most without it.
+    /// Returns the question for which a chosen run matters most: the one that loses most without
+    /// it.
     pub(super) fn purpose(&self, place: usize, chosen: &[usize], known: &DMatrix<f64>) -> Option<&Question> {
         let all = chosen.iter().fold(known.clone(), |sum, c| sum + &self.information[*c]);
         let without = &all - &self.information[chosen[place]];

@@ -1,5 +1,5 @@
-//! Speeds and pauses to choose from: a few that any rig is run at, and those at which what is asked about shows itself. A dip at
-//! one speed is missed by all others.
+//! Speeds and dwells to choose from: the usual ones of a rig, and those at which an effect in
+//! question is most apparent, such as a dip at one speed.
 
 use pinswitch_friction::published;
 
@@ -12,23 +12,24 @@ use super::runs::PlannedRun;
 use crate::inference::{Model, Term};
 use crate::table::{PlateauRow, Sweep};
 
-/// Settings that are added to the usual ones, at most.
+/// Most additional settings.
 const MORE: usize = 3;
-/// Settings between which they are looked for, evenly and by factors.
+/// Grid points for the additional settings, spaced evenly and by factors.
 const GRID: usize = 60;
-/// Share of a trace by which it must depart from a straight line between the settings so far.
+/// Smallest departure of a trace from linear interpolation between the settings, as a share of its
+/// maximum.
 const DEPARTS: f64 = 0.15;
 
-/// Speeds in percent.
+/// Returns speeds in percent.
 pub(super) fn speeds_pct(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec<f64> {
     let set = |run: &mut PlannedRun, speed: f64| run.speed_pct = speed;
     with_more(rig.speeds(), rig.speeds_pct, set, model, rig, agenda)
 }
 
-/// Pauses in seconds.
+/// Returns dwells in seconds.
 pub(super) fn dwells_s(model: &Model, rig: &RigLimits, agenda: &Agenda) -> Vec<f64> {
     let set = |run: &mut PlannedRun, dwell: f64| run.dwell_s = dwell;
-    // A longer pause costs more than it tells.
+    // A longer dwell costs more time than its information is worth.
     let usual = rig.dwells();
     let longest = usual.iter().copied().fold(rig.dwells_s[0], f64::max);
     with_more(usual, [rig.dwells_s[0], longest], set, model, rig, agenda)
@@ -92,7 +93,7 @@ fn with_more(
     chosen
 }
 
-/// Places in a grid of the chosen values below and above one.
+/// Returns the grid indices of the nearest chosen values below and above a value.
 fn neighbours(grid: &[f64], chosen: &[f64], value: f64) -> (usize, usize) {
     let place = |v: f64| {
         let near = |a: &usize, b: &usize| (grid[*a] - v).abs().total_cmp(&(grid[*b] - v).abs());
@@ -108,7 +109,7 @@ fn length(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|v| v * v).sum::<f64>().sqrt()
 }
 
-/// One row on each contact of the rig, at a load in its middle.
+/// Returns one row on each contact of the rig, at a load in the middle of its range.
 fn rows_at(value: f64, set: &impl Fn(&mut PlannedRun, f64), rig: &RigLimits) -> Vec<PlateauRow> {
     let mut loads = rig.loads_g.clone();
     loads.sort_by(f64::total_cmp);
@@ -127,7 +128,7 @@ fn rows_at(value: f64, set: &impl Fn(&mut PlannedRun, f64), rig: &RigLimits) -> 
                 mount: 1,
                 minutes: 0.0,
                 asks: String::new(),
-                wrap_angle_deg: rig.own_wrap_deg(),
+                wrap_angle_deg: rig.other_wrap_deg(),
             };
             set(&mut run, value);
             alone(&Candidate { run, late: false, after_g: None, down_from_g: None }, "1", rig, 0.0).pop()

@@ -1,5 +1,5 @@
-//! Runs worth searching among, and their information: all that a rig can make if they are few, and otherwise for each
-//! question those that by themselves tell most of it per minute.
+//! Shortlist of candidate runs with their information: all runs of a rig if these are few,
+//! otherwise the most informative ones per minute for each question.
 
 use nalgebra::DMatrix;
 
@@ -13,14 +13,14 @@ use crate::inference::Wandering;
 use crate::parallel::map_each;
 use crate::table::PlateauRow;
 
-/// Most runs that are all searched among: as many as the paper's rig can make.
+/// Most runs that are all searched: those of the paper's rig.
 const MOST: usize = 6_000;
-/// How many are kept of more.
+/// Number of runs kept otherwise.
 const KEPT: usize = 1_500;
-/// Runs whose information is computed at once: what is not kept is not held.
+/// Runs whose information is computed at once, to limit memory.
 const AT_ONCE: usize = 2_000;
 
-/// Runs with the information of each by itself, and that of all the runs that there are, together.
+/// Runs with their information, and the information of all possible runs together.
 #[derive(Debug)]
 pub(super) struct Shortlist {
     pub(super) candidates: Vec<Candidate>,
@@ -29,7 +29,8 @@ pub(super) struct Shortlist {
 }
 
 impl Shortlist {
-    /// Of `all`, beside what `known` tells. `None` if the model lacks a condition.
+    /// Returns the shortlist of `all`, given the information `known`. `None` if the model lacks a
+    /// condition.
     pub(super) fn of(
         all: Vec<Candidate>,
         design: &Design<'_>,
@@ -71,7 +72,7 @@ impl Shortlist {
     }
 }
 
-/// The `each` best for every question, in the order in which they stood.
+/// Returns the `each` best for every question, in their original order.
 fn best_of_each<T>(
     all: Vec<(T, DMatrix<f64>, Vec<f64>)>,
     questions: usize,
@@ -86,15 +87,15 @@ fn best_of_each<T>(
     all.into_iter().zip(is_kept).filter(|(_, kept)| *kept).map(|(one, _)| one).collect()
 }
 
-/// Information of each candidate by itself: as if every one was mounted anew, which is what can be said before it is
-/// known which of them go together.
+/// Returns the information of each candidate, as if each were mounted separately, since the
+/// combination is not yet known.
 fn of_candidates(
     design: &Design<'_>,
     all: &[Candidate],
     rig: &RigLimits,
     minutes: f64,
 ) -> Option<Vec<DMatrix<f64>>> {
-    // Offsets that wander from run to run differ from one to the next: alone, they are offsets.
+    // Offsets that drift between runs are independent offsets of single runs.
     let mut noise = design.noise;
     noise.walk = Wandering::default();
     let design = Design { model: design.model, noise, traces: design.traces };
@@ -102,7 +103,7 @@ fn of_candidates(
     let rows: Vec<PlateauRow> =
         all.iter().enumerate().flat_map(|(i, c)| alone(c, &i.to_string(), rig, begins_s(c))).collect();
     let each = design.by_series(&rows)?;
-    // What hung before a run is no part of it.
+    // The run before a candidate is not part of it.
     let has_before = all.iter().any(|c| c.after_g.is_some());
     Some(if has_before { each.into_iter().skip(1).step_by(2).collect() } else { each })
 }

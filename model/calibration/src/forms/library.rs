@@ -1,21 +1,21 @@
-//! The library of forms: what a structure along one covariate may look like, as formulas of effects of one's own.
+//! Library of forms: formulas for structure along one covariate, as user-defined effects.
 
 use crate::effects::{ActsOn, Combine, Covariate, EffectDefinition, OwnParameter, Shape, Side, Structure};
 use crate::table::Frame;
 
-/// A form before it acts on anything: a formula of order one with constants other than its size, and places to start them
-/// from.
+/// A form independent of the quantity that it changes: a formula of order one with its shape
+/// constants and their start values.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Form {
-    /// Its word in reports.
+    /// Word in reports.
     pub(super) shape: &'static str,
-    /// The formula, in which `a` is the size.
+    /// Formula, in which `a` is the size.
     formula: String,
-    /// Name, unit, start and bounds of each constant beside the size.
+    /// Name, unit, start and bounds of each shape constant.
     constants: Vec<(&'static str, &'static str, f64, (f64, f64))>,
 }
 
-/// A form that acts on one thing, as an effect.
+/// A form that changes a particular quantity, as an effect.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     pub(super) form: Form,
@@ -23,7 +23,7 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// Whether both are one shape on one thing, with other starts.
+    /// Returns whether both are the same shape of the same quantity, with different start values.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         self.form.shape == other.form.shape
             && self.definition.acts_on == other.definition.acts_on
@@ -31,7 +31,7 @@ impl Candidate {
     }
 }
 
-/// What reports call the thing that a form acts on.
+/// Returns the word in reports for the quantity that a form changes.
 pub(super) fn acts_on_word(of: ActsOn) -> &'static str {
     match of {
         ActsOn::Mu | ActsOn::MuPins | ActsOn::MuSilicone => "friction",
@@ -41,12 +41,13 @@ pub(super) fn acts_on_word(of: ActsOn) -> &'static str {
     }
 }
 
-/// What a form acts on, and how.
+/// The quantity that a form changes, and how.
 pub(super) type Acting = (ActsOn, Combine);
 
-/// What forms are first tried on.
+/// Quantities for which all forms are tried.
 pub(super) const FIRST: [Acting; 2] = [(ActsOn::Mu, Combine::Factor), (ActsOn::Reading, Combine::Sum)];
-/// What the best of them are tried on then: on the tension as a force against the motion, and on the cell's gain.
+/// Quantities for which the best of them are then tried: also a force against the motion, and the
+/// gain of the load cell.
 pub(super) const ALL: [Acting; 7] = [
     (ActsOn::Mu, Combine::Factor),
     (ActsOn::MuPins, Combine::Factor),
@@ -57,7 +58,7 @@ pub(super) const ALL: [Acting; 7] = [
     (ActsOn::Reading, Combine::Factor),
 ];
 
-/// Sizes to start from: a twentieth of the friction, a tenth of a newton.
+/// Start sizes: 5 % of the friction, 0.1 N.
 const START_SHARE: f64 = 0.05;
 const START_N: f64 = 0.1;
 
@@ -70,7 +71,7 @@ impl Form {
         Self { shape, formula: formula.into(), constants: constants.to_vec() }
     }
 
-    /// The form on one thing; `number` makes its id.
+    /// Returns the form of one quantity; `number` is part of its id.
     pub(super) fn on(&self, (acts_on, combine): Acting, covariate: Covariate, number: usize) -> Candidate {
         let (unit, start) = match combine {
             Combine::Sum => ("N", START_N),
@@ -106,7 +107,7 @@ impl Form {
     }
 }
 
-/// Every form along a covariate, with several places to start from.
+/// Returns all forms along a covariate, with several start values.
 pub(super) fn library(covariate: Covariate, frame: &Frame) -> Vec<Form> {
     match covariate {
         Covariate::Time => along_a_share("time", true),
@@ -123,10 +124,11 @@ pub(super) fn library(covariate: Covariate, frame: &Frame) -> Vec<Form> {
     }
 }
 
-/// Phases from which a wave is fitted, in radians.
+/// Start phases of a wave, in radians.
 const PHASES: [f64; 4] = [0.0, 0.8, 1.6, 2.4];
 
-/// Forms that begin where shapes of the catalogue were found, which lie closer together than the places of the library.
+/// Returns forms that start from shapes found by the search, which are more closely spaced than
+/// those of the library.
 pub(super) fn where_shapes_lie<'a>(shapes: impl Iterator<Item = &'a Structure>) -> Vec<Form> {
     let mut forms: Vec<Form> = Vec::new();
     for shape in shapes {
@@ -144,7 +146,7 @@ pub(super) fn where_shapes_lie<'a>(shapes: impl Iterator<Item = &'a Structure>) 
     forms
 }
 
-/// A step, steep enough to lie between two series, and still with a slope where it is.
+/// A step, narrower than the time between two series, but with a slope that a fit can follow.
 fn step(x: &str, c: f64) -> Form {
     Form::new("step", format!("a*0.5*(1 + tanh(({x} - c)/0.004))"), &[("c", "1", c, (0.0, 1.0))])
 }
@@ -154,7 +156,7 @@ fn bump(x: &str, c: f64, w: f64) -> Form {
     Form::new("bump", format!("a*exp(-(({x} - c)/w)^2)"), &constants)
 }
 
-/// Another level between two ends.
+/// A different level between two ends.
 fn level(x: &str, c: f64, e: f64) -> Form {
     let formula = format!("a*0.25*(1 + tanh(({x} - c)/0.004))*(1 - tanh(({x} - e)/0.004))");
     Form::new("level", formula, &[("c", "1", c, (0.0, 1.0)), ("e", "1", e, (0.0, 1.0))])
@@ -165,7 +167,7 @@ fn sine(x: &str, cycles: f64, phase: f64) -> Form {
     Form::new("sine", format!("a*sin(6.283185307*f*{x} + p)"), &constants)
 }
 
-/// Along the share of the session or of the stroke, 0 to 1.
+/// Forms along a share of the session or of the stroke, 0 to 1.
 fn along_a_share(x: &str, is_time: bool) -> Vec<Form> {
     let mut forms = Vec::new();
     for i in 1..=19 {
@@ -181,7 +183,8 @@ fn along_a_share(x: &str, is_time: bool) -> Vec<Form> {
     }
     forms.push(Form::new("ramp", format!("a*({x} - 0.5)"), &[]));
     forms.push(Form::new("power", format!("a*({x} - 0.5)^2"), &[]));
-    // A fit does not cross from one number of waves to the next: beyond these few it begins at the waves that were found.
+    // A fit does not move between numbers of waves: higher numbers start from the waves found by
+    // the search.
     let cycles = [0.5, 0.75].into_iter().chain((2..=16).map(|i| 0.5 * f64::from(i)));
     let cycles = cycles
         .chain([9.0, 10.0, 11.0, 12.0, 13.5, 15.0, 17.0, 19.0, 21.0, 23.5, 26.0, 29.0, 32.0, 36.0, 40.0]);
@@ -203,7 +206,7 @@ fn history() -> Vec<Form> {
     forms
 }
 
-/// What is left of the load of the series before.
+/// Remaining influence of the previous load.
 fn memory() -> Vec<Form> {
     let form = |r| {
         let formula = "a*(previous_load_n - load_n)/50*exp(-repetitions_so_far/r)";
@@ -262,7 +265,7 @@ fn load(frame: &Frame) -> Vec<Form> {
     forms
 }
 
-/// A level on one kind of contact, on one condition alone, or of one operator.
+/// A level on one kind of contact, on one condition, or of one operator.
 fn conditions(frame: &Frame) -> Vec<Form> {
     let mut forms = vec![
         Form::new("level", "a*is_silicone", &[]),

@@ -1,8 +1,8 @@
-//! Forms for what has no name: what a structure that no effect explains looks like, drawn from a small library of formulas,
-//! with its constants, its rivals among the forms, and how much of the structure it leaves.
+//! Forms: parametric formulas for unattributed structure.
 //!
-//! A form is an effect of one's own. Written to `discovered.toml` it takes part in the next calibration, which confirms or
-//! refutes it on data that had no part in drawing it.
+//! A form is selected from a small library, with its constants, the rival forms, and the share of
+//! the structure that it explains. It is a user-defined effect. Written to `discovered.toml`, it is
+//! tested in the next calibration with data from which it was not derived.
 
 mod library;
 
@@ -21,53 +21,57 @@ use crate::report::Estimate;
 use crate::table::{PlateauRow, readings_by_session};
 use library::{ALL, Acting, Candidate, FIRST, Form, acts_on_word, library, where_shapes_lie};
 
-/// Starts of each form that are tried on everything, and fitted to the end.
+/// Number of start values of each form that are tried for all quantities and fitted.
 const FITTED_STARTS: usize = 2;
-/// Gain at the start, as a share of the largest, from which a form is fitted: a wave may start out of phase.
+/// Gain at the start values, as a share of the largest, from which a form is fitted, since a wave
+/// may start out of phase.
 const WORTH_A_FIT: f64 = 0.3;
-/// Squares of the noise by which a rival form may fit worse, and the share of what the best one explains.
+/// Largest increase of the deviance of a rival form, and the same as a share of the gain of the
+/// best form.
 const RIVAL: f64 = 9.0;
 const RIVAL_SHARE: f64 = 0.03;
 
-/// A form that fits as well.
+/// A form that fits equally well.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FormRival {
-    /// Its shape.
+    /// Shape.
     pub shape: String,
-    /// What it acts on.
+    /// Quantity that it changes.
     pub acts_on: String,
-    /// By how many squares of the noise it fits worse.
+    /// Increase of the deviance compared with the best form.
     pub worse_by: f64,
 }
 
-/// What a structure without a name looks like.
+/// Form of unattributed structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FormReport {
-    /// `level` (also between two ends), `step`, `ramp`, `sine`, `bump`, `dip`, `power`, `forgetting`, `memory` or `groups`.
+    /// `level` (also between two ends), `step`, `ramp`, `sine`, `bump`, `dip`, `power`,
+    /// `forgetting`, `memory` or `groups`.
     pub shape: String,
     /// `friction`, `reading`, `wrap` or `threshold`.
     pub acts_on: String,
-    /// The same in the words of `discovered.toml`, such as `mu_silicone`.
+    /// Quantity in the words of `discovered.toml`, such as `mu_silicone`.
     pub channel: String,
     /// Id of the effect in `discovered.toml`.
     pub id: String,
-    /// Its formula, in the language of `model/doc/own-effects.md`.
+    /// Formula, in the language of `model/doc/own-effects.md`.
     pub formula: String,
-    /// Its constants.
+    /// Constants.
     pub parameters: BTreeMap<String, Estimate>,
-    /// Share of what the shapes without a name explain that this one form explains.
+    /// Share of the gain of the shapes that the form explains.
     pub explains: f64,
     /// Held-out error of the model with the form in place of the shapes, in newtons.
     #[serde(rename = "heldout_rmse_N")]
     pub heldout_rmse_n: f64,
-    /// Whether the model has the form, since it predicts held-out data no worse than the shapes do.
+    /// Whether the model contains the form, because its held-out error is not larger than that of
+    /// the shapes.
     pub in_model: bool,
-    /// Other forms that fit as well.
+    /// Other forms that fit equally well.
     pub rivals: Vec<FormRival>,
 }
 
 impl FormReport {
-    /// The shape as a thing, with its article.
+    /// Returns the shape in words, with its article.
     pub fn words(&self) -> String {
         match self.shape.as_str() {
             "groups" => "a level of one operator".to_owned(),
@@ -76,19 +80,20 @@ impl FormReport {
     }
 }
 
-/// A form with the effect that it is.
+/// A form with its effect.
 #[derive(Clone, Debug)]
 pub struct DrawnForm {
-    /// What is said of it.
+    /// Report of the form.
     pub report: FormReport,
-    /// The same as an effect of one's own.
+    /// Definition as a user-defined effect.
     pub definition: EffectDefinition,
-    /// The model with it in place of the shapes, on the rows that it was drawn from.
+    /// Fit of the model with the form in place of the shapes, on the rows from which it was
+    /// derived.
     pub fitted: Fit,
 }
 
-/// Draws the form of the structure that a calibration of these rows found and could not name; `None` if it found none, or none
-/// of the library explains any of it.
+/// Derives the form of the unattributed structure of a calibration; `None` without such structure,
+/// or if no form of the library explains part of it.
 pub fn draw_form(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Option<DrawnForm> {
     let data = data.compacted();
     let weighed = Weighed::new(&data, selection.noise);
@@ -98,12 +103,13 @@ pub fn draw_form(rows: &[PlateauRow], selection: &Selection, data: &Observations
     let known = &selection.augmented.model.vocabulary;
     let definition = named(&first, &found, selection.structure?.covariate, &shape, known);
     let fitted = renamed(&found, &definition, known, &weighed)?;
-    // Its constants are those that are told.
+    // Its constants are the reported ones.
     let mut definition = named(&first, &fitted, selection.structure?.covariate, &shape, known);
     definition.drawn_from = readings_by_session(rows).into_values().collect();
     let at = fitted.model.term_offset(fitted.model.terms.len() - 1);
     let values = fitted.model.values();
-    // Where the table does not tell where the form lies, its size is told where it was drawn, and nothing of its place.
+    // If the table does not locate the form, its size is reported at the fitted location, and no
+    // interval for the location.
     let told = if size_is_known(&fitted, &weighed) {
         fitted.clone()
     } else {
@@ -136,7 +142,8 @@ pub fn draw_form(rows: &[PlateauRow], selection: &Selection, data: &Observations
     })
 }
 
-/// The model with the best form in place of the shapes along a covariate, for a prediction and nothing else.
+/// Returns the model with the best form in place of the shapes along a covariate, for a prediction
+/// only.
 pub(crate) fn with_best_form(
     covariate: Covariate,
     with_shapes: &Model,
@@ -149,10 +156,10 @@ pub(crate) fn with_best_form(
 /// The best form of a structure.
 struct Best {
     first: Candidate,
-    /// The model with it, and without the shapes.
+    /// Fit with the form and without the shapes.
     found: Fit,
     rivals: Vec<FormRival>,
-    /// Squares of the noise that it explains, and that the shapes do.
+    /// Gains of the form and of the shapes: reductions of the deviance.
     explained: f64,
     by_shapes: f64,
 }
@@ -197,7 +204,7 @@ fn best(covariate: Covariate, with_shapes: &Model, weighed: &Weighed<'_>) -> Opt
     })
 }
 
-/// The same fit with the form under the name that it goes by, beside the effects that were known.
+/// Returns the same fit with the form under its final id, in a vocabulary with the known effects.
 fn renamed(
     found: &Fit,
     definition: &EffectDefinition,
@@ -212,7 +219,7 @@ fn renamed(
     Some(fit(&bare.with_term(Term::Named(effect), &values), weighed))
 }
 
-/// Candidates by what they would gain, with the model that has them all for its vocabulary.
+/// Candidates by expected gain, with a model whose vocabulary contains them all.
 struct Ranked<'a> {
     model: Model,
     scores: Vec<(&'a Candidate, EffectScore)>,
@@ -223,7 +230,7 @@ fn ranked<'a>(start: &Fit, weighed: &Weighed<'_>, candidates: &'a [Candidate]) -
     let model = start.model.clone().among(&Vocabulary::built_in().with(own).ok()?);
     let fitted = Fit { model, ..start.clone() };
     let screen = Screen::new(&fitted, weighed);
-    // Each has one start, its own: the library holds the places that are tried.
+    // Each has one start; the library contains the other start values as candidates.
     let scored = |candidate: &'a Candidate| {
         let effect = fitted.model.vocabulary.named(&candidate.definition.id)?;
         let start = effect.starts(&fitted.model.frame).into_iter().next()?;
@@ -235,7 +242,7 @@ fn ranked<'a>(start: &Fit, weighed: &Weighed<'_>, candidates: &'a [Candidate]) -
     Some(Ranked { model: fitted.model, scores })
 }
 
-/// The best starts of each shape.
+/// Returns the best starts of each shape.
 fn promising(ranked: &Ranked<'_>) -> Vec<Form> {
     let mut best: Vec<Form> = Vec::new();
     for (candidate, _) in &ranked.scores {
@@ -247,7 +254,7 @@ fn promising(ranked: &Ranked<'_>) -> Vec<Form> {
     best
 }
 
-/// The best fit of each shape on each thing, the one with the least toll first.
+/// Returns the best fit of each shape and quantity, by ascending [`toll`].
 fn best_of_each<'a>(
     start: &Fit,
     weighed: &Weighed<'_>,
@@ -265,7 +272,8 @@ fn best_of_each<'a>(
         }
     }
     sort_by_number(&mut best, |(candidate, fitted)| toll(candidate, fitted));
-    // Of forms that fit alike, one whose size is known goes first: the ends of another may lie anywhere between two readings.
+    // Among forms that fit alike, one whose size is identified comes first: the ends of another may
+    // be anywhere between two readings.
     let explained = best.first().map_or(0.0, |(_, fitted)| start.cost - fitted.cost);
     let alike = |(c, f): &(&Candidate, Fit)| {
         best.first().is_some_and(|(first, found)| toll(c, f) - toll(first, found) <= rival_bound(explained))
@@ -277,12 +285,14 @@ fn best_of_each<'a>(
     Some(best)
 }
 
-/// Squares of the noise by which a form may fit worse than the best, which explains so many, and be its rival.
+/// Returns the increase of the deviance up to which a form is a rival of the best one with this
+/// gain.
 fn rival_bound(explained: f64) -> f64 {
     RIVAL.max(RIVAL_SHARE * explained)
 }
 
-/// Whether the interval of the size of a fit's last term does not reach zero. Sizes come first among the constants of a form.
+/// Returns whether the interval of the size of the last term excludes zero. Sizes come before
+/// shapes.
 fn size_is_known(fitted: &Fit, weighed: &Weighed<'_>) -> bool {
     let at = fitted.model.term_offset(fitted.model.terms.len() - 1);
     let half = interval_half_widths(fitted, weighed).get(at).copied();
@@ -290,20 +300,21 @@ fn size_is_known(fitted: &Fit, weighed: &Weighed<'_>) -> bool {
     size.zip(half).is_some_and(|(size, half)| size.abs() > half)
 }
 
-/// Squares that are left, and what each constant costs: as the information criterion of Schwarz for some dozen series.
+/// Returns the deviance plus a penalty for each constant: Schwarz's information criterion for some
+/// dozen series.
 fn toll(candidate: &Candidate, fitted: &Fit) -> f64 {
     const PER_CONSTANT: f64 = 4.0;
     fitted.cost + PER_CONSTANT * candidate.definition.parameters.len() as f64
 }
 
-/// A bump whose size is negative is a dip.
+/// Returns the word for the shape; a bump with a negative size is a dip.
 fn shape_of(candidate: &Candidate, fitted: &Fit) -> String {
     let at = fitted.model.term_offset(fitted.model.terms.len() - 1);
     let is_dip = candidate.form.shape == "bump" && fitted.model.values().get(at).is_some_and(|a| *a < 0.0);
     (if is_dip { "dip" } else { candidate.form.shape }).to_owned()
 }
 
-/// The definition with the constants that were found, under an id that no effect has.
+/// Returns the definition with the fitted constants, under an unused id.
 fn named(
     candidate: &Candidate,
     fitted: &Fit,
@@ -317,10 +328,10 @@ fn named(
     let free = std::iter::once(base.clone()).chain(numbered).find(|id| known.named(id).is_none());
     definition.id = free.unwrap_or(base);
     let at = fitted.model.term_offset(fitted.model.terms.len() - 1);
-    // Sizes come before shapes in a model, as they do here.
+    // Sizes come before shapes in the model and in the definition.
     for (parameter, value) in definition.parameters.iter_mut().zip(fitted.model.values().into_iter().skip(at))
     {
-        // As many digits as anybody can use.
+        // Rounded to significant digits.
         parameter.start = format!("{value:.6e}").parse().unwrap_or(value);
         if let Some((low, high)) = parameter.bounds {
             let margin = 1e-3 * (high - low);

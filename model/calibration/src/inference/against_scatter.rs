@@ -1,4 +1,4 @@
-//! What is believed against scatter that would explain a table as well.
+//! Comparison of an explanation with scatter that explains the table equally well.
 
 use super::explanation::{Explanation, explain};
 use super::fit::{Fit, fit, jacobian};
@@ -13,11 +13,12 @@ use super::variance_components::shared_again;
 use super::weighed::Weighed;
 use crate::parallel::both;
 
-/// Evidence by which believing less may be behind and still be searched for.
+/// Deficit of evidence of a simpler explanation up to which it is worth a search.
 const WORTH_A_SEARCH: f64 = 25.0;
 
-/// Whether scatter from mount to mount, or offsets that wander from series to series, explain a table as well as what
-/// was believed without them. Their groups are few, so that no variance is known well: they compete as explanations.
+/// Compares an explanation with mount effects and with drifting offsets between series, which may
+/// explain a table equally well. Their groups are few, so that their variances are poorly known;
+/// they compete as explanations.
 pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Levels) -> Explanation {
     if free.augmented.model.terms.is_empty() {
         return with_scatter(free, data);
@@ -30,7 +31,7 @@ pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Le
         if noise == bare(noise) {
             continue;
         }
-        // The search is only worth its time if believing less than now comes near.
+        // The search is only worth its time if a simpler explanation is close.
         let toll = best.toll(data);
         if !best.with_less().any(|less| less.at(data, noise).toll(data) < toll + WORTH_A_SEARCH) {
             continue;
@@ -42,8 +43,9 @@ pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Le
         }
     }
     best = without_what_scatter_replaces(best, data);
-    // Names were preferred to shapes before it was known that they need scatter beside them. What they gain by bending
-    // their forms speaks for no shape: a half wave along the stroke is what `stroke_position` may look like.
+    // Effects were preferred to shapes before it was known that they need additional scatter. Their
+    // gain from bending is not evidence for a shape: half a wave along the stroke resembles
+    // `stroke_position`.
     if best.names() > 0 && best.noise != bare(best.noise) {
         let bent_gain = Screen::guarded(&best.augmented, &Weighed::new(data, best.noise)).bent_gain();
         let least = best.toll(data) - bent_gain;
@@ -53,14 +55,14 @@ pub(super) fn against_scatter(free: Explanation, data: &Observations, levels: Le
     best
 }
 
-/// The noise with one scatter as it is beside a fit.
+/// Returns the noise with one scatter estimated from the residuals of a fit.
 fn beside(scatter: Scatter, data: &Observations, fitted: &Fit, noise: Noise) -> Noise {
     let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let own = jacobian(&fitted.model, data, &predicted);
     scatter.estimated(data, &fitted.residual_n, &own, noise)
 }
 
-/// The same things believed, with the scatter that is beside them where that makes the table more probable.
+/// Adds the scatter that makes the table more probable under the same model.
 fn with_scatter(explanation: Explanation, data: &Observations) -> Explanation {
     let noises = [explanation.noise, beside_own(&explanation, data)]
         .map(|noise| Scatter::ALL.iter().fold(noise, |n, s| beside(*s, data, &explanation.augmented, n)));
@@ -79,8 +81,8 @@ fn with_scatter(explanation: Explanation, data: &Observations) -> Explanation {
     best
 }
 
-/// The same with its scatter, or the names alone with theirs: shapes that were found before any scatter was known may be
-/// nothing else, and may stand where a name stood.
+/// Returns the explanation with its scatter, or its effects alone with theirs: shapes that were
+/// found before the scatter was known may be part of it, or may have replaced an effect.
 fn or_names_alone(explanation: Explanation, data: &Observations) -> Explanation {
     let plain = explanation.names_alone().map(|e| e.at(data, e.noise));
     let best = with_scatter(explanation, data);
@@ -90,7 +92,7 @@ fn or_names_alone(explanation: Explanation, data: &Observations) -> Explanation 
     }
 }
 
-/// An explanation without the names and shapes that are less probable than more scatter in their place.
+/// Removes effects and shapes that are less probable than more scatter in their place.
 fn without_what_scatter_replaces(mut best: Explanation, data: &Observations) -> Explanation {
     loop {
         let (toll, terms) = (best.toll(data), best.augmented.model.terms.len());
@@ -108,9 +110,10 @@ fn without_what_scatter_replaces(mut best: Explanation, data: &Observations) -> 
     }
 }
 
-/// What series share beside the model's own columns alone. Before anything was searched for, all that might explain the
-/// table was taken out first, or a missing effect would have been called noise; so many columns leave little to tell the
-/// friction scale of the series by, which is then taken for that of their mounts.
+/// Returns the noise common to the series, estimated with only the model's own columns projected
+/// out. Before the search, all columns that might explain the table were projected out, lest a
+/// missing effect inflate the noise; this leaves so little information on the friction scale of
+/// series that the mount effect absorbs it.
 fn beside_own(explanation: &Explanation, data: &Observations) -> Noise {
     let fitted = &explanation.augmented;
     let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
@@ -119,8 +122,8 @@ fn beside_own(explanation: &Explanation, data: &Observations) -> Noise {
     shared_again(data, &fitted.residual_n, &own, bare)
 }
 
-/// The best shape alone, with the noise that is beside it and without scatter: what stands against names that need
-/// scatter beside them.
+/// Returns the best single shape with its noise and without scatter: the alternative to effects
+/// that need additional scatter.
 fn shape_alone(named: &Explanation, data: &Observations, levels: Levels) -> Option<Explanation> {
     let bare = Scatter::ALL.iter().fold(named.noise, |n, scatter| scatter.left_out(n));
     let baseline = fit(&named.baseline.model, &Weighed::new(data, bare));

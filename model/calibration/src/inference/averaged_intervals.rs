@@ -1,6 +1,6 @@
-//! Intervals that know of what may be missing: an effect that the data neither show nor exclude moves the constants of the
-//! model that it is missing from. They are averaged over the model and those with one effect more (Bayesian model
-//! averaging; Hoeting, Madigan, Raftery and Volinsky 1999).
+//! Intervals that account for missing effects: an effect that the data neither show nor exclude
+//! shifts the constants of the model. The intervals are averaged over the model and its extensions
+//! by one effect (Bayesian model averaging; Hoeting, Madigan, Raftery and Volinsky 1999).
 
 use nalgebra::DVector;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -12,32 +12,33 @@ use super::projection::dot;
 use super::screening::{EffectScore, Screen};
 use super::weighed::Weighed;
 
-/// Quantile of the normal law that 95 % intervals reach to on either side.
+/// Normal quantile of a 95 % interval.
 const NORMAL_95: f64 = 1.96;
-/// What 95 % intervals leave out on either side.
+/// Probability outside a 95 % interval on either side.
 const TAIL: f64 = 0.025;
-/// Half-widths between which a quantile is looked for; nothing beyond is told.
+/// Largest distance of a quantile, in half widths.
 const FURTHEST: f64 = 50.0;
 
-/// Cosine of two whitened traces from which they are one.
+/// Cosine of two whitened traces above which they count as equal.
 const SAME_TRACE: f64 = 0.98;
 
-/// An effect more: how probable it is against none, and what it does to the coordinates.
+/// An additional effect: its posterior odds, and the shifts of the coordinates.
 struct OneMore {
-    /// Its posterior odds against the model as it is.
+    /// Posterior odds against the model without it.
     odds: f64,
-    /// Shifts of the coordinates, where the effect has its most probable size.
+    /// Shifts of the coordinates at the most probable size.
     shift: DVector<f64>,
-    /// Their standard deviations by what is open about its size.
+    /// Standard deviations of the shifts from the uncertainty of the size.
     shift_sd: DVector<f64>,
 }
 
-/// 95 % intervals of all constants about their values, in the constants' own units: how far below and above the value
-/// they reach; infinity where the data leave a bound of the constant open.
+/// Returns 95 % intervals of all constants as distances below and above their values, in their own
+/// units; infinite where the data do not exclude a bound of the constant.
 ///
-/// With one effect more of size `s` the constants move by `-(J' V^-1 J)^-1 J' V^-1 x s`, where `x` is its trace per unit
-/// of size. The odds of an effect are the ratio of the marginal likelihoods (linear in `s`, whose prior is normal, as wide
-/// as the sizes that are typical) over the number of effects in the vocabulary: one of them is thought as probable as none.
+/// An additional effect of size `s` shifts the constants by `-(J' V^-1 J)^-1 J' V^-1 x s`, where
+/// `x` is its trace per unit of size. The odds of an effect are the ratio of the marginal
+/// likelihoods (linear in `s`, with a normal prior of the width of typical sizes) over the number
+/// of effects in the vocabulary: a priori, one of them is as probable as none.
 pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> {
     let half_widths = interval_half_widths(fitted, weighed);
     let predicted: Vec<f64> =
@@ -55,8 +56,8 @@ pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> 
             let mut trace = score.trace_n.clone();
             weighed.whiten(&mut trace);
             let (along, length2) = (slopes.along(&trace), dot(&trace, &trace));
-            // What leaves the very trace of a name is its rival: there is one of the two, and not both with the size between
-            // them.
+            // An effect with the same trace as one in the model is its rival: one of the two is
+            // present, not both with the size divided between them.
             let is_a_name =
                 |i: &usize| along[*i].powi(2) > SAME_TRACE.powi(2) * slopes.normal[(*i, *i)] * length2;
             if sizes.iter().any(is_a_name) {
@@ -70,7 +71,8 @@ pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> 
         .into_iter()
         .enumerate()
         .map(|(i, half)| {
-            // Coordinates move as the constants do, to first order; signs with them.
+            // Constants shift in proportion to their coordinates, to first order, including the
+            // sign.
             let unit = fitted.model.value(i).1;
             let parts: Vec<[f64; 3]> = std::iter::once([1.0, 0.0, half / NORMAL_95])
                 .chain(others.iter().map(|other| {
@@ -80,7 +82,7 @@ pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> 
                 .collect();
             let reach = |side: f64| {
                 let mirrored: Vec<[f64; 3]> = parts.iter().map(|[w, m, sd]| [*w, side * m, *sd]).collect();
-                // What may be missing makes nothing better known than it is without it.
+                // A missing effect cannot reduce the uncertainty.
                 quantile_above(&mirrored, half).max(half)
             };
             let to_bound = |is_open: bool, reach: f64| if is_open { f64::INFINITY } else { reach };
@@ -89,21 +91,22 @@ pub fn averaged_intervals(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[f64; 2]> 
         .collect()
 }
 
-/// Places of the first size of each name among the constants.
+/// Returns the indices of the first size of each effect among the constants.
 fn sizes_of_names(model: &Model) -> Vec<usize> {
     let is_a_name =
         |i: &usize| matches!(&model.terms[*i], Term::Named(effect) if effect.description().scales);
     (0..model.terms.len()).filter(is_a_name).map(|i| model.term_offset(i)).collect()
 }
 
-/// The effect of a score as one more; `None` for what the data cannot show or physics does not allow.
+/// Returns the extension by a scored effect; `None` if it is not identifiable or has an impossible
+/// sign.
 fn one_more(score: &EffectScore, choices: f64, shift_at_size: DVector<f64>) -> Option<OneMore> {
     let told = score.effect.description();
     if score.strength < 1e-6 {
         return None;
     }
     if !told.scales || told.parameters.is_empty() {
-        // There or not: nothing is open about its size.
+        // Present or absent: its size is certain.
         let odds = libm::exp(0.5 * score.gain) / choices;
         let shift_sd = DVector::zeros(shift_at_size.len());
         return Some(OneMore { odds, shift: shift_at_size, shift_sd });
@@ -111,7 +114,7 @@ fn one_more(score: &EffectScore, choices: f64, shift_at_size: DVector<f64>) -> O
     if told.one_sided && score.share * score.size < 0.0 {
         return None;
     }
-    // In shares of the size at which the trace was taken.
+    // In units of the size for which the trace was computed.
     let typical = told.study.largest().filter(|size| *size > 0.0 && score.size != 0.0);
     let prior_sd = typical.map_or(1.0, |size| (size / score.size).abs());
     let ratio = (prior_sd * score.strength).powi(2);
@@ -125,7 +128,8 @@ fn one_more(score: &EffectScore, choices: f64, shift_at_size: DVector<f64>) -> O
     })
 }
 
-/// How far above zero a mixture of normal laws (odds, mean, standard deviation) leaves [`TAIL`]; never less than zero.
+/// Returns the distance above zero at which a mixture of normal distributions (odds, mean, standard
+/// deviation) leaves [`TAIL`]; at least zero.
 fn quantile_above(parts: &[[f64; 3]], half: f64) -> f64 {
     let total: f64 = parts.iter().map(|part| part[0]).sum();
     if !total.is_finite() || half <= 0.0 {
@@ -150,22 +154,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn alone_a_model_keeps_its_interval() {
+    fn a_single_model_keeps_its_interval() {
         assert!((quantile_above(&[[1.0, 0.0, 1.0]], 1.96) - 1.96).abs() < 1e-3);
     }
 
     #[test]
-    fn what_may_be_missing_widens_the_side_that_it_would_move_to() {
+    fn missing_effects_widen_one_side() {
         let parts = [[1.0, 0.0, 1.0], [0.25, 4.0, 1.0]];
         let mirrored = parts.map(|[w, m, sd]| [w, -m, sd]);
         let (above, below) = (quantile_above(&parts, 1.96), quantile_above(&mirrored, 1.96));
-        // A fifth of the mixture stands at 4: an eighth of it lies beyond 4 + 1.15.
+        // A fifth of the mixture has mean 4: an eighth of it is above 4 + 1.15.
         assert!((above - 5.15).abs() < 0.01, "{above}");
         assert!(below < 1.96 && below > 1.8, "{below}");
     }
 
     #[test]
-    fn an_interval_holds_its_own_value_however_probable_another_model_is() {
+    fn an_interval_contains_its_value() {
         assert!(quantile_above(&[[1.0, 0.0, 1.0], [1e6, -10.0, 1.0]], 1.96) < 1e-9);
     }
 }

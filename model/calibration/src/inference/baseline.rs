@@ -1,4 +1,4 @@
-//! The refitted baseline, and what could still explain its residuals.
+//! The refitted baseline, and columns that could explain its residuals.
 
 use super::fit::{Fit, fit, jacobian};
 use super::model::{Model, Term};
@@ -6,7 +6,8 @@ use super::observations::Observations;
 use super::weighed::Weighed;
 use crate::effects::effect_named;
 
-/// The refitted paper's model from several starts: a stuck fit is indistinguishable from missing physics.
+/// Fits the paper's model from several starts, since a local minimum is indistinguishable from
+/// missing physics.
 pub(super) fn fit_baseline(model: &Model, weighed: &Weighed<'_>) -> Fit {
     let mut best = fit(model, weighed);
     for factor in [0.75f64, 1.3] {
@@ -23,27 +24,30 @@ pub(super) fn fit_baseline(model: &Model, weighed: &Weighed<'_>) -> Fit {
     best
 }
 
-/// With fewer series and directions than these, only the model's own columns are taken out before noise is estimated.
+/// Number of series and directions below which only the model's own columns are projected out
+/// before the noise is estimated.
 const MIN_CELLS: usize = 50;
 
-/// Columns of effects of one's own, as long as each has one: many effects with many starts would leave no noise.
+/// Most columns of user-defined effects, since many effects with many starts would leave no noise.
 const OWN_COLUMNS: usize = 48;
 
-/// Series and directions that must be left beside an offset, a drag and a gain.
+/// Series and directions that must remain in addition to an offset, a drag and a gain.
 const MIN_BESIDE: usize = 11;
 
-/// Whether what names explain is taken out before the noise is estimated.
+/// Returns whether columns of effects are projected out before the noise is estimated.
 pub(super) fn takes_names_out(data: &Observations) -> bool {
     data.cells.len() >= MIN_CELLS
 }
 
-/// Columns that could explain residuals, in newtons: the model's own, the library's, and coarse structure.
+/// Returns columns in newtons that could explain residuals: the model's own, those of the effects,
+/// and coarse structure.
 pub(super) fn explainable(fitted: &Fit, data: &Observations) -> Vec<Vec<f64>> {
     let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let mut columns = jacobian(&fitted.model, data, &predicted);
-    // So many columns would explain a few series altogether and leave no noise to estimate.
+    // So many columns would explain a few series completely and leave no noise to estimate.
     if !takes_names_out(data) {
-        // What moves all readings alike would still pass for scatter of the series: their mean is not zero.
+        // A common change of all readings would still count as scatter of the series, since their
+        // mean is not zero.
         if data.cells.len() > columns.len() + MIN_BESIDE {
             columns.push(vec![1.0; data.points.len()]);
             columns.push(data.points.iter().map(|p| p.sign).collect());

@@ -1,5 +1,6 @@
-//! Whether a constant of the switch differs between the sessions or specimens of a table. Scatter from mount to mount, a
-//! drift, or an effect may look like that, so that a change competes with all of them as an explanation.
+//! Search for constants of the switch that differ between the sessions or specimens of a table. A
+//! change may resemble a mount effect, a drift or another effect, so it competes with them as an
+//! explanation.
 
 use pinswitch_friction::sort_by_number;
 
@@ -16,18 +17,19 @@ use super::selection::explained;
 use super::significance::gain_at;
 use super::weighed::Weighed;
 
-/// Changes that are believed of one table.
+/// Most changes of a table.
 const MOST_CHANGES: usize = 4;
-/// Changes that are searched with, of those whose first look promises most.
+/// Most changes with which a search is run, in the order of their first estimate.
 const SEARCHED: usize = 2;
-/// Gain of a change, in whitened squares without any scatter between mounts, below which it is not worth a search.
+/// Reduction of the deviance, without mount effects, below which a change is not worth a search.
 const WORTH_A_SEARCH: f64 = 25.0;
-/// Mounts that tell the friction coefficients themselves.
+/// Number of mounts that determine the friction coefficients themselves.
 const LOST_TO_FRICTION: usize = 2;
-/// Evidence that a change must gain beside the choice among all that are possible.
+/// Evidence that a change must gain in addition to the choice among all possible ones.
 const MIN_EVIDENCE: f64 = 8.0;
 
-/// The explanation of a table, with the constants that differ between its sessions or specimens.
+/// Returns the explanation of a table, with the constants that differ between its sessions or
+/// specimens.
 pub(super) fn choose(start: &Model, data: &mut Observations, levels: Levels) -> Explanation {
     let untouched = data.clone();
     let mut start = start.clone();
@@ -35,14 +37,15 @@ pub(super) fn choose(start: &Model, data: &mut Observations, levels: Levels) -> 
     for _ in 0..MOST_CHANGES {
         let (promising, possible) = promising(&start, &best, data);
         let choice = MIN_EVIDENCE + 2.0 * libm::log(possible.max(1) as f64);
-        // A change is known by the mounts that it lies in, however many readings each has.
+        // A change is determined by its mounts, however many readings each has.
         let degrees = data.mounts.len().saturating_sub(LOST_TO_FRICTION).max(1) as f64;
         let chance = gain_at(levels.first_p, possible.max(1), degrees);
         let mut better: Option<(f64, Explanation, Observations, Model)> = None;
         for with_change in promising {
             let mut other_data = untouched.clone();
             let other = explained(&with_change, &mut other_data, levels);
-            // Outliers and the friction that scatters are told beside an explanation: both are judged by those of the richer.
+            // Outliers and friction depend on the explanation; both explanations are compared with
+            // those of the richer one.
             let before = best.at(&other_data, best.noise).toll(&other_data);
             let gain = before - other.toll(&other_data) - choice;
             let gained = gain_of_last_change(&other, &other_data);
@@ -59,21 +62,22 @@ pub(super) fn choose(start: &Model, data: &mut Observations, levels: Levels) -> 
     best
 }
 
-/// What the change that was found last gains where all else stays as it is, in whitened squares.
+/// Returns the reduction of the deviance by the last change, with everything else fixed.
 fn gain_of_last_change(found: &Explanation, data: &Observations) -> f64 {
     let weighed = Weighed::new(data, found.noise);
     fit(&found.augmented.model.without_last_change(), &weighed).cost - found.augmented.cost
 }
 
-/// What the best effect would gain to first order that only the groups of the last change have, or only the others, in place of
-/// that change, in whitened squares: a drag that came with one session is no other friction.
+/// Returns the reduction of the deviance, to first order, by the best effect that is present only
+/// in the groups of the last change, or only in the others, in place of that change: a drag of one
+/// session is not a change of friction.
 fn effect_of_one_session(found: &Explanation, data: &Observations) -> f64 {
     let Some(change) = found.augmented.model.frame.changes.last() else { return 0.0 };
     let weighed = Weighed::new(data, found.noise);
     let without = fit(&found.augmented.model.without_last_change(), &weighed);
     let screen = Screen::new(&without, &weighed);
     let predicted: Vec<f64> = data.force_n.iter().zip(&without.residual_n).map(|(y, r)| y - r).collect();
-    let holds: Vec<bool> = data.points.iter().map(|point| change.holds(point)).collect();
+    let holds: Vec<bool> = data.points.iter().map(|point| change.applies_to(point)).collect();
     let model = &without.model;
     let mut traces = Vec::new();
     for effect in model.vocabulary.acting_order().iter().filter(|e| e.description().scales) {
@@ -95,7 +99,8 @@ fn effect_of_one_session(found: &Explanation, data: &Observations) -> f64 {
     screen.all_visible(traces).iter().map(|(column, share)| gain(column, *share)).fold(0.0, f64::max)
 }
 
-/// The models with one more change that are worth a search, the most promising first, and how many changes are possible.
+/// Returns models with one more change that are worth a search, the most promising first, and the
+/// number of possible changes.
 fn promising(start: &Model, best: &Explanation, data: &Observations) -> (Vec<Model>, usize) {
     let possible = start.frame.possible_changes();
     if possible.is_empty() {
@@ -103,7 +108,7 @@ fn promising(start: &Model, best: &Explanation, data: &Observations) -> (Vec<Mod
     }
     let scatter = [Scatter::Mounts, Scatter::Walk, Scatter::Specimens];
     let weighed = Weighed::new(data, scatter.iter().fold(best.noise, |noise, s| s.left_out(noise)));
-    // What was found may be the change by another name, or hide it.
+    // The effects found may be the change in another form, or mask it.
     let fits = [&best.baseline, &best.augmented].map(|found| fit(&found.model, &weighed));
     let mut gains: Vec<(f64, Model)> = possible
         .iter()
@@ -127,7 +132,7 @@ mod tests {
     use crate::table::{Changing, Frame, PlateauRow};
     use crate::test_session::{session, session_with};
 
-    /// A session of that name, whose silicone has a friction `factor` times as large.
+    /// Returns a session of that name whose silicone has `factor` times the friction.
     fn day(name: &str, seed: u64, factor: f64) -> Vec<PlateauRow> {
         let mut rows = session_with(seed, &[]);
         let frame = Frame::new(&rows);
@@ -153,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_that_changed_is_told_and_nothing_is_made_of_it() {
+    fn changed_constants_are_not_effects() {
         let found = chosen(&[day("a", 3, 1.0), day("b", 4, 1.25)].concat());
         let [change] = found.baseline.model.frame.changes.as_slice() else {
             panic!("{:?}", found.baseline.model.frame.changes)
@@ -169,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn sessions_of_one_switch_share_their_constants_and_effects_stay_effects() {
+    fn sessions_of_one_switch_share_constants() {
         let same = chosen(&[day("a", 3, 1.0), day("b", 4, 1.0)].concat());
         assert!(same.baseline.model.frame.changes.is_empty() && same.augmented.model.terms.is_empty());
         let term = Term::Named(effect_named("rate_dependence").unwrap());

@@ -1,19 +1,19 @@
-//! Long series in fewer rows: neighbouring repetitions are averaged, so that the cost of a fit depends on the number of
-//! series and not on how long each was measured.
+//! Compaction of long series: neighbouring repetitions are averaged, so that the cost of a fit
+//! depends on the number of series and not on their length.
 
 use pinswitch_friction::sort_by_number;
 
 use super::observations::Observations;
 use crate::table::Point;
 
-/// Rows that are fitted as they are; a table beyond it is averaged.
+/// Largest number of rows that are fitted without averaging.
 pub(crate) const MOST_ROWS: usize = 12_000;
-/// Rows that each series and direction keeps at least, so that a course along the stroke stays one.
+/// Fewest rows per series and direction, to preserve trends along the stroke.
 const LEAST_PER_CELL: usize = 3;
 
 impl Observations {
-    /// The same table in about [`MOST_ROWS`] rows: means of neighbours in each series and direction, outliers weighed
-    /// down. A table within the limit stays as it is.
+    /// Returns the table in about [`MOST_ROWS`] rows: means of neighbours in each series and
+    /// direction, with the weights of outliers. A table within the limit is unchanged.
     pub(crate) fn compacted(&self) -> Self {
         if self.points.len() <= MOST_ROWS {
             return self.clone();
@@ -60,12 +60,12 @@ mod tests {
     use crate::test_session::session;
 
     #[test]
-    fn a_long_table_keeps_its_series_its_means_and_its_spread() {
+    fn compaction_keeps_means_and_spread() {
         let short = session(1);
         assert!(
             Observations::new(&Frame::new(&short), &short).unwrap().compacted().points.len() == short.len()
         );
-        // Every series sixty times as long.
+        // Every series is sixty times as long.
         let long: Vec<PlateauRow> = (0..60u32)
             .flat_map(|k| {
                 short.iter().map(move |row| PlateauRow {
@@ -89,6 +89,6 @@ mod tests {
         let squares = |d: &Observations| -> f64 {
             d.force_n.iter().zip(&d.counts).zip(&d.within_n2).map(|((y, c), w)| c * (y * y + w)).sum()
         };
-        assert!((squares(&compact) / squares(&data) - 1.0).abs() < 1e-9, "nothing of the spread is lost");
+        assert!((squares(&compact) / squares(&data) - 1.0).abs() < 1e-9, "the spread is preserved");
     }
 }

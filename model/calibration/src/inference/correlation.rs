@@ -1,18 +1,18 @@
-//! How repetitions that follow each other hang together: a chain of first order inside a series and direction, AR(1).
+//! Correlation of consecutive repetitions: AR(1) in each series and direction.
 
 use nalgebra::DMatrix;
 
 use super::Observations;
 
-/// Below this a correlation changes no decision, and estimates of nothing reach it by chance.
+/// Smallest correlation that matters; estimates of uncorrelated noise are smaller.
 const MIN: f64 = 0.05;
-/// Nothing is learnt from chains shorter than this: mean and trend are taken out of each.
+/// Shortest chain for the estimate, since mean and trend are removed from each.
 const MIN_LENGTH: usize = 5;
 /// Largest correlation considered.
 const MAX: f64 = 0.95;
 
-/// Whitens the rows of one cell in place, given at unit variance: each keeps what its predecessor does not foretell.
-/// A lost repetition leaves a gap, over which the correlation is `rho^gap`.
+/// Whitens the rows of one cell in place, given at unit variance, by subtracting the prediction
+/// from the previous row. A lost repetition leaves a gap, over which the correlation is `rho^gap`.
 pub(super) fn unchain<const N: usize>(
     rho: f64,
     data: &Observations,
@@ -23,14 +23,15 @@ pub(super) fn unchain<const N: usize>(
     let next = (rho, rest(rho));
     for i in (1..cell.len()).rev() {
         let gap = gap(data, cell, i);
-        // Hardly any repetition is lost, and this is called for every column of every fit.
+        // Gaps are rare, and this is called for every column of every fit.
         let (phi, scale) = if gap == 1.0 { next } else { (libm::pow(rho, gap), rest(libm::pow(rho, gap))) };
         let before = values[cell[i - 1]];
         values[cell[i]].iter_mut().zip(before).for_each(|(v, b)| *v = (*v - phi * b) * scale);
     }
 }
 
-/// `ln det` of what [`unchain`] whitens, over that of rows without neighbours. A row counts as many readings as it weighs.
+/// Returns `ln det` of the covariance that [`unchain`] whitens, relative to uncorrelated rows. A
+/// row counts as its number of readings.
 pub(super) fn chain_log_det(rho: f64, data: &Observations) -> f64 {
     let own = |cell: &[usize], i: usize| {
         let phi = libm::pow(rho, gap(data, cell, i));
@@ -43,11 +44,13 @@ fn gap(data: &Observations, cell: &[usize], i: usize) -> f64 {
     (data.points[cell[i]].repetition - data.points[cell[i - 1]].repetition).max(1.0)
 }
 
-/// Correlation from one repetition to the next, from residuals at unit variance in the order of the rows.
+/// Estimates the correlation of consecutive repetitions from residuals at unit variance in the
+/// order of the rows.
 ///
-/// What a place of the stroke does to every series is no noise: per condition, direction and repetition a line over the
-/// load is taken out across the series, which leaves the correlation along each as it is. Then mean and trend of each
-/// series and direction are taken out, for offsets and slow drifts, and the bias of that is undone exactly.
+/// A deviation at one place of the stroke that all series share is not noise: per condition,
+/// direction and repetition, a line over the load is fitted across the series and removed, which
+/// preserves the correlation along each. Then mean and trend of each series and direction are
+/// removed, for offsets and slow drifts; the bias of this step is corrected exactly.
 pub(super) fn estimate(data: &Observations, white: &[f64]) -> f64 {
     let values = without_common_course(data, white);
     let (mut product, mut square) = (0.0, 0.0);
@@ -68,7 +71,7 @@ pub(super) fn estimate(data: &Observations, white: &[f64]) -> f64 {
     if square <= 0.0 || rows < 100.0 {
         return 0.0;
     }
-    // The expected ratio grows with rho: halve the bracket.
+    // The expected ratio increases with rho: bisection.
     let (mut low, mut high) = (0.0, MAX);
     if expected_ratio(&lengths, low) >= product / square {
         return 0.0;
@@ -80,7 +83,8 @@ pub(super) fn estimate(data: &Observations, white: &[f64]) -> f64 {
     if low > MIN.max(3.0 / rows.sqrt()) { low } else { 0.0 }
 }
 
-/// Lag-one product over square that chains of these lengths show once mean and trend are out: `tr(L M R M)/tr(M R)`.
+/// Returns the ratio of lag-one product to sum of squares for chains of these lengths after removal
+/// of mean and trend: `tr(L M R M)/tr(M R)`.
 fn expected_ratio(lengths: &std::collections::BTreeMap<usize, f64>, rho: f64) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
     for (n, count) in lengths {
@@ -100,7 +104,7 @@ fn expected_ratio(lengths: &std::collections::BTreeMap<usize, f64>, rho: f64) ->
     product / square
 }
 
-/// Takes a line over the load out of each condition, direction and repetition.
+/// Removes a line over the load from each condition, direction and repetition.
 fn without_common_course(data: &Observations, white: &[f64]) -> Vec<f64> {
     let mut groups = std::collections::BTreeMap::<_, Vec<usize>>::new();
     for (row, p) in data.points.iter().enumerate().filter(|(row, _)| data.weights[*row] == data.counts[*row])
@@ -118,7 +122,7 @@ fn without_common_course(data: &Observations, white: &[f64]) -> Vec<f64> {
     out
 }
 
-/// What a straight line over `at` leaves of the values.
+/// Returns the residuals of a straight line over `at`.
 fn without_line(values: &[f64], at: &[f64]) -> Vec<f64> {
     let n = values.len() as f64;
     let (mean, middle) = (values.iter().sum::<f64>() / n, at.iter().sum::<f64>() / n);

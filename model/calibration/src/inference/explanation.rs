@@ -1,4 +1,5 @@
-//! One explanation of a table at one noise: names, then structure without a name, then the noise beside them again.
+//! An explanation of a table for a given noise: effects, then unattributed structure, then a new
+//! estimate of the noise.
 
 use super::baseline::{explainable, fit_baseline, takes_names_out};
 use super::evidence::evidence;
@@ -17,26 +18,26 @@ use super::variance_components::estimate;
 use super::weighed::Weighed;
 use crate::effects::Shape;
 
-/// Series that may be excluded; more than these are no accidents.
+/// Most series that may be excluded.
 const MAX_EXCLUDED: usize = 3;
 
-/// One explanation of a table at one noise.
+/// An explanation of a table for a given noise.
 #[derive(Clone)]
 pub(super) struct Explanation {
     pub(super) baseline: Fit,
     pub(super) augmented: Fit,
-    /// The names found before anything without a name was looked for.
+    /// The effects found before the search for structure.
     pub(super) named: Model,
     pub(super) structure: Option<FoundStructure>,
     pub(super) structure_gain: f64,
     pub(super) structures_tried: usize,
     pub(super) noise: Noise,
-    /// A series that is wrong as a whole and must be left out first.
+    /// A series with a gross error that must be excluded first.
     pub(super) isolated: Option<usize>,
 }
 
 impl Explanation {
-    /// Shapes without a name; the sine and the cosine of a wave are one.
+    /// Returns the number of shapes; sine and cosine of a wave count as one.
     fn shapes(&self) -> usize {
         let is_one = |term: &&Term| match term {
             Term::Structure(s) => {
@@ -51,8 +52,8 @@ impl Explanation {
         self.augmented.model.named_effects().len()
     }
 
-    /// Minus twice the logarithm of its posterior probability, up to a constant: the evidence, and for each thing
-    /// believed how many there were to choose from.
+    /// Returns minus twice the log posterior probability, up to a constant: the evidence, and the
+    /// number of choices for each term.
     pub(super) fn toll(&self, data: &Observations) -> f64 {
         let choices = 2.0 * libm::log(self.augmented.model.vocabulary.count() as f64) * self.names() as f64;
         let shapes = 2.0 * libm::log(self.structures_tried.max(1) as f64) * self.shapes() as f64;
@@ -62,7 +63,7 @@ impl Explanation {
 }
 
 impl Explanation {
-    /// The names that were found before anything without a name was looked for, alone.
+    /// Returns the effects that were found before the search for structure, without the structure.
     pub(super) fn names_alone(&self) -> Option<Explanation> {
         let has_shapes = self.structure.is_some() && !self.named.terms.is_empty();
         has_shapes.then(|| Explanation {
@@ -72,7 +73,7 @@ impl Explanation {
         })
     }
 
-    /// The explanations that believe one thing less, or nothing.
+    /// Returns the explanations with one term less, or with none.
     pub(super) fn with_less(&self) -> impl Iterator<Item = Explanation> {
         let terms = &self.augmented.model.terms;
         let bare = self.augmented.model.without_terms(|_| true);
@@ -87,14 +88,14 @@ impl Explanation {
         })
     }
 
-    /// The same things believed at another noise.
+    /// Returns the same terms for another noise.
     pub(super) fn at(&self, data: &Observations, noise: Noise) -> Explanation {
         let augmented = fit(&self.augmented.model, &Weighed::new(data, noise));
         Explanation { augmented, noise, ..self.clone() }
     }
 }
 
-/// Names and structure at a noise, which is estimated again once something is explained.
+/// Returns effects and structure for a noise, which is estimated again once something is explained.
 pub(super) fn explain(start: &Model, data: &Observations, noise: Noise, levels: Levels) -> Explanation {
     let mut noise = noise;
     let mut weighed = Weighed::new(data, noise);
@@ -117,7 +118,7 @@ pub(super) fn explain(start: &Model, data: &Observations, noise: Noise, levels: 
         baseline = fit(&baseline.model, &weighed);
         found = search(&baseline, &weighed, levels);
     }
-    // A shape that some series follow looks like scatter of the series as long as it is not in the model.
+    // A shape in some series resembles scatter of the series until it is in the model.
     let (sharper, mut left) = sharper_noise(&found, data, noise);
     if let Some(sharper) = sharper {
         noise = sharper;

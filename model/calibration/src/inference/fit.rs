@@ -1,4 +1,5 @@
-//! Generalised least squares by Levenberg and Marquardt, with weak priors as pseudo-rows and a certificate.
+//! Generalised least squares by the Levenberg-Marquardt algorithm, with weak priors as pseudo-rows
+//! and a convergence check.
 
 use nalgebra::{DMatrix, DVector};
 use pinswitch_friction::LayoutLaw;
@@ -17,15 +18,17 @@ use crate::table::Point;
 pub struct Fit {
     /// The model at its optimum.
     pub model: Model,
-    /// Whitened squared residuals plus the priors' share.
+    /// Deviance: whitened sum of squares plus the contribution of the priors.
     pub cost: f64,
-    /// Residuals in newtons, reading minus model.
+    /// Residuals in newtons: reading minus prediction.
     pub residual_n: Vec<f64>,
-    /// Whether the linear model at the end promises no further gain: a stuck fit looks like missing physics.
+    /// Whether the linearised model predicts no further reduction; a local minimum resembles
+    /// missing physics.
     pub converged: bool,
 }
 
-/// Sensitivities of the readings to all coordinates, in newtons per unit, by forward differences.
+/// Returns sensitivities of the readings to all coordinates, in newtons per unit, by forward
+/// differences.
 pub(crate) fn jacobian(model: &Model, data: &Observations, at: &[f64]) -> Vec<Vec<f64>> {
     let mut shifted = model.clone();
     (0..model.coordinates.len())
@@ -40,7 +43,7 @@ pub(crate) fn jacobian(model: &Model, data: &Observations, at: &[f64]) -> Vec<Ve
         .collect()
 }
 
-/// `sum ((theta - mean)/sd)^2` over the priors.
+/// Returns `sum ((theta - mean)/sd)^2` over the priors.
 fn prior_cost(model: &Model) -> f64 {
     model.coordinates.iter().zip(model.priors()).map(|(c, p)| ((c - p.mean) / p.sd).powi(2)).sum()
 }
@@ -53,15 +56,15 @@ fn evaluate(model: &Model, weighed: &Weighed<'_>) -> (f64, Vec<f64>, Vec<f64>) {
     (dot(&white, &white) + prior_cost(model), predicted, white)
 }
 
-/// Whitened sensitivities at a model, with what follows from them alone.
+/// Whitened sensitivities of a model, with quantities derived from them.
 pub(crate) struct Slopes {
     columns: Vec<Vec<f64>>,
-    /// `J' V^-1 J` plus the priors' share.
+    /// `J' V^-1 J` plus the contribution of the priors.
     pub(crate) normal: DMatrix<f64>,
 }
 
 impl Slopes {
-    /// Of a model that predicts `predicted`.
+    /// Computes the sensitivities of a model that predicts `predicted`.
     pub(crate) fn new(model: &Model, weighed: &Weighed<'_>, predicted: &[f64]) -> Self {
         let mut columns = jacobian(model, weighed.data, predicted);
         weighed.whiten_all(&mut columns);
@@ -78,12 +81,12 @@ impl Slopes {
         Self { columns, normal }
     }
 
-    /// Products of the sensitivities with a whitened column.
+    /// Returns the products of the sensitivities with a whitened column.
     pub(crate) fn along(&self, white: &[f64]) -> DVector<f64> {
         DVector::from_iterator(self.columns.len(), self.columns.iter().map(|column| dot(column, white)))
     }
 
-    /// Half the gradient of the cost, downhill.
+    /// Returns minus half the gradient of the cost.
     fn gradient(&self, model: &Model, white: &[f64]) -> DVector<f64> {
         DVector::from_fn(self.columns.len(), |i, _| {
             let prior = model.priors()[i];
@@ -92,15 +95,16 @@ impl Slopes {
     }
 }
 
-/// A step that gains this share of what the linear model promised leaves the model linear enough for another one.
+/// Ratio of actual to predicted reduction for which the sensitivities are reused.
 const STILL_LINEAR: std::ops::RangeInclusive<f64> = 0.8..=1.2;
 
-/// Largest step of a coordinate: logarithms and logits change everything within it.
+/// Largest step of a coordinate, which covers the useful range of logarithms and logits.
 const MOST_STEP: f64 = 3.0;
-/// Coordinate beyond which the largest step grows in proportion; those of built-in effects stay below.
+/// Coordinate above which the largest step grows in proportion; those of built-in effects are
+/// smaller.
 const FAR: f64 = 100.0;
 
-/// Fits all constants of a model, from where they stand.
+/// Fits all constants of a model, from their current values.
 pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
     let mut model = start.clone();
     let (mut cost, mut predicted, mut white) = evaluate(&model, weighed);
@@ -123,7 +127,7 @@ pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
             let promised = 2.0 * step.dot(&g) - (a * &step).dot(&step);
             let mut trial = model.clone();
             for (coordinate, step) in trial.coordinates.iter_mut().zip(step.iter()) {
-                // Sizes of one's own may be thousands of their unit.
+                // Sizes of user-defined effects may be thousands of their unit.
                 let most = MOST_STEP * (coordinate.abs() / FAR).max(1.0);
                 *coordinate += step.clamp(-most, most);
             }
@@ -140,7 +144,7 @@ pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
                     converged = true;
                     break 'outer;
                 }
-                // Old slopes may serve once more where the model has been linear.
+                // The sensitivities are reused once if the model has been linear.
                 fresh = !(fresh && STILL_LINEAR.contains(&(gained / promised)));
                 if fresh {
                     slopes = Slopes::new(&model, weighed, &predicted);
@@ -160,7 +164,8 @@ pub fn fit(start: &Model, weighed: &Weighed<'_>) -> Fit {
     Fit { model, cost, residual_n, converged }
 }
 
-/// Covariance of the constants' coordinates, from the normal equations and a scale of at least one.
+/// Returns the covariance of the constants' coordinates from the normal equations, scaled by at
+/// least one.
 pub fn coordinate_covariance(fitted: &Fit, weighed: &Weighed<'_>) -> DMatrix<f64> {
     let (_, predicted, white) = evaluate(&fitted.model, weighed);
     let a = Slopes::new(&fitted.model, weighed, &predicted).normal;
@@ -169,8 +174,8 @@ pub fn coordinate_covariance(fitted: &Fit, weighed: &Weighed<'_>) -> DMatrix<f64
     a.clone().cholesky().map_or_else(|| DMatrix::zeros(a.nrows(), a.ncols()), |c| c.inverse() * scale)
 }
 
-/// Half widths of 95 % intervals of all constants, in the constants' own units: Student's t with the degrees of freedom
-/// that stand behind each of them, since the noise is estimated too (Satterthwaite's approximation).
+/// Returns half widths of 95 % intervals of all constants in their own units: Student's t with the
+/// degrees of freedom of each, since the noise is estimated (Satterthwaite's approximation).
 pub fn interval_half_widths(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<f64> {
     let covariance = coordinate_covariance(fitted, weighed);
     let predicted: Vec<f64> =
@@ -187,8 +192,9 @@ pub fn interval_half_widths(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<f64> {
         .collect()
 }
 
-/// Standard deviations of predicted readings in newtons: noise of a reading and uncertainty of the constants.
-/// Rows of `covariance` beyond the model's own constants are ignored, missing ones count as certain.
+/// Returns standard deviations of predicted readings in newtons, from the noise of a reading and
+/// the uncertainty of the constants. Rows of `covariance` beyond the model's constants are ignored,
+/// missing ones count as certain.
 pub fn prediction_sd_n(model: &Model, points: &[Point], covariance: &[Vec<f64>], noise: Noise) -> Vec<f64> {
     let at = model.predict(points);
     let friction = model.friction_n(points);
@@ -212,7 +218,8 @@ pub fn prediction_sd_n(model: &Model, points: &[Point], covariance: &[Vec<f64>],
                 }
             }
             if !same {
-                // A layout nobody measured: the layout law's own uncertainty, of the friction force.
+                // An unmeasured layout: the uncertainty of the layout law, relative to the friction
+                // force.
                 variance += (LayoutLaw::UNCERTAINTY * (at[row] - points[row].load_n)).powi(2);
             }
             variance.max(0.0).sqrt()

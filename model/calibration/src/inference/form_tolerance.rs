@@ -1,19 +1,21 @@
-//! A guard: what a named effect leaves because its form is not quite the truth's must not be given another name.
+//! Tolerance for the approximate formulas of effects, whose residual must not be attributed to
+//! another effect.
 //!
-//! Every named effect is allowed to bend by some tens of per cent along its own covariate, with the load, with the
-//! direction and from layout to layout. These bent copies are nuisances for everything that is tried next
-//! (`model/doc/naming-an-effect.md`), held near zero by a prior: a second effect that is larger than they can be is
-//! still seen.
+//! Every effect in the model may bend by some tens of per cent along its covariate, with the load,
+//! with the direction and from layout to layout. These bent copies are nuisance columns for all
+//! further candidates (`model/doc/naming-an-effect.md`), with a prior around zero, so that a second
+//! effect is detected if it is larger than the tolerance.
 
 use super::model::{Model, Term};
 use super::observations::Observations;
 use crate::effects::Covariate;
 use crate::table::Point;
 
-/// Standard deviation of the share by which a form may bend.
+/// Prior standard deviation of the relative bend.
 pub(crate) const BEND: f64 = 0.15;
 
-/// Bent copies of all named effects of a model, in newtons per unit share. `predicted` are the model's readings.
+/// Returns bent copies of all effects of a model, in newtons per unit share. `predicted` are the
+/// model's readings.
 pub(crate) fn bent_copies(model: &Model, data: &Observations, predicted: &[f64]) -> Vec<Vec<f64>> {
     let mut all = Vec::new();
     for (index, term) in model.terms.iter().enumerate() {

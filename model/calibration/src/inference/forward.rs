@@ -1,4 +1,4 @@
-//! The forward model: from constants and a row to the reading.
+//! Forward model: predicts readings from constants and rows.
 
 use pinswitch_friction::Substrate;
 
@@ -7,14 +7,15 @@ use crate::effects::{Channel, ContactState, Covariate, Effect, Shape, Side, Stag
 use crate::table::{Changing, Condition, Point};
 
 impl Model {
-    /// Readings in newtons at the points.
+    /// Returns readings in newtons at the points.
     pub fn predict(&self, points: &[Point]) -> Vec<f64> {
         let values = self.values();
         self.readings(&values, points, |_| true, &[])
     }
 
-    /// Readings at the points that are `touched`, those of `before` elsewhere. The rows of a series are neighbours of one
-    /// setting: what does not move along a series is computed once for all of them.
+    /// Returns readings at the points that are `touched`, and those of `before` elsewhere.
+    /// Consecutive rows of a series have the same setting; quantities that do not vary within a
+    /// series are computed once for all of them.
     fn readings(
         &self,
         values: &[f64],
@@ -57,15 +58,15 @@ impl Model {
             .collect()
     }
 
-    /// Readings after one constant has changed, where `before` were those at the points: only conditions that the
-    /// constant touches are computed again.
+    /// Returns readings after one constant has changed, where `before` were those at the points;
+    /// only conditions that depend on the constant are computed again.
     pub(crate) fn predict_changed(&self, points: &[Point], before: &[f64], index: usize) -> Vec<f64> {
         let values = self.values();
         let touched: Vec<bool> = (0..self.frame.conditions.len()).map(|c| self.touches(index, c)).collect();
         self.readings(&values, points, |p| touched[p.condition], before)
     }
 
-    /// Whether a constant enters the readings on a condition.
+    /// Returns whether the readings on a condition depend on a constant.
     fn touches(&self, index: usize, condition: usize) -> bool {
         let c = &self.frame.conditions[condition];
         match index {
@@ -84,7 +85,7 @@ impl Model {
         }
     }
 
-    /// Change of the readings in newtons when the friction exponent grows by one part in one.
+    /// Returns the change of the readings in newtons per relative change of the friction exponent.
     pub fn friction_n(&self, points: &[Point]) -> Vec<f64> {
         let everywhere = Structure {
             covariate: Covariate::Load,
@@ -97,7 +98,8 @@ impl Model {
         changed
     }
 
-    /// Tension of a part in newtons: effects of the switch in, effects of the rig out.
+    /// Returns the tension of a part in newtons, including effects of the switch and excluding
+    /// those of the rig.
     pub fn predict_part(&self, points: &[Point]) -> Vec<f64> {
         let values = self.values();
         let terms = self.acting(&values, true);
@@ -108,7 +110,8 @@ impl Model {
         points.iter().map(read).collect()
     }
 
-    /// Share of the friction that the silicone makes at the points, by eq. 4 at the baseline's constants, 0..1.
+    /// Returns the silicone's share of the friction at the points, by eq. 4 with the baseline's
+    /// constants, 0..1.
     pub fn silicone_share(&self, points: &[Point]) -> Vec<f64> {
         let values = self.values();
         points
@@ -127,7 +130,7 @@ impl Model {
             .collect()
     }
 
-    /// The terms with their constants; of a part alone without those of the rig.
+    /// Returns the terms with their constants; for a part, without those of the rig.
     fn acting<'a>(&'a self, values: &'a [f64], part_only: bool) -> Vec<(&'a Term, &'a [f64])> {
         let mut at = self.baseline_len();
         let mut terms = Vec::with_capacity(self.terms.len());
@@ -141,7 +144,7 @@ impl Model {
         terms
     }
 
-    /// The contact at a point, as these terms change it.
+    /// Returns the contact at a point after these terms.
     fn contact(&self, values: &[f64], terms: &[(&Term, &[f64])], point: &Point) -> ContactState {
         let condition: &Condition = &self.frame.conditions[point.condition];
         let plain = self.plain[point.condition];
@@ -164,7 +167,7 @@ impl Model {
         let factors = if changes.is_empty() { &[] } else { &values[self.first_change()..] };
         for (change, factor) in changes.iter().zip(factors) {
             match change.constant {
-                _ if !change.holds(point) => {}
+                _ if !change.applies_to(point) => {}
                 Changing::Pins => state.mu_pins *= factor,
                 Changing::Silicone => state.mu_silicone *= factor,
                 Changing::HalfLoad => state.half_load_n *= factor,
@@ -174,30 +177,30 @@ impl Model {
         state
     }
 
-    /// Tension in newtons of a contact that further terms change, before the load cell.
+    /// Returns the tension in newtons after the contact and further terms, before the load cell.
     fn tension_n(&self, terms: &[(&Term, &[f64])], point: &Point, mut state: ContactState) -> f64 {
         let condition = &self.frame.conditions[point.condition];
         on_contact(terms, point, condition, &mut state);
         state.tension_n(condition, point)
     }
 
-    /// Reading in newtons of a tension that the contact leaves.
+    /// Returns the reading in newtons for a tension after the contact.
     fn reading_n(&self, terms: &[(&Term, &[f64])], point: &Point, tension_n: f64) -> f64 {
         let condition = &self.frame.conditions[point.condition];
         let mut reading = tension_n;
-        // What acts on the tension comes before the load cell, whichever was found first.
+        // Effects on the tension come before the load cell, whatever the order of the terms.
         for (term, constants) in terms {
             if let Term::Named(effect) = term {
                 reading = effect.on_tension(constants, point, condition, reading);
             }
         }
-        // What ends the range of the load cell acts on everything before it.
+        // A limit of the load cell applies after all other effects.
         let mut limits = Vec::new();
         for (term, constants) in terms {
             match term {
                 Term::Named(effect) => {
                     if effect.description().stage == Stage::CellLimit {
-                        // A second limit of one kind is tried in place of the first.
+                        // A second limit of the same effect replaces the first.
                         limits.retain(|(other, _): &(&&dyn Effect, _)| other.id() != effect.id());
                         limits.push((effect, constants));
                     } else {
@@ -213,8 +216,8 @@ impl Model {
     }
 }
 
-/// What the rows of one setting share: the contact as far as it does not move along a series, and the last row's tension and
-/// reading in newtons.
+/// Quantities common to rows of one setting: the contact, if it does not vary within a series, and
+/// the last row's tension and reading in newtons.
 struct Setting<'a> {
     point: &'a Point,
     state: ContactState,
@@ -222,7 +225,7 @@ struct Setting<'a> {
     reading_n: f64,
 }
 
-/// Changes a contact by these terms, in their order.
+/// Applies these terms to a contact, in their order.
 fn on_contact(terms: &[(&Term, &[f64])], point: &Point, condition: &Condition, state: &mut ContactState) {
     for (term, constants) in terms {
         match term {

@@ -1,7 +1,8 @@
-//! One series that is wrong as a whole: a mislabelled weight or condition, a bad run.
+//! Detection of a single series with a gross error, such as a mislabelled weight or condition, or a
+//! bad run.
 //!
-//! Its rows agree with each other, so that weighing single rows down does not help, and it must not decide which effect
-//! is named. It is told from an effect by standing alone: an effect moves several series.
+//! Its rows agree with each other, so that down-weighting single rows does not help, and it must
+//! not determine which effect is attributed. An effect differs from it by changing several series.
 
 use super::fit::Fit;
 use super::noise::{Noise, Spread};
@@ -9,14 +10,15 @@ use super::observations::Observations;
 use super::screening::Screen;
 use super::weighed::Weighed;
 
-/// Least gain, in whitened squares, of an offset of one series in both directions.
+/// Smallest reduction of the deviance by offsets of one series in both directions.
 const MIN_GAIN: f64 = 60.0;
-/// How much more it must gain than any effect or structure.
+/// Ratio by which it must exceed that of any effect or structure.
 const AHEAD: f64 = 1.3;
-/// With fewer series none can be said to stand alone.
+/// Fewest series for the detection.
 const MIN_SERIES: usize = 8;
 
-/// Mean residual of a cell over its standard deviation. What was excluded counts with its rows as if sound.
+/// Returns the mean residual of a cell over its standard deviation. Excluded rows count as if they
+/// were sound.
 pub(crate) fn cell_deviation(fitted: &Fit, weighed: &Weighed<'_>, cell: usize) -> (f64, f64) {
     let (data, noise) = (weighed.data, weighed.noise);
     let rows = &data.cells[cell];
@@ -31,8 +33,8 @@ pub(crate) fn cell_deviation(fitted: &Fit, weighed: &Weighed<'_>, cell: usize) -
     (mean, libm::hypot(noise.repetition.at(load) / count.sqrt(), shared))
 }
 
-/// The series whose own offsets explain what is left better than any effect or structure does, if there is one: a bad
-/// series is a hypothesis that competes with the others. `best_gain` is that of the best of those.
+/// Returns the series whose own offsets explain the residuals better than any effect or structure,
+/// if there is one. `best_gain` is that of the best effect or structure.
 pub(super) fn isolated_series(screen: &Screen<'_>, data: &Observations, best_gain: f64) -> Option<usize> {
     if data.series < MIN_SERIES {
         return None;

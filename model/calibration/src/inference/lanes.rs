@@ -1,42 +1,42 @@
-//! Columns side by side: a step that goes through a table's rows does so once for several columns, and the processor works
-//! on neighbours in memory.
+//! Columns in interleaved lanes: a pass over the rows of a table processes several columns at once
+//! with contiguous memory access.
 
-/// Columns that are worked on together.
+/// Number of columns that are processed together.
 pub(crate) const LANES: usize = 8;
 
-/// Up to [`LANES`] columns, row by row; lanes that hold no column are zero.
+/// Up to [`LANES`] columns, row by row; unused lanes are zero.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lanes {
     rows: Vec<[f64; LANES]>,
 }
 
 impl Lanes {
-    /// Zeros.
+    /// Returns zeros.
     pub(crate) fn zeros(len: usize) -> Self {
         Self { rows: vec![[0.0; LANES]; len] }
     }
 
-    /// The rows.
+    /// Returns the rows.
     pub(crate) fn rows(&self) -> &[[f64; LANES]] {
         &self.rows
     }
 
-    /// The rows.
+    /// Returns the rows.
     pub(crate) fn rows_mut(&mut self) -> &mut [[f64; LANES]] {
         &mut self.rows
     }
 
-    /// Makes every column zero.
+    /// Sets every column to zero.
     pub(crate) fn clear(&mut self) {
         self.rows.fill([0.0; LANES]);
     }
 
-    /// Lets the columns end with zeros, or without them.
+    /// Extends the columns with zeros, or truncates them.
     pub(crate) fn resize(&mut self, len: usize) {
         self.rows.resize(len, [0.0; LANES]);
     }
 
-    /// Takes columns of one length in.
+    /// Copies columns of one length into the lanes.
     pub(crate) fn take(&mut self, columns: &[Vec<f64>]) {
         self.rows.clear();
         self.rows.resize(columns.first().map_or(0, Vec::len), [0.0; LANES]);
@@ -45,19 +45,19 @@ impl Lanes {
         }
     }
 
-    /// Gives columns back that were taken in.
+    /// Copies the lanes back to the columns.
     pub(crate) fn give(&self, columns: &mut [Vec<f64>]) {
         for (lane, column) in columns.iter_mut().enumerate() {
             column.iter_mut().zip(&self.rows).for_each(|(v, row)| *v = row[lane]);
         }
     }
 
-    /// One column.
+    /// Returns one column.
     pub(crate) fn column(&self, lane: usize) -> Vec<f64> {
         self.rows.iter().map(|row| row[lane]).collect()
     }
 
-    /// Squared length of each column.
+    /// Returns the squared norm of each column.
     pub(crate) fn squares(&self) -> [f64; LANES] {
         let mut sums = [0.0; LANES];
         for row in &self.rows {
@@ -66,7 +66,7 @@ impl Lanes {
         sums
     }
 
-    /// Inner product of each column with another one.
+    /// Returns the inner product of each column with another one.
     pub(crate) fn dots(&self, other: &[f64]) -> [f64; LANES] {
         let mut sums = [0.0; LANES];
         for (row, o) in self.rows.iter().zip(other) {
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_come_back_as_they_were() {
+    fn columns_are_copied_unchanged() {
         let mut columns = vec![vec![1.0, 2.0, 3.0], vec![-4.0, 5.0, 6.0]];
         let mut lanes = Lanes::zeros(0);
         lanes.take(&columns);

@@ -1,38 +1,40 @@
-//! Levels at which effects and structures are believed.
+//! Significance levels for effects and structure.
 
-/// Levels of the decisions, in whitened squares; tuned by `pinswitch simulate --study`.
+/// Levels of the decisions, as reductions of the deviance; tuned by `pinswitch simulate --study`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levels {
-    /// Probability by chance, over the vocabulary, at which the first named effect is believed.
+    /// Probability by chance over the vocabulary below which the first effect is accepted.
     pub first_p: f64,
-    /// Largest probability by sign flips at which a weak first effect is believed.
+    /// Largest probability by sign flips of a weak first effect.
     pub flips: f64,
-    /// Least gain of each further one.
+    /// Smallest gain of each further effect.
     pub further: f64,
-    /// Least gain of a further one as a share of the first one's gain: below it, it may stem from the form.
+    /// Smallest gain of a further effect as a share of the first one's; a smaller gain may result
+    /// from the approximate formula.
     pub further_share: f64,
-    /// A gain above this share of the first one's is more than the form of an effect can bend, if it is also above
-    /// `beyond_small`.
+    /// Share of the first one's gain above which a gain cannot result from its approximate formula,
+    /// if it is also above `beyond_small`.
     pub beyond_form: f64,
-    /// A gain below this may always stem from the form: a first effect of a few dozen squares is itself known so badly
-    /// that its form may be off by half of it.
+    /// Gain below which it may always result from the approximate formula: the shape of a weak
+    /// first effect is uncertain by up to half of it.
     pub beyond_small: f64,
-    /// A rival fits worse by less than this.
+    /// Largest increase of the deviance for a rival.
     pub rival: f64,
-    /// ... or by less than this share of what the effect explains.
+    /// The same as a share of the effect's gain.
     pub rival_share: f64,
-    /// Least gain of a structure that no name explains.
+    /// Smallest gain of unattributed structure.
     pub structure: f64,
-    /// Probability by chance, over all structures tried, at which one is believed.
+    /// Probability by chance over all structures below which one is accepted.
     pub structure_p: f64,
-    /// Least gain of such a structure as a share of what the names explain.
+    /// Smallest gain of structure as a share of the effects' gain.
     pub structure_share: f64,
-    /// By how much a structure alone must fit better than a name with its form bent.
+    /// Gain by which a structure alone must exceed that of effects with bent formulas.
     pub outright: f64,
 }
 
 impl Levels {
-    /// The gain above which a further name needs no comparison with bent forms, where those before it gained `gained`.
+    /// Returns the gain above which a further effect needs no comparison with bent formulas, given
+    /// the gain of the previous ones.
     pub(super) fn beyond_bending(&self, gained: f64) -> f64 {
         self.beyond_small.max(self.beyond_form * gained)
     }

@@ -1,5 +1,5 @@
-//! What the data exclude: for each effect that was not found the sizes that remain possible, and effects that this
-//! design cannot tell apart.
+//! Sizes that the data exclude, for effects that are not in the model, and classes of effects that
+//! this design cannot separate.
 
 use super::fit::{Fit, jacobian};
 use super::projection::{Projection, dot};
@@ -9,9 +9,9 @@ use super::significance::gain_at;
 use super::weighed::Weighed;
 use crate::effects::{Effect, Stage};
 
-/// Share of the friction, or of the reading, that an effect must change somewhere to be of consequence.
+/// Smallest relevant change of friction or reading, as a share.
 pub const CONSEQUENCE: f64 = 0.05;
-/// Cosine between two traces after the refit beyond which a design cannot tell the effects apart.
+/// Cosine of two traces after the refit above which a design cannot separate the effects.
 pub const ALIKE: f64 = 0.95;
 
 /// Sizes of an absent effect that the data do not exclude.
@@ -19,18 +19,18 @@ pub const ALIKE: f64 = 0.95;
 pub struct SizeLimit {
     /// The effect.
     pub effect: &'static dyn Effect,
-    /// Constants of its shape at which these sizes are told: those of its starts that the data speak for most.
+    /// Shape constants for which the sizes apply: those of the start with the largest gain.
     pub shape: Vec<f64>,
-    /// Ends of the 95 % interval of its size, in the unit of its first constant; of an effect without constants, in
-    /// shares of the effect. An effect that cannot be negative has none below zero; a limit of the cell ends at the
-    /// highest one that was tried.
+    /// Ends of the 95 % interval of its size, in the unit of its first constant; in shares of an
+    /// effect without constants. Sizes of a one-sided effect are not negative; the interval of a
+    /// load cell's limit ends at the highest one tried.
     pub interval: [f64; 2],
-    /// Size at which it changes friction, or the reading, by [`CONSEQUENCE`] somewhere in the table.
+    /// Size that changes friction or reading by [`CONSEQUENCE`] somewhere in the table.
     pub typical: f64,
 }
 
 impl SizeLimit {
-    /// Whether nothing of consequence can hide: every size left is smaller than the typical one.
+    /// Returns whether every size in the interval is smaller than the typical one.
     pub fn is_excluded(&self) -> bool {
         let [low, high] = self.interval;
         if self.effect.description().scales || self.effect.parameters().is_empty() {
@@ -41,12 +41,12 @@ impl SizeLimit {
     }
 }
 
-/// The part of an interval that an effect's physics allows.
+/// Returns the part of an interval with possible signs.
 fn allowed(effect: &dyn Effect, [low, high]: [f64; 2]) -> [f64; 2] {
     if effect.description().one_sided { [low.max(0.0), high.max(0.0)] } else { [low, high] }
 }
 
-/// Limits of the effects that a model does not have, of those that pass `visible`.
+/// Returns limits of the effects that are not in a model and pass `visible`.
 pub(super) fn limits(
     fitted: &Fit,
     weighed: &Weighed<'_>,
@@ -64,7 +64,8 @@ pub(super) fn limits(
             let size = match (told.parameters.is_empty(), told.scales) {
                 (true, _) => 1.0,
                 (false, true) => score.size,
-                // A limit of the cell's range does not grow from zero: what it excludes is no interval about zero.
+                // The limit of a load cell does not vanish at zero, so the interval is not around
+                // zero.
                 (false, false) => return range_limit(score.effect, fitted, weighed, &predicted),
             };
             let degrees = reliability.degrees(weighed.data, &score.trace_n, score.strength.powi(2));
@@ -80,11 +81,12 @@ pub(super) fn limits(
         .collect()
 }
 
-/// Steps between the limits of a cell that are tried, as a factor.
+/// Ratio of consecutive limits of a load cell that are tried.
 const RANGE_STEP: f64 = 0.98;
 
-/// The lowest limit of the cell that the data do not exclude: a limit below the highest readings cuts them off, which
-/// residuals would show. Tried from the highest reading that the model predicts downwards.
+/// Returns the lowest limit of a load cell that the data do not exclude, since a limit below the
+/// highest readings would cut them off. Limits are tried downwards from the highest predicted
+/// reading.
 fn range_limit(
     effect: &'static dyn Effect,
     fitted: &Fit,
@@ -95,7 +97,7 @@ fn range_limit(
     if highest <= 0.0 {
         return None;
     }
-    // What the model's own constants could take over of a cut is no evidence against it.
+    // The part of a cut-off that the model's constants can absorb is not evidence against it.
     let mut own = Projection::new(predicted.len());
     for mut column in jacobian(&fitted.model, weighed.data, predicted) {
         weighed.whiten(&mut column);
@@ -120,7 +122,8 @@ fn range_limit(
     Some(SizeLimit { effect, shape: Vec::new(), interval: [low, highest], typical })
 }
 
-/// Largest share of the friction (of the reading, for what acts on it or against the motion) that a trace changes.
+/// Returns the largest relative change of friction by a trace (of the reading, for effects on the
+/// reading or against the motion).
 fn largest_share(score: &EffectScore, predicted: &[f64], weighed: &Weighed<'_>) -> f64 {
     let of_reading = !matches!(
         score.effect.description().stage,
@@ -138,7 +141,8 @@ fn largest_share(score: &EffectScore, predicted: &[f64], weighed: &Weighed<'_>) 
         .fold(0.0, f64::max)
 }
 
-/// Groups of effects whose visible traces have a cosine above [`ALIKE`], each in the order of the scores.
+/// Returns groups of effects whose traces have a cosine above [`ALIKE`], each in the order of the
+/// scores.
 pub(super) fn classes(
     scores: &[EffectScore],
     visible: impl Fn(&EffectScore) -> bool,

@@ -1,6 +1,6 @@
-//! From a table to the effects it shows: forward model, noise, fits, scores and selection.
+//! Inference of effects from a table: forward model, noise, fits, scores and selection.
 //!
-//! How the steps hang together, and how well they work, stands in `model/doc/naming-an-effect.md`.
+//! `model/doc/naming-an-effect.md` describes the procedure and its performance.
 
 mod against_scatter;
 mod averaged_intervals;

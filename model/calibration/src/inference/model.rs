@@ -1,24 +1,25 @@
-//! The paper's model with terms added: what its constants are, and the coordinates in which they are fitted.
+//! The paper's model with additional terms: its constants, and the coordinates in which they are
+//! fitted.
 
 use pinswitch_friction::{LayoutLaw, published};
 
 use crate::effects::{Covariate, Effect, Shape, Structure, Vocabulary};
 use crate::table::{Change, Frame};
 
-/// Id of a structure that no named effect explains.
+/// Id of structure that no effect explains.
 pub const UNATTRIBUTED: &str = "unattributed";
 
-/// One term on top of the paper's model.
+/// A term in addition to the paper's model.
 #[derive(Clone, Debug)]
 pub enum Term {
     /// An effect of the vocabulary.
     Named(&'static dyn Effect),
-    /// A data-driven structure along one covariate.
+    /// An empirical structure along one covariate.
     Structure(Structure),
 }
 
 impl Term {
-    /// Its id in reports and model files.
+    /// Returns its id in reports and model files.
     pub fn id(&self) -> &'static str {
         match self {
             Term::Named(effect) => effect.id(),
@@ -26,7 +27,7 @@ impl Term {
         }
     }
 
-    /// Number of its constants.
+    /// Returns the number of its constants.
     pub fn constants(&self) -> usize {
         match self {
             Term::Named(effect) => effect.parameters().len(),
@@ -34,7 +35,7 @@ impl Term {
         }
     }
 
-    /// Whether it changes from row to row of a series: with the repetition, the position or the time.
+    /// Returns whether it varies within a series: with the repetition, the position or the time.
     pub(crate) fn moves_along_a_series(&self) -> bool {
         let covariate = match self {
             Term::Named(effect) => return effect.moves_along_a_series(),
@@ -44,7 +45,7 @@ impl Term {
         matches!(covariate, Covariate::Repetition | Covariate::Position | Covariate::Time)
     }
 
-    /// Whether what it does to the contact changes from row to row of a series.
+    /// Returns whether its effect on the contact varies within a series.
     pub(super) fn moves_contact(&self) -> bool {
         self.moves_along_a_series()
             && match self {
@@ -53,7 +54,7 @@ impl Term {
             }
     }
 
-    /// Bounds of its constants; `None` for sizes.
+    /// Returns the bounds of its constants; `None` for sizes.
     fn bounds(&self) -> Vec<Option<(f64, f64)>> {
         match self {
             Term::Named(effect) => effect.parameters().iter().map(|p| p.bounds).collect(),
@@ -62,15 +63,16 @@ impl Term {
     }
 }
 
-/// What is known about a constant before any data: mean and standard deviation of its coordinate.
+/// Prior of a constant: mean and standard deviation of its coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Prior {
     pub(crate) mean: f64,
     pub(crate) sd: f64,
 }
 
-/// The paper's model with terms added. Constants are kept in unbounded coordinates: logarithms of positive
-/// constants, logits of bounded shapes, sizes as they are; a clipped constant would stall a fit.
+/// The paper's model with additional terms. Constants are stored in unbounded coordinates:
+/// logarithms of positive constants, logits of bounded shapes, and sizes unchanged, since clipping
+/// would stall a fit.
 ///
 /// ```
 /// use pinswitch_calibration::effects::effect_named;
@@ -92,29 +94,31 @@ pub(crate) struct Prior {
 pub struct Model {
     /// Conditions and reference values.
     pub frame: Frame,
-    /// Terms on top of the paper's model.
+    /// Terms in addition to the paper's model.
     pub terms: Vec<Term>,
-    /// The effects that may be among them.
+    /// Effects that may be terms.
     pub vocabulary: Vocabulary,
-    /// Coordinates of all constants: baseline first, then term by term.
+    /// Coordinates of all constants: the baseline's first, then term by term.
     pub(crate) coordinates: Vec<f64>,
     priors: Vec<Prior>,
-    /// Place of the exponent of each `plain` condition among the constants.
+    /// Index of the exponent of each `plain` condition among the constants.
     pub(super) plain: Vec<usize>,
 }
 
-/// Widths of the weak priors on the baseline, in logarithms: friction coefficients, half load, steepness.
+/// Standard deviations of the weak priors on the baseline, in logarithms: friction coefficients,
+/// threshold, steepness.
 const PRIOR_LOG_MU: f64 = 1.0;
 const PRIOR_LOG_HALF_LOAD: f64 = 0.35;
 const PRIOR_LOG_STEEPNESS: f64 = 0.5;
-/// The same of the factor by which a constant differs between sessions or specimens.
+/// The same for the factor by which a constant differs between sessions or specimens.
 const PRIOR_LOG_CHANGE: f64 = 0.3;
 
-/// Standard deviation of the coordinate of a constant that is held where it is.
+/// Prior standard deviation of the coordinate of a fixed constant.
 const HELD: f64 = 1e-5;
 
 impl Model {
-    /// The paper's model at the published constants and the layout law (`model/doc/friction-laws.md`).
+    /// Returns the paper's model with the published constants and the layout law
+    /// (`model/doc/friction-laws.md`).
     pub fn baseline(frame: Frame) -> Self {
         let mut priors = vec![
             Prior { mean: libm::log(published::MU_PINS), sd: PRIOR_LOG_MU },
@@ -144,14 +148,14 @@ impl Model {
         Self { frame, terms: Vec::new(), vocabulary: Vocabulary::built_in(), coordinates, priors, plain }
     }
 
-    /// The same model among other effects.
+    /// Returns the model with another vocabulary.
     #[must_use]
     pub fn among(mut self, vocabulary: &Vocabulary) -> Self {
         self.vocabulary = vocabulary.clone();
         self
     }
 
-    /// The same model with a term whose constants have these values.
+    /// Adds a term whose constants have these values.
     #[must_use]
     pub fn with_term(&self, term: Term, values: &[f64]) -> Self {
         let mut model = self.clone();
@@ -166,7 +170,7 @@ impl Model {
         model
     }
 
-    /// The same model with a constant that some sessions or specimens have otherwise; so far they have not.
+    /// Adds a constant that differs in some sessions or specimens, with a factor of one.
     #[must_use]
     pub(crate) fn with_change(&self, change: Change) -> Self {
         let (mut model, at) = (self.clone(), self.baseline_len());
@@ -176,7 +180,7 @@ impl Model {
         model
     }
 
-    /// The same model without the change that was found last.
+    /// Removes the last change.
     #[must_use]
     pub(crate) fn without_last_change(&self) -> Self {
         let (mut model, at) = (self.clone(), self.baseline_len() - 1);
@@ -187,12 +191,13 @@ impl Model {
         model
     }
 
-    /// Place among the constants of the factor of the frame's first change; those of the others follow.
+    /// Returns the index among the constants of the factor of the frame's first change; the others
+    /// follow.
     pub(crate) fn first_change(&self) -> usize {
         self.baseline_len() - self.frame.changes.len()
     }
 
-    /// Its named effects, in the order of its terms.
+    /// Returns its effects, in the order of its terms.
     pub fn named_effects(&self) -> Vec<&'static dyn Effect> {
         self.terms
             .iter()
@@ -203,7 +208,7 @@ impl Model {
             .collect()
     }
 
-    /// The same model without its term of that index.
+    /// Removes the term of an index.
     #[must_use]
     pub fn without_term(&self, index: usize) -> Self {
         let mut model = self.clone();
@@ -215,14 +220,14 @@ impl Model {
         model
     }
 
-    /// The same model without the terms for which this holds.
+    /// Removes the terms for which the predicate is true.
     #[must_use]
     pub(crate) fn without_terms(&self, is_out: impl Fn(&Term) -> bool) -> Self {
         let out = (0..self.terms.len()).rev().filter(|index| is_out(&self.terms[*index]));
         out.fold(self.clone(), |model, index| model.without_term(index))
     }
 
-    /// The same model with every constant but these held where it is.
+    /// Fixes every constant except these.
     #[must_use]
     pub(crate) fn frozen_except(&self, free: &[usize]) -> Self {
         let mut model = self.clone();
@@ -234,7 +239,7 @@ impl Model {
         model
     }
 
-    /// The same model with one bounded constant held at a share of the way between its bounds; `None` for a constant without.
+    /// Fixes one bounded constant at a share of its range; `None` for a constant without bounds.
     pub(crate) fn held_at(&self, index: usize, share: f64) -> Option<Self> {
         let (low, high) = self.bounds_of(index);
         let bounds = (low.is_finite() && high.is_finite()).then_some((low, high))?;
@@ -245,22 +250,22 @@ impl Model {
         Some(model)
     }
 
-    /// Whether a constant is held where it is: data have no say in it.
+    /// Returns whether a constant is fixed.
     pub(crate) fn is_held(&self, index: usize) -> bool {
         self.priors[index].sd <= HELD
     }
 
-    /// Index of the first constant of a term.
+    /// Returns the index of the first constant of a term.
     pub fn term_offset(&self, index: usize) -> usize {
         self.baseline_len() + self.terms.iter().take(index).map(Term::constants).sum::<usize>()
     }
 
-    /// Number of the baseline's constants.
+    /// Returns the number of the baseline's constants.
     pub(crate) fn baseline_len(&self) -> usize {
         self.coordinates.len() - self.terms.iter().map(Term::constants).sum::<usize>()
     }
 
-    /// Places of a device's half load and steepness among the constants.
+    /// Returns the indices of a device's threshold and steepness among the constants.
     pub fn device_constants(device: usize) -> [usize; 2] {
         [2 + 2 * device, 3 + 2 * device]
     }
@@ -269,7 +274,7 @@ impl Model {
         &self.priors
     }
 
-    /// Names and units of all constants, baseline first.
+    /// Returns names and units of all constants, the baseline's first.
     pub fn names(&self) -> Vec<(String, &'static str)> {
         let mut names = vec![("mu_p".to_owned(), "1"), ("mu_s".to_owned(), "1")];
         for condition in self.frame.conditions.iter().filter(|c| c.device.is_some()) {
@@ -301,7 +306,7 @@ impl Model {
         names
     }
 
-    /// Value of a constant, its slope over its coordinate.
+    /// Returns the value of a constant and its derivative with respect to its coordinate.
     pub(crate) fn value(&self, index: usize) -> (f64, f64) {
         let coordinate = self.coordinates[index];
         if index < self.baseline_len() {
@@ -319,19 +324,21 @@ impl Model {
         (coordinate, 1.0)
     }
 
-    /// Bounds of a constant: those of a shape, zero for the baseline's, none for a size.
+    /// Returns the bounds of a constant: those of a shape, zero for the baseline's, none for a
+    /// size.
     pub(crate) fn bounds_of(&self, index: usize) -> (f64, f64) {
         let Some(beyond) = index.checked_sub(self.baseline_len()) else { return (0.0, f64::INFINITY) };
         let bounds: Vec<_> = self.terms.iter().flat_map(Term::bounds).collect();
         bounds.get(beyond).copied().flatten().unwrap_or((f64::NEG_INFINITY, f64::INFINITY))
     }
 
-    /// Values of all constants.
+    /// Returns the values of all constants.
     pub fn values(&self) -> Vec<f64> {
         (0..self.coordinates.len()).map(|i| self.value(i).0).collect()
     }
 
-    /// Sets the constants to these values, in the order of [`Model::names`]; false if their number is wrong.
+    /// Sets the constants, in the order of [`Model::names`]; returns false if their number is
+    /// wrong.
     pub fn set_values(&mut self, values: &[f64]) -> bool {
         if values.len() != self.coordinates.len() {
             return false;
@@ -345,13 +352,14 @@ impl Model {
         true
     }
 
-    /// The same model in a frame with more conditions; what they need beyond it comes from the layout law.
+    /// Returns the model in a frame with more conditions, whose additional constants come from the
+    /// layout law.
     #[must_use]
     pub fn in_frame(&self, frame: Frame) -> Self {
         let mut model = Self::baseline(frame).among(&self.vocabulary);
         let (mut from, mut to) = (2, 2);
         model.coordinates[..2].copy_from_slice(&self.coordinates[..2]);
-        // Conditions keep their order, new ones follow: devices first, then plain contacts.
+        // Conditions keep their order; new ones follow: devices first, then plain contacts.
         for (known, all) in [
             (2 * self.frame.devices(), 2 * model.frame.devices()),
             (self.plain_count(), model.plain_count()),
@@ -372,7 +380,8 @@ impl Model {
     }
 }
 
-/// Logit of a bounded value, widened by a thousandth so that the ends stay finite.
+/// Returns the logit of a bounded value, with the range widened by 0.1 % so that the ends stay
+/// finite.
 fn to_coordinate(value: f64, bounds: Option<(f64, f64)>) -> f64 {
     bounds.map_or(value, |(least, most)| {
         let share = ((value - least) / (most - least)).clamp(1e-4, 1.0 - 1e-4);
@@ -380,7 +389,7 @@ fn to_coordinate(value: f64, bounds: Option<(f64, f64)>) -> f64 {
     })
 }
 
-/// Value and slope of a bounded constant at its coordinate.
+/// Returns value and derivative of a bounded constant at its coordinate.
 fn from_coordinate(coordinate: f64, bounds: Option<(f64, f64)>) -> (f64, f64) {
     bounds.map_or((coordinate, 1.0), |(least, most)| {
         let share = 1.0 / (1.0 + libm::exp(-coordinate));

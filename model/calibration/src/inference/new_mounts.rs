@@ -1,10 +1,11 @@
-//! What mounts that are put on anew add to the error of a session.
+//! Error that new mounts add in another session.
 //!
-//! Every series of a mount shares its scatter `z`, so that series held out of a fit show only what the constants, fitted to the
-//! other series, have not taken over of it: `z - H z`, with the hat matrix `H` of generalised least squares. A new session has
-//! the whole of its own mounts' scatter: its squared error is larger by about `z' H z`. Where the fit knows that mounts scatter,
-//! little is taken over, and little is added. (`2 z' H z` would be added by constants that are wrong by all that they have taken
-//! over; on rigs of another hand it was too much, see model/doc/calibration.md.)
+//! All series of a mount share its effect `z`, so that held-out series show only the part that the
+//! constants, fitted to the other series, have not absorbed: `z - H z`, with the hat matrix `H` of
+//! generalised least squares. A new session has its own mount effects: its squared error is larger
+//! by about `z' H z`. If the fit includes mount effects, little is absorbed and little is added.
+//! (Constants that are wrong by all they absorbed would add `2 z' H z`; for independently simulated
+//! rigs this was too much, see model/doc/calibration.md.)
 
 use nalgebra::DVector;
 
@@ -15,10 +16,11 @@ use super::projection::dot;
 use super::scatter::Scatter;
 use super::weighed::Weighed;
 
-/// Mean square in newtons that new mounts add to errors on series held out.
+/// Returns the mean square in newtons that new mounts add to held-out errors.
 ///
-/// The scatter is the most probable one, given that which the noise has, or where it has none that which is beside the model: a
-/// table that is explained without it does not mean that the next mounts have none. None if the constants are not known.
+/// The mount effects are the most probable ones, given those of the noise, or, if it has none,
+/// those estimated in addition to the model: a table without mount effects does not imply that the
+/// next mounts have none. Zero if the constants are not determined.
 pub(crate) fn new_mounts_n2(fitted: &Fit, data: &Observations, noise: Noise) -> f64 {
     let predicted: Vec<f64> = data.force_n.iter().zip(&fitted.residual_n).map(|(y, r)| y - r).collect();
     let own = jacobian(&fitted.model, data, &predicted);
@@ -44,7 +46,7 @@ pub(crate) fn new_mounts_n2(fitted: &Fit, data: &Observations, noise: Noise) -> 
     data.mounts.iter().map(taken_over).sum::<f64>() / data.points.len() as f64
 }
 
-/// `z' H z` of one trace: the product of it with what the constants take over of it, by which they shift.
+/// Returns `z' H z` of one trace: its product with the part that the constants absorb by shifting.
 fn along_n2(trace: &[f64], own: &[Vec<f64>], shift: &DVector<f64>) -> f64 {
     own.iter().zip(shift.iter()).map(|(column, by)| by * dot(column, trace)).sum::<f64>().max(0.0)
 }
@@ -56,9 +58,9 @@ mod tests {
     use crate::table::Frame;
     use crate::test_session::session;
 
-    /// Constants take over the most of few mounts, unless the fit knows that mounts scatter.
+    /// With few mounts the constants absorb most, unless the fit includes mount effects.
     #[test]
-    fn new_mounts_add_what_held_out_series_cannot_show() {
+    fn new_mounts_increase_the_expected_error() {
         let rows = session(3);
         let frame = Frame::new(&rows);
         let mut data = Observations::new(&frame, &rows).unwrap();

@@ -1,6 +1,6 @@
-//! The noise hierarchy: repetition noise, which may hang together from one repetition to the next, and what rows share.
+//! Hierarchical noise: repetition noise, possibly autocorrelated, and components that rows share.
 //!
-//! Its sizes are found in `variance_components`, and the rows are weighed by it in `weighed`.
+//! The components are estimated in `variance_components`, and `weighed` whitens rows with them.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,25 +8,25 @@ use super::observations::Observations;
 use super::walk::Wandering;
 use crate::median::median;
 
-/// A variance that grows with the square of the load: `constant^2 + (per_load F)^2`.
+/// A variance that increases with the square of the load: `constant^2 + (per_load F)^2`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spread {
     /// Standard deviation at zero load, in newtons.
     pub constant_n: f64,
-    /// Growth with load, dimensionless.
+    /// Increase with load, dimensionless.
     pub per_load: f64,
 }
 
 impl Spread {
-    /// Standard deviation at a load, in newtons.
+    /// Returns the standard deviation at a load, in newtons.
     pub fn at(self, load_n: f64) -> f64 {
         libm::hypot(self.constant_n, self.per_load * load_n)
     }
 
-    /// Fits both to squares that scatter about the variance, by least squares relative to it. A square counts
-    /// for at most nine times what is expected, so that single bad series do not decide.
-    /// `squares` are (load, square of which `known` is explained otherwise, known, weight).
+    /// Fits both to squares that scatter about the variance, by least squares relative to it. A
+    /// square counts for at most nine times its expectation, so that single bad series do not
+    /// dominate. `squares` are (load, square, `known` part of it with another explanation, weight).
     pub(super) fn estimate(squares: &[(f64, f64, f64, f64)], least_n: f64) -> Self {
         let mut typical: Vec<f64> = squares.iter().map(|s| s.1).collect();
         let start = (median(&mut typical) / 0.455).max(least_n * least_n);
@@ -37,7 +37,7 @@ impl Spread {
                 let f2 = load * load;
                 let expected = (c2 + p2 * f2 + known).max(1e-12);
                 let w = weight / (expected * expected);
-                // The cap loses 2 % of a chi-square's mean; restored here.
+                // The cap reduces the mean of a chi-square variate by 2 %, which is restored here.
                 let value = 1.02 * square.min(9.0 * expected) - known;
                 a11 += w;
                 a12 += w * f2;
@@ -65,39 +65,39 @@ impl Spread {
     }
 }
 
-/// The noise of a table. What is zero was not found in it, or not looked for.
+/// Noise of a table. A component is zero if it was not detected or not estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Noise {
-    /// Of one repetition.
+    /// Noise of one repetition.
     pub repetition: Spread,
-    /// Of the offset that the rows of one series and direction share.
+    /// Offset common to the rows of one series and direction.
     pub series: Spread,
-    /// Correlation of a repetition with the next one of its series and direction.
+    /// Correlation of consecutive repetitions in a series and direction.
     #[serde(default)]
     pub correlation: f64,
-    /// Of the offset that both directions of a series share.
+    /// Offset common to both directions of a series.
     #[serde(default)]
     pub series_common: Spread,
-    /// Of the friction exponent from series to series, relative: the tendon is seated anew.
+    /// Relative variation of the friction exponent between series (tendon seating).
     #[serde(default)]
     pub series_scale: f64,
-    /// Of the friction exponent, or the wrap, from mount to mount, relative.
+    /// Relative variation of the friction exponent, or the wrap, between mounts.
     #[serde(default)]
     pub mount_scale: f64,
-    /// How much of the offsets of series wanders from one to the next.
+    /// Drifting part of the offsets of series.
     #[serde(default)]
     pub walk: Wandering,
-    /// Of the reading from operator to operator and from session to session, in newtons.
+    /// Variation of the reading between operators and between sessions, in newtons.
     #[serde(rename = "group_offset_N", default)]
     pub group_offset_n: f64,
-    /// Of the friction exponent from specimen to specimen, relative.
+    /// Relative variation of the friction exponent between specimens.
     #[serde(default)]
     pub specimen_scale: f64,
 }
 
 impl Noise {
-    /// The same noise at every load, in newtons.
+    /// Returns noise that is independent of the load, in newtons.
     pub fn constant(repetition_n: f64, series_n: f64) -> Self {
         let same = |constant_n| Spread { constant_n, per_load: 0.0 };
         Self {
@@ -113,12 +113,12 @@ impl Noise {
         }
     }
 
-    /// Share of the offsets' standard deviations that does not wander.
+    /// Returns the share of the offsets' standard deviations that does not drift.
     pub(crate) fn white(self) -> f64 {
         if self.walk.is_any() { self.walk.white } else { 1.0 }
     }
 
-    /// Standard deviation in newtons of what wanders of an offset.
+    /// Returns the standard deviation in newtons of the drifting part of an offset.
     pub fn wandering_n(self, load_n: f64) -> f64 {
         if !self.walk.is_any() {
             return 0.0;
@@ -129,8 +129,8 @@ impl Noise {
         )
     }
 
-    /// Standard deviation in newtons of one reading about the model, where friction changes by `friction_n` newtons
-    /// when its exponent grows by one part in one.
+    /// Returns the standard deviation in newtons of one reading around the model, where
+    /// `friction_n` is the change of friction in newtons per relative change of its exponent.
     pub fn at(self, load_n: f64, friction_n: f64) -> f64 {
         let scale = libm::hypot(libm::hypot(self.series_scale, self.mount_scale), self.specimen_scale);
         let parts = [
@@ -144,7 +144,7 @@ impl Noise {
         parts.into_iter().fold(0.0, libm::hypot)
     }
 
-    /// Root mean square of [`Noise::at`] over a table, in newtons.
+    /// Returns the root mean square of [`Noise::at`] over a table, in newtons.
     pub fn floor_n(self, data: &Observations) -> f64 {
         let sum: f64 =
             data.points.iter().zip(&data.friction_n).map(|(p, u)| self.at(p.load_n, *u).powi(2)).sum();
@@ -152,7 +152,7 @@ impl Noise {
     }
 }
 
-/// A part of the noise that rows share: one random number per group.
+/// A component of the noise that rows share: one random effect per group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
     /// Offset of a series and direction.
@@ -172,11 +172,11 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    /// Those of groups wider than a cell, the smallest first.
+    /// Components of groups wider than a cell, the smallest first.
     pub(crate) const WIDER: [Part; 6] =
         [Part::SeriesOffset, Part::SeriesScale, Part::Mount, Part::Operator, Part::Session, Part::Specimen];
 
-    /// The rows of its groups.
+    /// Returns the rows of its groups.
     pub(crate) fn groups(self, data: &Observations) -> &[Vec<usize>] {
         match self {
             Part::Cell => &data.cells,
@@ -188,7 +188,7 @@ impl Part {
         }
     }
 
-    /// What one standard deviation of a group's number does to a row, in newtons.
+    /// Returns the change of a row in newtons per standard deviation of a group's random effect.
     pub(crate) fn direction_n(self, noise: Noise, data: &Observations, row: usize) -> f64 {
         let load_n = data.points[row].load_n;
         match self {
@@ -207,9 +207,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_spread_is_found_in_squares_that_follow_it() {
+    fn a_spread_is_estimated_from_squares() {
         let truth = Spread { constant_n: 0.05, per_load: 0.004 };
-        // Two squares per load at half and one and a half times the variance.
+        // Two squares per load, at 0.5 and 1.5 times the variance.
         let squares: Vec<_> = (1..60)
             .flat_map(|i| {
                 let load = f64::from(i);

@@ -1,4 +1,4 @@
-//! A table ready for inference: points, readings, and how the rows are grouped.
+//! Observations for the inference: points, readings, and the grouping of rows.
 
 use std::sync::{Arc, OnceLock};
 
@@ -13,7 +13,7 @@ use crate::table::{Frame, Labels, PlateauRow, Point};
 /// Points and readings with their grouping.
 #[derive(Clone, Debug)]
 pub struct Observations {
-    /// The rows as the model reads them.
+    /// Covariates of the rows.
     pub points: Vec<Point>,
     /// Readings in newtons.
     pub force_n: Vec<f64>,
@@ -21,28 +21,28 @@ pub struct Observations {
     pub series_of: Vec<usize>,
     /// Number of series.
     pub series: usize,
-    /// Rows of each series and direction: they share an offset.
+    /// Rows of each series and direction, which share an offset.
     pub cells: Vec<Vec<usize>>,
     /// Load of each cell in newtons.
     pub cell_load_n: Vec<f64>,
-    /// Weight of each row, 1 for a sound one.
+    /// Weight of each row; 1 unless it is an outlier.
     pub weights: Vec<f64>,
-    /// Readings that each row is the mean of: 1 unless a long table was averaged.
+    /// Number of readings averaged in each row: 1 unless a long table was compacted.
     pub counts: Vec<f64>,
     /// Mean square of those readings about their mean, in newtons squared.
     pub within_n2: Vec<f64>,
-    /// Row of the table that each row came from, or its first one.
+    /// Row of the table from which each row comes; the first one of a mean.
     pub source: Vec<usize>,
-    /// Roots of the weights.
+    /// Square roots of the weights.
     pub(crate) roots: Vec<f64>,
-    /// Change of the reading in newtons when the friction exponent grows by one part in one, by row; zero until a model
-    /// is known.
+    /// Change of each reading in newtons per relative change of the friction exponent; zero until a
+    /// model is fitted.
     pub friction_n: Vec<f64>,
     /// Rows of each series.
     pub series_rows: Vec<Vec<usize>>,
-    /// Rows of each mount: of each condition where the table does not say.
+    /// Rows of each mount; of each condition in a table without mounts.
     pub mounts: Vec<Vec<usize>>,
-    /// The series in the order of time: their offsets may wander.
+    /// Series in the order of time, since their offsets may drift.
     pub turns: Vec<Turn>,
     /// Rows of each operator; empty with fewer than two.
     pub operators: Vec<Vec<usize>>,
@@ -50,9 +50,9 @@ pub struct Observations {
     pub sessions: Vec<Vec<usize>>,
     /// Rows of each specimen; empty with fewer than two.
     pub specimens: Vec<Vec<usize>>,
-    /// Series that are wrong as a whole and decide nothing.
+    /// Series with gross errors, which are ignored.
     excluded: Vec<usize>,
-    /// The structures that its points could show, once somebody has asked.
+    /// Structures that the points could show, computed on demand.
     catalogue: OnceLock<Arc<Catalogue>>,
 }
 
@@ -61,30 +61,30 @@ pub struct Observations {
 pub struct Turn {
     /// Its cells, in the order in which they begin.
     pub cells: Vec<usize>,
-    /// Series since the one before it: more than one where some are left out.
+    /// Distance to the previous series: more than 1 if some were left out.
     pub since: i32,
 }
 
-/// The means of the series and directions of a table, as a table of their own.
+/// Means of the series and directions of a table, as a table of their own.
 #[derive(Clone, Debug)]
 pub(crate) struct CellMeans {
     /// One row per series and direction.
     pub(crate) observations: Observations,
-    /// The cell of each row.
+    /// Cell of each row.
     cells: Vec<usize>,
     axis: Vec<f64>,
     repetition: Noise,
 }
 
 impl CellMeans {
-    /// Means of a column of the whole table, weighed by the repetition noise.
+    /// Returns the means of a column of the whole table, weighted by the repetition noise.
     pub(crate) fn mean_of(&self, data: &Observations, column: &[f64]) -> Vec<f64> {
         let mut white = column.to_vec();
         Weighed::new(data, self.repetition).whiten(&mut white);
         self.mean_of_white(data, &white)
     }
 
-    /// Means of several columns.
+    /// Returns the means of several columns.
     pub(crate) fn means_of(&self, data: &Observations, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let mut white = columns.to_vec();
         Weighed::new(data, self.repetition).whiten_all(&mut white);
@@ -106,11 +106,12 @@ impl CellMeans {
     }
 }
 
-/// Rows weighed down further than this are outliers and judge no model.
+/// Weight below which rows are outliers, which do not count in errors.
 const SOUND_WEIGHT: f64 = 0.5;
-/// Weight below which no row falls, so that its root stays a number; a reading a million times off has no say at it.
+/// Smallest weight, so that its root is finite; it removes the influence of a reading that is a
+/// million times off.
 pub(super) const MIN_WEIGHT: f64 = 1e-16;
-/// Weight of the rows of an excluded series: they keep their place and have no say.
+/// Weight of the rows of an excluded series, which stay in the table without influence.
 const EXCLUDED_WEIGHT: f64 = 1e-7;
 
 impl Observations {
@@ -127,7 +128,7 @@ impl Observations {
         for (row, cell) in cell_of.iter().enumerate() {
             cells[*cell].push(row);
         }
-        // Neighbours in time, whatever the order of the table.
+        // Sorts neighbours by time, whatever the order of the table.
         for cell in &mut cells {
             sort_by_number(cell, |row| points[*row].time);
         }
@@ -140,7 +141,7 @@ impl Observations {
             if groups.len() > 1 { groups } else { Vec::new() }
         };
         let labels = |i: usize| &rows[i].labels;
-        // A condition that is put on in two sessions, or from two specimens, is mounted twice.
+        // A condition that is mounted in two sessions, or with two specimens, has two mounts.
         let mounts = by(&|i| {
             let l = labels(i);
             format!("{} {} {} {}", points[i].condition, l.session, l.specimen, l.mount)
@@ -173,7 +174,7 @@ impl Observations {
         })
     }
 
-    /// The rows for which `keep` holds.
+    /// Keeps the rows for which `keep` returns true.
     #[must_use]
     pub fn subset(&self, keep: impl Fn(usize) -> bool) -> Self {
         let kept: Vec<usize> = (0..self.points.len()).filter(|i| keep(*i)).collect();
@@ -224,8 +225,8 @@ impl Observations {
         }
     }
 
-    /// The part of each row, of so many that are left out in turn: whole series, dealt in the order in which they were recorded,
-    /// whatever the order of the table.
+    /// Returns the fold of each row for cross-validation: whole series, distributed in the order of
+    /// recording, whatever the order of the table.
     pub(crate) fn parts_of_series(&self, parts: usize) -> Vec<usize> {
         let begin = |series: &usize| {
             let rows = &self.series_rows[*series];
@@ -236,23 +237,25 @@ impl Observations {
         sort_by_number(&mut order, |series| begin(series).1);
         sort_by_number(&mut order, |series| begin(series).0.map_or(-1.0, |session| session as f64));
         let mut part = vec![0; self.series];
-        // Neighbours in time are in different parts, and so are series a period of the protocol apart.
+        // Neighbours in time are in different folds, and so are series that are a period of the
+        // protocol apart.
         order.iter().enumerate().for_each(|(rank, series)| part[*series] = (rank * 7 / 3) % parts.max(1));
         self.series_of.iter().map(|series| part[*series]).collect()
     }
 
-    /// The structures that its points could show.
+    /// Returns the structures that its points could show.
     pub(crate) fn catalogue(&self, frame: &Frame) -> Arc<Catalogue> {
         let known = self.catalogue.get_or_init(|| Arc::new(Catalogue::new(frame, &self.points)));
         if known.frame == *frame { Arc::clone(known) } else { Arc::new(Catalogue::new(frame, &self.points)) }
     }
 
-    /// Whether a row was not weighed down as an outlier by more than half.
+    /// Returns whether the weight of a row was not reduced by more than half.
     pub(crate) fn is_sound(&self, row: usize) -> bool {
         self.weights[row] > SOUND_WEIGHT * self.counts[row]
     }
 
-    /// Root mean square of residuals in newtons over the single readings of the rows; NaN without any.
+    /// Returns the root mean square of residuals in newtons over the single readings of the rows;
+    /// NaN without rows.
     pub(crate) fn root_mean_square_n(&self, rows: impl Iterator<Item = (usize, f64)>) -> f64 {
         let (sum, count) = rows.fold((0.0, 0.0), |(sum, count), (row, residual)| {
             let n = self.counts[row];
@@ -261,12 +264,13 @@ impl Observations {
         (sum / count).sqrt()
     }
 
-    /// Mean load in newtons.
+    /// Returns the mean load in newtons.
     pub(crate) fn mean_load_n(&self) -> f64 {
         self.points.iter().map(|p| p.load_n).sum::<f64>() / self.points.len().max(1) as f64
     }
 
-    /// One row per series and direction: their means, weighed by the repetition noise, which may be a chain.
+    /// Returns one row per series and direction: means weighted by the repetition noise, which may
+    /// be autocorrelated.
     pub(crate) fn cell_means(&self, noise: Noise) -> CellMeans {
         let repetition = Noise {
             repetition: noise.repetition,
@@ -286,7 +290,7 @@ impl Observations {
         let place: std::collections::HashMap<usize, usize> =
             kept.iter().enumerate().map(|(new, old)| (*old, new)).collect();
         let mut observations = self.subset(|i| place.contains_key(&i));
-        // `subset` keeps the order of the rows; the cells may stand in another one.
+        // `subset` keeps the order of the rows, which may differ from that of the cells.
         let mut order: Vec<usize> = (0..kept.len()).collect();
         sort_by_number(&mut order, |i| kept[*i] as f64);
         let cells: Vec<usize> = order.clone();
@@ -300,18 +304,18 @@ impl Observations {
         means
     }
 
-    /// Excludes a series: its rows keep their place and have no say.
+    /// Excludes a series: its rows stay in the table without influence.
     pub(crate) fn exclude(&mut self, series: usize) {
         self.excluded.push(series);
         self.apply_exclusions();
     }
 
-    /// Whether the series of a row is excluded.
+    /// Returns whether the series of a row is excluded.
     pub fn is_excluded(&self, row: usize) -> bool {
         self.excluded.contains(&self.series_of[row])
     }
 
-    /// Number of series excluded.
+    /// Returns the number of excluded series.
     pub fn excluded_series(&self) -> usize {
         self.excluded.len()
     }
@@ -326,10 +330,11 @@ impl Observations {
     }
 }
 
-/// Series after which a chain has forgotten.
+/// Number of series after which a correlation is negligible.
 const FORGOTTEN: f64 = 30.0;
 
-/// The series in the order in which they begin. Time tells how many are missing between two that follow each other.
+/// Returns the series in the order in which they begin. Times show how many are missing between two
+/// consecutive ones.
 fn turns(cells: &[Vec<usize>], points: &[Point], series_of: &[usize]) -> Vec<Turn> {
     let begin = |cell: &usize| cells[*cell].iter().map(|r| points[*r].time).fold(f64::INFINITY, f64::min);
     let mut of_series: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
@@ -357,14 +362,14 @@ fn turns(cells: &[Vec<usize>], points: &[Point], series_of: &[usize]) -> Vec<Tur
     turns.into_iter().map(|(_, turn)| turn).collect()
 }
 
-/// Rows of each group.
+/// Returns the rows of each group.
 fn collected(of: &[usize], count: usize) -> Vec<Vec<usize>> {
     let mut groups = vec![Vec::new(); count];
     of.iter().enumerate().for_each(|(row, group)| groups[*group].push(row));
     groups
 }
 
-/// Mean load of each cell in newtons.
+/// Returns the mean load of each cell in newtons.
 fn loads(cells: &[Vec<usize>], points: &[Point]) -> Vec<f64> {
     cells.iter().map(|c| c.iter().map(|r| points[*r].load_n).sum::<f64>() / c.len().max(1) as f64).collect()
 }

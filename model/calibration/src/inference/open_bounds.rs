@@ -1,20 +1,21 @@
-//! Constants that the data do not keep off their bounds. The logit of a bounded constant has a prior in the middle of its range,
-//! and a curvature there that says nothing about the ends.
+//! Detection of bounds that the data do not exclude. The prior of the logit of a bounded constant,
+//! and its curvature in the middle of the range, contain no information about the ends.
 
 use super::fit::{Fit, fit};
 use super::weighed::Weighed;
 use crate::parallel::map_each;
 
-/// Squares by which a constant held at its bound may fit worse and still lie within the 95 % interval: the quantile of
+/// Increase of the deviance up to which a bound is within the 95 % interval: the quantile of
 /// chi-square with one degree of freedom.
 const NOT_EXCLUDED: f64 = 3.84;
-/// Share of the range that lies between the bound itself, where the logit has no end, and where the constant is held at the most;
-/// and that of the way from the bound to the estimate: what lies between bounds of many sizes, such as a time of 0.05 to 200 s, has
-/// its estimate close to one of them.
+/// Distance from the bound at which the constant is fixed, since the logit diverges at the bound:
+/// at most this share of the range, and this share of the distance from the bound to the estimate,
+/// which may be close to a bound of a wide range such as 0.05 to 200 s.
 const BESIDE_THE_BOUND: (f64, f64) = (0.02, 0.1);
 
-/// Whether the lower and the upper bound of each constant lie in its interval, by the likelihood with all else refitted; `false`
-/// for constants without bounds, and for those that are held.
+/// Returns whether the lower and the upper bound of each constant are within its interval, by the
+/// likelihood with all other constants refitted; `false` for constants without bounds, and for
+/// fixed ones.
 pub(super) fn open_bounds(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[bool; 2]> {
     let model = &fitted.model;
     let prior = |i: usize| ((model.coordinates[i] - model.priors()[i].mean) / model.priors()[i].sd).powi(2);
@@ -28,7 +29,7 @@ pub(super) fn open_bounds(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<[bool; 2]>
     let beside = |way: f64| BESIDE_THE_BOUND.0.min(BESIDE_THE_BOUND.1 * way);
     let indices = (0..model.coordinates.len()).collect();
     map_each(indices, |i| {
-        // Of the way between the bounds; whatever it is for a constant without them, which is never held.
+        // Share of the distance between the bounds; unused for a constant without bounds.
         let (low, high) = model.bounds_of(i);
         let way = (model.value(i).0 - low) / (high - low);
         [is_open(i, beside(way)), is_open(i, 1.0 - beside(1.0 - way))]
@@ -43,10 +44,10 @@ mod tests {
     use crate::table::Frame;
     use crate::test_session::session_with;
 
-    /// A friction that saturates as a power law does (h = 0) and as a hyperbola does (h = 1): its own bound is open, and
-    /// the other one is excluded where the effect is large.
+    /// Friction that saturates as a power law (h = 0) or as a hyperbola (h = 1): its true bound is
+    /// not excluded, and the other one is if the effect is large.
     #[test]
-    fn the_bound_that_is_true_is_open() {
+    fn a_true_bound_is_not_excluded() {
         let saturation = effect_named("substrate_saturation").unwrap();
         for h in [0.0, 1.0] {
             let rows = session_with(3, &[(Term::Named(saturation), &[0.33, h])]);
@@ -60,9 +61,9 @@ mod tests {
             };
             let (plain, noisy) = (fitted(0.5), fitted(6.0));
             assert_eq!(plain, [h == 0.0, h == 1.0], "h = {h}");
-            assert_eq!(noisy, [true, true], "h = {h}: nothing is excluded under much noise");
+            assert_eq!(noisy, [true, true], "h = {h}: strong noise excludes nothing");
         }
-        // A share of the range is a long way where the estimate is close to a bound.
+        // A share of the range is a large distance if the estimate is close to a bound.
         let drift = effect_named("wear_drift").unwrap();
         let rows = session_with(3, &[(Term::Named(drift), &[0.5, 0.12])]);
         let frame = Frame::new(&rows);

@@ -1,4 +1,5 @@
-//! Readings that stand out from their neighbours are weighed down, so that a slip of the cell decides nothing.
+//! Down-weighting of readings that differ from their neighbours, so that single errors have no
+//! influence.
 
 use pinswitch_friction::sort_by_number;
 
@@ -6,19 +7,20 @@ use super::observations::{MIN_WEIGHT, Observations};
 use crate::median::median;
 use crate::table::Point;
 
-/// Readings to both sides that a reading is compared with.
+/// Neighbours on either side with which a reading is compared.
 const NEIGHBOURS: usize = 3;
-/// Standard deviations from which a reading is weighed down.
+/// Standard deviations above which a reading is down-weighted.
 const STANDS_OUT: f64 = 3.2;
-/// Series of one condition below which nobody knows what they have in common.
+/// Fewest series of one condition to determine their common trend.
 const LEAST_SERIES: usize = 5;
 
 impl Observations {
-    /// Weighs rows down whose residual stands out from its neighbours in the same series and direction, and returns the standard
-    /// deviation of a reading about its neighbours, in newtons.
+    /// Down-weights rows whose residual differs from its neighbours in the same series and
+    /// direction. Returns the standard deviation of a reading about its neighbours, in newtons.
     ///
-    /// The neighbours' running median follows any smooth course, and what all series of a condition do at one repetition is none of
-    /// a single reading: neither is taken for outliers.
+    /// The running median of the neighbours follows any smooth trend, and the common deviation of
+    /// all series of a condition at one repetition is not that of a single reading: neither counts
+    /// as an outlier.
     pub fn weigh_outliers(&mut self, residual_n: &[f64]) -> f64 {
         let mut local = vec![0.0; residual_n.len()];
         for cell in &self.cells {
@@ -28,7 +30,8 @@ impl Observations {
                 local[*row] = residual_n[*row] - median(&mut near);
             }
         }
-        // The spread may grow with load: medians over quarters of the loads, the own row's zeros left out.
+        // The spread may increase with load: medians over quarters of the loads, without the zeros
+        // of the row itself.
         let spread = |local: &[f64], keep: &dyn Fn(f64) -> bool| {
             let mut size: Vec<f64> = local
                 .iter()
@@ -59,7 +62,8 @@ impl Observations {
     }
 }
 
-/// What the series of a condition have in common at one repetition of one direction: a line over the load, through medians.
+/// Returns the common trend of the series of a condition at one repetition of one direction: a line
+/// over the load, through medians.
 fn common_course(points: &[Point], local: &[f64]) -> Vec<f64> {
     let mut groups = std::collections::BTreeMap::<_, Vec<usize>>::new();
     for (row, p) in points.iter().enumerate() {
@@ -74,8 +78,9 @@ fn common_course(points: &[Point], local: &[f64]) -> Vec<f64> {
     common
 }
 
-/// Slope and value at zero of the line through `at`, for rows that rise in `x`: the median of the slopes between the lower and
-/// the upper half (H. Theil, Proc. Kon. Ned. Akad. v. Wetensch. A 53, 1950, the incomplete method), and the median of the rest.
+/// Returns slope and intercept of the line through `at`, for rows ascending in `x`: the median of
+/// the slopes between the lower and the upper half (H. Theil, Proc. Kon. Ned. Akad. v. Wetensch. A
+/// 53, 1950, the incomplete method), and the median of the residuals.
 fn robust_line(rows: &[usize], at: impl Fn(usize) -> (f64, f64)) -> (f64, f64) {
     let half = rows.len().div_ceil(2);
     let mut slopes: Vec<f64> = rows
@@ -108,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slip_is_weighed_down_and_what_every_series_does_there_is_not() {
+    fn only_single_errors_are_down_weighted() {
         let (_, slipped) = weights(|i, _| if i == 100 { 2.0 } else { 0.0 });
         assert!(slipped[100] < 0.01 && slipped.iter().filter(|w| **w < 0.5).count() <= 3);
         // A worn spot of the tendon: one repetition of every series, in proportion to the load.
@@ -123,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_found_beside_wild_values() {
+    fn lines_are_robust_against_outliers() {
         let y = |x: f64| if x == 3.0 || x == 8.0 { 100.0 } else { 1.0 + 0.5 * x };
         let (slope, at_zero) = robust_line(&(0..12).collect::<Vec<_>>(), |i| (i as f64, y(i as f64)));
         assert!((slope - 0.5).abs() < 1e-12 && (at_zero - 1.0).abs() < 1e-12, "{slope} {at_zero}");

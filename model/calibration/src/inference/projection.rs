@@ -1,4 +1,4 @@
-//! Projecting out columns: an orthonormal basis that grows column by column.
+//! Orthogonal projection: an orthonormal basis that grows column by column.
 
 use super::lanes::{LANES, Lanes};
 use super::weighed::Weighed;
@@ -10,7 +10,7 @@ pub(crate) struct Projection {
     basis: Vec<Vec<f64>>,
 }
 
-/// A column that keeps less than this share of its length adds no direction.
+/// Smallest share of its norm that a column must keep to add a direction.
 const INDEPENDENT: f64 = 1e-5;
 
 impl Projection {
@@ -18,7 +18,7 @@ impl Projection {
         Self { len, basis: Vec::new() }
     }
 
-    /// Of columns that are whitened first.
+    /// Returns the basis of columns that are whitened first.
     pub(crate) fn of_whitened(columns: &[Vec<f64>], len: usize, weighed: &Weighed<'_>) -> Self {
         let mut white = columns.to_vec();
         weighed.whiten_all(&mut white);
@@ -29,12 +29,12 @@ impl Projection {
         projection
     }
 
-    /// Length of the columns.
+    /// Returns the length of the columns.
     pub(crate) fn len(&self) -> usize {
         self.len
     }
 
-    /// Adds a column's new direction; returns whether it had one.
+    /// Adds the new direction of a column; returns whether it had one.
     pub(crate) fn absorb(&mut self, mut column: Vec<f64>) -> bool {
         debug_assert_eq!(column.len(), self.len);
         let before = dot(&column, &column).sqrt();
@@ -49,9 +49,9 @@ impl Projection {
         independent
     }
 
-    /// Removes from a column what the basis explains.
+    /// Subtracts the projection onto the basis from a column.
     pub(crate) fn remove(&self, column: &mut [f64]) {
-        // Four directions at a time: the column is read and written once for all of them.
+        // Four directions at a time, so that the column is read and written once for all of them.
         let mut groups = self.basis.chunks_exact(4);
         for group in &mut groups {
             let [a, b, c, d] = [0, 1, 2, 3].map(|i| &group[i][..column.len()]);
@@ -68,7 +68,7 @@ impl Projection {
         }
     }
 
-    /// Removes from several columns what the basis explains.
+    /// Subtracts the projections onto the basis from several columns.
     pub(crate) fn remove_lanes(&self, lanes: &mut Lanes) {
         let shares = self.shares(lanes);
         for (axis, shares) in self.basis.iter().zip(&shares) {
@@ -78,10 +78,10 @@ impl Projection {
         }
     }
 
-    /// What of several columns lies along each direction.
+    /// Returns the components of several columns along each direction.
     pub(crate) fn shares(&self, lanes: &Lanes) -> Vec<[f64; LANES]> {
         let mut shares = Vec::with_capacity(self.basis.len());
-        // Two directions at a time: as many sums as there are registers.
+        // Two directions at a time, as many sums as there are registers.
         let mut pairs = self.basis.chunks_exact(2);
         for pair in &mut pairs {
             let (mut first, mut second) = ([0.0; LANES], [0.0; LANES]);
@@ -97,19 +97,19 @@ impl Projection {
         shares
     }
 
-    /// The directions.
+    /// Returns the directions.
     pub(crate) fn basis(&self) -> &[Vec<f64>] {
         &self.basis
     }
 
-    /// Number of directions.
+    /// Returns the number of directions.
     #[cfg(test)]
     pub(crate) fn rank(&self) -> usize {
         self.basis.len()
     }
 }
 
-/// Inner products of four columns with one.
+/// Returns inner products of four columns with one.
 fn dots(axes: [&[f64]; 4], column: &[f64]) -> [f64; 4] {
     let mut sums = [[0.0; 4]; 4];
     let [a, b, c, d] = axes.map(|axis| axis.chunks_exact(4));
@@ -129,7 +129,7 @@ fn dots(axes: [&[f64]; 4], column: &[f64]) -> [f64; 4] {
     })
 }
 
-/// Inner product, in four sums that do not wait for each other.
+/// Returns the inner product, in four independent sums.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));

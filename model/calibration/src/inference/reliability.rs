@@ -1,4 +1,4 @@
-//! How well the noise itself is known, and with it each size.
+//! Uncertainty of the noise, and the resulting degrees of freedom of sizes.
 
 use std::sync::Arc;
 
@@ -11,36 +11,36 @@ use super::variance_components::{Block, blocks, directions, sizes};
 use super::walk::Wandering;
 use super::weighed::Weighed;
 
-/// How well the noise itself is known, to tell how many degrees of freedom stand behind a size
-/// (Satterthwaite's approximation).
+/// Uncertainty of the noise, for the degrees of freedom of a size (Satterthwaite's approximation).
 pub(crate) struct Reliability {
     means: Arc<CellMeans>,
     noise: Noise,
-    /// The model's own columns, whitened, by means.
+    /// The model's own columns, whitened, as means.
     own: Projection,
-    /// Inverse of the information on the variances that are not zero, with their places.
+    /// Inverse of the information on the nonzero variances, with their indices.
     covariance: DMatrix<f64>,
     places: Vec<usize>,
 }
 
-/// Factors by which the sizes of the noise's parts may be off, up or down, with 95 %; `None` for a part that is absent.
+/// Factors of the 95 % intervals of the components' sizes, to either side; `None` for an absent
+/// component.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NoiseFactors {
-    /// Of the offset of a series and direction.
+    /// Offset of a series and direction.
     pub cell: Option<f64>,
-    /// Of the offset of a series.
+    /// Offset of a series.
     pub common: Option<f64>,
-    /// Of the friction scale of a series.
+    /// Friction scale of a series.
     pub scale: Option<f64>,
-    /// Of the friction scale of a mount.
+    /// Friction scale of a mount.
     pub mount: Option<f64>,
 }
 
 impl Reliability {
-    /// How well the parts of the noise are known.
+    /// Returns the uncertainties of the components.
     pub(crate) fn factors(&self) -> NoiseFactors {
         let theta = sizes(self.noise);
-        // A standard deviation is a square root: half the relative error of the variance.
+        // A standard deviation has half the relative error of the variance.
         let of = |place: usize| {
             let at = self.places.iter().position(|p| *p == place)?;
             let relative = self.covariance[(at, at)].max(0.0).sqrt() / theta[place];
@@ -58,15 +58,15 @@ impl Reliability {
         }
     }
 
-    /// Of a noise, beside what the model's own columns take over.
+    /// Computes the uncertainty of a noise, with the model's own columns projected out.
     pub(crate) fn new(data: &Observations, noise: Noise, own: &[Vec<f64>]) -> Self {
         let means = Arc::new(data.cell_means(noise));
         let own = means.means_of(data, own);
         Self::of_means(means, data.mounts.len(), noise, &own)
     }
 
-    /// Degrees of freedom behind the size of each of the columns, beside what the others take over, where their
-    /// visible parts have these squared lengths.
+    /// Returns the degrees of freedom of the size of each column, with the other columns projected
+    /// out, whose projected parts have these squared norms.
     pub(crate) fn degrees_of_each(
         data: &Observations,
         noise: Noise,
@@ -86,7 +86,7 @@ impl Reliability {
             .collect()
     }
 
-    /// The same of columns that are means of series and directions already.
+    /// The same for columns of cell means.
     fn of_means(means: Arc<CellMeans>, mounts: usize, noise: Noise, own: &[Vec<f64>]) -> Self {
         let local = Noise {
             mount_scale: 0.0,
@@ -112,7 +112,8 @@ impl Reliability {
                 }
             }
         }
-        // The mounts' scatter is known by their number, less one for each friction coefficient.
+        // The mount effect has as many degrees of freedom as mounts, less one for each friction
+        // coefficient.
         let last = places.len();
         let mounts = (mounts as f64 - 2.0).max(1.0);
         information[(last, last)] =
@@ -126,12 +127,13 @@ impl Reliability {
         Self { means, noise, own, covariance, places }
     }
 
-    /// Degrees of freedom behind the size of a column in newtons, whose visible part has this squared length.
+    /// Returns the degrees of freedom of the size of a column in newtons, whose projected part has
+    /// this squared norm.
     pub(crate) fn degrees(&self, data: &Observations, column_n: &[f64], length2: f64) -> f64 {
         self.degrees_of_mean(self.means.mean_of(data, column_n), length2)
     }
 
-    /// The same of a column of means.
+    /// The same for a column of means.
     fn degrees_of_mean(&self, mut white: Vec<f64>, length2: f64) -> f64 {
         let means = &self.means.observations;
         let weighed = Weighed::new(means, self.noise);

@@ -1,4 +1,4 @@
-//! What is told of each effect of the vocabulary: the gain and the rivals of those that are named, and how the others score.
+//! Gains and rivals of the effects of a model, and scores of all others.
 
 use pinswitch_friction::sort_by_number;
 
@@ -12,7 +12,7 @@ use super::selection::{CandidateEffect, FoundEffect, Rival};
 use super::weighed::Weighed;
 use crate::effects::Effect;
 
-/// Gain and rivals of each named effect of a model.
+/// Returns gain and rivals of each effect of a model.
 pub(super) fn found_effects(augmented: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Vec<FoundEffect> {
     let mut found = Vec::new();
     for (index, term) in augmented.model.terms.iter().enumerate() {
@@ -28,7 +28,8 @@ pub(super) fn found_effects(augmented: &Fit, weighed: &Weighed<'_>, levels: Leve
     found
 }
 
-/// Effects fitted in place of one that gained `gain`: to the model `without` it, compared with the `cost` with it.
+/// Fits effects in place of one with a gain of `gain`: added to the model `without` it, and
+/// compared with the `cost` with it.
 fn rivals(
     effect: &'static dyn Effect,
     gain: f64,
@@ -57,7 +58,8 @@ fn rivals(
         .collect()
 }
 
-/// Strength at the size that is typical, whichever of several starts scored best: what a table can show is no matter of its noise.
+/// Returns the strength at the typical size, whichever start scored best, since identifiability
+/// must not depend on the noise realisation.
 fn at_typical_size(score: &EffectScore, fitted: &Fit) -> f64 {
     let typical = score.effect.starts(&fitted.model.frame).first().and_then(|start| start.first().copied());
     match typical {
@@ -68,7 +70,7 @@ fn at_typical_size(score: &EffectScore, fitted: &Fit) -> f64 {
     }
 }
 
-/// Every effect of the catalogue, by its score over the baseline.
+/// Returns every effect of the catalogue, by its score over the baseline.
 pub(super) fn candidates(
     scores: &[EffectScore],
     augmented: &Fit,

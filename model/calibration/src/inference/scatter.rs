@@ -1,4 +1,4 @@
-//! Scatter between few groups: mounts, wandering offsets, operators and sessions, specimens.
+//! Random effects of few groups: mounts, drifting offsets, operators and sessions, specimens.
 
 use super::noise::Noise;
 use super::observations::Observations;
@@ -7,37 +7,37 @@ use super::variance_components::{LEAST_SCALE, ROUNDS, indicator};
 use super::wandering::{walk_cost, wandering};
 use super::weighed::Weighed;
 
-/// Scatter of the friction from mount to mount in which a step of a twentieth of the friction, which is of consequence, can hide.
+/// Relative mount effect in which a relevant step of friction, 5 %, can hide.
 const HIDING_MOUNT_SCALE: f64 = 0.04;
-/// Largest scatter of the friction from mount to mount that is called scatter: beyond it, something is wrong.
+/// Largest relative mount effect that counts as scatter; a larger one indicates an error.
 const MOST_MOUNT_SCALE: f64 = 0.06;
 
 impl Noise {
-    /// Whether mounts scatter by so much that a step of friction of consequence between two of them, or what a layout has of its
-    /// own, may be in it.
+    /// Returns whether the mount effect is large enough to hide a relevant step of friction between
+    /// two mounts, or an effect of a layout.
     pub fn mounts_hide(self) -> bool {
         self.mount_scale >= HIDING_MOUNT_SCALE
     }
 }
 
-/// A scatter that competes with effects, since few groups tell it: its effects are alike to its own.
+/// A random effect that competes with effects, since its few groups determine it poorly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scatter {
-    /// The friction of each mount.
+    /// Friction of each mount.
     Mounts,
-    /// Offsets that wander from series to series.
+    /// Offsets that drift from series to series.
     Walk,
-    /// The reading of each operator and of each session, where the table names them.
+    /// Reading of each operator and of each session, if the table names them.
     Groups,
-    /// The friction of each specimen, where the table names them.
+    /// Friction of each specimen, if the table names them.
     Specimens,
 }
 
 impl Scatter {
-    /// Those that compete with effects. The others are known by the table's own labels.
+    /// Random effects that compete with effects. The others follow from labels of the table.
     pub(super) const ALL: [Scatter; 2] = [Scatter::Mounts, Scatter::Walk];
 
-    /// The noise with this scatter as it is in another one.
+    /// Returns the noise with this component taken from another one.
     pub(super) fn taken_from(self, other: Noise, noise: Noise) -> Noise {
         match self {
             Scatter::Mounts => Noise { mount_scale: other.mount_scale, ..noise },
@@ -47,13 +47,13 @@ impl Scatter {
         }
     }
 
-    /// The noise without this scatter.
+    /// Returns the noise without this component.
     pub(super) fn left_out(self, noise: Noise) -> Noise {
         self.taken_from(Noise::constant(0.0, 0.0), noise)
     }
 
-    /// The noise with this scatter as residuals in newtons show it beside what `own` columns can take over. Everything
-    /// else of the noise stays.
+    /// Returns the noise with this component estimated from residuals in newtons, with `own`
+    /// columns projected out. All other components are unchanged.
     pub(super) fn estimated(
         self,
         data: &Observations,
@@ -68,7 +68,7 @@ impl Scatter {
         self.in_noise(without, scatter_size(self, data, residual_n, own, without))
     }
 
-    /// Those but the walk have one size.
+    /// All components except the drift have one size.
     fn in_noise(self, noise: Noise, size: f64) -> Noise {
         match self {
             Scatter::Mounts => Noise { mount_scale: size, ..noise },
@@ -87,7 +87,7 @@ impl Scatter {
         }
     }
 
-    /// Groups without which nothing can be told of the scatter between them.
+    /// Returns the fewest groups for an estimate.
     fn least_groups(self) -> usize {
         match self {
             Scatter::Mounts => 3,
@@ -96,7 +96,7 @@ impl Scatter {
         }
     }
 
-    /// What a row of a group does when the group is off by one, in newtons.
+    /// Returns the change of a row in newtons per unit of a group's random effect.
     pub(super) fn direction_n(self, data: &Observations, row: usize) -> f64 {
         match self {
             Scatter::Mounts | Scatter::Specimens => data.friction_n[row],
@@ -104,7 +104,7 @@ impl Scatter {
         }
     }
 
-    /// Sizes: the least that changes a decision, one to start from, what is typical, the largest that is called scatter.
+    /// Returns characteristic sizes: smallest relevant, start value, typical, and largest.
     fn scale(self) -> [f64; 4] {
         match self {
             Scatter::Mounts => [LEAST_SCALE, 0.02, 0.045, MOST_MOUNT_SCALE],
@@ -114,19 +114,20 @@ impl Scatter {
         }
     }
 
-    /// The most probable size where so many groups have shown `size`, which alone is that of the largest likelihood: few groups
-    /// may have scattered by more than others will, and very large scatter is rare.
+    /// Returns the most probable size if this number of groups has the maximum-likelihood estimate
+    /// `size`: few groups may scatter more than others will, and large scatter is rare.
     pub(super) fn most_probable(self, size: f64, groups: usize) -> f64 {
-        // Zero of the slope over the variance v of `d ln v + d size^2 / v + v / typical^2`, which is twice the negative
-        // logarithm of the posterior density, with `d` degrees of freedom.
+        // Root of the derivative with respect to the variance v of `d ln v + d size^2 / v + v /
+        // typical^2`, which is twice the negative log posterior density, with `d` degrees of
+        // freedom.
         let degrees = groups.saturating_sub(1) as f64;
         let rare = self.scale()[2].powi(-2);
         let root = (degrees * degrees + 4.0 * rare * degrees * size * size).sqrt();
         ((root - degrees) / (2.0 * rare)).sqrt()
     }
 
-    /// Minus twice the logarithm of how probable this scatter is before any data, a half-normal law of its size, up to a
-    /// constant.
+    /// Returns minus twice the log prior density of this component, a half-normal distribution of
+    /// its size, up to a constant.
     pub(super) fn cost(self, noise: Noise, data: &Observations) -> f64 {
         let size = match self {
             Scatter::Mounts => noise.mount_scale,
@@ -138,7 +139,7 @@ impl Scatter {
     }
 }
 
-/// The size of a scatter by restricted maximum likelihood.
+/// Estimates the size of a component by restricted maximum likelihood.
 fn scatter_size(
     scatter: Scatter,
     data: &Observations,
@@ -192,7 +193,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn few_groups_that_scatter_widely_speak_for_less_and_many_for_what_they_show() {
+    fn few_groups_shrink_the_estimate() {
         let probable = |size: f64, groups| Scatter::Mounts.most_probable(size, groups);
         assert_eq!((probable(0.0, 7), probable(0.05, 1)), (0.0, 0.0));
         assert!((0.04..0.056).contains(&probable(0.06, 7)) && probable(0.06, 3) < probable(0.06, 7));

@@ -1,5 +1,5 @@
-//! Scores: how much each effect or structure that is not in a model would gain, by its sensitivity after the
-//! model's own constants have been refitted to first order.
+//! Score tests: gain of each effect or structure that is not in a model, from its sensitivity after
+//! the model's constants have been refitted to first order.
 
 use super::fit::{Fit, jacobian};
 use super::form_tolerance::{BEND, bent_copies};
@@ -12,13 +12,13 @@ use super::weighed::Weighed;
 use crate::effects::Effect;
 use crate::parallel::map_each;
 
-/// Share of its start size at which the trace of an effect of one's own is taken: what somebody gives as typical may be so large
-/// that its curvature looks like something that the model's constants cannot take over.
+/// Share of its start size for the trace of a user-defined effect, since the curvature at a large
+/// typical size may not be absorbed by the model's constants.
 const TANGENT: f64 = 1e-3;
-/// Share of the squares of a visible trace without which it is seen by priors, and not by data.
+/// Smallest share of a trace's squared norm that must come from data and not from priors.
 const SEEN_BY_DATA: f64 = 0.5;
 
-/// A fitted model with its whitened residual and the directions its constants can take.
+/// A fitted model with its whitened residual and the directions of its constants.
 pub(crate) struct Screen<'a> {
     pub(super) fitted: &'a Fit,
     pub(super) weighed: &'a Weighed<'a>,
@@ -28,38 +28,38 @@ pub(crate) struct Screen<'a> {
     bent_gain: f64,
 }
 
-/// Score of a named effect.
+/// Score of an effect.
 #[derive(Clone, Debug)]
 pub(crate) struct EffectScore {
     /// The effect.
     pub(crate) effect: &'static dyn Effect,
-    /// Constants to start its fit from.
+    /// Start values of its fit.
     pub(crate) start: Vec<f64>,
-    /// The first constant at which the trace was taken.
+    /// First constant for which the trace was computed.
     pub(crate) size: f64,
-    /// Share of that size which the residual asks for.
+    /// Estimated size as a share of it.
     pub(crate) share: f64,
-    /// Gain in whitened squares to first order.
+    /// Reduction of the deviance, to first order.
     pub(crate) gain: f64,
-    /// Share of the sensitivity's length that the model's own constants cannot take over.
+    /// Share of the sensitivity's norm that the model's constants cannot absorb.
     pub(crate) visible_share: f64,
-    /// Length of the visible sensitivity at the start's size, in standard deviations.
+    /// Norm of the projected sensitivity at the start's size, in standard deviations.
     pub(crate) strength: f64,
-    /// Contributions of the series to the score; their squared sum is the gain.
+    /// Contributions of the series to the score; the square of their sum is the gain.
     pub(crate) by_series: Vec<f64>,
-    /// The visible sensitivity itself.
+    /// The projected sensitivity.
     pub(crate) column: Vec<f64>,
-    /// The sensitivity in newtons, before anything is taken out of it.
+    /// The sensitivity in newtons, before projection.
     pub(crate) trace_n: Vec<f64>,
 }
 
 impl<'a> Screen<'a> {
-    /// Scores on top of a fit.
+    /// Prepares scores for extensions of a fit.
     pub(crate) fn new(fitted: &'a Fit, weighed: &'a Weighed<'a>) -> Self {
         Self::with_nuisances(fitted, weighed, |_| Vec::new())
     }
 
-    /// Scores on top of a fit whose named effects may bend their own forms.
+    /// Prepares scores for extensions of a fit whose effects may bend.
     pub(crate) fn guarded(fitted: &'a Fit, weighed: &'a Weighed<'a>) -> Self {
         Self::with_nuisances(fitted, weighed, |predicted| bent_copies(&fitted.model, weighed.data, predicted))
     }
@@ -99,13 +99,13 @@ impl<'a> Screen<'a> {
         self.weighed.data
     }
 
-    /// What the named effects would gain by bending their own forms, in whitened squares.
+    /// Returns the reduction of the deviance by bending the effects of the model.
     pub(crate) fn bent_gain(&self) -> f64 {
         self.bent_gain
     }
 
-    /// Whitens columns in newtons and removes what the model's constants can take over.
-    /// Returns each with the share of its length that is left.
+    /// Whitens columns in newtons and projects out the model's constants. Returns each with the
+    /// remaining share of its norm.
     pub(super) fn all_visible(&self, columns: impl IntoIterator<Item = Vec<f64>>) -> Vec<(Vec<f64>, f64)> {
         let mut columns = columns.into_iter();
         let mut visible = Vec::new();
@@ -128,7 +128,7 @@ impl<'a> Screen<'a> {
         }
     }
 
-    /// Scores of all effects that the model does not have, one per effect at its best shape.
+    /// Returns scores of all effects that are not in the model, each for its best shape.
     pub(crate) fn effects(&self) -> Vec<EffectScore> {
         let model = &self.fitted.model;
         let absent = |effect: &&'static dyn Effect| {
@@ -138,12 +138,13 @@ impl<'a> Screen<'a> {
         map_each(absent, |effect| self.effect(effect)).into_iter().flatten().collect()
     }
 
-    /// Score of one effect at its best shape.
+    /// Returns the score of one effect for its best shape.
     pub(crate) fn effect(&self, effect: &'static dyn Effect) -> Option<EffectScore> {
         self.best_of(effect, effect.starts(&self.fitted.model.frame))
     }
 
-    /// Score of one effect at this shape and no other: one question, where the best of several shapes is several.
+    /// Returns the score of one effect for a given shape: a single test, in contrast to the best of
+    /// several shapes.
     pub(crate) fn effect_at(&self, effect: &'static dyn Effect, start: Vec<f64>) -> Option<EffectScore> {
         self.best_of(effect, vec![start])
     }
@@ -167,7 +168,8 @@ impl<'a> Screen<'a> {
         let visible = self.all_visible(traces.iter().cloned());
         for ((start, trace_n), (column, visible_share)) in starts.into_iter().zip(traces).zip(visible) {
             let length2 = dot(&column, &column);
-            // What only the priors of the model's own constants see of it, no data can show.
+            // A part that only the priors of the model's constants determine is not identifiable
+            // from data.
             let by_data = dot(&column[..self.predicted.len()], &column[..self.predicted.len()]);
             let visible_share = match sizes {
                 Some(_) if by_data < SEEN_BY_DATA * length2 => 0.0,
@@ -209,14 +211,15 @@ impl<'a> Screen<'a> {
         best
     }
 
-    /// How many sizes an effect of one's own has; `None` of a built-in one.
+    /// Returns the number of sizes of a user-defined effect; `None` for a built-in one.
     fn sizes_of_ones_own(&self, effect: &'static dyn Effect) -> Option<usize> {
         let mut own = self.fitted.model.vocabulary.own().map(|own| own.definition());
         let own = own.find(|own| own.id == effect.id())?;
         Some(own.parameters.iter().filter(|p| p.bounds.is_none()).count())
     }
 
-    /// Gain of free offsets of each series, one per direction, for the series that are not excluded.
+    /// Returns the gain of free offsets of each series, one per direction, for series that are not
+    /// excluded.
     pub(crate) fn series_offsets(&self) -> Vec<(usize, f64)> {
         let data = self.data();
         let mut cells = vec![Vec::new(); data.series];
@@ -230,7 +233,7 @@ impl<'a> Screen<'a> {
             rows.iter().for_each(|r| column[*r] = 1.0);
             column
         };
-        // A few series at a time: a column takes as much room as the residual, and there are thousands of series.
+        // A few series at a time to limit memory, since there may be thousands.
         let mut gains = Vec::new();
         let numbered: Vec<(usize, Vec<&Vec<usize>>)> = cells.into_iter().enumerate().collect();
         for several in numbered.chunks(LANES) {
@@ -268,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn the_effect_that_is_there_scores_highest_and_starts_near_its_size() {
+    fn the_true_effect_scores_highest() {
         let offset = effect_named("load_cell_offset").unwrap();
         let (model, data) = observed(&session_with(1, &[(Term::Named(offset), &[0.5])]));
         let weighed = &Weighed::new(&data, Noise::constant(NOISE_N, 0.01));
@@ -278,24 +281,25 @@ mod tests {
         assert_eq!(best.effect.id(), "load_cell_offset");
         assert!((best.start[0] - 0.5).abs() < 0.05, "{:?}", best.start);
         let squares: f64 = best.by_series.iter().sum();
-        assert!((squares.powi(2) / best.gain - 1.0).abs() < 0.05, "the series carry the score together");
+        assert!((squares.powi(2) / best.gain - 1.0).abs() < 0.05, "the series add up to the score");
     }
 
     #[test]
-    fn a_trace_without_variation_is_invisible_and_a_fixed_one_is_not_scaled() {
+    fn constant_traces_are_not_identifiable() {
         let (model, data) = observed(&session(2));
         let weighed = &Weighed::new(&data, Noise::constant(NOISE_N, 0.01));
         let fitted = fit(&model, weighed);
         let scores = Screen::new(&fitted, weighed).effects();
         let dwell = score(scores.clone(), "dwell_relaxation");
         assert!(dwell.strength < 1e-6 && dwell.gain == 0.0, "{dwell:?}");
-        // A hook that nobody left out fits worse than none: its size is not free, so the gain is negative.
+        // A hook that is not missing increases the deviance: its size is not free, so the gain is
+        // negative.
         let hook = score(scores, "hook_omitted");
         assert!(hook.gain < -100.0 && hook.start.is_empty(), "{}", hook.gain);
     }
 
     #[test]
-    fn what_is_in_the_model_is_scored_no_more_and_may_bend_under_guard() {
+    fn effects_of_the_model_may_bend() {
         let offset = effect_named("load_cell_offset").unwrap();
         let rows = session_with(3, &[(Term::Named(offset), &[0.5])]);
         let (model, data) = observed(&rows);
@@ -307,6 +311,6 @@ mod tests {
         let guarded = Screen::guarded(&with, weighed);
         assert!(guarded.bent_gain() >= open.bent_gain());
         let gain = |screen: &Screen<'_>| score(screen.effects(), "load_cell_gain").gain;
-        assert!(gain(&guarded) <= gain(&open) + 1e-6, "a guard never adds to what is left to explain");
+        assert!(gain(&guarded) <= gain(&open) + 1e-6, "bending never adds to the residual");
     }
 }

@@ -1,4 +1,4 @@
-//! The search among named effects: forward, backward and exchange steps.
+//! Stepwise search among effects: forward, backward and exchange steps.
 
 use pinswitch_friction::sort_by_number;
 
@@ -13,29 +13,29 @@ use super::weighed::Weighed;
 use crate::effects::Effect;
 use crate::parallel::map_each;
 
-/// How many candidates of a scan are fitted in full.
+/// Number of candidates of a scan that are fitted.
 const FITTED: usize = 6;
-/// Gain to first order, as a share of the largest, from which a candidate is fitted in full. In 651 scans of 36 tables the one
-/// that fitted best had never less than 0.9.
+/// Gain to first order, as a share of the largest, above which a candidate is fitted. In 651 scans
+/// of 36 tables the best fit always had a share of at least 0.9.
 const WORTH_A_FIT: f64 = 0.4;
-/// Share of its length that a trace must keep after the refit to be called visible.
+/// Smallest share of its norm that an identifiable trace keeps after the refit.
 pub(crate) const VISIBLE_SHARE: f64 = 2e-3;
 
-/// Whether the effect just added, the last term, has a size that its physics allows.
+/// Returns whether the effect of the last term has a possible size.
 pub(super) fn possible(effect: &dyn Effect, fitted: &Fit) -> bool {
     let last = fitted.model.terms.len().saturating_sub(1);
     let size = fitted.model.values().get(fitted.model.term_offset(last)).copied();
-    // A formula of one's own may have left the numbers on the way.
+    // A fit of a user-defined formula may have diverged.
     fitted.cost.is_finite() && (!effect.description().one_sided || size.is_some_and(|s| s > 0.0))
 }
 
-/// A model with one effect more.
+/// A model with one more effect.
 struct Extension {
     score: EffectScore,
     fitted: Fit,
 }
 
-/// Full fits of the most promising absent effects among those scored, best cost first.
+/// Returns fits of the most promising absent effects among those scored, best cost first.
 fn extensions(
     mut scores: Vec<EffectScore>,
     from: &Fit,
@@ -46,7 +46,7 @@ fn extensions(
 ) -> Vec<Extension> {
     scores.retain(|s| s.gain > least);
     if !from.model.named_effects().is_empty() && scores.iter().any(|s| s.gain <= beyond_form) {
-        // What the names so far would explain by bending their own forms is not worth another name.
+        // The part that bent effects of the model explain does not count for another effect.
         let guarded = Screen::guarded(from, weighed);
         scores.retain(|s| s.gain > beyond_form || guarded.effect(s.effect).is_some_and(|g| g.gain > least));
     }
@@ -64,8 +64,8 @@ fn extensions(
     fits
 }
 
-/// Whether a gain is more than chance makes of the vocabulary, given how well the noise is known where the effect's trace
-/// lies: a layout is known by few mounts, a repetition by thousands.
+/// Returns whether a gain is not explained by chance over the vocabulary, given the uncertainty of
+/// the noise along the effect's trace: a layout has few mounts, a repetition thousands of readings.
 fn is_beyond_chance(
     score: &EffectScore,
     gain: f64,
@@ -81,15 +81,15 @@ fn is_beyond_chance(
     family_p_value(gain, from.model.vocabulary.tries(), degrees) <= levels.first_p
 }
 
-/// Adds named effects while each gains enough, then drops and exchanges.
+/// Adds effects while each gains enough, then drops and exchanges.
 pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit {
     let mut current = start.clone();
     let degrees = degrees_of_freedom(weighed.data, start.model.coordinates.len());
     let first = gain_at(levels.first_p, start.model.vocabulary.tries(), degrees);
     let scores = Screen::new(start, weighed).effects();
     let strongest = scores.iter().map(|s| s.gain).fold(0.0, f64::max);
-    // A weak candidate that a few series carry alone is no effect, whatever the noise model says. With few series
-    // flips cannot tell, and the noise model decides.
+    // A weak candidate that depends on a few series is not an effect, whatever the noise model.
+    // With few series, sign flips are not conclusive, and the noise model decides.
     if strongest < 3.0 * first && weighed.data.series >= 12 && flips(&scores) > levels.flips {
         return current;
     }
@@ -102,7 +102,7 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
         } else {
             first.max(levels.further).max(levels.further_share * gained)
         };
-        // To first order alone: an effect that is not linear may gain more once fitted.
+        // To first order only, since a nonlinear effect may gain more once fitted.
         let screened = if current.model.named_effects().is_empty() { 0.3 } else { 0.8 } * least;
         let Some(best) =
             extensions(scores, &current, weighed, screened, levels.beyond_bending(gained), FITTED)
@@ -122,8 +122,8 @@ pub(super) fn search(start: &Fit, weighed: &Weighed<'_>, levels: Levels) -> Fit 
     current
 }
 
-/// What the named effects whose forms may bend have gained over a start, in whitened squares: what is left of them may
-/// be their own. A constant force leaves nothing, however large it is.
+/// Returns the reduction of the deviance by the effects with approximate formulas, whose residuals
+/// may be their own. A constant force leaves none, however large it is.
 pub(super) fn bendable_gain(start: &Fit, found: &Fit, weighed: &Weighed<'_>) -> f64 {
     let rigid: Vec<_> = found.model.named_effects().into_iter().filter(|e| !e.description().bends).collect();
     if rigid.is_empty() || found.model.named_effects().is_empty() {
@@ -141,14 +141,14 @@ pub(super) fn bendable_gain(start: &Fit, found: &Fit, weighed: &Weighed<'_>) -> 
     (fit(&without, weighed).cost - found.cost).max(0.0)
 }
 
-/// Probability of the scores by flipped signs.
+/// Returns the probability of the scores by sign flips.
 pub(super) fn flips(scores: &[EffectScore]) -> f64 {
     let contributions: Vec<&[f64]> =
         scores.iter().filter(|s| s.visible_share > VISIBLE_SHARE).map(|s| s.by_series.as_slice()).collect();
     family_probability(&contributions)
 }
 
-/// Drops named effects that the others have made superfluous, down to `keep` of them.
+/// Drops effects that the others have made superfluous, down to `keep` of them.
 pub(super) fn prune(mut current: Fit, weighed: &Weighed<'_>, least: f64, keep: usize) -> Fit {
     while current.model.named_effects().len() > keep {
         let named =
@@ -164,7 +164,7 @@ pub(super) fn prune(mut current: Fit, weighed: &Weighed<'_>, least: f64, keep: u
     current
 }
 
-/// Replaces a named effect by another one that fits better in its place.
+/// Replaces an effect by another one that fits better in its place.
 fn exchange(mut current: Fit, weighed: &Weighed<'_>, beyond_form: f64) -> Fit {
     if current.model.named_effects().len() < 2 {
         return current;

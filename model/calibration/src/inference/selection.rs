@@ -1,4 +1,4 @@
-//! Which effects a table shows, their rivals, and what no name explains.
+//! Selection of the effects of a table, their rivals, and unattributed structure.
 
 use super::against_scatter::against_scatter;
 use super::baseline::{explainable, fit_baseline};
@@ -19,32 +19,32 @@ use super::variance_components::estimate;
 use super::weighed::Weighed;
 use crate::effects::{Effect, Vocabulary};
 
-/// An effect that explains what a named one explains as well.
+/// An effect that explains the data as well as one of the model.
 #[derive(Clone, Debug)]
 pub struct Rival {
     /// The rival.
     pub effect: &'static dyn Effect,
-    /// How much worse it fits in its place, in whitened squares.
+    /// Increase of the deviance in its place.
     pub worse_by: f64,
     /// Cosine between the two sensitivities after the refit.
     pub cosine: f64,
 }
 
-/// A named effect of the augmented model.
+/// An effect of the augmented model.
 #[derive(Clone, Debug)]
 pub struct FoundEffect {
     /// The effect.
     pub effect: &'static dyn Effect,
     /// Index of its term in the augmented model.
     pub term: usize,
-    /// What it gains given all others, in whitened squares.
+    /// Reduction of the deviance given all other terms.
     pub gain: f64,
     /// Effects that explain as much in its place, the strongest first.
     pub rivals: Vec<Rival>,
 }
 
 impl FoundEffect {
-    /// Ids of the effect and its rivals, sorted.
+    /// Returns the ids of the effect and its rivals, sorted.
     pub fn ids(&self) -> Vec<&'static str> {
         let mut ids: Vec<_> =
             std::iter::once(self.effect.id()).chain(self.rivals.iter().map(|r| r.effect.id())).collect();
@@ -53,76 +53,76 @@ impl FoundEffect {
     }
 }
 
-/// An effect of the catalogue before the decision.
+/// An effect of the catalogue as a candidate.
 #[derive(Clone, Debug)]
 pub struct CandidateEffect {
     /// The effect.
     pub effect: &'static dyn Effect,
-    /// What it alone would gain over the baseline to first order, in whitened squares.
+    /// Reduction of the deviance over the baseline if added alone, to first order.
     pub gain: f64,
-    /// What it would still gain on top of what was found; `None` for what is in the model.
+    /// Reduction of the deviance on top of the final model; `None` for effects of the model.
     pub gain_left: Option<f64>,
-    /// Share of its trace that the refitted baseline cannot take over, 0..1.
+    /// Share of its trace that the refitted baseline cannot absorb, 0..1.
     pub visible_share: f64,
-    /// Length of its visible trace at a typical size, in standard deviations.
+    /// Norm of its projected trace at a typical size, in standard deviations.
     pub strength: f64,
 }
 
 impl CandidateEffect {
-    /// Strength, in standard deviations at a typical size, below which an effect counts as invisible.
+    /// Strength in standard deviations at a typical size below which an effect is not identifiable.
     pub const MIN_STRENGTH: f64 = 4.0;
 
-    /// Whether the data cannot show it, at a typical size.
+    /// Returns whether it is not identifiable at a typical size.
     pub fn is_invisible(&self) -> bool {
         self.is_taken_over() || self.strength < Self::MIN_STRENGTH
     }
 
-    /// Whether the refitted baseline takes its trace over.
+    /// Returns whether the refitted baseline absorbs its trace.
     pub fn is_taken_over(&self) -> bool {
         self.visible_share < VISIBLE_SHARE
     }
 }
 
-/// What was found.
+/// Result of the search.
 #[derive(Clone, Debug)]
 pub struct Selection {
-    /// The paper's model, refitted.
+    /// The refitted model of the paper.
     pub baseline: Fit,
-    /// With all that was found.
+    /// The model with all terms.
     pub augmented: Fit,
-    /// The named effects found, in the order of the model's terms.
+    /// Effects of the model, in the order of its terms.
     pub effects: Vec<FoundEffect>,
-    /// Where structure without a name lies, if any was found.
+    /// Unattributed structure, if there is any.
     pub structure: Option<FoundStructure>,
-    /// Every effect of the catalogue, the one with the largest gain first.
+    /// All effects of the catalogue, by descending gain.
     pub candidates: Vec<CandidateEffect>,
-    /// Sizes that the data do not exclude, of visible effects that were not found.
+    /// Sizes that the data do not exclude, of identifiable effects that are not in the model.
     pub limits: Vec<SizeLimit>,
-    /// The same of effects that are too weak to be seen at a typical size.
+    /// The same for effects that are not identifiable at a typical size.
     pub hidden_limits: Vec<SizeLimit>,
-    /// Visible effects that this design cannot tell apart.
+    /// Classes of identifiable effects that this design cannot separate.
     pub classes: Vec<Vec<&'static str>>,
-    /// Probability, by flipped signs of whole series, of the largest candidate without any effect.
+    /// Probability of the largest gain without any effect, by sign flips of whole series.
     pub family_probability: f64,
-    /// Gain of the best structure without a name on top of what was found, in whitened squares.
+    /// Reduction of the deviance by the best structure in addition to the model.
     pub structure_gain: f64,
-    /// Structures that were tried.
+    /// Number of structures tried.
     pub structures_tried: usize,
     /// The noise.
     pub noise: Noise,
-    /// How well its parts are known.
+    /// Uncertainty of its components.
     pub noise_factors: NoiseFactors,
 }
 
 impl Selection {
-    /// The same table with nothing believed: what was found did not help on data that had no part in it.
+    /// Reverts to the baseline, because the terms did not reduce the error on held-out data.
     #[must_use]
     pub fn without_findings(self, data: &Observations, levels: Levels) -> Self {
         let baseline = self.baseline.clone();
         self.with_names(baseline, data, levels)
     }
 
-    /// The same table with the names of a fit believed, and no structure without one.
+    /// Returns the selection with the effects of a fit, and without structure.
     #[must_use]
     pub(crate) fn with_names(self, named: Fit, data: &Observations, levels: Levels) -> Self {
         let bare = Explanation {
@@ -138,7 +138,7 @@ impl Selection {
         finish(bare, data, levels)
     }
 
-    /// The same table, told beside the effects of another vocabulary, which holds all that was found.
+    /// Returns the selection for another vocabulary that contains all its effects.
     #[must_use]
     pub(crate) fn told_among(self, vocabulary: &Vocabulary, data: &Observations, levels: Levels) -> Self {
         if *vocabulary == self.augmented.model.vocabulary {
@@ -159,7 +159,8 @@ impl Selection {
         finish(same, data, levels)
     }
 
-    /// Effects that this data cannot show, in the order in which they act.
+    /// Returns the effects that are not identifiable with this table, in the order in which they
+    /// act.
     pub fn invisible(&self) -> impl Iterator<Item = &CandidateEffect> {
         let vocabulary = &self.baseline.model.vocabulary;
         vocabulary
@@ -170,15 +171,15 @@ impl Selection {
     }
 }
 
-/// Runs the whole search on a table. A series that is wrong as a whole is excluded, and the search begins
-/// again.
+/// Runs the whole search on a table. A series with a gross error is excluded, and the search is
+/// repeated.
 pub fn select(start: &Model, data: &mut Observations, levels: Levels) -> Selection {
     let chosen = choose(start, data, levels);
     finish(chosen, data, levels)
 }
 
-/// The model that the whole search ends with, its noise, and where it has structure without a name; without what is told
-/// about it.
+/// Returns the model of the search, its noise, and its structure, without the rest of the
+/// selection.
 pub(crate) fn selected_model(
     start: &Model,
     data: &mut Observations,
@@ -189,13 +190,13 @@ pub(crate) fn selected_model(
     (without_uncertain_names(chosen.augmented, &weighed).model, chosen.noise, chosen.structure)
 }
 
-/// The explanation of a table with the constants that its model has.
+/// Returns the explanation of a table with the constants of its model.
 pub(super) fn explained(start: &Model, data: &mut Observations, levels: Levels) -> Explanation {
     let guess = Noise::constant(0.1, 0.03);
     let rough = fit(start, &Weighed::new(data, guess));
     let sd = data.weigh_outliers(&rough.residual_n);
     let guess = Noise::constant(sd, sd);
-    // The first fit has seen readings that are absurd; what friction does is told by the next one.
+    // The first fit includes absurd readings; the next one determines the friction.
     let rough = fit_baseline(&rough.model, &Weighed::new(data, guess));
     data.friction_n = rough.model.friction_n(&data.points);
     let mut is_known = false;
@@ -207,7 +208,7 @@ pub(super) fn explained(start: &Model, data: &mut Observations, levels: Levels) 
             data.exclude(series);
             continue;
         }
-        // A drag that the baseline took for friction does not scale when the tendon is seated anew.
+        // A drag that the baseline absorbed in friction does not scale with the tendon seating.
         let friction_n = free.augmented.model.friction_n(&data.points);
         if !is_known && departs(&friction_n, &data.friction_n) {
             data.friction_n = friction_n;
@@ -218,7 +219,8 @@ pub(super) fn explained(start: &Model, data: &mut Observations, levels: Levels) 
     }
 }
 
-/// Difference of two traces of friction, as a share of their length, from which scatter of friction is another one.
+/// Difference of two traces of friction, as a share of their norm, above which their scatter
+/// differs.
 const ANOTHER_FRICTION: f64 = 0.1;
 
 fn departs(now: &[f64], before: &[f64]) -> bool {
@@ -230,8 +232,8 @@ fn departs(now: &[f64], before: &[f64]) -> bool {
     apart > ANOTHER_FRICTION.powi(2) * length
 }
 
-/// A model without the names whose sizes may as well be zero, or are such as their physics does not allow: shapes that came
-/// after a name may have turned it round.
+/// Removes effects whose sizes are compatible with zero or have an impossible sign, since shapes
+/// added later may have reversed them.
 fn without_uncertain_names(mut current: Fit, weighed: &Weighed<'_>) -> Fit {
     while let Some(index) = uncertain_name(&current, weighed) {
         current = as_claimed(&current, index, weighed)
@@ -240,7 +242,7 @@ fn without_uncertain_names(mut current: Fit, weighed: &Weighed<'_>) -> Fit {
     current
 }
 
-/// Index of a named term whose size may as well be zero, or has a sign that it cannot have.
+/// Returns the index of an effect whose size is compatible with zero or has an impossible sign.
 fn uncertain_name(fitted: &Fit, weighed: &Weighed<'_>) -> Option<usize> {
     let (values, widths) = (fitted.model.values(), interval_half_widths(fitted, weighed));
     (0..fitted.model.terms.len()).find(|index| {
@@ -252,12 +254,13 @@ fn uncertain_name(fitted: &Fit, weighed: &Weighed<'_>) -> Option<usize> {
     })
 }
 
-/// Squares of the noise, and share of what a claim explains, by which it may fit worse than the same effect with free shapes.
+/// Increase of the deviance, absolute and as a share of the gain, by which a hypothesis may be
+/// worse than the same effect with free shapes.
 const AS_CLAIMED: (f64, f64) = (9.0, 0.1);
 
-/// The same with an effect of one's own whose shapes are held as claimed: where a bump lies between two readings no table
-/// tells, and how high it is depends on that; that it is there may be certain all the same. `None` if the claim does not
-/// explain it.
+/// Fixes the shapes of a user-defined effect at their start values: a table may not locate a bump
+/// between two readings, on which its height depends, although its presence is certain. `None` if
+/// the hypothesis does not explain the effect.
 fn as_claimed(fitted: &Fit, index: usize, weighed: &Weighed<'_>) -> Option<Fit> {
     let Term::Named(effect) = &fitted.model.terms[index] else { return None };
     let model = &fitted.model;
@@ -282,7 +285,7 @@ fn as_claimed(fitted: &Fit, index: usize, weighed: &Weighed<'_>) -> Option<Fit> 
     (is_as_good && size.abs() > half).then_some(held)
 }
 
-/// Everything that is told about the explanation chosen.
+/// Completes the selection for the chosen explanation.
 fn finish(mut chosen: Explanation, data: &Observations, levels: Levels) -> Selection {
     let weighed = Weighed::new(data, chosen.noise);
     chosen.augmented = without_uncertain_names(chosen.augmented, &weighed);
@@ -328,19 +331,19 @@ mod tests {
     }
 
     #[test]
-    fn a_session_without_effect_has_every_candidate_and_names_none() {
+    fn a_session_without_effects_shows_none() {
         let (found, data) = selected(&session(3));
         assert!(found.effects.is_empty() && found.structure.is_none(), "{:?}", found.effects);
         assert_eq!(data.excluded_series(), 0);
         assert_eq!(found.candidates.len(), CATALOGUE.len());
         assert!(found.candidates.windows(2).all(|w| w[0].gain >= w[1].gain));
-        // One dwell: the trace of an effect of the dwell has no length at all.
+        // There is one dwell, so the trace of an effect of the dwell is zero.
         let invisible: Vec<_> = found.invisible().map(|c| c.effect.id()).collect();
         assert!(invisible.contains(&"dwell_relaxation") && !invisible.contains(&"load_cell_offset"));
     }
 
     #[test]
-    fn an_effect_is_named_with_its_size_and_its_gain() {
+    fn an_effect_has_size_and_gain() {
         let ploughing = effect_named("coating_ploughing").unwrap();
         let (found, _) = selected(&session_with(4, &[(Term::Named(ploughing), &[0.024])]));
         let [effect] = found.effects.as_slice() else { panic!("{:?}", found.effects) };
@@ -352,11 +355,11 @@ mod tests {
         let kappa = *found.augmented.model.values().last().unwrap();
         assert!((kappa / 0.024 - 1.0).abs() < 0.05, "{kappa}");
         assert_eq!(found.candidates[0].effect.id(), "coating_ploughing");
-        assert_eq!(found.candidates[0].gain_left, None, "what is in the model has nothing left to gain");
+        assert_eq!(found.candidates[0].gain_left, None, "an effect of the model cannot gain further");
     }
 
-    /// Pins alone in one direction: the friction exponent is one constant, so that an offset of the cell and a hook
-    /// left out shift all readings alike. Whichever is named has the other as its rival.
+    /// Pins alone in one direction: the friction exponent is one constant, so that an offset of the
+    /// load cell and a missing hook change all readings alike. Each is a rival of the other.
     #[test]
     fn effects_that_look_alike_are_rivals() {
         let offset = effect_named("load_cell_offset").unwrap();
@@ -378,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn a_series_that_is_wrong_as_a_whole_is_excluded() {
+    fn series_with_gross_errors_are_excluded() {
         let mut rows = session(6);
         let bad = rows[200].series.clone();
         rows.iter_mut().filter(|r| r.series == bad).for_each(|r| r.force_n += 2.0);

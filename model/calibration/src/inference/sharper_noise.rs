@@ -1,4 +1,4 @@
-//! Noise that is smaller than it looked, beside a name or a shape that passed for scatter as long as it was not in the model.
+//! Revised noise: an effect or a shape that is not in the model yet inflates the estimated noise.
 
 use pinswitch_friction::sort_by_number;
 
@@ -17,22 +17,22 @@ use super::variance_components::{estimate, shared_again};
 use super::weighed::Weighed;
 use crate::parallel::map_each;
 
-/// Gain, in whitened squares, below which a shape is not worth a look.
+/// Reduction of the deviance below which a shape is not considered.
 const MIN_SHAPE_GAIN: f64 = 9.0;
-/// The same of a name, of which there are few.
+/// The same for an effect, since effects are few.
 const MIN_NAME_GAIN: f64 = 4.0;
-/// Names that are looked at.
+/// Number of effects considered.
 const NAMES: usize = 8;
 
-/// Evidence that a shape must gain beside the choice among all shapes before it changes the noise.
+/// Evidence that a shape must gain in addition to the choice among all shapes to change the noise.
 const MIN_EVIDENCE: f64 = 6.0;
 
-/// Gain of a shape, in whitened squares, from which it is no chance: the best of many shapes makes the noise of a small table look
-/// smaller than it is.
+/// Reduction of the deviance by a shape that is not explained by chance: the best of many shapes
+/// makes the noise of a small table look smaller than it is.
 const CERTAIN_GAIN: f64 = 100.0;
 
-/// The noise beside the best shape of each covariate, if one of them makes the table more probable than the noise does
-/// without it; and the scores of all shapes.
+/// Returns the noise with the best shape of each covariate, if one of them makes the table more
+/// probable than the noise without it, and the scores of all shapes.
 pub(super) fn sharper_noise(
     found: &Fit,
     data: &Observations,
@@ -70,8 +70,9 @@ pub(super) fn sharper_noise(
     (best.1, shapes)
 }
 
-/// The noise beside the best single name, if that makes the table more probable than the noise does without it: for tables so
-/// small that what names explain is not taken out before the noise is estimated.
+/// Returns the noise with the best single effect, if it makes the table more probable than the
+/// noise without it: for tables that are too small to project out the effects before the noise is
+/// estimated.
 pub(super) fn noise_beside_a_name(found: &Fit, data: &Observations, noise: Noise) -> Option<Noise> {
     let weighed = Weighed::new(data, noise);
     let mut scores = Screen::new(found, &weighed).effects();
@@ -90,7 +91,8 @@ pub(super) fn noise_beside_a_name(found: &Fit, data: &Observations, noise: Noise
     better.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, sharper)| sharper)
 }
 
-/// The evidence of a model, and the noise beside `columns` that it explains; its `own` terms gained so much.
+/// Returns the evidence of a model, and the noise with its `columns` projected out; its `own` terms
+/// have this gain.
 fn beside(
     with: &Fit,
     own: &[Term],
@@ -99,7 +101,7 @@ fn beside(
     data: &Observations,
     noise: Noise,
 ) -> (f64, Noise) {
-    // What moves along a series was read as noise of its repetitions, too.
+    // An effect that varies within series was part of the estimated repetition noise, too.
     let sharper = if gain > CERTAIN_GAIN && own.iter().any(Term::moves_along_a_series) {
         let found = estimate(data, &with.residual_n, columns, noise);
         Scatter::ALL.iter().fold(found, |found, scatter| scatter.taken_from(noise, found))

@@ -1,18 +1,20 @@
-//! A test over the whole vocabulary that needs no noise model: signs of whole series flipped, largest score taken.
+//! Test over the whole vocabulary that needs no noise model: signs of whole series are flipped, and
+//! the largest score is taken.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::lanes::LANES;
 
-/// Draws; the smallest probability is one over their number.
+/// Number of draws; the smallest probability is its inverse.
 const DRAWS: usize = 999;
-/// Seed of the draws: the same table has the same probability.
+/// Seed of the draws, so that the same table gives the same probability.
 const SEED: u64 = 0x5EED;
 
-/// Probability that the largest score arises without any effect. `contributions` has, for each candidate, what each
-/// series adds to its score; under the null a series may as well have the opposite sign (Westfall and Young's
-/// largest score with Hemerik, Goeman and Finos' flipped scores), whatever the noise inside it.
+/// Returns the probability that the largest score arises without any effect. `contributions`
+/// contains, for each candidate, the contribution of each series to its score. Under the null
+/// hypothesis a series may have the opposite sign (Westfall and Young's largest score with the
+/// flipped scores of Hemerik, Goeman and Finos), whatever the noise within it.
 pub(crate) fn family_probability(contributions: &[&[f64]]) -> f64 {
     let scaled: Vec<Vec<f64>> = contributions
         .iter()
@@ -38,7 +40,7 @@ pub(crate) fn family_probability(contributions: &[&[f64]]) -> f64 {
     f64::from(as_large + 1) / (DRAWS + 1) as f64
 }
 
-/// The largest score of several draws of signs.
+/// Returns the largest score of several draws of signs.
 fn largest(scaled: &[Vec<f64>], signs: &[[f64; LANES]]) -> [f64; LANES] {
     let mut largest = [0.0f64; LANES];
     for contributions in scaled {
@@ -56,12 +58,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn agreement_of_the_series_is_told_from_chance() {
+    fn agreement_of_series_is_significant() {
         let agree = vec![1.0; 40];
         let mixed: Vec<f64> = (0..40).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
         assert!(family_probability(&[&agree, &mixed]) < 0.01);
         assert!(family_probability(&[&mixed]) > 0.5);
-        // A single series cannot decide.
+        // A single series is not conclusive.
         let mut alone = vec![0.0; 40];
         alone[3] = 5.0;
         assert!(family_probability(&[&alone]) > 0.5);

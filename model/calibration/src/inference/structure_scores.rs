@@ -1,5 +1,5 @@
-//! Scores of structures without a name: every shape of the catalogue on every channel, by what the model's own constants
-//! leave of it.
+//! Scores of structures: every shape of the catalogue on every channel, with the model's constants
+//! projected out.
 
 use pinswitch_friction::sort_by_number;
 
@@ -11,33 +11,35 @@ use super::structures::{ALL, Group};
 use crate::effects::{Channel, Covariate, Shape, Structure};
 use crate::parallel::map_each;
 
-/// What a wave's gain is reduced by, in whitened squares.
+/// Penalty on the gain of a wave.
 const WAVE_PENALTY: f64 = 15.0;
 
-/// What a stretch of time's gain is reduced by: both its ends are free.
+/// Penalty on the gain of an interval of time, whose ends are free.
 const WINDOW_PENALTY: f64 = 8.0;
 
-/// Share of a column's length that the model's own constants must leave of it.
+/// Smallest share of a column's norm that must remain after projection.
 const LEAST_VISIBLE: f64 = 0.02;
 
-/// Places where a stretch of time may begin or end.
+/// Number of times at which an interval may begin or end.
 const WINDOW_ENDS: usize = 80;
 
 /// Score of a structure.
 #[derive(Clone, Debug)]
 pub(crate) struct StructureScore {
-    /// Shapes that go together (a wave is a sine and a cosine).
+    /// Shapes that belong together, as the sine and cosine of a wave.
     pub(crate) group: Group,
-    /// Sizes to first order.
+    /// Sizes, to first order.
     pub(crate) sizes: Vec<f64>,
-    /// Gain in whitened squares to first order, less the penalty.
+    /// Reduction of the deviance to first order, less the penalty.
     pub(crate) gain: f64,
-    /// Contributions of the series to the score of the group's best direction; their squared sum is the gain.
+    /// Contributions of the series to the score in the group's best direction; the square of their
+    /// sum is the gain.
     pub(crate) by_series: Vec<f64>,
 }
 
 impl StructureScore {
-    /// What its gain is reduced by: a wave pays for two sizes and a free frequency, a stretch of time for its ends.
+    /// Returns the penalty on its gain: for two sizes and a free frequency of a wave, for the ends
+    /// of an interval of time.
     pub(super) fn penalty(&self) -> f64 {
         match self.group.as_slice() {
             [Structure { form: Shape::TimeWindow { .. }, .. }] => WINDOW_PENALTY,
@@ -47,12 +49,12 @@ impl StructureScore {
     }
 }
 
-/// Inner products of one or two visible columns with each other and with the residual.
+/// Inner products of one or two projected columns with each other and with the residual.
 #[derive(Clone, Copy, Debug)]
 struct Products {
-    /// Squared length of the first column, and its score.
+    /// Squared norm of the first column, and its score.
     first: (f64, f64),
-    /// The product of both, the squared length of the second, and its score.
+    /// Product of both columns, squared norm of the second, and its score.
     second: Option<(f64, f64, f64)>,
 }
 
@@ -63,7 +65,7 @@ impl Products {
         Some(Self { first: (dot(first, first), dot(first, residual)), second })
     }
 
-    /// Gain and sizes by least squares; `None` for a column without length.
+    /// Returns gain and sizes by least squares; `None` for a zero column.
     fn least_squares(self) -> Option<(f64, Vec<f64>)> {
         let (a, u) = self.first;
         if a < 1e-9 {
@@ -78,7 +80,7 @@ impl Products {
         Some((k * u + l * v, vec![k, l]))
     }
 
-    /// Squared length of the columns' sum at these sizes.
+    /// Returns the squared norm of the columns' sum with these sizes.
     fn length2(self, sizes: &[f64]) -> f64 {
         match (self.second, sizes) {
             (Some((b, c, _)), [k, l]) => k * k * self.first.0 + 2.0 * k * l * b + l * l * c,
@@ -87,15 +89,17 @@ impl Products {
     }
 }
 
-/// Gain and sizes of one or two columns; `None` for none, or for one without length.
+/// Returns gain and sizes of one or two columns; `None` for no column or a zero one.
 pub(super) fn least_squares(columns: &[Vec<f64>], residual: &[f64]) -> Option<(f64, Vec<f64>)> {
     Products::of(columns, residual)?.least_squares()
 }
 
-/// Score of a group from its products with the residual; `parts` are what each series adds to each column's score.
+/// Returns the score of a group from its products with the residual; `parts` are the contributions
+/// of each series to each column's score.
 fn score_of(group: Group, products: Products, parts: &[Vec<f64>]) -> Option<StructureScore> {
     let (gain, sizes) = products.least_squares()?;
-    // A wave has two sizes, and there are hundreds of them at free frequencies: its gain must pay for both.
+    // A wave has two sizes, and there are hundreds of waves of different frequencies: the penalty
+    // accounts for both.
     let gain = if group.len() > 1 { gain - WAVE_PENALTY } else { gain };
     let scale = products.length2(&sizes).sqrt().max(1e-12).recip();
     let mut by_series = vec![0.0; parts.first().map_or(0, Vec::len)];
@@ -105,16 +109,16 @@ fn score_of(group: Group, products: Products, parts: &[Vec<f64>]) -> Option<Stru
     Some(StructureScore { group, sizes, gain, by_series })
 }
 
-/// The sensitivity of the readings to each channel, in newtons per unit, by row.
+/// Sensitivity of the readings to each channel, in newtons per unit, by row.
 type Channels = Vec<(Channel, Vec<f64>)>;
 
-/// Groups that are scored side by side: the lane of each one's first column.
+/// Groups that are scored together, with the lane of each one's first column.
 type Batch = Vec<(usize, usize)>;
 
-/// Parts into which the catalogue is dealt, to be scored side by side.
+/// Number of parallel parts of the catalogue.
 const SHARES: usize = 8;
 
-/// Deals groups to batches of lanes. A pair stands side by side, from an even lane on.
+/// Distributes groups to batches of lanes. A pair uses neighbouring lanes, starting at an even one.
 fn batches(groups: &[Group]) -> Vec<Batch> {
     let mut batches = Vec::new();
     let (mut batch, mut lane) = (Batch::new(), 0);
@@ -132,7 +136,7 @@ fn batches(groups: &[Group]) -> Vec<Batch> {
 }
 
 impl Screen<'_> {
-    /// Scores of the whole catalogue of structures, best first.
+    /// Returns scores of the whole catalogue of structures, best first.
     pub(crate) fn structures(&self) -> Vec<StructureScore> {
         let channels = self.channels();
         let catalogue = self.data().catalogue(&self.fitted.model.frame);
@@ -169,8 +173,8 @@ impl Screen<'_> {
         scores
     }
 
-    /// Scores the groups whose columns stand in the lanes, in newtons. What the model's constants take over is taken off
-    /// the products, and the columns themselves stay as they are.
+    /// Scores the groups whose columns are in the lanes, in newtons. The projection is applied to
+    /// the products, not to the columns.
     fn score_batch(
         &self,
         groups: &[Group],
@@ -205,7 +209,8 @@ impl Screen<'_> {
         }
     }
 
-    /// What each series adds to the score of each lane; none where there are too many series to flip.
+    /// Returns the contribution of each series to the score of each lane; empty if there are too
+    /// many series to flip.
     fn parts_by_series(
         &self,
         lanes: &Lanes,
@@ -227,7 +232,7 @@ impl Screen<'_> {
         parts
     }
 
-    /// Product of each direction of the basis with the residual, series by series.
+    /// Returns the product of each direction of the basis with the residual, by series.
     fn basis_by_series(&self) -> Vec<Vec<f64>> {
         let flipped = self.flipped_series();
         let of = |axis: &Vec<f64>| {
@@ -240,7 +245,7 @@ impl Screen<'_> {
         if flipped == 0 { Vec::new() } else { self.basis.basis().iter().map(of).collect() }
     }
 
-    /// The sensitivities of the readings to the channels.
+    /// Returns the sensitivities of the readings to the channels.
     fn channels(&self) -> Channels {
         let sensitivity = |channel: Channel| match channel {
             Channel::Reading => vec![1.0; self.predicted.len()],
@@ -267,8 +272,8 @@ impl Screen<'_> {
         all.map(|channel| (channel, sensitivity(channel))).to_vec()
     }
 
-    /// The best stretch of whole series, at another level than the rest: every pair of ends is tried, by sums over
-    /// the series, since whitening mixes the rows of a series only.
+    /// Returns the best interval of whole series with a different level. Every pair of ends is
+    /// tried with sums over the series, since whitening only mixes rows of one series.
     fn best_window(&self, channel: Channel, along: &[f64]) -> Option<StructureScore> {
         let mut white = along.to_vec();
         self.weighed.whiten(&mut white);
@@ -278,7 +283,7 @@ impl Screen<'_> {
         }
         let mut order: Vec<usize> = (0..self.data().series).filter(|s| begins[*s].is_finite()).collect();
         sort_by_number(&mut order, |series| begins[*series]);
-        // Ends at up to eighty places, so that thousands of series cost no more than some hundreds.
+        // At most eighty possible ends, so that the cost does not grow with thousands of series.
         let ends: Vec<usize> = if order.len() <= WINDOW_ENDS {
             (1..=order.len()).collect()
         } else {
@@ -288,7 +293,8 @@ impl Screen<'_> {
             return self.best_window_beside_a_walk(channel, along, &begins, &order, &ends);
         }
         let basis = self.basis.basis();
-        // Of each series: score, squared length, and the share of each direction of the basis.
+        // For each series: score, squared norm, and the component along each direction of the
+        // basis.
         let mut sums = vec![vec![0.0; 2 + basis.len()]; self.data().series];
         for (row, series) in self.data().series_of.iter().enumerate() {
             let sum = &mut sums[*series];
@@ -302,7 +308,7 @@ impl Screen<'_> {
         for (i, from) in ends.iter().enumerate() {
             let (from, mut done) = (*from, *from);
             let mut total = vec![0.0; 2 + basis.len()];
-            // To the end of the session it would be a step, which stands in the catalogue.
+            // An interval up to the end of the session is a step, which is in the catalogue.
             for to in ends[i + 1..].iter().copied().filter(|to| *to < order.len()) {
                 for series in &order[done..to] {
                     total.iter_mut().zip(&sums[*series]).for_each(|(t, s)| *t += s);
@@ -334,8 +340,8 @@ impl Screen<'_> {
         Some(StructureScore { group, sizes: vec![size], gain, by_series })
     }
 
-    /// The same where offsets wander, so that whitening carries a series into those after it: sums over steps that begin
-    /// at each end.
+    /// The same for drifting offsets, where whitening carries a series into the following ones:
+    /// sums over steps that begin at each end.
     fn best_window_beside_a_walk(
         &self,
         channel: Channel,
@@ -379,13 +385,14 @@ impl Screen<'_> {
         Some(StructureScore { sizes: vec![size], gain, ..found })
     }
 
-    /// Series whose signs are flipped: all, or none where there are so many that the noise is known without.
+    /// Returns the number of series whose signs are flipped: all, or none if there are so many that
+    /// the noise is known without.
     fn flipped_series(&self) -> usize {
         const MOST: usize = 600;
         Some(self.data().series).filter(|series| *series <= MOST).unwrap_or(0)
     }
 
-    /// Least squares of the residual on one or two visible columns.
+    /// Fits the residual with one or two projected columns by least squares.
     fn group(&self, group: Group, columns: &[Vec<f64>]) -> Option<StructureScore> {
         let parts: Vec<Vec<f64>> = columns
             .iter()
@@ -403,7 +410,7 @@ impl Screen<'_> {
     }
 }
 
-/// Squared lengths less what lies along directions.
+/// Returns squared norms less the components along directions.
 fn left_of(whole: [f64; LANES], shares: &[[f64; LANES]]) -> [f64; LANES] {
     let mut left = whole;
     for share in shares {
@@ -412,7 +419,7 @@ fn left_of(whole: [f64; LANES], shares: &[[f64; LANES]]) -> [f64; LANES] {
     left
 }
 
-/// A stretch of series, by the times at which its first one begins and the one after its last.
+/// Returns an interval of series, from the time of its first one to that of the one after its last.
 fn window(channel: Channel, from: f64, to: f64) -> Structure {
     let form = Shape::TimeWindow { from: from - 1e-9, to: to - 1e-9 };
     Structure { covariate: Covariate::Time, channel, form }
@@ -426,7 +433,7 @@ mod tests {
     use crate::test_session::session;
 
     #[test]
-    fn a_stretch_of_series_at_another_level_is_the_best_structure() {
+    fn the_best_structure_is_an_interval() {
         let mut rows = session(4);
         let (from, to) = (rows.len() / 3, rows.len() / 2);
         let (first, last) = (rows[from].time_s, rows[to].time_s);
@@ -455,9 +462,9 @@ mod tests {
         assert_eq!(least_squares(&[vec![0.0; 3]], &residual), None);
     }
 
-    /// Scores that are made of products alone are those of the columns themselves.
+    /// Scores computed from products equal those computed from the columns.
     #[test]
-    fn a_score_is_that_of_the_visible_column() {
+    fn scores_equal_those_of_projected_columns() {
         let rows = session(5);
         let frame = Frame::new(&rows);
         let data = Observations::new(&frame, &rows).unwrap();

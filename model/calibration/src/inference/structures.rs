@@ -1,14 +1,15 @@
-//! The catalogue of structures that a residual is searched for when no named effect explains it.
+//! Catalogue of structures, for residuals that no effect explains.
 
 use pinswitch_friction::Substrate;
 
 use crate::effects::{Channel, Covariate, Shape, Structure};
 use crate::table::{Frame, Point};
 
-/// Shapes that go together: one, or the sine and cosine of a wave.
+/// Shapes that belong together: one, or the sine and cosine of a wave.
 pub(crate) type Group = Vec<Structure>;
 
-/// Distinct values of a covariate over the points, ascending, merged when closer than `tolerance`.
+/// Returns the distinct values of a covariate over the points, ascending, merged within
+/// `tolerance`.
 fn levels(points: &[Point], of: impl Fn(&Point) -> f64, tolerance: f64) -> Vec<f64> {
     let mut values: Vec<f64> = points.iter().map(of).collect();
     values.sort_by(f64::total_cmp);
@@ -16,7 +17,7 @@ fn levels(points: &[Point], of: impl Fn(&Point) -> f64, tolerance: f64) -> Vec<f
     values
 }
 
-/// Share of the variance of one covariate that another one fixes level by level.
+/// Returns the share of the variance of one covariate that is explained by the levels of another.
 fn follows(
     points: &[Point],
     what: impl Fn(&Point) -> f64,
@@ -31,31 +32,31 @@ fn follows(
     })
 }
 
-/// All structures that a table could show, with the course of each shape over its rows where that needs little memory:
-/// they are scored again and again while a table is searched.
+/// All structures that a table could show, with the values of each shape over its rows if memory
+/// permits, since they are scored repeatedly in a search.
 #[derive(Debug)]
 pub(crate) struct Catalogue {
-    /// The frame that it was made for.
+    /// Frame of the table.
     pub(super) frame: Frame,
     /// The structures.
     pub(crate) groups: Vec<Group>,
-    /// Course of each structure of each group.
+    /// Index of the values of each structure of each group.
     course_of: Vec<Vec<usize>>,
     courses: Vec<Vec<f64>>,
 }
 
-/// Values of courses that are kept: some tens of megabytes.
+/// Most stored values: some tens of megabytes.
 const MOST_KEPT: usize = 4_000_000;
 
 impl Catalogue {
-    /// Of a table of these points.
+    /// Builds the catalogue of a table with these points.
     pub(super) fn new(frame: &Frame, points: &[Point]) -> Self {
         let groups = structures_to_try(frame, points);
         let (mut shapes, mut course_of): (Vec<&Shape>, Vec<Vec<usize>>) = (Vec::new(), Vec::new());
         for group in &groups {
             let mut of_group = Vec::new();
             for structure in group {
-                // The same shape is tried on several channels in a row.
+                // The same shape is used on several consecutive channels.
                 let near = shapes.iter().rev().take(2).position(|shape| **shape == structure.form);
                 let index = near.map_or(shapes.len(), |back| shapes.len() - 1 - back);
                 if near.is_none() {
@@ -73,7 +74,7 @@ impl Catalogue {
         Self { frame: frame.clone(), course_of, courses, groups }
     }
 
-    /// Course of one structure of a group over the points.
+    /// Returns the values of one structure of a group over the points.
     pub(super) fn values(&self, group: usize, place: usize, points: &[Point]) -> std::borrow::Cow<'_, [f64]> {
         match self.courses.get(self.course_of[group][place]) {
             Some(course) => course.into(),
@@ -82,7 +83,7 @@ impl Catalogue {
     }
 }
 
-/// All structures that a table of these points could show.
+/// Returns all structures that a table of these points could show.
 pub(crate) fn structures_to_try(frame: &Frame, points: &[Point]) -> Vec<Group> {
     let mut groups = Vec::new();
     time(&mut groups, frame, points);
@@ -111,16 +112,18 @@ fn push_wave(
     );
 }
 
-/// Repetitions over which a memory that lasts is forgotten: more than a series has.
+/// Number of repetitions of a lasting memory: more than any series has.
 const LASTING: f64 = 1e4;
 
-/// With the gain of the load cell, or of what carries its force, which may change with all but the load itself.
+/// All channels including the gain of the load cell, which may vary with every covariate except the
+/// load.
 const ALL_AND_GAIN: [Channel; 4] = [Channel::Reading, Channel::Gain, Channel::Drag, Channel::Friction];
 const READING_AND_FRICTION: [Channel; 2] = [Channel::Reading, Channel::Friction];
-/// Channels on which everything is tried, stretches of time too.
+/// Channels on which every shape is tried, including intervals of time.
 pub(super) const ALL: [Channel; 3] = [Channel::Reading, Channel::Drag, Channel::Friction];
 
-/// All channels, with those of one material where a condition has it: another tendon may rub less on silicone and more on pins.
+/// Returns all channels, including those of one material if a condition has it, since another
+/// tendon may have less friction on silicone and more on pins.
 fn by_material(frame: &Frame) -> Vec<Channel> {
     let mut channels = ALL.to_vec();
     if frame.conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone)) {
@@ -203,9 +206,9 @@ fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]
             }
         }
     }
-    // Of two operators the second differs from the first.
+    // With two operators, the second is compared with the first.
     for operator in frame.operator_numbers().skip(usize::from(frame.operators.len() == 2)) {
-        // What each reads is scatter of the reading, by the table's own labels.
+        // The level of each operator's readings is a random effect from the table's labels.
         push(
             groups,
             Covariate::Condition,
@@ -232,7 +235,7 @@ fn levels_of_conditions(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]
     }
 }
 
-/// The values themselves, or thirty places between the ends where there are more.
+/// Returns the values themselves, or thirty values between the extremes if there are more.
 fn on_a_grid(values: Vec<f64>) -> Vec<f64> {
     const MOST: usize = 30;
     match (values.first(), values.last()) {
@@ -247,7 +250,7 @@ fn rates(groups: &mut Vec<Group>, frame: &Frame, points: &[Point]) {
     let mut speeds = levels(points, |p| p.log_speed, 1e-3);
     speeds.retain(|_| frame.reference_speed_pct > 0.0);
     if speeds.len() > 1 {
-        // Measured speeds are all different: bells on a grid that is as fine as a resonance is wide.
+        // Measured speeds all differ: bumps on a grid as fine as a resonance is wide.
         if speeds.len() <= 30 {
             for log_speed in &speeds {
                 let form = Shape::SpeedLevel { log_speed: *log_speed, half_width: 1e-3 };
@@ -276,7 +279,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn levels_merge_what_is_equal() {
+    fn equal_levels_are_merged() {
         let point = |load_n: f64| Point { load_n, ..Point::default() };
         let points = [point(2.0), point(1.0), point(2.0 + 1e-9)];
         assert_eq!(levels(&points, |p| p.load_n, 1e-3), [1.0, 2.0]);

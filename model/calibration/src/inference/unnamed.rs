@@ -1,4 +1,4 @@
-//! Structure that no name explains: found, compared with the names, corrected by smooth shapes.
+//! Unattributed structure: detection, comparison with the effects, and correction by smooth shapes.
 
 use super::fit::{Fit, fit};
 use super::levels::Levels;
@@ -11,32 +11,34 @@ use super::structure_scores::StructureScore;
 use super::weighed::Weighed;
 use crate::effects::Covariate;
 
-/// Largest probability by flipped signs at which a weak shape is believed.
+/// Largest probability by sign flips of a weak shape.
 const MOST_BY_FLIPS: f64 = 0.05;
-/// Share of a name's gain that shapes in its place may miss and still replace it.
+/// Share of an effect's gain that shapes in its place may lack and still replace it.
 const REPLACED_SHARE: f64 = 0.15;
 
-/// Structure that no name explains.
+/// Structure that no effect explains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoundStructure {
-    /// Where it lies.
+    /// Covariate along which it shows.
     pub covariate: Covariate,
-    /// What its first shape gains, in whitened squares, less what its free ends or frequency gain by chance.
+    /// Reduction of the deviance by its first shape, less the penalty for its free ends or
+    /// frequency.
     pub gain: f64,
 }
 
-/// What every step of the comparison reads.
+/// Input of every step of the comparison.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Context<'a> {
     pub(super) weighed: &'a Weighed<'a>,
     pub(super) levels: Levels,
-    /// What the named effects gained whose forms may bend, in whitened squares.
+    /// Reduction of the deviance by the effects with approximate formulas.
     pub(super) explained: f64,
 }
 
 impl Context<'_> {
-    /// Looks for structure that no name explains, and lets it compete with the names from the start. `left` are the
-    /// scores of all structures on top of the names, and `bent_gain` what the names gain by bending their forms.
+    /// Searches structure that no effect explains, and compares it with the effects. `left` are the
+    /// scores of all structures in addition to the effects, and `bent_gain` is the gain of bending
+    /// the effects.
     pub(super) fn with_unnamed(
         &self,
         baseline: &Fit,
@@ -45,7 +47,8 @@ impl Context<'_> {
         bent_gain: f64,
     ) -> (Fit, Option<FoundStructure>) {
         let &Context { weighed, levels, explained } = self;
-        // With few series chance reaches further: the level of the study holds for dozens of them.
+        // With few series larger gains occur by chance; the level of the study applies to dozens of
+        // them.
         let degrees = degrees_of_freedom(weighed.data, baseline.model.coordinates.len());
         let chance = gain_at(levels.structure_p, left.len().max(1), degrees);
         let least = levels.structure.max(chance).max(levels.structure_share * explained);
@@ -74,14 +77,15 @@ impl Context<'_> {
         }
     }
 
-    /// Whether the largest score is more than series with flipped signs make, which needs no noise model: a weak shape
-    /// that a few series carry alone is none. With few series flips cannot tell.
+    /// Returns whether the largest score exceeds those of sign flips, which need no noise model: a
+    /// weak shape that depends on a few series is not accepted. With few series, sign flips are not
+    /// conclusive.
     fn is_carried_by_many(&self, scores: &[StructureScore]) -> bool {
         let carried: Vec<&[f64]> = scores.iter().map(|s| s.by_series.as_slice()).collect();
         carried.iter().all(|c| c.len() < 12) || family_probability(&carried) <= MOST_BY_FLIPS
     }
 
-    /// The structure on top of the names, if it gains more than `least`.
+    /// Returns the structure in addition to the effects, if its gain exceeds `least`.
     fn on_top_of(&self, found: &Fit, score: &StructureScore, least: f64) -> Option<(Fit, FoundStructure)> {
         if score.gain <= least {
             return None;
@@ -94,7 +98,8 @@ impl Context<'_> {
         })
     }
 
-    /// The better of the structure alone, with names only on top of it, and of what is there `so_far`.
+    /// Returns the better one of the structure alone, with effects added to it only, and of the
+    /// model `so_far`.
     fn instead_of(
         &self,
         baseline: &Fit,
@@ -106,9 +111,10 @@ impl Context<'_> {
         let &Context { weighed, levels, .. } = self;
         let penalty = |f: &Fit| f.cost + levels.further * f.model.named_effects().len() as f64;
         let with = with_structure(baseline, score, self.weighed);
-        // One shape against several names: each name beyond the first must have paid for itself.
+        // One shape against several effects: each effect beyond the first must justify its
+        // constants.
         let names = found.model.named_effects().len() as f64;
-        // The names may bend their forms before the shape is said to fit better than they do.
+        // The effects may bend before a shape counts as a better fit.
         let margin = levels.outright + 0.06 * bent_gain - 12.0 * (names - 1.0);
         if with.cost >= found.cost - bent_gain - margin && so_far.is_none() {
             return so_far;
@@ -126,8 +132,8 @@ impl Context<'_> {
         }
     }
 
-    /// The structure that stands in the place of one name of several and explains more than that name does however it bends: a
-    /// drag that grows with speed looks like a drag, and like friction that does.
+    /// Returns the structure that replaces one of several effects and explains more than that
+    /// effect with any bend: a drag that grows with speed resembles a drag, and friction that does.
     fn in_place_of_one(&self, found: &Fit, bent_gain: f64, least: f64) -> Option<(Fit, FoundStructure)> {
         let is_name = |index: &usize| matches!(found.model.terms[*index], Term::Named(_));
         let names: Vec<usize> = (0..found.model.terms.len()).filter(is_name).collect();
@@ -148,8 +154,8 @@ impl Context<'_> {
         (best.0.cost < found.cost - bent_gain - self.levels.outright).then_some(best)
     }
 
-    /// Beside something that has no name, a name is believed only if more shapes cannot stand in its place: it may be
-    /// another part of the same.
+    /// With unattributed structure in the model, keeps an effect only if more shapes cannot replace
+    /// it, since it may be another part of the same structure.
     fn without_names_that_shapes_replace(&self, mut current: Fit) -> Fit {
         let mut index = 0;
         while index < current.model.terms.len() {
@@ -169,7 +175,7 @@ impl Context<'_> {
     }
 }
 
-/// Refines the data-driven correction: more shapes while each gains clearly.
+/// Adds shapes while each gains clearly.
 pub(crate) fn with_what_is_left(mut current: Fit, weighed: &Weighed<'_>) -> Fit {
     for _ in 0..4 {
         let scores = Screen::new(&current, weighed).structures();
@@ -207,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wave_along_the_stroke_has_no_name_and_is_corrected() {
+    fn waves_along_the_stroke_are_unattributed() {
         let rows = session_with(2, &[(wave(), &[0.15])]);
         let frame = Frame::new(&rows);
         let mut data = Observations::new(&frame, &rows).unwrap();
@@ -218,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_structure_must_gain_what_chance_cannot() {
+    fn structures_must_exceed_chance() {
         let rows = session(1);
         let frame = Frame::new(&rows);
         let data = Observations::new(&frame, &rows).unwrap();
@@ -237,6 +243,6 @@ mod tests {
             assert!((baseline.cost - fitted.cost - penalty - structure.gain).abs() < 1e-9, "{score:?}");
         }
         let (kept, none) = context.with_unnamed(&baseline, baseline.clone(), &scores, 0.0);
-        assert!(none.is_none() && kept.model.terms.is_empty(), "noise alone is no structure");
+        assert!(none.is_none() && kept.model.terms.is_empty(), "noise alone is not structure");
     }
 }

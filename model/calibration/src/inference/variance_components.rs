@@ -1,10 +1,11 @@
-//! The sizes of the noise's parts, by restricted maximum likelihood (REML).
+//! Variance components by restricted maximum likelihood (REML).
 //!
-//! Repetition noise is read off the spread inside each series and direction. What rows share is read off the means of
-//! the series and directions, of which a table has hundreds at most: out of them everything explainable is projected,
-//! and the update `theta <- theta r'P V_i P r / tr(P V_i)` is repeated, which keeps every variance positive (the MM
-//! algorithm of Zhou, Hu, Zhou and Lange, J. Comput. Graph. Stat. 28, 2019, without its square root). A square counts
-//! for at most nine times what is expected, so that a single bad series does not decide.
+//! Repetition noise is estimated from the spread within each series and direction. Components that
+//! rows share are estimated from the means of the series and directions (hundreds at most):
+//! everything explainable is projected out, and the update `theta <- theta r'P V_i P r / tr(P V_i)`
+//! is iterated, which keeps every variance positive (the MM algorithm of Zhou, Hu, Zhou and Lange,
+//! J. Comput. Graph. Stat. 28, 2019, without its square root). A square counts for at most nine
+//! times its expectation, so that a single bad series does not dominate.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -16,20 +17,21 @@ use super::scatter::Scatter;
 use super::walk::Wandering;
 use super::weighed::Weighed;
 
-/// Rounds of the update: parts far from their start need some tens.
+/// Number of iterations: components far from their start need some tens.
 pub(super) const ROUNDS: usize = 24;
-/// Shares of friction below which a scatter changes no decision.
+/// Smallest relevant random effect of friction, as a share.
 pub(super) const LEAST_SCALE: f64 = 2e-4;
-/// Fewer means than this beyond what is projected out tell nothing of what series share.
+/// Fewest means beyond the projected columns for an estimate.
 const LEAST_DEGREES: f64 = 8.0;
-/// A square beyond nine times its expectation counts as nine; the cap loses 2 % of a chi-square's mean.
+/// Caps a square at nine times its expectation; the cap reduces the mean of a chi-square variate by
+/// 2 %.
 fn capped(square: f64, expected: f64) -> f64 {
     1.02 * square.min(9.0 * expected)
 }
 
-/// The noise of residuals in newtons out of which everything explainable has been projected. `explainable` are columns
-/// in newtons; without their removal a missing effect would inflate its own noise
-/// (`model/doc/naming-an-effect.md`). The mounts' scatter is kept from the start.
+/// Estimates the noise from residuals in newtons. The `explainable` columns in newtons are
+/// projected out, since a missing effect would otherwise inflate the noise
+/// (`model/doc/naming-an-effect.md`). The mount effect of the start is kept.
 pub(super) fn estimate(
     data: &Observations,
     residual_n: &[f64],
@@ -45,14 +47,15 @@ pub(super) fn estimate(
     }
     let noise = between(data, residual_n, explainable, noise).unwrap_or(noise);
     [Scatter::Groups, Scatter::Specimens].iter().fold(noise, |noise, labelled| {
-        // What all groups have in common is no scatter between them: an offset that comes back in every session is one of the cell.
+        // A common value of all groups is not scatter between them: an offset that recurs in every
+        // session is that of the load cell.
         let common = (0..data.points.len()).map(|row| labelled.direction_n(data, row)).collect();
         labelled.estimated(data, residual_n, &[common], noise)
     })
 }
 
-/// The same with the repetition noise and the scatter that competes with effects as they are: what series share, beside
-/// columns that were thought to be explained by more than noise.
+/// The same with fixed repetition noise and competing random effects: only the components that
+/// series share are estimated.
 pub(super) fn shared_again(
     data: &Observations,
     residual_n: &[f64],
@@ -63,7 +66,7 @@ pub(super) fn shared_again(
     Noise { mount_scale: noise.mount_scale, walk: noise.walk, ..found }
 }
 
-/// The repetition noise, with the whitened residuals that it was read from.
+/// Estimates the repetition noise; also returns the whitened residuals.
 fn inside(
     data: &Observations,
     residual_n: &[f64],
@@ -110,15 +113,15 @@ fn only_repetition(noise: Noise) -> Noise {
     Noise { repetition: noise.repetition, correlation: noise.correlation, ..Noise::constant(0.0, 0.0) }
 }
 
-/// Per block of means that belong to one series: `P` and `P r`.
+/// Block of means of one series: `P` and `P r`.
 pub(super) struct Block {
     pub(super) members: Vec<usize>,
     pub(super) p: DMatrix<f64>,
     pub(super) pr: DVector<f64>,
 }
 
-/// Blocks of the projected weight matrix over the means, exact within each series. `mounts` of the noise must be zero,
-/// or series would be mixed.
+/// Returns blocks of the projected weight matrix over the means, exact within each series. `mounts`
+/// of the noise must be zero, or series would be mixed.
 pub(super) fn blocks(
     means: &Observations,
     noise: Noise,
@@ -131,7 +134,7 @@ pub(super) fn blocks(
     weighed.whiten(&mut white);
     projection.remove(&mut white);
     let most = means.series_rows.iter().map(Vec::len).max().unwrap_or(0);
-    // Whitening mixes no two series: the j-th mean of every series is whitened in one go.
+    // Whitening does not mix series, so the j-th mean of every series is whitened in one pass.
     let units: Vec<Vec<f64>> = (0..most)
         .map(|j| {
             let mut unit = vec![0.0; residual.len()];
@@ -158,8 +161,9 @@ pub(super) fn blocks(
         .collect()
 }
 
-/// Directions of the parts that series share, in the order of [`sizes`]: the means' own offset at zero load and its
-/// growth, one for each mean, then the series' offset, its growth, and its scale.
+/// Returns the directions of the components that series share, in the order of [`sizes`]: the
+/// means' own offset at zero load and its growth, one for each mean, then the series' offset, its
+/// growth, and its scale.
 pub(super) fn directions(means: &Observations, block: &Block) -> [Vec<DVector<f64>>; 5] {
     let k = block.members.len();
     let load = |i: usize| means.points[block.members[i]].load_n;
@@ -173,7 +177,7 @@ pub(super) fn directions(means: &Observations, block: &Block) -> [Vec<DVector<f6
     ]
 }
 
-/// Variances of those parts.
+/// Returns the variances of those components.
 pub(super) fn sizes(noise: Noise) -> [f64; 5] {
     [
         noise.series.constant_n.powi(2),
@@ -194,13 +198,13 @@ fn with_sizes(noise: Noise, sizes: [f64; 5]) -> Noise {
     }
 }
 
-/// What rows of a series share; `None` with too few series to tell.
+/// Estimates the components that rows of a series share; `None` with too few series.
 fn between(data: &Observations, residual_n: &[f64], explainable: &[Vec<f64>], noise: Noise) -> Option<Noise> {
     let noise = Noise { mount_scale: 0.0, walk: Wandering::default(), ..noise };
     let means = data.cell_means(noise);
     let residual = means.mean_of(data, residual_n);
     let mut columns = means.means_of(data, explainable);
-    // Operators, sessions and specimens are few: each has its own level here.
+    // Operators, sessions and specimens are few, so each has its own level here.
     for groups in [&means.observations.operators, &means.observations.sessions] {
         columns.extend(groups.iter().map(|g| indicator(residual.len(), g, |_| 1.0)));
     }
@@ -244,7 +248,7 @@ fn between(data: &Observations, residual_n: &[f64], explainable: &[Vec<f64>], no
         }
         theta[0] = theta[0].max(least);
     }
-    // What cannot change a reading by a twentieth of its noise is nothing.
+    // A component that changes a reading by less than 5 % of its noise is dropped.
     let mut found = with_sizes(noise, theta);
     if found.series_scale < LEAST_SCALE {
         found.series_scale = 0.0;
@@ -261,7 +265,7 @@ fn between(data: &Observations, residual_n: &[f64], explainable: &[Vec<f64>], no
     Some(found)
 }
 
-/// Variance of one mean given all parts, for counting degrees of freedom.
+/// Returns the variance of one mean given all components, for counting degrees of freedom.
 fn means_variance(means: &Observations, noise: Noise, block: &Block, a: &DVector<f64>) -> f64 {
     let Some(at) = (0..a.len()).find(|i| a[*i] != 0.0) else { return 0.0 };
     let row = block.members[at];

@@ -1,4 +1,4 @@
-//! What a session can see of an effect at all, whatever looks for it.
+//! Identifiability of an effect in a session, independent of the method of search.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -9,12 +9,12 @@ use super::projection::{Projection, dot};
 use super::significance::gain_at;
 use super::weighed::Weighed;
 
-/// Probability from which on an effect counts as visible.
+/// Probability above which an effect counts as detectable.
 pub const VISIBLE: f64 = 0.95;
 
-/// Expected gain, in whitened squares, of naming what changes the readings by `change_n` (newtons, one for each row):
-/// what generalised least squares leave of the change once the constants of `model` have taken over what they can. It is
-/// the noncentrality of the test for it.
+/// Returns the expected reduction of the deviance by an effect that changes the readings by
+/// `change_n` (newtons, one for each row): the residual of generalised least squares after the
+/// constants of `model` have absorbed what they can. It is the noncentrality of the test.
 pub fn expected_gain(model: &Model, weighed: &Weighed<'_>, change_n: &[f64]) -> f64 {
     let predicted = model.predict(&weighed.data.points);
     let mut own = Projection::new(predicted.len());
@@ -28,7 +28,8 @@ pub fn expected_gain(model: &Model, weighed: &Weighed<'_>, change_n: &[f64]) -> 
     dot(&change, &change)
 }
 
-/// Probability that a test of that expected gain finds it among `tried` candidates at the level of the first name.
+/// Returns the probability that a test with that expected gain detects the effect among `tried`
+/// candidates at the level of the first effect.
 ///
 /// ```
 /// use pinswitch_calibration::inference::{Levels, VISIBLE, probability_found};
@@ -40,13 +41,14 @@ pub fn probability_found(expected_gain: f64, levels: Levels, tried: usize, degre
     probability_beyond(gain_at(levels.first_p, tried, degrees), expected_gain)
 }
 
-/// The same at the level of structure without a name, over so many shapes.
+/// The same at the level of unattributed structure, over this number of shapes.
 pub fn probability_structure_found(expected_gain: f64, levels: Levels, tried: usize, degrees: f64) -> f64 {
     let chance = gain_at(levels.structure_p, tried.max(1), degrees);
     probability_beyond(levels.structure.max(chance), expected_gain)
 }
 
-/// Probability that a gain whose expectation is that much reaches a bound: of the square of a normal number.
+/// Returns the probability that a gain with this expectation exceeds a bound: the square of a
+/// normal variate.
 fn probability_beyond(bound: f64, expected_gain: f64) -> f64 {
     let (middle, bound) = (expected_gain.max(0.0).sqrt(), bound.max(0.0).sqrt());
     let normal = Normal::standard();
@@ -61,14 +63,15 @@ mod tests {
     use crate::test_session::session;
 
     #[test]
-    fn what_the_constants_can_take_over_is_not_visible() {
+    fn absorbed_changes_are_not_detectable() {
         let rows = session(1);
         let frame = Frame::new(&rows);
         let data = Observations::new(&frame, &rows).unwrap();
         let model = Model::baseline(frame.clone());
         let weighed = Weighed::new(&data, Noise::constant(0.1, 0.0));
         let predicted = model.predict(&data.points);
-        // A little more friction of the silicone is a constant of the model; a sawtooth along the rows is none.
+        // More friction of the silicone is a constant of the model; a sawtooth along the rows is
+        // not.
         let mut other = model.clone();
         other.set_values(&{
             let mut values = model.values();
@@ -85,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn the_probability_at_the_bound_is_one_half() {
+    fn probability_at_the_bound_is_half() {
         let levels = Levels::default();
         let bound = gain_at(levels.first_p, 21, 60.0);
         assert!((probability_found(bound, levels, 21, 60.0) - 0.5).abs() < 1e-3);

@@ -1,8 +1,9 @@
-//! Offsets that wander from series to series: each series' offset, and each direction's, is a chain of first order,
-//! whitened by a Kalman filter over the series in the order of time. Its cost is linear in the series.
+//! Offsets that drift from series to series: each series' offset, and each direction's, is an AR(1)
+//! process, whitened by a Kalman filter over the series in the order of time. The cost is linear in
+//! the series.
 //!
-//! What a series has of its own besides, a white offset and its friction scale, is a state without memory in the same
-//! filter: taken out afterwards, it would be taken out of the series after it, too.
+//! A white offset and the friction scale of a series are states without memory in the same filter:
+//! if they were whitened afterwards, they would also be removed from the following series.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,30 +11,30 @@ use super::noise::Noise;
 use super::observations::Observations;
 use super::weighed::Weighed;
 
-/// How much of the offsets of series wanders. Sizes are shares of the offsets' standard deviations as they are found
-/// without a walk.
+/// Drifting part of the offsets of series. Sizes are shares of the offsets' standard deviations as
+/// estimated without drift.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wandering {
-    /// Correlation with the series before; 0 where nothing wanders.
+    /// Correlation with the previous series; 0 without drift.
     pub correlation: f64,
-    /// Of the part that does not wander.
+    /// Size of the part that does not drift.
     pub white: f64,
-    /// Of the offset that both directions share.
+    /// Size of the drifting offset common to both directions.
     pub common: f64,
-    /// Of the offset of each direction.
+    /// Size of the drifting offset of each direction.
     pub direction: f64,
 }
 
 impl Wandering {
-    /// Whether anything does.
+    /// Returns whether there is any drift.
     pub(crate) fn is_any(&self) -> bool {
         self.correlation > 0.0 && (self.common > 0.0 || self.direction > 0.0)
     }
 }
 
-/// States of the filter: the offset of the series and of each direction, which are remembered, and the white offset and
-/// the friction scale of the series, which are not.
+/// Number of states: the offset of the series and of each direction, with memory, and the white
+/// offset and the friction scale of the series, without memory.
 const STATES: usize = 5;
 const REMEMBERED: usize = 3;
 
@@ -43,9 +44,10 @@ type State = [f64; STATES];
 #[derive(Clone, Copy, Debug)]
 struct Step {
     cell: usize,
-    /// What is left of the remembered states since the cell before; `None` within a series.
+    /// Correlation of the states with memory with those of the previous cell; `None` within a
+    /// series.
     memory: Option<f64>,
-    /// What one standard deviation of each state does along the cell's direction.
+    /// Change along the cell's direction per standard deviation of each state.
     reach: State,
     gain: State,
     /// Variance of the innovation.
@@ -56,7 +58,7 @@ struct Step {
 #[derive(Clone, Debug)]
 pub(super) struct Walk {
     steps: Vec<Step>,
-    /// Direction of each row's cell, of unit length in each cell.
+    /// Direction of each row's cell, of unit norm in each cell.
     axis: Vec<f64>,
 }
 
@@ -64,13 +66,13 @@ fn along(state: &State, reach: &State) -> f64 {
     state.iter().zip(reach).map(|(s, r)| s * r).sum()
 }
 
-/// The states that are remembered, and nothing of the others.
+/// Propagates the states with memory, and resets the others.
 fn remembered(state: &State, memory: f64) -> State {
     std::array::from_fn(|i| if i < REMEMBERED { memory * state[i] } else { 0.0 })
 }
 
 impl Walk {
-    /// For cells that are whitened, each by itself.
+    /// Builds the filter for cells that are whitened individually.
     pub(super) fn new(weighed: &Weighed<'_>) -> Self {
         let (data, noise) = (weighed.data, weighed.noise);
         let mut axis = vec![1.0; data.points.len()];
@@ -121,7 +123,7 @@ impl Walk {
         cell.iter().map(|r| self.axis[*r] * values[*r]).sum()
     }
 
-    /// Replaces what lies along each cell's direction by its innovation.
+    /// Replaces the component along each cell's direction by its innovation.
     pub(super) fn whiten<const N: usize>(&self, data: &Observations, values: &mut [[f64; N]]) {
         let mut states = [[0.0; STATES]; N];
         for step in &self.steps {
@@ -146,7 +148,7 @@ impl Walk {
         }
     }
 
-    /// The adjoint of [`Walk::whiten`].
+    /// Applies the adjoint of [`Walk::whiten`].
     pub(super) fn whiten_transposed(&self, data: &Observations, values: &mut [f64]) {
         let mut state = [0.0; STATES];
         for step in self.steps.iter().rev() {
@@ -162,13 +164,14 @@ impl Walk {
         }
     }
 
-    /// `ln det` of what it whitens.
+    /// Returns `ln det` of the covariance that it whitens.
     pub(super) fn log_det(&self) -> f64 {
         self.steps.iter().map(|step| libm::log(step.variance)).sum()
     }
 }
 
-/// What one standard deviation of each state does along a cell's direction, whose length is that of one newton.
+/// Returns the change along a cell's direction, whose norm is that of one newton, per standard
+/// deviation of each state.
 fn reach(noise: Noise, load_n: f64, sign: f64, length: f64, friction: f64) -> State {
     let common = length * noise.series_common.at(load_n);
     let direction = length * noise.walk.direction * noise.series.at(load_n);

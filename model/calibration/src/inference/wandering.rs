@@ -1,5 +1,5 @@
-//! How much of the offsets of series wanders, and how far it is remembered: by restricted likelihood over the means of
-//! the series and directions.
+//! Estimation of the drift of series offsets and of its correlation, by restricted likelihood over
+//! the means of the series and directions.
 
 use super::noise::Noise;
 use super::observations::Observations;
@@ -7,28 +7,29 @@ use super::projection::{Projection, dot};
 use super::walk::Wandering;
 use super::weighed::Weighed;
 
-/// Series without which a walk cannot be told from offsets.
+/// Fewest series to separate a drift from independent offsets.
 const LEAST_SERIES: usize = 12;
-/// Correlations that are tried. With the last, a whole session of some eighty series wanders to and fro two or three
-/// times.
+/// Correlations that are tried. With the last, a session of about eighty series drifts to and fro
+/// two or three times.
 const CORRELATIONS: [f64; 5] = [0.5, 0.7, 0.83, 0.92, 0.97];
-/// Shares of the offsets' standard deviation that are tried for the part that does not wander.
+/// Sizes that are tried for the part that does not drift, as shares of the offsets' standard
+/// deviation.
 const WHITE: [f64; 4] = [0.05, 0.5, 0.75, 1.0];
-/// ... and for the one that does. What wanders slowly hides behind the levels of the conditions, so that the offsets
-/// were found too small without it.
+/// The same for the drifting part. A slow drift is partly absorbed by the levels of the conditions,
+/// so that the offsets were underestimated without it.
 const WALKING: [f64; 8] = [0.0, 0.5, 0.75, 1.0, 1.4, 2.0, 3.0, 4.5];
-/// One of a walk's constants.
+/// Accessor of one constant of the drift.
 type Constant = fn(&mut Wandering) -> &mut f64;
 
-/// Times that each constant is tried in turn.
+/// Number of passes over the constants.
 const SWEEPS: usize = 3;
-/// Standard deviation in newtons of what wanders that is usual, and the largest that is called so.
+/// Typical standard deviation in newtons of the drift, and its largest value.
 const USUAL_N: f64 = 0.2;
 const MOST_N: f64 = 0.5;
-/// What its constants cost: a walk that is less probable than this beside white offsets is none.
+/// Penalty for its constants: the gain that a drift needs over white offsets.
 const TOLL: f64 = 8.0;
 
-/// Minus twice the logarithm of how probable a walk is before any data, up to a constant.
+/// Returns minus twice the log prior density of a drift, up to a constant.
 pub(super) fn walk_cost(noise: Noise, data: &Observations) -> f64 {
     if !noise.walk.is_any() {
         return 0.0;
@@ -36,8 +37,8 @@ pub(super) fn walk_cost(noise: Noise, data: &Observations) -> f64 {
     TOLL + (noise.wandering_n(data.mean_load_n()) / USUAL_N).powi(2)
 }
 
-/// The walk with the largest restricted likelihood, if white offsets are less probable. `own` are columns in newtons that
-/// residuals may lose to the model.
+/// Returns the drift with the largest restricted likelihood, if white offsets are less probable.
+/// `own` are columns in newtons that the model may absorb.
 pub(super) fn wandering(
     data: &Observations,
     residual_n: &[f64],
@@ -86,14 +87,14 @@ pub(super) fn wandering(
     if best.1.is_any() && best.0 < cost(none) { best.1 } else { none }
 }
 
-/// Minus twice the logarithm of the restricted likelihood, up to a constant.
+/// Returns minus twice the log restricted likelihood, up to a constant.
 fn restricted(weighed: &Weighed<'_>, residual: &[f64], columns: &[Vec<f64>]) -> f64 {
     let mut projection = Projection::new(residual.len());
     let mut log_det = weighed.shared_log_det();
     let mut columns = columns.to_vec();
     weighed.whiten_all(&mut columns);
     for white in columns {
-        // The determinant of the projection's own columns: what they lose of their length to those before.
+        // Determinant of the projection's columns: the loss of their norm to those before.
         let mut rest = white.clone();
         projection.remove(&mut rest);
         let length2 = dot(&rest, &rest);

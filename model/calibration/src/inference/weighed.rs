@@ -1,9 +1,10 @@
-//! A table weighed by its noise: `V^-1/2`, row by row and group by group.
+//! A table whitened by its noise: `V^-1/2`, row by row and group by group.
 //!
-//! `V` has the repetition noise of each row, which may hang together from one repetition to the next, and what rows
-//! share: the offset of a series and direction, the offset of a series, its friction scale, the wrap of a mount, the
-//! zero of an operator. Each of those is one random number per group times a direction among the group's rows, so that
-//! `V` is whitened by one step of rank one after the other; the cost is linear in rows.
+//! `V` contains the repetition noise of each row, possibly autocorrelated, and the components that
+//! rows share: the offset of a series and direction, the offset of a series, its friction scale,
+//! the wrap of a mount, the zero of an operator. Each of those is one random effect per group times
+//! a direction among the group's rows, so that `V` is whitened by one rank-one step after the
+//! other; the cost is linear in rows.
 
 use super::correlation::{chain_log_det, unchain};
 use super::lanes::{LANES, Lanes};
@@ -11,18 +12,19 @@ use super::noise::{Noise, Part};
 use super::observations::Observations;
 use super::walk::Walk;
 
-/// What the rows of each group of one kind share, in the scale that the steps before have whitened.
+/// Component that the rows of each group of one kind share, in the scale of the previous whitening
+/// steps.
 #[derive(Clone, Debug)]
 struct Shared {
     part: Part,
-    /// Direction of each row's group, of unit length in each group.
+    /// Direction of each row's group, of unit norm in each group.
     axis: Vec<f64>,
-    /// Share of that direction which whitening takes out, by group.
+    /// Share of that direction that whitening removes, by group.
     removed: Vec<f64>,
 }
 
 impl Shared {
-    /// What the groups of one part share, if the noise has any; `whiten` makes the steps before.
+    /// Builds the step of one component, if the noise has it; `whiten` applies the previous steps.
     fn new(part: Part, noise: Noise, data: &Observations, whiten: impl Fn(&mut [f64])) -> Option<Self> {
         let groups = part.groups(data);
         let mut axis: Vec<f64> =
@@ -43,7 +45,7 @@ impl Shared {
         Some(Self { part, axis, removed })
     }
 
-    /// A symmetric step: it is its own adjoint.
+    /// Applies the step, which is symmetric and thus its own adjoint.
     fn whiten<const N: usize>(&self, data: &Observations, values: &mut [[f64; N]]) {
         for (group, removed) in self.part.groups(data).iter().zip(&self.removed) {
             if *removed > 0.0 {
@@ -54,8 +56,8 @@ impl Shared {
     }
 }
 
-/// Takes a share of what values have along a direction of unit length out of them, `v - removed a (a'v)`. The direction
-/// is given as rows with their places.
+/// Removes a share of the component along a direction of unit norm, `v - removed a (a'v)`. The
+/// direction is given as rows with their components.
 fn remove_along<const N: usize>(
     axis: impl Iterator<Item = (usize, f64)> + Clone,
     removed: f64,
@@ -71,20 +73,21 @@ fn remove_along<const N: usize>(
     }
 }
 
-/// What one group of series shares where offsets wander: whitening has carried it into the series after them.
+/// Component of one group of series with drifting offsets, which whitening has carried into the
+/// following series.
 #[derive(Clone, Debug)]
 struct Carried {
-    /// Rows with their places on a direction of unit length.
+    /// Rows with their components of a direction of unit norm.
     axis: Vec<(usize, f64)>,
-    /// Share of that direction which whitening takes out.
+    /// Share of that direction that whitening removes.
     removed: f64,
 }
 
-/// Share of a direction's largest place below which a place is none.
+/// Share of a direction's largest component below which a component is dropped.
 const FORGOTTEN: f64 = 1e-8;
 
 impl Carried {
-    /// That of rows which `whiten` has prepared, if it reaches any.
+    /// Builds the step of rows that `whiten` has prepared, if there are any.
     fn new(
         part: Part,
         rows: &[usize],
@@ -108,7 +111,7 @@ impl Carried {
         })
     }
 
-    /// A symmetric step: it is its own adjoint.
+    /// Applies the step, which is symmetric and thus its own adjoint.
     fn whiten<const N: usize>(&self, values: &mut [[f64; N]]) {
         remove_along(self.axis.iter().copied(), self.removed, values);
     }
@@ -119,19 +122,19 @@ impl Carried {
 pub struct Weighed<'a> {
     /// The rows.
     pub data: &'a Observations,
-    /// The noise they are weighed by.
+    /// The noise.
     pub noise: Noise,
-    /// One over the repetition's standard deviation, times the root of the weight, by row.
+    /// Inverse of the repetition's standard deviation, times the root of the weight, by row.
     scale: Vec<f64>,
     cells: Option<Shared>,
-    /// Offsets wander from cell to cell: they are whitened while each cell still stands for itself.
+    /// Drift of the offsets, whitened before components that mix cells.
     walk: Option<Walk>,
     shared: Vec<Shared>,
     carried: Vec<Carried>,
 }
 
 impl<'a> Weighed<'a> {
-    /// Weighs a table.
+    /// Prepares the whitening of a table.
     pub fn new(data: &'a Observations, noise: Noise) -> Self {
         let scale = data
             .points
@@ -151,7 +154,7 @@ impl<'a> Weighed<'a> {
                 weighed.shared.extend(shared);
                 continue;
             }
-            // What a series has of its own stands in the filter of a walk.
+            // White components of a series are part of the filter of a drift.
             if matches!(part, Part::SeriesOffset | Part::SeriesScale) {
                 continue;
             }
@@ -168,7 +171,7 @@ impl<'a> Weighed<'a> {
         self.whiten_lanes(values.as_chunks_mut::<1>().0);
     }
 
-    /// Whitens columns of one value per row in place, several in one go.
+    /// Whitens columns of one value per row in place, several in one pass.
     pub(crate) fn whiten_all(&self, columns: &mut [Vec<f64>]) {
         let mut lanes = Lanes::default();
         for several in columns.chunks_mut(LANES) {
@@ -198,7 +201,7 @@ impl<'a> Weighed<'a> {
         self.carried.iter().for_each(|carried| carried.whiten(values));
     }
 
-    /// `V^-1/2' v` of values that have no neighbours in a chain, as means of series have none.
+    /// Applies `V^-1/2'` to values without autocorrelation, such as means of series.
     pub(crate) fn whiten_transposed(&self, mut values: Vec<f64>) -> Vec<f64> {
         let lanes = values.as_chunks_mut::<1>().0;
         self.carried.iter().rev().for_each(|carried| carried.whiten(lanes));
@@ -209,8 +212,9 @@ impl<'a> Weighed<'a> {
         values
     }
 
-    /// What the noise costs a likelihood beside the whitened squares of the rows, up to a constant of the table: `ln det V`,
-    /// and the squares of the readings about their mean where a row is one. A row counts as many readings as it weighs.
+    /// Returns the contribution of the noise to minus twice the log likelihood, in addition to the
+    /// deviance, up to a constant of the table: `ln det V`, and the squares of the readings about
+    /// their mean for compacted rows. A row counts as its number of readings.
     pub(crate) fn log_det(&self) -> f64 {
         let own = |row: usize| {
             let variance = self.noise.repetition.at(self.data.points[row].load_n).max(1e-12).powi(2);
@@ -222,7 +226,7 @@ impl<'a> Weighed<'a> {
         repetition + chain + self.shared_log_det()
     }
 
-    /// `ln det V` over that of the repetition noise alone.
+    /// Returns `ln det V` relative to the repetition noise alone.
     pub(crate) fn shared_log_det(&self) -> f64 {
         let shared: f64 = self
             .cells
@@ -244,7 +248,7 @@ mod tests {
     use crate::test_session::session;
 
     #[test]
-    fn whitening_undoes_the_covariance() {
+    fn whitening_inverts_the_covariance() {
         whitens(Wandering::default(), 0.05, 1.0, 1e-9);
         whitens(Wandering::default(), 0.05, 0.2, 1e-9);
         let walk = Wandering { correlation: 0.8, white: 0.5, common: 1.5, direction: 0.7 };
@@ -252,7 +256,8 @@ mod tests {
         whitens(walk, 0.05, 0.2, 1e-6);
     }
 
-    /// `V^-1/2 V V^-1/2' = 1` to a bound, for a covariance with every part, where every ninth row has another weight.
+    /// Asserts `V^-1/2 V V^-1/2' = 1` within a bound, for a covariance with every component, where
+    /// every ninth row has another weight.
     fn whitens(walk: Wandering, mount_scale: f64, weight: f64, bound: f64) {
         let rows: Vec<_> = session(1).into_iter().take(54).collect();
         let frame = Frame::new(&rows);
@@ -260,7 +265,7 @@ mod tests {
         let n = rows.len();
         data.weights = (0..n).map(|i| if i % 9 == 3 { weight } else { 1.0 }).collect();
         data.roots = data.weights.iter().map(|w| w.sqrt()).collect();
-        // A walk takes the friction of a cell for one number: its rows have one load.
+        // The filter uses one friction per cell: its rows have one load.
         let number = |r: usize| {
             if walk.is_any() { data.cells.iter().position(|c| c.contains(&r)).unwrap_or(0) } else { r }
         };
@@ -309,7 +314,7 @@ mod tests {
         let one = &root * &v * root.transpose();
         let off = (one - nalgebra::DMatrix::identity(n, n)).amax();
         assert!(off < bound, "{off}");
-        // Without a chain the adjoint is that of the same map.
+        // Without autocorrelation the adjoint is that of the same map.
         let unchained = Weighed::new(&data, Noise { correlation: 0.0, ..noise });
         let (a, b): (Vec<f64>, Vec<f64>) = (0..n).map(|i| (libm::sin(i as f64), libm::cos(i as f64))).unzip();
         let mut white = a.clone();

@@ -1,4 +1,4 @@
-//! `report.json`: what a calibration says, field by field (`model/doc/file-formats.md`).
+//! Content of `report.json` (`model/doc/file-formats.md`).
 
 use std::collections::BTreeMap;
 
@@ -15,163 +15,166 @@ mod verdict;
 pub use sessions::{ChangeReport, SessionReport, SizeInSession, UnequalReport};
 pub use verdict::Verdict;
 
-/// A constant with its interval.
+/// A constant with its confidence interval.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    /// Its value.
+    /// Value.
     pub value: f64,
     /// 95 % confidence interval.
     pub ci95: [f64; 2],
-    /// Its unit.
+    /// Unit.
     pub unit: String,
 }
 
 /// Counts of a table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DataSummary {
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
-    /// Series.
+    /// Number of series.
     pub series: usize,
-    /// Conditions.
+    /// Number of conditions.
     pub conditions: usize,
-    /// Rows weighed down as outliers.
+    /// Number of rows with reduced weight (outliers).
     pub outliers: usize,
 }
 
-/// One fitted model.
+/// A fitted model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelReport {
-    /// Root mean square residual on the rows fitted, in newtons, outliers left out.
+    /// In-sample RMSE in newtons, without outliers.
     #[serde(rename = "rmse_N")]
     pub rmse_n: f64,
-    /// The same on whole series and whole loads held out.
+    /// Held-out RMSE in newtons, over series and loads.
     #[serde(rename = "heldout_rmse_N")]
     pub heldout_rmse_n: f64,
-    /// On whole series held out.
+    /// Leave-series-out RMSE in newtons.
     #[serde(rename = "heldout_series_rmse_N")]
     pub heldout_series_rmse_n: f64,
-    /// On whole loads held out.
+    /// Leave-load-out RMSE in newtons.
     #[serde(rename = "heldout_loads_rmse_N")]
     pub heldout_loads_rmse_n: f64,
-    /// On whole layouts held out, with friction and effects from the others; absent with fewer than two layouts.
+    /// Leave-one-layout-out RMSE in newtons, with friction and effects from the other layouts;
+    /// absent with fewer than two layouts.
     #[serde(rename = "heldout_layouts_rmse_N", default, skip_serializing_if = "Option::is_none")]
     pub heldout_layouts_rmse_n: Option<f64>,
     /// Constants by name.
     pub parameters: BTreeMap<String, Estimate>,
 }
 
-/// An effect that explains the data as well.
+/// An effect that explains the data equally well.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RivalReport {
-    /// Its id.
+    /// Id.
     pub id: String,
-    /// Why the data cannot tell.
+    /// Why the data cannot separate the two.
     pub why: String,
-    /// The experiment that would.
+    /// Experiment that separates them.
     pub experiment: String,
 }
 
-/// One effect found.
+/// An effect of the model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EffectReport {
-    /// Its id, or `unattributed`.
+    /// Id, or `unattributed`.
     pub id: String,
-    /// Where it lies.
+    /// Covariate along which it shows.
     pub covariate: String,
-    /// `switch` or `rig`; absent for what has no name.
+    /// `switch` or `rig`; absent for unattributed structure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub side: Option<String>,
-    /// Formula with source, or the shape of a structure in words.
+    /// Formula with its source, or the shape of a structure in words.
     pub formula: String,
-    /// Probability of such a gain by chance, over all that was tried: Student's t with the number of series,
-    /// Sidak's correction. Held against simulated rigs without effect in `model/doc/calibration.md`.
+    /// Probability of such a gain by chance, over all candidates: Student's t with the number of
+    /// series, Sidak's correction. `model/doc/calibration.md` compares it with simulated rigs
+    /// without effect.
     pub p_value: f64,
-    /// Its constants.
+    /// Constants.
     pub parameters: BTreeMap<String, Estimate>,
-    /// Held-out error of the same model without it, in newtons.
+    /// Held-out error of the model without it, in newtons.
     #[serde(rename = "error_before_N")]
     pub error_before_n: f64,
     /// Held-out error of the model with it, in newtons.
     #[serde(rename = "error_after_N")]
     pub error_after_n: f64,
-    /// What else it could be.
+    /// Other effects that explain the data equally well.
     pub rivals: Vec<RivalReport>,
-    /// Of what has no name: what it looks like.
+    /// Formula derived from unattributed structure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<FormReport>,
 }
 
-/// What became of a candidate.
+/// Outcome for a candidate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fate {
-    /// It is in the model.
+    /// In the model.
     Kept,
-    /// It explains the data as well as one that was kept.
+    /// Explains the data as well as an effect of the model.
     Rival,
-    /// This data could not show it.
+    /// Not identifiable with this table.
     Invisible,
-    /// Its gain may be chance.
+    /// Gain explained by chance.
     Chance,
-    /// What it would explain is explained by what was kept.
+    /// Gain explained by the effects of the model.
     Superfluous,
-    /// Its gain is no chance, and nothing was kept: scatter explains the table as well, or it did not help on data held out.
+    /// Gain not explained by chance, but no effect is in the model: scatter explains the table
+    /// equally well, or the held-out error did not decrease.
     Unsettled,
 }
 
-/// One effect of the vocabulary before the decision.
+/// An effect of the vocabulary as a candidate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CandidateReport {
-    /// Its id.
+    /// Id.
     pub id: String,
-    /// What it alone would gain over the baseline to first order, in squares of the noise.
+    /// Gain over the baseline if added alone, to first order: reduction of the deviance.
     pub gain: f64,
     /// Probability of such a gain by chance over the vocabulary.
     pub p_value: f64,
-    /// What it would still gain on top of the model found; absent for what is in it.
+    /// Gain on top of the final model; absent for effects of the model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_left: Option<f64>,
-    /// What became of it.
+    /// Outcome.
     pub fate: Fate,
 }
 
-/// An effect that this data cannot show.
+/// An effect that is not identifiable with this table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Invisible {
-    /// Its id.
+    /// Id.
     pub id: String,
     /// Why.
     pub why: String,
-    /// The experiment that would show it.
+    /// Experiment that identifies it.
     pub experiment: String,
-    /// Sizes that the data do not exclude, where they tell any.
+    /// Sizes that the data do not exclude, if they are limited at all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub possible: Option<[f64; 2]>,
 }
 
-/// A series that stands out from the model by more than its noise allows.
+/// A series that departs from the model by more than its noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BadSeries {
-    /// Its name in the table.
+    /// Name in the table.
     pub series: String,
     /// `eccentric` or `concentric`.
     pub direction: String,
-    /// Mean residual in newtons, or the worst reading's where single readings are wrong and the others are not.
+    /// Mean residual in newtons, or the largest residual if only single readings are wrong.
     #[serde(rename = "offset_N")]
     pub offset_n: f64,
-    /// In standard deviations.
+    /// Residual in standard deviations.
     pub standard_deviations: f64,
-    /// The repetition of the worst reading; absent where the series is off as a whole.
+    /// Repetition of the worst reading; absent if the whole series is wrong.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repetition: Option<u32>,
-    /// How many readings are off in that way; absent where the series is off as a whole.
+    /// Number of wrong readings; absent if the whole series is wrong.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub readings: Option<usize>,
 }
 
 impl BadSeries {
-    /// Where to look, in words: the series and direction, or the reading in it.
+    /// Describes the location: the series and direction, or the reading in it.
     pub fn place(&self) -> String {
         let series = format!("series {} {}", self.series, self.direction);
         match (self.repetition, self.readings.unwrap_or(1)) {
@@ -184,16 +187,17 @@ impl BadSeries {
     }
 }
 
-/// One part of the noise with its size.
+/// A component of the noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NoisePart {
-    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount`, `walk`, `group` or `specimen`.
+    /// `repetition`, `series_and_direction`, `series`, `series_scale`, `mount`, `walk`, `group` or
+    /// `specimen`.
     pub part: String,
-    /// What it does to a reading, in words.
+    /// Description.
     pub what: String,
-    /// Standard deviation at a load of 20 N, or relative.
+    /// Standard deviation, in newtons at a load of 20 N or relative to friction.
     pub size: f64,
-    /// 95 % interval of the size; absent for what is set and not estimated.
+    /// 95 % interval; absent if not estimated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ci95: Option<[f64; 2]>,
     /// `N`, or `1` for a share of the friction.
@@ -203,17 +207,17 @@ pub struct NoisePart {
 /// Sizes of an effect that the data do not exclude.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitReport {
-    /// Its id.
+    /// Id.
     pub id: String,
-    /// Its size constant; `present` for an effect without one, of which 1 is the whole.
+    /// Name of the size; `present` for an effect without constants, whose whole is 1.
     pub parameter: String,
-    /// Lower end of what 95 % do not exclude.
+    /// Lower end of the 95 % interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the 95 % interval.
     pub high: f64,
-    /// Size that changes friction, or the reading, by 5 % somewhere in the table.
+    /// Size that changes friction or reading by 5 % somewhere in the table.
     pub typical: f64,
-    /// Constants of its shape at which these sizes are told, by their names.
+    /// Shape constants by name, for which the limits apply.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub shape: BTreeMap<String, f64>,
     /// Unit of the size.
@@ -222,127 +226,129 @@ pub struct LimitReport {
     /// Whether the size cannot be negative.
     #[serde(default)]
     pub one_sided: bool,
-    /// The experiment that would settle it.
+    /// Experiment that determines it.
     #[serde(default)]
     pub experiment: String,
-    /// Whether every size left is smaller than the typical one.
+    /// Whether every size in the interval is smaller than the typical one.
     pub excluded: bool,
 }
 
-/// `report.json`.
+/// Content of `report.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// Name and version of the format.
     pub schema: String,
-    /// Counts.
+    /// Counts of the table.
     pub data: DataSummary,
     /// The verdict.
     pub verdict: Verdict,
-    /// Whether the error on held-out series reaches the noise within its scatter: if not, something is left.
+    /// Whether the error on held-out series is within the noise and its scatter. If not, structure
+    /// is left.
     pub adequate: bool,
-    /// Error to expect on a new session of the same rig, in newtons: the whole procedure repeated without each fourth of
-    /// the series and judged on it. Absent if too few series are left to do so.
+    /// Expected error of a new session of the same rig, in newtons: the whole procedure is repeated
+    /// without each quarter of the series and evaluated on it. Absent if too few series are left.
     #[serde(rename = "promise_N", default, skip_serializing_if = "Option::is_none")]
     pub promise_n: Option<f64>,
-    /// The same of the paper's model refitted.
+    /// The same for the refitted model of the paper.
     #[serde(rename = "promise_baseline_N", default, skip_serializing_if = "Option::is_none")]
     pub promise_baseline_n: Option<f64>,
-    /// Standard deviation of a reading about the best model, in newtons.
+    /// Standard deviation of a reading around the best model, in newtons.
     #[serde(rename = "noise_floor_N")]
     pub noise_floor_n: f64,
-    /// The noise as the model file holds it.
+    /// Noise, as in the model file.
     pub noise: Noise,
-    /// The noise by its parts, with intervals.
+    /// Components of the noise, with intervals.
     pub noise_parts: Vec<NoisePart>,
-    /// Constants of the switch that differ between sessions or specimens; empty where all share them.
+    /// Constants of the switch that differ between sessions or specimens.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<ChangeReport>,
-    /// Named effects whose sizes differ between sessions.
+    /// Effects whose sizes differ between sessions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unequal: Vec<UnequalReport>,
-    /// The paper's model, refitted.
+    /// The refitted model of the paper.
     pub baseline: ModelReport,
-    /// With what was found.
+    /// The model with all effects.
     pub augmented: ModelReport,
-    /// What was found.
+    /// Effects of the model.
     pub effects: Vec<EffectReport>,
-    /// Every effect of the vocabulary as a candidate, the strongest first.
+    /// All effects of the vocabulary as candidates, the strongest first.
     pub candidates: Vec<CandidateReport>,
-    /// Probability of the largest candidate without any effect, by flipped signs of whole series.
+    /// Probability of the largest gain without any effect, from sign flips of whole series.
     pub family_probability: f64,
-    /// Sizes that the data do not exclude, of visible effects that were not found.
+    /// Sizes that the data do not exclude, of identifiable effects that are not in the model.
     pub limits: Vec<LimitReport>,
-    /// Effects whose traces this design cannot tell apart.
+    /// Classes of effects that this design cannot separate.
     pub classes: Vec<Vec<String>>,
-    /// Covariates that move together.
+    /// Confounded covariates.
     pub aliasing: Vec<Aliasing>,
     /// Columns of the table that no calibration reads.
     pub ignored_columns: Vec<String>,
-    /// What this data cannot see.
+    /// Effects that are not identifiable with this table.
     pub invisible: Vec<Invisible>,
-    /// What no data of such a rig can see after the refit.
+    /// Effects that no table of such a rig identifies after the refit.
     pub never_visible: Vec<String>,
-    /// Series to look at: a mislabelled weight, a bad run.
+    /// Series to check, such as one with a mislabelled weight.
     pub bad_series: Vec<BadSeries>,
-    /// What the table says of each effect of one's own; empty without any.
+    /// Tests of the user-defined effects.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trials: Vec<TrialReport>,
-    /// What was known after each of several tables, in their order; empty if there was one.
+    /// State after each of several tables, in their order; empty for a single table.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sessions: Vec<SessionReport>,
-    /// Errors on loads above those fitted, if some were kept back.
+    /// Errors on loads above those fitted, if some were withheld.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolation: Option<Extrapolation>,
 }
 
 impl Report {
-    /// Why nothing is excluded although every limit is below what is of consequence.
+    /// Returns why an inconclusive verdict remains although every limit is below the typical size.
     pub fn reservations(&self) -> Vec<String> {
         let unsettled = self.candidates.iter().filter(|c| c.fate == Fate::Unsettled).take(3);
         let ids: Vec<&str> = unsettled.map(|c| c.id.as_str()).collect();
-        let mut told = Vec::new();
+        let mut reasons = Vec::new();
         if !ids.is_empty() {
-            told.push(format!(
-                "{} would gain more than chance makes, and change nothing by 5 %",
+            reasons.push(format!(
+                "the gain of {} is not explained by chance, but changes nothing by 5 %",
                 ids.join(" or ")
             ));
         }
         if self.noise.mounts_hide() {
             let percent = 100.0 * self.noise.mount_scale;
-            told.push(format!(
-                "mounts scatter by {percent:.1} %, in which a step of friction between two of them, or what a layout has of its own, could hide"
+            reasons.push(format!(
+                "the mount effect of {percent:.1} % could hide a step of friction between two mounts, or an effect of a layout"
             ));
         }
         if !self.adequate {
-            told.push("the error on data held out stays above the noise".to_owned());
+            reasons.push("the held-out error remains above the noise".to_owned());
         }
-        told
+        reasons
     }
 }
 
-/// Errors on the rows with higher loads than those fitted.
+/// Errors on rows with higher loads than those fitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Extrapolation {
     /// Highest load fitted, in newtons.
     #[serde(rename = "fitted_below_N")]
     pub fitted_below_n: f64,
-    /// Rows judged.
+    /// Number of rows evaluated.
     pub rows: usize,
     /// Root mean square error of the refitted baseline, in newtons.
     #[serde(rename = "rmse_before_N")]
     pub rmse_before_n: f64,
-    /// Of the augmented model.
+    /// The same of the augmented model.
     #[serde(rename = "rmse_after_N")]
     pub rmse_after_n: f64,
-    /// The same without readings beyond twenty standard deviations of noise: a bad run decides nothing.
+    /// The same without readings beyond 20 standard deviations of noise, so that a bad run does not
+    /// dominate.
     #[serde(rename = "rmse_after_without_bad_N")]
     pub rmse_after_without_bad_n: f64,
-    /// Readings left out of that.
+    /// Number of readings excluded from that.
     pub bad_rows: usize,
     /// Median absolute error of the refitted baseline, in newtons.
     #[serde(rename = "median_before_N")]
     pub median_before_n: f64,
-    /// Of the augmented model.
+    /// The same of the augmented model.
     #[serde(rename = "median_after_N")]
     pub median_after_n: f64,
 }

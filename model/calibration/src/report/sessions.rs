@@ -1,38 +1,38 @@
-//! What is told of several sessions: what changed between them, what is not the same in all, and what was known after each.
+//! Comparison of several sessions: changes between them, differing sizes, and the state after each.
 
 use serde::{Deserialize, Serialize};
 
 use super::{EffectReport, Estimate, Report, Verdict};
-use crate::asked::Asked;
+use crate::session_plan::SessionPlan;
 
-/// A constant of the switch that some sessions or specimens have otherwise than the latest one, whose constants the model
-/// predicts with.
+/// A constant of the switch that differs in some sessions or specimens from the latest one, which
+/// the model predicts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChangeReport {
-    /// `mu_p`, `mu_s`, or `F_half`: the half loads of all layouts.
+    /// `mu_p`, `mu_s`, or `F_half` for the thresholds of all layouts.
     pub constant: String,
     /// `session` or `specimen`.
     pub by: String,
-    /// The names of those that have it otherwise.
+    /// Names of the groups with the other value.
     pub groups: Vec<String>,
-    /// The names of the others, the latest among them.
+    /// Names of the remaining groups, including the latest.
     pub others: Vec<String>,
-    /// Their constant over that of the others.
+    /// Ratio of their constant to that of the remaining groups.
     pub factor: Estimate,
-    /// The constant of the others, where it is one; absent for half loads.
+    /// The constant of the remaining groups; absent for thresholds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub latest: Option<f64>,
 }
 
 impl ChangeReport {
-    /// In words: what is how large where.
+    /// Describes the change in words.
     pub fn words(&self) -> String {
         let Estimate { value, ci95, .. } = &self.factor;
         let percent = |factor: f64| format!("{:+.1}", 100.0 * (factor - 1.0));
         let than = self
             .latest
             .map_or_else(String::new, |latest| format!(" ({:.3} instead of {latest:.3})", value * latest));
-        let name = if self.constant == "F_half" { "the half load of every layout" } else { &self.constant };
+        let name = if self.constant == "F_half" { "the threshold of every layout" } else { &self.constant };
         format!(
             "{name} differs by {} % [{}, {}] in {} {}{than} from that in {}",
             percent(*value),
@@ -45,32 +45,33 @@ impl ChangeReport {
     }
 }
 
-/// A named effect whose size is not the same in all sessions.
+/// An effect whose size differs between sessions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UnequalReport {
-    /// Its id.
+    /// Id.
     pub id: String,
-    /// The size.
+    /// Name of the size.
     pub parameter: String,
-    /// What the model has, which is true of no session; 0 of an effect that sessions alone show and all together do not.
+    /// Size in the model, which applies to no session; 0 for an effect that single sessions show
+    /// but all together do not.
     pub in_the_model: f64,
-    /// Probability by chance that sizes differ so much.
+    /// Probability of such a difference by chance.
     pub p_value: f64,
-    /// The size in each session that tells it.
+    /// Size in each session that determines it.
     pub sizes: Vec<SizeInSession>,
 }
 
 /// A size in one session.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SizeInSession {
-    /// The session.
+    /// Session.
     pub session: String,
-    /// The size there, shapes held as all sessions together have them.
+    /// Size in that session, with the shapes fixed at the common fit.
     pub size: Estimate,
 }
 
 impl UnequalReport {
-    /// In words: how large it is where.
+    /// Describes the sizes in words.
     pub fn words(&self) -> String {
         let each: Vec<String> = self
             .sizes
@@ -81,12 +82,12 @@ impl UnequalReport {
             })
             .collect();
         let in_the_model = if self.in_the_model == 0.0 {
-            "together they name none, and the model has none of it".to_owned()
+            "the sessions together do not show it, and the model excludes it".to_owned()
         } else {
-            format!("the {:.4} that the model has is true of none", self.in_the_model)
+            format!("the model's value {:.4} applies to none of them", self.in_the_model)
         };
         format!(
-            "{} is not the same in all sessions: {} = {}; {in_the_model}",
+            "{} differs between sessions: {} = {}; {in_the_model}",
             self.id,
             self.parameter,
             each.join(", ")
@@ -94,29 +95,29 @@ impl UnequalReport {
     }
 }
 
-/// What was known after one of several tables, and those before it.
+/// State after one of several tables and those before it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SessionReport {
-    /// The table that came last.
+    /// The last table.
     pub table: String,
-    /// What the runs of this table were proposed for, if a plan was given, and what came of it.
+    /// Plan of this table with the answers to its questions, if a plan was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub asked: Option<Asked>,
-    /// Rows up to here.
+    pub asked: Option<SessionPlan>,
+    /// Number of rows so far.
     pub rows: usize,
     /// The verdict.
     pub verdict: Verdict,
-    /// What was found, each with its rivals.
+    /// Effects of the model, each followed by its rivals.
     pub effects: Vec<Vec<String>>,
-    /// Effects of consequence that were not excluded.
+    /// Relevant effects that are not excluded.
     pub not_excluded: Vec<String>,
-    /// Error to expect on a new session, in newtons.
+    /// Expected error of a new session in newtons.
     #[serde(rename = "promise_N", default, skip_serializing_if = "Option::is_none")]
     pub promise_n: Option<f64>,
 }
 
 impl SessionReport {
-    /// What a report says after `table`.
+    /// Returns the state of a report after `table`.
     pub fn after(table: String, report: &Report) -> Self {
         let ids = |effect: &EffectReport| {
             std::iter::once(effect.id.clone()).chain(effect.rivals.iter().map(|r| r.id.clone())).collect()
@@ -132,14 +133,14 @@ impl SessionReport {
         }
     }
 
-    /// In words: the verdict, and what it is about.
+    /// Describes verdict and effects in words.
     pub fn words(&self) -> String {
-        let found: Vec<String> = self.effects.iter().map(|ids| ids.join(" or ")).collect();
+        let effects: Vec<String> = self.effects.iter().map(|ids| ids.join(" or ")).collect();
         let word = self.verdict.as_str();
-        match (found.is_empty(), self.verdict) {
-            (false, _) => format!("{word}: {}", found.join(", ")),
+        match (effects.is_empty(), self.verdict) {
+            (false, _) => format!("{word}: {}", effects.join(", ")),
             (true, Verdict::Inconclusive) if !self.not_excluded.is_empty() => {
-                format!("{word}: not excluded are {}", self.not_excluded.join(", "))
+                format!("{word}: cannot rule out {}", self.not_excluded.join(", "))
             }
             (true, _) => word.to_owned(),
         }

@@ -1,28 +1,29 @@
-//! The verdict on a table.
+//! Verdict of a calibration.
 
 use serde::{Deserialize, Serialize};
 
 use crate::inference::Selection;
 use crate::trial::{TrialOutcome, TrialReport};
 
-/// What the data say about the paper's model.
+/// Verdict on the paper's model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// The paper's model explains the data down to its noise, and no visible effect of consequence is left possible.
+    /// The paper's model explains the data down to its noise, and every identifiable relevant
+    /// effect is excluded.
     None,
-    /// Nothing is believed, and a visible effect of consequence is not excluded.
+    /// No effect is attributed, and a relevant effect is not excluded.
     Inconclusive,
-    /// Every effect found is named and has no rival.
+    /// Every effect of the model is named and without rivals.
     Attributed,
-    /// At least one effect has rivals that this data cannot tell apart.
+    /// At least one effect has rivals that this table cannot separate.
     Ambiguous,
-    /// Structure is left that no named effect explains.
+    /// Structure remains that no effect explains.
     Unattributed,
 }
 
 impl Verdict {
-    /// Its word in the report.
+    /// Returns the word used in reports.
     pub fn as_str(self) -> &'static str {
         match self {
             Verdict::None => "none",
@@ -33,7 +34,7 @@ impl Verdict {
         }
     }
 
-    /// The verdict of a selection.
+    /// Returns the verdict of a selection.
     pub fn of(selection: &Selection) -> Self {
         if selection.structure.is_some() {
             Verdict::Unattributed
@@ -47,7 +48,8 @@ impl Verdict {
         }
     }
 
-    /// The verdict beside the trials of effects of one's own: what is confirmed is not excluded.
+    /// Returns the verdict in view of the tests of user-defined effects: a confirmed effect is not
+    /// excluded.
     #[must_use]
     pub fn beside(self, trials: &[TrialReport]) -> Self {
         match self {

@@ -1,54 +1,54 @@
-//! What can be wrong with a log.
+//! Defects of a log.
 
 use std::fmt;
 
 use pinswitch_friction::Direction;
 use serde::Serialize;
 
-/// Something that is wrong with a log.
+/// A defect of a log.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "what")]
 pub enum Finding {
-    /// Samples that stand out from their plateau.
+    /// Samples far from the median of their plateau.
     Spikes {
-        /// How many.
+        /// Number of samples.
         samples: usize,
     },
     /// Samples that are missing between time stamps.
     LostSamples {
-        /// How many.
+        /// Number of samples.
         samples: usize,
     },
-    /// Lines of the file that are no samples.
+    /// Lines of the file that are not samples.
     UnusableLines {
-        /// How many.
+        /// Number of lines.
         lines: usize,
     },
-    /// A channel that stands at its end.
+    /// A force at the end of the channel's range.
     Clipped {
-        /// The force at which it stands, in newtons.
+        /// Force at the end of the range, in newtons.
         #[serde(rename = "force_N")]
         force_n: f64,
         /// Share of the samples.
         share: f64,
     },
-    /// A move of another length than the others in its direction.
+    /// A move whose length differs from that of the others in its direction.
     OddSpeed {
         /// Direction of the move.
         direction: Direction,
-        /// The plateau after it.
+        /// Repetition that follows the move.
         repetition: u32,
-        /// Its length over the median length.
+        /// Length over the median length.
         ratio: f64,
     },
-    /// A pause that is too long: a repetition is missing.
+    /// A pause that is so long that a repetition is missing.
     MissingRepetition {
-        /// Direction of the move before it.
+        /// Direction of the previous move.
         direction: Direction,
-        /// The repetition after which one is missing.
+        /// Repetition before the missing one.
         after: u32,
     },
-    /// A rest too short or too broken to be read.
+    /// A rest that is too short, or has too few samples, to be read.
     UnreadableRest {
         /// Seconds since the log began.
         time_s: f64,

@@ -1,34 +1,6 @@
-//! One raw log: time, force, position and actuator power at 200 Hz.
+//! Raw logs: time, force, position and actuator power at 200 Hz.
 
-/// Why a log cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LogError {
-    /// The header lacks a column.
-    #[error("{file}, line 1: column '{column}' is missing; a log has time_s, force_N, position_mm, power_W")]
-    MissingColumn {
-        /// File name as given.
-        file: String,
-        /// The absent column.
-        column: &'static str,
-    },
-    /// The text is UTF-16, as spreadsheets save it.
-    #[error("{file}: is UTF-16 text; save it as CSV in UTF-8")]
-    Utf16 {
-        /// File name as given.
-        file: String,
-    },
-    /// Too few usable samples.
-    #[error("{file}: {found} usable samples; a log has one per 5 ms, at least {needed}")]
-    TooShort {
-        /// File name as given.
-        file: String,
-        /// Usable samples found.
-        found: usize,
-        /// Samples needed.
-        needed: usize,
-    },
-}
+use pinswitch_diagnostic::{Diagnostic, Location};
 
 /// Samples of one log, in the order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,24 +13,28 @@ pub struct Log {
     pub position_mm: Vec<f64>,
     /// Actuator power in watts.
     pub power_w: Vec<f64>,
-    /// Lines that hold no four finite numbers or step back in time; they are left out.
+    /// Number of lines without four finite numbers, or with a time that is not later; they are
+    /// skipped.
     pub unusable: usize,
 }
 
 const COLUMNS: [&str; 4] = ["time_s", "force_N", "position_mm", "power_W"];
-const MIN: usize = 100;
+/// Fewest usable samples of a log: half a second.
+const MIN_SAMPLES: usize = 100;
 
 impl Log {
-    /// Reads the text of a log. `file` is the name used in errors. Broken lines are counted and left out:
+    /// Parses a log. `file` is its name in errors. Unusable lines are counted and skipped, since
     /// real logs have them.
     ///
     /// # Errors
-    /// [`LogError`] if a column is absent or hardly any sample is usable.
-    pub fn parse(text: &[u8], file: &str) -> Result<Self, LogError> {
-        // With its mark, or known by the empty half of every Latin letter.
+    /// If the text is UTF-16, a column is missing, or there are fewer than 100 usable samples.
+    pub fn parse(text: &[u8], file: &str) -> Result<Self, Diagnostic> {
+        // UTF-16 has a byte order mark, or a zero byte in every Latin letter.
         let has_mark = text.starts_with(b"\xff\xfe") || text.starts_with(b"\xfe\xff");
         if has_mark || matches!(text, [0, 1..=127, 0, 1..=127, ..] | [1..=127, 0, 1..=127, 0, ..]) {
-            return Err(LogError::Utf16 { file: file.to_owned() });
+            return Err(Diagnostic::new("the text is UTF-16")
+                .with_location(Location::file(file))
+                .with_help("save it as CSV in UTF-8"));
         }
         let mut lines = text.split(|b| *b == b'\n');
         let header = lines.next().unwrap_or_default();
@@ -71,10 +47,11 @@ impl Log {
             .collect();
         let mut at = [0; 4];
         for (slot, column) in at.iter_mut().zip(COLUMNS) {
-            *slot = names
-                .iter()
-                .position(|n| *n == column)
-                .ok_or(LogError::MissingColumn { file: file.to_owned(), column })?;
+            *slot = names.iter().position(|n| *n == column).ok_or_else(|| {
+                Diagnostic::new(format!("column '{column}' is missing"))
+                    .with_location(Location::line(file, 1))
+                    .with_help(format!("name the columns {}", COLUMNS.join(", ")))
+            })?;
         }
         let mut log = Self::default();
         for line in lines.filter(|l| !l.trim_ascii().is_empty()) {
@@ -97,8 +74,13 @@ impl Log {
                 log.unusable += 1;
             }
         }
-        if log.time_s.len() < MIN {
-            return Err(LogError::TooShort { file: file.to_owned(), found: log.time_s.len(), needed: MIN });
+        let count = log.time_s.len();
+        if count < MIN_SAMPLES {
+            return Err(Diagnostic::new(format!(
+                "{count} usable samples, at least {MIN_SAMPLES} are needed"
+            ))
+            .with_location(Location::file(file))
+            .with_help("give a log with one sample every 5 ms"));
         }
         Ok(log)
     }
@@ -109,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn broken_lines_are_counted_and_left_out() {
+    fn unusable_lines_are_counted_and_skipped() {
         let mut text = "power_W,time_s,force_N,position_mm\n".to_owned();
         for i in 0..120 {
             text.push_str(&format!("0,{},1.5,2\n", f64::from(i) * 0.005));
@@ -121,20 +103,22 @@ mod tests {
     }
 
     #[test]
-    fn utf16_is_called_by_its_name() {
+    fn utf16_is_named() {
         let little: Vec<u8> = "time_s,force_N\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
         let big: Vec<u8> = "\u{feff}time_s\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
         let marked = [b"\xff\xfe".to_vec(), little.clone()].concat();
         for text in [little, big, marked] {
-            let said = Log::parse(&text, "a.csv").unwrap_err().to_string();
-            assert_eq!(said, "a.csv: is UTF-16 text; save it as CSV in UTF-8");
+            let error = Log::parse(&text, "a.csv").unwrap_err().to_string();
+            assert_eq!(error, "a.csv: the text is UTF-16; save it as CSV in UTF-8");
         }
     }
 
     #[test]
-    fn absent_columns_and_empty_logs_are_refused() {
-        assert!(matches!(Log::parse(b"time_s,force_N\n", "a"), Err(LogError::MissingColumn { .. })));
-        let empty = Log::parse(b"time_s,force_N,position_mm,power_W\n", "a");
-        assert!(matches!(empty, Err(LogError::TooShort { found: 0, .. })));
+    fn incomplete_logs_are_refused() {
+        let error = Log::parse(b"time_s,force_N\n", "a").unwrap_err();
+        assert_eq!(error.problem(), "column 'position_mm' is missing");
+        assert_eq!(error.location(), Some(&Location::line("a", 1)));
+        let empty = Log::parse(b"time_s,force_N,position_mm,power_W\n", "a").unwrap_err();
+        assert_eq!(empty.problem(), "0 usable samples, at least 100 are needed");
     }
 }

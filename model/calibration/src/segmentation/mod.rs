@@ -1,4 +1,4 @@
-//! From raw 200 Hz logs to one row per repetition: what the paper did by hand (`model/doc/file-formats.md`).
+//! Segmentation of raw 200 Hz logs into one row per repetition (`model/doc/file-formats.md`).
 
 mod finding;
 mod log;
@@ -7,9 +7,7 @@ mod run;
 mod run_plan;
 
 pub use finding::Finding;
-pub use log::{Log, LogError};
+pub use log::Log;
 pub use plateaus::{Plateau, Segmented, segment};
-pub use run::{
-    RunSegmentation, SegmentationError, SegmentationReport, SegmentedRun, SegmentedSeries, segment_run,
-};
-pub use run_plan::{Rig, RunPlan, RunPlanError, SeriesPlan};
+pub use run::{RunSegmentation, SegmentationReport, SegmentedRun, SegmentedSeries, segment_run};
+pub use run_plan::{Rig, RunPlan, SeriesPlan};

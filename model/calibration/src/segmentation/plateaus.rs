@@ -1,4 +1,5 @@
-//! Plateaus of one log: the actuator's moves by its power, then the settled force of each rest.
+//! Plateaus of one log: moves are found by the actuator's power, then the settled force of each
+//! rest is read.
 
 use pinswitch_friction::Direction;
 use serde::Serialize;
@@ -8,21 +9,21 @@ use super::log::Log;
 use super::run_plan::Rig;
 use crate::median::median;
 
-/// One plateau.
+/// One plateau: the steady reading after a move.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Plateau {
-    /// Direction of the move before it.
+    /// Direction of the previous move.
     pub direction: Direction,
-    /// 1, 2, ... inside the direction.
+    /// Number of the repetition in its direction, from 1.
     pub repetition: u32,
-    /// The settled force in newtons.
+    /// Settled force in newtons.
     #[serde(rename = "force_N")]
     pub force_n: f64,
     /// Actuator position in millimetres.
     pub position_mm: f64,
     /// End of the rest in seconds since the log began.
     pub time_s: f64,
-    /// Samples it rests on, spikes left out.
+    /// Number of averaged samples, without spikes.
     pub samples: usize,
 }
 
@@ -31,24 +32,24 @@ pub struct Plateau {
 pub struct Segmented {
     /// Plateaus in the order of time.
     pub plateaus: Vec<Plateau>,
-    /// What is wrong with the log.
+    /// Defects of the log.
     pub findings: Vec<Finding>,
 }
 
-/// A stretch in which the actuator runs: sample indices, the end excluded.
+/// An interval in which the actuator runs: sample indices, with the end excluded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Move {
     from: usize,
     to: usize,
 }
 
-/// Actuator power in watts above which it runs.
+/// Power in watts above which the actuator runs.
 const RUNNING_W: f64 = 2.0;
-/// Seconds of a plateau that are read, and the guard before the next move.
+/// Averaging time at the end of a plateau, and guard time before the next move, in seconds.
 const READ_S: f64 = 1.0;
 const GUARD_S: f64 = 0.012;
 
-/// Finds the plateaus of a log.
+/// Finds the plateaus and the defects of a log.
 pub fn segment(log: &Log, rig: &Rig) -> Segmented {
     let mut out = Segmented::default();
     let moves = moves(log, rig);
@@ -86,7 +87,7 @@ pub fn segment(log: &Log, rig: &Rig) -> Segmented {
         });
     }
     for pair in out.plateaus.windows(2) {
-        // Between the directions the experimenter may pause.
+        // The experimenter may pause between the directions.
         if pair[0].direction == pair[1].direction && pair[1].time_s - pair[0].time_s > 1.6 * period {
             out.findings
                 .push(Finding::MissingRepetition { direction: pair[0].direction, after: pair[0].repetition });
@@ -96,35 +97,36 @@ pub fn segment(log: &Log, rig: &Rig) -> Segmented {
     out
 }
 
-/// Stretches with power, short interruptions closed and short bursts dropped.
+/// Returns the intervals with power; short interruptions are closed and short bursts are dropped.
 fn moves(log: &Log, rig: &Rig) -> Vec<Move> {
-    let mut found: Vec<Move> = Vec::new();
+    let mut moves: Vec<Move> = Vec::new();
     for (i, power) in log.power_w.iter().enumerate() {
         if *power <= RUNNING_W {
             continue;
         }
-        match found.last_mut() {
+        match moves.last_mut() {
             Some(last) if log.time_s[i] - log.time_s[last.to - 1] < 0.2 * rig.on_s => last.to = i + 1,
-            _ => found.push(Move { from: i, to: i + 1 }),
+            _ => moves.push(Move { from: i, to: i + 1 }),
         }
     }
-    found.retain(|m| log.time_s[m.to - 1] - log.time_s[m.from] > 0.4 * rig.on_s);
-    found
+    moves.retain(|m| log.time_s[m.to - 1] - log.time_s[m.from] > 0.4 * rig.on_s);
+    moves
 }
 
-/// Samples between two times.
+/// Returns the indices of the samples between two times.
 fn range(log: &Log, from_s: f64, to_s: f64) -> std::ops::Range<usize> {
     let from = log.time_s.partition_point(|t| *t < from_s);
     from..log.time_s.partition_point(|t| *t < to_s).max(from)
 }
 
-/// Median position between two times in millimetres.
+/// Returns the median position between two times in millimetres.
 fn level(log: &Log, from_s: f64, to_s: f64) -> f64 {
     let mut values = log.position_mm[range(log, from_s, to_s)].to_vec();
     median(&mut values)
 }
 
-/// Mean of the samples without those beyond 4.5 robust standard deviations, and how many are left.
+/// Returns the mean of the samples within 4.5 robust standard deviations of the median, and their
+/// number.
 fn settled_force(force_n: &[f64]) -> Option<(f64, usize)> {
     if force_n.len() < 20 {
         return None;
@@ -140,7 +142,7 @@ fn settled_force(force_n: &[f64]) -> Option<(f64, usize)> {
     (count >= 20).then(|| (sum / count as f64, count))
 }
 
-/// What is wrong with the log as a whole.
+/// Adds the defects of the log as a whole.
 fn findings(log: &Log, rig: &Rig, spikes: usize, lengths: &[(Direction, u32, f64)], out: &mut Segmented) {
     if spikes > 0 {
         out.findings.push(Finding::Spikes { samples: spikes });

@@ -1,50 +1,31 @@
-//! A whole run: every log segmented, the rows of the plateau table, and what is wrong with each log.
+//! Segmentation of a whole run into the rows of a plateau table and the defects of each log.
 
+use std::error::Error;
 use std::fmt;
 
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::Direction;
 use serde::Serialize;
 
 use super::finding::Finding;
-use super::log::{Log, LogError};
+use super::log::Log;
 use super::plateaus::{Segmented, segment};
-use super::run_plan::{RunPlan, RunPlanError, SeriesPlan};
+use super::run_plan::{RunPlan, SeriesPlan};
 use crate::table::{Labels, PlateauRow};
 
 /// Name and version of the report's format.
 const SCHEMA: &str = "pinswitch.segmentation/1";
 
-/// Why a run cannot be segmented; `E` is what the caller's reader of logs returns.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SegmentationError<E> {
-    /// The description of the run cannot be used.
-    #[error(transparent)]
-    Plan(#[from] RunPlanError),
-    /// A log cannot be used.
-    #[error(transparent)]
-    Log(#[from] LogError),
-    /// A log cannot be read.
-    #[error("{0}")]
-    Read(E),
-    /// The logs hold no plateau at all.
-    #[error("{file}: no plateau in any log; power_W must exceed 2 W while the actuator runs")]
-    NoPlateau {
-        /// Name of the run's description as given.
-        file: String,
-    },
-}
-
-/// Plateaus counted and findings of one log.
+/// Number of plateaus and defects of one log.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SegmentedSeries {
-    /// Name of the log in the run's description.
+    /// Name of the log in the description of the run.
     pub file: String,
-    /// Plateaus after a release of the load.
+    /// Number of plateaus after a release of the load.
     pub eccentric: usize,
-    /// Plateaus after a pull.
+    /// Number of plateaus after a pull of the load.
     pub concentric: usize,
-    /// What is wrong with the log.
+    /// Defects of the log.
     pub findings: Vec<Finding>,
 }
 
@@ -55,81 +36,83 @@ impl fmt::Display for SegmentedSeries {
     }
 }
 
-/// What was found in each log of a run, in the order of the run.
+/// Plateaus and defects of each log of a run, in the order of the run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SegmentationReport {
     /// Name and version of the format.
     pub schema: &'static str,
-    /// One entry per log.
+    /// Entry of each log.
     pub series: Vec<SegmentedSeries>,
 }
 
-/// A run with all of its logs segmented.
+/// A run with all logs segmented.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SegmentedRun {
     /// Rows of the plateau table, in the order of the logs.
     pub rows: Vec<PlateauRow>,
-    /// What was found in each log.
+    /// Plateaus and defects of each log.
     pub report: SegmentationReport,
 }
 
-/// A run on its way to a table: its logs are added one after the other, so that none has to be kept.
+/// Segmentation of a run, log by log, so that no log has to stay in memory.
 #[derive(Clone, Debug)]
 pub struct RunSegmentation<'a> {
     plan: &'a RunPlan,
     rows: Vec<PlateauRow>,
     series: Vec<SegmentedSeries>,
-    /// Seconds of the logs added so far.
+    /// Total duration in seconds of the logs added so far.
     start_s: f64,
 }
 
 impl<'a> RunSegmentation<'a> {
-    /// A run without any log yet.
+    /// Starts a segmentation.
     pub fn new(plan: &'a RunPlan) -> Self {
         Self { plan, rows: Vec::new(), series: Vec::new(), start_s: 0.0 }
     }
 
-    /// Adds the log of the run's next series, in the order of the plan. Returns the log and what was found in it, to
-    /// draw or to discard. `file` is the name used in errors.
+    /// Adds the log of the next series, in the order of the plan. Returns the log and its plateaus,
+    /// for a plot. `file` is the name of the log in errors.
     ///
     /// # Errors
-    /// [`LogError`] if the text is no log.
+    /// As [`Log::parse`].
     pub fn add(
         &mut self,
         series: &SeriesPlan,
         text: &[u8],
         file: &str,
-    ) -> Result<(Log, Segmented), LogError> {
+    ) -> Result<(Log, Segmented), Diagnostic> {
         let log = Log::parse(text, file)?;
-        let found = segment(&log, &self.plan.rig);
+        let segmented = segment(&log, &self.plan.rig);
         let number = self.series.len();
-        self.rows.extend(rows(self.plan, series, number, &found, self.start_s));
+        self.rows.extend(rows(self.plan, series, number, &segmented, self.start_s));
         self.start_s += log.time_s.last().copied().unwrap_or(0.0);
-        let count = |direction| found.plateaus.iter().filter(|p| p.direction == direction).count();
+        let count = |direction| segmented.plateaus.iter().filter(|p| p.direction == direction).count();
         self.series.push(SegmentedSeries {
             file: series.file.clone(),
             eccentric: count(Direction::Eccentric),
             concentric: count(Direction::Concentric),
-            findings: found.findings.clone(),
+            findings: segmented.findings.clone(),
         });
-        Ok((log, found))
+        Ok((log, segmented))
     }
 
-    /// The table and the report. `file` is the name of the run's description, used in errors.
+    /// Returns the table and the report. `file` is the name of the run's description in errors.
     ///
     /// # Errors
-    /// [`SegmentationError::NoPlateau`] if no log holds a plateau.
-    pub fn finish<E>(self, file: &str) -> Result<SegmentedRun, SegmentationError<E>> {
+    /// If no log contains a plateau.
+    pub fn finish(self, file: &str) -> Result<SegmentedRun, Diagnostic> {
         if self.rows.is_empty() {
-            return Err(SegmentationError::NoPlateau { file: file.to_owned() });
+            return Err(Diagnostic::new("no log contains a plateau")
+                .with_location(Location::file(file))
+                .with_help("check that power_W exceeds 2 W while the actuator runs"));
         }
         let report = SegmentationReport { schema: SCHEMA, series: self.series };
         Ok(SegmentedRun { rows: self.rows, report })
     }
 }
 
-/// Segments a run from the text of its `run.toml`. `read` returns the text of a log by its name in that file; `file` is
-/// the name of the description used in errors.
+/// Segments a run, given the text of its `run.toml`. `read` returns the text of a log by its name
+/// in that file; `file` is the name of the description in errors.
 ///
 /// ```
 /// use pinswitch_calibration::segmentation::segment_run;
@@ -152,44 +135,46 @@ impl<'a> RunSegmentation<'a> {
 /// speed_pct = 50.0
 /// sweep = "up"
 /// "#;
-/// // A log of one move and the rest after it; a real one comes from a file.
+/// // A log of one move and the rest after it.
 /// let mut log = "time_s,force_N,position_mm,power_W\n".to_owned();
 /// for i in 0..900 {
 ///     let t = f64::from(i) * 0.005;
 ///     let (power_w, position_mm) = if (1.0..1.5).contains(&t) { (8.0, 20.0 * (t - 1.0)) } else { (0.0, 0.0) };
 ///     log += &format!("{t},{},{},{power_w}\n", 8.0, if t >= 1.5 { 10.0 } else { position_mm });
 /// }
-/// let found = segment_run(run, "run.toml", |_file| Ok::<_, std::io::Error>(log.clone().into_bytes()))?;
-/// assert_eq!(found.rows.len(), 1);
-/// assert!(PlateauTable::write(&found.rows).contains(",eccentric,1,"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// let run = segment_run(run, "run.toml", |_file| Ok::<_, std::io::Error>(log.clone().into_bytes()))?;
+/// assert_eq!(run.rows.len(), 1);
+/// assert!(PlateauTable::write(&run.rows).contains(",eccentric,1,"));
+/// # Ok::<(), pinswitch_diagnostic::Diagnostic>(())
 /// ```
 ///
 /// # Errors
-/// [`SegmentationError`] at the first thing that cannot be used.
-pub fn segment_run<E>(
+/// If the description is invalid, a log cannot be read or used, or no log contains a plateau.
+pub fn segment_run<E: Error + Send + Sync + 'static>(
     text: &str,
     file: &str,
     mut read: impl FnMut(&str) -> Result<Vec<u8>, E>,
-) -> Result<SegmentedRun, SegmentationError<E>> {
+) -> Result<SegmentedRun, Diagnostic> {
     let plan = RunPlan::parse(text, file)?;
     let mut run = RunSegmentation::new(&plan);
     for series in &plan.series {
-        let text = read(&series.file).map_err(SegmentationError::Read)?;
+        let text = read(&series.file)
+            .map_err(|e| Diagnostic::from_error(e).with_location(Location::file(&series.file)))?;
         run.add(series, &text, &series.file)?;
     }
     run.finish(file)
 }
 
-/// The plateaus of one log as rows of the table; `start_s` is where the log begins in the session.
+/// Converts the plateaus of one log to rows of the table; `start_s` is the start of the log in the
+/// session.
 fn rows<'a>(
     plan: &'a RunPlan,
     series: &'a SeriesPlan,
     number: usize,
-    found: &'a Segmented,
+    segmented: &'a Segmented,
     start_s: f64,
 ) -> impl Iterator<Item = PlateauRow> + 'a {
-    found.plateaus.iter().map(move |p| PlateauRow {
+    segmented.plateaus.iter().map(move |p| PlateauRow {
         series: number.to_string(),
         substrate: series.substrate,
         pins: series.pins.clone(),
@@ -213,15 +198,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn logs_that_cannot_be_read_and_runs_without_plateaus_are_refused() {
+    fn unreadable_and_empty_runs_are_refused() {
         let text = "[rig]\nwrap_angle_deg=90\nsample_rate_hz=200.0\nhook_mass_g=0\nstroke_mm=100\non_s=0.5\ndwell_s=3.0\n\
                     [[series]]\nfile=\"a.csv\"\nsubstrate=\"plain\"\npins=[]\nload_mass_g=100\nspeed_pct=47\nsweep=\"up\"\n";
-        let lost = segment_run(text, "run.toml", |file| Err::<Vec<u8>, _>(format!("{file} is lost")));
-        assert_eq!(lost, Err(SegmentationError::Read("a.csv is lost".to_owned())));
+        let lost = segment_run(text, "run.toml", |_| Err::<Vec<u8>, _>(std::io::Error::other("disk full")));
+        assert_eq!(lost.unwrap_err().to_string(), "a.csv: disk full");
         let still: String = (0..200).fold("time_s,force_N,position_mm,power_W\n".to_owned(), |text, i| {
             text + &format!("{},1,0,0\n", f64::from(i) * 0.005)
         });
-        let none = segment_run(text, "run.toml", |_| Ok::<_, String>(still.clone().into_bytes()));
-        assert_eq!(none, Err(SegmentationError::NoPlateau { file: "run.toml".to_owned() }));
+        let none = segment_run(text, "run.toml", |_| Ok::<_, std::io::Error>(still.clone().into_bytes()));
+        assert!(none.unwrap_err().to_string().starts_with("run.toml: no log contains a plateau"));
     }
 }

@@ -1,41 +1,14 @@
-//! `run.toml`: the rig and the series of a raw run.
+//! Description of a raw run (`run.toml`): the rig and the series.
 
-use pinswitch_diagnostic::excerpt;
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::{Substrate, published};
 use serde::Deserialize;
-use toml::de::DeTable;
 
 use crate::table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG, Sweep};
-use crate::toml_text::toml_error;
+use crate::toml_text::{field_location, toml_error};
 
-/// Why a run description cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RunPlanError {
-    /// The text is no such TOML.
-    #[error("{file}: {}; model/doc/file-formats.md shows the form", excerpt(problem, 300))]
-    Malformed {
-        /// File name as given, with the line.
-        file: String,
-        /// What is wrong.
-        problem: String,
-    },
-    /// A value is out of bounds.
-    #[error(
-        "{file}: {field} = {} is outside {bound}; give a value within, as model/doc/file-formats.md shows",
-        excerpt(value, 120)
-    )]
-    Bound {
-        /// File name as given, with the line.
-        file: String,
-        /// Field.
-        field: String,
-        /// Value found.
-        value: String,
-        /// What is allowed.
-        bound: &'static str,
-    },
-}
+/// Advice for every invalid run description.
+const HELP: &str = "see model/doc/file-formats.md, or start from `pinswitch init run`";
 
 /// The rig of a run.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -48,23 +21,23 @@ pub struct Rig {
     pub hook_mass_g: f64,
     /// Stroke in millimetres.
     pub stroke_mm: f64,
-    /// Seconds that the actuator runs for one repetition.
+    /// Time in seconds for which the actuator runs in one repetition.
     pub on_s: f64,
-    /// Seconds that it rests afterwards.
+    /// Time in seconds for which it rests afterwards.
     pub dwell_s: f64,
 }
 
 /// One log of a run.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct SeriesPlan {
-    /// The log's file name, beside the run description.
+    /// File name of the log, relative to the run description.
     pub file: String,
-    /// What the tendon lies on; `None` for `plain`.
+    /// What the tendon touches; `None` for `plain`.
     #[serde(with = "crate::table::substrate_word")]
     pub substrate: Option<Substrate>,
     /// Occupied grooves.
     pub pins: Vec<usize>,
-    /// The weight in grams, without the hook.
+    /// Mass of the weight in grams, without the hook.
     pub load_mass_g: f64,
     /// Actuator speed in percent.
     pub speed_pct: f64,
@@ -73,7 +46,7 @@ pub struct SeriesPlan {
 }
 
 impl SeriesPlan {
-    /// The load in newtons, hook included.
+    /// Returns the load in newtons, including the hook.
     pub fn load_n(&self, rig: &Rig) -> f64 {
         (self.load_mass_g + rig.hook_mass_g) * 1e-3 * published::GRAVITY_M_S2
     }
@@ -84,23 +57,20 @@ impl SeriesPlan {
 pub struct RunPlan {
     /// The rig.
     pub rig: Rig,
-    /// Its logs, in the order in which they were recorded.
+    /// The logs, in the order in which they were recorded.
     pub series: Vec<SeriesPlan>,
 }
 
 impl RunPlan {
-    /// Reads a run description. `file` is the name used in errors.
+    /// Parses a run description. `file` is its name in errors.
     ///
     /// # Errors
-    /// [`RunPlanError`] at the first value that cannot be used.
-    pub fn parse(text: &str, file: &str) -> Result<Self, RunPlanError> {
-        let plan: Self = toml::from_str(text).map_err(|e| {
-            let (file, problem) = toml_error(file, text, &e);
-            RunPlanError::Malformed { file, problem }
-        })?;
-        let refuse = |field: String, value: String, bound| {
-            let line = line_of(text, &field).map_or_else(String::new, |line| format!(":{line}"));
-            Err(RunPlanError::Bound { file: format!("{file}{line}"), field, value, bound })
+    /// A [`Diagnostic`] of the first invalid value.
+    pub fn parse(text: &str, file: &str) -> Result<Self, Diagnostic> {
+        let plan: Self = toml::from_str(text).map_err(|e| toml_error(file, text, &e).with_help(HELP))?;
+        let refuse = |field: String, value: String, bound: &str| {
+            let location = field_location(file, text, &field).with_field(field, value);
+            Err(Diagnostic::new(bound).with_location(location).with_help(HELP))
         };
         let r = &plan.rig;
         for (field, value) in [
@@ -110,60 +80,50 @@ impl RunPlan {
             ("rig.dwell_s", r.dwell_s),
         ] {
             if !(value > 0.0 && value <= 1e5) {
-                return refuse(field.to_owned(), value.to_string(), "0 < value <= 100000");
+                return refuse(field.to_owned(), value.to_string(), "not above 0 and up to 100000");
             }
         }
         if !(MIN_WRAP_DEG..=MAX_WRAP_DEG).contains(&r.wrap_angle_deg) {
-            return refuse("rig.wrap_angle_deg".to_owned(), r.wrap_angle_deg.to_string(), "1..720 degrees");
+            return refuse(
+                "rig.wrap_angle_deg".to_owned(),
+                r.wrap_angle_deg.to_string(),
+                "outside 1 to 720 degrees",
+            );
         }
         if !(r.hook_mass_g >= 0.0 && r.hook_mass_g.is_finite()) {
-            return refuse("rig.hook_mass_g".to_owned(), r.hook_mass_g.to_string(), "value >= 0");
+            return refuse(
+                "rig.hook_mass_g".to_owned(),
+                r.hook_mass_g.to_string(),
+                "not a mass of at least 0",
+            );
         }
         if plan.series.is_empty() {
-            return refuse("series".to_owned(), "[]".to_owned(), "at least one [[series]]");
+            return refuse("series".to_owned(), "[]".to_owned(), "at least one [[series]] is needed");
         }
         for (i, s) in plan.series.iter().enumerate() {
-            let field = |name: &str| format!("series {}: {name}", i + 1);
+            let field = |name: &str| format!("series[{i}].{name}");
             if !(s.load_mass_g >= 0.0 && s.load_mass_g.is_finite()) {
-                return refuse(field("load_mass_g"), s.load_mass_g.to_string(), "value >= 0");
+                return refuse(field("load_mass_g"), s.load_mass_g.to_string(), "not a mass of at least 0");
             }
             if !(0.0..=MAX_PERCENT).contains(&s.speed_pct) {
-                return refuse(field("speed_pct"), s.speed_pct.to_string(), "0..1000000");
+                return refuse(field("speed_pct"), s.speed_pct.to_string(), "outside 0 to 1000000");
             }
             if s.pins.iter().any(|p| !(1..=published::GROOVES).contains(p)) {
-                return refuse(field("pins"), format!("{:?}", s.pins), "grooves 1..15");
+                return refuse(field("pins"), format!("{:?}", s.pins), "a groove is outside 1..15");
             }
             if s.pins.iter().enumerate().any(|(i, pin)| s.pins[..i].contains(pin)) {
-                return refuse(field("pins"), format!("{:?}", s.pins), "grooves named once each");
+                return refuse(field("pins"), format!("{:?}", s.pins), "a groove is listed twice");
             }
             if s.load_n(r) > MAX_N {
                 let grams = s.load_mass_g.to_string();
-                return refuse(field("load_mass_g"), grams, "what weighs 100000 N with the hook");
+                return refuse(field("load_mass_g"), grams, "above 100000 N together with the hook");
             }
             if s.substrate == Some(Substrate::Abs) && s.pins.is_empty() {
-                return refuse(field("pins"), "[]".to_owned(), "at least one groove on abs");
+                return refuse(field("pins"), "[]".to_owned(), "abs needs at least one groove");
             }
         }
         Ok(plan)
     }
-}
-
-/// The line of a field as errors name it, `rig.on_s` or `series 2: pins`, from 1.
-fn line_of(text: &str, field: &str) -> Option<usize> {
-    let document = DeTable::parse(text).ok()?;
-    let document = document.get_ref();
-    let value = match field.split_once(": ") {
-        Some((series, key)) => {
-            let number: usize = series.strip_prefix("series ")?.parse().ok()?;
-            let all = document.get("series")?.get_ref().as_array()?;
-            all.get(number.checked_sub(1)?)?.get_ref().as_table()?.get(key)?
-        }
-        None => match field.split_once('.') {
-            Some((table, key)) => document.get(table)?.get_ref().as_table()?.get(key)?,
-            None => document.get(field)?,
-        },
-    };
-    Some(1 + text.get(..value.span().start)?.matches('\n').count())
 }
 
 #[cfg(test)]
@@ -180,20 +140,25 @@ mod tests {
     }
 
     #[test]
-    fn unusable_values_are_named() {
+    fn errors_locate_invalid_values() {
         for (from, to, expected) in [
-            ("rate_hz=200.0", "rate_hz=nan", "run.toml:3: rig.sample_rate_hz = NaN is outside 0 < value"),
-            ("on_s=0.5", "on_s=-1.0", "rig.on_s"),
-            ("deg=63.89", "deg=0.0", "rig.wrap_angle_deg = 0 is outside 1..720"),
-            ("load_mass_g=251.2", "load_mass_g=-2.0", "run.toml:12: series 1: load_mass_g"),
-            ("\"silicone\"", "\"abs\"", "series 1: pins"),
-            ("pins=[]", "pins=[99]", "grooves 1..15"),
-            ("pins=[]", "pins=[5, 5]", "once each"),
-            ("load_mass_g=251.2", "load_mass_g=1e9", "series 1: load_mass_g = 1000000000 is outside"),
-            ("speed_pct=47", "speed_pct=1e9", "series 1: speed_pct"),
+            ("rate_hz=200.0", "rate_hz=nan", "run.toml:3:16: rig.sample_rate_hz = NaN: not above 0"),
+            ("on_s=0.5", "on_s=-1.0", "rig.on_s = -1: not above 0"),
+            ("deg=63.89", "deg=0.0", "rig.wrap_angle_deg = 0: outside 1 to 720"),
+            (
+                "load_mass_g=251.2",
+                "load_mass_g=-2.0",
+                "run.toml:12:13: series[0].load_mass_g = -2: not a mass",
+            ),
+            ("\"silicone\"", "\"abs\"", "series[0].pins = []: abs needs"),
+            ("pins=[]", "pins=[99]", "series[0].pins = [99]: a groove is outside 1..15"),
+            ("pins=[]", "pins=[5, 5]", "series[0].pins = [5, 5]: a groove is listed twice"),
+            ("load_mass_g=251.2", "load_mass_g=1e9", "series[0].load_mass_g = 1000000000: above 100000 N"),
+            ("speed_pct=47", "speed_pct=1e9", "series[0].speed_pct = 1000000000: outside"),
         ] {
             let text = format!("{RIG}{SERIES}").replacen(from, to, 1);
-            assert!(RunPlan::parse(&text, "run.toml").unwrap_err().to_string().contains(expected));
+            let error = RunPlan::parse(&text, "run.toml").unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
         }
         assert!(RunPlan::parse(RIG, "run.toml").is_err());
     }

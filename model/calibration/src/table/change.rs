@@ -1,10 +1,10 @@
-//! Constants of the switch that some sessions, or some specimens, have otherwise than the latest one.
+//! Constants of the switch that differ between sessions or specimens.
 
 use serde::{Deserialize, Serialize};
 
 use super::frame::{Frame, Point};
 
-/// A constant that another specimen may have otherwise.
+/// A constant that may differ between specimens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Changing {
     /// Friction coefficient of the pins.
@@ -13,13 +13,13 @@ pub enum Changing {
     /// Friction coefficient of the silicone, or of a `plain` contact.
     #[serde(rename = "mu_s")]
     Silicone,
-    /// Load in newtons at which the layouts have half switched, all by one factor.
+    /// Threshold in newtons; one factor applies to all layouts.
     #[serde(rename = "F_half")]
     HalfLoad,
 }
 
 impl Changing {
-    /// The word in reports and model files.
+    /// Returns the word used in reports and model files.
     pub fn as_str(self) -> &'static str {
         match self {
             Changing::Pins => "mu_p",
@@ -28,7 +28,7 @@ impl Changing {
         }
     }
 
-    /// Whether some condition of a frame depends on it.
+    /// Returns whether a condition of the frame depends on the constant.
     fn acts_in(self, frame: &Frame) -> bool {
         frame.conditions.iter().any(|c| match self {
             Changing::Pins => c.has_pins(),
@@ -38,7 +38,7 @@ impl Changing {
     }
 }
 
-/// What tells the rows apart that a constant differs between.
+/// Grouping of rows between which a constant may differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Grouping {
@@ -49,7 +49,7 @@ pub enum Grouping {
 }
 
 impl Grouping {
-    /// The word in reports.
+    /// Returns the word used in reports.
     pub fn as_str(self) -> &'static str {
         match self {
             Grouping::Session => "session",
@@ -58,22 +58,22 @@ impl Grouping {
     }
 }
 
-/// A constant that some groups have otherwise, by one factor.
+/// A constant that differs in some groups from the last one, by a common factor.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
-    /// What differs.
+    /// The constant.
     pub constant: Changing,
-    /// Between what.
+    /// The grouping.
     pub by: Grouping,
-    /// The groups that have it otherwise, as places in [`Frame::sessions`] or [`Frame::specimens`]. The last group is
-    /// none of them: what is predicted is the switch as it is now.
+    /// Groups with the other value, as indices into [`Frame::sessions`] or [`Frame::specimens`].
+    /// The last group is never among them, since predictions are for the current switch.
     pub groups: Vec<usize>,
 }
 
 impl Change {
-    /// Whether a row has the constant otherwise.
-    pub(crate) fn holds(&self, point: &Point) -> bool {
+    /// Returns whether a row belongs to a group with the other value.
+    pub(crate) fn applies_to(&self, point: &Point) -> bool {
         let group = match self.by {
             Grouping::Session => point.session_group,
             Grouping::Specimen => point.specimen_group,
@@ -82,13 +82,13 @@ impl Change {
     }
 }
 
-/// Groups beyond which only the stretches from the first one on are tried.
+/// Most groups for which a change of each single group is tried.
 const MOST_ALONE: usize = 8;
-/// Stretches that are tried: of more groups, some ends only.
+/// Most change points that are tried; with more groups, only every n-th.
 const MOST_STRETCHES: usize = 24;
 
 impl Frame {
-    /// Names of the groups of one kind.
+    /// Returns the names of the groups of a grouping.
     pub fn groups_by(&self, by: Grouping) -> &[String] {
         match by {
             Grouping::Session => &self.sessions,
@@ -96,10 +96,10 @@ impl Frame {
         }
     }
 
-    /// The changes that a table of these sessions and specimens could show: of all groups up to one of them, or of one
-    /// alone.
+    /// Returns the changes that the table could show: of all groups up to a change point, or of one
+    /// group alone.
     pub(crate) fn possible_changes(&self) -> Vec<Change> {
-        let mut found = Vec::new();
+        let mut changes = Vec::new();
         for by in [Grouping::Specimen, Grouping::Session] {
             let count = self.groups_by(by).len();
             let stride = count.div_ceil(MOST_STRETCHES).max(1);
@@ -109,12 +109,12 @@ impl Frame {
                 for constant in [Changing::Silicone, Changing::Pins, Changing::HalfLoad] {
                     let change = Change { constant, by, groups: groups.clone() };
                     if constant.acts_in(self) && !self.changes.contains(&change) {
-                        found.push(change);
+                        changes.push(change);
                     }
                 }
             }
         }
-        found
+        changes
     }
 }
 
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn one_session_has_nothing_to_differ_from() {
+    fn one_session_allows_no_change() {
         assert!(frame(1).possible_changes().is_empty());
         assert_eq!(frame(2).possible_changes().len(), 3, "three constants of the first session");
         let of = |groups: &[usize]| frame(3).possible_changes().iter().filter(|c| c.groups == groups).count();
@@ -142,14 +142,14 @@ mod tests {
     }
 
     #[test]
-    fn a_session_that_the_frame_does_not_know_is_like_the_latest() {
+    fn unknown_sessions_count_as_the_latest() {
         let frame = frame(2);
         let change = Change { constant: Changing::Silicone, by: Grouping::Session, groups: vec![0] };
         let mut rows = session(1);
         rows.truncate(2);
-        for (label, holds) in [("day 0", true), ("day 1", false), ("", false), ("day 7", false)] {
+        for (label, applies) in [("day 0", true), ("day 1", false), ("", false), ("day 7", false)] {
             rows.iter_mut().for_each(|r| r.labels.session = label.to_owned());
-            assert_eq!(change.holds(&frame.points(&rows).unwrap()[0]), holds, "{label}");
+            assert_eq!(change.applies_to(&frame.points(&rows).unwrap()[0]), applies, "{label}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The columns of a plateau table.
 
-/// The columns a table must have, in the order in which they are written.
+/// Required columns, in the order in which they are written.
 pub(super) const COLUMNS: [&str; 13] = [
     "series",
     "substrate",
@@ -17,13 +17,13 @@ pub(super) const COLUMNS: [&str; 13] = [
     "force_N",
 ];
 
-/// Optional: the wrap angle in degrees, where a rig has another one than the paper's.
+/// Optional column: wrap angle in degrees where it differs from the paper's.
 pub(super) const WRAP_ANGLE: &str = "wrap_angle_deg";
 
-/// Optional: groupings with a scatter of their own.
+/// Optional columns: groupings of the rows for random effects.
 pub(super) const LABELS: [&str; 4] = ["session", "mount", "operator", "specimen"];
 
-/// Name of a column by its place: those of [`COLUMNS`], then the optional one.
+/// Returns the name of a column by its index: those of [`COLUMNS`], then [`WRAP_ANGLE`].
 pub(super) fn column_name(index: usize) -> &'static str {
     COLUMNS.get(index).copied().unwrap_or(WRAP_ANGLE)
 }

@@ -1,4 +1,4 @@
-//! Whether readings follow the loads, condition by condition: by how much a reading changes for each newton of load.
+//! Check that readings follow loads: slope and rank correlation in each condition.
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -10,54 +10,56 @@ use super::substrate_word::substrate_word;
 use crate::aliasing::rank_correlation;
 use crate::median::median;
 
-/// Newtons of reading per newton of load that friction over the paper's wrap, drags and offsets may leave.
+/// Plausible slopes in newtons of reading per newton of load, for friction over the paper's wrap,
+/// drags and offsets.
 pub(super) const FOLLOWS: RangeInclusive<f64> = 0.2..=5.0;
-/// Wrap in radians that is assumed of `plain`, whose wrap is unknown: one turn.
+/// Assumed wrap in radians of a `plain` contact, whose wrap is unknown: one revolution.
 const UNKNOWN_WRAP: f64 = std::f64::consts::TAU;
-/// Growth of the bounds' logarithm per radian of wrap beyond the paper's: a friction coefficient that is rarely reached.
+/// Growth of the logarithm of the bounds per radian of wrap beyond the paper's: a friction
+/// coefficient that is rarely exceeded.
 const PER_RADIAN: f64 = 0.4;
 
-/// Widening of the bounds beyond which an eccentric course alone does not tell.
+/// Widening of the bounds beyond which eccentric readings alone are not conclusive.
 const WIDE: f64 = 3.0;
-/// Ratio of a condition's heaviest load to its lightest below which it has one load.
+/// Ratio of the largest to the smallest load below which a condition counts as having one load.
 const ONE_LOAD: f64 = 1.02;
-/// Rank correlation below which readings have nothing to do with loads, whatever the slope.
+/// Rank correlation below which readings count as unrelated to loads, whatever the slope.
 const UNRELATED: f64 = 0.5;
 
-/// How a table's readings go with its loads.
+/// Relation of a table's readings to its loads.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Following {
-    /// Conditions whose loads differ enough to tell.
+    /// Number of conditions whose loads vary enough to judge.
     pub(super) judged: usize,
-    /// Those of them whose readings follow the loads in neither direction.
+    /// Number of judged conditions whose readings follow the loads in neither direction.
     pub(super) astray: usize,
-    /// Median change of the reading per newton of load over those astray.
+    /// Median slope over the conditions that do not follow.
     pub(super) slope: f64,
-    /// Median over the conditions of the rank correlation of readings and loads.
+    /// Median over all judged conditions of the rank correlation of readings and loads.
     pub(super) correlation: f64,
-    /// Smallest and largest change that is possible, over the wraps of the table.
+    /// Plausible slopes, over the wraps of the table.
     pub(super) bounds: RangeInclusive<f64>,
 }
 
 impl Following {
-    /// Of `force` over `load`, which need not be the columns of that name.
+    /// Relates `force` to `load`; these need not be the columns of those names.
     pub(super) fn new(
         rows: &[PlateauRow],
         load: impl Fn(&PlateauRow) -> f64,
         force: impl Fn(&PlateauRow) -> f64,
     ) -> Self {
-        let course =
-            |of: &[&PlateauRow]| Course { directions: directions(of, &load, &force), widening: widening(of) };
-        let told: Vec<Course> =
-            conditions(rows).iter().map(|of| course(of)).filter(Course::can_tell).collect();
-        let told = if told.is_empty() { across(rows, &load, &course) } else { told };
-        let widest = told.iter().map(|course| course.widening).fold(1.0, f64::max);
-        let astray = told.iter().filter(|course| !course.is_possible());
+        let trend =
+            |of: &[&PlateauRow]| Trend { directions: directions(of, &load, &force), widening: widening(of) };
+        let judged: Vec<Trend> =
+            conditions(rows).iter().map(|of| trend(of)).filter(Trend::is_conclusive).collect();
+        let judged = if judged.is_empty() { across(rows, &load, &trend) } else { judged };
+        let widest = judged.iter().map(|trend| trend.widening).fold(1.0, f64::max);
+        let astray = judged.iter().filter(|trend| !trend.is_possible());
         let mut slopes: Vec<f64> =
-            astray.filter_map(|course| course.directions.first()).map(|d| d.slope).collect();
-        let mut correlations: Vec<f64> = told.iter().map(Course::correlation).collect();
+            astray.filter_map(|trend| trend.directions.first()).map(|d| d.slope).collect();
+        let mut correlations: Vec<f64> = judged.iter().map(Trend::correlation).collect();
         Self {
-            judged: told.len(),
+            judged: judged.len(),
             astray: slopes.len(),
             slope: median(&mut slopes),
             correlation: median(&mut correlations),
@@ -65,30 +67,31 @@ impl Following {
         }
     }
 
-    /// Whether most conditions do not follow: one that does not may be a bad run, which is the fit's to find.
+    /// Returns whether most conditions do not follow. A single one may be a bad run, which the fit
+    /// detects.
     pub(super) fn is_astray(&self) -> bool {
         2 * self.astray > self.judged
     }
 }
 
-/// Rows by condition.
+/// Groups rows by condition.
 pub(super) fn conditions(rows: &[PlateauRow]) -> Vec<Vec<&PlateauRow>> {
     let mut found: BTreeMap<(&str, &[usize], u64), Vec<&PlateauRow>> = BTreeMap::new();
     for row in rows {
-        // The wrap of `plain` has no meaning.
+        // The wrap angle of `plain` is meaningless.
         let wrap = row.substrate.map_or(0, |_| row.wrap_angle_deg.to_bits());
         found.entry((substrate_word(row.substrate), &row.pins, wrap)).or_default().push(row);
     }
     found.into_values().collect()
 }
 
-/// The table as a whole, which can tell where every condition has one load only: if those differ by more than the
-/// friction of the conditions may.
+/// Judges the table as a whole where every condition has one load only: possible if the loads
+/// differ by more than the friction of the conditions can.
 fn across(
     rows: &[PlateauRow],
     load: &impl Fn(&PlateauRow) -> f64,
-    course: &impl Fn(&[&PlateauRow]) -> Course,
-) -> Vec<Course> {
+    trend: &impl Fn(&[&PlateauRow]) -> Trend,
+) -> Vec<Trend> {
     let ratio = |of: &[&PlateauRow]| {
         let loads = of.iter().map(|r| load(r)).filter(|n| *n > 0.0);
         let (least, most) = loads.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), n| (a.min(n), b.max(n)));
@@ -97,31 +100,32 @@ fn across(
     let all: Vec<&PlateauRow> = rows.iter().collect();
     let friction = libm::exp(PER_RADIAN * largest_wrap_rad(&all));
     let one_load = conditions(rows).iter().all(|of| ratio(of) < ONE_LOAD);
-    Some(course(&all))
-        .filter(|whole| one_load && ratio(&all) > friction && whole.can_tell())
+    Some(trend(&all))
+        .filter(|whole| one_load && ratio(&all) > friction && whole.is_conclusive())
         .into_iter()
         .collect()
 }
 
-/// Largest wrap of some rows, in radians.
+/// Returns the largest wrap of some rows in radians.
 fn largest_wrap_rad(rows: &[&PlateauRow]) -> f64 {
     let wrap = |r: &&PlateauRow| r.substrate.map_or(UNKNOWN_WRAP, |_| r.wrap_angle_deg.to_radians());
     rows.iter().map(wrap).fold(0.0, f64::max)
 }
 
-/// Factor by which a wrap beyond the paper's widens the bounds.
+/// Returns the factor by which a wrap beyond the paper's widens the bounds.
 fn widening(rows: &[&PlateauRow]) -> f64 {
     libm::exp(PER_RADIAN * (largest_wrap_rad(rows) - published::wrap_angle_rad()).max(0.0))
 }
 
-/// How readings go with loads in one condition.
-struct Course {
+/// Trend of readings over loads in one condition.
+struct Trend {
     directions: Vec<Along>,
     widening: f64,
 }
 
-impl Course {
-    /// Whether either direction follows. Friction takes from the eccentric slope and adds to the concentric one.
+impl Trend {
+    /// Returns whether either direction follows. Friction lowers the eccentric slope and raises the
+    /// concentric one.
     fn is_possible(&self) -> bool {
         self.directions.iter().any(|along| {
             let (least, most) = match along.direction {
@@ -132,28 +136,29 @@ impl Course {
         })
     }
 
-    /// Whether it can tell: around a wide wrap so little is left of an eccentric load that readings need not follow.
-    fn can_tell(&self) -> bool {
+    /// Returns whether the trend is conclusive: around a wide wrap so little of an eccentric load
+    /// is left that readings need not follow it.
+    fn is_conclusive(&self) -> bool {
         let narrow = self.widening < WIDE;
         self.directions.iter().any(|along| narrow || along.direction == Direction::Concentric)
     }
 
-    /// The better of its correlations.
+    /// Returns the larger of the correlations of both directions.
     fn correlation(&self) -> f64 {
         self.directions.iter().map(|d| d.correlation).fold(-1.0, f64::max)
     }
 }
 
-/// How readings go with loads in one direction.
+/// Trend of readings over loads in one direction.
 struct Along {
     direction: Direction,
-    /// Change per newton of load, from the medians of the lightest and the heaviest quarter.
+    /// Slope between the medians of the lightest and the heaviest quarter, in newtons per newton.
     slope: f64,
     /// Rank correlation.
     correlation: f64,
 }
 
-/// `force` along `load` in each direction that can tell.
+/// Returns the trend of `force` over `load` in each direction whose loads vary enough.
 fn directions(
     rows: &[&PlateauRow],
     load: &impl Fn(&PlateauRow) -> f64,
@@ -168,13 +173,13 @@ fn directions(
         .collect()
 }
 
-/// Change of the reading per newton of load in one direction; `None` if the loads are too alike to tell.
+/// Returns the slope in one direction in newtons per newton; `None` if the loads vary too little.
 pub(super) fn slope(direction: Direction, rows: &[&PlateauRow]) -> Option<f64> {
     let of = rows.iter().filter(|r| r.direction == direction);
     Some(along(direction, of.map(|r| (r.load_n, r.force_n)).collect())?.slope)
 }
 
-/// `None` if the loads are too alike to tell.
+/// Returns `None` if the loads vary too little.
 fn along(direction: Direction, mut pairs: Vec<(f64, f64)>) -> Option<Along> {
     sort_by_number(&mut pairs, |(load_n, _)| *load_n);
     let quarter = pairs.len().div_ceil(4);
@@ -202,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn one_condition_that_ignores_its_loads_is_the_fits_and_most_are_the_tables() {
+    fn only_a_majority_astray_is_refused() {
         let mut rows = session(1);
         assert_eq!((of(&rows).judged, of(&rows).astray), (5, 0));
         rows.iter_mut().filter(|r| r.pins.is_empty()).for_each(|r| r.force_n = 7.0);
@@ -212,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn one_load_for_each_condition_tells_over_the_table_unless_friction_may_be_what_differs() {
+    fn single_loads_are_judged_across_conditions() {
         let all = session(1);
         let layouts: Vec<Vec<usize>> = conditions(&all).iter().map(|of| of[0].pins.clone()).collect();
         let with = |step: f64| {
@@ -232,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn two_turns_of_wrap_are_possible_though_each_direction_alone_looks_wrong() {
+    fn two_revolutions_of_wrap_are_possible() {
         let mut rows = session(1);
         for row in &mut rows {
             row.wrap_angle_deg = 720.0;

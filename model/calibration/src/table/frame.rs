@@ -1,4 +1,4 @@
-//! What a session as a whole fixes: conditions, reference values, and the covariates of a row in scaled form.
+//! Quantities of a whole session: conditions, reference values, and scaled covariates of rows.
 
 use std::collections::BTreeMap;
 
@@ -9,29 +9,31 @@ use super::change::Change;
 use super::row::{Labels, PlateauRow, Sweep};
 use super::substrate_word::substrate_word;
 
-/// One kind of contact in a table: substrate and pins.
+/// A condition: substrate and pins.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
-    /// What the tendon lies on; `None` for `plain`.
+    /// What the tendon touches; `None` for `plain`.
     #[serde(rename = "surface", with = "super::substrate_word")]
     pub substrate: Option<Substrate>,
     /// Occupied grooves, ascending.
     pub pins: Vec<usize>,
-    /// Position in the list of device layouts (pins on silicone), for those that switch.
+    /// Index among the devices (pins on silicone); `None` for other conditions.
     pub device: Option<usize>,
     /// Wrap angle in radians; 1 for `plain`, whose exponent is free.
     pub wrap_rad: f64,
     /// Weight `w = n/30` of eq. 4 (`model/doc/friction-laws.md`).
     pub weight: f64,
-    /// Mean turn of the tendon at one pin in radians, `a/n`; zero without pins.
+    /// Mean deflection angle of the tendon at a pin in radians, `a/n`; zero without pins.
     pub turn_rad: f64,
-    /// `sum theta_i^1.5` over the pins in rad^1.5 (`model/doc/friction-laws.md`); zero without pins.
+    /// `sum theta_i^1.5` over the pins in rad^1.5 (`model/doc/friction-laws.md`); zero without
+    /// pins.
     pub ploughing: f64,
 }
 
 impl Condition {
-    /// How unevenly the tendon turns at the pins: the mean of `theta_i^1.5` over that of equal turns. 1 where all are equal,
-    /// zero without pins. It tells layouts of equally many pins apart.
+    /// Returns the unevenness of the deflection angles: the mean of `theta_i^1.5` over that of
+    /// equal angles. It is 1 if all are equal, zero without pins, and distinguishes layouts with
+    /// equal numbers of pins.
     pub fn turn_unevenness(&self) -> f64 {
         let n = self.pins.len() as f64;
         if self.turn_rad > 0.0 { self.ploughing / (n * libm::pow(self.turn_rad, 1.5)) } else { 0.0 }
@@ -57,25 +59,27 @@ impl Condition {
         }
     }
 
-    /// `sum theta_i^1.5` over occupied grooves within a wrap in radians (`model/doc/friction-laws.md`).
+    /// Returns `sum theta_i^1.5` over occupied grooves within a wrap in radians
+    /// (`model/doc/friction-laws.md`).
     pub(crate) fn ploughing_sum(pins: &[usize], wrap: f64) -> f64 {
         let pitch: Vec<f64> = pins
             .windows(2)
             .map(|w| (w[1] - w[0]) as f64 * published::GROOVE_PITCH_DEG.to_radians())
             .collect();
-        // Inner pins turn the tendon by half of both neighbouring pitches; the ends take half a pitch and
-        // half of what the pitches leave of the wrap (`model/doc/friction-laws.md`).
+        // Inner pins deflect the tendon by half of both neighbouring pitches; the end pins by half
+        // a pitch and half of the wrap that the pitches leave (`model/doc/friction-laws.md`).
         let outside = (wrap - pitch.iter().sum::<f64>()).max(0.0) / 2.0;
         let half = |i: Option<usize>| i.and_then(|i| pitch.get(i)).map_or(outside, |p| p / 2.0);
         (0..pins.len()).map(|i| libm::pow(half(i.checked_sub(1)) + half(Some(i)), 1.5)).sum()
     }
 
-    /// A name for people: `silicone`, `abs 5;8;11`, `silicone 5;8;11 at 90 deg`.
+    /// Returns the name: `silicone`, `abs 5;8;11`, `silicone 5;8;11 at 90 deg`.
     pub fn name(&self) -> String {
         format!("{} {}", substrate_word(self.substrate), self.layout()).trim_end().to_owned()
     }
 
-    /// Its pins and, where it is not the published one, its wrap angle: `5;8;11`, `5;8;11 at 90 deg`.
+    /// Returns the pins, and the wrap angle where it is not the published one: `5;8;11`, `5;8;11 at
+    /// 90 deg`.
     pub fn layout(&self) -> String {
         let pins: Vec<String> = self.pins.iter().map(usize::to_string).collect();
         let pins = pins.join(";");
@@ -88,36 +92,36 @@ impl Condition {
         }
     }
 
-    /// Whether the tendon touches silicone, or what nobody named.
+    /// Returns whether the tendon touches silicone or an unknown material.
     pub(crate) fn is_silicone_or_plain(&self) -> bool {
         self.substrate != Some(Substrate::Abs)
     }
 
-    /// Whether pins touch the tendon (on `abs` or in a device).
+    /// Returns whether pins touch the tendon (on `abs` or in a device).
     pub fn has_pins(&self) -> bool {
         !self.pins.is_empty() && self.substrate.is_some()
     }
 }
 
-/// Wrap angles closer than this are one, in radians.
+/// Wrap angles in radians closer than this are equal.
 const SAME_WRAP_RAD: f64 = 1e-9;
 
-/// Wrap angle in radians; 1 for `plain`, whose exponent is free.
+/// Returns the wrap angle in radians; 1 for `plain`, whose exponent is free.
 fn wrap_rad(substrate: Option<Substrate>, wrap_angle_deg: f64) -> f64 {
     if substrate.is_none() { 1.0 } else { wrap_angle_deg.to_radians() }
 }
 
-/// Conditions and reference values of a session; a model carries it, so that rows of the same rig can be
-/// predicted later.
+/// Conditions and reference values of a session. A model contains them to predict rows of the same
+/// rig later.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// Length of the stroke in millimetres.
     pub stroke_mm: f64,
-    /// Time of the last reading in seconds: unit of the session's time.
+    /// Time of the last reading in seconds, the unit of the session's time.
     pub session_s: f64,
     /// Geometric mean of the speeds in percent: `v0` of `rate_dependence`.
     pub reference_speed_pct: f64,
-    /// Times in seconds at which the share of repetitions is known, ascending.
+    /// Times in seconds, ascending, at which the share of repetitions is tabulated.
     pub travel_time_s: Vec<f64>,
     /// Share of all repetitions made by those times.
     pub travel_share: Vec<f64>,
@@ -131,15 +135,15 @@ pub struct Frame {
     /// Names of the specimens in order of appearance; empty with fewer than two.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub specimens: Vec<String>,
-    /// Names of the operators in their order; empty with fewer than two.
+    /// Names of the operators in alphabetical order; empty with fewer than two.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub operators: Vec<String>,
-    /// Constants that some of them have otherwise than the last one.
+    /// Constants that differ in some sessions or specimens from the last one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<Change>,
 }
 
-/// A row in the form in which the friction model reads it.
+/// Covariates of a row for the friction model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
     /// Index into [`Frame::conditions`].
@@ -154,7 +158,7 @@ pub struct Point {
     pub log_speed: f64,
     /// `ln(dwell / 3 s)`.
     pub log_dwell: f64,
-    /// Repetition inside a series and direction, from 1.
+    /// Repetition in its series and direction, from 1.
     pub repetition: f64,
     /// Position over stroke, 0..1.
     pub position: f64,
@@ -162,35 +166,35 @@ pub struct Point {
     pub time: f64,
     /// Share of all repetitions made so far, 0..1.
     pub travel: f64,
-    /// Load of the series before in the session, in newtons; for the first one its own.
+    /// Load of the previous series of the session in newtons; its own load for the first series.
     pub previous_load_n: f64,
-    /// Repetitions made in the series so far, both directions counted.
+    /// Repetitions made so far in the series, in both directions.
     pub through: f64,
     /// Whether its series is the first of its session.
     pub begins_session: bool,
-    /// Speed in percent; that of the reference where the table has 0.
+    /// Speed in percent; the reference speed where the table has 0.
     pub speed_pct: f64,
-    /// Pause before the reading in seconds; the published one where the table has 0.
+    /// Pause before the reading in seconds; the published dwell where the table has 0.
     pub dwell_s: f64,
     /// Position in millimetres.
     pub position_mm: f64,
     /// Seconds since the session began.
     pub time_s: f64,
-    /// The session, numbered from 1 in the order of the table.
+    /// Number of the session, from 1 in the order of the table.
     pub session: f64,
-    /// The number of the mount, or its place in the order of the table, from 1.
+    /// Number of the mount, or its position in the order of the table, from 1.
     pub mount: f64,
-    /// The operator, numbered from 1 in the order of [`Frame::operators`]: 1 where there is but one, 0 of one who is not among
-    /// them.
+    /// Number of the operator, from 1 in the order of [`Frame::operators`]; 1 if there is only one
+    /// operator, 0 for an unknown one.
     pub operator: f64,
-    /// Place of its session in [`Frame::sessions`], if it is one of them.
+    /// Index of its session in [`Frame::sessions`], if listed.
     pub session_group: Option<usize>,
-    /// Place of its specimen in [`Frame::specimens`], if it is one of them.
+    /// Index of its specimen in [`Frame::specimens`], if listed.
     pub specimen_group: Option<usize>,
 }
 
 impl Point {
-    /// Whether two rows differ at most in repetition, position and time.
+    /// Returns whether two rows differ at most in repetition, position and time.
     pub(crate) fn is_of_one_setting(&self, other: &Point) -> bool {
         self.condition == other.condition
             && self.load_n == other.load_n
@@ -204,7 +208,7 @@ impl Point {
 }
 
 impl Frame {
-    /// The frame of a table.
+    /// Returns the frame of a table.
     pub fn new(rows: &[PlateauRow]) -> Self {
         let max = |f: fn(&PlateauRow) -> f64| rows.iter().map(f).fold(0.0f64, f64::max);
         let furthest = max(|r| r.position_mm);
@@ -254,12 +258,12 @@ impl Frame {
         }
     }
 
-    /// Number of device layouts.
+    /// Returns the number of devices.
     pub fn devices(&self) -> usize {
         self.conditions.iter().filter(|c| c.device.is_some()).count()
     }
 
-    /// The condition of a row, if the frame has it.
+    /// Returns the index of the condition of a row, if the frame has it.
     pub fn condition_of(&self, row: &PlateauRow) -> Option<usize> {
         let wrap = wrap_rad(row.substrate, row.wrap_angle_deg);
         self.conditions.iter().position(|c| {
@@ -267,12 +271,12 @@ impl Frame {
         })
     }
 
-    /// The rows as points; `None` for the first row whose condition the frame does not have.
+    /// Returns the rows as points; `None` if the frame lacks the condition of a row.
     pub fn points(&self, rows: &[PlateauRow]) -> Option<Vec<Point>> {
         let begins = begins_s(rows, self.session_s);
         let mut points: Vec<Point> =
             rows.iter().map(|row| self.point(row, since(&begins, row))).collect::<Option<_>>()?;
-        // What came before is known by the order of time, whatever the order of the table.
+        // Previous loads follow from the order in time, whatever the order of the table.
         let mut order: Vec<usize> = (0..rows.len()).collect();
         order.sort_by(|a, b| {
             let (a, b) = (&rows[*a], &rows[*b]);
@@ -301,9 +305,9 @@ impl Frame {
         Some(points)
     }
 
-    /// Numbers of the operators of whom each is asked for; none where there is but one.
+    /// Returns the numbers of the operators to analyse; empty if there is only one.
     pub(crate) fn operator_numbers(&self) -> std::ops::RangeInclusive<usize> {
-        /// Operators beyond whom nothing is asked of each.
+        /// Most operators that are analysed individually.
         const MOST: usize = 8;
         1..=self.operators.len().min(MOST)
     }
@@ -342,11 +346,12 @@ impl Frame {
     }
 }
 
-/// Where the clock of each session stood when it began, in seconds: zero, as the format has it, or the time of the first
-/// row where the clock did not begin with the session, such as one that tells the time of day.
+/// Clock time in seconds at the start of each session: zero by default, or the time of the first
+/// row if the clock did not start with the session, such as one that shows the time of day.
 type Begins<'a> = BTreeMap<&'a str, f64>;
 
-/// A clock that stands at more than a whole session when its session begins, or below zero, did not begin with it.
+/// Finds the start of each clock. A clock did not start with its session if it begins below zero or
+/// above the length of a session.
 fn begins_s(rows: &[PlateauRow], session_s: f64) -> Begins<'_> {
     let mut first: Begins<'_> = BTreeMap::new();
     for row in rows {
@@ -361,7 +366,7 @@ fn since(begins: &Begins<'_>, row: &PlateauRow) -> f64 {
     row.time_s - begins.get(row.labels.session.as_str()).copied().unwrap_or(0.0)
 }
 
-/// Length in seconds of the longest session, from where its clock began.
+/// Returns the length in seconds of the longest session, from the start of its clock.
 fn session_length_s(rows: &[PlateauRow]) -> f64 {
     let mut spans: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
     for row in rows {
@@ -369,7 +374,7 @@ fn session_length_s(rows: &[PlateauRow]) -> f64 {
         (*first, *last) = (first.min(row.time_s), last.max(row.time_s));
     }
     let mut longest = spans.values().map(|(first, last)| last - first).fold(1e-9, f64::max);
-    // Each round may let the clock of one session more count as begun with it.
+    // Each iteration may find another session whose clock started with it.
     for _ in 0..=spans.len() {
         let until =
             spans.values().filter(|(first, _)| (0.0..=longest).contains(first)).map(|(_, last)| *last);
@@ -378,7 +383,7 @@ fn session_length_s(rows: &[PlateauRow]) -> f64 {
     longest
 }
 
-/// The labels of some rows in order of appearance; none where all are one.
+/// Returns the labels of some rows in order of appearance; empty if all are equal.
 fn several(rows: &[PlateauRow], label: impl Fn(&Labels) -> &String) -> Vec<String> {
     let (of, count) = groups(rows, |row| label(&row.labels).clone());
     let mut names = vec![String::new(); count];
@@ -388,13 +393,13 @@ fn several(rows: &[PlateauRow], label: impl Fn(&Labels) -> &String) -> Vec<Strin
     if count > 1 { names } else { Vec::new() }
 }
 
-/// In the order of their names, so that a number means the same person in the next table.
+/// Sorts names, so that a number means the same operator in the next table.
 fn sorted(mut names: Vec<String>) -> Vec<String> {
     names.sort();
     names
 }
 
-/// Place of a name among those seen so far, from 1.
+/// Returns the position of a name among those seen so far, from 1.
 fn place_of<'a>(seen: &mut Vec<&'a str>, name: &'a str) -> f64 {
     let place = seen.iter().position(|s| *s == name).unwrap_or_else(|| {
         seen.push(name);
@@ -403,7 +408,7 @@ fn place_of<'a>(seen: &mut Vec<&'a str>, name: &'a str) -> f64 {
     (place + 1) as f64
 }
 
-/// Piecewise linear interpolation with constant ends; `x` ascending.
+/// Interpolates linearly, with constant ends; `x` ascending.
 fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
     let i = x.partition_point(|v| *v <= at);
     match (i.checked_sub(1).and_then(|j| x.get(j).zip(y.get(j))), x.get(i).zip(y.get(i))) {
@@ -414,12 +419,13 @@ fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
     }
 }
 
-/// Groups rows by a key, in order of first appearance: the group of each row, and the number of groups.
+/// Groups rows by a key, in order of first appearance. Returns the group of each row, and the
+/// number of groups.
 pub(crate) fn groups<K: Ord>(rows: &[PlateauRow], key: impl Fn(&PlateauRow) -> K) -> (Vec<usize>, usize) {
     groups_of(rows.len(), |i| key(&rows[i]))
 }
 
-/// The same for the numbers below `count`.
+/// Groups the numbers below `count` by a key.
 pub(crate) fn groups_of<K: Ord>(count: usize, key: impl Fn(usize) -> K) -> (Vec<usize>, usize) {
     let mut seen = BTreeMap::new();
     let of = (0..count)
@@ -435,15 +441,16 @@ pub(crate) fn groups_of<K: Ord>(count: usize, key: impl Fn(usize) -> K) -> (Vec<
 mod tests {
     use super::*;
 
-    /// The turns at all pins sum to the wrap (`model/doc/friction-laws.md`), so that `sum theta^1.5` is bounded by `a
-    /// sqrt(a)`.
+    /// The deflection angles at all pins sum to the wrap (`model/doc/friction-laws.md`), so that
+    /// `sum theta^1.5` is at most `a sqrt(a)`.
     #[test]
-    fn the_three_layouts_have_the_turns_of_the_vector_balance() {
+    fn deflection_angles_satisfy_the_vector_balance() {
         let six =
             Condition::new(Some(Substrate::Abs), &[3, 5, 7, 9, 11, 13], published::WRAP_ANGLE_DEG, None);
         let double = Condition::new(Some(Substrate::Abs), &[5, 8, 11], published::WRAP_ANGLE_DEG, None);
         let single = Condition::new(Some(Substrate::Abs), &[6, 8, 10], published::WRAP_ANGLE_DEG, None);
-        // kappa = 0.0237 gives the pins-only maxima at +2.7 / -2.5 / -0.3 % (`model/doc/friction-laws.md`).
+        // kappa = 0.0237 gives the pins-only maxima at +2.7 / -2.5 / -0.3 %
+        // (`model/doc/friction-laws.md`).
         let load = published::heaviest_load_n();
         let miss = |c: &Condition, published: f64| {
             100.0 * (load * libm::sinh(0.0237 * load.sqrt() * c.ploughing) / published - 1.0)
@@ -454,7 +461,7 @@ mod tests {
     }
 
     #[test]
-    fn another_wrap_angle_is_another_condition_and_says_so() {
+    fn another_wrap_angle_is_another_condition() {
         let silicone = |wrap_angle_deg| Condition::new(Some(Substrate::Silicone), &[], wrap_angle_deg, None);
         assert_eq!(silicone(published::WRAP_ANGLE_DEG).name(), "silicone");
         assert_eq!(silicone(95.0).name(), "silicone at 95 deg");

@@ -1,4 +1,5 @@
-//! Whether a table's two directions hold friction: pulling a load takes more than releasing it.
+//! Check that the two directions differ by friction: pulling a load takes more force than releasing
+//! it.
 
 use pinswitch_friction::{Direction, sort_by_number};
 
@@ -6,54 +7,55 @@ use super::follows::conditions;
 use super::row::PlateauRow;
 use crate::median::median;
 
-/// Loads that differ by less than this share count as one.
+/// Loads that differ by less than this share count as equal.
 const ONE_LOAD: f64 = 0.005;
-/// Share of the load below which friction counts as none, whatever the scatter.
+/// Share of the load below which friction counts as absent, whatever the scatter.
 const NONE: f64 = 0.001;
 /// Share of the load above which friction counts as measured, whatever the scatter.
 const SOME: f64 = 0.01;
-/// Standard errors within which a share is not told from zero.
+/// Number of standard errors within which a share is not significant.
 const ERRORS: f64 = 3.0;
-/// Share of a condition's loads that must be the wrong way round.
+/// Share of a condition's loads whose directions must be swapped for the condition to count.
 const MOST: f64 = 0.75;
 
 /// Friction at one load of one condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gap {
-    /// The load.
+    /// Load in newtons.
     pub(super) load_n: f64,
-    /// Median reading while it is released.
+    /// Median eccentric reading in newtons.
     pub(super) eccentric_n: f64,
-    /// Median reading while it is pulled, between neighbouring loads where there is none at this one.
+    /// Median concentric reading in newtons, interpolated between neighbouring loads where it is
+    /// missing.
     pub(super) concentric_n: f64,
 }
 
 impl Gap {
-    /// Friction as a share of the load: half of what lies between the directions.
+    /// Returns friction as a share of the load: half of the difference between the directions.
     fn share(self) -> f64 {
         0.5 * (self.concentric_n - self.eccentric_n) / self.load_n
     }
 }
 
-/// What the directions of a table say of its friction.
+/// Friction of a table, judged from its directions.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Friction {
-    /// It is there, or the table cannot tell.
+    /// Present, or not decidable from the table.
     Measured,
-    /// In none of so many conditions do the directions differ.
+    /// The directions differ in none of this number of conditions.
     Nowhere(usize),
-    /// In most conditions the load that is pulled reads less than the one released.
+    /// In most conditions the concentric readings are below the eccentric ones.
     Backwards {
-        /// Conditions where it does.
+        /// Number of conditions with swapped directions.
         backwards: usize,
-        /// Conditions with both directions.
+        /// Number of conditions with both directions.
         judged: usize,
-        /// The gap of middle size.
+        /// The gap of median size.
         example: Gap,
     },
 }
 
-/// Looks at the friction of `force` over `load`, which need not be the columns of that name.
+/// Judges the friction of `force` over `load`; these need not be the columns of those names.
 pub(super) fn friction(
     rows: &[PlateauRow],
     load: impl Fn(&PlateauRow) -> f64,
@@ -65,7 +67,8 @@ pub(super) fn friction(
         let (eccentric, concentric) = (course(Direction::Eccentric), course(Direction::Concentric));
         let gaps = gaps(&eccentric, &concentric);
         if gaps.is_empty() {
-            // With one direction, offsets may hide friction: only a copy of the loads holds none.
+            // With one direction, offsets may hide friction: only an exact copy of the loads shows
+            // none.
             let mut readings = eccentric.iter().chain(&concentric).peekable();
             if readings.peek().is_some() {
                 none.push(readings.all(|(load, reading)| (reading / load - 1.0).abs() < NONE));
@@ -92,7 +95,7 @@ pub(super) fn friction(
     }
 }
 
-/// Median readings over the loads above zero in one direction, by rising load.
+/// Returns the median reading at each load above zero in one direction, by ascending load.
 fn course(
     rows: &[&PlateauRow],
     direction: Direction,
@@ -112,7 +115,7 @@ fn course(
         .collect()
 }
 
-/// Gaps at the loads released that lie among the loads pulled.
+/// Returns the gaps at the eccentric loads within the range of the concentric ones.
 fn gaps(eccentric: &[(f64, f64)], concentric: &[(f64, f64)]) -> Vec<Gap> {
     eccentric
         .iter()
@@ -130,7 +133,7 @@ fn gaps(eccentric: &[(f64, f64)], concentric: &[(f64, f64)]) -> Vec<Gap> {
         .collect()
 }
 
-/// Standard error of the middle of some shares.
+/// Returns the standard error of the mean of some shares.
 fn standard_error(shares: &[f64]) -> f64 {
     let n = shares.len() as f64;
     let mean = shares.iter().sum::<f64>() / n;
@@ -138,13 +141,14 @@ fn standard_error(shares: &[f64]) -> f64 {
     if shares.len() < 2 { 0.0 } else { (squares / (n - 1.0) / n).sqrt() }
 }
 
-/// Whether the middle of some shares is not told from zero, and small.
+/// Returns whether the median share is small and not significantly different from zero.
 fn is_none(shares: &[f64]) -> bool {
     let middle = median(&mut shares.to_vec());
     middle.abs() < (ERRORS * standard_error(shares)).clamp(NONE, SOME)
 }
 
-/// Whether the shares are below zero, and not by chance: the middle one by a size that is friction's, or nearly all.
+/// Returns whether the shares are significantly negative: the median by a size typical of friction,
+/// or nearly all of them.
 fn is_negative(shares: &[f64]) -> bool {
     let middle = median(&mut shares.to_vec());
     let negative = shares.iter().filter(|share| **share < 0.0).count() as f64;
@@ -152,7 +156,7 @@ fn is_negative(shares: &[f64]) -> bool {
     middle < -2.0 * SOME || (middle < -NONE && excess > ERRORS * (shares.len() as f64).sqrt())
 }
 
-/// The gap whose share is in the middle.
+/// Returns the gap of median share.
 fn middle_gap(mut gaps: Vec<Gap>) -> Option<Gap> {
     sort_by_number(&mut gaps, |gap| gap.share());
     gaps.get(gaps.len() / 2).copied()
@@ -175,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn labels_the_wrong_way_round_are_told_and_those_of_one_condition_are_the_fits() {
+    fn swapped_labels_are_detected() {
         let mut rows = session(2);
         assert_eq!(of(&rows), Friction::Measured);
         rows.iter_mut().filter(|r| r.pins.is_empty()).for_each(|r| r.direction = turn(r.direction));
@@ -188,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn loads_that_differ_between_the_directions_are_compared_all_the_same() {
+    fn directions_may_have_different_loads() {
         let mut rows = session(2);
         for row in &mut rows {
             let factor = if row.direction == Direction::Concentric { 1.2 } else { 1.0 };
@@ -200,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn readings_that_are_the_loads_hold_no_friction_but_little_friction_is_some() {
+    fn small_friction_differs_from_none() {
         let scatter = |i: usize| 0.05 * ((i * 37 % 101) as f64 / 50.0 - 1.0);
         let with = |share: f64, noise: f64| {
             let mut rows = session(2);

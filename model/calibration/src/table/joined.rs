@@ -1,4 +1,4 @@
-//! Tables of several sessions as one.
+//! Concatenation of the tables of several sessions.
 
 use std::collections::BTreeSet;
 
@@ -7,16 +7,17 @@ use super::plateau_table::PlateauTable;
 use super::row_cells::RowCells;
 use super::table_error::TableError;
 
-/// The column that names the session.
+/// Column with the name of the session.
 const SESSION: &str = LABELS[0];
 
 impl PlateauTable {
-    /// One table of several, each with its name: the rows of a table without a column `session` are a session of that name.
-    /// Columns that a table lacks are empty in its rows.
+    /// Joins named tables. The rows of a table without a column `session` form a session of the
+    /// table's name. Columns that a table lacks are empty in its rows.
     ///
     /// # Errors
-    /// [`TableError::Session`] if two tables hold rows of one session: their times and series would be mixed up.
-    /// [`TableError::Copied`] if one holds most readings of another: what is counted twice looks certain.
+    /// [`TableError::Session`] if two tables contain rows of one session, since their times and
+    /// series would be mixed up. [`TableError::Copied`] if a table contains most readings of
+    /// another one, since readings that are counted twice look more certain than they are.
     pub fn joined(tables: Vec<(Self, String)>) -> Result<Self, TableError> {
         let mut sessions: Vec<(String, String)> = Vec::new();
         refuse_copies(&tables)?;
@@ -54,10 +55,10 @@ impl PlateauTable {
     }
 }
 
-/// Share of the shorter table's readings that another one has only if it is a copy: a cell with coarse steps reads the same
-/// now and then.
+/// Share of the shorter table's readings that only a copy shares with another table. A coarse load
+/// cell repeats some readings by chance.
 const COPIED: f64 = 0.8;
-/// Readings below which nobody can tell.
+/// Fewest readings for which the share is conclusive.
 const LEAST_READINGS: usize = 8;
 
 fn refuse_copies(tables: &[(PlateauTable, String)]) -> Result<(), TableError> {
@@ -69,7 +70,7 @@ fn refuse_copies(tables: &[(PlateauTable, String)]) -> Result<(), TableError> {
         for (j, other) in sets[..i].iter().enumerate() {
             let both = own.intersection(other).count();
             let shorter = own.len().min(other.len());
-            // A file that is given twice is told by its session.
+            // A file that is given twice is reported by its session.
             let is_another = tables[i].1 != tables[j].1;
             if is_another && shorter >= LEAST_READINGS && both as f64 >= COPIED * shorter as f64 {
                 let [file, other] = [i, j].map(|at| tables[at].1.clone());
@@ -92,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn each_file_is_a_session_unless_it_says_so() {
+    fn files_are_sessions_by_default() {
         let first = table(&format!("{HEADER},room"), ",cold");
         let second = table(&format!("{HEADER},session,mount"), ",tuesday,2");
         let all =
@@ -109,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_is_no_second_session() {
+    fn a_copied_table_is_refused() {
         let of = |rows: Vec<crate::table::PlateauRow>| {
             PlateauTable::read(PlateauTable::write(&rows).as_bytes(), "t.csv").unwrap()
         };
@@ -121,10 +122,11 @@ mod tests {
         for (first, second) in
             [(rows.clone(), rows.clone()), (part.clone(), rows.clone()), (rows.clone(), part)]
         {
-            let error = joined(of(first), of(second)).unwrap_err().to_string();
-            assert!(error.starts_with("b.csv: ") && error.contains("stand in a.csv too"), "{error}");
+            let error = joined(of(first), of(second)).unwrap_err();
+            let TableError::Copied { file, other, .. } = &error else { panic!("{error}") };
+            assert_eq!((file.as_str(), other.as_str()), ("b.csv", "a.csv"));
         }
-        // Another day of the same protocol, on a cell that shows twentieths of a newton.
+        // Another day of the same protocol, with a load cell that resolves 0.05 N.
         let coarse = |seed: u64| {
             let mut rows = crate::test_session::session(seed);
             rows.iter_mut().for_each(|r| r.force_n = (20.0 * r.force_n).round() / 20.0);

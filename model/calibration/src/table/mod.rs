@@ -1,4 +1,4 @@
-//! Plateau tables, their rows, and what a session as a whole fixes (`model/doc/file-formats.md`).
+//! Plateau tables, their rows, and quantities of a whole session (`model/doc/file-formats.md`).
 
 mod change;
 mod columns;
@@ -23,7 +23,7 @@ pub(crate) use frame::{groups, groups_of};
 pub use plateau_table::PlateauTable;
 pub(crate) use plateau_table::{MAX_N, MAX_PERCENT, MAX_WRAP_DEG, MIN_WRAP_DEG};
 pub use readings::readings_by_session;
-pub(crate) use readings::{sessions_told, tells_readings};
+pub(crate) use readings::{is_fingerprint, matching_sessions};
 pub use row::{Labels, PlateauRow, Sweep};
 pub use substrate_word::substrate_word;
 pub use table_error::TableError;

@@ -12,18 +12,18 @@ use super::row_cells::RowCells;
 use super::substrate_word::{WORDS, substrate_word};
 use super::table_error::TableError;
 
-/// Largest load and reading in newtons: ten tonnes is beyond any tendon.
+/// Largest load and reading in newtons: ten tonnes exceed any tendon.
 pub(crate) const MAX_N: f64 = 1e5;
 /// Highest speed in percent.
 pub(crate) const MAX_PERCENT: f64 = 1e6;
-/// Longest time in seconds: thirty years, or a clock that counts from 1970.
+/// Longest time in seconds: over thirty years, so that a clock may count from 1970.
 const MAX_S: f64 = 1e10;
 
-/// Smallest and largest wrap angle in degrees: two turns.
+/// Smallest and largest wrap angle in degrees: the largest is two revolutions.
 pub(crate) const MIN_WRAP_DEG: f64 = 1.0;
 pub(crate) const MAX_WRAP_DEG: f64 = 720.0;
 
-/// A plateau table with the cells as they were written, unknown columns included.
+/// A plateau table with its original cells, including those of unknown columns.
 ///
 /// ```
 /// use pinswitch_calibration::table::{PlateauTable, TableError};
@@ -34,7 +34,7 @@ pub(crate) const MAX_WRAP_DEG: f64 = 720.0;
 /// let table = PlateauTable::read(csv.as_bytes(), "plateaus.csv")?;
 /// assert_eq!(table.rows[0].pins, [5, 8, 11]);
 /// let error = PlateauTable::read(csv.replace("10.451", "-1").as_bytes(), "plateaus.csv").unwrap_err();
-/// assert!(error.to_string().starts_with("plateaus.csv, line 2, column 'load_N': '-1' is below 0"));
+/// assert_eq!(error.to_string(), "plateaus.csv:2: load_N = -1: below 0; give a value of at least 0");
 /// # Ok::<(), TableError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +45,7 @@ pub struct PlateauTable {
     pub(super) cells: Vec<RowCells>,
 }
 
-/// What a reader may leave out.
+/// Treatment of the column `force_N`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Force {
     Needed,
@@ -53,7 +53,7 @@ enum Force {
 }
 
 impl PlateauTable {
-    /// Reads a table for a calibration. `file` is the name used in errors.
+    /// Reads a table for a calibration. `file` is its name in errors.
     ///
     /// # Errors
     /// [`TableError`] at the first cell that cannot be used.
@@ -61,7 +61,7 @@ impl PlateauTable {
         Self::parse(source, file, Force::Needed)
     }
 
-    /// Reads the rows of a table to predict: `force_N` may be absent or empty, it is not used.
+    /// Reads the rows of a table to predict; `force_N` is not used and may be absent or empty.
     ///
     /// # Errors
     /// [`TableError`] at the first cell that cannot be used.
@@ -75,20 +75,21 @@ impl PlateauTable {
             file: file.to_owned(),
             line: None,
             problem: e.to_string(),
+            help: "",
         })?;
-        let malformed = |error: csv::Error| TableError::Malformed {
-            file: file.to_owned(),
-            line: error.position().map(|p| line_at(&text, p.byte())),
-            problem: match error.kind() {
-                csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-                    format!(
-                        "{len} cells, the header has {expected_len}; give a cell for every column, an empty one where \
-                         there is no value, and quotes around a cell with a comma"
-                    )
+        let malformed = |error: csv::Error| {
+            let (problem, help) = match error.kind() {
+                csv::ErrorKind::UnequalLengths { expected_len, len, .. } => (
+                    format!("{len} cells, but the header has {expected_len}"),
+                    "give a cell for every column, empty without a value, and quote cells that contain a comma",
+                ),
+                csv::ErrorKind::Utf8 { .. } => {
+                    ("the text is not UTF-8".to_owned(), "save the table as CSV in UTF-8")
                 }
-                csv::ErrorKind::Utf8 { .. } => "is not UTF-8 text; save the table as UTF-8 CSV".to_owned(),
-                _ => error.to_string(),
-            },
+                _ => (error.to_string(), ""),
+            };
+            let line = error.position().map(|p| line_at(&text, p.byte()));
+            TableError::Malformed { file: file.to_owned(), line, problem, help }
         };
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_slice());
         let header: Vec<String> = reader
@@ -121,7 +122,7 @@ impl PlateauTable {
                 labels_at.map(|at| at.and_then(|i| record.get(i)).unwrap_or("").to_owned());
             let row =
                 PlateauRow { labels: Labels { session, mount, operator, specimen }, ..parse_row(&line)? };
-            // A reading that stands in the table twice counts twice, and no spread between the two says so.
+            // A repeated reading would count twice, although the pair shows no scatter.
             let reading = (
                 row.labels.session.clone(),
                 row.series.clone(),
@@ -131,10 +132,8 @@ impl PlateauTable {
             );
             if let (Force::Needed, Some(first)) = (force, lines.insert(reading, byte)) {
                 let first = line_at(&text, first);
-                let problem = format!(
-                    "stands in line {first} too, with the same series, direction and time; keep one, or number the repetitions"
-                );
-                return Err(line.refuse(9, problem));
+                let problem = format!("the row repeats the series, direction and time of line {first}");
+                return Err(line.refuse(9, problem, "keep one of the two, or number the repetitions"));
             }
             rows.push(row);
             cells.push(record.iter().collect());
@@ -145,13 +144,13 @@ impl PlateauTable {
         Ok(Self { rows, header, cells })
     }
 
-    /// Columns of the file that no calibration reads, in its order.
+    /// Returns the columns that no calibration reads, in file order.
     pub fn ignored_columns(&self) -> Vec<String> {
         let known = |name: &str| COLUMNS.contains(&name) || LABELS.contains(&name) || name == WRAP_ANGLE;
         self.header.iter().filter(|name| !known(name)).cloned().collect()
     }
 
-    /// Keeps the rows for which `keep` holds.
+    /// Keeps the rows for which `keep` returns true.
     pub fn retain(&mut self, keep: impl Fn(&PlateauRow) -> bool) {
         let kept: Vec<bool> = self.rows.iter().map(keep).collect();
         let mut flags = kept.iter();
@@ -160,7 +159,8 @@ impl PlateauTable {
         self.cells.retain(|_| flags.next().copied().unwrap_or(false));
     }
 
-    /// The table as CSV with columns added at its end; cells that were read are written as they were.
+    /// Writes the table as CSV with columns added at its end; cells that were read are written
+    /// unchanged.
     pub fn with_columns(&self, names: &[&str], columns: &[Vec<f64>], decimals: usize) -> String {
         let mut out = String::new();
         push_line(&mut out, self.header.iter().map(String::as_str).chain(names.iter().copied()));
@@ -171,18 +171,19 @@ impl PlateauTable {
         out
     }
 
-    /// Rows as a plateau table in CSV, with a column `wrap_angle_deg` if any row departs from the paper's wrap angle, and
-    /// those of session, mount, operator and specimen that any row names.
+    /// Writes rows as a plateau table in CSV. The column `wrap_angle_deg` is written if any row
+    /// departs from the paper's wrap angle; those of session, mount, operator and specimen if any
+    /// row names one.
     pub fn write(rows: &[PlateauRow]) -> String {
         let mut out = String::new();
         let usual = rows.iter().all(|row| row.wrap_angle_deg == published::WRAP_ANGLE_DEG);
         let extra = (!usual).then_some(WRAP_ANGLE);
-        let told = LABELS
+        let labels = LABELS
             .iter()
             .enumerate()
             .filter(|(i, _)| rows.iter().any(|row| !row.labels.all()[*i].is_empty()));
-        let told: Vec<(usize, &str)> = told.map(|(i, name)| (i, *name)).collect();
-        push_line(&mut out, COLUMNS.iter().copied().chain(extra).chain(told.iter().map(|(_, name)| *name)));
+        let labels: Vec<(usize, &str)> = labels.map(|(i, name)| (i, *name)).collect();
+        push_line(&mut out, COLUMNS.iter().copied().chain(extra).chain(labels.iter().map(|(_, name)| *name)));
         for row in rows {
             let pins: Vec<String> = row.pins.iter().map(usize::to_string).collect();
             let cells = [
@@ -201,8 +202,8 @@ impl PlateauTable {
                 format!("{:.4}", row.force_n),
             ];
             let wrap = extra.map(|_| row.wrap_angle_deg.to_string());
-            let labels = told.iter().map(|(i, _)| row.labels.all()[*i]);
-            push_line(&mut out, cells.iter().chain(&wrap).map(String::as_str).chain(labels));
+            let names = labels.iter().map(|(i, _)| row.labels.all()[*i]);
+            push_line(&mut out, cells.iter().chain(&wrap).map(String::as_str).chain(names));
         }
         out
     }
@@ -225,15 +226,16 @@ fn push_line<'a>(out: &mut String, cells: impl Iterator<Item = &'a str>) {
     out.push('\n');
 }
 
-/// Line of the record that starts at a byte, from 1. The csv crate's own count is one short on the first record
-/// when cells are trimmed; line breaks that a record starts with belong to the line before.
-fn line_at(text: &[u8], byte: u64) -> u64 {
+/// Returns the line of the record that starts at a byte, from 1. The csv crate's own count is one
+/// too low for the first record when cells are trimmed; line breaks at the start of a record belong
+/// to the previous line.
+fn line_at(text: &[u8], byte: u64) -> usize {
     let byte = usize::try_from(byte).unwrap_or(usize::MAX).min(text.len());
     let breaks = text[byte..].iter().take_while(|b| **b == b'\n' || **b == b'\r').count();
-    1 + text[..byte + breaks].iter().filter(|b| **b == b'\n').count() as u64
+    1 + text[..byte + breaks].iter().filter(|b| **b == b'\n').count()
 }
 
-/// One line on its way to a row.
+/// Cells of one line during conversion to a row.
 struct Cells<'a> {
     file: &'a str,
     text: &'a [u8],
@@ -243,37 +245,37 @@ struct Cells<'a> {
 }
 
 impl Cells<'_> {
-    fn refuse(&self, column: usize, problem: impl Into<String>) -> TableError {
+    fn refuse(&self, column: usize, problem: impl Into<String>, help: impl Into<String>) -> TableError {
         TableError::Cell {
             file: self.file.to_owned(),
             line: line_at(self.text, self.byte),
             column: column_name(column),
             value: (self.cell)(column).to_owned(),
             problem: problem.into(),
+            help: help.into(),
         }
     }
 
-    /// The number in a cell, within what a rig for tendons can yield.
+    /// Parses a number within bounds.
     fn number(&self, column: usize, least: f64, most: f64) -> Result<f64, TableError> {
         let value: f64 = (self.cell)(column)
             .parse()
-            .map_err(|_| self.refuse(column, "is no number; write it like 12.5"))?;
+            .map_err(|_| self.refuse(column, "not a number", "write it like 12.5"))?;
         if !value.is_finite() {
-            return Err(self.refuse(column, "is no finite number; leave the row out if the reading is lost"));
+            return Err(self.refuse(column, "not finite", "leave out the row if the reading is lost"));
         }
         if value < least {
-            return Err(self.refuse(column, format!("is below {least}; give a value of at least {least}")));
+            let help = format!("give a value of at least {least}");
+            return Err(self.refuse(column, format!("below {least}"), help));
         }
         if value > most {
-            return Err(self.refuse(
-                column,
-                format!("is above {most}; give a value of at most {most}, in the column's unit"),
-            ));
+            let help = format!("give a value of at most {most}, in the column's unit");
+            return Err(self.refuse(column, format!("above {most}"), help));
         }
         Ok(value)
     }
 
-    /// The wrap angle, or the paper's where the column or the cell is absent.
+    /// Returns the wrap angle in degrees; the paper's where the column or the cell is absent.
     fn wrap_angle_deg(&self) -> Result<f64, TableError> {
         let column = COLUMNS.len();
         if (self.cell)(column).is_empty() {
@@ -286,7 +288,8 @@ impl Cells<'_> {
         let text = (self.cell)(column);
         words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value).ok_or_else(|| {
             let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
-            self.refuse(column, format!("is unknown; use one of {}", known.join(", ")))
+            let problem = format!("unknown {}", column_name(column));
+            self.refuse(column, problem, format!("use one of {}", known.join(", ")))
         })
     }
 
@@ -298,14 +301,15 @@ impl Cells<'_> {
                 _ => {
                     return Err(self.refuse(
                         2,
-                        format!("is no list of grooves 1..{GROOVES}; write occupied grooves like 5;8;11"),
+                        format!("not a list of grooves 1..{GROOVES}"),
+                        "list the occupied grooves, such as 5;8;11",
                     ));
                 }
             }
         }
         pins.sort_unstable();
         if pins.windows(2).any(|w| w[0] == w[1]) {
-            return Err(self.refuse(2, "names a groove twice; name each occupied groove once"));
+            return Err(self.refuse(2, "a groove is listed twice", "list each occupied groove once"));
         }
         Ok(pins)
     }
@@ -315,11 +319,12 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
     let substrate = cells.word(1, &WORDS)?;
     let pins = cells.pins()?;
     if substrate == Some(Substrate::Abs) && pins.is_empty() {
-        return Err(cells.refuse(2, "is empty on abs, where only pins carry the tendon; name the grooves"));
+        let problem = "no grooves on abs, where only pins carry the tendon";
+        return Err(cells.refuse(2, problem, "list the occupied grooves"));
     }
     let repetition = cells.number(9, 1.0, 1e6)?;
     if repetition.fract() != 0.0 {
-        return Err(cells.refuse(9, "is no whole number; count the repetitions 1, 2, ..."));
+        return Err(cells.refuse(9, "not a whole number", "count the repetitions 1, 2, ..."));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number in 1..=1e6")]
     let repetition = repetition as u32;
@@ -348,6 +353,8 @@ fn parse_row(cells: &Cells<'_>) -> Result<PlateauRow, TableError> {
 
 #[cfg(test)]
 mod tests {
+    use pinswitch_diagnostic::{Diagnostic, Location};
+
     use super::*;
 
     const HEADER: &str = "series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s,force_N";
@@ -358,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_may_come_in_any_order_and_unknown_ones_are_kept() {
+    fn columns_may_have_any_order() {
         let table = read("note,force_N,series,substrate,pins,sweep,load_mass_g,load_N,speed_pct,dwell_s,direction,repetition,position_mm,time_s\nhi,2.5,a,abs,5;8;11,down,1,3,50,1,concentric,2,7,9\n").unwrap();
         assert_eq!(table.rows[0].pins, [5, 8, 11]);
         assert_eq!(table.rows[0].force_n, 2.5);
@@ -367,34 +374,39 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_reads_back() {
+    fn a_written_table_reads_back() {
         let table = read(&format!("{HEADER}\n{LINE}\n")).unwrap();
         let again = read(&PlateauTable::write(&table.rows)).unwrap();
         assert_eq!(again.rows, table.rows);
     }
 
     #[test]
-    fn each_unusable_cell_is_named_with_line_and_column() {
+    fn errors_locate_unusable_cells() {
         let cases = [
-            ("silicone", "rubber", "line 2, column 'substrate': 'rubber' is unknown"),
-            ("3.0766", "-3", "line 2, column 'load_N': '-3' is below 0"),
-            ("2.3157", "abc", "line 2, column 'force_N': 'abc' is no number"),
-            ("2.3157", "NaN", "line 2, column 'force_N': 'NaN' is no finite number"),
-            ("eccentric", "sideways", "column 'direction': 'sideways' is unknown"),
-            ("silicone,,", "silicone,5;5,", "names a groove twice"),
-            ("silicone,,", "silicone,16,", "grooves 1..15"),
-            ("silicone,,", "abs,,", "only pins carry"),
-            ("2.3157", "1e300", "line 2, column 'force_N': '1e300' is above 100000"),
-            ("eccentric,1,", "eccentric,1.5,", "no whole number"),
+            ("silicone", "rubber", "substrate", "rubber", "unknown substrate"),
+            ("3.0766", "-3", "load_N", "-3", "below 0"),
+            ("2.3157", "abc", "force_N", "abc", "not a number"),
+            ("2.3157", "NaN", "force_N", "NaN", "not finite"),
+            ("eccentric", "sideways", "direction", "sideways", "unknown direction"),
+            ("silicone,,", "silicone,5;5,", "pins", "5;5", "a groove is listed twice"),
+            ("silicone,,", "silicone,16,", "pins", "16", "not a list of grooves 1..15"),
+            ("silicone,,", "abs,,", "pins", "", "no grooves on abs, where only pins carry the tendon"),
+            ("2.3157", "1e300", "force_N", "1e300", "above 100000"),
+            ("eccentric,1,", "eccentric,1.5,", "repetition", "1.5", "not a whole number"),
         ];
-        for (from, to, expected) in cases {
-            let error = read(&format!("{HEADER}\n{}\n", LINE.replacen(from, to, 1))).unwrap_err().to_string();
-            assert!(error.contains(expected) && error.starts_with("t.csv"), "{error}");
+        for (from, to, column, value, problem) in cases {
+            let error = read(&format!("{HEADER}\n{}\n", LINE.replacen(from, to, 1))).unwrap_err();
+            let diagnostic = Diagnostic::from(error);
+            assert_eq!(diagnostic.problem(), problem, "{to}");
+            let location = Location::line("t.csv", 2).with_field(column, value);
+            let value = location.value.clone().filter(|value| !value.is_empty());
+            assert_eq!(diagnostic.location(), Some(&Location { value, ..location }), "{to}");
+            assert!(diagnostic.help().is_some(), "{to}");
         }
     }
 
     #[test]
-    fn another_wrap_angle_is_read_and_written_and_the_papers_is_left_out() {
+    fn only_other_wrap_angles_are_written() {
         let mut table = read(&format!("{HEADER},wrap_angle_deg\n{LINE},90\n")).unwrap();
         assert_eq!(table.rows[0].wrap_angle_deg, 90.0);
         let text = PlateauTable::write(&table.rows);
@@ -406,24 +418,29 @@ mod tests {
         }
         assert!(!PlateauTable::write(&table.rows).contains("wrap_angle_deg"));
         let error = read(&format!("{HEADER},wrap_angle_deg\n{LINE},-5\n")).unwrap_err().to_string();
-        assert!(error.starts_with("t.csv, line 2, column 'wrap_angle_deg': '-5' is below 1"), "{error}");
+        assert!(error.starts_with("t.csv:2: wrap_angle_deg = -5: below 1"), "{error}");
     }
 
     #[test]
-    fn a_reading_that_stands_twice_is_refused_but_may_be_predicted_twice() {
+    fn repeated_readings_are_refused() {
         let text = format!("{HEADER}\n{LINE}\n{LINE}\n");
         let error = read(&text).unwrap_err().to_string();
-        assert!(error.starts_with("t.csv, line 3, column 'repetition': '1' stands in line 2 too"), "{error}");
+        assert!(
+            error.starts_with(
+                "t.csv:3: repetition = 1: the row repeats the series, direction and time of line 2"
+            ),
+            "{error}"
+        );
         assert_eq!(PlateauTable::read_conditions(text.as_bytes(), "t.csv").unwrap().rows.len(), 2);
     }
 
     #[test]
-    fn empty_files_and_missing_columns_are_refused() {
+    fn incomplete_tables_are_refused() {
         assert!(matches!(read(""), Err(TableError::Empty { .. })));
         assert!(matches!(read(&format!("{HEADER}\n")), Err(TableError::Empty { .. })));
         let error = read(&HEADER.replace("dwell_s,", "")).unwrap_err();
         assert!(matches!(error, TableError::MissingColumn { column: "dwell_s", .. }));
         let short = read(&format!("{HEADER}\n0,silicone\n")).unwrap_err().to_string();
-        assert!(short.contains("line 2") && short.contains("2 cells"), "{short}");
+        assert!(short.starts_with("t.csv:2: 2 cells, but the header has 13"), "{short}");
     }
 }

@@ -1,4 +1,4 @@
-//! Whether a table's loads and readings can belong together, before anything is fitted to them.
+//! Plausibility of a table's loads and readings, checked before any fit.
 
 use std::ops::RangeInclusive;
 
@@ -11,35 +11,37 @@ use super::row::PlateauRow;
 use super::swapped_columns::{Swapped, evident, repairing};
 use super::table_error::TableError;
 use super::units::implausible;
-use super::whole_series::mixed_up;
+use super::whole_series::inconsistent_series;
 use crate::median::median;
 use pinswitch_friction::sort_by_number;
 
-/// Declared load over the weight of the declared mass: one, with room for hooks and levers.
+/// Plausible ratio of declared load to weight of the declared mass; the margin is for hooks and
+/// levers.
 const WEIGHS: RangeInclusive<f64> = 0.5..=2.0;
 
 impl PlateauTable {
-    /// Refuses a table that cannot fix a baseline, or that no rig can have measured. One odd condition or series is not
-    /// refused: finding it is the fit's.
+    /// Refuses a table that cannot determine a baseline or that no rig can have measured. A single
+    /// odd condition or series is left to the fit, which detects it.
     ///
     /// # Errors
-    /// [`TableError::TooFewLoads`] with fewer than two loads above zero, [`TableError::SwappedColumns`] if two columns
-    /// stand in each other's place, [`TableError::Unrelated`] if the readings do not follow the loads in most
-    /// conditions, [`TableError::LoadUnit`] if loads and masses contradict each other, [`TableError::NoFriction`] if the
-    /// directions differ nowhere, [`TableError::SwappedDirections`] if they differ the wrong way round in most
-    /// conditions; what tells units and directions without masses or a second direction, and what is wrong with single
-    /// series, has variants of its own.
+    /// [`TableError::TooFewLoads`] with fewer than two loads above zero,
+    /// [`TableError::SwappedColumns`] if two columns are swapped, [`TableError::Unrelated`] if the
+    /// readings do not follow the loads in most conditions, [`TableError::LoadUnit`] if loads and
+    /// masses contradict each other, [`TableError::NoFriction`] if the directions differ nowhere,
+    /// [`TableError::SwappedDirections`] if their labels are swapped in most conditions; other
+    /// variants for units and directions of tables without masses or without a second direction,
+    /// and for single series.
     pub fn require_baseline(&self, file: &str) -> Result<(), TableError> {
         let mut loads: Vec<f64> = self.rows.iter().map(|r| r.load_n).filter(|n| *n > 0.0).collect();
         loads.sort_by(f64::total_cmp);
         loads.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
         let needed = 2;
         let file = file.to_owned();
-        let swapped = |Swapped { first, second, because }| TableError::SwappedColumns {
+        let swapped = |Swapped { first, second, evidence }| TableError::SwappedColumns {
             file: file.clone(),
             first,
             second,
-            because,
+            evidence,
         };
         if let Some(columns) = evident(&self.rows) {
             return Err(swapped(columns));
@@ -51,10 +53,10 @@ impl PlateauTable {
         if let Some(error) = self.contradiction(&file) {
             return Err(repairing(&self.rows).map_or(error, swapped));
         }
-        implausible(&self.rows, &file).or_else(|| mixed_up(&self.rows, &file)).map_or(Ok(()), Err)
+        implausible(&self.rows, &file).or_else(|| inconsistent_series(&self.rows, &file)).map_or(Ok(()), Err)
     }
 
-    /// What no rig can have measured.
+    /// Returns a contradiction that no rig can have measured.
     fn contradiction(&self, file: &str) -> Option<TableError> {
         let file = file.to_owned();
         let following = Following::new(&self.rows, |r| r.load_n, |r| r.force_n);
@@ -86,8 +88,8 @@ impl PlateauTable {
         }
     }
 
-    /// Declared load over what `load_mass_g` weighs, on the heaviest quarter of the rows, where a hook adds little;
-    /// `None` where no mass is given.
+    /// Returns declared load over weight of `load_mass_g`, as the median over the heaviest quarter
+    /// of the rows, where a hook adds little; `None` if no mass is given.
     fn newtons_per_weight(&self) -> Option<f64> {
         let mut rows: Vec<&PlateauRow> = self.rows.iter().collect();
         sort_by_number(&mut rows, |r| -r.load_n);
@@ -109,7 +111,7 @@ mod tests {
     const LINE: &str = "0,silicone,,up,251.2,3.0766,47,3,eccentric,1,6.93,3.5,2.3157";
 
     #[test]
-    fn one_load_or_readings_that_do_not_follow_it_fix_no_baseline() {
+    fn readings_must_follow_several_loads() {
         let checked = |from: &str, to: &str| {
             let other = LINE.replacen("0,", "1,", 1).replacen("3.5", "7", 1).replacen(from, to, 1);
             let text = format!("{HEADER}\n{LINE}\n{other}\n");
@@ -124,8 +126,9 @@ mod tests {
             )
         };
         for (reading, slope) in [("2.3157", "0.00"), ("-6", "-1.40"), ("6000", "1012.54")] {
-            let error = heavier(reading).unwrap_err().to_string();
-            assert!(error.contains(&format!("changes by {slope} N")), "{error}");
+            let error = heavier(reading).unwrap_err();
+            let TableError::Unrelated { slope: found, .. } = error else { panic!("{error}") };
+            assert_eq!(format!("{found:.2}"), slope, "{reading}");
         }
         assert!(heavier("7.1").is_ok());
         let grams =

@@ -1,15 +1,15 @@
-//! The cells of a line as they were read, kept to be written again: tables have up to a million lines.
+//! Compact storage of the original cells of a line, since tables have up to a million lines.
 
-/// The cells of one line, one after another in one text.
+/// Cells of one line, concatenated in one text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct RowCells {
     text: Box<str>,
-    /// Where each cell ends in the text, in bytes.
+    /// End of each cell in the text, in bytes.
     ends: Box<[u32]>,
 }
 
 impl RowCells {
-    /// The cells, in the order of the header.
+    /// Returns the cells in the order of the header.
     pub(super) fn iter(&self) -> impl Iterator<Item = &str> {
         let begins = std::iter::once(0).chain(self.ends.iter().copied());
         begins
@@ -17,12 +17,12 @@ impl RowCells {
             .map(|(from, to)| self.text.get(from as usize..*to as usize).unwrap_or_default())
     }
 
-    /// The cell of that index; empty where there is none.
+    /// Returns the cell of an index; empty where there is none.
     pub(super) fn get(&self, index: usize) -> &str {
         self.iter().nth(index).unwrap_or_default()
     }
 
-    /// Adds a cell at the end.
+    /// Appends a cell.
     pub(super) fn push(&mut self, cell: &str) {
         *self = self.iter().chain([cell]).collect();
     }
@@ -33,7 +33,7 @@ impl<'a> FromIterator<&'a str> for RowCells {
         let (mut text, mut ends) = (String::new(), Vec::new());
         for cell in cells {
             text.push_str(cell);
-            // A file that is read has less than 4 GB.
+            // Files are smaller than 4 GB.
             ends.push(u32::try_from(text.len()).unwrap_or(u32::MAX));
         }
         Self { text: text.into(), ends: ends.into() }
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_come_back_as_they_were() {
+    fn cells_are_returned_unchanged() {
         let all = ["", "5;8", "µ", "", "2.5", ""];
         let mut cells: RowCells = all.into_iter().collect();
         assert!(cells.iter().eq(all));

@@ -1,16 +1,17 @@
-//! The words of the `substrate` column: a switch lies on silicone or on the rigid proxy, any other rig is `plain`.
+//! Words of the `substrate` column: `silicone`, `abs` (the rigid proxy), and `plain` for any other
+//! rig.
 
 use pinswitch_friction::Substrate;
 use serde::{Deserialize, Deserializer, Serializer};
 
-/// The word of an unknown material.
+/// Word for an unknown material.
 const PLAIN: &str = "plain";
 
-/// The words with what they stand for.
+/// Words and their substrates.
 pub(crate) const WORDS: [(&str, Option<Substrate>); 3] =
     [("silicone", Some(Substrate::Silicone)), ("abs", Some(Substrate::Abs)), (PLAIN, None)];
 
-/// The word of a substrate: `silicone`, `abs`, or `plain` for an unknown material.
+/// Returns the word of a substrate: `silicone`, `abs`, or `plain` for an unknown material.
 pub fn substrate_word(substrate: Option<Substrate>) -> &'static str {
     substrate.map_or(PLAIN, Substrate::as_str)
 }

@@ -1,4 +1,5 @@
-//! Which two columns of a table stand in each other's place: a load among the readings, a clock among the positions.
+//! Detection of swapped columns, such as readings in the load column or times in the position
+//! column.
 
 use std::collections::HashSet;
 
@@ -8,7 +9,7 @@ use super::follows::Following;
 use super::friction_gap::{Friction, friction};
 use super::row::PlateauRow;
 
-/// A column of numbers that may stand in another's place.
+/// A numeric column that may be swapped with another one.
 type Column = (&'static str, fn(&PlateauRow) -> f64);
 
 const LOAD: Column = ("load_N", |r| r.load_n);
@@ -20,39 +21,39 @@ const DWELL: Column = ("dwell_s", |r| r.dwell_s);
 const TIME: Column = ("time_s", |r| r.time_s);
 const ALL: [Column; 7] = [MASS, LOAD, SPEED, DWELL, POSITION, TIME, FORCE];
 
-/// Share of its range by which a load may depart from the weight of its mass and a hook.
+/// Largest departure of a load from the weight of its mass and a hook, as a share of the range of
+/// weights.
 const WEIGHS: f64 = 0.01;
-/// The same, beyond which it is not that weight.
+/// Departure, as the same share, above which a column is not that weight.
 const WEIGHS_NOT: f64 = 0.05;
 
-/// Rank correlation of readings and loads in a table that an exchange has made sound.
+/// Rank correlation of readings and loads above which a table with swapped columns counts as sound.
 const SOUND: f64 = 0.9;
 
-/// Two columns, and how they were told.
+/// Two swapped columns, and the evidence.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Swapped {
     /// The column that comes first in a header.
     pub(super) first: &'static str,
-    /// The other.
+    /// The other column.
     pub(super) second: &'static str,
-    /// What one of them holds.
-    pub(super) because: &'static str,
+    /// Why they count as swapped.
+    pub(super) evidence: &'static str,
 }
 
-/// Columns that give themselves away, however well the table fits together otherwise.
+/// Returns columns that are evidently swapped, however consistent the table is otherwise.
 pub(super) fn evident(rows: &[PlateauRow]) -> Option<Swapped> {
-    if rows_hold_readings_as_loads(rows) {
-        let because =
-            "load_N changes within the series and force_N does not, though both directions are in them";
-        return Some(Swapped { first: LOAD.0, second: FORCE.0, because });
+    if loads_vary_within_series(rows) {
+        let evidence = "load_N varies within series that contain both directions, while force_N is constant";
+        return Some(Swapped { first: LOAD.0, second: FORCE.0, evidence });
     }
     if departure_from_weight(rows, LOAD.1).is_some_and(|share| share > WEIGHS_NOT) {
         let weight = [SPEED, DWELL, POSITION, TIME, FORCE]
             .into_iter()
             .find(|column| departure_from_weight(rows, column.1).is_some_and(|share| share < WEIGHS));
         if let Some((second, _)) = weight {
-            let because = "the second holds what the masses of load_mass_g weigh";
-            return Some(Swapped { first: LOAD.0, second, because });
+            let evidence = "the second contains the weights of load_mass_g";
+            return Some(Swapped { first: LOAD.0, second, evidence });
         }
     }
     let clock = [POSITION, SPEED].into_iter().find(|column| is_clock(rows, column.1));
@@ -60,13 +61,13 @@ pub(super) fn evident(rows: &[PlateauRow]) -> Option<Swapped> {
         Some((first, _)) if !is_clock(rows, TIME.1) => Some(Swapped {
             first,
             second: TIME.0,
-            because: "the first runs on from series to series, as time does",
+            evidence: "the first increases from series to series, as time does",
         }),
         _ => None,
     }
 }
 
-/// Columns whose exchange makes a table plausible that is not.
+/// Returns columns whose exchange makes an implausible table plausible.
 pub(super) fn repairing(rows: &[PlateauRow]) -> Option<Swapped> {
     for (i, first) in ALL.iter().enumerate() {
         for second in &ALL[i + 1..] {
@@ -76,20 +77,20 @@ pub(super) fn repairing(rows: &[PlateauRow]) -> Option<Swapped> {
                 _ => column.1,
             };
             let names = [first.0, second.0];
-            // Loads and readings in each other's place look like directions the wrong way round: `evident` tells them.
-            let asked =
+            // Swapped loads and readings look like swapped directions: `evident` detects those.
+            let is_candidate =
                 [LOAD, FORCE, MASS].iter().any(|c| names.contains(&c.0)) && names != [LOAD.0, FORCE.0];
             let timed = !names.contains(&TIME.0) || is_clock(rows, exchanged(TIME));
-            if asked && timed && is_sound(rows, exchanged(LOAD), exchanged(FORCE), exchanged(MASS)) {
-                let because = "each is what the other should be";
-                return Some(Swapped { first: first.0, second: second.0, because });
+            if is_candidate && timed && is_sound(rows, exchanged(LOAD), exchanged(FORCE), exchanged(MASS)) {
+                let evidence = "the table is plausible with the two exchanged";
+                return Some(Swapped { first: first.0, second: second.0, evidence });
             }
         }
     }
     None
 }
 
-/// Whether three columns behave as load, reading and mass.
+/// Returns whether three columns behave as load, reading and mass.
 fn is_sound(
     rows: &[PlateauRow],
     load: fn(&PlateauRow) -> f64,
@@ -107,8 +108,9 @@ fn is_sound(
         && friction(rows, load, force) == Friction::Measured
 }
 
-/// Whether in nearly all series with both directions the readings are one and the loads are not.
-fn rows_hold_readings_as_loads(rows: &[PlateauRow]) -> bool {
+/// Returns whether, in nearly all series with both directions, the readings are constant and the
+/// loads are not.
+fn loads_vary_within_series(rows: &[PlateauRow]) -> bool {
     let range = |of: &[PlateauRow], value: fn(&PlateauRow) -> f64| {
         let values = of.iter().map(value);
         values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
@@ -124,8 +126,8 @@ fn rows_hold_readings_as_loads(rows: &[PlateauRow]) -> bool {
     both >= 2 && 10 * odd >= 9 * both
 }
 
-/// Largest departure of a column from the weight of the masses and one hook, as a share of its range; `None` where the
-/// masses do not vary.
+/// Returns the largest departure of a column from the weight of the masses and one hook, as a share
+/// of its range; `None` if the masses do not vary.
 fn departure_from_weight(rows: &[PlateauRow], column: fn(&PlateauRow) -> f64) -> Option<f64> {
     departure(rows, column, MASS.1)
 }
@@ -145,7 +147,8 @@ fn departure(
     (heavy - light > 1e-3 * heavy).then(|| (most - least) / (heavy - light))
 }
 
-/// Whether a column runs on as time does: it changes within the series, and no series begins before another has ended.
+/// Returns whether a column increases like time: within each series, and from each series to the
+/// next.
 fn is_clock(rows: &[PlateauRow], column: fn(&PlateauRow) -> f64) -> bool {
     let mut order: Vec<&PlateauRow> = rows.iter().collect();
     order.sort_by(|a, b| {
@@ -166,7 +169,7 @@ mod tests {
     use crate::test_session::session;
 
     #[test]
-    fn a_sound_table_has_no_columns_swapped() {
+    fn sound_tables_have_no_swapped_columns() {
         let rows = session(4);
         assert_eq!(evident(&rows), None);
         assert!(is_clock(&rows, TIME.1) && !is_clock(&rows, POSITION.1));
@@ -174,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_that_give_themselves_away_are_named() {
+    fn swapped_columns_are_named() {
         let named = |swap: fn(&mut PlateauRow), masses: bool| {
             let mut rows = session(4);
             rows.iter_mut().for_each(|r| {

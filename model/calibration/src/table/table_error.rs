@@ -1,24 +1,25 @@
-//! Why a plateau table cannot be used.
+//! Errors of plateau tables.
 
-use pinswitch_diagnostic::excerpt;
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 
 use super::columns::COLUMNS;
 
-/// Why a plateau table cannot be used.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+/// Most characters of a series or session name in a message.
+const LONGEST_NAME: usize = 80;
+
+/// Reason why a plateau table cannot be used; converts to a [`Diagnostic`].
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TableError {
-    /// The file holds no rows.
-    #[error("{file}: no rows; a plateau table has a header line and one line per repetition")]
+    /// The file contains no rows.
     Empty {
         /// File name as given.
         file: String,
     },
-    /// Two files hold rows of one session.
-    #[error(
-        "{file}: its session '{}' is in {other} too; name the sessions in a column session, or leave one of the files out",
-        excerpt(session, 80)
-    )]
+    /// Two files contain rows of the same session.
     Session {
         /// File name as given.
         file: String,
@@ -27,265 +28,366 @@ pub enum TableError {
         /// The session.
         session: String,
     },
-    /// Two tables are one, or parts of one.
-    #[error(
-        "{file}: {rows} of its readings stand in {other} too, with their times; a table and a copy of it are one session: leave one \
-         of the files out"
-    )]
+    /// Two tables share most of their readings.
     Copied {
         /// File name as given.
         file: String,
         /// The other file.
         other: String,
-        /// Rows that both have.
+        /// Number of shared readings.
         rows: usize,
     },
-    /// A column is absent from the header.
-    #[error(
-        "{file}, line 1: column '{column}' is missing; the header must name {}; a raw log becomes such a table by \
-         `pinswitch segment`",
-        COLUMNS.join(", ")
-    )]
+    /// The header lacks a column.
     MissingColumn {
         /// File name as given.
         file: String,
-        /// The absent column.
+        /// The missing column.
         column: &'static str,
     },
     /// A cell cannot be read.
-    #[error("{file}, line {line}, column '{column}': '{}' {}", excerpt(value, 120), excerpt(problem, 300))]
     Cell {
         /// File name as given.
         file: String,
-        /// Line in the file, counted from 1.
-        line: u64,
+        /// Line in the file, from 1.
+        line: usize,
         /// Name of the column.
         column: &'static str,
-        /// The cell's text.
+        /// Text of the cell.
         value: String,
-        /// What is wrong with it and what would be right.
+        /// What is wrong with it.
         problem: String,
+        /// How to correct it.
+        help: String,
     },
-    /// A line is no CSV of the header's width, or no UTF-8.
-    #[error("{file}{}: {}", line.map(|l| format!(", line {l}")).unwrap_or_default(), excerpt(problem, 300))]
+    /// The file cannot be read, or a line is not CSV of the header's width in UTF-8.
     Malformed {
         /// File name as given.
         file: String,
-        /// Line in the file, counted from 1.
-        line: Option<u64>,
+        /// Line in the file, from 1.
+        line: Option<usize>,
         /// What is wrong.
         problem: String,
+        /// How to correct it; empty where the problem does not suggest a way.
+        help: &'static str,
     },
     /// The readings do not follow the loads.
-    #[error(
-        "{file}, column 'force_N': the reading changes by {slope:.2} N for each newton of load_N in {conditions} of {of} \
-         condition(s) (rank correlation over all {correlation:.2}), {:.2} to {:.2} and a correlation above 0.5 are possible; check the sign and the unit of both columns, and the load cell's cable",
-        bounds.start(), bounds.end()
-    )]
     Unrelated {
         /// File name as given.
         file: String,
-        /// Newtons per newton, the median over the conditions that do not follow.
+        /// Change of the reading in newtons per newton of load: median over the conditions that do
+        /// not follow.
         slope: f64,
-        /// Rank correlation of readings and loads, the median over all conditions.
+        /// Rank correlation of readings and loads: median over all conditions.
         correlation: f64,
-        /// What is possible.
-        bounds: std::ops::RangeInclusive<f64>,
-        /// Conditions whose readings do not follow.
+        /// Plausible slopes.
+        bounds: RangeInclusive<f64>,
+        /// Number of conditions whose readings do not follow.
         conditions: usize,
-        /// Conditions whose loads differ enough to tell.
+        /// Number of conditions whose loads vary enough to judge.
         of: usize,
     },
-    /// Two columns stand in each other's place.
-    #[error(
-        "{file}, columns '{first}' and '{second}': they stand in each other's place: {because}; exchange the two names in \
-         line 1, or repair what wrote the table"
-    )]
+    /// Two columns are swapped.
     SwappedColumns {
         /// File name as given.
         file: String,
         /// The column that comes first in a header.
         first: &'static str,
-        /// The other.
+        /// The other column.
         second: &'static str,
-        /// How it was told.
-        because: &'static str,
+        /// What shows it.
+        evidence: &'static str,
     },
-    /// The directions differ the wrong way round.
-    #[error(
-        "{file}, column 'direction': in {conditions} of {of} condition(s) the concentric readings lie below the eccentric \
-         ones, at {load_n:.2} N of load {concentric_n:.2} N below {eccentric_n:.2} N; a load takes more to pull than to \
-         release. Exchange the words concentric and eccentric, or load_N and force_N if these are swapped"
-    )]
+    /// The labels of the two directions are swapped.
     SwappedDirections {
         /// File name as given.
         file: String,
-        /// Conditions where it is so.
+        /// Number of conditions with swapped labels.
         conditions: usize,
-        /// Conditions with both directions.
+        /// Number of conditions with both directions.
         of: usize,
-        /// A load.
+        /// Load of an example in newtons.
         load_n: f64,
-        /// The reading there while the load is pulled.
+        /// Concentric reading of the example in newtons.
         concentric_n: f64,
-        /// The reading there while it is released.
+        /// Eccentric reading of the example in newtons.
         eccentric_n: f64,
     },
-    /// The readings hold no friction.
-    #[error(
-        "{file}, column 'force_N': no friction was measured: in none of {conditions} condition(s) does the reading depart \
-         from the load by more than its scatter, pulled or released; check that force_N is the load cell beyond the \
-         switch, and no copy of load_N"
-    )]
+    /// The readings show no friction.
     NoFriction {
         /// File name as given.
         file: String,
-        /// Conditions looked at.
+        /// Number of conditions that were checked.
         conditions: usize,
     },
     /// Loads and masses contradict each other.
-    #[error(
-        "{file}, column 'load_N': the loads are {factor:.3} times what load_mass_g weighs, {} to {} are possible; \
-         give newtons and grams, or 0 for a mass that is not known", bounds.start(), bounds.end()
-    )]
     LoadUnit {
         /// File name as given.
         file: String,
         /// Load over weight.
         factor: f64,
-        /// What is possible.
-        bounds: std::ops::RangeInclusive<f64>,
+        /// Plausible factors.
+        bounds: RangeInclusive<f64>,
     },
-    /// Loads that are no newtons.
-    #[error(
-        "{file}, column 'load_N': half of the loads are above {load_n} N; {} to {} N are possible of a tendon on a printed switch. \
-         Give newtons: divide grams by 101.97, multiply kilonewtons by 1000",
-        bounds.start(), bounds.end()
-    )]
-    NoNewtons {
+    /// The loads cannot be newtons.
+    ImplausibleLoads {
         /// File name as given.
         file: String,
-        /// The median load.
+        /// Median load in newtons.
         load_n: f64,
-        /// What is possible.
-        bounds: std::ops::RangeInclusive<f64>,
+        /// Plausible median loads in newtons.
+        bounds: RangeInclusive<f64>,
     },
-    /// Readings in another unit than the loads.
-    #[error(
-        "{file}, column 'force_N': over both directions the readings are {factor:.3} times the loads, {} to {} are possible; give \
-         both columns in newtons at the tendon, and divide by what a pulley between tendon and cell multiplies",
-        bounds.start(), bounds.end()
-    )]
+    /// The readings have another unit than the loads.
     ReadingUnit {
         /// File name as given.
         file: String,
-        /// Readings over loads, friction fallen out.
+        /// Readings over loads, averaged over both directions so that friction cancels.
         factor: f64,
-        /// What is possible.
-        bounds: std::ops::RangeInclusive<f64>,
+        /// Plausible factors.
+        bounds: RangeInclusive<f64>,
     },
-    /// One direction, on the wrong side of its loads.
-    #[error(
-        "{file}, column 'direction': what was {direction} lies on the wrong side of its load in {conditions} of {of} condition(s), where the reading changes by {slope:.2} N \
-         for each newton; what is pulled (concentric) reads more than its load and what is released (eccentric) less. Write the \
-         other word, or check load_N"
-    )]
+    /// The table has one direction, and its readings are on the wrong side of their loads.
     WrongSide {
         /// File name as given.
         file: String,
-        /// The word of the column.
+        /// Word of the column.
         direction: &'static str,
-        /// Newtons per newton, the median over the conditions on the wrong side.
+        /// Change of the reading in newtons per newton of load: median over the conditions.
         slope: f64,
-        /// Conditions on the wrong side.
+        /// Number of conditions on the wrong side.
         conditions: usize,
-        /// Conditions that can tell.
+        /// Number of conditions whose loads vary enough to judge.
         of: usize,
     },
-    /// A series on two conditions or at several loads.
-    #[error(
-        "{file}, column '{column}': series '{}' holds {} and {}; a series is recorded in one go, on one condition and at one load. Give \
-         each its own name in column series",
-        excerpt(series, 80),
-        excerpt(one, 80),
-        excerpt(other, 80)
-    )]
+    /// A series has several conditions or loads.
     MixedSeries {
         /// File name as given.
         file: String,
         /// The series.
         series: String,
-        /// The column that holds both.
+        /// The column with several values.
         column: &'static str,
         /// One of its values.
         one: String,
-        /// The other.
+        /// Another of its values.
         other: String,
     },
-    /// A series that stands in the table twice.
-    #[error(
-        "{file}, column 'force_N': the {rows} readings of series '{}' are those of series '{}' to the last digit; a copy is no second \
-         measurement: leave it out",
-        excerpt(series, 80),
-        excerpt(other, 80)
-    )]
+    /// A series is a copy of another one.
     CopiedSeries {
         /// File name as given.
         file: String,
         /// The series.
         series: String,
-        /// The one that it is a copy of.
+        /// The series that it copies.
         other: String,
-        /// Its rows.
+        /// Number of rows.
         rows: usize,
     },
-    /// Directions exchanged in more series than can be set aside.
-    #[error(
-        "{file}, column 'direction': in {count} of {of} series less was read pulling than releasing ({}); friction takes from what is \
-         released and adds to what is pulled. Exchange the words concentric and eccentric there, or leave these series out",
-        excerpt(series, 200)
-    )]
+    /// The labels of the directions are swapped in more series than a fit can exclude.
     ExchangedSeries {
         /// File name as given.
         file: String,
-        /// How many.
+        /// Number of series with swapped labels.
         count: usize,
-        /// Of so many.
+        /// Number of all series.
         of: usize,
-        /// Their names, the first of them.
+        /// Names of the first of them.
         series: String,
     },
-    /// A wrap angle measured row by row.
-    #[error(
-        "{file}, column 'wrap_angle_deg': {count} different angles of one layout, from {least_deg:.2} to {most_deg:.2} degrees; each would be \
-         a condition with constants of its own, and at most {most} are possible. Give the nominal angle of each mount"
-    )]
+    /// A layout has too many different wrap angles.
     ScatteredWraps {
         /// File name as given.
         file: String,
-        /// How many.
+        /// Number of different angles.
         count: usize,
-        /// The smallest.
+        /// Smallest angle in degrees.
         least_deg: f64,
-        /// The largest.
+        /// Largest angle in degrees.
         most_deg: f64,
-        /// How many are possible.
+        /// Largest number that is possible.
         most: usize,
     },
-    /// The loads cannot fix the baseline.
-    #[error(
-        "{file}, lines 2 to {last_line}, column 'load_N': {found} different load(s) above zero; the baseline needs at least {needed}, \
-         add series with other weights. One load leaves open how friction grows with load, where the switch stands, \
-         and every effect that lies in load"
-    )]
+    /// Too few loads determine the baseline.
     TooFewLoads {
         /// File name as given.
         file: String,
-        /// Last line of the table, counted from 1.
+        /// Last line of the table, from 1.
         last_line: usize,
-        /// How many there are.
+        /// Number of different loads above zero.
         found: usize,
-        /// How many are needed.
+        /// Number that is needed.
         needed: usize,
     },
 }
+
+impl TableError {
+    fn location(&self) -> Location {
+        let column =
+            |file: &str, name: &str| Location { field: Some(name.to_owned()), ..Location::file(file) };
+        match self {
+            Self::Empty { file } | Self::Session { file, .. } | Self::Copied { file, .. } => {
+                Location::file(file)
+            }
+            Self::MissingColumn { file, .. } => Location::line(file, 1),
+            Self::Cell { file, line, column, value, .. } => {
+                let value = Some(value.clone()).filter(|value| !value.is_empty());
+                Location { field: Some((*column).to_owned()), value, ..Location::line(file, *line) }
+            }
+            Self::Malformed { file, line, .. } => Location { line: *line, ..Location::file(file) },
+            Self::SwappedColumns { file, first, .. } => column(file, first),
+            Self::MixedSeries { file, column: name, .. } => column(file, name),
+            Self::SwappedDirections { file, .. }
+            | Self::WrongSide { file, .. }
+            | Self::ExchangedSeries { file, .. } => column(file, "direction"),
+            Self::Unrelated { file, .. }
+            | Self::NoFriction { file, .. }
+            | Self::ReadingUnit { file, .. }
+            | Self::CopiedSeries { file, .. } => column(file, "force_N"),
+            Self::LoadUnit { file, .. }
+            | Self::ImplausibleLoads { file, .. }
+            | Self::TooFewLoads { file, .. } => column(file, "load_N"),
+            Self::ScatteredWraps { file, .. } => column(file, "wrap_angle_deg"),
+        }
+    }
+
+    fn problem(&self) -> String {
+        let name = |text: &str| excerpt(text, LONGEST_NAME);
+        let range = |bounds: &RangeInclusive<f64>| format!("{} to {}", bounds.start(), bounds.end());
+        match self {
+            Self::Empty { .. } => "the table contains no rows".to_owned(),
+            Self::Session { other, session, .. } => {
+                format!("session '{}' is also in {}", name(session), name(other))
+            }
+            Self::Copied { other, rows, .. } => {
+                format!("{rows} of its readings are also in {}, at the same times", name(other))
+            }
+            Self::MissingColumn { column, .. } => format!("column '{column}' is missing"),
+            Self::Cell { problem, .. } | Self::Malformed { problem, .. } => problem.clone(),
+            Self::Unrelated { slope, correlation, bounds, conditions, of, .. } => format!(
+                "the readings do not follow the loads in {conditions} of {of} condition(s): they change by {slope:.2} N per \
+                 newton of load_N (plausible: {:.2} to {:.2}), with a rank correlation of {correlation:.2} over all conditions \
+                 (plausible: above 0.5)",
+                bounds.start(),
+                bounds.end()
+            ),
+            Self::SwappedColumns { second, evidence, .. } => {
+                format!("swapped with column {second}: {evidence}")
+            }
+            Self::SwappedDirections { conditions, of, load_n, concentric_n, eccentric_n, .. } => format!(
+                "the concentric readings are below the eccentric ones in {conditions} of {of} condition(s), such as \
+                 {concentric_n:.2} N below {eccentric_n:.2} N at a load of {load_n:.2} N; pulling a load takes more force than \
+                 releasing it"
+            ),
+            Self::NoFriction { conditions, .. } => format!(
+                "no friction was measured: in none of {conditions} condition(s) does the reading differ from the load by more \
+                 than its scatter, pulled or released"
+            ),
+            Self::LoadUnit { factor, bounds, .. } => format!(
+                "the loads are {factor:.3} times the weight of load_mass_g (plausible: {})",
+                range(bounds)
+            ),
+            Self::ImplausibleLoads { load_n, bounds, .. } => format!(
+                "the median load is {load_n} N (plausible for a tendon on a printed switch: {} N)",
+                range(bounds)
+            ),
+            Self::ReadingUnit { factor, bounds, .. } => format!(
+                "the readings are {factor:.3} times the loads, averaged over both directions (plausible: {})",
+                range(bounds)
+            ),
+            Self::WrongSide { direction, slope, conditions, of, .. } => format!(
+                "the {direction} readings are on the wrong side of their loads in {conditions} of {of} condition(s) ({slope:.2} N \
+                 per newton); concentric (pulled) readings are above their loads, eccentric (released) ones below"
+            ),
+            Self::MixedSeries { series, one, other, .. } => format!(
+                "series '{}' contains {} and {}; a series is recorded without a break, on one condition and at one load",
+                name(series),
+                name(one),
+                name(other)
+            ),
+            Self::CopiedSeries { series, other, rows, .. } => format!(
+                "the {rows} readings of series '{}' equal those of series '{}' to the last digit",
+                name(series),
+                name(other)
+            ),
+            Self::ExchangedSeries { count, of, series, .. } => format!(
+                "the pulled readings are below the released ones in {count} of {of} series ({}); friction adds to a pulled load \
+                 and takes from a released one",
+                excerpt(series, 200)
+            ),
+            Self::ScatteredWraps { count, least_deg, most_deg, most, .. } => format!(
+                "one layout has {count} different angles, from {least_deg:.2} to {most_deg:.2} degrees; at most {most} are \
+                 possible, since each is a condition with its own constants"
+            ),
+            Self::TooFewLoads { last_line, found, needed, .. } => format!(
+                "{found} different load(s) above zero in lines 2 to {last_line}; at least {needed} are needed to fit the baseline"
+            ),
+        }
+    }
+
+    fn help(&self) -> String {
+        let fixed = match self {
+            Self::MissingColumn { .. } => {
+                return format!(
+                    "name the columns {}; `pinswitch segment` converts raw logs to such a table",
+                    COLUMNS.join(", ")
+                );
+            }
+            Self::Cell { help, .. } => return help.clone(),
+            Self::Malformed { help, .. } => help,
+            Self::Empty { .. } => "write a header line and one line per repetition",
+            Self::Session { .. } => "name the sessions in a column session, or leave out one of the files",
+            Self::Copied { .. } => "leave out one of the files: a table and its copy are one session",
+            Self::Unrelated { .. } => {
+                "check the sign and the unit of both columns, and the load cell's cable"
+            }
+            Self::SwappedColumns { .. } => {
+                "swap the two names in line 1, or correct the program that wrote the table"
+            }
+            Self::SwappedDirections { .. } => {
+                "swap the words concentric and eccentric, or load_N and force_N if these are swapped"
+            }
+            Self::NoFriction { .. } => {
+                "check that force_N is the load cell behind the switch, and not a copy of load_N"
+            }
+            Self::LoadUnit { .. } => "give newtons and grams, or 0 for an unknown mass",
+            Self::ImplausibleLoads { .. } => {
+                "give newtons: divide grams by 101.97, multiply kilonewtons by 1000"
+            }
+            Self::ReadingUnit { .. } => {
+                "give both columns in newtons at the tendon, and divide by the ratio of a pulley between tendon and cell"
+            }
+            Self::WrongSide { .. } => "write the other word, or check load_N",
+            Self::MixedSeries { .. } => "give each its own name in column series",
+            Self::CopiedSeries { .. } => "leave out the copy: it is not another measurement",
+            Self::ExchangedSeries { .. } => {
+                "swap the words concentric and eccentric in these series, or leave the series out"
+            }
+            Self::ScatteredWraps { .. } => "give the nominal angle of each mount",
+            Self::TooFewLoads { .. } => {
+                "add series with other weights: one load does not determine how friction grows with load, the threshold, or \
+                 any effect along load"
+            }
+        };
+        fixed.to_owned()
+    }
+}
+
+impl From<&TableError> for Diagnostic {
+    fn from(error: &TableError) -> Self {
+        Self::new(error.problem()).with_location(error.location()).with_help(error.help())
+    }
+}
+
+impl From<TableError> for Diagnostic {
+    fn from(error: TableError) -> Self {
+        Self::from(&error)
+    }
+}
+
+impl fmt::Display for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Diagnostic::from(self).fmt(f)
+    }
+}
+
+impl std::error::Error for TableError {}

@@ -1,5 +1,5 @@
-//! Whether the rows of each series belong together: one condition, loads that are alike, readings of its own, and directions
-//! the right way round.
+//! Consistency of each series: one condition, similar loads, its own readings, and correct
+//! directions.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -10,24 +10,25 @@ use super::substrate_word::substrate_word;
 use super::table_error::TableError;
 use crate::median::median;
 
-/// Ratio of the heaviest load of a series to its lightest, beyond which it is no series. A machine that pulls against a
-/// spring moves its load by some tenths.
+/// Largest ratio of the loads within a series. A machine that pulls against a spring varies its
+/// load by some tenths.
 const MOST_SPREAD: f64 = 2.5;
-/// Different readings of a series that another one cannot repeat by chance. A cell with coarse steps reads few different values, and
-/// the same ones again.
+/// Number of different readings that another series cannot repeat by chance. A coarse load cell
+/// repeats a few values.
 const COPIED: usize = 12;
-/// Series with exchanged directions that are left to the fit, which sets them aside.
-const SET_ASIDE: usize = 3;
-/// Share of the load by which a pull must lie below a release before a series counts as exchanged, and standard errors.
+/// Most series with exchanged directions that are left to the fit, which excludes them.
+const LEFT_TO_FIT: usize = 3;
+/// Share of the load, and number of standard errors, by which pulled readings must be below
+/// released ones before a series counts as exchanged.
 const BACKWARDS: (f64, f64) = (0.02, 5.0);
-/// Series that are named in an error.
+/// Most series that are named in an error.
 const NAMED: usize = 8;
 
 /// The rows of one series of one session.
 type Series<'a> = ((&'a str, &'a str), Vec<&'a PlateauRow>);
 
-/// What is wrong with the series of a table, if anything is.
-pub(super) fn mixed_up(rows: &[PlateauRow], file: &str) -> Option<TableError> {
+/// Returns the first inconsistency of the series of a table.
+pub(super) fn inconsistent_series(rows: &[PlateauRow], file: &str) -> Option<TableError> {
     let mut by_name: BTreeMap<(&str, &str), Vec<&PlateauRow>> = BTreeMap::new();
     for row in rows {
         by_name.entry((&row.labels.session, &row.series)).or_default().push(row);
@@ -39,7 +40,7 @@ pub(super) fn mixed_up(rows: &[PlateauRow], file: &str) -> Option<TableError> {
         .or_else(|| exchanged(&all, file))
 }
 
-/// A series on two conditions, or at loads that are not one.
+/// Refuses a series with several conditions or loads.
 fn mixed(series: &str, of: &[&PlateauRow], file: &str) -> Option<TableError> {
     let first = of.first()?;
     let condition = |row: &PlateauRow| {
@@ -60,7 +61,7 @@ fn mixed(series: &str, of: &[&PlateauRow], file: &str) -> Option<TableError> {
     None
 }
 
-/// A series whose readings are those of another one.
+/// Refuses a series with the readings of another one.
 fn copied(all: &[Series<'_>], file: &str) -> Option<TableError> {
     let mut known: HashMap<Vec<(bool, u64)>, &str> = HashMap::new();
     for ((_, series), of) in all {
@@ -84,11 +85,11 @@ fn copied(all: &[Series<'_>], file: &str) -> Option<TableError> {
     None
 }
 
-/// More series than the fit sets aside where less was read pulling than releasing.
+/// Refuses more exchanged series than the fit can exclude.
 fn exchanged(all: &[Series<'_>], file: &str) -> Option<TableError> {
     let wrong: Vec<&str> =
         all.iter().filter(|(_, of)| is_backwards(of)).map(|((_, series), _)| *series).collect();
-    (wrong.len() > SET_ASIDE).then(|| TableError::ExchangedSeries {
+    (wrong.len() > LEFT_TO_FIT).then(|| TableError::ExchangedSeries {
         file: file.to_owned(),
         count: wrong.len(),
         of: all.len(),
@@ -123,10 +124,10 @@ mod tests {
     use super::*;
     use crate::test_session::session;
 
-    fn said(change: impl Fn(&mut Vec<PlateauRow>)) -> String {
+    fn error(change: impl Fn(&mut Vec<PlateauRow>)) -> Option<TableError> {
         let mut rows = session(3);
         change(&mut rows);
-        mixed_up(&rows, "t.csv").map_or_else(String::new, |e| e.to_string())
+        inconsistent_series(&rows, "t.csv")
     }
 
     fn turn(rows: &mut [PlateauRow], series: usize) {
@@ -144,23 +145,26 @@ mod tests {
     }
 
     #[test]
-    fn series_are_whole_or_named() {
-        assert_eq!(said(|_| {}), "");
+    fn mixed_and_copied_series_are_refused() {
+        assert_eq!(error(|_| {}), None);
         let loads =
-            said(|rows| rows.iter_mut().for_each(|r| r.series = format!("{:?} {:?}", r.substrate, r.pins)));
-        assert!(loads.starts_with("t.csv, column 'load_N': series '"), "{loads}");
-        let layouts = said(|rows| rows.iter_mut().for_each(|r| r.series = format!("{}", r.load_n)));
-        assert!(layouts.contains("column 'pins'"), "{layouts}");
-        let copied = said(|rows| {
+            error(|rows| rows.iter_mut().for_each(|r| r.series = format!("{:?} {:?}", r.substrate, r.pins)));
+        assert!(matches!(loads, Some(TableError::MixedSeries { column: "load_N", .. })), "{loads:?}");
+        let layouts = error(|rows| rows.iter_mut().for_each(|r| r.series = format!("{}", r.load_n)));
+        assert!(matches!(layouts, Some(TableError::MixedSeries { column: "pins", .. })), "{layouts:?}");
+        let copied = error(|rows| {
             let first: Vec<PlateauRow> =
                 rows.iter().filter(|r| r.series == rows[0].series).cloned().collect();
             rows.extend(first.into_iter().map(|r| PlateauRow { series: "again".into(), ..r }));
         });
-        assert!(copied.contains("'again'") && copied.contains("copy"), "{copied}");
+        assert!(
+            matches!(&copied, Some(TableError::CopiedSeries { series, .. }) if series == "again"),
+            "{copied:?}"
+        );
     }
 
     #[test]
-    fn a_few_exchanged_series_are_the_fits_and_more_are_named() {
+    fn many_exchanged_series_are_refused() {
         let backwards = |rows: &[PlateauRow]| {
             let mut names: Vec<&str> = rows.iter().map(|r| r.series.as_str()).collect();
             names.sort_unstable();
@@ -172,8 +176,8 @@ mod tests {
         assert_eq!(backwards(&rows), 0);
         turn(&mut rows, 400);
         let many = backwards(&rows);
-        assert!(many > SET_ASIDE, "{many}");
-        let told = mixed_up(&rows, "t.csv").unwrap().to_string();
-        assert!(told.contains(&format!("{many} of")) && told.contains("Exchange"), "{told}");
+        assert!(many > LEFT_TO_FIT, "{many}");
+        let error = inconsistent_series(&rows, "t.csv").unwrap();
+        assert!(matches!(error, TableError::ExchangedSeries { count, .. } if count == many), "{error}");
     }
 }

@@ -1,4 +1,5 @@
-//! What was not found: limits of sizes, what the data cannot show, and what became of each candidate.
+//! Effects that are not in the model: limits of sizes, effects that are not identifiable, and the
+//! outcome of each candidate.
 
 use crate::inference::{
     CandidateEffect, Levels, Observations, Selection, degrees_of_freedom, family_p_value,
@@ -31,45 +32,45 @@ pub(super) fn limits(selection: &Selection) -> Vec<LimitReport> {
         .collect()
 }
 
-/// What no data of such a rig can show after the refit.
+/// Effects that no table of such a rig identifies after the refit.
 pub(super) const NEVER_VISIBLE: [&str; 3] = [
-    "a loss in the guide pulleys in proportion to tension: needs a run without the switch",
-    "a wrap angle that is wrong by a constant: needs the angle measured",
-    "a threshold shifted by the same load everywhere: needs another way to see the switching",
+    "a loss in the guide pulleys proportional to tension: requires a run without the switch",
+    "a constant error of the wrap angle: requires a measurement of the angle",
+    "a threshold shifted by the same load everywhere: requires an independent measurement of the transition",
 ];
 
-/// Effects that this data cannot show, with what keeps it from it.
+/// Returns the effects that are not identifiable with this table, with reasons.
 pub(super) fn invisible(selection: &Selection) -> Vec<Invisible> {
     selection
         .invisible()
         .filter(|c| !selection.effects.iter().any(|found| found.effect.id() == c.effect.id()))
         .map(|candidate| {
-            let told = candidate.effect.description();
+            let description = candidate.effect.description();
             Invisible {
-                id: told.id.to_owned(),
+                id: description.id.to_owned(),
                 why: if candidate.strength < 1e-6 {
-                    told.invisible_because.to_owned()
+                    description.invisible_because.to_owned()
                 } else if candidate.is_taken_over() {
-                    "the refitted baseline takes it over".to_owned()
+                    "it is absorbed by the refitted baseline".to_owned()
                 } else {
                     format!(
-                        "at a typical size it makes {:.2} standard deviations, {} are needed",
+                        "a typical size changes the readings by {:.2} standard deviations, at least {} are needed",
                         candidate.strength,
                         CandidateEffect::MIN_STRENGTH
                     )
                 },
-                experiment: told.experiment.to_owned(),
+                experiment: description.experiment.to_owned(),
                 possible: selection
                     .hidden_limits
                     .iter()
-                    .find(|limit| limit.effect.id() == told.id)
+                    .find(|limit| limit.effect.id() == description.id)
                     .map(|limit| limit.interval),
             }
         })
         .collect()
 }
 
-/// Every effect with what became of it.
+/// Returns every effect with its outcome.
 pub(super) fn candidates(selection: &Selection, data: &Observations, levels: Levels) -> Vec<CandidateReport> {
     let degrees = degrees_of_freedom(data, selection.baseline.model.values().len());
     let fate = |candidate: &CandidateEffect, p: f64| {

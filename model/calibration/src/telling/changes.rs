@@ -4,7 +4,7 @@ use crate::inference::{Fit, Weighed, averaged_intervals};
 use crate::report::{ChangeReport, Estimate};
 use crate::table::Changing;
 
-/// The changes of a fitted model, in the order in which they were found.
+/// Returns the changes of a fitted model, in the order in which they were selected.
 pub(super) fn changes(fitted: &Fit, weighed: &Weighed<'_>) -> Vec<ChangeReport> {
     let model = &fitted.model;
     let frame = &model.frame;

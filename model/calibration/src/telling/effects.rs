@@ -1,4 +1,4 @@
-//! What was found: named effects with their rivals, and structure without a name.
+//! Reports of the effects with their rivals, and of unattributed structure.
 
 use crate::held_out::held_out;
 use crate::inference::{
@@ -30,19 +30,19 @@ fn named_report(
     after_n: f64,
     augmented: &ModelReport,
 ) -> EffectReport {
-    let told = found.effect.description();
+    let description = found.effect.description();
     let without = selection.augmented.model.without_term(found.term);
     EffectReport {
-        id: told.id.to_owned(),
-        covariate: told.covariate.as_str().to_owned(),
-        side: Some(told.side.as_str().to_owned()),
+        id: description.id.to_owned(),
+        covariate: description.covariate.as_str().to_owned(),
+        side: Some(description.side.as_str().to_owned()),
         formula: found.effect.cited_formula(),
         p_value: family_p_value(found.gain, selection.baseline.model.vocabulary.tries(), degrees),
-        parameters: told
+        parameters: description
             .parameters
             .iter()
             .filter_map(|p| {
-                let known = augmented.parameters.get(&format!("{}.{}", told.id, p.name))?;
+                let known = augmented.parameters.get(&format!("{}.{}", description.id, p.name))?;
                 Some((p.name.to_owned(), known.clone()))
             })
             .collect(),
@@ -54,22 +54,22 @@ fn named_report(
 }
 
 fn rival_report(found: &FoundEffect, rival: &Rival) -> RivalReport {
-    let (told, other) = (found.effect.description(), rival.effect.description());
+    let (description, other) = (found.effect.description(), rival.effect.description());
     RivalReport {
         id: other.id.to_owned(),
         why: format!(
-            "after the refit its trace is the same to a cosine of {:.3}; in place of {} it fits worse by only {:.1} whitened squares",
-            rival.cosine, told.id, rival.worse_by
+            "after the refit both change the readings alike (cosine {:.3}); replacing {} by it increases the deviance by only {:.1}",
+            rival.cosine, description.id, rival.worse_by
         ),
-        experiment: if told.experiment == other.experiment {
-            told.experiment.to_owned()
+        experiment: if description.experiment == other.experiment {
+            description.experiment.to_owned()
         } else {
-            format!("{}; {}", told.experiment, other.experiment)
+            format!("{}; {}", description.experiment, other.experiment)
         },
     }
 }
 
-/// The report of the structure that no name explains, if there is any.
+/// Returns the report of unattributed structure, if there is any.
 fn unnamed_report(
     selection: &Selection,
     weighed: &Weighed<'_>,

@@ -1,4 +1,4 @@
-//! From a selection to its report: verdict, effects, rivals, blind spots, errors before and after.
+//! Conversion of a selection to its report.
 
 mod absent;
 mod bad_series;
@@ -26,21 +26,26 @@ use unequal::{hidden, unequal};
 pub(crate) use bad_series::BAD_READING_SD;
 pub(crate) use model::model_report;
 
-/// What is told beside a selection.
-pub(crate) struct Told {
-    /// The levels that it was made with.
+/// Results that a report needs in addition to the selection.
+pub(crate) struct ReportInputs {
+    /// Levels of the selection.
     pub(crate) levels: Levels,
-    /// The error that a new session is promised.
+    /// Expected error of a new session.
     pub(crate) promised: Option<Promise>,
-    /// Rows weighed down as outliers.
+    /// Number of rows with reduced weight.
     pub(crate) outliers: usize,
-    /// Held-out errors of the model with all that was found.
+    /// Held-out errors of the augmented model.
     pub(crate) held: HeldOut,
 }
 
-/// The report of a selection.
-pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observations, told: Told) -> Report {
-    let Told { levels, promised, outliers, held } = told;
+/// Returns the report of a selection.
+pub(crate) fn report(
+    rows: &[PlateauRow],
+    selection: &Selection,
+    data: &Observations,
+    inputs: ReportInputs,
+) -> Report {
+    let ReportInputs { levels, promised, outliers, held } = inputs;
     let noise = selection.noise;
     let weighed = &Weighed::new(data, noise);
     let bare = if selection.augmented.model.terms.is_empty() {
@@ -48,7 +53,8 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
     } else {
         held_out(&selection.baseline.model, weighed)
     };
-    // The paper's model is told as if nothing could be missing from it: that is what the other is compared with.
+    // The intervals of the paper's model assume that it lacks nothing, since it is the reference
+    // for the augmented model.
     let baseline = model_report(&selection.baseline, weighed, bare, |fitted, weighed| {
         interval_half_widths(fitted, weighed).into_iter().map(|half| [half, half]).collect()
     });
@@ -66,7 +72,8 @@ pub(crate) fn report(rows: &[PlateauRow], selection: &Selection, data: &Observat
     let candidates = candidates(selection, data, levels);
     let is_unsettled = candidates.iter().any(|candidate| candidate.fate == Fate::Unsettled);
     let verdict = match Verdict::of(selection).beside(&trials) {
-        // Where something is left, a gain is no chance, or scatter could hide it, nothing is excluded, however small it is.
+        // Residual structure, an unexplained gain, or scatter that could hide an effect rules out
+        // the verdict `none`.
         Verdict::None if !adequate || is_unsettled || noise.mounts_hide() => Verdict::Inconclusive,
         verdict => verdict,
     };

@@ -1,4 +1,4 @@
-//! A fitted model with its constants and errors.
+//! Report of a fitted model: constants and errors.
 
 use pinswitch_friction::Substrate;
 
@@ -8,13 +8,14 @@ use crate::layouts_left_out::layouts_left_out;
 use crate::report::{Estimate, ModelReport};
 use crate::table::Condition;
 
-/// A constant with its interval, which ends at the bounds of a shape.
+/// Returns a constant with its interval, limited to the bounds of a shape.
 fn estimate(value: f64, [below, above]: [f64; 2], unit: &str, (least, most): (f64, f64)) -> Estimate {
     let ci95 = [(value - below).max(least), (value + above).min(most)];
     Estimate { value, ci95, unit: unit.to_owned() }
 }
 
-/// A fitted model with its held-out errors; `reaches` tells how far each constant's interval lies below and above it.
+/// Returns the report of a fitted model; `reaches` returns the distances from each constant to the
+/// ends of its interval.
 pub(crate) fn model_report(
     fitted: &Fit,
     weighed: &Weighed<'_>,
@@ -26,7 +27,7 @@ pub(crate) fn model_report(
     let rmse_n = data.root_mean_square_n(sound.map(|i| (i, fitted.residual_n[i])));
     let reaches = reaches(fitted, weighed);
     let conditions = &fitted.model.frame.conditions;
-    let touched = |name: &str| match name {
+    let is_used = |name: &str| match name {
         "mu_p" => conditions.iter().any(Condition::has_pins),
         "mu_s" => conditions.iter().any(|c| c.substrate == Some(Substrate::Silicone)),
         _ => true,
@@ -37,9 +38,9 @@ pub(crate) fn model_report(
         .into_iter()
         .zip(fitted.model.values().into_iter().zip(reaches))
         .enumerate()
-        .filter(|(_, ((name, _), _))| touched(name))
+        .filter(|(_, ((name, _), _))| is_used(name))
         .map(|(i, ((name, unit), (value, reach)))| {
-            // Of what is held as it was claimed the table says nothing.
+            // The table does not determine a constant that is fixed at its hypothesised value.
             let reach = if fitted.model.is_held(i) { [f64::INFINITY; 2] } else { reach };
             (name, estimate(value, reach, unit, fitted.model.bounds_of(i)))
         })

@@ -1,5 +1,5 @@
-//! Effects whose size is not the same in all sessions: the one size that the model has is then true of none. What is there
-//! with one sign and then with the other may be named by no table of both.
+//! Effects whose size differs between sessions, so that the model's common size applies to none of
+//! them. An effect whose sign differs between sessions may not show in their joint table.
 
 use std::collections::BTreeSet;
 
@@ -11,12 +11,14 @@ use crate::inference::{
 use crate::parallel::map_each;
 use crate::report::{Estimate, SizeInSession, UnequalReport};
 
-/// Probability by chance below which a size is not the same in all sessions.
+/// Probability by chance below which sizes count as different.
 const DIFFERENT_P: f64 = 1e-3;
-/// Share of the largest size by which they must differ, too: whatever is certain, less changes no curve.
+/// Smallest relevant difference, as a share of the largest size: a smaller one changes no curve,
+/// however significant it is.
 const DIFFERENT: f64 = 0.2;
 
-/// The effects of a selection whose sizes differ between its sessions, with the size in each.
+/// Returns the effects of a selection whose sizes differ between sessions, with the size in each
+/// session.
 pub(super) fn unequal(selection: &Selection, data: &Observations) -> Vec<UnequalReport> {
     let sessions = &selection.augmented.model.frame.sessions;
     if sessions.len() < 2 {
@@ -33,8 +35,8 @@ pub(super) fn unequal(selection: &Selection, data: &Observations) -> Vec<Unequal
         .collect()
 }
 
-/// Effects and structure that a session alone shows and all together do not, with the size in each session: as far as these
-/// differ.
+/// Returns effects and structure that single sessions show and all together do not, with the size
+/// in each session, if these differ.
 pub(super) fn hidden(selection: &Selection, data: &Observations, levels: Levels) -> Vec<UnequalReport> {
     let (all, start) = (&selection.augmented.model, &selection.baseline.model);
     let sessions = start.frame.sessions.len();
@@ -51,10 +53,10 @@ pub(super) fn hidden(selection: &Selection, data: &Observations, levels: Levels)
         Term::Structure(shape) => Some(along(shape)),
         Term::Named(_) => None,
     });
-    // Shapes that follow one session would take from the size what is there.
+    // Shapes that follow one session would absorb part of the size.
     let bare = all.without_terms(|term| matches!(term, Term::Structure(_)));
     let mut known: BTreeSet<String> = named.chain(unnamed).collect();
-    let mut found = Vec::new();
+    let mut reports = Vec::new();
     for (model, noise) in alone.into_iter().flatten() {
         let values = model.values();
         for (i, term) in model.terms.iter().enumerate() {
@@ -63,21 +65,21 @@ pub(super) fn hidden(selection: &Selection, data: &Observations, levels: Levels)
                     Term::Named(_) => all.vocabulary.tries(),
                     Term::Structure(_) => selection.structures_tried.max(1),
                 };
-            let told = match term {
+            let size = match term {
                 Term::Named(effect) => SizeOf::effect(*effect),
                 Term::Structure(shape) => Some(SizeOf::shape(shape)),
             };
             let constants = &values[model.term_offset(i)..model.term_offset(i) + term.constants()];
-            let Some(told) = told.filter(|told| known.insert(told.id.clone())) else { continue };
+            let Some(size) = size.filter(|size| known.insert(size.id.clone())) else { continue };
             let with = bare.with_term(term.clone(), constants);
-            let of_this = of_term(told, bare.terms.len(), tries, &with, noise, data);
-            found.extend(of_this.map(|told| UnequalReport { in_the_model: 0.0, ..told }));
+            let of_this = of_term(size, bare.terms.len(), tries, &with, noise, data);
+            reports.extend(of_this.map(|report| UnequalReport { in_the_model: 0.0, ..report }));
         }
     }
-    found
+    reports
 }
 
-/// What a size is the size of.
+/// Identity of a size: effect or structure, parameter and unit.
 struct SizeOf {
     id: String,
     parameter: String,
@@ -85,7 +87,7 @@ struct SizeOf {
 }
 
 impl SizeOf {
-    /// `None` of an effect that is there or not.
+    /// Returns `None` for an effect without constants.
     fn effect(effect: &dyn Effect) -> Option<Self> {
         let size = effect.parameters().first()?;
         Some(Self { id: effect.id().to_owned(), parameter: size.name.to_owned(), unit: size.unit.to_owned() })
@@ -101,10 +103,11 @@ fn along(shape: &Structure) -> String {
     format!("{UNATTRIBUTED} ({})", shape.covariate.as_str())
 }
 
-/// Rows of a session beyond the constants of the baseline without which it is asked for nothing alone.
+/// Fewest rows of a session, beyond the constants of the baseline, for a search in that session
+/// alone.
 const LEAST_ROWS: usize = 8;
 
-/// A size in one session: its place among them, value, standard deviation, and the degrees of freedom behind that.
+/// A size in one session: index of the session, value, standard deviation and degrees of freedom.
 struct Size {
     session: usize,
     value: f64,
@@ -126,7 +129,7 @@ fn of_term(
         .collect();
     let weight: f64 = sizes.iter().map(|s| s.sd.powi(-2)).sum();
     let mean = sizes.iter().map(|s| s.value / (s.sd * s.sd)).sum::<f64>() / weight;
-    // Each session against all others, whose mean lacks its own share.
+    // Each session is compared with the mean of the others.
     let gain = |s: &Size| {
         let rest = 1.0 / (weight - s.sd.powi(-2)).max(1e-300);
         let of_rest = (mean * weight - s.value / (s.sd * s.sd)) * rest;
@@ -159,10 +162,11 @@ fn of_term(
     })
 }
 
-/// The size in one session, all shapes and the constants of the switch held as all sessions have them.
+/// Fits the size in one session, with all shapes and the other constants of the switch fixed at the
+/// common fit.
 fn size_in(session: usize, at: usize, model: &Model, noise: Noise, data: &Observations) -> Option<Size> {
     let seen = data.subset(|row| data.points[row].session_group == Some(session));
-    // A session tells the level of its own friction, too: a size must not stand for that.
+    // The session has its own level of friction, which the size must not absorb.
     let own: Vec<usize> = [0, 1].into_iter().chain([at]).filter(|i| !model.is_held(*i)).collect();
     if seen.points.len() < 4 * own.len() {
         return None;

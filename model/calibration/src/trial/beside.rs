@@ -1,39 +1,43 @@
-//! What stands beside a claim: names that are not the same thing, and structure that the claim is no explanation of.
+//! Context of a hypothesis: other effects of the table, and structure that the hypothesis does not
+//! explain.
 
 use super::IS_THAT;
 use super::claim::{Found, ask, claimed, with_claim};
 use crate::effects::{Effect, EffectDefinition};
 use crate::inference::{Fit, Screen, Selection, Term, Weighed, dot, fit, with_what_is_left};
 
-/// Cosine of two visible traces from which they are one.
+/// Cosine of two traces above which they count as equal.
 const SAME_TRACE: f64 = 0.95;
-/// Cosine from which two effects are the same thing under two names, which no table tells apart.
+/// Cosine above which two effects are the same thing under two ids, which no table separates.
 const SAME_THING: f64 = 0.999;
-/// Squares of the noise by which one of two explanations must fit better to be told from the other.
+/// Difference of the deviance by which one of two explanations must be better.
 const TOLD_APART: f64 = 9.0;
 
-/// What a table says of a claim, beside what else it holds.
+/// Test of a hypothesis in its context.
 pub(super) struct Beside {
     pub(super) found: Found,
-    /// Where structure lies that stood beside the claim, since it explains what the claim does not.
+    /// Covariate of the structure that is kept in the model, because the hypothesis does not
+    /// explain it.
     pub(super) structure: Option<&'static str>,
-    /// A name that explains the table in place of the claim, and how well.
+    /// Effects that explain the table in place of the hypothesis, and how well.
     pub(super) rival: Option<(String, InItsPlace)>,
-    /// Share of what shapes without a name do that the claim explains in their place, where there are such.
+    /// Share of the gain of the shapes that the hypothesis explains in their place, if there are
+    /// shapes.
     pub(super) explains: Option<f64>,
 }
 
-/// How well a name explains what a claim is asked about.
+/// Comparison of other effects with the hypothesis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum InItsPlace {
-    /// As well: the table cannot tell which of both it is.
+    /// Equally good: the table does not separate the two.
     AsWell,
-    /// Better: it stood beside the claim.
+    /// Better: it is kept in the model.
     Better,
 }
 
-/// Asks for a claim. Names that are its rivals, or leave its very trace, would take over what is on trial: they stand
-/// aside, the others stay. So does structure without a name as long as the claim may be what it is.
+/// Tests a hypothesis. Effects that are its rivals, or have the same trace, would absorb the effect
+/// under test; they are removed, the others stay. Structure is also removed while the hypothesis
+/// may explain it.
 pub(super) fn beside(
     definition: &EffectDefinition,
     selection: &Selection,
@@ -88,7 +92,7 @@ pub(super) fn beside(
     if selection.structure.is_none() && !all.terms.iter().any(|t| matches!(t, Term::Structure(_))) {
         return Some(plain);
     }
-    // The claim is what was found there if it explains most of what the shapes do.
+    // The hypothesis is what was found there if it explains most of the shapes' gain.
     let with_shapes = fit(&all.without_terms(is_aside), weighed);
     let with = with_claim(definition, effect, &named.model, weighed);
     let share = IS_THAT[usize::from(definition.drawn_from.is_empty())];
@@ -100,8 +104,9 @@ pub(super) fn beside(
     Some(beside_structure(definition, effect, with, weighed).unwrap_or(plain))
 }
 
-/// The name that explains most in place of the claim, with its fit, unless the claim explains it better: those that stand
-/// aside, and the rivals of the claim where that was found. Shapes of the claim are free, as theirs are.
+/// Returns the effects that explain most in place of the hypothesis, with their fit, unless the
+/// hypothesis explains more: the removed effects, and the rivals of the hypothesis if it was
+/// selected. Its shapes are free for the comparison, as theirs are.
 fn in_its_place(
     definition: &EffectDefinition,
     effect: &'static dyn Effect,
@@ -133,7 +138,8 @@ fn in_its_place(
     }
 }
 
-/// The same beside the structure that is left once the claim is in the model; `None` if there is none.
+/// Tests the hypothesis in the presence of the structure that remains once it is in the model;
+/// `None` if none remains.
 fn beside_structure(
     definition: &EffectDefinition,
     effect: &'static dyn Effect,

@@ -1,4 +1,4 @@
-//! One claim asked of a table: the size of an effect with its shapes held, and how probable such a size is by chance.
+//! Test of one hypothesis: the size of an effect with fixed shapes, and its probability by chance.
 
 use crate::effects::{Effect, EffectDefinition};
 use crate::inference::{
@@ -6,22 +6,23 @@ use crate::inference::{
     fit, gain_at, jacobian,
 };
 
-/// Length of a trace in standard deviations below which the table does not see the effect.
+/// Norm of a trace, in standard deviations, below which the effect is not identifiable.
 const LEAST_STRENGTH: f64 = 1e-6;
 
-/// What a table says of a size.
+/// Estimate of a size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Found {
-    /// The size, in its own unit.
+    /// The size, in its unit.
     pub(super) value: f64,
-    /// Half of its 95 % interval.
+    /// Half width of its 95 % interval.
     pub(super) half: f64,
-    /// Probability of such a size by chance: the larger one of score and interval, which may disagree where the effect is
-    /// not linear.
+    /// Probability of such a size by chance: the larger one of score test and interval, which may
+    /// differ for a nonlinear effect.
     pub(super) p_value: f64,
 }
 
-/// Asks for the size of an effect on top of a fit without it; `None` where the table does not see it.
+/// Estimates the size of an effect in addition to a fit without it; `None` if it is not
+/// identifiable.
 pub(super) fn ask(
     definition: &EffectDefinition,
     effect: &'static dyn Effect,
@@ -41,7 +42,7 @@ pub(super) fn ask(
     let (value, sd) = if sizes == 1 {
         size_as_claimed(&without.model, effect, &claimed, weighed)?
     } else {
-        // Of several sizes the claim is their ratio, too: one factor for all, to first order.
+        // Several sizes keep their hypothesised ratio: one factor for all, to first order.
         (score.size * score.share, score.size.abs() / score.strength)
     };
     let by_interval = family_p_value((value / sd).powi(2), 1, degrees);
@@ -52,12 +53,12 @@ pub(super) fn ask(
     })
 }
 
-/// The constants as they are claimed.
+/// Returns the hypothesised constants.
 pub(super) fn claimed(definition: &EffectDefinition) -> Vec<f64> {
     definition.parameters.iter().map(|p| p.start).collect()
 }
 
-/// The fit with an effect whose shapes are held as claimed. Sizes come first among its constants.
+/// Fits an effect with its shapes fixed at their hypothesised values. Sizes come before shapes.
 pub(super) fn with_claim(
     definition: &EffectDefinition,
     effect: &'static dyn Effect,
@@ -72,8 +73,8 @@ pub(super) fn with_claim(
     fit(&with.frozen_except(&free), weighed)
 }
 
-/// The one size of an effect whose shapes are held as claimed, and its standard deviation: fitted, since what friction
-/// does is in proportion to no coefficient. `None` where the fit leaves the numbers, or the table does not know the size.
+/// Fits the size of an effect with fixed shapes, since friction is not linear in its coefficients;
+/// returns size and standard error. `None` if the fit diverges or does not determine the size.
 fn size_as_claimed(
     without: &Model,
     effect: &'static dyn Effect,

@@ -1,8 +1,9 @@
-//! What a table says of each effect of one's own: whether it confirms the effect, refutes it, or cannot tell.
+//! Tests of user-defined effects: whether a table confirms, refutes or does not decide each.
 //!
-//! The effect is put on trial alone, with its shape held where its definition starts it, so that nothing of the table went
-//! into what is asked: one question, one degree of freedom, no correction for a search. Readings that a form was drawn from
-//! have no part in its trial, and what else the table was found to hold stands beside it.
+//! An effect is tested alone, with its shape fixed at its start values, so that the hypothesis does
+//! not depend on the table: one degree of freedom, and no correction for a search. Readings from
+//! which a form was derived are excluded from its test. Other effects of the table remain in the
+//! model.
 
 mod beside;
 mod claim;
@@ -13,45 +14,48 @@ use serde::{Deserialize, Serialize};
 use crate::effects::EffectDefinition;
 use crate::inference::{Observations, Selection, Weighed};
 use crate::report::{Estimate, UnequalReport};
-use crate::table::{PlateauRow, sessions_told};
+use crate::table::{PlateauRow, matching_sessions};
 
 use beside::{Beside, InItsPlace, beside};
 use claim::Found;
 use nearby::nearby;
 
-/// Probability by chance below which an effect counts as confirmed, if it has at least [`CONFIRMED_SHARE`] of its start
-/// value.
+/// Probability by chance below which an effect is confirmed if it reaches [`CONFIRMED_SHARE`] of
+/// its start value.
 pub const CONFIRMED_P: f64 = 0.01;
-/// Share of its start value that chance rarely makes where the effect is absent.
+/// Share of its start value that an absent effect rarely reaches by chance.
 pub const CONFIRMED_SHARE: f64 = 0.5;
-/// Probability by chance below which an effect counts as confirmed whatever its size.
+/// Probability by chance below which an effect is confirmed at any size.
 pub const CERTAIN_P: f64 = 1e-5;
-/// Share of what stands in its place that a form drawn before must explain to be what was found there, whose ends or phase may
-/// be others; and one that somebody wrote down.
+/// Smallest share of the structure in its place that a derived form must explain to be the same,
+/// since its ends or phase may differ; and that of an effect written by a person.
 const IS_THAT: [f64; 2] = [0.5, 0.75];
-/// Share of it below which something is there, and not quite what was claimed.
+/// Share below which the hypothesis explains only part of the structure.
 const IS_ALL: f64 = 0.85;
-/// Readings of sessions that had no part in drawing a form without which nothing is asked.
+/// Fewest readings of other sessions for a test of a derived form.
 const LEAST_ROWS: usize = 20;
 
-/// What a table says of an effect that was known before.
+/// Outcome of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TrialOutcome {
-    /// It is there: its size is not zero, by chance with a probability below [`CONFIRMED_P`] and at least half as large as its
-    /// start value, or below [`CERTAIN_P`]. Of what was drawn before, or is one-sided, in the direction of that value.
+    /// The effect is present: its size is significant at [`CONFIRMED_P`] and at least half its
+    /// start value, or significant at [`CERTAIN_P`]. A derived or one-sided effect must have the
+    /// sign of its start value.
     Confirmed,
-    /// It is not there. Of what was drawn before: not at the size that was drawn, which the interval does not reach. Of what
-    /// somebody wrote down, whose start value is what is typical: not at half of that, in no direction that it can have.
+    /// The effect is absent. For a derived effect: the interval does not reach the derived size.
+    /// For one written by a person, whose start value is a typical size: the interval excludes half
+    /// of it in every allowed direction.
     Refuted,
-    /// Neither: the table cannot tell, or a name explains it as well in its place.
+    /// Not decided: the table does not identify the effect, or another effect explains it equally
+    /// well.
     Open,
-    /// The effect was drawn from these very readings, which cannot confirm it.
+    /// The effect was derived from these readings, which cannot confirm it.
     Drawn,
 }
 
 impl TrialOutcome {
-    /// Its word.
+    /// Returns the word in reports.
     pub fn as_str(self) -> &'static str {
         match self {
             TrialOutcome::Confirmed => "confirmed",
@@ -62,32 +66,34 @@ impl TrialOutcome {
     }
 }
 
-/// The trial of one effect of one's own.
+/// Test of one user-defined effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrialReport {
-    /// Its id.
+    /// Id.
     pub id: String,
-    /// What the table says.
+    /// Outcome.
     pub outcome: TrialOutcome,
-    /// Probability of such a size by chance, of this one effect; absent if nothing could be asked.
+    /// Probability of such a size by chance, for this effect alone; absent if it could not be
+    /// tested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub p_value: Option<f64>,
-    /// Its size with all shapes held at their start values; absent if nothing could be asked.
+    /// Size with all shapes fixed at their start values; absent if it could not be tested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<Estimate>,
-    /// The size that its definition starts from: that which was drawn, for a form.
+    /// Start value of the size: the derived size of a form.
     pub start: f64,
-    /// Whether that size was drawn from other readings, or is what somebody thinks typical.
+    /// Whether the start value was derived from other readings, rather than given as typical.
     #[serde(default)]
     pub was_drawn: bool,
-    /// What else there is to know of it: what stood beside it, or why the table cannot tell.
+    /// Further information, such as other effects in the model, or why the test is not decisive.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
 }
 
 impl TrialReport {
-    /// The same beside what differs between sessions: what one session has and another has not is no effect of the rig. Of what
-    /// was drawn only sessions that it was not drawn from were asked.
+    /// Revises the outcome for differences between sessions: an effect that is absent in a session
+    /// is not an effect of the rig. A derived effect is already tested only on sessions from which
+    /// it was not derived.
     #[must_use]
     pub(crate) fn beside(self, unequal: &[UnequalReport]) -> Self {
         let is_everywhere =
@@ -96,20 +102,20 @@ impl TrialReport {
             Some(told)
                 if self.outcome == TrialOutcome::Confirmed && !self.was_drawn && !is_everywhere(told) =>
             {
-                let note = "its size is not the same in all sessions, and zero in one of them".to_owned();
+                let note = "its size differs between sessions and is zero in one of them".to_owned();
                 Self { outcome: TrialOutcome::Open, note: Some(note), ..self }
             }
             _ => self,
         }
     }
 
-    /// Size, claim, chance and note, in one line.
+    /// Returns size, hypothesis, probability and note in one line.
     pub fn words(&self) -> String {
-        let known = if self.was_drawn { "drawn before" } else { "typical" };
+        let known = if self.was_drawn { "derived before" } else { "typical" };
         let size = self.size.as_ref().zip(self.p_value).map(|(size, p_value)| {
             let [low, high] = size.ci95;
             format!(
-                "here {:.4} [{low:.4}, {high:.4}] {} against {:.4} {known}, p = {p_value:.2e}",
+                "here {:.4} [{low:.4}, {high:.4}] {} ({known}: {:.4}), p = {p_value:.2e}",
                 size.value, size.unit, self.start
             )
         });
@@ -118,8 +124,8 @@ impl TrialReport {
     }
 }
 
-/// The trials of all effects of one's own in the vocabulary of a selection, in the order in which they were read. `rows` are
-/// those of the table.
+/// Tests all user-defined effects in the vocabulary of a selection, in the order in which they were
+/// read. `rows` are those of the table.
 pub fn trials(rows: &[PlateauRow], selection: &Selection, data: &Observations) -> Vec<TrialReport> {
     let vocabulary = &selection.augmented.model.vocabulary;
     vocabulary.own().filter_map(|own| trial(own.definition(), rows, selection, data)).collect()
@@ -144,44 +150,46 @@ fn trial(
     let seen = unseen_part(definition, rows, data);
     let data = seen.as_ref().unwrap_or(data);
     if data.points.len() < LEAST_ROWS && seen.is_some() {
-        let note = "these are the readings that it was drawn from: other data can confirm it";
+        let note = "derived from these readings; other data can confirm it";
         return Some(TrialReport { note: Some(note.to_owned()), ..told });
     }
     let weighed = Weighed::new(data, selection.noise);
     let Some(Beside { found, structure, rival, explains }) = beside(definition, selection, &weighed) else {
-        let note = "this table cannot show it";
+        let note = "not identifiable with this table";
         return Some(TrialReport { outcome: TrialOutcome::Open, note: Some(note.to_owned()), ..told });
     };
     let outcome = claim.outcome(found, structure.is_some());
     let is_named = selection.effects.iter().any(|e| e.ids().contains(&definition.id.as_str()));
     let (outcome, note) = match (outcome, structure) {
-        // The search moves shapes, which a trial does not. What was drawn is named by nothing but its trial.
+        // The search fits shapes, which a trial does not. A derived effect is attributed only
+        // through its trial.
         (TrialOutcome::Refuted, _) if is_named && !claim.was_drawn => {
-            let note = "not where its shapes start: what the table has of it is named above";
+            let note = "not at the start values of its shapes; see the effects of the model";
             (TrialOutcome::Open, Some(note.to_owned()))
         }
-        // Where something lies is less sure than what it is: what another session shows a little elsewhere is not absent.
+        // A location is less certain than its interval: a similar effect at a slightly different
+        // place is not a refutation.
         (TrialOutcome::Refuted, _) if let Some(note) = nearby(definition, claim, selection, &weighed) => {
             (TrialOutcome::Open, Some(note))
         }
         (outcome, Some(covariate)) => {
-            (outcome, Some(format!("beside structure along {covariate} that it does not explain")))
+            (outcome, Some(format!("it does not explain the remaining structure along {covariate}")))
         }
         (TrialOutcome::Confirmed, None) => {
             let part = explains.filter(|share| *share < IS_ALL).map(|share| {
-                format!("it explains {:.0} % of what shapes do there: it is not quite this", 100.0 * share)
+                format!("it explains {:.0} % of the structure there, so it is only part of it", 100.0 * share)
             });
             (outcome, part)
         }
         (outcome, None) => (outcome, None),
     };
-    // One of two that explain a table alike is not confirmed by it.
+    // A table does not confirm one of two equally good explanations.
     let (outcome, note) = match (rival, outcome) {
         (Some((name, InItsPlace::AsWell)), TrialOutcome::Confirmed) => {
-            (TrialOutcome::Open, Some(format!("{name} explains the table as well in its place")))
+            (TrialOutcome::Open, Some(format!("{name} explains the table equally well")))
         }
         (Some((name, InItsPlace::Better)), outcome) => {
-            (outcome, Some(format!("beside {name}, which explains more in its place")))
+            (outcome, Some(format!("{name} explains more in its place")))
         }
         (_, outcome) => (outcome, note),
     };
@@ -190,7 +198,7 @@ fn trial(
     Some(TrialReport { outcome, p_value: Some(p_value), size: Some(size), note, ..told })
 }
 
-/// The readings that had no part in drawing an effect; `None` if all had none.
+/// Returns the readings from which an effect was not derived; `None` if these are all readings.
 fn unseen_part(
     definition: &EffectDefinition,
     rows: &[PlateauRow],
@@ -199,14 +207,14 @@ fn unseen_part(
     if definition.drawn_from.is_empty() {
         return None;
     }
-    let told = sessions_told(rows, &definition.drawn_from);
+    let told = matching_sessions(rows, &definition.drawn_from);
     let is_seen = |session: &str| told.contains(session);
     let seen: Vec<bool> =
         data.source.iter().map(|row| rows.get(*row).is_some_and(|r| is_seen(&r.labels.session))).collect();
     seen.contains(&true).then(|| data.subset(|row| !seen[row]))
 }
 
-/// What is claimed of a size.
+/// Hypothesis about a size.
 #[derive(Clone, Copy, Debug)]
 struct Claim {
     start: f64,
@@ -221,11 +229,11 @@ impl Claim {
         Some(Self { start, was_drawn, one_sided: definition.one_sided })
     }
 
-    /// Beside structure that the claim does not explain, what shapes leave of that looks like a little of anything: size and
-    /// chance must both be right.
+    /// If the model contains structure that the hypothesis does not explain, shapes leave residuals
+    /// of it that resemble many effects. Size and significance must then both be sufficient.
     fn outcome(self, found: Found, is_beside_structure: bool) -> TrialOutcome {
         let (share, half) = (found.value / self.start, (found.half / self.start).abs());
-        // Which way a claim acts is part of it only if it was drawn, or physics allows no other.
+        // The sign is part of the hypothesis only if it was derived, or the effect is one-sided.
         let share = if self.was_drawn || self.one_sided { share } else { share.abs() };
         let chance = if is_beside_structure { CERTAIN_P } else { CONFIRMED_P };
         let is_large = share >= CONFIRMED_SHARE && found.p_value < chance;
@@ -278,9 +286,10 @@ mod tests {
         report.trials[0].clone()
     }
 
-    /// A constant factor on the wrap, or on thresholds that are free, is in no table, however large it is said to be.
+    /// A constant factor on the wrap, or on free thresholds, is not identifiable, whatever its
+    /// stated size.
     #[test]
-    fn what_the_constants_take_over_is_neither_refuted_nor_excluded() {
+    fn absorbed_effects_stay_open() {
         for (acts_on, start) in [("threshold", 0.3), ("threshold", 2.0), ("wrap", 0.3), ("wrap", 1.0)] {
             let text = file("load", &format!("{acts_on}\"\ncombine = \"factor"), "a", start, "1");
             let vocabulary = Vocabulary::built_in().read(&text, "mine.toml").unwrap();
@@ -295,9 +304,10 @@ mod tests {
         }
     }
 
-    /// A drag that is the same at every speed is no drag that grows with it, however much both move the readings alike.
+    /// A drag that is independent of speed is not one that increases with it, although both change
+    /// the readings alike.
     #[test]
-    fn what_a_name_explains_better_is_not_confirmed() {
+    fn better_explanations_prevent_confirmation() {
         let viscous =
             file("speed", "tension\"\ncombine = \"add", "a*direction*(0.4 + 0.6*speed_pct/52)", 0.5, "N");
         let vocabulary = Vocabulary::built_in().read(&viscous, "mine.toml").unwrap();
@@ -310,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_there_is_confirmed_and_what_is_not_is_refuted() {
+    fn present_effects_are_confirmed() {
         let offset = effect_named("load_cell_offset").unwrap();
         let with = session_with(1, &[(Term::Named(offset), &[0.5])]);
         let there = tried(&with, 0.5);
@@ -322,15 +332,15 @@ mod tests {
             absent.outcome == TrialOutcome::Refuted && absent.p_value.unwrap() > CONFIRMED_P,
             "{absent:?}"
         );
-        // A typical size claims no direction, and a claim too small to see stays open.
+        // A typical size implies no sign, and a hypothesis that is too small to detect stays open.
         assert_eq!(tried(&with, -0.5).outcome, TrialOutcome::Confirmed);
         assert_eq!(tried(&session(2), 1e-4).outcome, TrialOutcome::Open);
     }
 
-    /// Forces are in proportion to no coefficient of friction: an effect five times as large as claimed is told as large
-    /// as it is.
+    /// Forces are not linear in friction coefficients: an effect five times the hypothesised size
+    /// is reported at its true size.
     #[test]
-    fn the_size_of_a_large_effect_does_not_depend_on_the_size_claimed() {
+    fn estimates_are_independent_of_hypothesised_size() {
         let friction = |start| file("position", "mu\"\ncombine = \"factor", "a*stroke", start, "1");
         let vocabulary = Vocabulary::built_in().read(&friction(0.5), "mine.toml").unwrap();
         for seed in 1..=3 {
@@ -342,9 +352,9 @@ mod tests {
         }
     }
 
-    /// What the table cannot show of an effect is not confirmed by what it shows of the rest.
+    /// A part of an effect that is not identifiable is not confirmed by the rest of it.
     #[test]
-    fn several_sizes_are_tried_in_the_ratio_that_was_claimed() {
+    fn several_sizes_keep_their_ratio() {
         let text = |a: f64, b: f64| {
             file("position", "reading\"\ncombine = \"add", "a*ln(dwell_s/3) + b*(stroke - 0.5)", a, "N")
                 + &format!("parameters.b = {{ size = true, start = {b}, unit = \"N\" }}\n")
@@ -353,18 +363,19 @@ mod tests {
         let rows = session_with(1, &[(Term::Named(vocabulary.named("mine").unwrap()), &[0.0, 0.4])]);
         let there = tried_in(&rows, &text(0.1, 0.4));
         assert_eq!(there.outcome, TrialOutcome::Confirmed, "{there:?}");
-        // One factor for both sizes: the interval is that of the factor, and no wider than the size.
+        // One factor for both sizes: its interval is that of the factor, and not wider than the
+        // size.
         let [low, high] = there.size.clone().unwrap().ci95;
         assert!(low < 0.1 && 0.1 < high && high - low < 0.05, "{there:?}");
         let other_way = tried_in(&rows, &text(0.1, -0.4));
-        // In that ratio it is there the other way round.
+        // In that ratio it is present with the opposite sign.
         assert!(other_way.size.clone().unwrap().ci95[1] < 0.0, "{other_way:?}");
     }
 
-    /// The claim is the shape that was drawn. Whether its constants may move when it is fitted is another matter: the best
-    /// of many places is found by chance more often than the one that was claimed.
+    /// The hypothesis is the shape at its start values, whether or not its constants are free in a
+    /// fit: the best of many places is found by chance more often than a particular one.
     #[test]
-    fn a_shape_that_may_move_is_tried_where_it_was_claimed() {
+    fn free_shapes_are_tested_at_start() {
         let wave = "sin(6.2831853*TIMES*stroke + PHASE)";
         for seed in 1..=6 {
             let free = tried_as(
@@ -387,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outcome_is_decided_by_interval_and_chance() {
+    fn outcomes_depend_on_interval_and_significance() {
         let of = |was_drawn, one_sided, start, value, half, p_value| {
             Claim { start, was_drawn, one_sided }.outcome(Found { value, half, p_value }, false)
         };
@@ -395,13 +406,13 @@ mod tests {
         assert_eq!(drawn(0.1, 0.08, 0.03, 1e-4), TrialOutcome::Confirmed);
         assert_eq!(drawn(-0.1, -0.08, 0.03, 1e-4), TrialOutcome::Confirmed);
         assert_eq!(drawn(-0.1, 0.08, 0.03, 1e-4), TrialOutcome::Refuted);
-        // Chance makes a little of everything: once in some hundred tables with a probability below 0.01.
+        // Chance reaches a probability below 0.01 once in about a hundred tables.
         assert_eq!(drawn(0.163, 0.077, 0.051, 3.5e-3), TrialOutcome::Refuted);
         assert_eq!(drawn(0.163, 0.077, 0.09, 3.5e-3), TrialOutcome::Open);
         assert_eq!(drawn(0.163, 0.077, 0.01, 1e-12), TrialOutcome::Confirmed);
         assert_eq!(drawn(0.1, 0.01, 0.03, 0.5), TrialOutcome::Refuted);
         assert_eq!(drawn(0.1, 0.05, 0.08, 0.2), TrialOutcome::Open);
-        // What chance cannot make may be a part of other structure.
+        // An effect that chance does not explain may be part of other structure.
         let part = Found { value: 0.034, half: 0.011, p_value: 1e-6 };
         let claim = Claim { start: 0.116, was_drawn: true, one_sided: false };
         assert_eq!(claim.outcome(part, false), TrialOutcome::Confirmed);
@@ -409,9 +420,10 @@ mod tests {
         let leftover = Found { value: 0.1, half: 0.05, p_value: 1e-4 };
         assert_eq!(claim.outcome(leftover, false), TrialOutcome::Confirmed);
         assert_eq!(claim.outcome(leftover, true), TrialOutcome::Open);
-        // An interval that holds zero confirms nothing, whatever a score says.
+        // An interval that contains zero confirms nothing, whatever the score.
         assert_eq!(drawn(0.1, 0.3, 0.5, 1e-9), TrialOutcome::Open);
-        // What is typical is no claim of a size, and of a direction only where there is but one.
+        // A typical size is not a hypothesis about the size, and about the sign only for a
+        // one-sided effect.
         let written = |one_sided, value, half| of(false, one_sided, 0.1, value, half, 1e-4);
         assert_eq!(written(false, -0.08, 0.03), TrialOutcome::Confirmed);
         assert_eq!(written(true, -0.08, 0.03), TrialOutcome::Refuted);

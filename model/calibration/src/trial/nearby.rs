@@ -1,19 +1,20 @@
-//! Whether what a claim says is there a little elsewhere: where a step or a dip lies is known no better than the readings around it
-//! tell, and a trial holds it where it was drawn.
+//! Search for a hypothesised effect at a slightly different place: the location of a step or a dip
+//! is known only as well as the readings around it, but a trial fixes it at its start value.
 
 use super::claim::claimed;
 use super::{CONFIRMED_SHARE, Claim};
 use crate::effects::EffectDefinition;
 use crate::inference::{Selection, Term, Weighed, fit};
 
-/// Squares of the noise that it must gain there: a shape that may move finds something in any noise.
+/// Smallest reduction of the deviance, since a free shape finds something in any noise.
 const GAINS: f64 = 30.0;
-/// Share of the bounds of each shape by which it may be elsewhere.
+/// Largest displacement, as a share of the bounds of each shape.
 const ELSEWHERE: f64 = 0.1;
-/// Places of one shape that are tried, as shares of that.
+/// Displacements of one shape that are tried, as shares of that.
 const PLACES: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 
-/// What is told of a form that was drawn and is found a little beside where it was drawn; `None` if it is not.
+/// Returns the note about a derived form that is found close to its original place; `None` if it is
+/// not.
 pub(super) fn nearby(
     definition: &EffectDefinition,
     claim: Claim,
@@ -67,6 +68,6 @@ pub(super) fn nearby(
             .enumerate()
             .map(|(i, p)| format!("{} = {:.4} {}", p.name, values[at + i], p.unit))
             .collect();
-        format!("not where it was drawn, but close by something like it is there: {}", told.join(", "))
+        format!("not at its original place, but a similar effect is nearby: {}", told.join(", "))
     })
 }

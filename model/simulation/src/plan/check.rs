@@ -301,7 +301,7 @@ fn check_effect(planned: &EffectPlan, vocabulary: &Vocabulary, file: &str) -> Re
             let names: Vec<&str> = effect.parameters().iter().map(|p| p.name).collect();
             format!("it needs {} value(s): {}", names.len(), names.join(", "))
         }
-        None => vocabulary.unknown(&planned.id),
+        None => vocabulary.unknown(&planned.id).to_string(),
     };
     Err(effect_error(remedy))
 }

@@ -192,7 +192,9 @@ impl Plan {
     /// [`PlanError`] at the first field that cannot be used.
     pub fn parse_among(text: &str, file: &str, vocabulary: &Vocabulary) -> Result<Self, PlanError> {
         let plan: Self = toml::from_str(text).map_err(|e| {
-            let (file, mut problem) = toml_error(file, text, &e);
+            let error = toml_error(file, text, &e);
+            let file = error.location().map_or_else(|| file.to_owned(), ToString::to_string);
+            let mut problem = error.problem().to_owned();
             if problem.contains("unit variant") {
                 problem += "; a kind has its numbers beside it, as kind.resonance = { speed_pct = 52, width_pct = 2 }";
             }

@@ -7,7 +7,7 @@ use pinswitch_calibration::experiment::{
 };
 use pinswitch_calibration::inference::{FoundEffect, Levels};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
-use pinswitch_calibration::{Answer, Asked, AskedQuestion, Calibration, ModelFile, Verdict, calibrate};
+use pinswitch_calibration::{Answer, Calibration, ModelFile, PlanQuestion, SessionPlan, Verdict, calibrate};
 
 use super::cases::{Case, Group, Truth, plan_of};
 use super::told_probability::{Promised, table_of};
@@ -102,7 +102,7 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
     let rig = RigLimits::default();
     let proposal = proposed(&found, &rows, &rig, levels)?;
     let after = |runs: &[PlannedRun], told: fn(&QuestionOutlook) -> f64| {
-        let asked = Asked {
+        let asked = SessionPlan {
             minutes: proposal.minutes,
             runs: Vec::new(),
             questions: proposal.questions.iter().map(|q| asked(q, told(q))).collect(),
@@ -123,8 +123,8 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
 }
 
 /// A question as a plan's file holds it.
-fn asked(question: &QuestionOutlook, resolved_probability: f64) -> AskedQuestion {
-    AskedQuestion {
+fn asked(question: &QuestionOutlook, resolved_probability: f64) -> PlanQuestion {
+    PlanQuestion {
         between: question.between.clone(),
         size: question.size,
         resolved_probability,

@@ -1,16 +1,17 @@
-//! Reads a file of effects of one's own; errors point at line and column.
+//! Reader of files of user-defined effects.
 
 use std::ops::Range;
 
-use pinswitch_diagnostic::excerpt;
+use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_friction::sort_by_number;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::OwnEffect;
 use super::definition::{DefinitionError, EffectDefinition, OwnParameter, Part};
-use super::parser::unknown;
+use super::unknown_name::unknown_name;
 use crate::effects::{ActsOn, Combine, Covariate, Side, Vocabulary};
+use crate::toml_text::toml_error;
 
 /// Name and version of the format.
 pub(super) const SCHEMA: &str = "pinswitch.effects/1";
@@ -22,42 +23,27 @@ const MAX_EFFECTS: usize = 32;
 /// Most bytes of a file.
 const MAX_BYTES: usize = 1 << 20;
 
-/// What is wrong with a file of effects, and where.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}:{line}:{column}: {}", excerpt(file, 120), excerpt(problem, 430))]
-pub struct OwnEffectError {
-    /// File name as given.
-    pub file: String,
-    /// Line, from 1.
-    pub line: usize,
-    /// Column in characters, from 1.
-    pub column: usize,
-    /// What is wrong, and what to do.
-    pub problem: String,
-}
-
-/// A value with its place in the text.
+/// A value with its span in the text.
 type Value<'a> = Spanned<DeValue<'a>>;
 
-/// The text that is read.
+/// Text of a file.
 struct Source<'a> {
     text: &'a str,
     file: &'a str,
 }
 
 impl Source<'_> {
-    fn error(&self, at: usize, problem: impl Into<String>) -> OwnEffectError {
-        let before = self.text.get(..at).unwrap_or(self.text);
-        let line_begins = before.rfind('\n').map_or(0, |i| i + 1);
-        OwnEffectError {
-            file: self.file.to_owned(),
-            line: 1 + before.matches('\n').count(),
-            column: 1 + before[line_begins..].chars().count(),
-            problem: problem.into(),
-        }
+    fn error(&self, at: usize, problem: impl Into<String>) -> Diagnostic {
+        self.locate(at, Diagnostic::new(problem))
     }
 
-    /// Where the byte `at` of a string stands in the text; of one with escapes, where it begins.
+    /// Returns the diagnostic at a byte of the text.
+    fn locate(&self, at: usize, diagnostic: Diagnostic) -> Diagnostic {
+        diagnostic.with_location(Location::in_text(self.file, self.text, at..at))
+    }
+
+    /// Returns the position in the text of byte `at` of a string; of a string with escapes, its
+    /// start.
     fn inside(&self, string: Range<usize>, at: usize) -> usize {
         let raw = self.text.get(string.clone()).unwrap_or_default();
         let quote = if raw.starts_with("\"\"\"") || raw.starts_with("'''") { 3 } else { 1 };
@@ -75,98 +61,101 @@ impl Source<'_> {
     }
 }
 
-/// The effects of a file, in addition to those of a vocabulary, which [`Vocabulary::with`] makes them part of. `file` is the
-/// name used in errors.
+/// Reads the effects of a file, in addition to those of a vocabulary, to which [`Vocabulary::with`]
+/// adds them. `file` is the name of the file in errors.
 ///
 /// # Errors
-/// [`OwnEffectError`] at the first thing that is wrong.
+/// A [`Diagnostic`] of the first problem, with line and column.
 pub fn read_own_effects(
     text: &str,
     file: &str,
     vocabulary: &Vocabulary,
-) -> Result<Vec<OwnEffect>, OwnEffectError> {
+) -> Result<Vec<OwnEffect>, Diagnostic> {
     let source = Source { text, file };
     if text.len() > MAX_BYTES {
-        let problem = format!("{} bytes; {MAX_BYTES} are possible: give several files", text.len());
-        return Err(source.error(0, problem));
+        let problem = format!("the file has {} bytes, at most {MAX_BYTES} are possible", text.len());
+        return Err(source.error(0, problem).with_help("split it into several files"));
     }
     let root = document(&source)?;
-    let table = Table { source: &source, table: root.get_ref(), at: 0, what: "a file of effects" };
+    let table = Table { source: &source, table: root.get_ref(), at: 0, what: "the file" };
     table.only(&["schema", "effect"])?;
-    let (schema, at) = table.string("schema", &format!("begin with schema = \"{SCHEMA}\""))?;
+    let (schema, at) = table.string("schema", &format!("start with schema = \"{SCHEMA}\""))?;
     if schema != SCHEMA {
-        let problem = format!("schema '{}' is unknown; this version reads \"{SCHEMA}\"", excerpt(schema, 80));
-        return Err(source.error(at.start, problem));
+        let problem = format!("unknown schema '{}'", excerpt(schema, 80));
+        return Err(source.error(at.start, problem).with_help(format!("write schema = \"{SCHEMA}\"")));
     }
     if !root.get_ref().contains_key("effect") {
-        return Err(
-            source.error(0, "no effect; begin one by [[effect]], `pinswitch init effects` writes an example")
-        );
+        return Err(source
+            .error(0, "the file contains no effect")
+            .with_help("start one with [[effect]]; `pinswitch init effects` writes an example"));
     }
-    let found = blocks(&source, root.get_ref())?;
-    for (i, effect) in found.iter().enumerate() {
-        if let Some(alike) = effect.own.constants_not_told_apart() {
-            let problem = format!(
-                "no data can tell {} apart: what one does another makes up for; leave one out",
-                alike.join(" and ")
-            );
-            return Err(source.error(effect.formula_at, problem));
-        }
-        if let Some(place) = effect.own.moved_by_jumps() {
-            let problem = format!(
-                "'{place}' moves the effect by jumps alone, which no fit can follow; write a narrow slope in place of the \
-                 comparison, such as 0.5*(1 + tanh((time - {place})/0.004)), or a number in place of the parameter"
-            );
-            return Err(source.error(effect.formula_at, problem));
-        }
-        if let Some(problem) = effect.own.sizes_out_of_proportion() {
-            return Err(source.error(effect.formula_at, problem));
-        }
+    let effects = blocks(&source, root.get_ref())?;
+    for (i, effect) in effects.iter().enumerate() {
+        check_formula(&source, effect)?;
         let id = &effect.own.definition().id;
-        let twice = found[..i].iter().any(|other| other.own.definition().id == *id);
-        if twice || vocabulary.named(id).is_some() {
-            return Err(
-                source.error(effect.id_at, format!("id '{id}' is given twice; give each effect its own"))
-            );
+        let is_repeated = effects[..i].iter().any(|other| other.own.definition().id == *id);
+        if is_repeated || vocabulary.named(id).is_some() {
+            return Err(source
+                .error(effect.id_at, format!("duplicate id '{id}'"))
+                .with_help("give each effect its own id"));
         }
         for (rival, at) in effect.own.definition().confused_with.iter().zip(&effect.rivals_at) {
-            let here = found.iter().any(|other| other.own.definition().id == *rival);
-            if !here && vocabulary.named(rival).is_none() {
-                let own = found.iter().map(|other| other.own.definition().id.as_str());
+            let is_here = effects.iter().any(|other| other.own.definition().id == *rival);
+            if !is_here && vocabulary.named(rival).is_none() {
+                let own = effects.iter().map(|other| other.own.definition().id.as_str());
                 let known = own.chain(vocabulary.effects().map(|e| e.id()));
-                let problem = format!("{}; a file with it must come first", unknown("effect", rival, known));
-                return Err(source.error(*at, problem));
+                return Err(source.locate(*at, unknown_name("effect", rival, known)));
             }
         }
     }
-    Ok(found.into_iter().map(|effect| effect.own).collect())
+    Ok(effects.into_iter().map(|effect| effect.own).collect())
 }
 
-/// The effects that a model file carries. What they may be confused with need not be in it.
-pub(crate) fn effects_of_model(text: &str, file: &str) -> Result<Vec<OwnEffect>, OwnEffectError> {
+/// Checks that a fit of an effect is well posed.
+fn check_formula(source: &Source<'_>, effect: &Placed) -> Result<(), Diagnostic> {
+    if let Some(names) = effect.own.unidentifiable_constants() {
+        let problem = format!(
+            "constants {} are not identifiable: a change of one is compensated by the others",
+            names.join(" and ")
+        );
+        return Err(source.error(effect.formula_at, problem).with_help("leave out one of them"));
+    }
+    if let Some(name) = effect.own.step_parameter() {
+        let problem = format!("the effect changes only in steps with '{name}', which a fit cannot follow");
+        let help = format!(
+            "replace the comparison by a narrow slope, such as 0.5*(1 + tanh((time - {name})/0.004)), or the parameter by a number"
+        );
+        return Err(source.error(effect.formula_at, problem).with_help(help));
+    }
+    if effect.own.is_nonlinear_in_sizes() {
+        return Err(source
+            .error(effect.formula_at, "the effect is not linear in its sizes near zero")
+            .with_help("write k*f or exp(k*f) - 1 in place of k^2, abs(k) or sqrt(k)"));
+    }
+    Ok(())
+}
+
+/// Reads the effects that a model file contains. Their rivals need not be in the file.
+pub(crate) fn effects_of_model(text: &str, file: &str) -> Result<Vec<OwnEffect>, Diagnostic> {
     let source = Source { text, file };
     let root = document(&source)?;
-    let found = blocks(&source, root.get_ref())?;
-    for (i, effect) in found.iter().enumerate() {
+    let effects = blocks(&source, root.get_ref())?;
+    for (i, effect) in effects.iter().enumerate() {
         let id = &effect.own.definition().id;
-        if found[..i].iter().any(|other| other.own.definition().id == *id) {
-            return Err(source.error(effect.id_at, format!("id '{id}' is given twice")));
+        if effects[..i].iter().any(|other| other.own.definition().id == *id) {
+            return Err(source.error(effect.id_at, format!("duplicate id '{id}'")));
         }
     }
-    Ok(found.into_iter().map(|effect| effect.own).collect())
+    Ok(effects.into_iter().map(|effect| effect.own).collect())
 }
 
-fn document<'a>(source: &Source<'a>) -> Result<Spanned<DeTable<'a>>, OwnEffectError> {
+fn document<'a>(source: &Source<'a>) -> Result<Spanned<DeTable<'a>>, Diagnostic> {
     DeTable::parse(source.text).map_err(|e| {
-        let at = e.span().map_or(0, |span| span.start);
-        source.error(
-            at,
-            format!("{}; model/doc/own-effects.md shows the form", e.message().trim().replace('\n', ", ")),
-        )
+        toml_error(source.file, source.text, &e).with_help("see model/doc/own-effects.md for the format")
     })
 }
 
-/// An effect with the places that are looked at again once all are read.
+/// An effect with the positions that later checks refer to.
 struct Placed {
     own: OwnEffect,
     id_at: usize,
@@ -174,20 +163,21 @@ struct Placed {
     rivals_at: Vec<usize>,
 }
 
-fn blocks(source: &Source<'_>, root: &DeTable<'_>) -> Result<Vec<Placed>, OwnEffectError> {
+fn blocks(source: &Source<'_>, root: &DeTable<'_>) -> Result<Vec<Placed>, Diagnostic> {
     let Some(value) = root.get("effect") else { return Ok(Vec::new()) };
     let Some(all) = value.get_ref().as_array() else {
-        return Err(source.error(value.span().start, "effect is no list of tables; begin each by [[effect]]"));
+        return Err(source
+            .error(value.span().start, "effect is not a list of tables")
+            .with_help("start each effect with [[effect]]"));
     };
     if all.len() > MAX_EFFECTS {
-        return Err(
-            source.error(value.span().start, format!("{} effects; {MAX_EFFECTS} are possible", all.len()))
-        );
+        let problem = format!("{} effects, at most {MAX_EFFECTS} are possible", all.len());
+        return Err(source.error(value.span().start, problem));
     }
     all.iter().map(|value| effect(source, value)).collect()
 }
 
-/// A table with what it is in errors.
+/// A table with its name in errors.
 struct Table<'a> {
     source: &'a Source<'a>,
     table: &'a DeTable<'a>,
@@ -196,54 +186,54 @@ struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    fn new(source: &'a Source<'a>, value: &'a Value<'a>, what: &'a str) -> Result<Self, OwnEffectError> {
+    fn new(source: &'a Source<'a>, value: &'a Value<'a>, what: &'a str) -> Result<Self, Diagnostic> {
         let at = value.span().start;
         match value.get_ref().as_table() {
             Some(table) => Ok(Self { source, table, at, what }),
-            None => Err(source.error(at, format!("{what} is no table"))),
+            None => Err(source.error(at, format!("{what} is not a table"))),
         }
     }
 
-    /// No keys but these.
-    fn only(&self, keys: &[&str]) -> Result<(), OwnEffectError> {
+    /// Refuses all other keys.
+    fn only(&self, keys: &[&str]) -> Result<(), Diagnostic> {
         let mut others = self.table.keys().filter(|key| !keys.contains(&key.get_ref().as_ref()));
         others.next().map_or(Ok(()), |key| {
-            let problem = unknown("key", key.get_ref(), keys.iter().copied());
-            Err(self.source.error(key.span().start, format!("{}: {problem}", self.what)))
+            let error = unknown_name("key", key.get_ref(), keys.iter().copied());
+            Err(self.source.locate(key.span().start, error))
         })
     }
 
-    fn missing(&self, key: &str, remedy: &str) -> OwnEffectError {
-        self.source.error(self.at, format!("{} has no {key}; {remedy}", self.what))
+    fn missing(&self, key: &str, help: &str) -> Diagnostic {
+        self.source.error(self.at, format!("{} lacks {key}", self.what)).with_help(help)
     }
 
-    fn wrong(&self, key: &str, at: usize, needed: &str) -> OwnEffectError {
-        self.source.error(at, format!("{key} is no {needed}"))
+    fn wrong(&self, key: &str, value: &Value<'_>, expected: &str) -> Diagnostic {
+        self.source.error(value.span().start, format!("{key}: expected {expected}"))
     }
 
-    fn string(&self, key: &str, remedy: &str) -> Result<(&'a str, Range<usize>), OwnEffectError> {
-        let value = self.table.get(key).ok_or_else(|| self.missing(key, remedy))?;
+    fn string(&self, key: &str, help: &str) -> Result<(&'a str, Range<usize>), Diagnostic> {
+        let value = self.table.get(key).ok_or_else(|| self.missing(key, help))?;
         let text = value.get_ref().as_str();
-        text.map(|text| (text, value.span()))
-            .ok_or_else(|| self.wrong(key, value.span().start, "text in quotes"))
+        text.map(|text| (text, value.span())).ok_or_else(|| self.wrong(key, value, "a string in quotes"))
     }
 
-    /// A word of a list.
-    fn word<T: Copy>(&self, key: &str, words: &[(&'static str, T)]) -> Result<T, OwnEffectError> {
-        let listed = words.iter().map(|w| w.0).collect::<Vec<_>>().join(", ");
-        let (found, at) = self.string(key, &format!("it is one of {listed}"))?;
-        words.iter().find(|w| w.0 == found).map(|w| w.1).ok_or_else(|| {
-            let problem = format!("{key} = '{}' is unknown; it is one of {listed}", excerpt(found, 60));
-            self.source.error(at.start, problem)
+    /// Reads a word of a list.
+    fn word<T: Copy>(&self, key: &str, words: &[(&'static str, T)]) -> Result<T, Diagnostic> {
+        let help = format!("use one of {}", words.iter().map(|w| w.0).collect::<Vec<_>>().join(", "));
+        let (text, at) = self.string(key, &help)?;
+        words.iter().find(|w| w.0 == text).map(|w| w.1).ok_or_else(|| {
+            self.source
+                .error(at.start, format!("unknown {key} '{}'", excerpt(text, 60)))
+                .with_help(help.as_str())
         })
     }
 
-    fn boolean(&self, key: &str) -> Result<bool, OwnEffectError> {
+    fn boolean(&self, key: &str) -> Result<bool, Diagnostic> {
         let Some(value) = self.table.get(key) else { return Ok(false) };
-        value.get_ref().as_bool().ok_or_else(|| self.wrong(key, value.span().start, "true or false"))
+        value.get_ref().as_bool().ok_or_else(|| self.wrong(key, value, "true or false"))
     }
 
-    fn number(&self, key: &str) -> Result<Option<f64>, OwnEffectError> {
+    fn number(&self, key: &str) -> Result<Option<f64>, Diagnostic> {
         let Some(value) = self.table.get(key) else { return Ok(None) };
         let number = match value.get_ref() {
             DeValue::Float(number) => number.as_str().parse().ok(),
@@ -252,10 +242,11 @@ impl<'a> Table<'a> {
             }
             _ => None,
         };
-        number.map(Some).ok_or_else(|| self.wrong(key, value.span().start, "number"))
+        number.map(Some).ok_or_else(|| self.wrong(key, value, "a number"))
     }
 }
 
+/// Keys of an effect.
 const KEYS: [&str; 11] = [
     "id",
     "side",
@@ -270,20 +261,21 @@ const KEYS: [&str; 11] = [
     "parameters",
 ];
 
-fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, OwnEffectError> {
-    let table = Table::new(source, value, "an effect")?;
+fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, Diagnostic> {
+    let table = Table::new(source, value, "the effect")?;
     table.only(&KEYS)?;
-    let (id, id_at) = table.string("id", "give it a name such as id = \"lubricant_dip\"")?;
-    let (formula, formula_at) = table.string("formula", "such as formula = \"k*ln(speed_pct/50)\"")?;
+    let (id, id_at) = table.string("id", "give it a name, such as id = \"lubricant_dip\"")?;
+    let (formula, formula_at) =
+        table.string("formula", "write one, such as formula = \"k*ln(speed_pct/50)\"")?;
     let (parameters, parameters_at) = parameters(&table)?;
     let (confused_with, rivals_at) =
-        words(&table, "confused_with", "list of ids, such as [\"rate_dependence\"]")?;
-    let (drawn_from, _) = words(&table, "drawn_from", "list of words; `calibrate` writes it")?;
+        words(&table, "confused_with", "a list of ids, such as [\"rate_dependence\"]")?;
+    let (drawn_from, _) = words(&table, "drawn_from", "a list of strings, as `calibrate` writes it")?;
     let experiment = match table.table.contains_key("experiment") {
         true => table.string("experiment", "")?.0,
         false => "",
     };
-    let found = EffectDefinition {
+    let definition = EffectDefinition {
         id: id.to_owned(),
         side: table.word("side", &[Side::Switch, Side::Rig].map(|s| (s.as_str(), s)))?,
         covariate: table.word("covariate", &Covariate::ALL.map(|c| (c.as_str(), c)))?,
@@ -296,7 +288,7 @@ fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, OwnEffectErr
         drawn_from,
         parameters,
     };
-    let own = OwnEffect::new(found).map_err(|DefinitionError { part, problem }| {
+    let own = OwnEffect::new(definition).map_err(|DefinitionError { part, diagnostic }| {
         let at = match part {
             Part::Id => id_at.start,
             Part::Formula(byte) => source.inside(formula_at.clone(), byte),
@@ -306,60 +298,63 @@ fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, OwnEffectErr
             Part::Experiment => key_at(&table, "experiment"),
             Part::DrawnFrom => key_at(&table, "drawn_from"),
         };
-        source.error(at, problem)
+        source.locate(at, diagnostic)
     })?;
     Ok(Placed { own, id_at: id_at.start, formula_at: formula_at.start, rivals_at })
 }
 
-/// Where a key stands, or the table that lacks it.
+/// Returns the position of a key, or of the table that lacks it.
 fn key_at(table: &Table<'_>, key: &str) -> usize {
     table.table.get_key_value(key).map_or(table.at, |(key, _)| key.span().start)
 }
 
-/// The constants in the order of the file, and where each begins.
-fn parameters(effect: &Table<'_>) -> Result<(Vec<OwnParameter>, Vec<usize>), OwnEffectError> {
-    let example = "such as parameters.k = { size = true, start = 0.1, unit = \"1\" }";
+/// Reads the constants in the order of the file, with their positions.
+fn parameters(effect: &Table<'_>) -> Result<(Vec<OwnParameter>, Vec<usize>), Diagnostic> {
+    let example = "write one, such as parameters.k = { size = true, start = 0.1, unit = \"1\" }";
     let value = effect.table.get("parameters").ok_or_else(|| effect.missing("parameters", example))?;
     let all = Table::new(effect.source, value, "parameters")?;
     let mut named: Vec<_> = all.table.iter().collect();
     sort_by_number(&mut named, |(name, _)| name.span().start as f64);
-    let mut found = Vec::new();
+    let mut parameters = Vec::new();
     for (name, value) in &named {
         let what = format!("parameter '{}'", excerpt(name.get_ref(), 60));
         let table = Table::new(effect.source, value, &what)?;
         table.only(&["size", "start", "low", "high", "unit"])?;
         let size = table.boolean("size")?;
         let (low, high) = (table.number("low")?, table.number("high")?);
-        let start = table.number("start")?.ok_or_else(|| table.missing("start", "a fit starts there"))?;
+        let start = table
+            .number("start")?
+            .ok_or_else(|| table.missing("start", "give the value at which a fit starts"))?;
         let bounds = match (size, low, high) {
             (true, None, None) => None,
             (false, Some(low), Some(high)) => Some((low, high)),
             (true, ..) => {
-                let problem = format!(
-                    "{what}: a size has no bounds; leave out low and high, one_sided = true keeps it positive"
-                );
-                return Err(effect.source.error(table.at, problem));
+                return Err(effect
+                    .source
+                    .error(table.at, format!("{what}: a size cannot have bounds"))
+                    .with_help("leave out low and high; one_sided = true keeps the first size positive"));
             }
             (false, ..) => {
-                return Err(table.missing("low and high", "a shape has both, a size has size = true"));
+                return Err(table.missing("low and high", "give both bounds of a shape, or size = true"));
             }
         };
         let (unit, _) = table.string("unit", "write unit = \"1\" for none")?;
-        found.push(OwnParameter { name: name.get_ref().to_string(), unit: unit.to_owned(), start, bounds });
+        let name = name.get_ref().to_string();
+        parameters.push(OwnParameter { name, unit: unit.to_owned(), start, bounds });
     }
-    Ok((found, named.iter().map(|(name, _)| name.span().start).collect()))
+    Ok((parameters, named.iter().map(|(name, _)| name.span().start).collect()))
 }
 
-/// A list of words, and where each begins; none where the key is absent.
-fn words(effect: &Table<'_>, key: &str, wanted: &str) -> Result<(Vec<String>, Vec<usize>), OwnEffectError> {
+/// Reads a list of strings, with their positions; empty if the key is absent.
+fn words(effect: &Table<'_>, key: &str, expected: &str) -> Result<(Vec<String>, Vec<usize>), Diagnostic> {
     let Some(value) = effect.table.get(key) else { return Ok((Vec::new(), Vec::new())) };
-    let wrong = |at| effect.wrong(key, at, wanted);
-    let all = value.get_ref().as_array().ok_or_else(|| wrong(value.span().start))?;
-    let mut found = (Vec::new(), Vec::new());
+    let wrong = |value| effect.wrong(key, value, expected);
+    let all = value.get_ref().as_array().ok_or_else(|| wrong(value))?;
+    let (mut texts, mut positions) = (Vec::new(), Vec::new());
     for word in all {
-        let text = word.get_ref().as_str().ok_or_else(|| wrong(word.span().start))?;
-        found.0.push(text.to_owned());
-        found.1.push(word.span().start);
+        let text = word.get_ref().as_str().ok_or_else(|| wrong(word))?;
+        texts.push(text.to_owned());
+        positions.push(word.span().start);
     }
-    Ok(found)
+    Ok((texts, positions))
 }

@@ -1,12 +1,13 @@
-//! Effects of one's own: written as formulas in a file, they take part as the built-in ones do.
+//! User-defined effects: formulas in a file that are used like the built-in effects.
 //!
-//! A file ([`file`]) becomes definitions, a definition is checked and its formula compiled, and what comes of it is an
-//! [`Effect`] of a [`Vocabulary`](super::Vocabulary). `model/doc/own-effects.md` tells a user how to write one.
+//! A file ([`file`]) is parsed to definitions; a definition is checked and its formula compiled,
+//! which gives an [`Effect`] of a [`Vocabulary`](super::Vocabulary). `model/doc/own-effects.md`
+//! explains to users how to write one.
 
 mod definition;
-mod determined;
 mod expression;
 mod file;
+mod identifiability;
 mod parser;
 mod probe;
 #[cfg(test)]
@@ -14,18 +15,20 @@ mod tests;
 mod token;
 mod unit;
 mod unit_check;
+mod unknown_name;
 mod variable;
 mod writer;
 
 pub use definition::{DefinitionError, EffectDefinition, OwnParameter};
 pub(crate) use file::effects_of_model;
-pub use file::{OwnEffectError, read_own_effects};
+pub use file::read_own_effects;
+pub(crate) use unknown_name::unknown_name;
 pub use writer::{own_effect_blocks, own_effects_text};
 
 use expression::Node;
-pub(crate) use parser::unknown;
 use variable::Moment;
 
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::sort_by_number;
 
 use super::written::{on_contact, stage};
@@ -34,12 +37,12 @@ use super::{
 };
 use crate::table::{Condition, Frame, Point};
 
-/// Names, units and meanings of all variables of a formula.
+/// Returns names, units and descriptions of all variables of formulas.
 pub fn formula_variables() -> impl Iterator<Item = [&'static str; 3]> {
     variable::VARIABLES.iter().map(|v| [v.name, v.unit, v.meaning])
 }
 
-/// An effect of one's own: a definition that is one, with its formula compiled.
+/// A user-defined effect: a valid definition with its compiled formula.
 ///
 /// ```
 /// use pinswitch_calibration::effects::{
@@ -73,47 +76,47 @@ pub struct OwnEffect {
 }
 
 impl OwnEffect {
-    /// The effect of a definition. Sizes are put before shapes, as everywhere.
+    /// Checks and compiles a definition. Sizes are moved before shapes.
     ///
     /// # Errors
-    /// [`DefinitionError`]: what of it is wrong.
+    /// [`DefinitionError`] of the first problem.
     pub fn new(mut definition: EffectDefinition) -> Result<Self, DefinitionError> {
-        // The order in the definition is what errors point at.
+        // Checked before the parameters are sorted, since errors refer to the original order.
         definition.compiled()?;
         sort_by_number(&mut definition.parameters, |p| f64::from(p.bounds.is_some()));
         let formula = definition.compiled()?;
         Ok(Self { definition, formula })
     }
 
-    /// What is said of it.
+    /// Returns the definition.
     pub fn definition(&self) -> &EffectDefinition {
         &self.definition
     }
 
-    /// Names of constants that no data can tell apart, if there are any.
-    pub(super) fn constants_not_told_apart(&self) -> Option<Vec<&str>> {
-        determined::not_told_apart(&self.formula, &self.definition.parameters)
+    /// Returns the names of constants that no data can identify, if there are any.
+    pub(super) fn unidentifiable_constants(&self) -> Option<Vec<&str>> {
+        identifiability::unidentifiable(&self.formula, &self.definition.parameters)
     }
 
-    /// Name of a shape that moves the effect by jumps alone, if there is one.
-    pub(super) fn moved_by_jumps(&self) -> Option<&str> {
-        determined::jumps_only(&self.formula, &self.definition.parameters)
+    /// Returns the name of a shape that changes the effect only in steps, if there is one.
+    pub(super) fn step_parameter(&self) -> Option<&str> {
+        identifiability::step_parameter(&self.formula, &self.definition.parameters)
     }
 
-    /// What is wrong with sizes that act in no proportion while they are small, if they do.
-    pub(super) fn sizes_out_of_proportion(&self) -> Option<String> {
-        self.definition.not_in_proportion(&self.formula)
+    /// Returns whether the effect is nonlinear in small sizes.
+    pub(super) fn is_nonlinear_in_sizes(&self) -> bool {
+        self.definition.is_nonlinear_in_sizes(&self.formula)
     }
 
-    /// The start, and the same with the shapes elsewhere within their bounds: a formula that is not linear in a shape must
-    /// not be missed because its fit began on the wrong side.
+    /// Returns the start values, followed by variants with the shapes at other places within their
+    /// bounds, so that a fit of a nonlinear shape does not end in a local minimum.
     pub(super) fn starts(&self) -> Vec<Vec<f64>> {
         let parameters = &self.definition.parameters;
         let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
         let mut all = vec![start.clone()];
         let shapes: Vec<(usize, (f64, f64))> =
             parameters.iter().enumerate().filter_map(|(i, p)| Some((i, p.bounds?))).collect();
-        // All places of two shapes together; of more, one at a time.
+        // Two shapes are varied jointly, more than two one at a time.
         for (nth, (i, bounds)) in shapes.iter().enumerate() {
             let before = if shapes.len() == 2 && nth == 1 { all.clone() } else { vec![start.clone()] };
             for from in before {
@@ -127,18 +130,18 @@ impl OwnEffect {
         all
     }
 
-    /// The effect for as long as the program runs: descriptions are shared freely by reference, so that those made while it
-    /// runs are never freed. What they take is bounded by the size of the files read.
+    /// Returns a reference for the lifetime of the program, since descriptions are shared by static
+    /// reference. The memory is bounded by the size of the files read.
     pub(super) fn leaked(self) -> &'static LeakedEffect {
         let description = Box::leak(Box::new(self.description()));
         Box::leak(Box::new(LeakedEffect { own: self, description }))
     }
 
     fn description(&self) -> Description {
-        let told = &self.definition;
+        let definition = &self.definition;
         let leaked = |text: String| -> &'static str { text.leak() };
-        let names: Vec<&'static str> = told.confused_with.iter().map(|id| leaked(id.clone())).collect();
-        let parameters: Vec<Parameter> = told
+        let names: Vec<&'static str> = definition.confused_with.iter().map(|id| leaked(id.clone())).collect();
+        let parameters: Vec<Parameter> = definition
             .parameters
             .iter()
             .map(|p| Parameter {
@@ -147,36 +150,41 @@ impl OwnEffect {
                 bounds: p.bounds,
             })
             .collect();
-        let start = told.parameters.first().map_or(0.0, |p| p.start);
-        let middle: Vec<(f64, f64)> = told.parameters.iter().skip(1).map(|p| (p.start, p.start)).collect();
-        let formula = leaked(told.formula.clone());
-        let (invisible_because, experiment) = of_covariate(told.covariate);
+        let start = definition.parameters.first().map_or(0.0, |p| p.start);
+        let middle: Vec<(f64, f64)> =
+            definition.parameters.iter().skip(1).map(|p| (p.start, p.start)).collect();
+        let formula = leaked(definition.formula.clone());
+        let (invisible_because, experiment) = of_covariate(definition.covariate);
+        let experiment = match definition.experiment.as_str() {
+            "" => experiment,
+            given => leaked(given.to_owned()),
+        };
         Description {
-            id: leaked(told.id.clone()),
-            side: told.side,
-            covariate: told.covariate,
-            stage: stage(told.acts_on, told.combine),
-            formula: leaked(self.told_formula()),
-            written: Written::As { acts_on: told.acts_on, combine: told.combine, formula },
+            id: leaked(definition.id.clone()),
+            side: definition.side,
+            covariate: definition.covariate,
+            stage: stage(definition.acts_on, definition.combine),
+            formula: leaked(self.full_formula()),
+            written: Written::As { acts_on: definition.acts_on, combine: definition.combine, formula },
             parameters: parameters.leak(),
-            one_sided: told.one_sided,
-            // A constant force or a scale leaves nothing that could be its own.
+            one_sided: definition.one_sided,
+            // A constant force or a scale is exact and leaves no residual of its own.
             bends: self.formula.reads(|v| !["direction", variable::TENSION].contains(&v.name)),
             scales: true,
             confused_with: names.leak(),
-            experiment: if told.experiment.is_empty() { experiment } else { leaked(told.experiment.clone()) },
+            experiment,
             invisible_because,
             study: StudyRange {
                 size: Some((0.5 * start, 1.5 * start)),
-                signed: !told.one_sided,
+                signed: !definition.one_sided,
                 shapes: middle.leak(),
                 paper: PaperProtocol::Shown,
             },
         }
     }
 
-    /// What it changes, with the formula.
-    fn told_formula(&self) -> String {
+    /// Returns the formula with the quantity that it changes.
+    fn full_formula(&self) -> String {
         let EffectDefinition { acts_on, combine, formula, .. } = &self.definition;
         match combine {
             super::Combine::Factor => format!("{} (1 + f), f = {formula}", acts_on.as_str()),
@@ -185,22 +193,23 @@ impl OwnEffect {
     }
 }
 
-/// What keeps a table from showing something along a covariate, and the experiment that shows it.
+/// Returns why a table may not identify an effect along a covariate, and an experiment that
+/// identifies it.
 fn of_covariate(covariate: Covariate) -> (&'static str, &'static str) {
     match covariate {
-        Covariate::Load => ("the load hardly varies", "several loads, all else the same"),
+        Covariate::Load => ("the load hardly varies", "several loads, all else equal"),
         Covariate::Direction => ("only one direction", "both directions at the same loads"),
         Covariate::Repetition => ("too few repetitions per series", "long series at one load"),
         Covariate::Position => ("the position hardly varies", "readings over the whole stroke"),
         Covariate::Speed => ("the speed never varies", "several speeds at one load"),
-        Covariate::Dwell => ("the dwell time never varies", "several pauses at one load"),
+        Covariate::Dwell => ("the dwell never varies", "several dwells at one load"),
         Covariate::Sweep => ("the loads never descend", "a descending sweep of loads"),
         Covariate::Time => ("the session is too short", "repeat the first series at the end of the session"),
         Covariate::Condition => ("the conditions do not differ in it", "the same loads on other layouts"),
     }
 }
 
-/// An effect of one's own that stays as long as the program runs.
+/// A user-defined effect with the lifetime of the program.
 #[derive(Debug)]
 pub(super) struct LeakedEffect {
     pub(super) own: OwnEffect,
@@ -216,14 +225,14 @@ impl LeakedEffect {
         Moment { point, condition, load_n: point.load_n, tension_n }
     }
 
-    /// Tension or reading in newtons with the effect, which acts on it.
+    /// Applies the effect to a tension or reading in newtons.
     fn changed(&self, k: &[f64], point: &Point, condition: &Condition, tension_n: f64) -> f64 {
         let f = self.own.formula.value(k, &Self::moment(point, condition, tension_n));
         self.own.definition.combine.applied(tension_n, f)
     }
 }
 
-/// Places over the bounds of a shape where a fit may start, as shares.
+/// Places within the bounds of a shape where a fit may start, as shares.
 const PLACES: [f64; 3] = [0.15, 0.5, 0.85];
 
 impl Effect for LeakedEffect {
@@ -268,17 +277,17 @@ impl Effect for LeakedEffect {
     }
 
     fn cited_formula(&self) -> String {
-        format!("{} (an effect of one's own)", self.own.told_formula())
+        format!("{} (user-defined)", self.own.full_formula())
     }
 }
 
-/// Says that an id is there twice.
+/// Returns the error of a repeated id.
 pub(super) fn duplicate(id: &str) -> DefinitionError {
-    let problem = format!("id '{id}' is there twice; give each effect its own");
-    DefinitionError { part: definition::Part::Id, problem }
+    let diagnostic = Diagnostic::new(format!("duplicate id '{id}'")).with_help("give each effect its own id");
+    DefinitionError { part: definition::Part::Id, diagnostic }
 }
 
-/// A share of the way between bounds, in logarithms where they span much and are positive.
+/// Interpolates between bounds, logarithmically if they are positive and their ratio exceeds 4.
 fn between((low, high): (f64, f64), share: f64) -> f64 {
     if low > 0.0 && high > 4.0 * low {
         low * libm::pow(high / low, share)

@@ -1,11 +1,11 @@
-//! Rows that span what a rig does, to try a formula on before any table is there.
+//! Probe rows that span the range of a rig, to evaluate a formula before any table is read.
 
 use pinswitch_friction::{Substrate, published};
 
 use super::variable::Moment;
 use crate::table::{Condition, Point};
 
-/// One row.
+/// A probe row.
 pub(super) struct Probe {
     point: Point,
     condition: Condition,
@@ -22,8 +22,8 @@ impl Probe {
         }
     }
 
-    /// Where it lies, for errors.
-    pub(super) fn told(&self) -> String {
+    /// Describes the row in an error.
+    pub(super) fn description(&self) -> String {
         let p = &self.point;
         format!(
             "at load_n = {}, direction = {}, repetition = {}, speed_pct = {}, dwell_s = {}, position_mm = {}, time_s = {}",
@@ -32,7 +32,7 @@ impl Probe {
     }
 }
 
-/// Rows of the paper's conditions over its loads and beyond.
+/// Returns rows of the paper's conditions, over its loads and beyond.
 pub(super) fn probes() -> Vec<Probe> {
     let silicone = Some(Substrate::Silicone);
     let conditions = [
@@ -81,7 +81,7 @@ pub(super) fn probes() -> Vec<Probe> {
     all
 }
 
-/// Rows at which every variable takes values of its own: what a formula's constants do is told apart at them.
+/// Returns rows at which all variables vary independently, to separate the constants of a formula.
 pub(super) fn spread_probes() -> Vec<Probe> {
     const COUNT: usize = 600;
     let silicone = Some(Substrate::Silicone);
@@ -97,7 +97,7 @@ pub(super) fn spread_probes() -> Vec<Probe> {
         (silicone, &[2, 5, 8, 11, 13], Some(5)),
         (silicone, &[3, 5, 7, 9, 11, 13], Some(6)),
     ];
-    // Roots of primes: no two sequences of their multiples' fractions keep step.
+    // Fractional parts of multiples of the roots of primes are independent sequences.
     let share = |i: usize, root: f64| libm::modf(i as f64 * root).0;
     (0..COUNT)
         .map(|i| {

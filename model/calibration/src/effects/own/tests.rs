@@ -1,4 +1,4 @@
-//! Effects of one's own beside the built-in ones, and files of any content.
+//! Tests of user-defined effects against the built-in ones, and of files with arbitrary content.
 
 use proptest::prelude::*;
 
@@ -9,10 +9,10 @@ use crate::table::PlateauRow;
 use crate::test_session::session_with;
 use crate::{ModelFile, calibrate_among};
 
-/// A file that is right, to be spoilt.
-const GOOD: &str = include_str!("../../../../../templates/rig/effects.toml");
+/// A valid file, which the tests modify.
+const VALID: &str = include_str!("../../../../../templates/rig/effects.toml");
 
-/// The built-in effects as formulas, under ids of their own.
+/// Returns the built-in effects with their formulas under other ids.
 fn written_out() -> Vec<(&'static dyn Effect, OwnEffect)> {
     let of = |effect: &'static dyn Effect| {
         let mut definition = EffectDefinition::of(effect).ok()?;
@@ -22,7 +22,7 @@ fn written_out() -> Vec<(&'static dyn Effect, OwnEffect)> {
     CATALOGUE.iter().copied().filter_map(of).collect()
 }
 
-/// A session in which the dwell varies, too, with an effect in it.
+/// Returns a session with varying dwell and an effect.
 fn varied(effect: &'static dyn Effect, values: &[f64]) -> Vec<PlateauRow> {
     let mut rows = session_with(7, &[]);
     for (i, row) in rows.iter_mut().enumerate() {
@@ -37,13 +37,14 @@ fn varied(effect: &'static dyn Effect, values: &[f64]) -> Vec<PlateauRow> {
 }
 
 #[test]
-fn sixteen_built_in_effects_can_be_written_out() {
+fn sixteen_effects_have_a_formula() {
     assert_eq!(written_out().len(), 16);
 }
 
-/// Written out, an effect predicts what the built-in one does, and a fit finds the same constants and residuals.
+/// The formula of a built-in effect predicts the same, and its fit finds the same constants and
+/// residuals.
 #[test]
-fn a_built_in_effect_and_its_written_out_version_are_one() {
+fn formulas_and_built_in_effects_agree() {
     for (effect, own) in written_out() {
         let id = own.definition().id.clone();
         let vocabulary = Vocabulary::built_in().with(vec![own]).unwrap();
@@ -68,42 +69,42 @@ fn a_built_in_effect_and_its_written_out_version_are_one() {
 }
 
 #[test]
-fn what_is_written_reads_back() {
+fn written_effects_read_back() {
     let definitions: Vec<EffectDefinition> =
         written_out().into_iter().map(|(_, own)| own.definition().clone()).collect();
     let text = own_effects_text(&definitions);
     let vocabulary = Vocabulary::built_in().read(&text, "mine.toml").unwrap();
     assert!(vocabulary.own().map(OwnEffect::definition).eq(&definitions));
-    assert!(
-        vocabulary.read(&text, "again.toml").unwrap_err().to_string().starts_with("again.toml:4:6: id 'own_")
-    );
+    let error = vocabulary.read(&text, "again.toml").unwrap_err().to_string();
+    assert!(error.starts_with("again.toml:4:6: duplicate id 'own_"), "{error}");
 }
 
-/// A model file carries the formula: it predicts without the file of effects.
+/// A model file contains the formula, so that it predicts without the file of effects.
 #[test]
-fn a_model_carries_its_effects() {
-    let vocabulary = Vocabulary::built_in().read(GOOD, "mine.toml").unwrap();
+fn a_model_contains_its_effects() {
+    let vocabulary = Vocabulary::built_in().read(VALID, "mine.toml").unwrap();
     let dip = vocabulary.named("lubricant_dip").unwrap();
     let rows = varied(dip, &[0.25, 50.0, 6.0]);
-    let found = calibrate_among(&rows, &vocabulary, crate::inference::Levels::default()).unwrap();
-    assert_eq!(found.report.candidates.len(), 22);
+    let calibration = calibrate_among(&rows, &vocabulary, crate::inference::Levels::default()).unwrap();
+    assert_eq!(calibration.report.candidates.len(), 22);
     let model =
         Model::baseline(Frame::new(&rows)).among(&vocabulary).with_term(Term::Named(dip), &[0.25, 50.0, 6.0]);
-    let fitted = fit(&model, &Weighed::new(&found.data, Noise::constant(0.05, 0.05)));
-    let text = ModelFile::new(&fitted, &found.data, Noise::constant(0.05, 0.05)).to_text().unwrap();
+    let noise = Noise::constant(0.05, 0.05);
+    let fitted = fit(&model, &Weighed::new(&calibration.data, noise));
+    let text = ModelFile::new(&fitted, &calibration.data, noise).to_text().unwrap();
     let read = ModelFile::parse(&text, "model.toml").unwrap();
     assert_eq!(read.to_text().unwrap(), text);
     let (predicted, _) = read.predict(&rows, "model.toml").unwrap();
     let expected = fitted.model.predict(&fitted.model.frame.points(&rows).unwrap());
     assert!(predicted.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-9));
-    let spoilt = text.replace("speed_pct - c", "sped_pct - c");
-    let error = ModelFile::parse(&spoilt, "model.toml").unwrap_err().to_string();
+    let invalid = text.replace("speed_pct - c", "sped_pct - c");
+    let error = ModelFile::parse(&invalid, "model.toml").unwrap_err().to_string();
     assert!(error.contains("did you mean speed_pct?") && error.starts_with("model.toml:"), "{error}");
 }
 
 #[test]
-fn history_is_known() {
-    let text = GOOD.replace("# [[effect]]", "[[effect]]").replace("\n# ", "\n").replace("\n#", "\n");
+fn formulas_may_depend_on_previous_loads() {
+    let text = VALID.replace("# [[effect]]", "[[effect]]").replace("\n# ", "\n").replace("\n#", "\n");
     let from = text.find("id = \"load_memory\"").unwrap();
     let memory = format!("schema = \"pinswitch.effects/1\"\n[[effect]]\n{}", &text[from..]);
     let vocabulary = Vocabulary::built_in().read(&memory, "mine.toml").unwrap();
@@ -121,44 +122,44 @@ fn history_is_known() {
 }
 
 #[test]
-fn faults_are_placed() {
+fn problems_are_located() {
     for (from, to, expected) in [
-        ("effects/1", "effects/9", "4:10: schema 'pinswitch.effects/9' is unknown"),
-        ("schema =", "shema =", "4:1: a file of effects: unknown key 'shema'; did you mean schema?"),
+        ("effects/1", "effects/9", "4:10: unknown schema 'pinswitch.effects/9'"),
+        ("schema =", "shema =", "4:1: unknown key 'shema'; did you mean schema?"),
         (
             "\"lubricant_dip\" ",
             "\"rate_dependence\" ",
             "7:6: id 'rate_dependence' is that of a built-in effect",
         ),
-        ("\"lubricant_dip\" ", "\"Dip\" ", "7:6: id 'Dip' needs a-z first"),
-        ("side = \"switch\" ", "side = \"left\" ", "8:8: side = 'left' is unknown; it is one of switch, rig"),
-        ("acts_on = \"mu\" ", "acts_on = \"moo\" ", "10:11: acts_on = 'moo' is unknown"),
+        ("\"lubricant_dip\" ", "\"Dip\" ", "7:6: invalid id 'Dip'; start with a-z"),
+        ("side = \"switch\" ", "side = \"left\" ", "8:8: unknown side 'left'; use one of switch, rig"),
+        ("acts_on = \"mu\" ", "acts_on = \"moo\" ", "10:11: unknown acts_on 'moo'; use one of mu, "),
         ("speed_pct - c", "speedpct - c", "12:24: unknown variable 'speedpct'; did you mean speed_pct?"),
         ("exp(-((speed_pct - c)/w)^2)", "exq(1)*c*w", "12:17: unknown function 'exq'; did you mean exp?"),
-        ("speed_pct - c", "load_n - c", "12:31: the units N and % meet here"),
-        ("-a * exp", "1 + a * exp", "12:12: with all sizes zero it must be zero, and is 1.0000"),
-        ("-a * exp", "-a^2 * exp", "12:11: small sizes must act in proportion"),
-        ("-a * exp", "-abs(a) * exp", "12:11: small sizes must act in proportion"),
-        ("-a * exp", "-sqrt(abs(a)) * exp", "12:11: small sizes must act in proportion"),
-        ("\"-a * exp", "\"-a*ln(0*direction)*exp", "12:12: no number at its start values"),
+        ("speed_pct - c", "load_n - c", "12:31: the operands have different units, N and %"),
+        ("-a * exp", "1 + a * exp", "12:12: the formula is 1.0000 instead of zero with all sizes at zero"),
+        ("-a * exp", "-a^2 * exp", "12:11: the effect is not linear in its sizes near zero"),
+        ("-a * exp", "-abs(a) * exp", "12:11: the effect is not linear in its sizes near zero"),
+        ("-a * exp", "-sqrt(abs(a)) * exp", "12:11: the effect is not linear in its sizes near zero"),
+        ("\"-a * exp", "\"-a*ln(0*direction)*exp", "12:12: the formula is not finite at its start values"),
         ("combine = \"factor\" ", "combine = \"sum\" ", ""),
         (
             "acts_on = \"mu\"      ",
             "acts_on = \"mu\"\ncombined = 1 ",
-            "11:1: an effect: unknown key 'combined'; did you mean combine?",
+            "11:1: unknown key 'combined'; did you mean combine?",
         ),
         (
             "[\"rate_dependence\"]",
             "[\"rate_dependance\"]",
             "14:18: unknown effect 'rate_dependance'; did you mean rate_dependence?",
         ),
-        ("[\"rate_dependence\"]", "[1]", "14:18: confused_with is no list of ids"),
-        ("start = 52", "start = 20", "20:12: start = 20 of 'c' must lie between low = 35 and high = 75"),
-        ("start = 52", "start = nan", "20:12: start, low and high of 'c' are numbers"),
-        ("start = 0.1", "start = -0.1", "19:12: start = -0.1 of the size 'a'"),
-        ("size = true, ", "", "parameter 'a' has no low and high"),
-        ("size = true, ", "size = true, low = 0, ", "a size has no bounds"),
-        ("unit = \"%\" }\nparameters.w", "unit = \"kg\" }\nparameters.w", "20:12: unit 'kg' is unknown"),
+        ("[\"rate_dependence\"]", "[1]", "14:18: confused_with: expected a list of ids"),
+        ("start = 52", "start = 20", "20:12: start = 20 of 'c' must be between low = 35 and high = 75"),
+        ("start = 52", "start = nan", "20:12: start, low and high of 'c' must be numbers"),
+        ("start = 0.1", "start = -0.1", "19:12: start = -0.1 of the size 'a' must be above 0"),
+        ("size = true, ", "", "parameter 'a' lacks low and high"),
+        ("size = true, ", "size = true, low = 0, ", "a size cannot have bounds"),
+        ("unit = \"%\" }\nparameters.w", "unit = \"kg\" }\nparameters.w", "20:12: unknown unit 'kg'"),
         ("parameters.w =", "parameters.load_n =", "21:12: parameter 'load_n' has the name of a variable"),
         ("parameters.w =", "parameters.exp =", "21:12: parameter 'exp' has the name of a function"),
         (
@@ -166,13 +167,13 @@ fn faults_are_placed() {
             "parameters.v = { start = 1, low = 0, high = 2, unit = \"1\" }\nparameters.w =",
             "21:12: the formula does not use 'v'",
         ),
-        ("one_sided = true ", "one_sided = 1 ", "13:13: one_sided is no true or false"),
+        ("one_sided = true ", "one_sided = 1 ", "13:13: one_sided: expected true or false"),
         ("[[effect]]\nid = \"lub", "[[effect\nid = \"lub", "6:"),
-        ("[[effect]]\nid = \"lub", "[effect]\nid = \"lub", "effect is no list of tables"),
+        ("[[effect]]\nid = \"lub", "[effect]\nid = \"lub", "effect is not a list of tables"),
     ] {
-        assert!(GOOD.contains(from), "{from}");
-        let spoilt = GOOD.replacen(from, to, 1);
-        let read = Vocabulary::built_in().read(&spoilt, "mine.toml").map(|v| v.count());
+        assert!(VALID.contains(from), "{from}");
+        let invalid = VALID.replacen(from, to, 1);
+        let read = Vocabulary::built_in().read(&invalid, "mine.toml").map(|v| v.count());
         if expected.is_empty() {
             assert_eq!(read, Ok(22), "{to}");
             continue;
@@ -183,7 +184,7 @@ fn faults_are_placed() {
     }
 }
 
-/// Words that a formula may hold, and some that it may not.
+/// Words of formulas, and some invalid ones.
 fn word() -> impl Strategy<Value = String> {
     let words = [
         "load_n",
@@ -225,9 +226,9 @@ fn word() -> impl Strategy<Value = String> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
 
-    /// Any formula is refused, or has a number wherever it is asked first.
+    /// Any formula is refused, or finite on the probe rows.
     #[test]
-    fn any_formula_is_a_number_or_refused(words in prop::collection::vec(word(), 1..14), acts in 0usize..8) {
+    fn any_formula_is_finite_or_refused(words in prop::collection::vec(word(), 1..14), acts in 0usize..8) {
         let parameter = |name: &str, bounds| OwnParameter { name: name.to_owned(), unit: "1".to_owned(), start: 0.5, bounds };
         let definition = EffectDefinition {
             id: "any".to_owned(),
@@ -251,14 +252,15 @@ proptest! {
         }
     }
 
-    /// No text makes the reader panic, and none makes a long error.
+    /// No text makes the reader panic, or report a long error or one without a location.
     #[test]
     fn any_text_is_read_or_refused(text in "\\PC{0,60}", at in 0usize..2000) {
-        let at = (0..=at.min(GOOD.len())).rev().find(|i| GOOD.is_char_boundary(*i)).unwrap_or(0);
-        for spoilt in [text.clone(), format!("{}{text}{}", &GOOD[..at], &GOOD[at..])] {
-            if let Err(error) = read_own_effects(&spoilt, "mine.toml", &Vocabulary::built_in()) {
+        let at = (0..=at.min(VALID.len())).rev().find(|i| VALID.is_char_boundary(*i)).unwrap_or(0);
+        for invalid in [text.clone(), format!("{}{text}{}", &VALID[..at], &VALID[at..])] {
+            if let Err(error) = read_own_effects(&invalid, "mine.toml", &Vocabulary::built_in()) {
                 prop_assert!(error.to_string().chars().count() < 600, "{}", error);
-                prop_assert!(error.line >= 1 && error.column >= 1);
+                let location = error.location();
+                prop_assert!(location.is_some_and(|l| l.line.is_some() && l.column.is_some()), "{}", error);
             }
         }
     }

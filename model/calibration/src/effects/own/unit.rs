@@ -1,13 +1,15 @@
-//! Units of constants and variables, as powers of a few base units.
+//! Units of constants and variables, as powers of base units.
 
-/// The base units, by the words of the files.
+use pinswitch_diagnostic::Diagnostic;
+
+/// The base units, as written in files.
 const BASE: [&str; 5] = ["N", "%", "s", "mm", "rad"];
-/// Powers closer than this are one.
+/// Powers closer than this are equal.
 const SAME: f64 = 1e-9;
 /// Largest power of a base unit.
 const MAX_POWER: f64 = 20.0;
 
-/// A product of powers of base units; powers need not be whole, as in `N^-0.5`.
+/// A product of powers of base units; powers may be fractions, as in `N^-0.5`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Unit([f64; BASE.len()]);
 
@@ -21,20 +23,20 @@ impl Unit {
     /// The unit `1`.
     pub(super) const NONE: Unit = Unit([0.0; BASE.len()]);
 
-    /// Reads `1`, `N`, `N^-0.5`, `1/N`, `N mm`, `%/s`: factors with a power, divided by `/`, multiplied by a space or `*`.
+    /// Parses `1`, `N`, `N^-0.5`, `1/N`, `N mm`, `%/s`: factors with a power, divided by `/`,
+    /// multiplied by a space or `*`.
     ///
     /// # Errors
-    /// What is wrong, with the units that are known.
-    pub(super) fn parse(text: &str) -> Result<Unit, String> {
+    /// If the text is not a unit.
+    pub(super) fn parse(text: &str) -> Result<Unit, Diagnostic> {
         let spaced = text.replace('/', " / ").replace('*', " ");
         let mut unit = Unit::NONE;
         let (mut sign, mut factors) = (1.0, 0);
         for word in spaced.split_whitespace() {
             if word == "/" {
                 if sign < 0.0 || factors == 0 {
-                    return Err(format!(
-                        "unit '{text}' is divided more than once, or nothing; write N or 1/N"
-                    ));
+                    return Err(Diagnostic::new(format!("misplaced '/' in unit '{text}'"))
+                        .with_help("use '/' once, after a factor, as in 1/N"));
                 }
                 sign = -1.0;
                 continue;
@@ -43,26 +45,25 @@ impl Unit {
             let (name, power) = word.split_once('^').unwrap_or((word, "1"));
             let power: f64 = power.parse().unwrap_or(f64::NAN);
             if !(-MAX_POWER..=MAX_POWER).contains(&power) {
-                return Err(format!("unit '{text}': the power in '{word}' is no number from -20 to 20"));
+                return Err(Diagnostic::new(format!("invalid power in '{word}' of unit '{text}'"))
+                    .with_help(format!("give a number from -{MAX_POWER} to {MAX_POWER}")));
             }
             if name == "1" {
                 continue;
             }
             let Some(base) = BASE.iter().position(|b| *b == name) else {
-                return Err(format!(
-                    "unit '{text}' is unknown; known are 1, {} and their products",
-                    BASE.join(", ")
-                ));
+                return Err(Diagnostic::new(format!("unknown unit '{text}'"))
+                    .with_help(format!("use 1, {} and their products", BASE.join(", "))));
             };
             unit.0[base] += sign * power;
         }
         if factors == 0 || text.trim_end().ends_with('/') {
-            return Err("a unit is missing; write \"1\" for none".to_owned());
+            return Err(Diagnostic::new("missing unit").with_help("write \"1\" for none"));
         }
         Ok(unit)
     }
 
-    /// The product with another one to a power.
+    /// Returns the product with a power of another unit.
     pub(super) fn times(self, other: Unit, power: f64) -> Unit {
         let mut product = self;
         product.0.iter_mut().zip(other.0).for_each(|(a, b)| *a += power * b);
@@ -86,8 +87,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn units_are_read_and_told() {
-        for (text, told) in [
+    fn units_are_parsed_and_displayed() {
+        for (text, shown) in [
             ("1", "1"),
             ("N", "N"),
             ("N^-0.5", "N^-0.5"),
@@ -95,7 +96,7 @@ mod tests {
             ("%/s", "% s^-1"),
             ("N mm*s", "N s mm"),
         ] {
-            assert_eq!(Unit::parse(text).map(|u| u.to_string()), Ok(told.to_owned()), "{text}");
+            assert_eq!(Unit::parse(text).map(|u| u.to_string()), Ok(shown.to_owned()), "{text}");
         }
         for text in ["", "kg", "N/", "/N", "N^x", "N^1e9", "1/N/s", "N^^2", "NaN", "N^NaN"] {
             assert!(Unit::parse(text).is_err(), "{text}");

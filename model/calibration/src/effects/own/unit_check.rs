@@ -1,13 +1,30 @@
-//! Whether the units of a formula fit: sums and comparisons of one unit, functions of none.
+//! Unit check of formulas: operands of sums and comparisons have equal units, arguments of
+//! functions have none.
 //!
-//! A bare number that is added, compared or divided has the unit that makes the formula right, as in `load_n/50` or
-//! `speed_pct > 50`; a number that multiplies has none. Such a number is an unknown of linear equations between powers
-//! of units, which are solved one by one as they are met (Kennedy, Types for units-of-measure, 2010).
+//! A bare number that is added, compared or divided has the unit that makes the formula consistent,
+//! as in `load_n/50` or `speed_pct > 50`; a number that multiplies has none. The unit of such a
+//! number is an unknown of linear equations between powers of units, which are solved one by one
+//! (Kennedy, Types for units-of-measure, 2010).
 
-use super::expression::{Fault, Function, Kind, Node, Operator};
+use pinswitch_diagnostic::Diagnostic;
+
+use super::expression::{Function, Kind, Node, Operator};
 use super::unit::Unit;
 
-/// A unit that may depend on units not yet known: a known one times powers of unknown ones.
+/// An inconsistency at a byte of the formula.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct UnitError {
+    pub(super) at: usize,
+    pub(super) diagnostic: Diagnostic,
+}
+
+impl UnitError {
+    fn new(at: usize, problem: String, help: &str) -> Self {
+        Self { at, diagnostic: Diagnostic::new(problem).with_help(help) }
+    }
+}
+
+/// A unit that may depend on unknown units: a known unit times powers of unknown ones.
 #[derive(Clone, Debug)]
 struct Quantity {
     known: Unit,
@@ -35,34 +52,38 @@ impl Quantity {
     }
 }
 
-/// The units of numbers, as far as they are known.
+/// Solved units of bare numbers.
 #[derive(Default)]
 struct Solver {
     solved: Vec<Option<Quantity>>,
 }
 
-/// Checks a formula whose constants have these units and which must have the unit `needed`.
+/// Checks a formula whose constants have these units; the formula must have the unit `needed`.
+/// `what` names its use.
 ///
 /// # Errors
-/// The first place where units do not fit.
-pub(super) fn check_units(formula: &Node, constants: &[Unit], needed: Unit, what: &str) -> Result<(), Fault> {
+/// The first inconsistency.
+pub(super) fn check_units(
+    formula: &Node,
+    constants: &[Unit],
+    needed: Unit,
+    what: &str,
+) -> Result<(), UnitError> {
     let mut solver = Solver::default();
-    let found = solver.unit_of(formula, constants)?;
-    if solver.equal(&found, &Quantity::known(needed)) {
+    let unit = solver.unit_of(formula, constants)?;
+    if solver.equal(&unit, &Quantity::known(needed)) {
         return Ok(());
     }
-    let found = solver.told(&found);
-    Err(Fault::new(
+    let unit = solver.shown(&unit);
+    Err(UnitError::new(
         0,
-        format!(
-            "the formula has the unit {found}, {what} needs {needed}; divide by a reference, as load_n/50, or give a \
-             constant another unit"
-        ),
+        format!("the formula has unit {unit}, but {what} needs {needed}"),
+        "divide by a reference, as in load_n/50, or give a constant another unit",
     ))
 }
 
 impl Solver {
-    /// The quantity with all that is known by now put in. Solutions hold no unknown that is solved itself.
+    /// Substitutes all solutions into a quantity. Solutions contain no solved unknowns.
     fn resolved(&self, quantity: &Quantity) -> Quantity {
         let mut result = Quantity::known(quantity.known);
         for (unknown, power) in &quantity.unknown {
@@ -73,11 +94,11 @@ impl Solver {
         result
     }
 
-    fn told(&self, quantity: &Quantity) -> String {
+    fn shown(&self, quantity: &Quantity) -> String {
         self.resolved(quantity).known.to_string()
     }
 
-    /// Makes two units equal if that is possible.
+    /// Equates two units by solving for an unknown. Returns whether that is possible.
     fn equal(&mut self, a: &Quantity, b: &Quantity) -> bool {
         let apart = self.resolved(&a.times(b, -1.0));
         let Some((unknown, power)) = apart.unknown.first().copied() else {
@@ -91,8 +112,8 @@ impl Solver {
         true
     }
 
-    /// Unit of an operand that may be a bare number of any unit.
-    fn operand(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
+    /// Returns the unit of an operand, which is unknown for a bare number.
+    fn operand(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, UnitError> {
         let bare = match &node.kind {
             Kind::Negated(inner) => matches!(inner.kind, Kind::Number(_)),
             kind => matches!(kind, Kind::Number(_)),
@@ -104,23 +125,24 @@ impl Solver {
         Ok(Quantity { known: Unit::NONE, unknown: vec![(self.solved.len() - 1, 1.0)] })
     }
 
-    fn dimensionless(&mut self, found: &Quantity, at: usize, what: &str) -> Result<(), Fault> {
-        if self.equal(found, &Quantity::known(Unit::NONE)) {
+    fn dimensionless(&mut self, quantity: &Quantity, at: usize, what: &str) -> Result<(), UnitError> {
+        if self.equal(quantity, &Quantity::known(Unit::NONE)) {
             return Ok(());
         }
-        let found = self.told(found);
-        Err(Fault::new(
+        let unit = self.shown(quantity);
+        Err(UnitError::new(
             at,
-            format!("{what} has the unit {found} and needs none; divide by a reference, as load_n/50"),
+            format!("{what} has unit {unit}, but must be dimensionless"),
+            "divide by a reference, as in load_n/50",
         ))
     }
 
-    fn unit_of(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
+    fn unit_of(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, UnitError> {
         match &node.kind {
             Kind::Number(_) => Ok(Quantity::known(Unit::NONE)),
-            Kind::Variable(variable) => {
-                Unit::parse(variable.unit).map(Quantity::known).map_err(|e| Fault::new(node.at, e))
-            }
+            Kind::Variable(variable) => Unit::parse(variable.unit)
+                .map(Quantity::known)
+                .map_err(|diagnostic| UnitError { at: node.at, diagnostic }),
             Kind::Constant(place) => {
                 Ok(Quantity::known(constants.get(*place).copied().unwrap_or(Unit::NONE)))
             }
@@ -130,16 +152,16 @@ impl Solver {
         }
     }
 
-    fn call(&mut self, function: Function, a: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
+    fn call(&mut self, function: Function, a: &Node, constants: &[Unit]) -> Result<Quantity, UnitError> {
         let unit = self.unit_of(a, constants)?;
         let none = Quantity::known(Unit::NONE);
         match function {
             Function::Abs => Ok(unit),
             Function::Sqrt => Ok(none.times(&unit, 0.5)),
-            Function::Sin | Function::Cos if self.told(&unit) == "rad" => Ok(none),
+            Function::Sin | Function::Cos if self.shown(&unit) == "rad" => Ok(none),
             Function::Exp | Function::Ln | Function::Tanh | Function::Sin | Function::Cos => {
                 let name = format!("{function:?}").to_lowercase();
-                self.dimensionless(&unit, a.at, &format!("what {name} is taken of"))?;
+                self.dimensionless(&unit, a.at, &format!("the argument of {name}"))?;
                 Ok(none)
             }
         }
@@ -152,7 +174,7 @@ impl Solver {
         a: &Node,
         b: &Node,
         constants: &[Unit],
-    ) -> Result<Quantity, Fault> {
+    ) -> Result<Quantity, UnitError> {
         match operator {
             Operator::Multiply => Ok(self.unit_of(a, constants)?.times(&self.unit_of(b, constants)?, 1.0)),
             Operator::Divide => Ok(self.operand(a, constants)?.times(&self.operand(b, constants)?, -1.0)),
@@ -169,12 +191,11 @@ impl Solver {
             | Operator::Unequal => {
                 let (left, right) = (self.operand(a, constants)?, self.operand(b, constants)?);
                 if !self.equal(&left, &right) {
-                    let (left, right) = (self.told(&left), self.told(&right));
-                    return Err(Fault::new(
+                    let (left, right) = (self.shown(&left), self.shown(&right));
+                    return Err(UnitError::new(
                         at,
-                        format!(
-                            "the units {left} and {right} meet here and must be one; divide each by a reference"
-                        ),
+                        format!("the operands have different units, {left} and {right}"),
+                        "divide each by a reference",
                     ));
                 }
                 let joins = matches!(
@@ -186,16 +207,17 @@ impl Solver {
         }
     }
 
-    /// A power: by a number of anything, else of what has no unit.
-    fn power(&mut self, a: &Node, b: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
+    /// Returns the unit of a power. Unless the exponent is a number, base and exponent must be
+    /// dimensionless.
+    fn power(&mut self, a: &Node, b: &Node, constants: &[Unit]) -> Result<Quantity, UnitError> {
         let base = self.unit_of(a, constants)?;
         let none = Quantity::known(Unit::NONE);
         if let Some(power) = b.number().filter(|power| power.is_finite()) {
             return Ok(none.times(&base, power));
         }
-        self.dimensionless(&base, a.at, "the base of a power that is no number")?;
+        self.dimensionless(&base, a.at, "the base of a variable power")?;
         let exponent = self.unit_of(b, constants)?;
-        self.dimensionless(&exponent, b.at, "an exponent")?;
+        self.dimensionless(&exponent, b.at, "the exponent")?;
         Ok(none)
     }
 }
@@ -204,15 +226,15 @@ impl Solver {
 mod tests {
     use super::*;
 
-    /// A formula with constants `k` (1), `f` (N), `p` (N^-0.5), `w` (%).
-    fn check(text: &str, needed: &str) -> Result<(), Fault> {
-        let node = Node::parse(text, &["k", "f", "p", "w"], true)?;
+    /// Checks a formula with constants `k` (1), `f` (N), `p` (N^-0.5), `w` (%).
+    fn check(text: &str, needed: &str) -> Result<(), UnitError> {
+        let node = Node::parse(text, &["k", "f", "p", "w"], true).unwrap();
         let units = ["1", "N", "N^-0.5", "%"].map(|u| Unit::parse(u).unwrap());
         check_units(&node, &units, Unit::parse(needed).unwrap(), "it")
     }
 
     #[test]
-    fn units_that_fit_are_accepted() {
+    fn consistent_units_are_accepted() {
         for (text, needed) in [
             ("-k * exp(-((speed_pct - 52)/w)^2)", "1"),
             ("k*(load_n/50)^k", "1"),
@@ -236,20 +258,20 @@ mod tests {
     }
 
     #[test]
-    fn units_that_do_not_fit_are_placed() {
+    fn inconsistent_units_are_located() {
         for (text, needed, at, part) in [
-            ("k*load_n", "1", 0, "has the unit N, it needs 1"),
-            ("f", "1", 0, "has the unit N"),
-            ("k*(load_n + speed_pct)", "N", 10, "the units N and % meet here"),
-            ("k*exp(load_n)", "1", 6, "what exp is taken of has the unit N"),
-            ("k*ln(load_n + 3)", "1", 12, "what ln is taken of"),
-            ("k*(load_n > speed_pct)", "1", 10, "the units N and % meet"),
-            ("k*load_n^k", "1", 2, "the base of a power"),
-            ("k*2^load_n", "1", 4, "an exponent has the unit N"),
-            ("k*(load_n/50 + load_n)", "1", 0, "has the unit N"),
+            ("k*load_n", "1", 0, "the formula has unit N, but it needs 1"),
+            ("f", "1", 0, "the formula has unit N"),
+            ("k*(load_n + speed_pct)", "N", 10, "different units, N and %"),
+            ("k*exp(load_n)", "1", 6, "the argument of exp has unit N"),
+            ("k*ln(load_n + 3)", "1", 12, "the argument of ln has unit N"),
+            ("k*(load_n > speed_pct)", "1", 10, "different units, N and %"),
+            ("k*load_n^k", "1", 2, "the base of a variable power has unit N"),
+            ("k*2^load_n", "1", 4, "the exponent has unit N"),
+            ("k*(load_n/50 + load_n)", "1", 0, "the formula has unit N"),
         ] {
-            let fault = check(text, needed).map(|()| text).unwrap_err();
-            assert!(fault.at == at && fault.problem.contains(part), "{text}: {fault:?}");
+            let error = check(text, needed).unwrap_err();
+            assert!(error.at == at && error.diagnostic.problem().contains(part), "{text}: {error:?}");
         }
     }
 }

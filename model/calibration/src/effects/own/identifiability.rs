@@ -1,4 +1,5 @@
-//! Whether the constants of a formula can be told apart: of `(a + b)*f` only the sum can, from no data whatever.
+//! Identifiability of a formula's constants: no data determine `a` and `b` of `(a + b)*f`, only
+//! their sum.
 
 use nalgebra::DMatrix;
 
@@ -6,22 +7,23 @@ use super::definition::OwnParameter;
 use super::expression::Node;
 use super::probe::spread_probes;
 
-/// Smallest singular value of the sensitivities, as a share of the largest, below which some combination of constants does
-/// nothing. Differences of a formula that are the same agree to 1e-8.
-const NOTHING: f64 = 1e-6;
-/// Share of such a combination from which a constant is part of it.
-const TAKES_PART: f64 = 0.05;
-/// Rows in which a formula must act, for each of its constants, or nothing is said.
+/// Smallest singular value of the sensitivities, as a share of the largest, below which a
+/// combination of constants changes nothing. Finite differences of equal formulas agree to 1e-8.
+const NEGLIGIBLE: f64 = 1e-6;
+/// Smallest component of such a combination that makes a constant part of it.
+const SMALLEST_COMPONENT: f64 = 0.05;
+/// Rows per constant in which a formula must act for a decision.
 const ROWS_EACH: usize = 3;
 
-/// Names of constants that no data can tell apart, wherever they stand; `None` if there are none, or the rows that are tried
-/// cannot say.
-pub(super) fn not_told_apart<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<Vec<&'a str>> {
-    // What is one at its start values alone is no fault of the formula.
+/// Returns the names of constants that no data can identify at any values; `None` if there are
+/// none, or the probe rows do not decide it.
+pub(super) fn unidentifiable<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<Vec<&'a str>> {
+    // Constants may be confounded at the start values only, which is acceptable.
     let places = [(1.0, 0.5), (1.37, 0.31), (0.71, 0.68)];
-    // Each constant elsewhere: what may be exchanged is one where it is equal.
+    // A different share for each constant, since exchangeable constants are confounded where they
+    // are equal.
     let between = |share: f64, k: usize| 0.1 + 0.8 * libm::modf(share + 0.618 * k as f64).0;
-    let mut found: Option<Vec<usize>> = None;
+    let mut confounded: Option<Vec<usize>> = None;
     for (i, (size, shape)) in places.into_iter().enumerate() {
         let values: Vec<f64> = parameters
             .iter()
@@ -32,18 +34,18 @@ pub(super) fn not_told_apart<'a>(node: &Node, parameters: &'a [OwnParameter]) ->
                 Some((low, high)) => low + (high - low) * between(shape, k),
             })
             .collect();
-        let alike = alike_at(node, parameters, &values)?;
-        found = Some(match found {
-            None => alike,
-            Some(before) => before.into_iter().filter(|k| alike.contains(k)).collect(),
+        let here = confounded_at(node, parameters, &values)?;
+        confounded = Some(match confounded {
+            None => here,
+            Some(before) => before.into_iter().filter(|k| here.contains(k)).collect(),
         });
     }
-    let names: Vec<&str> = found?.into_iter().map(|k| parameters[k].name.as_str()).collect();
+    let names: Vec<&str> = confounded?.into_iter().map(|k| parameters[k].name.as_str()).collect();
     (names.len() > 1).then_some(names)
 }
 
-/// Name of a shape that moves the effect by jumps alone: no fit can follow it, and no interval tells where it lies.
-pub(super) fn jumps_only<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<&'a str> {
+/// Returns the name of a shape that changes the effect only in steps, which a fit cannot follow.
+pub(super) fn step_parameter<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<&'a str> {
     let rows = spread_probes();
     let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
     let at = |k: usize, value: f64| -> Vec<f64> {
@@ -62,8 +64,9 @@ pub(super) fn jumps_only<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Opt
     parameters.iter().enumerate().find(jumps).map(|(_, parameter)| parameter.name.as_str())
 }
 
-/// Constants that take part in a combination that does nothing; `None` if there is none, or too few rows say anything.
-fn alike_at(node: &Node, parameters: &[OwnParameter], values: &[f64]) -> Option<Vec<usize>> {
+/// Returns the constants of a combination without effect at these values; `None` if there is none,
+/// or too few rows decide.
+fn confounded_at(node: &Node, parameters: &[OwnParameter], values: &[f64]) -> Option<Vec<usize>> {
     let rows = spread_probes();
     let mut columns: Vec<(usize, Vec<f64>)> = Vec::new();
     for (k, parameter) in parameters.iter().enumerate() {
@@ -80,7 +83,7 @@ fn alike_at(node: &Node, parameters: &[OwnParameter], values: &[f64]) -> Option<
         if !length.is_finite() {
             return None;
         }
-        // The place of a step moves nothing by a little.
+        // A small change of the place of a step changes no row.
         if length * scale > 1e-9 {
             columns.push((k, column.into_iter().map(|v| v / length).collect()));
         }
@@ -95,23 +98,26 @@ fn alike_at(node: &Node, parameters: &[OwnParameter], values: &[f64]) -> Option<
     let largest = svd.singular_values.max();
     let v_t = svd.v_t?;
     let mut part = vec![false; columns.len()];
-    for (i, _) in svd.singular_values.iter().enumerate().filter(|(_, v)| **v < NOTHING * largest) {
-        (0..columns.len()).for_each(|k| part[k] |= v_t[(i, k)].abs() > TAKES_PART);
+    for (i, _) in svd.singular_values.iter().enumerate().filter(|(_, v)| **v < NEGLIGIBLE * largest) {
+        (0..columns.len()).for_each(|k| part[k] |= v_t[(i, k)].abs() > SMALLEST_COMPONENT);
     }
-    let alike: Vec<usize> = columns.iter().zip(&part).filter(|(_, p)| **p).map(|((k, _), _)| *k).collect();
-    (!alike.is_empty()).then_some(alike)
+    let constants: Vec<usize> =
+        columns.iter().zip(&part).filter(|(_, p)| **p).map(|((k, _), _)| *k).collect();
+    (!constants.is_empty()).then_some(constants)
 }
 
 #[cfg(test)]
 mod tests {
+    use pinswitch_diagnostic::Diagnostic;
+
     use crate::effects::{CATALOGUE, EffectDefinition, OwnEffect, Vocabulary, own_effects_text};
 
-    fn told(formula: &str, parameters: &str) -> Result<(), String> {
+    fn read(formula: &str, parameters: &str) -> Result<(), Diagnostic> {
         let text = format!(
             "schema = \"pinswitch.effects/1\"\n[[effect]]\nid = \"mine\"\nside = \"switch\"\ncovariate = \"speed\"\n\
              acts_on = \"mu\"\ncombine = \"factor\"\nformula = \"{formula}\"\n{parameters}"
         );
-        Vocabulary::built_in().read(&text, "mine.toml").map(|_| ()).map_err(|e| e.to_string())
+        Vocabulary::built_in().read(&text, "mine.toml").map(|_| ())
     }
 
     const A: &str = "parameters.a = { size = true, start = 0.1, unit = \"1\" }\n";
@@ -121,21 +127,21 @@ mod tests {
     const W: &str = "parameters.w = { start = 8, low = 3, high = 30, unit = \"%\" }\n";
 
     #[test]
-    fn constants_that_make_up_for_each_other_are_refused_by_name() {
+    fn unidentifiable_constants_are_named() {
         for (formula, parameters, names) in [
             ("(a + b)*exp(-((speed_pct - c)/w)^2)*d^2", [A, B, C, D, W].concat(), "a and b and d"),
             ("a*b*(speed_pct/50 - 1) + a*b*(speed_pct/50 - 1)^2", [A, B].concat(), "a and b"),
             ("a*exp(d*1)*load_n/50", [A, D].concat(), "a and d"),
             ("a*(1 - is_silicone) + b*(1 - is_silicone)*2", [A, B].concat(), "a and b"),
         ] {
-            let said = told(formula, &parameters).unwrap_err();
-            assert!(said.contains(&format!("no data can tell {names} apart")), "{formula}: {said}");
-            assert!(said.starts_with("mine.toml:8:"), "{said}");
+            let error = read(formula, &parameters).unwrap_err().to_string();
+            assert!(error.contains(&format!("constants {names} are not identifiable")), "{formula}: {error}");
+            assert!(error.starts_with("mine.toml:8:"), "{error}");
         }
     }
 
     #[test]
-    fn constants_with_a_say_of_their_own_are_not() {
+    fn identifiable_constants_are_accepted() {
         let narrow = "parameters.w = { start = 0.2, low = 0.1, high = 0.4, unit = \"%\" }\n";
         for (formula, parameters) in [
             ("-a*exp(-((speed_pct - c)/w)^2)", [A, C, W].concat()),
@@ -146,17 +152,17 @@ mod tests {
             ("a*pin_count + b*is_device", [A, B].concat()),
             ("a*sin(6.28*d*stroke) + b*cos(6.28*d*stroke)", [A, B, D].concat()),
         ] {
-            assert_eq!(told(formula, &parameters), Ok(()), "{formula}");
+            assert_eq!(read(formula, &parameters), Ok(()), "{formula}");
         }
     }
 
     #[test]
-    fn places_of_steps_that_no_fit_can_follow_are_refused_by_name() {
-        let said = told("a*(speed_pct > c)", &[A, C].concat()).unwrap_err();
-        assert!(said.contains("'c' moves the effect by jumps"), "{said}");
-        assert_eq!(told("a*(speed_pct > 52)", A), Ok(()));
-        assert_eq!(told("a*0.5*(1 + tanh((speed_pct - c)/0.5))", &[A, C].concat()), Ok(()));
-        assert_eq!(told("a*max((speed_pct - c)/50, 0)", &[A, C].concat()), Ok(()));
+    fn parameters_of_steps_are_named() {
+        let error = read("a*(speed_pct > c)", &[A, C].concat()).unwrap_err();
+        assert!(error.problem().contains("only in steps with 'c'"), "{error}");
+        assert_eq!(read("a*(speed_pct > 52)", A), Ok(()));
+        assert_eq!(read("a*0.5*(1 + tanh((speed_pct - c)/0.5))", &[A, C].concat()), Ok(()));
+        assert_eq!(read("a*max((speed_pct - c)/50, 0)", &[A, C].concat()), Ok(()));
     }
 
     #[test]
@@ -164,8 +170,8 @@ mod tests {
         for effect in CATALOGUE {
             let Ok(definition) = EffectDefinition::of(*effect) else { continue };
             let own = OwnEffect::new(EffectDefinition { id: "mine".to_owned(), ..definition }).unwrap();
-            assert_eq!(own.moved_by_jumps(), None);
-            assert_eq!(own.constants_not_told_apart(), None, "{}", own_effects_text([own.definition()]));
+            assert_eq!(own.step_parameter(), None);
+            assert_eq!(own.unidentifiable_constants(), None, "{}", own_effects_text([own.definition()]));
         }
     }
 }

@@ -5,16 +5,18 @@
 
 use serde::Serialize;
 
+use crate::band_source::{BandSource, NORMAL_95};
+use crate::bed::{Bed, OutsidePins};
+use crate::contact::Contact;
 use crate::departure::{Departure, departures, published_rig};
-use crate::law::{Law, LawError, Uncertain, friction_by, uncertain_by};
-use crate::physics::{Bed, Constants, OutsidePins, PhysicsSwitch};
+use crate::law::{Law, LawError, UncertainFriction};
+use crate::physics::{Constants, PhysicsSwitch};
+use crate::published;
+use crate::substrate::Substrate;
 use crate::trust::{is_measured, layout_distance};
-use crate::{Contact, Substrate, published};
 
 /// Loads at which the sources are computed.
 const LOADS: usize = 10;
-/// Half width of a standard normal distribution at 95 %.
-pub(crate) const NORMAL_95: f64 = 1.96;
 /// What a departure may do that physics does not know of, as a standard deviation for a factor e. Chosen.
 const UNKNOWN_EFFECT: f64 = 0.1;
 /// Standard deviation for a remark on the contact that no law knows of. Chosen.
@@ -27,24 +29,6 @@ const BEYOND_LOADS: f64 = 0.15;
 const NEAR_LOAD: f64 = 0.5;
 /// The same for the distance from a measured condition.
 const NEAR_CONDITION: f64 = 0.15;
-
-/// Half widths of `ln D` at 95 % that come from one source, load by load; none is negative.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BandSource {
-    /// The source, such as `constants` or `layer thickness`.
-    pub name: String,
-    /// Downwards.
-    pub down: Vec<f64>,
-    /// Upwards.
-    pub up: Vec<f64>,
-}
-
-impl BandSource {
-    /// A source that is as wide downwards as upwards.
-    pub(crate) fn even(name: impl Into<String>, half: Vec<f64>) -> Self {
-        Self { name: name.into(), down: half.clone(), up: half }
-    }
-}
 
 /// The band of a curve with its sources.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -81,7 +65,7 @@ impl Band {
     pub fn of(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Self, LawError> {
         let load_n = spaced(loads_n);
         let departures = departures(contact, &load_n);
-        let Uncertain { friction_n, mut sources } = uncertain_by(law, contact, &load_n)?;
+        let UncertainFriction { friction_n, mut sources } = law.uncertain_friction(contact, &load_n)?;
         for departure in &departures {
             sources.push(departure_source(departure, load_n.len()));
         }
@@ -106,7 +90,7 @@ impl Band {
         // On another rig rivals may happen to agree: doubt is no less than with the same pins on the published one.
         let on_published = match published_rig(contact).filter(|_| !departures.is_empty()) {
             Some(rig) => {
-                self::rivals(law, &rig, &load_n, &friction_by(law, &rig, &load_n)?).unwrap_or_default()
+                self::rivals(law, &rig, &load_n, &law.friction_n(&rig, &load_n)?).unwrap_or_default()
             }
             None => Vec::new(),
         };
@@ -200,7 +184,7 @@ fn rivals(
         // load the layout law says the same; on the proxy what is left of the constant coefficient, which its own maxima
         // refute, is its trend with load, see below.
         .filter(|other| *other != law && *other != Law::Paper)
-        .filter_map(|other| Some((other.title().to_owned(), friction_by(other, contact, load_n).ok()?)))
+        .filter_map(|other| Some((other.title().to_owned(), other.friction_n(contact, load_n).ok()?)))
         .collect();
     if law == Law::Physics && !on_proxy && contact.all_pins().count() > 0 {
         let free = Bed { outside: OutsidePins::Free, bending_n_mm2: 0.0, ..*contact.bed() };
@@ -212,7 +196,7 @@ fn rivals(
     }
     if law == Law::Physics && on_proxy {
         let heaviest = published::heaviest_load_n();
-        let at = friction_by(law, contact, &[heaviest])?[0] / heaviest;
+        let at = law.friction_n(contact, &[heaviest])?[0] / heaviest;
         all.push(("a constant coefficient".to_owned(), load_n.iter().map(|l| l * at).collect()));
     }
     let logs = |friction: Vec<f64>| -> Vec<f64> {

@@ -1,11 +1,14 @@
 //! What the physics says a change of the part does to a curve that was measured on another: how a calibrated switch is
 //! carried to other dimensions.
 
-use crate::band::NORMAL_95;
+use crate::band_source::NORMAL_95;
+use crate::capstan::{Direction, capstan_tension_n};
+use crate::contact::Contact;
+use crate::curve::FrictionCurve;
 use crate::departure::departures;
 use crate::physics::{Constants, PhysicsError, PhysicsSwitch};
-use crate::transition::at;
-use crate::{Contact, Direction, FrictionCurve, Transition, Trust, capstan_tension_n};
+use crate::transition::{Transition, at};
+use crate::trust::Trust;
 
 /// How much of a change that the physics makes may be wrong, as a standard deviation. Chosen: no calibration has yet
 /// measured a change of dimensions.
@@ -174,8 +177,12 @@ fn pins_reason(rig: &Contact, part: &Contact) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::Bed;
-    use crate::{Law, PinPattern, Substrate, predict_by, published};
+    use crate::bed::Bed;
+    use crate::law::Law;
+    use crate::pattern::PinPattern;
+    use crate::prediction::predict_by;
+    use crate::published;
+    use crate::substrate::Substrate;
 
     fn rig() -> Contact {
         let pins = PinPattern::even(3, published::LAYOUTS[1].pitch_rad());

@@ -1,31 +1,10 @@
 //! What the tendon lies on: the validated input of every prediction.
 
-use serde::{Deserialize, Serialize};
-
-use crate::PinPattern;
-use crate::counted;
-use crate::physics::Bed;
+use crate::bed::Bed;
+use crate::counted::counted;
+use crate::pattern::PinPattern;
 use crate::published::{self, PublishedLayout};
-
-/// What lies under the pins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Substrate {
-    /// The cast silicone layer: pins sink as load grows.
-    Silicone,
-    /// The rigid printed proxy of that layer: the pins alone carry the tendon.
-    Abs,
-}
-
-impl Substrate {
-    /// The word in tables and configurations: `silicone` or `abs`.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Substrate::Silicone => "silicone",
-            Substrate::Abs => "abs",
-        }
-    }
-}
+use crate::substrate::Substrate;
 
 /// Why a contact cannot be predicted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -2,9 +2,13 @@
 
 use serde::Serialize;
 
-use crate::physics::{Bed, Constants, PhysicsSwitch, shore_a_of_modulus_mpa};
-use crate::sort_by_number;
-use crate::{Contact, published};
+use crate::bed::{Bed, shore_a_of_modulus_mpa};
+use crate::contact::Contact;
+use crate::pattern::PinPattern;
+use crate::physics::{Constants, PhysicsSwitch};
+use crate::published;
+use crate::sort::sort_by_number;
+use crate::substrate::Substrate;
 
 /// A parameter of a contact besides the layout of its pins.
 struct Parameter {
@@ -186,15 +190,14 @@ pub(crate) fn published_rig(contact: &Contact) -> Option<Contact> {
     let wrap = published::wrap_angle_rad();
     // A proxy whose pins all lie outside the published wrap has no counterpart; a bare bed has the same parameters.
     Contact::new(contact.substrate(), all, wrap)
-        .or_else(|_| Contact::new(crate::Substrate::Silicone, crate::PinPattern::default(), wrap))
+        .or_else(|_| Contact::new(Substrate::Silicone, PinPattern::default(), wrap))
         .ok()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::modulus_of_shore_a_mpa;
-    use crate::{PinPattern, Substrate};
+    use crate::bed::modulus_of_shore_a_mpa;
 
     fn three_double() -> Contact {
         let layout = &published::LAYOUTS[1];

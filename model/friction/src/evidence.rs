@@ -3,11 +3,15 @@
 
 use serde::Serialize;
 
-use crate::law::friction_by;
-use crate::law::layout::ThresholdRule;
-use crate::physics::{Bed, FitError, fit_maxima, leave_one_condition_out};
+use crate::bed::Bed;
+use crate::contact::Contact;
+use crate::law::Law;
+use crate::law::layout::{LayoutLaw, ThresholdRule};
+use crate::pattern::PinPattern;
+use crate::physics::{FitError, fit_maxima, leave_one_condition_out};
 use crate::published::{self, LAYOUTS};
-use crate::{Contact, Law, LayoutLaw, PinPattern, Substrate, Switch};
+use crate::substrate::Substrate;
+use crate::switch::Switch;
 
 /// A law's error on one published maximum, relative: predicted over measured, less one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -106,7 +110,7 @@ fn printed_errors(law: Law) -> Vec<MaximumError> {
             let contact = Contact::new(substrate, pins, wrap).ok();
             let error = |friction: f64| friction / measured - 1.0;
             let in_sample =
-                contact.as_ref().and_then(|c| Some(error(*friction_by(law, c, &[heaviest]).ok()?.first()?)));
+                contact.as_ref().and_then(|c| Some(error(*law.friction_n(c, &[heaviest]).ok()?.first()?)));
             let left_out = match (law, layout, substrate) {
                 (Law::Layout, Some(left_out), Substrate::Silicone) => {
                     let others: Vec<_> =

@@ -4,9 +4,13 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::physics::{Bed, Constants, PhysicsSwitch};
-use crate::sort_by_number;
-use crate::{Contact, PinPattern, Substrate, Transition};
+use crate::bed::Bed;
+use crate::contact::Contact;
+use crate::pattern::PinPattern;
+use crate::physics::{Constants, PhysicsSwitch};
+use crate::sort::sort_by_number;
+use crate::substrate::Substrate;
+use crate::transition::Transition;
 
 /// Loads at which the sweep computes a pattern: the threshold comes out within about 1 %.
 const LOADS: usize = 24;

@@ -32,7 +32,8 @@
 #![warn(clippy::disallowed_methods)]
 
 mod band;
-mod by_number;
+mod band_source;
+mod bed;
 mod capstan;
 mod carry;
 mod contact;
@@ -46,22 +47,30 @@ pub mod layout_search;
 pub mod least_squares;
 mod pattern;
 pub mod physics;
+mod prediction;
+#[cfg(test)]
+mod prediction_tests;
 pub mod published;
+mod sort;
+mod substrate;
 mod switch;
 mod transition;
 mod trust;
 
-pub use band::{Band, BandSource};
-pub use by_number::sort_by_number;
+pub use band::Band;
+pub use band_source::BandSource;
 pub use capstan::{Direction, capstan_friction_n, capstan_tension_n};
 pub use carry::Carry;
-pub use contact::{Contact, ContactError, Substrate};
+pub use contact::{Contact, ContactError};
 pub use counted::counted;
 pub use curve::{FrictionCurve, PublishedPoint, published_points};
 pub use departure::Departure;
 pub use law::layout::{LayoutLaw, ThresholdRule};
-pub use law::{Law, LawError, other_laws, predict, predict_by};
+pub use law::{Law, LawError};
 pub use pattern::PinPattern;
+pub use prediction::{other_laws, predict, predict_by};
+pub use sort::sort_by_number;
+pub use substrate::Substrate;
 pub use switch::{PaperSwitch, Switch, SwitchState};
 pub use transition::Transition;
 pub use trust::Trust;

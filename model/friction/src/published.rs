@@ -1,7 +1,7 @@
 //! The numbers printed in the paper (Dermitzakis & Carbajal, arXiv:1401.5232), as data, and those of human fingers that are
 //! set beside them.
 
-use crate::Substrate;
+use crate::substrate::Substrate;
 
 /// Standard gravity in m/s², which turns the published masses into loads.
 pub const GRAVITY_M_S2: f64 = 9.80665;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::FrictionCurve;
+use crate::curve::FrictionCurve;
 
 /// The switching of a curve within its loads.
 ///
@@ -69,7 +69,12 @@ pub(crate) fn at(load_n: &[f64], column: &[f64], load: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Contact, Law, PinPattern, Substrate, predict_by, published};
+    use crate::contact::Contact;
+    use crate::law::Law;
+    use crate::pattern::PinPattern;
+    use crate::prediction::predict_by;
+    use crate::published;
+    use crate::substrate::Substrate;
 
     #[test]
     fn the_layout_law_switches_near_its_half_load() {

@@ -2,9 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::Contact;
+use crate::counted::counted;
 use crate::departure::{Departure, is_published_rig};
 use crate::published;
-use crate::{Contact, Substrate, counted};
+use crate::substrate::Substrate;
 
 /// Number of pins between which the published layouts lie.
 const PINS_MEASURED: std::ops::RangeInclusive<usize> = 3..=6;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::extra_holding_of;
-use crate::{Contact, FrictionCurve, published_points};
+use crate::contact::Contact;
+use crate::curve::{FrictionCurve, published_points};
 
 /// A share with its band; fractions, 0.1 is 10 %.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -116,6 +116,21 @@ pub fn finger(curve: &FrictionCurve) -> Vec<FingerPoint> {
     curve.load_n.iter().enumerate().filter_map(point).collect()
 }
 
+/// The extra holding `F/T_e - 1` that belongs to a force difference, if both directions have one friction exponent `x`:
+/// `exp(x) - 1` with `2 sinh(x)` the difference.
+///
+/// ```
+/// use pinswitch_friction::finger::extra_holding_of;
+/// use pinswitch_friction::published;
+///
+/// let (low, high) = published::HUMAN_FORCE_DIFFERENCE;
+/// let extra = [low, high].map(|d| format!("{:.1} %", 100.0 * extra_holding_of(d)));
+/// assert_eq!(extra, ["4.6 %", "6.2 %"], "half of 9 to 12 %");
+/// ```
+pub fn extra_holding_of(force_difference: f64) -> f64 {
+    libm::expm1((force_difference / 2.0).asinh())
+}
+
 /// A force difference that the paper measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeasuredGain {
@@ -157,7 +172,10 @@ pub fn measured_gains(contact: &Contact) -> Vec<MeasuredGain> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{PinPattern, Substrate, predict, published};
+    use crate::pattern::PinPattern;
+    use crate::prediction::predict;
+    use crate::published;
+    use crate::substrate::Substrate;
     use proptest::prelude::*;
 
     fn contact(pins: PinPattern, wrap_rad: f64) -> Contact {

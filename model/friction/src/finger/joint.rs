@@ -2,9 +2,12 @@
 
 use serde::Serialize;
 
-use super::FingerPoint;
-use super::gains::Tensions;
-use crate::{Contact, FrictionCurve, Law, LawError, Trust, published};
+use super::gains::{FingerPoint, Tensions};
+use crate::contact::Contact;
+use crate::curve::FrictionCurve;
+use crate::law::{Law, LawError};
+use crate::published;
+use crate::trust::Trust;
 
 /// Largest flexion of a joint in degrees.
 const LARGEST_FLEXION_DEG: f64 = 180.0;
@@ -244,7 +247,10 @@ fn state(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{PinPattern, Substrate, predict, predict_by};
+    use crate::finger::gains::finger;
+    use crate::pattern::PinPattern;
+    use crate::prediction::{predict, predict_by};
+    use crate::substrate::Substrate;
 
     fn part(pins: PinPattern) -> Contact {
         Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap()
@@ -294,7 +300,7 @@ mod tests {
         let path = JointPath::new(13.89, 1.0).unwrap();
         assert!((path.measured_joint_deg().unwrap() - 50.0).abs() < 1e-9);
         let curve = over_joint(&contact, &path, &[50.0], 40.0, best).unwrap();
-        let straight = super::super::finger(&predict(&contact, &[40.0]));
+        let straight = finger(&predict(&contact, &[40.0]));
         let (a, b) = (curve.points[0].gains.force_difference, straight[0].force_difference);
         assert!((a.value - b.value).abs() < 1e-6 && (a.high - b.high).abs() < 1e-6, "{a:?} {b:?}");
         assert_ne!(curve.trust, Trust::Extrapolated);

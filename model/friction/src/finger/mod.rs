@@ -12,21 +12,6 @@ mod gains;
 mod joint;
 mod motor;
 
-pub use gains::{FingerPoint, Gain, MeasuredGain, finger, measured_gains};
+pub use gains::{FingerPoint, Gain, MeasuredGain, extra_holding_of, finger, measured_gains};
 pub use joint::{JointCurve, JointPath, JointPathError, JointPoint, over_joint};
 pub use motor::MotorSizing;
-
-/// The extra holding `F/T_e - 1` that belongs to a force difference, if both directions have one friction exponent `x`:
-/// `exp(x) - 1` with `2 sinh(x)` the difference.
-///
-/// ```
-/// use pinswitch_friction::finger::extra_holding_of;
-/// use pinswitch_friction::published;
-///
-/// let (low, high) = published::HUMAN_FORCE_DIFFERENCE;
-/// let extra = [low, high].map(|d| format!("{:.1} %", 100.0 * extra_holding_of(d)));
-/// assert_eq!(extra, ["4.6 %", "6.2 %"], "half of 9 to 12 %");
-/// ```
-pub fn extra_holding_of(force_difference: f64) -> f64 {
-    libm::expm1((force_difference / 2.0).asinh())
-}

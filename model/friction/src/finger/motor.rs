@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{FingerPoint, Gain};
+use super::gains::{FingerPoint, Gain};
 
 /// A motor that is just strong enough to hold the heaviest load of a curve.
 ///
@@ -54,9 +54,13 @@ impl MotorSizing {
 
 #[cfg(test)]
 mod tests {
-    use super::super::finger;
     use super::*;
-    use crate::{Contact, PinPattern, Substrate, predict, published};
+    use crate::contact::Contact;
+    use crate::finger::gains::finger;
+    use crate::pattern::PinPattern;
+    use crate::prediction::predict;
+    use crate::published;
+    use crate::substrate::Substrate;
 
     /// On one material a motor that holds `F` with `F exp(-x)` pulls `F exp(-2 x)`.
     #[test]

@@ -1,8 +1,9 @@
 //! `calibrated`: a model fitted to measured data; its curves come from a model file, not from a contact alone.
 
-use super::{Definition, LawError};
+use super::definition::LawDefinition;
+use super::error::LawError;
 
-pub(super) static DEFINITION: Definition = Definition {
+pub(super) static DEFINITION: LawDefinition = LawDefinition {
     word: "calibrated",
     title: "calibrated model",
     summary: "A model calibrated on measured data: the layouts of its rig",

@@ -1,11 +1,15 @@
 //! `layout`: from number and pitch of the pins to a switch, fitted to the three published layouts.
 
-use super::{Definition, LawError, Uncertain};
-use crate::band::BandSource;
+use super::definition::{LawDefinition, UncertainFriction};
+use super::error::LawError;
+use crate::band_source::BandSource;
+use crate::contact::Contact;
+use crate::pattern::PinPattern;
 use crate::published::{self, PublishedLayout};
-use crate::{Contact, PinPattern, Substrate, Switch, SwitchState};
+use crate::substrate::Substrate;
+use crate::switch::{Switch, SwitchState};
 
-pub(super) static DEFINITION: Definition = Definition {
+pub(super) static DEFINITION: LawDefinition = LawDefinition {
     word: "layout",
     title: "layout law",
     summary: "The law fitted to the three layouts' thresholds: number and pitch of the pins",
@@ -45,7 +49,7 @@ fn layout_states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>,
 }
 
 /// What the half load and the misses at the maxima leave open, at twice their standard deviations.
-fn layout_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawError> {
+fn layout_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<UncertainFriction, LawError> {
     let law = law_of(contact)?;
     let factor = 1.0 + 2.0 * LayoutLaw::UNCERTAINTY;
     let (early, late) = (law.with_half_load_scaled(1.0 / factor), law.with_half_load_scaled(factor));
@@ -53,7 +57,7 @@ fn layout_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, Law
     let side = |moved: &LayoutLaw, sign: f64| {
         loads_n.iter().map(|&load| (sign * (log(moved, load) - log(&law, load))).max(0.0)).collect()
     };
-    Ok(Uncertain {
+    Ok(UncertainFriction {
         friction_n: loads_n.iter().map(|&load| libm::exp(log(&law, load))).collect(),
         sources: vec![
             BandSource { name: "half load".to_owned(), down: side(&late, -1.0), up: side(&early, 1.0) },

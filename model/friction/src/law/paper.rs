@@ -2,13 +2,16 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::{Definition, Law, LawError, Uncertain};
-use crate::band::BandSource;
+use super::definition::{LawDefinition, UncertainFriction};
+use super::error::LawError;
+use crate::band_source::BandSource;
 use crate::capstan::{Direction, capstan_friction_n, capstan_tension_n};
+use crate::contact::Contact;
 use crate::published::{self, LAYOUTS};
-use crate::{Contact, FrictionCurve, PaperSwitch, Substrate, Switch, SwitchState};
+use crate::substrate::Substrate;
+use crate::switch::{PaperSwitch, Switch, SwitchState};
 
-pub(super) static DEFINITION: Definition = Definition {
+pub(super) static DEFINITION: LawDefinition = LawDefinition {
     word: "paper",
     title: "the paper's model",
     summary: "Capstan and eq. 4 with the paper's constants: its three layouts only",
@@ -35,7 +38,7 @@ fn paper_states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, 
 }
 
 /// A plain capstan: the friction of one material, of which silicone makes `share`.
-fn capstan(contact: &Contact, mu: f64, share: f64, loads_n: &[f64]) -> Vec<SwitchState> {
+pub(crate) fn capstan(contact: &Contact, mu: f64, share: f64, loads_n: &[f64]) -> Vec<SwitchState> {
     let x = mu * contact.wrap_rad();
     loads_n
         .iter()
@@ -49,23 +52,9 @@ fn capstan(contact: &Contact, mu: f64, share: f64, loads_n: &[f64]) -> Vec<Switc
         .collect()
 }
 
-/// The paper's capstan on one material, for a contact that nothing else describes; its band is a factor e.
-pub(super) fn capstan_curve(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
-    let bare = contact.pins().count() == 0;
-    let (mu, share) = if bare { (published::MU_SILICONE, 1.0) } else { (published::MU_PINS, 0.0) };
-    let states = capstan(contact, mu, share, loads_n);
-    let band = crate::band::Band {
-        load_n: vec![published::heaviest_load_n()],
-        sources: vec![BandSource::even("model", vec![1.0])],
-        rivals: Vec::new(),
-        departures: Vec::new(),
-    };
-    FrictionCurve::of(Law::Paper, crate::Trust::Extrapolated, contact.remarks(), &states, &band)
-}
-
 /// The law's own error: how far it misses the maxima of the same kind, root mean square as logarithms, times Student's
 /// factor for so few. A layout's own miss is not its band.
-fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawError> {
+fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<UncertainFriction, LawError> {
     let friction_n = paper_states(contact, loads_n)?.iter().map(|s| s.friction_n).collect();
     let (wrap, heaviest) = (published::wrap_angle_rad(), published::heaviest_load_n());
     let misses: Vec<f64> = match (contact.substrate(), contact.pins().count()) {
@@ -86,7 +75,7 @@ fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawE
     let rms = (misses.iter().map(|m| m * m).sum::<f64>() / count).sqrt();
     let quantile = StudentsT::new(0.0, 1.0, count).map_or(12.7, |t| t.inverse_cdf(0.975));
     let own = BandSource::even("misses at the measured maxima", vec![quantile * rms; loads_n.len()]);
-    Ok(Uncertain { friction_n, sources: vec![own] })
+    Ok(UncertainFriction { friction_n, sources: vec![own] })
 }
 
 /// Says when `F_thr` of six-single is not read as printed.

@@ -9,8 +9,9 @@
 //! line search along each step.
 
 use super::banded::BandedMatrix;
+use super::error::PhysicsError;
 use super::grid::Grid;
-use super::{Bed, PhysicsError};
+use crate::bed::Bed;
 
 /// Newton steps before the search is given up; 3 to 10 are usual.
 const MAX_STEPS: usize = 60;

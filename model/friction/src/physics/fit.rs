@@ -3,45 +3,15 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
-use super::{Bed, Constants, PhysicsError, PhysicsSwitch};
+use super::constants::{Constants, PUBLISHED_FIT};
+use super::error::PhysicsError;
+use super::switch::PhysicsSwitch;
+use crate::bed::Bed;
+use crate::contact::Contact;
 use crate::least_squares::{self, LeastSquaresError};
+use crate::pattern::PinPattern;
 use crate::published::{self, LAYOUTS};
-use crate::{Contact, PinPattern, Substrate};
-
-/// A fit, as data: constants, covariance of their logarithms, and errors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PublishedFit {
-    /// kappa in N^-0.5, mu_s, N0 in N.
-    pub(crate) constants: [f64; 3],
-    /// Covariance of their logarithms.
-    pub(crate) covariance: [[f64; 3]; 3],
-    /// Scatter of the maxima about the fit, relative.
-    pub(crate) scatter: f64,
-    /// Root mean square error of layouts left out, relative.
-    pub(crate) left_out_rms: f64,
-    /// Maxima less constants.
-    pub(crate) freedom: f64,
-}
-
-/// The fit to the seven maxima on the published bed; a test makes it again.
-pub(crate) const PUBLISHED_FIT: PublishedFit = PublishedFit {
-    constants: [0.023634, 0.23221, 8.0572],
-    covariance: [
-        [7.775e-4, 8.4e-6, 4.461e-4],
-        [8.4e-6, 1.2615e-3, 9.142e-4],
-        [4.461e-4, 9.142e-4, 2.6036e-3],
-    ],
-    scatter: 0.0488,
-    left_out_rms: 0.0552,
-    freedom: 4.0,
-};
-
-impl PublishedFit {
-    pub(crate) fn constants(&self) -> Constants {
-        let [kappa_per_sqrt_n, mu_silicone, flush_force_n] = self.constants;
-        Constants { kappa_per_sqrt_n, mu_silicone, flush_force_n }
-    }
-}
+use crate::substrate::Substrate;
 
 /// Why no constants could be fitted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

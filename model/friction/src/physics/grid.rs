@@ -2,7 +2,7 @@
 //! converges in second order.
 
 use super::banded::BandedMatrix;
-use super::{Bed, OutsidePins};
+use crate::bed::{Bed, OutsidePins};
 use crate::published;
 
 /// Nodes of a wrap and of the spans that lead to it. Angles in radians, zero in the middle; lengths in mm along the tendon's axis.

@@ -7,10 +7,14 @@
 
 use serde::Serialize;
 
+use super::constants::Constants;
 use super::fit::{FitError, fit, published_maxima};
-use super::{Bed, Constants, OutsidePins, PhysicsSwitch};
+use super::switch::PhysicsSwitch;
+use crate::bed::{Bed, OutsidePins};
+use crate::contact::Contact;
+use crate::pattern::PinPattern;
 use crate::published::{self, LAYOUTS};
-use crate::{Contact, PinPattern, Substrate};
+use crate::substrate::Substrate;
 
 /// Scatter of the maxima about a fit, relative.
 const MAXIMA_SCATTER: f64 = 0.05;

@@ -4,9 +4,10 @@
 //! (ploughing of the coating, `model/doc/friction-laws.md`: `mu = kappa sqrt(N)`) and by `mu_s theta` on the silicone;
 //! `T` is the local tension. Shape and tension depend on each other, and are found in turn until neither changes.
 
+use super::constants::Constants;
 use super::equilibrium::{Equilibrium, Supports};
-use super::{Constants, PhysicsError};
-use crate::Direction;
+use super::error::PhysicsError;
+use crate::capstan::Direction;
 
 /// Rounds of shape and tension before the search is given up; 3 to 6 are usual.
 const MAX_ROUNDS: usize = 40;

@@ -6,53 +6,25 @@
 //! explain stands in [`hypotheses`] and in every curve's reasons.
 
 mod banded;
-mod bed;
 mod constants;
-mod device;
 mod equilibrium;
+mod error;
 mod fit;
 mod grid;
 pub mod hypotheses;
 mod march;
 mod profile;
+mod switch;
 
 #[cfg(test)]
 mod tests;
 
-pub use bed::{Bed, OutsidePins, modulus_of_shore_a_mpa, shore_a_of_modulus_mpa};
+pub use crate::bed::{Bed, OutsidePins, modulus_of_shore_a_mpa, shore_a_of_modulus_mpa};
 pub use constants::Constants;
-pub use device::PhysicsSwitch;
-pub(crate) use device::{states, uncertain, unexplained};
 pub use fit::{
     FitError, LayoutLeftOut, MaximaFit, fit_maxima, leave_one_condition_out, leave_one_layout_out,
 };
+pub use error::PhysicsError;
 pub use profile::{ContactProfile, contact_profile, contact_profiles};
-
-/// Why a tendon cannot be computed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PhysicsError {
-    /// Newton's method left a force unbalanced.
-    #[error(
-        "the tendon's shape did not settle: {unbalanced_n:.1e} N unbalanced after {steps} Newton steps; use --law layout, and please report the configuration"
-    )]
-    NotConverged {
-        /// Largest unbalanced force, N.
-        unbalanced_n: f64,
-        /// Newton steps taken.
-        steps: usize,
-    },
-    /// Shape and tension did not agree.
-    #[error(
-        "shape and tension did not agree at a load of {load_n:.2} N after {rounds} rounds; use --law layout, and please report the configuration"
-    )]
-    TensionUnsettled {
-        /// The load, N.
-        load_n: f64,
-        /// Rounds tried.
-        rounds: usize,
-    },
-    /// Neither pins nor silicone touch the tendon.
-    #[error("nothing carries the tendon: it touches neither pins nor silicone")]
-    NothingCarries,
-}
+pub use switch::PhysicsSwitch;
+pub(crate) use constants::PUBLISHED_FIT;

@@ -2,10 +2,12 @@
 
 use serde::Serialize;
 
-use super::fit::PUBLISHED_FIT;
+use super::constants::PUBLISHED_FIT;
+use super::error::PhysicsError;
 use super::march::Sliding;
-use super::{PhysicsError, PhysicsSwitch};
-use crate::{Contact, Direction};
+use super::switch::PhysicsSwitch;
+use crate::capstan::Direction;
+use crate::contact::Contact;
 
 /// The tendon along the wrap at one load, sliding in one direction.
 #[derive(Clone, Debug, PartialEq, Serialize)]

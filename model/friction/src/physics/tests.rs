@@ -6,13 +6,19 @@ use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 
+use super::constants::{Constants, PUBLISHED_FIT};
 use super::equilibrium::Supports;
-use super::fit::{PUBLISHED_FIT, fit, published_maxima};
+use super::fit::{fit, fit_maxima, leave_one_condition_out, leave_one_layout_out, published_maxima};
 use super::grid::Grid;
-use super::hypotheses::hypotheses;
-use super::*;
+use super::hypotheses::{self, hypotheses};
+use super::march::{self, Slide};
+use super::switch::PhysicsSwitch;
+use crate::bed::{Bed, OutsidePins};
+use crate::capstan::Direction;
+use crate::contact::Contact;
+use crate::pattern::PinPattern;
 use crate::published::{self, LAYOUTS};
-use crate::{Contact, Direction, Law, PinPattern, Substrate, predict_by};
+use crate::substrate::Substrate;
 
 const HEAVIEST_N: f64 = 49.671;
 
@@ -38,7 +44,7 @@ fn slid(
     load_n: f64,
     direction: Direction,
 ) -> march::Sliding {
-    march::slide(march::Slide { supports, constants, wrap_rad, load_n, direction }, None).unwrap()
+    march::slide(Slide { supports, constants, wrap_rad, load_n, direction }, None).unwrap()
 }
 
 /// `model/doc/friction-laws.md`: half-layout pin forces six [7.05 10.05 10.20] N, silicone 0; three-double [16.54
@@ -194,29 +200,6 @@ fn bands_cover_simulated_rigs() {
     assert!(held * 80 >= 70 * cases, "{held} of {cases}");
 }
 
-/// The short cut of the curve's sensitivities, against the long way.
-#[test]
-fn bands_follow_the_sensitivities() {
-    let contact = device(layout(1));
-    let loads = [10.0, 30.0, HEAVIEST_N];
-    let found = uncertain(&contact, &loads).unwrap();
-    let constants = found.sources.iter().find(|s| s.name == "constants").unwrap();
-    let covariance = Matrix3::from_row_slice(&PUBLISHED_FIT.covariance.concat());
-    for (i, load) in loads.iter().enumerate() {
-        let at = Constants::published().logarithms();
-        let log_friction = |at: &Vector3<f64>| {
-            libm::log(PhysicsSwitch::new(&contact, Constants::from_logarithms(at)).friction_n(*load).unwrap())
-        };
-        let slope = Vector3::from_fn(|k, _| {
-            let mut moved = at;
-            moved[k] += 1e-3;
-            (log_friction(&moved) - log_friction(&at)) / 1e-3
-        });
-        let exact = 2.776 * (slope.transpose() * covariance * slope)[(0, 0)].sqrt();
-        assert!((constants.up[i] / exact - 1.0).abs() < 0.15, "at {load} N: {} for {exact}", constants.up[i]);
-    }
-}
-
 /// Each of the seven maxima lies well inside the band that the fit without its layout gives it.
 #[test]
 fn maxima_left_out_lie_inside_their_bands() {
@@ -224,13 +207,6 @@ fn maxima_left_out_lie_inside_their_bands() {
     for (name, error) in leave_one_condition_out(&Bed::published()).unwrap() {
         assert!(libm::log1p(error).abs() < 0.75 * half, "{name}: {error} of {half}");
     }
-}
-
-#[test]
-fn a_single_pin_gets_a_band_that_covers_both_readings_of_its_free_spans() {
-    let curve = predict_by(Law::Physics, &device(PinPattern::new(vec![0.0])), &[HEAVIEST_N]).unwrap();
-    assert!(curve.reasons.iter().any(|r| r.contains("1 pin;")), "{:?}", curve.reasons);
-    assert!(curve.band_high_n[0] > curve.friction_n[0]);
 }
 
 /// All lengths times L and all loads times L^2 at equal moduli leave D/F as it is.
@@ -312,17 +288,6 @@ proptest! {
         let (a, b) = (at(pins), at(mirrored));
         for (x, y) in a.pin_n.iter().zip(b.pin_n.iter().rev()) {
             prop_assert!((x - y).abs() < 1e-5 * load, "{:?} {:?}", a.pin_n, b.pin_n);
-        }
-    }
-
-    #[test]
-    fn any_pattern_gives_an_ordered_curve(pins in patterns()) {
-        let loads: Vec<f64> = (1..=12).map(|i| 5.0 * f64::from(i)).collect();
-        let curve = predict_by(Law::Physics, &device(pins), &loads).unwrap();
-        for (i, load) in loads.iter().enumerate() {
-            prop_assert!(curve.eccentric_n[i] <= *load && *load <= curve.concentric_n[i]);
-            prop_assert!(curve.band_low_n[i] <= curve.friction_n[i] && curve.friction_n[i] <= curve.band_high_n[i]);
-            prop_assert!(i == 0 || curve.friction_n[i] > curve.friction_n[i - 1]);
         }
     }
 }

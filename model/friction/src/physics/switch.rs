@@ -1,22 +1,21 @@
 //! A switch of any layout, from physics: its state at a load, and what is uncertain about it.
 
-use nalgebra::{Matrix3, Vector3};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use nalgebra::Vector3;
 
+use super::constants::Constants;
 use super::equilibrium::Supports;
-use super::fit::PUBLISHED_FIT;
+use super::error::PhysicsError;
 use super::grid::{self, Grid};
 use super::march::{Slide, Sliding, pins_alone_exponent, polygon_turns_rad, slide};
-use super::{Bed, Constants, PhysicsError};
-use crate::band::BandSource;
-use crate::law::Uncertain;
-use crate::published;
-use crate::{Contact, Direction, Substrate, SwitchState, capstan_tension_n};
+use crate::bed::Bed;
+use crate::capstan::{Direction, capstan_tension_n};
+use crate::contact::Contact;
+use crate::substrate::Substrate;
+use crate::switch::SwitchState;
 
-/// Share of cases that a band should hold.
-const CONFIDENCE: f64 = 0.95;
 /// Step of a logarithm for the sensitivities.
 const STEP: f64 = 1e-3;
+
 /// Contact, bed and constants: all that the friction of a switch depends on.
 ///
 /// ```
@@ -158,17 +157,21 @@ impl PhysicsSwitch {
         loads_n.iter().map(|load| self.point_from(*load, &mut nearby)).collect()
     }
 
-    /// Sensitivities of `ln D` to the logarithms of the constants, load by load; zero where there is no friction. The
-    /// exponents are proportional to `kappa` and `mu_s` but for the feedback of tension on shape, which is left out;
-    /// the flush force moves the shape, and takes a second curve.
-    fn sensitivities(&self, loads_n: &[f64], points: &[Point]) -> Result<Vec<Vector3<f64>>, PhysicsError> {
+    /// Friction at `loads_n` newtons, and the sensitivities of `ln D` to the logarithms of the constants, load by load; zero
+    /// where there is no friction. The exponents are proportional to `kappa` and `mu_s` but for the feedback of tension on
+    /// shape, which is left out; the flush force moves the shape, and takes a second curve.
+    pub(crate) fn friction_and_sensitivities(
+        &self,
+        loads_n: &[f64],
+    ) -> Result<(Vec<f64>, Vec<Vector3<f64>>), PhysicsError> {
+        let points = self.points(loads_n)?;
         let mut at = self.constants.logarithms();
         at[2] += STEP;
         let stiffer = match self.contact.substrate() {
             Substrate::Silicone => self.with_constants(Constants::from_logarithms(&at)).points(loads_n)?,
-            Substrate::Abs => points.to_vec(),
+            Substrate::Abs => points.clone(),
         };
-        Ok(points
+        let sensitivities = points
             .iter()
             .zip(&stiffer)
             .map(|(point, stiffer)| {
@@ -183,7 +186,8 @@ impl PhysicsSwitch {
                     Vector3::zeros()
                 }
             })
-            .collect())
+            .collect();
+        Ok((points.iter().map(|p| p.state.friction_n).collect(), sensitivities))
     }
 }
 
@@ -208,50 +212,4 @@ impl Point {
         (self.state.eccentric_n * part(&self.eccentric) + self.state.concentric_n * part(&self.concentric))
             / 2.0
     }
-}
-
-/// The states of `contact` at `loads_n` newtons, with constants fitted to the published maxima.
-///
-/// # Errors
-/// [`PhysicsError`] if a load's equilibrium is not found.
-pub(crate) fn states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, PhysicsError> {
-    PhysicsSwitch::new(contact, PUBLISHED_FIT.constants()).states(loads_n)
-}
-
-/// Friction of `contact`, and what the physics leaves uncertain of `ln D` at 95 %: its constants, by their covariance, and its own error, which is
-/// that of published layouts left out of the fit.
-///
-/// # Errors
-/// [`PhysicsError`] if a load's equilibrium is not found.
-pub(crate) fn uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, PhysicsError> {
-    let fit = &PUBLISHED_FIT;
-    let switch = PhysicsSwitch::new(contact, fit.constants());
-    let points = switch.points(loads_n)?;
-    let covariance = Matrix3::from_row_slice(&fit.covariance.concat());
-    let quantile =
-        StudentsT::new(0.0, 1.0, fit.freedom).map_or(2.78, |t| t.inverse_cdf(0.5 + CONFIDENCE / 2.0));
-    let constants = switch
-        .sensitivities(loads_n, &points)?
-        .iter()
-        .map(|g| quantile * (g.transpose() * covariance * g)[(0, 0)].sqrt())
-        .collect();
-    Ok(Uncertain {
-        friction_n: points.iter().map(|p| p.state.friction_n).collect(),
-        sources: vec![
-            BandSource::even("constants", constants),
-            BandSource::even("model", vec![quantile * fit.left_out_rms; loads_n.len()]),
-        ],
-    })
-}
-
-/// What the physics is known not to explain of a published condition.
-pub(crate) fn unexplained(contact: &Contact) -> Option<String> {
-    let layout = contact.published_layout().filter(|_| contact.substrate() == Substrate::Silicone)?;
-    (layout.pins == 3).then(|| {
-        format!(
-            "physics gives three-double and three-single nearly the same maximum; {:.2} and {:.2} N were measured",
-            published::LAYOUTS[1].device_max_n,
-            published::LAYOUTS[2].device_max_n
-        )
-    })
 }

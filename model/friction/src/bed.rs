@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// Where, outside the outermost pins, the silicone can touch the tendon. The paper does not describe the tendon's path
-/// there (14 to 20 degrees a side with three pins); [`super::hypotheses`] weighs what its own facts say.
+/// there (14 to 20 degrees a side with three pins); [`crate::physics::hypotheses`] weighs what its own facts say.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OutsidePins {
@@ -47,7 +47,7 @@ pub struct Bed {
 /// Bending stiffness of the published tendon: puts the onset of three-double at the printed 15.31 N (a test). The
 /// coating's tube alone, 1.2 to 1.7 mm of PA12 at 1.4 GPa, would have 430 N mm² when perfectly bonded; strands that slip
 /// and a coating that creeps leave less.
-pub(super) const BENDING_N_MM2: f64 = 95.0;
+const BENDING_N_MM2: f64 = 95.0;
 
 /// Bending stiffness over `T Rc^2` at which a tendon gives way.
 const MOST_BENDING: f64 = 0.5;

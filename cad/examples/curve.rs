@@ -8,7 +8,7 @@ use pinswitch::friction::{
 
 fn describe(curve: &FrictionCurve) {
     println!("\n{}: {}", curve.law.as_str(), curve.law.summary());
-    println!("  {:?}", curve.trust);
+    println!("  {:?}", curve.status);
     curve.reasons.iter().for_each(|reason| println!("    {reason}"));
     println!("  load, N   friction, N   band, N           silicone's share");
     for i in 0..curve.load_n.len() {

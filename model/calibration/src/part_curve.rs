@@ -1,6 +1,6 @@
 //! The curve of a printed part by a calibrated model: effects of the switch in, effects of the rig out.
 
-use pinswitch_friction::{Direction, FrictionCurve, Law, Substrate, Trust, published};
+use pinswitch_friction::{Direction, FrictionCurve, Law, PredictionStatus, Substrate, published};
 
 use crate::inference::prediction_sd_n;
 use crate::model_check::check_friction;
@@ -94,7 +94,11 @@ impl ModelFile {
         check_friction(loads_n, &friction, &half).map_err(ModelFileError::of(file))?;
         Ok(FrictionCurve {
             law: Law::Calibrated,
-            trust: if measured && within { Trust::Interpolated } else { Trust::Extrapolated },
+            status: if measured && within {
+                PredictionStatus::Interpolated
+            } else {
+                PredictionStatus::Extrapolated
+            },
             reasons,
             load_n: loads_n.to_vec(),
             eccentric_n: tension[..n].to_vec(),

@@ -12,8 +12,8 @@ use crate::departure::{Departure, departures, published_rig};
 use crate::law::{Law, LawError, UncertainFriction};
 use crate::physics::{Constants, PhysicsSwitch};
 use crate::published;
+use crate::status::{is_measured, layout_distance};
 use crate::substrate::Substrate;
-use crate::trust::{is_measured, layout_distance};
 
 /// Loads at which the sources are computed.
 const LOADS: usize = 10;

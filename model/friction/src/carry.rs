@@ -7,8 +7,8 @@ use crate::contact::Contact;
 use crate::curve::FrictionCurve;
 use crate::departure::departures;
 use crate::physics::{Constants, PhysicsError, PhysicsSwitch};
+use crate::status::PredictionStatus;
 use crate::transition::{Transition, at};
-use crate::trust::Trust;
 
 /// How much of a change that the physics makes may be wrong, as a standard deviation. Chosen: no calibration has yet
 /// measured a change of dimensions.
@@ -132,7 +132,7 @@ impl Carry {
             curve.band_high_n[i] = curve.friction_n[i] * libm::exp(libm::hypot(up, self.half_width[i]));
         }
         curve.silicone_share = share;
-        curve.trust = Trust::Extrapolated;
+        curve.status = PredictionStatus::Extrapolated;
         curve.reasons.extend(self.reasons.iter().cloned());
         curve
     }
@@ -223,7 +223,7 @@ mod tests {
             }
             let threshold = |curve: &FrictionCurve| Transition::of(curve).unwrap().threshold_n;
             assert!((threshold(&there) / threshold(&known) - 1.0).abs() < 0.15);
-            assert_eq!(there.trust, Trust::Extrapolated);
+            assert_eq!(there.status, PredictionStatus::Extrapolated);
             assert!(!there.reasons.is_empty());
         }
     }

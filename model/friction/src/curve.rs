@@ -6,9 +6,9 @@ use crate::band::Band;
 use crate::contact::Contact;
 use crate::law::Law;
 use crate::published;
+use crate::status::{PredictionStatus, is_measured};
 use crate::substrate::Substrate;
 use crate::switch::SwitchState;
-use crate::trust::{Trust, is_measured};
 
 /// Tension and friction over load, as columns of equal length; forces in newtons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,7 +16,8 @@ pub struct FrictionCurve {
     /// The law behind the curve.
     pub law: Law,
     /// How far to trust it.
-    pub trust: Trust,
+    #[serde(rename = "trust")]
+    pub status: PredictionStatus,
     /// Why it is trusted no further, where laws disagree, and what the law is known to get wrong.
     pub reasons: Vec<String>,
     /// Load on the tendon.
@@ -48,7 +49,7 @@ impl FrictionCurve {
     /// The curve of these states by a law, within `band`.
     pub(crate) fn of(
         law: Law,
-        trust: Trust,
+        status: PredictionStatus,
         reasons: Vec<String>,
         states: &[SwitchState],
         band: &Band,
@@ -60,7 +61,7 @@ impl FrictionCurve {
         };
         Self {
             law,
-            trust,
+            status,
             reasons,
             load_n: column(|s| s.load_n),
             eccentric_n: column(|s| s.eccentric_n),

@@ -4,7 +4,7 @@
 //! A tendon runs over steel pins that lie in silicone on a rigid shell. At low load it touches the pins only; as load
 //! grows they sink, it meets the silicone, and friction rises. A [`Contact`] says what the tendon lies on: a
 //! [`Substrate`], a [`PinPattern`] and the wrap angle. A [`Law`] turns it into a [`FrictionCurve`], which always
-//! carries its band, its law and a word on how far to trust it ([`Trust`]).
+//! carries its band, its law and a word on how far to trust it ([`PredictionStatus`]).
 //!
 //! ```
 //! use pinswitch_friction::{Contact, PinPattern, Substrate, predict, published};
@@ -52,10 +52,10 @@ mod prediction;
 mod prediction_tests;
 pub mod published;
 mod sort;
+mod status;
 mod substrate;
 mod switch;
 mod transition;
-mod trust;
 
 pub use band::Band;
 pub use band_source::BandSource;
@@ -70,7 +70,7 @@ pub use law::{Law, LawError};
 pub use pattern::PinPattern;
 pub use prediction::{other_laws, predict, predict_by};
 pub use sort::sort_by_number;
+pub use status::PredictionStatus;
 pub use substrate::Substrate;
 pub use switch::{PaperSwitch, Switch, SwitchState};
 pub use transition::Transition;
-pub use trust::Trust;

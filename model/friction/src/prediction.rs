@@ -6,7 +6,7 @@ use crate::contact::Contact;
 use crate::curve::FrictionCurve;
 use crate::law::{Law, LawError, paper};
 use crate::published;
-use crate::trust::{Trust, trust};
+use crate::status::{PredictionStatus, prediction_status};
 
 /// Predicts tension and friction of `contact` at `loads_n` newtons by this law.
 ///
@@ -26,7 +26,7 @@ use crate::trust::{Trust, trust};
 pub fn predict_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve, LawError> {
     let states = law.states(contact, loads_n)?;
     let band = Band::of(law, contact, loads_n)?;
-    let (trust, mut reasons) = trust(contact, &band.departures, loads_n);
+    let (status, mut reasons) = prediction_status(contact, &band.departures, loads_n);
     if let Some((rival, load_n, ratio)) = band.widest_rival(NOTEWORTHY) {
         let law = law.title();
         reasons.push(if ratio > 1.0 {
@@ -41,7 +41,7 @@ pub fn predict_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Fricti
         });
     }
     reasons.extend(law.remark(contact));
-    Ok(FrictionCurve::of(law, trust, reasons, &states, &band))
+    Ok(FrictionCurve::of(law, status, reasons, &states, &band))
 }
 
 /// Ratio of two laws' frictions that a curve's reasons name.
@@ -51,13 +51,13 @@ const NOTEWORTHY: f64 = 1.25;
 /// paper's capstan stands in, and the curve says so in its reasons and in its law.
 ///
 /// ```
-/// use pinswitch_friction::{Contact, Law, PinPattern, Substrate, Trust, predict, published};
+/// use pinswitch_friction::{Contact, Law, PinPattern, Substrate, PredictionStatus, predict, published};
 ///
 /// // Four pins, 14 degrees apart: between the layouts that the paper measured.
 /// let pins = PinPattern::even(4, 14f64.to_radians());
 /// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
 /// let curve = predict(&contact, &[10.0, 40.0]);
-/// assert_eq!((curve.law, curve.trust), (Law::Physics, Trust::Interpolated));
+/// assert_eq!((curve.law, curve.status), (Law::Physics, PredictionStatus::Interpolated));
 /// assert!(curve.band_low_n[1] < curve.friction_n[1] && curve.friction_n[1] < curve.band_high_n[1]);
 /// # Ok::<(), pinswitch_friction::ContactError>(())
 /// ```
@@ -84,7 +84,7 @@ fn capstan_curve(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
         rivals: Vec::new(),
         departures: Vec::new(),
     };
-    FrictionCurve::of(Law::Paper, Trust::Extrapolated, contact.remarks(), &states, &band)
+    FrictionCurve::of(Law::Paper, PredictionStatus::Extrapolated, contact.remarks(), &states, &band)
 }
 
 /// The curves of all other laws that apply, for comparison; never mixed into the main one.

@@ -8,8 +8,8 @@ use crate::law::{Law, LawError};
 use crate::pattern::PinPattern;
 use crate::prediction::{other_laws, predict, predict_by};
 use crate::published;
+use crate::status::PredictionStatus;
 use crate::substrate::Substrate;
-use crate::trust::Trust;
 
 const HEAVIEST_N: f64 = 49.671;
 
@@ -28,7 +28,7 @@ fn every_published_condition_is_published_and_its_band_holds_the_measured_maximu
     for c in &conditions {
         for law in Law::predictive() {
             let Ok(curve) = predict_by(law, c, &[published::heaviest_load_n()]) else { continue };
-            assert_eq!((curve.law, curve.trust), (law, Trust::Published));
+            assert_eq!((curve.law, curve.status), (law, PredictionStatus::Published));
             let measured = published_points(c)[0].friction_n.unwrap();
             let covered = curve.band_low_n[0] * 1.01..=curve.band_high_n[0] * 0.99;
             assert!(covered.contains(&measured), "{law:?}: {measured} outside {covered:?}");
@@ -48,8 +48,7 @@ fn bands_of_the_laws_meet_everywhere() {
         PinPattern::new(vec![0.0]),
     ] {
         let c = contact(Substrate::Silicone, pins);
-        let curves: Vec<_> =
-            Law::predictive().filter_map(|law| predict_by(law, &c, &loads).ok()).collect();
+        let curves: Vec<_> = Law::predictive().filter_map(|law| predict_by(law, &c, &loads).ok()).collect();
         for a in &curves {
             for b in &curves {
                 for (load, (low, high)) in loads.iter().zip(a.band_low_n.iter().zip(&b.band_high_n)) {
@@ -57,18 +56,14 @@ fn bands_of_the_laws_meet_everywhere() {
                 }
             }
         }
-        assert!(
-            curves[0].reasons.iter().any(|r| r.contains("the laws disagree")),
-            "{:?}",
-            curves[0].reasons
-        );
+        assert!(curves[0].reasons.iter().any(|r| r.contains("the laws disagree")), "{:?}", curves[0].reasons);
     }
 }
 
 #[test]
 fn other_layouts_say_how_far_they_are_known() {
     let between = contact(Substrate::Silicone, PinPattern::even(4, 0.25));
-    assert_eq!(predict(&between, &[20.0]).trust, Trust::Interpolated);
+    assert_eq!(predict(&between, &[20.0]).status, PredictionStatus::Interpolated);
     let reasons = |pins| predict(&contact(Substrate::Silicone, pins), &[20.0]);
     for (pins, word) in [
         (PinPattern::even(9, 0.1), "9 pin"),
@@ -78,7 +73,7 @@ fn other_layouts_say_how_far_they_are_known() {
         (PinPattern::even(5, 0.29), "outside the wrap"),
     ] {
         let curve = reasons(pins);
-        assert_eq!(curve.trust, Trust::Extrapolated);
+        assert_eq!(curve.status, PredictionStatus::Extrapolated);
         assert!(curve.reasons.iter().any(|r| r.contains(word)), "{word}: {:?}", curve.reasons);
     }
 }
@@ -89,7 +84,7 @@ fn what_no_law_knows_of_makes_a_published_layout_an_extrapolation() {
     let plain = contact(Substrate::Silicone, PinPattern::even(l.pins, l.pitch_rad()));
     let mixed = plain.clone().with_unmodelled(vec!["another mix".to_owned()]);
     let (a, b) = (predict(&plain, &[49.0]), predict(&mixed, &[49.0]));
-    assert_eq!((a.trust, b.trust), (Trust::Published, Trust::Extrapolated));
+    assert_eq!((a.status, b.status), (PredictionStatus::Published, PredictionStatus::Extrapolated));
     assert!(b.band_high_n[0] > a.band_high_n[0] && b.reasons.contains(&"another mix".to_owned()));
     assert!(published_points(&mixed).is_empty());
 }
@@ -100,7 +95,7 @@ fn loads_beyond_those_tested_are_extrapolated() {
     let l = &published::LAYOUTS[1];
     let c = contact(Substrate::Silicone, PinPattern::even(l.pins, l.pitch_rad()));
     let (inside, beyond) = (predict(&c, &[49.6]), predict(&c, &[49.6, 120.0]));
-    assert_eq!((inside.trust, beyond.trust), (Trust::Published, Trust::Extrapolated));
+    assert_eq!((inside.status, beyond.status), (PredictionStatus::Published, PredictionStatus::Extrapolated));
     assert!(beyond.reasons.iter().any(|r| r.contains("tested were")), "{:?}", beyond.reasons);
     let width = |curve: &FrictionCurve, i: usize| libm::log(curve.band_high_n[i] / curve.band_low_n[i]);
     assert!(width(&beyond, 1) > width(&inside, 0) + 0.2);
@@ -154,8 +149,7 @@ fn misses_the_seven_published_maxima_by_31_percent() {
         vec![max(Substrate::Silicone, PinPattern::default()) / published::SILICONE_ALONE_MAX_N - 1.0];
     for l in &published::LAYOUTS {
         for substrate in [Substrate::Silicone, Substrate::Abs] {
-            errors
-                .push(max(substrate, PinPattern::even(l.pins, l.pitch_rad())) / l.max_n(substrate) - 1.0);
+            errors.push(max(substrate, PinPattern::even(l.pins, l.pitch_rad())) / l.max_n(substrate) - 1.0);
         }
     }
     assert_eq!(errors.len(), 7);
@@ -165,7 +159,9 @@ fn misses_the_seven_published_maxima_by_31_percent() {
 
 #[test]
 fn a_single_pin_gets_a_band_that_covers_both_readings_of_its_free_spans() {
-    let curve = predict_by(Law::Physics, &contact(Substrate::Silicone, PinPattern::new(vec![0.0])), &[HEAVIEST_N]).unwrap();
+    let curve =
+        predict_by(Law::Physics, &contact(Substrate::Silicone, PinPattern::new(vec![0.0])), &[HEAVIEST_N])
+            .unwrap();
     assert!(curve.reasons.iter().any(|r| r.contains("1 pin;")), "{:?}", curve.reasons);
     assert!(curve.band_high_n[0] > curve.friction_n[0]);
 }

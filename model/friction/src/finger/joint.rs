@@ -7,7 +7,7 @@ use crate::contact::Contact;
 use crate::curve::FrictionCurve;
 use crate::law::{Law, LawError};
 use crate::published;
-use crate::trust::Trust;
+use crate::status::PredictionStatus;
 
 /// Largest flexion of a joint in degrees.
 const LARGEST_FLEXION_DEG: f64 = 180.0;
@@ -133,7 +133,8 @@ pub struct JointPoint {
     /// Pins that the tendon touches.
     pub pins: usize,
     /// How far the friction at this wrap is known from measurements.
-    pub trust: Trust,
+    #[serde(rename = "trust")]
+    pub status: PredictionStatus,
     /// Gains and costs.
     #[serde(flatten)]
     pub gains: FingerPoint,
@@ -147,7 +148,8 @@ pub struct JointCurve {
     /// The laws behind the points, in the order of their first use; more than one where the first does not apply.
     pub laws: Vec<Law>,
     /// How far to trust the whole: as its least trusted point.
-    pub trust: Trust,
+    #[serde(rename = "trust")]
+    pub status: PredictionStatus,
     /// Why it is trusted no further, and what was left out.
     pub reasons: Vec<String>,
     /// In the order of the flexions that were asked for.
@@ -183,7 +185,7 @@ pub fn over_joint(
     let mut curve = JointCurve {
         load_n,
         laws: Vec::new(),
-        trust: Trust::Published,
+        status: PredictionStatus::Published,
         reasons: Vec::new(),
         points: Vec::new(),
     };
@@ -194,17 +196,17 @@ pub fn over_joint(
         match state(contact, wrap_rad, load_n, &predict) {
             Ok(state) => {
                 let Some(gains) = state.tensions.gains(load_n) else { continue };
-                curve.trust = curve.trust.max(state.trust);
+                curve.status = curve.status.max(state.status);
                 if let Some(law) = state.law.filter(|law| !curve.laws.contains(law)) {
                     curve.laws.push(law);
                 }
-                let State { pins, trust, .. } = state;
-                curve.points.push(JointPoint { joint_deg, wrap_deg, pins, trust, gains });
+                let State { pins, status, .. } = state;
+                curve.points.push(JointPoint { joint_deg, wrap_deg, pins, status, gains });
             }
             Err(why) => left_out.push((joint_deg, why)),
         }
     }
-    if curve.trust == Trust::Extrapolated {
+    if curve.status == PredictionStatus::Extrapolated {
         curve.reasons.push(format!(
             "one wrap was measured, {} deg: every other flexion is extrapolated",
             published::WRAP_ANGLE_DEG
@@ -224,7 +226,7 @@ struct State {
     tensions: Tensions,
     pins: usize,
     law: Option<Law>,
-    trust: Trust,
+    status: PredictionStatus,
 }
 
 fn state(
@@ -236,12 +238,12 @@ fn state(
     if wrap_rad < SAME_RAD {
         let tensions = Tensions::without_friction(load_n);
         // Nothing touches, so nothing rubs: this needs no measurement.
-        return Ok(State { tensions, pins: 0, law: None, trust: Trust::Published });
+        return Ok(State { tensions, pins: 0, law: None, status: PredictionStatus::Published });
     }
     let contact = contact.at_wrap(wrap_rad).map_err(|e| e.to_string())?;
     let curve = predict(&contact, &[load_n]).map_err(|e| e.to_string())?;
     let tensions = Tensions::of(&curve, 0).ok_or("the law gives no point")?;
-    Ok(State { tensions, pins: contact.pins().count(), law: Some(curve.law), trust: curve.trust })
+    Ok(State { tensions, pins: contact.pins().count(), law: Some(curve.law), status: curve.status })
 }
 
 #[cfg(test)]
@@ -275,7 +277,7 @@ mod tests {
         for point in &curve.points {
             assert!((exponent(point) - mu * point.joint_deg.to_radians()).abs() < 1e-9, "{point:?}");
         }
-        assert_eq!(curve.trust, Trust::Extrapolated);
+        assert_eq!(curve.status, PredictionStatus::Extrapolated);
     }
 
     /// No wrap is drawn with a pin that comes or goes at once: friction would jump.
@@ -303,7 +305,7 @@ mod tests {
         let straight = finger(&predict(&contact, &[40.0]));
         let (a, b) = (curve.points[0].gains.force_difference, straight[0].force_difference);
         assert!((a.value - b.value).abs() < 1e-6 && (a.high - b.high).abs() < 1e-6, "{a:?} {b:?}");
-        assert_ne!(curve.trust, Trust::Extrapolated);
+        assert_ne!(curve.status, PredictionStatus::Extrapolated);
     }
 
     #[test]

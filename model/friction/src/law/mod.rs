@@ -10,8 +10,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::contact::Contact;
 use crate::switch::SwitchState;
-pub(crate) use definition::UncertainFriction;
 use definition::LawDefinition;
+pub(crate) use definition::UncertainFriction;
 pub use error::LawError;
 
 /// Declares the files of the laws, their ids and the registry.

@@ -21,10 +21,10 @@ mod tests;
 
 pub use crate::bed::{Bed, OutsidePins, modulus_of_shore_a_mpa, shore_a_of_modulus_mpa};
 pub use constants::Constants;
+pub(crate) use constants::PUBLISHED_FIT;
+pub use error::PhysicsError;
 pub use fit::{
     FitError, LayoutLeftOut, MaximaFit, fit_maxima, leave_one_condition_out, leave_one_layout_out,
 };
-pub use error::PhysicsError;
 pub use profile::{ContactProfile, contact_profile, contact_profiles};
 pub use switch::PhysicsSwitch;
-pub(crate) use constants::PUBLISHED_FIT;

@@ -18,7 +18,7 @@ const LOAD_SLACK: f64 = 1e-3;
 /// How far a curve can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Trust {
+pub enum PredictionStatus {
     /// A condition that the paper measured.
     Published,
     /// Between measured conditions.
@@ -36,7 +36,11 @@ pub(crate) fn is_measured(contact: &Contact) -> bool {
 }
 
 /// How far the friction of `contact` is known at `loads_n`, and why no further; `departures` are its own.
-pub(crate) fn trust(contact: &Contact, departures: &[Departure], loads_n: &[f64]) -> (Trust, Vec<String>) {
+pub(crate) fn prediction_status(
+    contact: &Contact,
+    departures: &[Departure],
+    loads_n: &[f64],
+) -> (PredictionStatus, Vec<String>) {
     let heaviest_n = loads_n.iter().copied().fold(0.0, f64::max);
     let mut reasons: Vec<String> = departures.iter().map(|d| d.reason(heaviest_n)).collect();
     reasons.extend(contact.remarks());
@@ -46,7 +50,7 @@ pub(crate) fn trust(contact: &Contact, departures: &[Departure], loads_n: &[f64]
         reasons.extend(unmeasured_layout(contact));
     }
     if !reasons.is_empty() {
-        return (Trust::Extrapolated, reasons);
+        return (PredictionStatus::Extrapolated, reasons);
     }
     if measured {
         let (light, heavy) = (published::lightest_load_n(), published::heaviest_load_n());
@@ -55,7 +59,7 @@ pub(crate) fn trust(contact: &Contact, departures: &[Departure], loads_n: &[f64]
                 "the paper prints the friction of this condition at {heavy:.2} N only; from {light:.2} N up to there the band also covers what the laws disagree on"
             ));
         }
-        return (Trust::Published, reasons);
+        return (PredictionStatus::Published, reasons);
     }
     let (narrow, wide) = measured_pitches_rad();
     reasons.push(format!(
@@ -65,7 +69,7 @@ pub(crate) fn trust(contact: &Contact, departures: &[Departure], loads_n: &[f64]
         narrow.to_degrees(),
         wide.to_degrees()
     ));
-    (Trust::Interpolated, reasons)
+    (PredictionStatus::Interpolated, reasons)
 }
 
 /// The loads outside those tested, in words.

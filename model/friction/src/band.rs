@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::band_source::{BandSource, NORMAL_95};
 use crate::bed::{Bed, OutsidePins};
 use crate::contact::Contact;
-use crate::departure::{Departure, departures, published_rig};
+use crate::deviation::{Deviation, deviations, published_rig};
 use crate::law::{Law, LawError, UncertainFriction};
 use crate::physics::{Constants, PhysicsSwitch};
 use crate::published;
@@ -17,7 +17,7 @@ use crate::substrate::Substrate;
 
 /// Loads at which the sources are computed.
 const LOADS: usize = 10;
-/// What a departure may do that physics does not know of, as a standard deviation for a factor e. Chosen.
+/// What a deviation may do that physics does not know of, as a standard deviation for a factor e. Chosen.
 const UNKNOWN_EFFECT: f64 = 0.1;
 /// Standard deviation for a remark on the contact that no law knows of. Chosen.
 const REMARK: f64 = 0.1;
@@ -41,7 +41,7 @@ pub struct Band {
     /// law's, at each load.
     pub rivals: Vec<(String, Vec<f64>)>,
     /// What departs from the published rig, with its effect at each load.
-    pub departures: Vec<Departure>,
+    pub deviations: Vec<Deviation>,
 }
 
 impl Band {
@@ -64,10 +64,10 @@ impl Band {
     /// [`LawError`] if the law does not describe the contact.
     pub fn of(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Self, LawError> {
         let load_n = spaced(loads_n);
-        let departures = departures(contact, &load_n);
+        let deviations = deviations(contact, &load_n);
         let UncertainFriction { friction_n, mut sources } = law.uncertain_friction(contact, &load_n)?;
-        for departure in &departures {
-            sources.push(departure_source(departure, load_n.len()));
+        for deviation in &deviations {
+            sources.push(deviation_source(deviation, load_n.len()));
         }
         let remarks = contact.unmodelled().len() as f64;
         if remarks > 0.0 {
@@ -88,18 +88,18 @@ impl Band {
         }
         let rivals = rivals(law, contact, &load_n, &friction_n)?;
         // On another rig rivals may happen to agree: doubt is no less than with the same pins on the published one.
-        let on_published = match published_rig(contact).filter(|_| !departures.is_empty()) {
+        let on_published = match published_rig(contact).filter(|_| !deviations.is_empty()) {
             Some(rig) => {
                 self::rivals(law, &rig, &load_n, &law.friction_n(&rig, &load_n)?).unwrap_or_default()
             }
             None => Vec::new(),
         };
-        // A measured condition is near itself; any other is as far as its layout and its departures take it.
-        let apart = departures.iter().map(|d| d.log_ratio.powi(2)).sum::<f64>() + nearest.powi(2);
+        // A measured condition is near itself; any other is as far as its layout and its deviations take it.
+        let apart = deviations.iter().map(|d| d.log_ratio.powi(2)).sum::<f64>() + nearest.powi(2);
         let apart = if is_measured(contact) { 0.0 } else { apart.sqrt() };
         let doubted: Vec<_> = rivals.iter().chain(&on_published).cloned().collect();
         sources.push(rival_source(&doubted, &load_n, apart));
-        Ok(Self { load_n, sources, rivals, departures })
+        Ok(Self { load_n, sources, rivals, deviations })
     }
 
     /// Half widths of `ln D` at the load of this index, downwards and upwards.
@@ -151,17 +151,17 @@ fn spaced(loads_n: &[f64]) -> Vec<f64> {
     (0..LOADS).map(|i| from * libm::pow(to / from, i as f64 / (LOADS - 1) as f64)).collect()
 }
 
-fn departure_source(departure: &Departure, loads: usize) -> BandSource {
-    let unknown = UNKNOWN_EFFECT * departure.log_ratio;
+fn deviation_source(deviation: &Deviation, loads: usize) -> BandSource {
+    let unknown = UNKNOWN_EFFECT * deviation.log_ratio;
     let half = (0..loads)
         .map(|i| {
             // Where physics cannot say, a change counts in full.
             let effect =
-                departure.log_effect.get(i).copied().unwrap_or(departure.log_ratio / departure.unsure);
-            NORMAL_95 * libm::hypot(departure.unsure * effect, unknown)
+                deviation.log_effect.get(i).copied().unwrap_or(deviation.log_ratio / deviation.unsure);
+            NORMAL_95 * libm::hypot(deviation.unsure * effect, unknown)
         })
         .collect();
-    BandSource::even(departure.parameter, half)
+    BandSource::even(deviation.parameter, half)
 }
 
 fn beyond_loads(load_n: &[f64]) -> Option<BandSource> {

@@ -1,8 +1,8 @@
 //! What the tendon lies on: the validated input of every prediction.
 
 use crate::bed::Bed;
-use crate::counted::counted;
 use crate::pattern::PinPattern;
+use crate::plural::pluralise;
 use crate::published::{self, PublishedLayout};
 use crate::substrate::Substrate;
 
@@ -153,7 +153,7 @@ impl Contact {
         let outside = self.all_pins.count() - self.pins.count();
         if outside > 0 {
             let verb = if outside == 1 { "lies" } else { "lie" };
-            all.push(format!("{} {verb} outside the wrap", counted(outside, "pin")));
+            all.push(format!("{} {verb} outside the wrap", pluralise(outside, "pin")));
         }
         all
     }

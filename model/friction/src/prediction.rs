@@ -26,7 +26,7 @@ use crate::status::{PredictionStatus, prediction_status};
 pub fn predict_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve, LawError> {
     let states = law.states(contact, loads_n)?;
     let band = Band::of(law, contact, loads_n)?;
-    let (status, mut reasons) = prediction_status(contact, &band.departures, loads_n);
+    let (status, mut reasons) = prediction_status(contact, &band.deviations, loads_n);
     if let Some((rival, load_n, ratio)) = band.widest_rival(NOTEWORTHY) {
         let law = law.title();
         reasons.push(if ratio > 1.0 {
@@ -82,7 +82,7 @@ fn capstan_curve(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
         load_n: vec![published::heaviest_load_n()],
         sources: vec![BandSource::even("model", vec![1.0])],
         rivals: Vec::new(),
-        departures: Vec::new(),
+        deviations: Vec::new(),
     };
     FrictionCurve::of(Law::Paper, PredictionStatus::Extrapolated, contact.remarks(), &states, &band)
 }

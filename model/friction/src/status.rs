@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Contact;
-use crate::counted::counted;
-use crate::departure::{Departure, is_published_rig};
+use crate::deviation::{Deviation, is_published_rig};
+use crate::plural::pluralise;
 use crate::published;
 use crate::substrate::Substrate;
 
@@ -35,14 +35,14 @@ pub(crate) fn is_measured(contact: &Contact) -> bool {
         && is_published_rig(contact)
 }
 
-/// How far the friction of `contact` is known at `loads_n`, and why no further; `departures` are its own.
+/// How far the friction of `contact` is known at `loads_n`, and why no further; `deviations` are its own.
 pub(crate) fn prediction_status(
     contact: &Contact,
-    departures: &[Departure],
+    deviations: &[Deviation],
     loads_n: &[f64],
 ) -> (PredictionStatus, Vec<String>) {
     let heaviest_n = loads_n.iter().copied().fold(0.0, f64::max);
-    let mut reasons: Vec<String> = departures.iter().map(|d| d.reason(heaviest_n)).collect();
+    let mut reasons: Vec<String> = deviations.iter().map(|d| d.reason(heaviest_n)).collect();
     reasons.extend(contact.remarks());
     reasons.extend(untested_loads(loads_n));
     let measured = contact.published_layout().is_some() || contact.all_pins().count() == 0;
@@ -92,7 +92,7 @@ fn unmeasured_layout(contact: &Contact) -> Vec<String> {
     let pins = contact.pins();
     let mut reasons = Vec::new();
     if !PINS_MEASURED.contains(&pins.count()) {
-        reasons.push(format!("{}; measured were 3 and 6", counted(pins.count(), "pin")));
+        reasons.push(format!("{}; measured were 3 and 6", pluralise(pins.count(), "pin")));
     }
     let (narrow, wide) = measured_pitches_rad();
     if let Some(pitch) = pins.mean_pitch_rad()

@@ -48,7 +48,7 @@ laws! {
 impl Law {
     /// The law of every curve for which no other is asked: of those that predict every contact and change with each of
     /// its parameters, the one whose error is smallest on published layouts of which it was told nothing
-    /// (`model/doc/friction-laws.md` has the table, [`crate::evidence`] makes it).
+    /// (`model/doc/friction-laws.md` has the table, [`crate::validation`] makes it).
     pub const DEFAULT: Self = Self::Physics;
 
     /// The law of a word, such as `paper`.

@@ -26,7 +26,7 @@ pub struct MaximumError {
 
 /// A law's errors on all seven maxima.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LawEvidence {
+pub struct LawValidation {
     /// The law.
     pub law: Law,
     /// Its error on each maximum.
@@ -37,8 +37,8 @@ pub struct LawEvidence {
     pub rms_left_out: Option<f64>,
 }
 
-impl LawEvidence {
-    fn of(law: Law, errors: Vec<MaximumError>) -> Self {
+impl LawValidation {
+    fn new(law: Law, errors: Vec<MaximumError>) -> Self {
         let rms = |errors: Vec<f64>| {
             let count = errors.len() as f64;
             (count > 0.0).then(|| (errors.iter().map(|e| e * e).sum::<f64>() / count).sqrt())
@@ -55,7 +55,7 @@ impl LawEvidence {
 /// The evidence of every law that predicts from a contact alone, made anew.
 ///
 /// ```no_run
-/// for law in pinswitch_friction::evidence::evidence()? {
+/// for law in pinswitch_friction::validation::validate_laws()? {
 ///     println!("{}: {:.1?} % left out", law.law.as_str(), law.rms_left_out.map(|rms| 100.0 * rms));
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -63,12 +63,12 @@ impl LawEvidence {
 ///
 /// # Errors
 /// [`FitError`] if the physics cannot be fitted.
-pub fn evidence() -> Result<Vec<LawEvidence>, FitError> {
+pub fn validate_laws() -> Result<Vec<LawValidation>, FitError> {
     let physics = physics_errors()?;
     Ok(Law::predictive()
         .map(|law| match law {
-            Law::Physics => LawEvidence::of(law, physics.clone()),
-            _ => LawEvidence::of(law, printed_errors(law)),
+            Law::Physics => LawValidation::new(law, physics.clone()),
+            _ => LawValidation::new(law, printed_errors(law)),
         })
         .collect())
 }
@@ -138,7 +138,7 @@ mod tests {
     /// The default law is the one that misses least of what it was told nothing of, among those that describe all.
     #[test]
     fn the_default_law_is_the_best_on_layouts_left_out() {
-        let all = evidence().unwrap();
+        let all = validate_laws().unwrap();
         let of = |law| all.iter().find(|e| e.law == law).unwrap();
         let default = of(Law::DEFAULT);
         assert!(default.errors.iter().all(|e| e.in_sample.is_some() && e.left_out.is_some()));

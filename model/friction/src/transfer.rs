@@ -5,7 +5,7 @@ use crate::band_source::NORMAL_95;
 use crate::capstan::{Direction, capstan_tension_n};
 use crate::contact::Contact;
 use crate::curve::FrictionCurve;
-use crate::departure::departures;
+use crate::deviation::deviations;
 use crate::physics::{Constants, PhysicsError, PhysicsSwitch};
 use crate::status::PredictionStatus;
 use crate::transition::{Transition, at};
@@ -22,7 +22,7 @@ const SAME: f64 = 1e-6;
 
 /// The change from one contact, the rig's, to another, by the physics.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Carry {
+pub struct Transfer {
     /// `ln` of friction there over friction on the rig, load by load; zeros if both are one.
     pub log_friction: Vec<f64>,
     /// Factor on the load at which it switches.
@@ -33,19 +33,19 @@ pub struct Carry {
     pub reasons: Vec<String>,
 }
 
-impl Carry {
+impl Transfer {
     /// The change from `rig` to `part` at `loads_n` newtons, ascending.
     ///
     /// ```
     /// use pinswitch_friction::physics::Bed;
-    /// use pinswitch_friction::{Carry, Contact, PinPattern, Substrate, published};
+    /// use pinswitch_friction::{Transfer, Contact, PinPattern, Substrate, published};
     ///
     /// let pins = PinPattern::even(3, published::LAYOUTS[1].pitch_rad());
     /// let rig = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
     /// let thick = rig.clone().with_bed(Bed { layer_mm: 3.0, ..*rig.bed() });
-    /// let carry = Carry::between(&rig, &thick, &[10.0, 49.671])?;
-    /// assert!(carry.log_friction[1] > 0.0 && carry.threshold_factor < 1.0, "a thick layer switches earlier");
-    /// assert!(carry.reasons[0].starts_with("layer thickness is 3 mm"));
+    /// let transfer = Transfer::between(&rig, &thick, &[10.0, 49.671])?;
+    /// assert!(transfer.log_friction[1] > 0.0 && transfer.threshold_factor < 1.0, "a thick layer switches earlier");
+    /// assert!(transfer.reasons[0].starts_with("layer thickness is 3 mm"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -53,8 +53,8 @@ impl Carry {
     /// [`PhysicsError`] if an equilibrium is not found.
     pub fn between(rig: &Contact, part: &Contact, loads_n: &[f64]) -> Result<Self, PhysicsError> {
         let heaviest_n = loads_n.iter().copied().fold(0.0, f64::max);
-        let departures = departures(part, &[heaviest_n]);
-        let mut reasons: Vec<String> = departures.iter().map(|d| d.reason(heaviest_n)).collect();
+        let deviations = deviations(part, &[heaviest_n]);
+        let mut reasons: Vec<String> = deviations.iter().map(|d| d.reason(heaviest_n)).collect();
         reasons.extend(part.remarks());
         let moved = moved_pins(rig, part);
         reasons.extend(moved.then(|| pins_reason(rig, part)));
@@ -70,7 +70,7 @@ impl Carry {
             .map(|(a, b)| libm::log(a.friction_n / b.friction_n))
             .map(|log| if log.is_finite() { log } else { 0.0 })
             .collect();
-        let mut apart: f64 = departures.iter().map(|d| d.log_ratio.powi(2)).sum();
+        let mut apart: f64 = deviations.iter().map(|d| d.log_ratio.powi(2)).sum();
         if let (true, Some(a), Some(b)) =
             (moved, part.all_pins().mean_pitch_rad(), rig.all_pins().mean_pitch_rad())
         {
@@ -85,13 +85,13 @@ impl Carry {
     }
 
     /// Whether both contacts are one.
-    pub fn is_none(&self) -> bool {
+    pub fn is_identity(&self) -> bool {
         self.reasons.is_empty()
     }
 
     /// Friction and share of the silicone there, of the rig's at the same loads; a share belongs to the load at which the
     /// rig has switched as far.
-    pub fn applied(
+    pub fn friction_and_share(
         &self,
         loads_n: &[f64],
         friction_n: &[f64],
@@ -109,11 +109,12 @@ impl Carry {
 
     /// A curve of the rig, there: tensions by the friction exponents, the band as wide as the change asks for, trusted no
     /// further than an extrapolation if anything differs.
-    pub fn carried(&self, mut curve: FrictionCurve) -> FrictionCurve {
-        if self.is_none() {
+    pub fn apply(&self, mut curve: FrictionCurve) -> FrictionCurve {
+        if self.is_identity() {
             return curve;
         }
-        let (wanted, share) = self.applied(&curve.load_n, &curve.friction_n, &curve.silicone_share);
+        let (wanted, share) =
+            self.friction_and_share(&curve.load_n, &curve.friction_n, &curve.silicone_share);
         for (i, &load) in curve.load_n.iter().enumerate() {
             let (down, up) = (
                 libm::log(curve.friction_n[i] / curve.band_low_n[i].max(1e-9)).max(0.0),
@@ -195,10 +196,10 @@ mod tests {
 
     #[test]
     fn the_rig_itself_is_carried_nowhere() {
-        let carry = Carry::between(&rig(), &rig(), &loads()).unwrap();
+        let transfer = Transfer::between(&rig(), &rig(), &loads()).unwrap();
         let curve = predict_by(Law::Physics, &rig(), &loads()).unwrap();
-        assert!(carry.is_none());
-        assert_eq!(carry.carried(curve.clone()), curve);
+        assert!(transfer.is_identity());
+        assert_eq!(transfer.apply(curve.clone()), curve);
     }
 
     /// Carrying the physics' own curve gives the physics' own curve there.
@@ -209,8 +210,8 @@ mod tests {
             (Bed { pin_diameter_mm: 0.8, layer_width_mm: 20.0, ..Bed::published() }, 1.3),
         ] {
             let part = rig().with_bed(bed).at_wrap(wrap).unwrap();
-            let carry = Carry::between(&rig(), &part, &loads()).unwrap();
-            let there = carry.carried(predict_by(Law::Physics, &rig(), &loads()).unwrap());
+            let transfer = Transfer::between(&rig(), &part, &loads()).unwrap();
+            let there = transfer.apply(predict_by(Law::Physics, &rig(), &loads()).unwrap());
             let known = predict_by(Law::Physics, &part, &loads()).unwrap();
             for i in 0..loads().len() {
                 assert!(

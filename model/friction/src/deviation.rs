@@ -75,7 +75,7 @@ const NO_EFFECT: f64 = 5e-4;
 
 /// A parameter in which a contact differs from the published rig.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Departure {
+pub struct Deviation {
     /// The parameter, such as `layer thickness`.
     pub parameter: &'static str,
     /// Its value here, in `unit`.
@@ -95,7 +95,7 @@ pub struct Departure {
     pub log_effect: Vec<f64>,
 }
 
-impl Departure {
+impl Deviation {
     /// In words, with the effect at the last of the loads, `heaviest_n`.
     pub(crate) fn reason(&self, heaviest_n: f64) -> String {
         let known = if self.printed { "measured was" } else { "assumed for the published rig is" };
@@ -130,9 +130,9 @@ impl Departure {
     }
 }
 
-/// The departures of `contact` from the published rig, with their effects at `loads_n`; largest effect at the last load
+/// The deviations of `contact` from the published rig, with their effects at `loads_n`; largest effect at the last load
 /// first.
-pub(crate) fn departures(contact: &Contact, loads_n: &[f64]) -> Vec<Departure> {
+pub(crate) fn deviations(contact: &Contact, loads_n: &[f64]) -> Vec<Deviation> {
     let Some(reference) = published_rig(contact) else { return Vec::new() };
     let differing: Vec<_> = PARAMETERS
         .iter()
@@ -147,7 +147,7 @@ pub(crate) fn departures(contact: &Contact, loads_n: &[f64]) -> Vec<Departure> {
         Some(states.iter().map(|s| libm::log(s.friction_n)).collect())
     };
     let here = logs(contact);
-    let mut all: Vec<Departure> = differing
+    let mut all: Vec<Deviation> = differing
         .into_iter()
         .map(|(p, value, published)| {
             let there = (p.with)(contact, published).and_then(|c| logs(&c));
@@ -160,7 +160,7 @@ pub(crate) fn departures(contact: &Contact, loads_n: &[f64]) -> Vec<Departure> {
                     .collect(),
                 _ => Vec::new(),
             };
-            Departure {
+            Deviation {
                 parameter: p.name,
                 value: (p.shown)(value),
                 published: (p.shown)(published),
@@ -172,7 +172,7 @@ pub(crate) fn departures(contact: &Contact, loads_n: &[f64]) -> Vec<Departure> {
             }
         })
         .collect();
-    let size = |d: &Departure| d.log_effect.last().map_or(f64::INFINITY, |e| e.abs());
+    let size = |d: &Deviation| d.log_effect.last().map_or(f64::INFINITY, |e| e.abs());
     sort_by_number(&mut all, |d| -size(d));
     all
 }
@@ -209,9 +209,9 @@ mod tests {
     fn every_parameter_that_moves_departs_and_says_what_it_does() {
         for p in &PARAMETERS {
             let base = three_double();
-            assert!(is_published_rig(&base) && departures(&base, &[49.671]).is_empty());
+            assert!(is_published_rig(&base) && deviations(&base, &[49.671]).is_empty());
             let moved = (p.with)(&base, 1.05 * (p.get)(&base)).unwrap();
-            let found = departures(&moved, &[10.0, 49.671]);
+            let found = deviations(&moved, &[10.0, 49.671]);
             assert_eq!(found.len(), 1, "{}", p.name);
             assert!(!is_published_rig(&moved), "{}", p.name);
             assert_eq!((found[0].parameter, found[0].log_effect.len()), (p.name, 2));
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn hardness_is_shown_as_it_is_given() {
         let soft = Bed { modulus_mpa: modulus_of_shore_a_mpa(20.0), ..Bed::published() };
-        let found = departures(&three_double().with_bed(soft), &[49.671]);
+        let found = deviations(&three_double().with_bed(soft), &[49.671]);
         assert!((found[0].value - 20.0).abs() < 1e-6 && (found[0].published - 50.0).abs() < 1e-6);
         let reason = found[0].reason(49.671);
         assert!(

@@ -1,31 +1,47 @@
 //! What the tendon lies on: the validated input of every prediction.
 
+use pinswitch_diagnostic::{Diagnostic, Location};
+
 use crate::bed::Bed;
 use crate::pattern::PinPattern;
 use crate::plural::pluralise;
 use crate::published::{self, PublishedLayout};
 use crate::substrate::Substrate;
 
-/// Why a contact cannot be predicted.
+/// Largest wrap angle in degrees: two turns.
+const MAX_WRAP_DEG: f64 = 720.0;
+
+/// Reason why a contact cannot be predicted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", Diagnostic::from(self.clone()))]
 #[non_exhaustive]
 pub enum ContactError {
     /// The wrap angle is not a positive finite angle of at most two turns.
-    #[error(
-        "wrap angle {degrees} deg is outside 0 < angle <= 720; give the angle over which the tendon touches the pulley"
-    )]
     WrapAngle {
-        /// The angle given, in degrees.
+        /// Wrap angle as given, in degrees.
         degrees: f64,
     },
-    /// A rigid proxy without pins within the wrap carries nothing.
-    #[error(
-        "the rigid proxy has no pin within the wrap of {degrees:.2} deg; put a pin there or use silicone"
-    )]
-    NothingTouches {
-        /// The wrap angle in degrees.
+    /// No pin of a rigid proxy is within the wrap, so the tendon touches nothing.
+    NoPinInWrap {
+        /// Wrap angle in degrees.
         degrees: f64,
     },
+}
+
+impl From<ContactError> for Diagnostic {
+    fn from(error: ContactError) -> Self {
+        match error {
+            ContactError::WrapAngle { degrees } => {
+                Self::new(format!("must be above 0 and at most {MAX_WRAP_DEG}"))
+                    .with_location(Location::field("wrap angle (deg)", degrees.to_string()))
+                    .with_help("give the angle over which the tendon touches the pulley")
+            }
+            ContactError::NoPinInWrap { degrees } => {
+                Self::new(format!("no pin of the rigid proxy is within the wrap of {degrees:.2} deg"))
+                    .with_help("move a pin into the wrap, or use silicone")
+            }
+        }
+    }
 }
 
 /// Substrate, the pins that the tendon touches, and the wrap angle.
@@ -40,7 +56,7 @@ pub enum ContactError {
 /// assert!(contact.remarks().iter().any(|reason| reason.contains("outside the wrap")));
 ///
 /// let nothing = Contact::new(Substrate::Abs, PinPattern::default(), 1.0);
-/// assert!(matches!(nothing, Err(ContactError::NothingTouches { .. })));
+/// assert!(matches!(nothing, Err(ContactError::NoPinInWrap { .. })));
 /// # Ok::<(), ContactError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -61,12 +77,12 @@ impl Contact {
     /// [`ContactError`] if the angle is unusable or if nothing would touch the tendon.
     pub fn new(substrate: Substrate, pins: PinPattern, wrap_rad: f64) -> Result<Self, ContactError> {
         let degrees = wrap_rad.to_degrees();
-        if !(degrees > 0.0 && degrees <= 720.0) {
+        if !(degrees > 0.0 && degrees <= MAX_WRAP_DEG) {
             return Err(ContactError::WrapAngle { degrees });
         }
         let touched = pins.within(wrap_rad);
         if substrate == Substrate::Abs && touched.count() == 0 {
-            return Err(ContactError::NothingTouches { degrees });
+            return Err(ContactError::NoPinInWrap { degrees });
         }
         Ok(Self {
             substrate,
@@ -213,7 +229,7 @@ mod tests {
         }
         assert!(matches!(
             Contact::new(Substrate::Abs, PinPattern::new(vec![0.9]), 1.0),
-            Err(ContactError::NothingTouches { .. })
+            Err(ContactError::NoPinInWrap { .. })
         ));
     }
 }

@@ -1,6 +1,7 @@
 //! Nonlinear least squares by Levenberg and Marquardt with forward differences, for a handful of parameters.
 
 use nalgebra::{DMatrix, DVector};
+use pinswitch_diagnostic::Diagnostic;
 
 /// Steps before the search ends.
 const MAX_STEPS: usize = 60;
@@ -18,16 +19,24 @@ pub struct Solution {
     pub inverse_normal: DMatrix<f64>,
 }
 
-/// Why there is no solution.
+/// Reason why a least-squares problem has no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", Diagnostic::from(self.clone()))]
 #[non_exhaustive]
 pub enum LeastSquaresError {
     /// The residuals do not depend on some direction of the parameters.
-    #[error("the data do not determine the {parameters} parameters")]
     Undetermined {
         /// Number of parameters.
         parameters: usize,
     },
+}
+
+impl From<LeastSquaresError> for Diagnostic {
+    fn from(error: LeastSquaresError) -> Self {
+        let LeastSquaresError::Undetermined { parameters } = error;
+        Self::new(format!("the data do not determine the {parameters} parameters"))
+            .with_help("add observations, or fit fewer parameters")
+    }
 }
 
 /// Minimises the sum of squares of `residuals` from `start`; derivatives by forward differences of `step`. The inner

@@ -1,5 +1,7 @@
 //! Predictions: the default law, a chosen one, and the others for comparison.
 
+use pinswitch_diagnostic::Diagnostic;
+
 use crate::band::Band;
 use crate::band_source::BandSource;
 use crate::contact::Contact;
@@ -62,14 +64,15 @@ const NOTEWORTHY: f64 = 1.25;
 /// # Ok::<(), pinswitch_friction::ContactError>(())
 /// ```
 pub fn predict(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
-    let failed = match predict_by(Law::DEFAULT, contact, loads_n) {
+    let error = match predict_by(Law::DEFAULT, contact, loads_n) {
         Ok(curve) => return curve,
-        Err(failed) => failed,
+        Err(error) => error,
     };
     let mut curve = predict_by(Law::Layout, contact, loads_n)
         .or_else(|_| predict_by(Law::Paper, contact, loads_n))
         .unwrap_or_else(|_| capstan_curve(contact, loads_n));
-    curve.reasons.push(format!("another law stands in: {failed}"));
+    let problem = Diagnostic::from(error);
+    curve.reasons.push(format!("{} is the fallback: {}", curve.law.title(), problem.problem()));
     curve
 }
 

@@ -1,11 +1,13 @@
 //! The gains over the angle of a joint: the wrap follows the joint, and the pins that the tendon touches follow the wrap.
 
+use pinswitch_diagnostic::{Diagnostic, Location};
 use serde::Serialize;
 
 use super::gains::{FingerPoint, Tensions};
 use crate::contact::Contact;
 use crate::curve::FrictionCurve;
 use crate::law::{Law, LawError};
+use crate::plural::pluralise;
 use crate::published;
 use crate::status::PredictionStatus;
 
@@ -18,33 +20,42 @@ const LARGEST_SHARE: f64 = 2.0;
 /// Wraps nearer to each other than this are one, in radians.
 const SAME_RAD: f64 = 1e-9;
 
-/// A joint or its tendon path cannot be used.
+/// A value of a joint or of its tendon path that is out of bounds.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{field} = {value} is outside {low} to {high}; {remedy}")]
+#[error("{}", Diagnostic::from(*self))]
 pub struct JointPathError {
-    /// The field.
+    /// Field, with its unit.
     pub field: &'static str,
-    /// Its value.
+    /// Value as given.
     pub value: f64,
-    /// Least value that can be used.
+    /// Least allowed value.
     pub low: f64,
-    /// Largest value that can be used.
+    /// Largest allowed value.
     pub high: f64,
-    /// What to do.
-    pub remedy: &'static str,
+    /// What to do about it.
+    pub help: &'static str,
 }
 
+impl From<JointPathError> for Diagnostic {
+    fn from(error: JointPathError) -> Self {
+        let JointPathError { field, value, low, high, help } = error;
+        Self::new(format!("must be from {low} to {high}"))
+            .with_location(Location::field(field, value.to_string()))
+            .with_help(help)
+    }
+}
+
+/// Returns the value if it is from `low` to `high`.
 fn within(
     field: &'static str,
     value: f64,
-    low: f64,
-    high: f64,
-    remedy: &'static str,
+    (low, high): (f64, f64),
+    help: &'static str,
 ) -> Result<f64, JointPathError> {
     if (low..=high).contains(&value) {
         Ok(value)
     } else {
-        Err(JointPathError { field, value, low, high, remedy })
+        Err(JointPathError { field, value, low, high, help })
     }
 }
 
@@ -61,7 +72,7 @@ fn within(
 /// let path = JointPath::new(10.0, 0.8)?;
 /// assert_eq!(path.wrap_deg(50.0)?, 50.0);
 /// let error = path.wrap_deg(-5.0).unwrap_err();
-/// assert!(error.to_string().starts_with("joint angle (deg) = -5 is outside 0 to 180"));
+/// assert!(error.to_string().starts_with("joint angle (deg) = -5: must be from 0 to 180"));
 /// # Ok::<(), pinswitch_friction::finger::JointPathError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -90,11 +101,10 @@ impl JointPath {
             wrap_at_straight_deg: within(
                 "wrap at the straight finger (deg)",
                 wrap_at_straight_deg,
-                0.0,
-                LARGEST_START_DEG,
+                (0.0, LARGEST_START_DEG),
                 START,
             )?,
-            wrap_per_flexion: within("wrap per flexion", wrap_per_flexion, 0.0, LARGEST_SHARE, SHARE)?,
+            wrap_per_flexion: within("wrap per flexion", wrap_per_flexion, (0.0, LARGEST_SHARE), SHARE)?,
         })
     }
 
@@ -103,8 +113,8 @@ impl JointPath {
     /// # Errors
     /// [`JointPathError`] for a flexion that no joint has.
     pub fn wrap_deg(&self, joint_deg: f64) -> Result<f64, JointPathError> {
-        let remedy = "give flexions between a straight and a folded finger";
-        within("joint angle (deg)", joint_deg, 0.0, LARGEST_FLEXION_DEG, remedy)
+        let help = "give flexions between a straight and a folded finger";
+        within("joint angle (deg)", joint_deg, (0.0, LARGEST_FLEXION_DEG), help)
             .map(|joint_deg| self.wrap_at_straight_deg + self.wrap_per_flexion * joint_deg)
     }
 
@@ -189,7 +199,7 @@ pub fn over_joint(
         reasons: Vec::new(),
         points: Vec::new(),
     };
-    let mut left_out: Vec<(f64, String)> = Vec::new();
+    let mut left_out: Vec<(f64, Diagnostic)> = Vec::new();
     for &joint_deg in joints_deg {
         let wrap_deg = path.wrap_deg(joint_deg)?;
         let wrap_rad = wrap_deg.to_radians();
@@ -203,7 +213,7 @@ pub fn over_joint(
                 let State { pins, status, .. } = state;
                 curve.points.push(JointPoint { joint_deg, wrap_deg, pins, status, gains });
             }
-            Err(why) => left_out.push((joint_deg, why)),
+            Err(error) => left_out.push((joint_deg, error)),
         }
     }
     if curve.status == PredictionStatus::Extrapolated {
@@ -212,10 +222,9 @@ pub fn over_joint(
             published::WRAP_ANGLE_DEG
         ));
     }
-    if let Some((first_deg, why)) = left_out.first() {
-        curve
-            .reasons
-            .push(format!("{} flexion(s) are left out, the first at {first_deg} deg: {why}", left_out.len()));
+    if let Some((first_deg, error)) = left_out.first() {
+        let count = pluralise(left_out.len(), "flexion");
+        curve.reasons.push(format!("{count} left out, the first at {first_deg} deg: {}", error.problem()));
     }
     Ok(curve)
 }
@@ -234,15 +243,15 @@ fn state(
     wrap_rad: f64,
     load_n: f64,
     predict: &impl Fn(&Contact, &[f64]) -> Result<FrictionCurve, LawError>,
-) -> Result<State, String> {
+) -> Result<State, Diagnostic> {
     if wrap_rad < SAME_RAD {
         let tensions = Tensions::without_friction(load_n);
         // Nothing touches, so nothing rubs: this needs no measurement.
         return Ok(State { tensions, pins: 0, law: None, status: PredictionStatus::Published });
     }
-    let contact = contact.at_wrap(wrap_rad).map_err(|e| e.to_string())?;
-    let curve = predict(&contact, &[load_n]).map_err(|e| e.to_string())?;
-    let tensions = Tensions::of(&curve, 0).ok_or("the law gives no point")?;
+    let contact = contact.at_wrap(wrap_rad)?;
+    let curve = predict(&contact, &[load_n])?;
+    let tensions = Tensions::of(&curve, 0).ok_or("the law gives no point at this load")?;
     Ok(State { tensions, pins: contact.pins().count(), law: Some(curve.law), status: curve.status })
 }
 
@@ -315,7 +324,7 @@ mod tests {
         let paper = |c: &Contact, n: &[f64]| predict_by(Law::Paper, c, n);
         let curve = over_joint(&contact, &JointPath::default(), &[10.0, 60.0], 40.0, paper).unwrap();
         assert_eq!(curve.points.len(), 1);
-        assert!(curve.reasons.iter().any(|r| r.contains("1 flexion(s) are left out, the first at 10 deg")));
+        assert!(curve.reasons.iter().any(|r| r.contains("1 flexion left out, the first at 10 deg")));
     }
 
     #[test]
@@ -323,7 +332,7 @@ mod tests {
         for (path, word) in [
             (JointPath::new(-1.0, 1.0), "wrap at the straight finger (deg) = -1"),
             (JointPath::new(f64::NAN, 1.0), "NaN"),
-            (JointPath::new(0.0, 3.0), "wrap per flexion = 3 is outside 0 to 2"),
+            (JointPath::new(0.0, 3.0), "wrap per flexion = 3: must be from 0 to 2"),
         ] {
             assert!(path.unwrap_err().to_string().contains(word), "{path:?}");
         }

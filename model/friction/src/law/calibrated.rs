@@ -15,4 +15,4 @@ pub(super) static DEFINITION: LawDefinition = LawDefinition {
 };
 
 const NEEDS_MODEL: LawError =
-    LawError::DoesNotApply { why: "a calibrated law comes from a model file; give it with --model" };
+    LawError::DoesNotApply { problem: "a calibrated law needs a model file", help: "give one with --model" };

@@ -1,18 +1,30 @@
-//! Why a law cannot predict a contact.
+//! Reasons why a law cannot predict a contact.
+
+use pinswitch_diagnostic::Diagnostic;
 
 use crate::physics::PhysicsError;
 
-/// Why a law cannot predict a contact.
+/// Reason why a law cannot predict a contact.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", Diagnostic::from(self.clone()))]
 #[non_exhaustive]
 pub enum LawError {
     /// The law does not describe such a contact, or needs more than the contact.
-    #[error("{why}")]
     DoesNotApply {
-        /// What it describes instead, and what to use.
-        why: &'static str,
+        /// Contacts that the law describes, or what it needs.
+        problem: &'static str,
+        /// Laws to use instead, or where to get what it needs.
+        help: &'static str,
     },
     /// The physics has no solution.
-    #[error(transparent)]
     Physics(#[from] PhysicsError),
+}
+
+impl From<LawError> for Diagnostic {
+    fn from(error: LawError) -> Self {
+        match error {
+            LawError::DoesNotApply { problem, help } => Self::new(problem).with_help(help),
+            LawError::Physics(error) => error.into(),
+        }
+    }
 }

@@ -39,7 +39,8 @@ fn law_of(contact: &Contact) -> Result<LayoutLaw, LawError> {
         })
         .flatten()
         .ok_or(LawError::DoesNotApply {
-            why: "the layout law describes pins on silicone only; use the law paper or physics",
+            problem: "the layout law describes pins on silicone only",
+            help: "use the law paper or physics",
         })
 }
 

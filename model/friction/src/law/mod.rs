@@ -6,6 +6,7 @@
 mod definition;
 mod error;
 
+use pinswitch_diagnostic::excerpt;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::contact::Contact;
@@ -113,6 +114,9 @@ impl Law {
     }
 }
 
+/// Most characters of an unknown law in a message.
+const LONGEST_WORD: usize = 60;
+
 impl Serialize for Law {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.as_str())
@@ -122,7 +126,11 @@ impl Serialize for Law {
 impl<'de> Deserialize<'de> for Law {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let word = String::deserialize(deserializer)?;
-        Self::named(&word).ok_or_else(|| serde::de::Error::custom(format!("law '{word}' is unknown")))
+        Self::named(&word).ok_or_else(|| {
+            let known: Vec<_> = Self::ALL.iter().map(|law| law.as_str()).collect();
+            let word = excerpt(&word, LONGEST_WORD);
+            serde::de::Error::custom(format!("unknown law '{word}', expected one of {}", known.join(", ")))
+        })
     }
 }
 

@@ -30,7 +30,8 @@ fn paper_states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, 
             Ok(loads_n.iter().map(|&load| switch.state(load, contact.wrap_rad())).collect())
         }
         (Substrate::Silicone, None) if contact.pins().count() > 0 => Err(LawError::DoesNotApply {
-            why: "the paper gives constants for six-single, three-double and three-single only (pinswitch layouts shows them); use the law layout or physics",
+            problem: "the paper gives constants for six-single, three-double and three-single only",
+            help: "use the law layout or physics (`pinswitch layouts` shows the three layouts)",
         }),
         (Substrate::Silicone, None) => Ok(capstan(contact, published::MU_SILICONE, 1.0, loads_n)),
         (Substrate::Abs, _) => Ok(capstan(contact, published::MU_PINS, 0.0, loads_n)),

@@ -1,6 +1,7 @@
 //! The constants, fitted to the seven published maxima, and how well they predict a layout that was left out.
 
 use nalgebra::{Matrix3, Vector3};
+use pinswitch_diagnostic::Diagnostic;
 use serde::Serialize;
 
 use super::constants::{Constants, PUBLISHED_FIT};
@@ -13,16 +14,25 @@ use crate::pattern::PinPattern;
 use crate::published::{self, LAYOUTS};
 use crate::substrate::Substrate;
 
-/// Why no constants could be fitted.
+/// Reason why the constants cannot be fitted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// The model has no solution somewhere on the way.
+    /// The model has no solution for some of the constants that were tried.
     #[error(transparent)]
     Physics(#[from] PhysicsError),
     /// The maxima do not determine the constants.
     #[error(transparent)]
     LeastSquares(#[from] LeastSquaresError),
+}
+
+impl From<FitError> for Diagnostic {
+    fn from(error: FitError) -> Self {
+        match error {
+            FitError::Physics(error) => error.into(),
+            FitError::LeastSquares(error) => error.into(),
+        }
+    }
 }
 
 /// One published maximum.

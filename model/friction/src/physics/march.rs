@@ -82,7 +82,7 @@ pub(super) fn slide(tendon: Slide<'_>, start: Option<&Sliding>) -> Result<Slidin
         }
         gap = Some(sliding.shape.gap_mm);
     }
-    Err(PhysicsError::TensionUnsettled { load_n, rounds: MAX_ROUNDS })
+    Err(PhysicsError::TensionNotConverged { load_n, iterations: MAX_ROUNDS })
 }
 
 /// One pass along the wrap: turns from the forces, tension from the turns. Also the largest relative change of tension.
@@ -93,7 +93,7 @@ fn march(tendon: Slide<'_>, tension_n: &[f64], shape: Equilibrium) -> Result<(Sl
     let turned: f64 = shape.silicone_n.iter().zip(tension_n).map(|(q, t)| q / t).sum::<f64>()
         + shape.pin_n.iter().zip(&grid.pins).map(at_pin).sum::<f64>();
     if turned.is_nan() || turned <= 0.0 {
-        return Err(PhysicsError::NothingCarries);
+        return Err(PhysicsError::NoSupport);
     }
     let closure = wrap_rad / turned;
     let pin_turn_rad: Vec<f64> = shape.pin_n.iter().zip(&grid.pins).map(|p| closure * at_pin(p)).collect();

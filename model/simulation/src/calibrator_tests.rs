@@ -5,10 +5,11 @@ use pinswitch_calibration::inference::{Levels, Model, Observations, Weighed, int
 use pinswitch_calibration::segmentation::segment_run;
 use pinswitch_calibration::table::{Frame, PlateauTable};
 
-use crate::{
-    Case, Course, Disturbance, DisturbanceTarget, EffectPlan, Group, Plan, Protocol, RawRun, run_case,
-    simulate, study_cases,
-};
+use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
+use crate::plan::{EffectPlan, NoisePlan, Plan, Protocol};
+use crate::raw::RawRun;
+use crate::simulate::simulate;
+use crate::study::{Case, Group, run_case, study_cases};
 
 fn estimated_correlation(plan: &Plan) -> f64 {
     let rows = simulate(plan).rows;
@@ -132,5 +133,26 @@ fn a_quick_wave_is_drawn_with_its_own_frequency() {
         let (size, frequency) = (form.parameters["a"].value.abs(), form.parameters["f"].value);
         assert!(form.shape == "sine" && (frequency / cycles - 1.0).abs() < 0.02, "{cycles}: {form:?}");
         assert!((size / 0.15 - 1.0).abs() < 0.2, "{cycles}: {form:?}");
+    }
+}
+
+/// A rig made by the noise that was found on another has that noise: what is planned by it is planned for that rig.
+#[test]
+fn the_noise_that_was_found_is_found_again_on_a_rig_made_by_it() {
+    let found = |plan: &Plan| {
+        let rows = simulate(plan).rows;
+        let frame = Frame::new(&rows);
+        let mut data = Observations::new(&frame, &rows).unwrap();
+        select(&Model::baseline(frame), &mut data, Levels::default()).noise
+    };
+    let noise = NoisePlan { series_scale: 0.03, repetition_n: 0.12, series_n: 0.08, ..NoisePlan::default() };
+    let first = found(&Plan { seed: 11, noise, ..Plan::default() });
+    let again = found(&Plan { seed: 12, noise: NoisePlan::of_rig(first), ..Plan::default() });
+    for (name, a, b, factor) in [
+        ("repetition", first.repetition.at(20.0), again.repetition.at(20.0), 1.1),
+        ("series", first.series.at(20.0), again.series.at(20.0), 1.5),
+        ("scale", first.series_scale, again.series_scale, 1.5),
+    ] {
+        assert!(a / b < factor && b / a < factor, "{name}: {a} and {b}");
     }
 }

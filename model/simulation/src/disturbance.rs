@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use pinswitch_calibration::effects::Covariate;
 use serde::{Deserialize, Serialize};
 
-use crate::twin::Moment;
+use crate::row_covariates::Moment;
 
 /// What a disturbance acts on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

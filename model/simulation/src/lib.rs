@@ -30,7 +30,8 @@ mod power;
 mod protocol;
 mod raw;
 mod rehearse;
-mod series_marks;
+mod row_covariates;
+mod series_traits;
 mod simulate;
 mod study;
 mod twin;
@@ -41,7 +42,7 @@ pub use plan::{ColumnsPlan, EffectPlan, NoisePlan, Plan, PlanError, Protocol, Ra
 pub use power::{Power, power};
 pub use raw::{Faults, RawLog, RawRun};
 pub use rehearse::rehearse;
-pub use series_marks::{SeriesMark, SeriesMarks};
+pub use series_traits::{SeriesMark, SeriesMarks};
 pub use simulate::{Simulated, simulate, simulate_rows};
 pub use study::{
     Case, CaseOutcome, ExperimentOutcome, ExperimentStudy, FormOutcome, FormStudy, Group, Promised, Standing,

@@ -6,8 +6,8 @@ use pinswitch_calibration::inference::{Levels, Model, Observations, select};
 use pinswitch_calibration::table::Frame;
 use serde::Serialize;
 
-use super::plan::{EffectPlan, Plan};
-use super::simulate::simulate;
+use crate::plan::{EffectPlan, Plan};
+use crate::simulate::simulate;
 
 /// What the plan makes of one effect at one size.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -7,7 +7,7 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-use super::plan::{Plan, Protocol};
+use crate::plan::{Plan, Protocol};
 
 /// Time of one move in seconds.
 const MOVE_S: f64 = 0.5;

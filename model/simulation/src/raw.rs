@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 
-use super::plan::{Plan, PlanError, RawPlan};
+use crate::plan::{Plan, PlanError, RawPlan};
 
 /// What was put wrong into a log on purpose.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -270,7 +270,7 @@ impl<'a> Recorder<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulate;
+    use crate::simulate::simulate;
     use pinswitch_calibration::segmentation::{Finding, Log, RunPlan, segment};
 
     /// What `segment` reads out of the logs is what was put in, and what was put wrong is found.

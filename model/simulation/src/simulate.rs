@@ -8,9 +8,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
-use super::plan::{Plan, PlanError};
-use super::series_marks::{SeriesMarks, walked};
-use super::{protocol, twin};
+use crate::plan::{Plan, PlanError};
+use crate::series_traits::{SeriesMarks, walked};
+use crate::{protocol, twin};
 
 /// The tables that a plan makes.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,10 @@
 use pinswitch_calibration::effects::{Effect, Vocabulary};
 use pinswitch_friction::published;
 
-use super::{EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan};
+use super::error::PlanError;
+use super::noise::NoisePlan;
+use super::raw::RawPlan;
+use super::rig_plan::{EffectPlan, Plan, Protocol};
 use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
 use crate::effect_forms::forms_of;
 

@@ -9,7 +9,9 @@ use pinswitch_calibration::inference::{FoundEffect, Levels};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_calibration::{Answer, Asked, AskedQuestion, Calibration, ModelFile, Verdict, calibrate};
 
-use super::cases::{Case, Group, Truth, plan_of};
+use super::case::{Case, Group, Truth};
+use super::cases::plan_of;
+use super::figures::median_told;
 use super::told_probability::{Promised, table_of};
 use crate::next_session::plan_for;
 use crate::plan::{Plan, Protocol};
@@ -205,7 +207,7 @@ fn row(name: &str, outcomes: &[&ExperimentOutcome]) -> String {
         count(&|o| o.first == Standing::Open),
         count(&|o| o.proposed == Some(Standing::Alone)),
         count(&|o| o.repeated == Some(Standing::Alone)),
-        super::summary::median_told(outcomes.iter().filter(|o| o.proposed.is_some()).map(|o| o.minutes), 0)
+        median_told(outcomes.iter().filter(|o| o.proposed.is_some()).map(|o| o.minutes), 0)
     )
 }
 

@@ -6,10 +6,11 @@ use pinswitch_calibration::inference::{Levels, Model, Observations, Term, Weighe
 use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_calibration::{CONFIRMED_P, Calibration, TrialOutcome, TrialReport, calibrate, trials};
 
-use super::cases::{Case, Truth, plan_of};
+use super::case::{Case, Truth};
+use super::cases::plan_of;
+use super::figures::median_told;
 use super::outcome::error_n;
 use super::shown::shows_all;
-use super::summary::median_told;
 use super::true_form::{true_forms, true_shapes};
 use crate::disturbance::Disturbance;
 use crate::next_session::next_session;
@@ -177,15 +178,14 @@ fn row(protocol: &str, name: &str, outcomes: &[&FormOutcome]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::study_cases;
+    use crate::plan::Protocol;
+    use crate::study::cases::study_cases;
 
     #[test]
     fn a_step_is_drawn_confirmed_and_refuted() {
         let case = study_cases()
             .into_iter()
-            .find(|c| {
-                c.name == "step of the reading in mid-session" && c.protocol == crate::Protocol::Randomised
-            })
+            .find(|c| c.name == "step of the reading in mid-session" && c.protocol == Protocol::Randomised)
             .unwrap();
         let found = run_form_case(&case, 2, Levels::default()).unwrap();
         assert!(found.place_is_right && found.shape_is_right == Some(true), "{found:?}");

@@ -2,7 +2,7 @@
 
 use pinswitch_calibration::effects::{PaperProtocol, effect_named};
 
-use super::cases::Truth;
+use super::case::Truth;
 use crate::plan::Protocol;
 
 /// Drags of the guide pulleys in newtons.
@@ -49,7 +49,7 @@ pub(super) fn sizes(id: &str, protocol: Protocol) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
     use crate::plan::{EffectPlan, NoisePlan, Plan};
-    use crate::series_marks::SeriesMarks;
+    use crate::series_traits::SeriesMarks;
 
     #[test]
     fn a_masked_effect_changes_friction_or_reading_by_three_percent() {

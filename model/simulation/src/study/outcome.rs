@@ -8,7 +8,8 @@ use pinswitch_calibration::inference::{
 use pinswitch_calibration::table::{Frame, PlateauRow, PlateauTable};
 use pinswitch_calibration::{Verdict, calibrate};
 
-use super::cases::{Case, plan_of};
+use super::case::Case;
+use super::cases::plan_of;
 use super::said::Said;
 use super::shown::shows_all;
 use crate::next_session::next_session;

@@ -4,7 +4,7 @@ use pinswitch_calibration::Verdict;
 use pinswitch_calibration::effects::Covariate;
 use pinswitch_calibration::inference::UNATTRIBUTED;
 
-use super::cases::{Case, Truth};
+use super::case::{Case, Truth};
 use crate::plan::Plan;
 
 /// What the calibrator said of one rig.
@@ -82,8 +82,8 @@ impl Said<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Plan, Protocol};
-    use crate::study::Group;
+    use crate::plan::Protocol;
+    use crate::study::case::Group;
 
     fn judged(truth: Truth, sets: &[Vec<&str>], place: Option<Covariate>) -> ((bool, bool), Vec<String>) {
         let case = Case {

@@ -8,7 +8,7 @@ use pinswitch_calibration::inference::{
 use pinswitch_calibration::table::Frame;
 
 use crate::plan::{EffectPlan, Plan};
-use crate::series_marks::SeriesMarks;
+use crate::series_traits::SeriesMarks;
 use crate::simulate::simulate;
 use crate::twin::readings;
 

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_calibration::median;
-
-use super::{Case, CaseOutcome, Group, Study};
+use super::case::{Case, Group};
+use super::case_study::Study;
+use super::figures::median_of;
+use super::outcome::CaseOutcome;
 
 /// A promise below this share of what a new session has is broken.
 const LEAST_PROMISE: f64 = 0.8;
@@ -150,23 +151,6 @@ fn row(name: &str, outcomes: &[&CaseOutcome]) -> String {
     )
 }
 
-/// What was said, as one text: what was named, or else the verdict.
-pub(super) fn said(outcome: &CaseOutcome) -> String {
-    if outcome.named.is_empty() { outcome.verdict.as_str().to_owned() } else { outcome.named.join(" + ") }
-}
-
-/// Median; not a number without values.
-pub(super) fn median_of(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    if values.is_empty() { f64::NAN } else { median(&mut values) }
-}
-
-/// The median with so many digits after the point; nothing without values.
-pub(super) fn median_told(values: impl Iterator<Item = f64>, digits: usize) -> String {
-    let median = median_of(values);
-    if median.is_nan() { String::new() } else { format!("{median:.digits$}") }
-}
-
 /// Percentage of the outcomes for which something holds, with their number.
 fn share(outcomes: &[&CaseOutcome], holds: impl Fn(&CaseOutcome) -> bool) -> String {
     let count = outcomes.iter().filter(|o| holds(o)).count();
@@ -185,7 +169,7 @@ fn calibration_of_p(nulls: &[&CaseOutcome]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::study_cases;
+    use crate::study::cases::study_cases;
     use pinswitch_calibration::Verdict;
 
     fn outcome(exact: bool, extras: &[&str]) -> CaseOutcome {

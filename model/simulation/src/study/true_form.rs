@@ -116,7 +116,10 @@ pub(super) fn true_shapes(disturbance: &Disturbance) -> &'static [&'static str] 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::{Group, plan_of, study_cases};
+    use crate::plan::NoisePlan;
+    use crate::simulate::simulate;
+    use crate::study::case::Group;
+    use crate::study::cases::{plan_of, study_cases};
     use pinswitch_calibration::inference::{Model, Noise, Observations, Term, Weighed, fit};
 
     /// The twin and the formula say the same: the true form leaves nothing of a rig that scatters hardly.
@@ -124,15 +127,15 @@ mod tests {
     fn a_true_form_leaves_nothing() {
         for case in study_cases().into_iter().filter(|c| c.group == Group::Outside) {
             let mut plan = plan_of(&case, 3);
-            plan.noise = crate::NoisePlan {
+            plan.noise = NoisePlan {
                 repetition_n: 0.01,
                 repetition_per_load: 0.0,
                 series_n: 0.001,
                 series_per_load: 0.0,
                 outlier_share: 0.0,
-                ..crate::NoisePlan::default()
+                ..NoisePlan::default()
             };
-            let rows = crate::simulate(&plan).rows;
+            let rows = simulate(&plan).rows;
             let frame = Frame::new(&rows);
             let Some((vocabulary, ids)) = true_forms(&plan.disturbances[0], &frame) else { continue };
             let data = Observations::new(&frame, &rows).unwrap();

@@ -2,8 +2,11 @@
 
 use pinswitch_friction::{LayoutLaw, Substrate, published};
 
-use super::{F0_N, Moment, settling};
 use crate::plan::Plan;
+use crate::row_covariates::Moment;
+
+/// Reference load in newtons (`model/doc/effect-catalogue.md`).
+pub(super) const F0_N: f64 = 50.0;
 
 /// One kind of contact.
 #[derive(Clone, Debug)]
@@ -199,4 +202,9 @@ impl TwinContact {
             _ => 1.0 + k * mean,
         }
     }
+}
+
+/// 0 at 0, 1 at 1, settling with time constant `t`.
+fn settling(u: f64, t: f64) -> f64 {
+    (1.0 - (-u / t).exp()) / (1.0 - (-1.0 / t).exp())
 }

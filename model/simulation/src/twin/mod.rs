@@ -9,48 +9,15 @@ mod contact;
 
 use std::collections::BTreeMap;
 
-use contact::TwinContact;
+use contact::{F0_N, TwinContact};
 use pinswitch_calibration::inference::{Model, Term};
 use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_friction::published;
 
 use crate::effect_forms::has_own_formula;
 use crate::plan::Plan;
-use crate::series_marks::SeriesMarks;
-
-/// Reference load in newtons (`model/doc/effect-catalogue.md`).
-const F0_N: f64 = 50.0;
-
-/// What an effect may depend on in one row, beside the load and the contact.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Moment {
-    /// -1 eccentric, +1 concentric.
-    pub(crate) sign: f64,
-    /// Whether loads descend.
-    pub(crate) down: bool,
-    /// Speed in percent.
-    pub(crate) speed_pct: f64,
-    /// Geometric mean of the session's speeds in percent.
-    pub(crate) mean_speed_pct: f64,
-    /// Pause before the reading in seconds.
-    pub(crate) dwell_s: f64,
-    /// Repetition inside series and direction, from 1.
-    pub(crate) repetition: f64,
-    /// Repetition inside the series, both directions counted, from 1.
-    pub(crate) through: f64,
-    /// Share of the stroke, 0..1.
-    pub(crate) place: f64,
-    /// Share of the session's time, 0..1.
-    pub(crate) clock: f64,
-    /// Share of the session's repetitions made before, 0..1.
-    pub(crate) travel: f64,
-    /// The step down from the load of the series before, as a share of the session's highest load.
-    pub(crate) step_down: f64,
-    /// Who measures: 1 or 2.
-    pub(crate) operator: u32,
-    /// Factor on all friction that this seating of the tendon has.
-    pub(crate) seating: f64,
-}
+use crate::row_covariates::Moment;
+use crate::series_traits::SeriesMarks;
 
 /// Readings in newtons without noise, one per row of a whole session in the order of time.
 pub(super) fn readings(plan: &Plan, session: &[PlateauRow], marks: &SeriesMarks) -> Vec<f64> {
@@ -162,11 +129,6 @@ fn reading(plan: &Plan, contact: &TwinContact, at: &Moment, row: &PlateauRow) ->
         };
     }
     force_n
-}
-
-/// 0 at 0, 1 at 1, settling with time constant `t`.
-fn settling(u: f64, t: f64) -> f64 {
-    (1.0 - (-u / t).exp()) / (1.0 - (-1.0 / t).exp())
 }
 
 #[cfg(test)]

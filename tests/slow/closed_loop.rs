@@ -240,7 +240,7 @@ fn effects_asked_for_are_checked() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
         ("--effect gravity=1", "known are"),
-        ("--effect run_in=0.1", "3 value(s)"),
+        ("--effect run_in=0.1", "run_in needs 3 values"),
         ("--effect adhesion=much", "values are numbers"),
     ] {
         let output = pinswitch(2, folder.path(), &format!("simulate {options} --out rig"));

@@ -5,7 +5,7 @@ use pinswitch_calibration::inference::{Levels, Model, Observations, Weighed, int
 use pinswitch_calibration::segmentation::segment_run;
 use pinswitch_calibration::table::{Frame, PlateauTable};
 
-use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
+use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
 use crate::plan::{EffectPlan, NoisePlan, Plan, Protocol};
 use crate::raw::RawRun;
 use crate::simulate::simulate;
@@ -32,10 +32,10 @@ fn a_chain_is_found_as_strong_as_it_is() {
 fn independent_repetitions_are_left_alone_even_where_the_stroke_has_a_course() {
     let mut plan = Plan { seed: 8, ..Plan::default() };
     assert_eq!(estimated_correlation(&plan), 0.0);
-    let kind = Course::Spot { at: 0.4, width: 0.15, flat: false };
+    let kind = DisturbanceKind::Spot { at: 0.4, width: 0.15, flat: false };
     plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.2 });
     assert_eq!(estimated_correlation(&plan), 0.0);
-    plan.disturbances[0].kind = Course::TimeWave { cycles: 20.0, phase: 0.3 };
+    plan.disturbances[0].kind = DisturbanceKind::TimeWave { cycles: 20.0, phase: 0.3 };
     (plan.disturbances[0].target, plan.disturbances[0].size) = (DisturbanceTarget::Reading, 0.2);
     assert!(estimated_correlation(&plan) < 0.25, "a slow wave is mostly a drift inside a series");
 }
@@ -127,7 +127,7 @@ fn no_scatter_is_told_as_a_shape_or_a_second_name_beside_a_strong_one() {
 fn a_quick_wave_is_drawn_with_its_own_frequency() {
     for (cycles, seed) in [(14.25, 2), (20.1, 9), (38.4, 3), (61.7, 4)] {
         let mut plan = Plan { seed, ..Plan::default() };
-        let kind = Course::TimeWave { cycles, phase: 2.0 };
+        let kind = DisturbanceKind::TimeWave { cycles, phase: 2.0 };
         plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Reading, size: 0.15 });
         let form = calibrate(&simulate(&plan).rows, Levels::default()).unwrap().form.unwrap().report;
         let (size, frequency) = (form.parameters["a"].value.abs(), form.parameters["f"].value);

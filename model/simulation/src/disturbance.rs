@@ -30,7 +30,7 @@ pub enum DisturbanceTarget {
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
     /// Its course.
-    pub kind: Course,
+    pub kind: DisturbanceKind,
     /// What it acts on.
     #[serde(default)]
     pub target: DisturbanceTarget,
@@ -38,10 +38,10 @@ pub struct Disturbance {
     pub size: f64,
 }
 
-/// Course of a disturbance; shares of time and stroke are 0..1.
+/// DisturbanceKind of a disturbance; shares of time and stroke are 0..1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Course {
+pub enum DisturbanceKind {
     /// From a share of the session on; `over` is the share it takes to rise.
     Step {
         /// Where it begins.
@@ -134,37 +134,54 @@ pub enum Turns {
     Half,
 }
 
+impl DisturbanceKind {
+    /// Numbers of the disturbance with their keys below `kind`.
+    pub(super) fn numbers(&self) -> Vec<(&'static str, f64)> {
+        match *self {
+            Self::Step { at, over } => vec![("step.at", at), ("step.over", over)],
+            Self::Window { from, to } => vec![("window.from", from), ("window.to", to)],
+            Self::TimeWave { cycles, phase } => {
+                vec![("time_wave.cycles", cycles), ("time_wave.phase", phase)]
+            }
+            Self::StrokeWave { cycles, phase, .. } => {
+                vec![("stroke_wave.cycles", cycles), ("stroke_wave.phase", phase)]
+            }
+            Self::Spot { at, width, .. } => vec![("spot.at", at), ("spot.width", width)],
+            Self::Resonance { speed_pct, width_pct } => {
+                vec![("resonance.speed_pct", speed_pct), ("resonance.width_pct", width_pct)]
+            }
+            Self::Stribeck { speed_pct, width } => {
+                vec![("stribeck.speed_pct", speed_pct), ("stribeck.width", width)]
+            }
+            Self::Layout { .. } | Self::Swap { .. } | Self::Operators { .. } | Self::Memory { .. } => vec![],
+        }
+    }
+
+    /// Numbers that the formula divides by, with their keys below `kind`.
+    pub(super) fn divisors(&self) -> Vec<(&'static str, f64)> {
+        match *self {
+            Self::Spot { width, .. } => vec![("spot.width", width)],
+            Self::Resonance { width_pct, .. } => vec![("resonance.width_pct", width_pct)],
+            Self::Stribeck { .. } => self.numbers(),
+            _ => vec![],
+        }
+    }
+}
+
 impl Disturbance {
     /// Where a calibration may find it: any of these is right.
     pub fn covariates(&self) -> &'static [Covariate] {
         match self.kind {
-            Course::Step { .. } | Course::Window { .. } | Course::TimeWave { .. } | Course::Swap { .. } => {
-                &[Covariate::Time]
-            }
-            Course::StrokeWave { .. } | Course::Spot { .. } => &[Covariate::Position],
-            Course::Resonance { .. } | Course::Stribeck { .. } => &[Covariate::Speed],
-            Course::Layout { .. } => &[Covariate::Condition],
-            Course::Memory { .. } => &[Covariate::Load, Covariate::Repetition],
+            DisturbanceKind::Step { .. }
+            | DisturbanceKind::Window { .. }
+            | DisturbanceKind::TimeWave { .. }
+            | DisturbanceKind::Swap { .. } => &[Covariate::Time],
+            DisturbanceKind::StrokeWave { .. } | DisturbanceKind::Spot { .. } => &[Covariate::Position],
+            DisturbanceKind::Resonance { .. } | DisturbanceKind::Stribeck { .. } => &[Covariate::Speed],
+            DisturbanceKind::Layout { .. } => &[Covariate::Condition],
+            DisturbanceKind::Memory { .. } => &[Covariate::Load, Covariate::Repetition],
             // Groups of series at random go along with everything a little, and with nothing clearly.
-            Course::Operators { .. } => &Covariate::ALL,
-        }
-    }
-
-    /// Every number of its course, and those of them that are divided by.
-    pub(super) fn numbers(&self) -> (Vec<f64>, Vec<f64>) {
-        match self.kind {
-            Course::Step { at, over } => (vec![at, over], vec![]),
-            Course::Window { from, to } => (vec![from, to], vec![]),
-            Course::TimeWave { cycles, phase } | Course::StrokeWave { cycles, phase, .. } => {
-                (vec![cycles, phase], vec![])
-            }
-            Course::Spot { at, width, .. } => (vec![at, width], vec![width]),
-            Course::Resonance { speed_pct, width_pct } => (vec![speed_pct, width_pct], vec![width_pct]),
-            Course::Stribeck { speed_pct, width } => (vec![speed_pct, width], vec![speed_pct, width]),
-            Course::Layout { .. }
-            | Course::Swap { .. }
-            | Course::Operators { .. }
-            | Course::Memory { .. } => (vec![], vec![]),
+            DisturbanceKind::Operators { .. } => &Covariate::ALL,
         }
     }
 
@@ -172,14 +189,14 @@ impl Disturbance {
         let flag = |b: bool| f64::from(u8::from(b));
         let Moment { clock, place, speed_pct, .. } = *at;
         match &self.kind {
-            Course::Step { at: from, over } => ((clock - from) / over.max(1e-9)).clamp(0.0, 1.0),
-            Course::Window { from, to } => flag(clock >= *from && clock < *to),
-            Course::TimeWave { cycles, phase } => (TAU * cycles * clock + phase).sin(),
-            Course::StrokeWave { cycles, phase, square } => {
+            DisturbanceKind::Step { at: from, over } => ((clock - from) / over.max(1e-9)).clamp(0.0, 1.0),
+            DisturbanceKind::Window { from, to } => flag(clock >= *from && clock < *to),
+            DisturbanceKind::TimeWave { cycles, phase } => (TAU * cycles * clock + phase).sin(),
+            DisturbanceKind::StrokeWave { cycles, phase, square } => {
                 let wave = (TAU * cycles * place + phase).sin();
                 if *square { wave.signum() * PI / 4.0 } else { wave }
             }
-            Course::Spot { at: centre, width, flat } => {
+            DisturbanceKind::Spot { at: centre, width, flat } => {
                 let x = (place - centre) / width;
                 if x.abs() > 0.5 {
                     0.0
@@ -189,16 +206,18 @@ impl Disturbance {
                     (PI * x).cos()
                 }
             }
-            Course::Resonance { speed_pct: v, width_pct } => {
+            DisturbanceKind::Resonance { speed_pct: v, width_pct } => {
                 1.0 / (1.0 + ((speed_pct - v) / width_pct).powi(2))
             }
-            Course::Stribeck { speed_pct: lowest, width } => {
+            DisturbanceKind::Stribeck { speed_pct: lowest, width } => {
                 -(-((speed_pct / lowest).ln() / width).powi(2)).exp()
             }
-            Course::Layout { pins: defective } => flag(pins == defective.as_slice()),
-            Course::Memory { repetitions } => at.step_down * (-(at.through - 1.0) / repetitions).exp(),
-            Course::Swap { at: from, .. } => flag(clock >= *from),
-            Course::Operators { .. } => flag(at.operator == 2),
+            DisturbanceKind::Layout { pins: defective } => flag(pins == defective.as_slice()),
+            DisturbanceKind::Memory { repetitions } => {
+                at.step_down * (-(at.through - 1.0) / repetitions).exp()
+            }
+            DisturbanceKind::Swap { at: from, .. } => flag(clock >= *from),
+            DisturbanceKind::Operators { .. } => flag(at.operator == 2),
         }
     }
 
@@ -217,11 +236,12 @@ impl Disturbance {
         let course = self.course(at, pins);
         let factor = 1.0 + self.size * course;
         match (self.target, &self.kind) {
-            (DisturbanceTarget::Friction, Course::Swap { silicone, .. }) => (factor, 1.0 + silicone * course),
-            // Pins do not remember.
-            (DisturbanceTarget::Friction, Course::Memory { .. }) | (DisturbanceTarget::Silicone, _) => {
-                (1.0, factor)
+            (DisturbanceTarget::Friction, DisturbanceKind::Swap { silicone, .. }) => {
+                (factor, 1.0 + silicone * course)
             }
+            // Pins do not remember.
+            (DisturbanceTarget::Friction, DisturbanceKind::Memory { .. })
+            | (DisturbanceTarget::Silicone, _) => (1.0, factor),
             (DisturbanceTarget::Friction, _) => (factor, factor),
             (DisturbanceTarget::Pins, _) => (factor, 1.0),
             (DisturbanceTarget::Reading | DisturbanceTarget::Drag, _) => (1.0, 1.0),
@@ -235,18 +255,18 @@ mod tests {
 
     #[test]
     fn a_spot_and_a_resonance_end_where_they_should() {
-        let on = |kind: Course, clock, place, speed_pct| {
+        let on = |kind: DisturbanceKind, clock, place, speed_pct| {
             let at = Moment { clock, place, speed_pct, ..Moment::default() };
             Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.5 }.on_friction(&at, &[]).0
         };
-        let spot = || Course::Spot { at: 0.5, width: 0.1, flat: false };
+        let spot = || DisturbanceKind::Spot { at: 0.5, width: 0.1, flat: false };
         assert_eq!(on(spot(), 0.0, 0.5, 50.0), 1.5);
         assert_eq!(on(spot(), 0.0, 0.56, 50.0), 1.0);
-        let step = || Course::Step { at: 0.4, over: 0.0 };
+        let step = || DisturbanceKind::Step { at: 0.4, over: 0.0 };
         assert_eq!((on(step(), 0.39, 0.0, 50.0), on(step(), 0.41, 0.0, 50.0)), (1.0, 1.5));
-        let resonance = Course::Resonance { speed_pct: 50.0, width_pct: 1.0 };
+        let resonance = DisturbanceKind::Resonance { speed_pct: 50.0, width_pct: 1.0 };
         assert_eq!(on(resonance, 0.0, 0.0, 51.0), 1.25);
-        let dip = || Course::Stribeck { speed_pct: 50.0, width: 0.5 };
+        let dip = || DisturbanceKind::Stribeck { speed_pct: 50.0, width: 0.5 };
         assert_eq!(on(dip(), 0.0, 0.0, 50.0), 0.5);
         let beside = on(dip(), 0.0, 0.0, 50.0 * 0.5f64.exp());
         assert!((beside - 1.0 + 0.5 / 1f64.exp()).abs() < 1e-12, "{beside}");
@@ -255,7 +275,7 @@ mod tests {
     #[test]
     fn silicone_forgets_and_pins_never_knew() {
         let memory = Disturbance {
-            kind: Course::Memory { repetitions: 10.0 },
+            kind: DisturbanceKind::Memory { repetitions: 10.0 },
             target: DisturbanceTarget::Friction,
             size: 0.5,
         };
@@ -272,7 +292,7 @@ mod tests {
     #[test]
     fn another_tendon_rubs_otherwise_on_pins_and_on_silicone() {
         let swap = Disturbance {
-            kind: Course::Swap { at: 0.5, silicone: -0.1 },
+            kind: DisturbanceKind::Swap { at: 0.5, silicone: -0.1 },
             target: DisturbanceTarget::Friction,
             size: 0.2,
         };
@@ -283,7 +303,7 @@ mod tests {
     #[test]
     fn the_second_operator_alone_is_off() {
         let two = Disturbance {
-            kind: Course::Operators { turns: Turns::Series },
+            kind: DisturbanceKind::Operators { turns: Turns::Series },
             target: DisturbanceTarget::Reading,
             size: 0.5,
         };

@@ -36,9 +36,9 @@ mod simulate;
 mod study;
 mod twin;
 
-pub use disturbance::{Course, Disturbance, DisturbanceTarget, Turns};
+pub use disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget, Turns};
 pub use next_session::next_session;
-pub use plan::{ColumnsPlan, EffectPlan, NoisePlan, Plan, PlanError, Protocol, RawPlan, RigConstants};
+pub use plan::{ColumnsPlan, EffectPlan, NoisePlan, Plan, Protocol, RawPlan, RigConstants};
 pub use power::{Power, power};
 pub use raw::{Faults, RawLog, RawRun};
 pub use rehearse::rehearse;

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use pinswitch_calibration::table::{PlateauRow, substrate_word};
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::published;
 use pinswitch_friction::{Direction, Substrate};
 use rand::{RngExt, SeedableRng};
@@ -10,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 
-use crate::plan::{Plan, PlanError, RawPlan};
+use crate::plan::{Plan, RawPlan};
 
 /// What was put wrong into a log on purpose.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -66,21 +67,20 @@ const ON_S: f64 = 0.5;
 const LEAD_S: f64 = 2.0;
 /// Seconds over which the plateau is read.
 const READ_S: f64 = 1.0;
+/// Shortest dwell of a raw log in seconds: the force settles before the plateau is read.
+const MIN_DWELL_S: f64 = 1.5;
 
 impl<'a> RawRun<'a> {
     /// The run that recorded the rows of a session. `file` is the name used in errors.
     ///
     /// # Errors
-    /// [`PlanError::Bound`] if the plan has several dwells: a run has one.
-    pub fn new(plan: &'a Plan, rows: &[PlateauRow], file: &str) -> Result<Self, PlanError> {
-        if plan.dwells_s.len() != 1 || plan.dwells_s[0] < 1.5 {
-            return Err(PlanError::Bound {
-                file: file.to_owned(),
-                field: "dwells_s",
-                value: format!("{:?}", plan.dwells_s),
-                bound: "one dwell of at least 1.5 s for raw logs",
-                remedy: "a run.toml has one dwell_s; make one plan per dwell",
-            });
+    /// A [`Diagnostic`] unless the plan has one dwell that is long enough to read a plateau.
+    pub fn new(plan: &'a Plan, rows: &[PlateauRow], file: &str) -> Result<Self, Diagnostic> {
+        if plan.dwells_s.len() != 1 || plan.dwells_s[0] < MIN_DWELL_S {
+            let location = Location::file(file).with_field("dwells_s", format!("{:?}", plan.dwells_s));
+            return Err(Diagnostic::new(format!("raw logs need one dwell of at least {MIN_DWELL_S} s"))
+                .with_location(location)
+                .with_help("make one plan per dwell, since a run.toml has one dwell_s"));
         }
         let mut series: Vec<Vec<PlateauRow>> = Vec::new();
         for row in rows {

@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::disturbance::{Course, Turns};
+use crate::disturbance::{DisturbanceKind, Turns};
 use crate::plan::{ColumnsPlan, Plan};
 
 /// Streams of the random numbers beside the one that everything else is drawn from.
@@ -153,7 +153,7 @@ struct Operators {
 impl Operators {
     fn of(plan: &Plan, session: &[PlateauRow], mut random: ChaCha8Rng) -> Self {
         let turns = plan.disturbances.iter().find_map(|d| match d.kind {
-            Course::Operators { turns } => Some(turns),
+            DisturbanceKind::Operators { turns } => Some(turns),
             _ => None,
         });
         let series: BTreeSet<&str> = session.iter().map(|r| r.series.as_str()).collect();
@@ -239,7 +239,7 @@ mod tests {
     fn operators_take_turns() {
         let of = |turns| {
             let mut plan = Plan { seed: 3, ..Plan::randomised() };
-            let kind = Course::Operators { turns };
+            let kind = DisturbanceKind::Operators { turns };
             plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Reading, size: 0.5 });
             marks(&plan).iter().map(|m| m.operator).collect::<Vec<_>>()
         };

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::published;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
-use crate::plan::{Plan, PlanError};
+use crate::plan::Plan;
 use crate::series_traits::{SeriesMarks, walked};
 use crate::{protocol, twin};
 
@@ -40,16 +41,22 @@ impl Simulated {
 const MAX_N: f64 = 1e5;
 
 impl Simulated {
-    /// Whether these are readings that a load cell can give. `file` is the name of the plan, used in errors.
+    /// Checks that a load cell can give these readings; `file` is the name of the plan in errors.
     ///
     /// # Errors
-    /// [`PlanError::Reading`] at the first that is none.
-    pub fn check(&self, file: &str) -> Result<(), PlanError> {
+    /// A [`Diagnostic`] at the first reading that is not finite or beyond the range of a table.
+    pub fn check(&self, file: &str) -> Result<(), Diagnostic> {
         let is_reading = |row: &PlateauRow| row.force_n.abs() <= MAX_N && row.load_n <= MAX_N;
         for rows in [&self.rows, &self.fresh] {
             if let Some(at) = rows.iter().position(|row| !is_reading(row)) {
-                let reading = rows[at].force_n.to_string();
-                return Err(PlanError::Reading { file: file.to_owned(), row: at + 1, reading, most: MAX_N });
+                let problem = format!(
+                    "the plan makes a reading of {} N in row {}, at most {MAX_N} N are possible",
+                    rows[at].force_n,
+                    at + 1
+                );
+                return Err(Diagnostic::new(problem)
+                    .with_location(Location::file(file))
+                    .with_help("lower its constants, effects or noise"));
             }
         }
         Ok(())

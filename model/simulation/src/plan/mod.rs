@@ -2,14 +2,12 @@
 
 mod check;
 mod columns;
-mod error;
 mod noise;
 mod raw;
 mod rig_plan;
 mod text;
 
 pub use columns::ColumnsPlan;
-pub use error::PlanError;
 pub use noise::NoisePlan;
 pub use raw::RawPlan;
 pub use rig_plan::{EffectPlan, Plan, Protocol, RigConstants};

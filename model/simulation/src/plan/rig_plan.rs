@@ -75,8 +75,9 @@ impl Default for RigConstants {
 /// let plan = Plan::parse("weights_g = [251.2, 2005.0, 5002.5]\nlayouts = [[5, 8, 11]]", "plan.toml")?;
 /// assert_eq!(plan.repetitions, Plan::default().repetitions);
 /// let error = Plan::parse("weights_g = [-1.0]", "plan.toml").unwrap_err();
-/// assert!(error.to_string().starts_with("plan.toml: weights_g = [-1.0] is outside"));
-/// # Ok::<(), pinswitch_simulation::PlanError>(())
+/// assert_eq!(error.location().and_then(|at| at.line), Some(1));
+/// assert!(error.to_string().starts_with("plan.toml:1:13: weights_g = [-1.0]: must be 1 to 1000 numbers"));
+/// # Ok::<(), pinswitch_diagnostic::Diagnostic>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

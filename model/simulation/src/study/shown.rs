@@ -69,7 +69,7 @@ fn beside(model: &Model, effects: &[EffectPlan]) -> Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
+    use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
 
     fn shown(plan: &Plan) -> bool {
         shows_all(plan, &simulate(plan).marks, Levels::default()).unwrap()
@@ -97,7 +97,11 @@ mod tests {
     #[test]
     fn a_disturbance_is_shown_beside_mounts_that_differ() {
         let step = |target, size| Plan {
-            disturbances: vec![Disturbance { kind: Course::Step { at: 0.5, over: 0.0 }, target, size }],
+            disturbances: vec![Disturbance {
+                kind: DisturbanceKind::Step { at: 0.5, over: 0.0 },
+                target,
+                size,
+            }],
             ..with(&[])
         };
         assert!(shown(&step(DisturbanceTarget::Reading, 0.8)));
@@ -107,7 +111,7 @@ mod tests {
         let pins = Plan::default().layouts[1].clone();
         let layout = |size| Plan {
             disturbances: vec![Disturbance {
-                kind: Course::Layout { pins: pins.clone() },
+                kind: DisturbanceKind::Layout { pins: pins.clone() },
                 target: DisturbanceTarget::Friction,
                 size,
             }],

@@ -8,7 +8,7 @@ use pinswitch_calibration::effects::{
 };
 use pinswitch_calibration::table::Frame;
 
-use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
+use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
 
 /// The vocabulary with the true forms of a disturbance, and their ids; `None` where no formula can say it: an operator
 /// who comes and goes is no variable.
@@ -16,8 +16,12 @@ pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vo
     let course = course(disturbance, frame)?;
     let size = disturbance.size;
     let parts = match (&disturbance.kind, disturbance.target) {
-        (Course::Swap { silicone, .. }, _) => vec![(ActsOn::MuPins, size), (ActsOn::MuSilicone, *silicone)],
-        (Course::Memory { .. }, _) | (_, DisturbanceTarget::Silicone) => vec![(ActsOn::MuSilicone, size)],
+        (DisturbanceKind::Swap { silicone, .. }, _) => {
+            vec![(ActsOn::MuPins, size), (ActsOn::MuSilicone, *silicone)]
+        }
+        (DisturbanceKind::Memory { .. }, _) | (_, DisturbanceTarget::Silicone) => {
+            vec![(ActsOn::MuSilicone, size)]
+        }
         (_, DisturbanceTarget::Friction) => vec![(ActsOn::Mu, size)],
         (_, DisturbanceTarget::Pins) => vec![(ActsOn::MuPins, size)],
         (_, DisturbanceTarget::Reading) => vec![(ActsOn::Reading, size)],
@@ -59,25 +63,25 @@ pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vo
 /// The course of a disturbance of size one, in the language of formulas.
 fn course(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
     Some(match &disturbance.kind {
-        Course::Step { at, over } if *over > 0.0 => format!("min(1, max(0, (time - {at})/{over}))"),
-        Course::Step { at, .. } | Course::Swap { at, .. } => format!("(time >= {at})"),
-        Course::Window { from, to } => format!("(time >= {from})*(time < {to})"),
-        Course::TimeWave { cycles, phase } => format!("sin({}*time + {phase})", TAU * cycles),
-        Course::StrokeWave { cycles, phase, square } => {
+        DisturbanceKind::Step { at, over } if *over > 0.0 => format!("min(1, max(0, (time - {at})/{over}))"),
+        DisturbanceKind::Step { at, .. } | DisturbanceKind::Swap { at, .. } => format!("(time >= {at})"),
+        DisturbanceKind::Window { from, to } => format!("(time >= {from})*(time < {to})"),
+        DisturbanceKind::TimeWave { cycles, phase } => format!("sin({}*time + {phase})", TAU * cycles),
+        DisturbanceKind::StrokeWave { cycles, phase, square } => {
             let wave = format!("sin({}*stroke + {phase})", TAU * cycles);
             if *square { format!("{FRAC_PI_4}*(2*({wave} > 0) - 1)") } else { wave }
         }
-        Course::Spot { at, width, flat } => {
+        DisturbanceKind::Spot { at, width, flat } => {
             let inside = format!("(abs(stroke - {at}) <= {})", 0.5 * width);
             if *flat { inside } else { format!("{inside}*cos({}*(stroke - {at}))", PI / width) }
         }
-        Course::Resonance { speed_pct, width_pct } => {
+        DisturbanceKind::Resonance { speed_pct, width_pct } => {
             format!("1/(1 + ((speed_pct - {speed_pct})/{width_pct})^2)")
         }
-        Course::Stribeck { speed_pct, width } => {
+        DisturbanceKind::Stribeck { speed_pct, width } => {
             format!("(0 - exp(-(ln(speed_pct/{speed_pct})/{width})^2))")
         }
-        Course::Layout { pins } => {
+        DisturbanceKind::Layout { pins } => {
             let condition = frame.conditions.iter().find(|c| c.pins == *pins)?;
             format!(
                 "(abs(pin_count - {}) < 0.5)*(abs(turn_unevenness - {:.5}) < 0.0005)",
@@ -85,31 +89,31 @@ fn course(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
                 condition.turn_unevenness()
             )
         }
-        Course::Memory { repetitions } => format!(
+        DisturbanceKind::Memory { repetitions } => format!(
             "(previous_load_n - load_n)/{:.6}*exp(-repetitions_so_far/{repetitions})",
             frame.load_range_n.1
         ),
-        Course::Operators { .. } => return None,
+        DisturbanceKind::Operators { .. } => return None,
     })
 }
 
 /// The shape of a disturbance in the words of a report: any of these is right. None where no shape is asked for.
 pub(super) fn true_shapes(disturbance: &Disturbance) -> &'static [&'static str] {
     match disturbance.kind {
-        Course::Step { .. } | Course::Swap { .. } => &["step"],
-        Course::Window { .. } | Course::Layout { .. } => &["level"],
-        Course::TimeWave { .. } | Course::StrokeWave { .. } => &["sine"],
+        DisturbanceKind::Step { .. } | DisturbanceKind::Swap { .. } => &["step"],
+        DisturbanceKind::Window { .. } | DisturbanceKind::Layout { .. } => &["level"],
+        DisturbanceKind::TimeWave { .. } | DisturbanceKind::StrokeWave { .. } => &["sine"],
         // A worn spot with sharp ends is another level between them.
-        Course::Spot { flat, .. } => {
+        DisturbanceKind::Spot { flat, .. } => {
             if flat {
                 &["bump", "dip", "level"]
             } else {
                 &["bump", "dip"]
             }
         }
-        Course::Resonance { .. } | Course::Stribeck { .. } => &["bump", "dip"],
-        Course::Memory { .. } => &["memory"],
-        Course::Operators { .. } => &[],
+        DisturbanceKind::Resonance { .. } | DisturbanceKind::Stribeck { .. } => &["bump", "dip"],
+        DisturbanceKind::Memory { .. } => &["memory"],
+        DisturbanceKind::Operators { .. } => &[],
     }
 }
 

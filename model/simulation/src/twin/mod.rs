@@ -134,7 +134,7 @@ fn reading(plan: &Plan, contact: &TwinContact, at: &Moment, row: &PlateauRow) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
+    use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
     use crate::effect_forms::FORMS;
     use crate::plan::EffectPlan;
     use pinswitch_calibration::effects::{CATALOGUE, effect_named};
@@ -196,7 +196,7 @@ mod tests {
         let mut random = rand::SeedableRng::seed_from_u64(3);
         let rows = crate::protocol::rows(&plan, &mut random);
         let without = readings(&plan, &rows, &SeriesMarks::default());
-        let kind = Course::Memory { repetitions: 20.0 };
+        let kind = DisturbanceKind::Memory { repetitions: 20.0 };
         plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Silicone, size: 0.5 });
         let with = readings(&plan, &rows, &SeriesMarks::default());
         let exponent = |force_n: f64, row: &PlateauRow| (force_n / row.load_n).ln();

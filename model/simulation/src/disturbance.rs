@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use pinswitch_calibration::effects::Covariate;
 use serde::{Deserialize, Serialize};
 
-use crate::row_covariates::Moment;
+use crate::row_covariates::RowCovariates;
 
 /// What a disturbance acts on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -120,14 +120,14 @@ pub enum DisturbanceKind {
     /// Two operators; the second zeroes the cell off by `size`.
     Operators {
         /// How they take turns.
-        turns: Turns,
+        turns: OperatorSchedule,
     },
 }
 
 /// How two operators take turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Turns {
+pub enum OperatorSchedule {
     /// Each series has one of them at random.
     Series,
     /// One has the first half of the session's series, the other the second; who begins is random.
@@ -185,19 +185,21 @@ impl Disturbance {
         }
     }
 
-    fn course(&self, at: &Moment, pins: &[usize]) -> f64 {
+    fn course(&self, at: &RowCovariates, pins: &[usize]) -> f64 {
         let flag = |b: bool| f64::from(u8::from(b));
-        let Moment { clock, place, speed_pct, .. } = *at;
+        let RowCovariates { time_share, stroke_share, speed_pct, .. } = *at;
         match &self.kind {
-            DisturbanceKind::Step { at: from, over } => ((clock - from) / over.max(1e-9)).clamp(0.0, 1.0),
-            DisturbanceKind::Window { from, to } => flag(clock >= *from && clock < *to),
-            DisturbanceKind::TimeWave { cycles, phase } => (TAU * cycles * clock + phase).sin(),
+            DisturbanceKind::Step { at: from, over } => {
+                ((time_share - from) / over.max(1e-9)).clamp(0.0, 1.0)
+            }
+            DisturbanceKind::Window { from, to } => flag(time_share >= *from && time_share < *to),
+            DisturbanceKind::TimeWave { cycles, phase } => (TAU * cycles * time_share + phase).sin(),
             DisturbanceKind::StrokeWave { cycles, phase, square } => {
-                let wave = (TAU * cycles * place + phase).sin();
+                let wave = (TAU * cycles * stroke_share + phase).sin();
                 if *square { wave.signum() * PI / 4.0 } else { wave }
             }
             DisturbanceKind::Spot { at: centre, width, flat } => {
-                let x = (place - centre) / width;
+                let x = (stroke_share - centre) / width;
                 if x.abs() > 0.5 {
                     0.0
                 } else if *flat {
@@ -214,15 +216,15 @@ impl Disturbance {
             }
             DisturbanceKind::Layout { pins: defective } => flag(pins == defective.as_slice()),
             DisturbanceKind::Memory { repetitions } => {
-                at.step_down * (-(at.through - 1.0) / repetitions).exp()
+                at.step_down * (-(at.series_repetition - 1.0) / repetitions).exp()
             }
-            DisturbanceKind::Swap { at: from, .. } => flag(clock >= *from),
+            DisturbanceKind::Swap { at: from, .. } => flag(time_share >= *from),
             DisturbanceKind::Operators { .. } => flag(at.operator == 2),
         }
     }
 
     /// Newtons on a reading.
-    pub(super) fn on_reading_n(&self, at: &Moment, pins: &[usize]) -> f64 {
+    pub(super) fn on_reading_n(&self, at: &RowCovariates, pins: &[usize]) -> f64 {
         let course = || self.size * self.course(at, pins);
         match self.target {
             DisturbanceTarget::Reading => course(),
@@ -232,7 +234,7 @@ impl Disturbance {
     }
 
     /// Factors on the friction of pins and silicone.
-    pub(super) fn on_friction(&self, at: &Moment, pins: &[usize]) -> (f64, f64) {
+    pub(super) fn on_friction(&self, at: &RowCovariates, pins: &[usize]) -> (f64, f64) {
         let course = self.course(at, pins);
         let factor = 1.0 + self.size * course;
         match (self.target, &self.kind) {
@@ -255,8 +257,8 @@ mod tests {
 
     #[test]
     fn a_spot_and_a_resonance_end_where_they_should() {
-        let on = |kind: DisturbanceKind, clock, place, speed_pct| {
-            let at = Moment { clock, place, speed_pct, ..Moment::default() };
+        let on = |kind: DisturbanceKind, time_share, stroke_share, speed_pct| {
+            let at = RowCovariates { time_share, stroke_share, speed_pct, ..RowCovariates::default() };
             Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.5 }.on_friction(&at, &[]).0
         };
         let spot = || DisturbanceKind::Spot { at: 0.5, width: 0.1, flat: false };
@@ -279,8 +281,11 @@ mod tests {
             target: DisturbanceTarget::Friction,
             size: 0.5,
         };
-        let on = |step_down, through| {
-            memory.on_friction(&Moment { step_down, through, ..Moment::default() }, &[3, 5])
+        let on = |step_down, series_repetition| {
+            memory.on_friction(
+                &RowCovariates { step_down, series_repetition, ..RowCovariates::default() },
+                &[3, 5],
+            )
         };
         assert_eq!(on(0.8, 1.0), (1.0, 1.4));
         assert_eq!(on(-0.8, 1.0), (1.0, 0.6));
@@ -296,18 +301,19 @@ mod tests {
             target: DisturbanceTarget::Friction,
             size: 0.2,
         };
-        let on = |clock| swap.on_friction(&Moment { clock, ..Moment::default() }, &[]);
+        let on =
+            |time_share| swap.on_friction(&RowCovariates { time_share, ..RowCovariates::default() }, &[]);
         assert_eq!((on(0.4), on(0.6)), ((1.0, 1.0), (1.2, 0.9)));
     }
 
     #[test]
     fn the_second_operator_alone_is_off() {
         let two = Disturbance {
-            kind: DisturbanceKind::Operators { turns: Turns::Series },
+            kind: DisturbanceKind::Operators { turns: OperatorSchedule::Series },
             target: DisturbanceTarget::Reading,
             size: 0.5,
         };
-        let on = |operator| two.on_reading_n(&Moment { operator, ..Moment::default() }, &[]);
+        let on = |operator| two.on_reading_n(&RowCovariates { operator, ..RowCovariates::default() }, &[]);
         assert_eq!((on(1), on(2)), (0.0, 0.5));
     }
 }

@@ -24,27 +24,28 @@
 mod calibrator_tests;
 mod disturbance;
 mod effect_forms;
+mod model_session;
 mod next_session;
 mod plan;
 mod power;
 mod protocol;
 mod raw;
-mod rehearse;
 mod row_covariates;
 mod series_traits;
 mod simulate;
 mod study;
 mod twin;
 
-pub use disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget, Turns};
+pub use disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget, OperatorSchedule};
+pub use model_session::simulate_from_model;
 pub use next_session::next_session;
 pub use plan::{ColumnsPlan, EffectPlan, NoisePlan, Plan, Protocol, RawPlan, RigConstants};
 pub use power::{Power, power};
 pub use raw::{Faults, RawLog, RawRun};
-pub use rehearse::rehearse;
-pub use series_traits::{SeriesMark, SeriesMarks};
+pub use series_traits::{SeriesTraits, SessionTraits};
 pub use simulate::{Simulated, simulate, simulate_rows};
 pub use study::{
-    Case, CaseOutcome, ExperimentOutcome, ExperimentStudy, FormOutcome, FormStudy, Group, Promised, Standing,
-    Study, Truth, experiment_cases, plan_of, run_case, run_experiment_case, run_form_case, study_cases,
+    AnswerForecast, Attribution, Case, CaseOutcome, ExperimentOutcome, ExperimentStudy, FormOutcome,
+    FormStudy, Group, Study, Truth, experiment_cases, plan_of, run_case, run_experiment_case, run_form_case,
+    study_cases,
 };

@@ -2,7 +2,7 @@
 
 /// What an effect may depend on in one row, beside the load and the contact.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Moment {
+pub(crate) struct RowCovariates {
     /// -1 eccentric, +1 concentric.
     pub(crate) sign: f64,
     /// Whether loads descend.
@@ -16,13 +16,13 @@ pub(crate) struct Moment {
     /// Repetition inside series and direction, from 1.
     pub(crate) repetition: f64,
     /// Repetition inside the series, both directions counted, from 1.
-    pub(crate) through: f64,
+    pub(crate) series_repetition: f64,
     /// Share of the stroke, 0..1.
-    pub(crate) place: f64,
+    pub(crate) stroke_share: f64,
     /// Share of the session's time, 0..1.
-    pub(crate) clock: f64,
+    pub(crate) time_share: f64,
     /// Share of the session's repetitions made before, 0..1.
-    pub(crate) travel: f64,
+    pub(crate) travel_share: f64,
     /// The step down from the load of the series before, as a share of the session's highest load.
     pub(crate) step_down: f64,
     /// Who measures: 1 or 2.

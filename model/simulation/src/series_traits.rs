@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::disturbance::{DisturbanceKind, Turns};
+use crate::disturbance::{DisturbanceKind, OperatorSchedule};
 use crate::plan::{ColumnsPlan, Plan};
 
 /// Streams of the random numbers beside the one that everything else is drawn from.
@@ -20,7 +20,7 @@ const OPERATORS: u64 = 4;
 
 /// What one series has of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeriesMark {
+pub struct SeriesTraits {
     /// Number of the mount, from 1: it grows each time another condition is put on.
     pub mount: u32,
     /// Who measured it: 1 or 2.
@@ -31,7 +31,7 @@ pub struct SeriesMark {
     pub common_offset: f64,
 }
 
-impl Default for SeriesMark {
+impl Default for SeriesTraits {
     fn default() -> Self {
         Self { mount: 1, operator: 1, friction_factor: 1.0, common_offset: 0.0 }
     }
@@ -39,9 +39,9 @@ impl Default for SeriesMark {
 
 /// What the series of a session have of their own, by name.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SeriesMarks(BTreeMap<String, SeriesMark>);
+pub struct SessionTraits(BTreeMap<String, SeriesTraits>);
 
-impl SeriesMarks {
+impl SessionTraits {
     /// Draws it for a session whose rows are in the order of time.
     pub(crate) fn draw(plan: &Plan, session: &[PlateauRow]) -> Self {
         let stream = |number| {
@@ -51,9 +51,9 @@ impl SeriesMarks {
         };
         let mut seats = stream(SERIES_SCALE);
         let mut mounts = stream(MOUNT_SCALE);
-        let mut offsets = Walk::new(plan.noise.series_walk, stream(COMMON_OFFSET));
+        let mut offsets = Ar1::new(plan.noise.series_walk, stream(COMMON_OFFSET));
         let mut operators = Operators::of(plan, session, stream(OPERATORS));
-        let mut marks = BTreeMap::new();
+        let mut traits = BTreeMap::new();
         let mut before: Option<&PlateauRow> = None;
         let (mut mount, mut wrap) = (0, 0.0);
         for row in session {
@@ -66,25 +66,25 @@ impl SeriesMarks {
             }
             before = Some(row);
             let seat = plan.noise.series_scale * normal(&mut seats);
-            let mark = SeriesMark {
+            let mark = SeriesTraits {
                 mount,
                 operator: operators.next(),
                 friction_factor: (wrap + seat).exp(),
                 common_offset: offsets.next(),
             };
-            marks.insert(row.series.clone(), mark);
+            traits.insert(row.series.clone(), mark);
         }
-        Self(marks)
+        Self(traits)
     }
 
     /// That of a series.
-    pub fn of(&self, series: &str) -> SeriesMark {
+    pub fn of(&self, series: &str) -> SeriesTraits {
         self.0.get(series).copied().unwrap_or_default()
     }
 
     /// The same series as if the tendon had been seated ideally in each.
     pub(crate) fn seated_ideally(&self) -> Self {
-        let ideal = |mark: &SeriesMark| SeriesMark { friction_factor: 1.0, ..*mark };
+        let ideal = |mark: &SeriesTraits| SeriesTraits { friction_factor: 1.0, ..*mark };
         Self(self.0.iter().map(|(series, mark)| (series.clone(), ideal(mark))).collect())
     }
 
@@ -117,33 +117,33 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
 
 /// Unit normal numbers, each correlated with the one before.
 #[derive(Debug)]
-pub(crate) struct Walk {
+pub(crate) struct Ar1 {
     correlation: f64,
     last: Option<f64>,
     random: ChaCha8Rng,
 }
 
-impl Walk {
+impl Ar1 {
     fn new(correlation: f64, random: ChaCha8Rng) -> Self {
         Self { correlation, last: None, random }
     }
 
     fn next(&mut self) -> f64 {
         let unit = normal(&mut self.random);
-        let value = walked(self.correlation, self.last, unit);
+        let value = ar1_step(self.correlation, self.last, unit);
         self.last = Some(value);
         value
     }
 }
 
 /// A unit normal number, correlated with the last one; it is `unit` itself where nothing is.
-pub(crate) fn walked(correlation: f64, last: Option<f64>, unit: f64) -> f64 {
+pub(crate) fn ar1_step(correlation: f64, last: Option<f64>, unit: f64) -> f64 {
     last.map_or(unit, |last| correlation * last + (1.0 - correlation * correlation).sqrt() * unit)
 }
 
 /// Who has which turn.
 struct Operators {
-    turns: Option<Turns>,
+    turns: Option<OperatorSchedule>,
     random: ChaCha8Rng,
     begins: bool,
     half: usize,
@@ -166,8 +166,8 @@ impl Operators {
         self.served += 1;
         let second = match self.turns {
             None => false,
-            Some(Turns::Series) => self.random.random(),
-            Some(Turns::Half) => first_half == self.begins,
+            Some(OperatorSchedule::Series) => self.random.random(),
+            Some(OperatorSchedule::Half) => first_half == self.begins,
         };
         1 + u32::from(second)
     }
@@ -178,12 +178,12 @@ mod tests {
     use super::*;
     use crate::disturbance::{Disturbance, DisturbanceTarget};
 
-    fn marks(plan: &Plan) -> Vec<SeriesMark> {
+    fn traits(plan: &Plan) -> Vec<SeriesTraits> {
         let rows = crate::protocol::rows(plan, &mut ChaCha8Rng::seed_from_u64(plan.seed));
-        let marks = SeriesMarks::draw(plan, &rows);
+        let traits = SessionTraits::draw(plan, &rows);
         let mut names: Vec<&str> = rows.iter().map(|r| r.series.as_str()).collect();
         names.dedup();
-        names.into_iter().map(|n| marks.of(n)).collect()
+        names.into_iter().map(|n| traits.of(n)).collect()
     }
 
     fn sd(values: &[f64]) -> f64 {
@@ -192,20 +192,20 @@ mod tests {
     }
 
     /// One repetition a series, and each value over many seeds.
-    fn over_seeds(plan: &Plan, of: impl Fn(Vec<SeriesMark>) -> Vec<f64>) -> Vec<f64> {
-        (0..300).flat_map(|seed| of(marks(&Plan { seed, repetitions: [1, 1], ..plan.clone() }))).collect()
+    fn over_seeds(plan: &Plan, of: impl Fn(Vec<SeriesTraits>) -> Vec<f64>) -> Vec<f64> {
+        (0..300).flat_map(|seed| of(traits(&Plan { seed, repetitions: [1, 1], ..plan.clone() }))).collect()
     }
 
     #[test]
     fn each_part_scatters_as_much_as_the_plan_says() {
-        let logs = |marks: Vec<SeriesMark>| marks.iter().map(|m| m.friction_factor.ln()).collect();
+        let logs = |traits: Vec<SeriesTraits>| traits.iter().map(|m| m.friction_factor.ln()).collect();
         let mut plan = Plan::randomised();
         assert!(over_seeds(&plan, logs).iter().all(|v| *v == 0.0));
         plan.noise.series_scale = 0.03;
         assert!((sd(&over_seeds(&plan, logs)) / 0.03 - 1.0).abs() < 0.03);
         (plan.noise.series_scale, plan.noise.mount_scale) = (0.0, 0.04);
         assert!((sd(&over_seeds(&plan, logs)) / 0.04 - 1.0).abs() < 0.05);
-        let common = |marks: Vec<SeriesMark>| marks.iter().map(|m| m.common_offset).collect();
+        let common = |traits: Vec<SeriesTraits>| traits.iter().map(|m| m.common_offset).collect();
         assert!((sd(&over_seeds(&plan, common)) - 1.0).abs() < 0.03);
     }
 
@@ -214,8 +214,8 @@ mod tests {
         for walk in [0.0, 0.8] {
             let mut plan = Plan::default();
             plan.noise.series_walk = walk;
-            let products = over_seeds(&plan, |marks| {
-                marks.windows(2).map(|m| m[0].common_offset * m[1].common_offset).collect()
+            let products = over_seeds(&plan, |traits| {
+                traits.windows(2).map(|m| m[0].common_offset * m[1].common_offset).collect()
             });
             let correlation = products.iter().sum::<f64>() / products.len() as f64;
             assert!((correlation - walk).abs() < 0.05, "{correlation} instead of {walk}");
@@ -226,13 +226,13 @@ mod tests {
     fn a_condition_is_one_mount_unless_it_is_taken_off_between() {
         let mut plan = Plan::randomised();
         plan.noise.mount_scale = 0.02;
-        let once = marks(&plan);
+        let once = traits(&plan);
         assert_eq!(once.last().map(|m| m.mount), Some(7));
         for pair in once.windows(2) {
             assert_eq!(pair[0].mount == pair[1].mount, pair[0].friction_factor == pair[1].friction_factor);
         }
         plan.shuffled = true;
-        assert!(marks(&plan).last().is_some_and(|m| m.mount > 50));
+        assert!(traits(&plan).last().is_some_and(|m| m.mount > 50));
     }
 
     #[test]
@@ -241,12 +241,12 @@ mod tests {
             let mut plan = Plan { seed: 3, ..Plan::randomised() };
             let kind = DisturbanceKind::Operators { turns };
             plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Reading, size: 0.5 });
-            marks(&plan).iter().map(|m| m.operator).collect::<Vec<_>>()
+            traits(&plan).iter().map(|m| m.operator).collect::<Vec<_>>()
         };
         let changes = |turns: &[u32]| turns.windows(2).filter(|w| w[0] != w[1]).count();
-        assert_eq!(changes(&of(Turns::Half)), 1);
-        let by_series = of(Turns::Series);
+        assert_eq!(changes(&of(OperatorSchedule::Half)), 1);
+        let by_series = of(OperatorSchedule::Series);
         assert!((50..104).contains(&changes(&by_series)), "{by_series:?}");
-        assert!(marks(&Plan::randomised()).iter().all(|m| m.operator == 1));
+        assert!(traits(&Plan::randomised()).iter().all(|m| m.operator == 1));
     }
 }

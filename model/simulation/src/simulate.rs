@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
 use crate::plan::Plan;
-use crate::series_traits::{SeriesMarks, walked};
+use crate::series_traits::{SessionTraits, ar1_step};
 use crate::{protocol, twin};
 
 /// The tables that a plan makes.
@@ -22,18 +22,18 @@ pub struct Simulated {
     /// in all of them.
     pub fresh: Vec<PlateauRow>,
     /// What each series has of its own.
-    pub marks: SeriesMarks,
+    pub traits: SessionTraits,
 }
 
 impl Simulated {
     /// The text of the table, with the optional columns that the plan asks for.
     pub fn table(&self, plan: &Plan) -> String {
-        self.marks.add_columns(plan.columns, &self.rows, PlateauTable::write(&self.rows))
+        self.traits.add_columns(plan.columns, &self.rows, PlateauTable::write(&self.rows))
     }
 
     /// The text of the rows without noise, with the optional columns that the plan asks for.
     pub fn fresh_table(&self, plan: &Plan) -> String {
-        self.marks.add_columns(plan.columns, &self.fresh, PlateauTable::write(&self.fresh))
+        self.traits.add_columns(plan.columns, &self.fresh, PlateauTable::write(&self.fresh))
     }
 }
 
@@ -86,8 +86,8 @@ pub fn simulate_rows(plan: &Plan, rows: Vec<PlateauRow>) -> Simulated {
 }
 
 fn recorded(plan: &Plan, mut rows: Vec<PlateauRow>, random: &mut ChaCha8Rng) -> Simulated {
-    let marks = SeriesMarks::draw(plan, &rows);
-    read(plan, &mut rows, &marks.seated_ideally());
+    let traits = SessionTraits::draw(plan, &rows);
+    read(plan, &mut rows, &traits.seated_ideally());
     let mut fresh = Vec::new();
     let share = 400.0 / rows.len().max(1) as f64;
     for row in &rows {
@@ -96,20 +96,20 @@ fn recorded(plan: &Plan, mut rows: Vec<PlateauRow>, random: &mut ChaCha8Rng) -> 
         }
     }
     if plan.noise.series_scale > 0.0 || plan.noise.mount_scale > 0.0 {
-        read(plan, &mut rows, &marks);
+        read(plan, &mut rows, &traits);
     }
-    disturb(plan, &marks, &mut rows, random);
-    Simulated { rows, fresh, marks }
+    disturb(plan, &traits, &mut rows, random);
+    Simulated { rows, fresh, traits }
 }
 
 /// Writes the readings without noise into the rows.
-fn read(plan: &Plan, rows: &mut [PlateauRow], marks: &SeriesMarks) {
-    let forces = twin::readings(plan, rows, marks);
+fn read(plan: &Plan, rows: &mut [PlateauRow], traits: &SessionTraits) {
+    let forces = twin::readings(plan, rows, traits);
     rows.iter_mut().zip(forces).for_each(|(row, force)| row.force_n = force);
 }
 
 /// Adds noise per repetition, per series and direction, and per series; gross errors; rounds; loses rows.
-fn disturb(plan: &Plan, marks: &SeriesMarks, rows: &mut Vec<PlateauRow>, random: &mut ChaCha8Rng) {
+fn disturb(plan: &Plan, traits: &SessionTraits, rows: &mut Vec<PlateauRow>, random: &mut ChaCha8Rng) {
     let noise = &plan.noise;
     let heavy = StudentT::new(3.0).ok();
     // Of each series and direction: its offset, its factor on the repetition noise, and the last repetition's noise.
@@ -122,7 +122,7 @@ fn disturb(plan: &Plan, marks: &SeriesMarks, rows: &mut Vec<PlateauRow>, random:
         let cell = cells.entry((row.series.clone(), up)).or_insert_with(|| {
             let [offset, factor, before]: [f64; 3] = std::array::from_fn(|_| StandardNormal.sample(random));
             let sd = noise.series_n.hypot(noise.series_per_load * row.load_n);
-            let offset = walked(noise.series_walk, last[usize::from(up)], offset);
+            let offset = ar1_step(noise.series_walk, last[usize::from(up)], offset);
             last[usize::from(up)] = Some(offset);
             (offset * sd, (noise.uneven * factor).exp(), before)
         });
@@ -140,7 +140,7 @@ fn disturb(plan: &Plan, marks: &SeriesMarks, rows: &mut Vec<PlateauRow>, random:
         }
         let common_n = noise.series_common_n.hypot(noise.series_common_per_load * row.load_n);
         if common_n > 0.0 {
-            error += common_n * marks.of(&row.series).common_offset;
+            error += common_n * traits.of(&row.series).common_offset;
         }
         row.force_n += error;
         if noise.resolution_n > 0.0 {

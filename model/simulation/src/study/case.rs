@@ -88,7 +88,7 @@ pub struct Case {
 
 impl Case {
     /// Whether a word means it: that of its group, or else a part of its name.
-    pub fn is_meant_by(&self, word: &str) -> bool {
+    pub fn matches(&self, word: &str) -> bool {
         match Group::ALL.iter().find(|g| g.as_str() == word) {
             Some(group) => self.group == *group,
             None => self.name.contains(word),

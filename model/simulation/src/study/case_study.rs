@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::case::Case;
-use super::figures::{median_of, said};
+use super::figures::{answer_text, median_of};
 use super::outcome::CaseOutcome;
 
 /// Results by case.
@@ -45,9 +45,9 @@ impl Study {
             let seen = outcomes.iter().filter(|o| o.visible && o.exact).count();
             let mut other: BTreeMap<String, usize> = BTreeMap::new();
             for o in outcomes.iter().filter(|o| !o.exact) {
-                *other.entry(said(o)).or_default() += 1;
+                *other.entry(answer_text(o)).or_default() += 1;
             }
-            let other: Vec<String> = other.into_iter().map(|(said, k)| format!("{said} ({k})")).collect();
+            let other: Vec<String> = other.into_iter().map(|(answer, k)| format!("{answer} ({k})")).collect();
             text.push_str(&format!(
                 "| {} | {} | {} | {} | {exact} | {seen} of {visible} | {honest} | {open} | {:.3} | {:.3} | {} | {} |\n",
                 format!("{:?}", case.protocol).to_lowercase(),

@@ -95,20 +95,20 @@ pub fn plan_of(case: &Case, seed: u64) -> Plan {
     plan.noise.uneven = if seed.is_multiple_of(2) { 0.15 } else { 0.0 };
     plan.noise.lost_share = if seed.is_multiple_of(4) { 0.03 } else { 0.0 };
     match &case.truth {
-        Truth::Nothing => nulls::make(&case.name, &mut plan.noise, &mut random),
+        Truth::Nothing => nulls::apply(&case.name, &mut plan.noise, &mut random),
         Truth::Effects(ids) | Truth::Confounded(ids) => {
             let drag_n = drag_n(&case.name);
             for id in ids {
                 plan.effects.extend(match drag_n {
-                    Some(n) if *id == "guide_drag" => drawn(id, Some((n, n)), &mut random),
-                    Some(_) => drawn(id, sizes(id, case.protocol), &mut random),
-                    None => drawn(id, None, &mut random),
+                    Some(n) if *id == "guide_drag" => draw_effect(id, Some((n, n)), &mut random),
+                    Some(_) => draw_effect(id, sizes(id, case.protocol), &mut random),
+                    None => draw_effect(id, None, &mut random),
                 });
             }
         }
         Truth::SmallConfounded([id, _]) => {
             let size = SMALL.iter().find(|s| s.0 == *id).map(|s| (s.2, s.2));
-            plan.effects.extend(drawn(id, size, &mut random));
+            plan.effects.extend(draw_effect(id, size, &mut random));
         }
         Truth::Outside { .. } => {
             let layouts = plan.layouts.clone();
@@ -134,7 +134,7 @@ fn is_shuffled(case: &Case, seed: u64) -> bool {
 }
 
 /// An effect with its size, shape and form drawn; the size from the range of the study unless another is given.
-fn drawn(id: &str, sizes: Option<(f64, f64)>, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
+fn draw_effect(id: &str, sizes: Option<(f64, f64)>, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
     let range = effect_named(id)?.description().study;
     let mut values = Vec::new();
     if let Some((least, most)) = sizes.or(range.size) {
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_word_means_a_group_or_else_names() {
-        let meant = |word: &str| study_cases().iter().filter(|c| c.is_meant_by(word)).count();
+        let meant = |word: &str| study_cases().iter().filter(|c| c.matches(word)).count();
         assert_eq!(meant("nulls"), 2 * NULLS.len());
         assert_eq!(meant("masks"), 21);
         assert_eq!(meant("worn spot"), 2);

@@ -9,10 +9,10 @@ use pinswitch_calibration::inference::{FoundEffect, Levels};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_calibration::{Answer, Asked, AskedQuestion, Calibration, ModelFile, Verdict, calibrate};
 
+use super::answer_forecasts::{AnswerForecast, table_of};
 use super::case::{Case, Group, Truth};
 use super::cases::plan_of;
-use super::figures::median_told;
-use super::told_probability::{Promised, table_of};
+use super::figures::median_text;
 use crate::next_session::plan_for;
 use crate::plan::{Plan, Protocol};
 use crate::simulate::{simulate, simulate_rows};
@@ -34,7 +34,7 @@ const OPEN: [(&str, f64); 7] = [
 
 /// What a table says, as far as this chapter asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standing {
+pub enum Attribution {
     /// The true effect is attributed, alone.
     Alone,
     /// `ambiguous` or `inconclusive`.
@@ -47,17 +47,17 @@ pub enum Standing {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExperimentOutcome {
     /// After the paper's protocol.
-    pub first: Standing,
+    pub first: Attribution,
     /// After one proposed session more; `None` where nothing was open.
-    pub proposed: Option<Standing>,
+    pub proposed: Option<Attribution>,
     /// After as many minutes of the paper's protocol instead.
-    pub repeated: Option<Standing>,
+    pub repeated: Option<Attribution>,
     /// Minutes that the proposal took.
     pub minutes: f64,
     /// What was told of each question, and whether the proposed session answered it.
-    pub told: Vec<Promised>,
+    pub forecasts: Vec<AnswerForecast>,
     /// The same of the paper's protocol.
-    pub told_of_repeating: Vec<Promised>,
+    pub repetition_forecasts: Vec<AnswerForecast>,
 }
 
 /// The kinds of rig of this chapter.
@@ -90,38 +90,46 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
     let plan = open_plan(case, seed, factor);
     let rows = simulate(&plan).rows;
     let found = calibrate(&rows, levels).ok()?;
-    let first = standing(case, &found);
-    if first != Standing::Open {
+    let first = attribution(case, &found);
+    if first != Attribution::Open {
         return Some(ExperimentOutcome {
             first,
             proposed: None,
             repeated: None,
             minutes: 0.0,
-            told: Vec::new(),
-            told_of_repeating: Vec::new(),
+            forecasts: Vec::new(),
+            repetition_forecasts: Vec::new(),
         });
     }
     let rig = RigLimits::default();
     let proposal = proposed(&found, &rows, &rig, levels)?;
-    let after = |runs: &[PlannedRun], told: fn(&QuestionOutlook) -> f64| {
+    let after = |runs: &[PlannedRun], probability: fn(&QuestionOutlook) -> f64| {
         let asked = Asked {
             minutes: proposal.minutes,
             runs: Vec::new(),
-            questions: proposal.questions.iter().map(|q| asked(q, told(q))).collect(),
+            questions: proposal.questions.iter().map(|q| asked(q, probability(q))).collect(),
         };
         let Some(session) = session(&plan, runs, &rig) else { return (None, Vec::new()) };
         let Some(rows) = joined(&rows, session) else { return (None, Vec::new()) };
         let Ok(both) = calibrate(&rows, levels) else { return (None, Vec::new()) };
         let highest_n = rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
         let answers = asked.answered(&both.report, highest_n).questions;
-        let promised = answers
-            .iter()
-            .map(|q| Promised { probability: q.resolved_probability, is_answered: q.answer != Answer::Open });
-        (Some(standing(case, &both)), promised.collect())
+        let promised = answers.iter().map(|q| AnswerForecast {
+            probability: q.resolved_probability,
+            is_answered: q.answer != Answer::Open,
+        });
+        (Some(attribution(case, &both)), promised.collect())
     };
-    let (proposed, told) = after(&proposal.runs, |q| q.resolved_probability);
-    let (repeated, told_of_repeating) = after(&paper_runs(&rig, proposal.minutes), |q| q.by_repeating);
-    Some(ExperimentOutcome { first, proposed, repeated, minutes: proposal.minutes, told, told_of_repeating })
+    let (proposed, forecasts) = after(&proposal.runs, |q| q.resolved_probability);
+    let (repeated, repetition_forecasts) = after(&paper_runs(&rig, proposal.minutes), |q| q.by_repeating);
+    Some(ExperimentOutcome {
+        first,
+        proposed,
+        repeated,
+        minutes: proposal.minutes,
+        forecasts,
+        repetition_forecasts,
+    })
 }
 
 /// A question as a plan's file holds it.
@@ -135,12 +143,12 @@ fn asked(question: &QuestionOutlook, resolved_probability: f64) -> AskedQuestion
     }
 }
 
-fn standing(case: &Case, found: &Calibration) -> Standing {
+fn attribution(case: &Case, found: &Calibration) -> Attribution {
     let named: Vec<Vec<&str>> = found.selection.effects.iter().map(FoundEffect::ids).collect();
     match found.report.verdict {
-        Verdict::Attributed if named == [vec![case.name.as_str()]] => Standing::Alone,
-        Verdict::Ambiguous | Verdict::Inconclusive => Standing::Open,
-        _ => Standing::Other,
+        Verdict::Attributed if named == [vec![case.name.as_str()]] => Attribution::Alone,
+        Verdict::Ambiguous | Verdict::Inconclusive => Attribution::Open,
+        _ => Attribution::Other,
     }
 }
 
@@ -191,10 +199,10 @@ impl ExperimentStudy {
         }
         let all: Vec<&ExperimentOutcome> = self.outcomes.iter().flat_map(|(_, o)| o).collect();
         text.push_str(&row("all", &all));
-        let promised = |of: fn(&ExperimentOutcome) -> &Vec<Promised>| -> Vec<Promised> {
+        let promised = |of: fn(&ExperimentOutcome) -> &Vec<AnswerForecast>| -> Vec<AnswerForecast> {
             all.iter().flat_map(|outcome| of(outcome)).copied().collect()
         };
-        format!("{text}\n{}", table_of(&promised(|o| &o.told), &promised(|o| &o.told_of_repeating)))
+        format!("{text}\n{}", table_of(&promised(|o| &o.forecasts), &promised(|o| &o.repetition_forecasts)))
     }
 }
 
@@ -203,11 +211,11 @@ fn row(name: &str, outcomes: &[&ExperimentOutcome]) -> String {
     format!(
         "| {name} | {} | {} | {} | {} | {} | {} |\n",
         outcomes.len(),
-        count(&|o| o.first == Standing::Alone),
-        count(&|o| o.first == Standing::Open),
-        count(&|o| o.proposed == Some(Standing::Alone)),
-        count(&|o| o.repeated == Some(Standing::Alone)),
-        median_told(outcomes.iter().filter(|o| o.proposed.is_some()).map(|o| o.minutes), 0)
+        count(&|o| o.first == Attribution::Alone),
+        count(&|o| o.first == Attribution::Open),
+        count(&|o| o.proposed == Some(Attribution::Alone)),
+        count(&|o| o.repeated == Some(Attribution::Alone)),
+        median_text(outcomes.iter().filter(|o| o.proposed.is_some()).map(|o| o.minutes), 0)
     )
 }
 
@@ -222,11 +230,11 @@ mod tests {
             .filter_map(|seed| run_experiment_case(&case, seed, 1.0, Levels::default()))
             .collect();
         assert_eq!(outcomes.len(), 3);
-        let open: Vec<_> = outcomes.iter().filter(|o| o.first == Standing::Open).collect();
+        let open: Vec<_> = outcomes.iter().filter(|o| o.first == Attribution::Open).collect();
         assert!(!open.is_empty(), "{outcomes:?}");
         assert!(open.iter().all(|o| o.minutes <= MINUTES), "{open:?}");
-        let settled = open.iter().filter(|o| o.proposed == Some(Standing::Alone)).count();
-        let repeated = open.iter().filter(|o| o.repeated == Some(Standing::Alone)).count();
+        let settled = open.iter().filter(|o| o.proposed == Some(Attribution::Alone)).count();
+        let repeated = open.iter().filter(|o| o.repeated == Some(Attribution::Alone)).count();
         assert!(settled > repeated, "{outcomes:?}");
         let mut study = ExperimentStudy::default();
         study.add(case, outcomes);

@@ -8,10 +8,10 @@ use pinswitch_calibration::{CONFIRMED_P, Calibration, TrialOutcome, TrialReport,
 
 use super::case::{Case, Truth};
 use super::cases::plan_of;
-use super::figures::median_told;
+use super::figures::median_text;
 use super::outcome::error_n;
-use super::shown::shows_all;
 use super::true_form::{true_forms, true_shapes};
+use super::visibility::is_visible;
 use crate::disturbance::Disturbance;
 use crate::next_session::next_session;
 use crate::plan::Plan;
@@ -37,9 +37,9 @@ pub struct FormOutcome {
     /// That of the true form, its sizes fitted by the same code; `None` where no formula can say it.
     pub truth_n: Option<f64>,
     /// What a later session of the same rig says of the drawn form.
-    pub again: Option<TrialReport>,
+    pub later_trial: Option<TrialReport>,
     /// What a session of another rig, without the disturbance, says of it.
-    pub absent: Option<TrialReport>,
+    pub absent_trial: Option<TrialReport>,
 }
 
 impl FormOutcome {
@@ -62,7 +62,7 @@ pub fn run_form_case(case: &Case, seed: u64, levels: Levels) -> Option<FormOutco
     let next = next_session(&plan).rows;
     let error = |model: &Model| error_n(model, &frame, &next);
     let place = selection.structure.map(|s| s.covariate);
-    let judged = |rows: &[PlateauRow]| {
+    let trial = |rows: &[PlateauRow]| {
         let form = form.as_ref()?;
         let own = OwnEffect::new(form.definition.clone()).ok()?;
         let vocabulary = Vocabulary::built_in().with(vec![own]).ok()?;
@@ -71,7 +71,7 @@ pub fn run_form_case(case: &Case, seed: u64, levels: Levels) -> Option<FormOutco
     let without = Plan { disturbances: Vec::new(), seed: seed + OTHER_RIG, ..plan.clone() };
     Some(FormOutcome {
         place_is_right: place.is_some_and(|place| covariates.contains(&place)),
-        visible: shows_all(&plan, &simulated.marks, levels)?,
+        visible: is_visible(&plan, &simulated.traits, levels)?,
         shape: form.as_ref().map(|f| f.report.shape.clone()),
         shape_is_right: shape_is_right(disturbance, form.as_ref().map(|f| &f.report)),
         next_n: [
@@ -80,8 +80,8 @@ pub fn run_form_case(case: &Case, seed: u64, levels: Levels) -> Option<FormOutco
             form.as_ref().and_then(|f| error(&f.fitted.model)),
         ],
         truth_n: with_truth(disturbance, &frame, &data, &selection).and_then(|model| error(&model)),
-        again: judged(&next),
-        absent: judged(&simulate(&without).rows),
+        later_trial: trial(&next),
+        absent_trial: trial(&simulate(&without).rows),
     })
 }
 
@@ -159,16 +159,16 @@ fn row(protocol: &str, name: &str, outcomes: &[&FormOutcome]) -> String {
     };
     let shapes = outcomes.iter().filter_map(|o| o.shape_is_right).collect();
     let drawn = |o: &&FormOutcome| Some(o.next_n[2]? / o.truth_n?.max(1e-9));
-    let again = outcomes.iter().filter_map(|o| o.again.as_ref());
-    let absent = || outcomes.iter().filter_map(|o| o.absent.as_ref());
+    let again = outcomes.iter().filter_map(|o| o.later_trial.as_ref());
+    let absent = || outcomes.iter().filter_map(|o| o.absent_trial.as_ref());
     format!(
         "| {protocol} | {name} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
         outcomes.len(),
         outcomes.iter().filter(|o| o.place_is_right).count(),
         of(outcomes.iter().filter(|o| o.visible).map(|o| o.place_is_right).collect()),
         of(shapes),
-        median_told(outcomes.iter().filter_map(|o| o.over_truth()), 2),
-        median_told(outcomes.iter().filter_map(drawn), 2),
+        median_text(outcomes.iter().filter_map(|o| o.over_truth()), 2),
+        median_text(outcomes.iter().filter_map(drawn), 2),
         of(again.map(|t| t.outcome == TrialOutcome::Confirmed).collect()),
         of(absent().map(|t| t.outcome == TrialOutcome::Refuted).collect()),
         of(absent().map(|t| t.p_value.is_none_or(|p| p >= CONFIRMED_P)).collect()),
@@ -190,8 +190,8 @@ mod tests {
         let found = run_form_case(&case, 2, Levels::default()).unwrap();
         assert!(found.place_is_right && found.shape_is_right == Some(true), "{found:?}");
         assert!(found.over_truth().unwrap() < 1.3, "{found:?}");
-        assert_eq!(found.again.as_ref().unwrap().outcome, TrialOutcome::Confirmed);
-        assert_eq!(found.absent.as_ref().unwrap().outcome, TrialOutcome::Refuted);
+        assert_eq!(found.later_trial.as_ref().unwrap().outcome, TrialOutcome::Confirmed);
+        assert_eq!(found.absent_trial.as_ref().unwrap().outcome, TrialOutcome::Refuted);
         let mut study = FormStudy::default();
         study.add(case, vec![found]);
         assert!(study.table().contains("| 1 | 1 | 1 of 1 | 1 of 1 |"), "{}", study.table());

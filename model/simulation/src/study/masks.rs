@@ -49,7 +49,7 @@ pub(super) fn sizes(id: &str, protocol: Protocol) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
     use crate::plan::{EffectPlan, NoisePlan, Plan};
-    use crate::series_traits::SeriesMarks;
+    use crate::series_traits::SessionTraits;
 
     #[test]
     fn a_masked_effect_changes_friction_or_reading_by_three_percent() {
@@ -63,10 +63,10 @@ mod tests {
                 plan.noise = NoisePlan::default();
                 let mut random = rand::SeedableRng::seed_from_u64(3);
                 let rows = crate::protocol::rows(&plan, &mut random);
-                let without = crate::twin::readings(&plan, &rows, &SeriesMarks::default());
+                let without = crate::twin::readings(&plan, &rows, &SessionTraits::default());
                 let values = study.values_at(sizes(id, protocol).map(|s| s.0));
                 plan.effects.push(EffectPlan { id: id.to_owned(), values, form: 0 });
-                let with = crate::twin::readings(&plan, &rows, &SeriesMarks::default());
+                let with = crate::twin::readings(&plan, &rows, &SessionTraits::default());
                 let change = rows
                     .iter()
                     .zip(without.iter().zip(&with))

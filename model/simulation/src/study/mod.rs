@@ -1,5 +1,7 @@
 //! The study of the calibrator: rigs of every kind with sizes, forms and noise drawn, and what it says of them.
 
+mod answer;
+mod answer_forecasts;
 mod case;
 mod case_study;
 mod cases;
@@ -10,18 +12,16 @@ mod masks;
 mod nulls;
 mod outcome;
 mod outside;
-mod said;
-mod shown;
 mod summary;
-mod told_probability;
 mod true_form;
+mod visibility;
 
+pub use answer_forecasts::AnswerForecast;
 pub use case::{Case, Group, Truth};
 pub use case_study::Study;
 pub use cases::{plan_of, study_cases};
 pub use experiment_study::{
-    ExperimentOutcome, ExperimentStudy, Standing, experiment_cases, run_experiment_case,
+    Attribution, ExperimentOutcome, ExperimentStudy, experiment_cases, run_experiment_case,
 };
 pub use form_study::{FormOutcome, FormStudy, run_form_case};
 pub use outcome::{CaseOutcome, run_case};
-pub use told_probability::Promised;

@@ -56,7 +56,7 @@ pub(super) fn everything_at_once(noise: &mut NoisePlan, random: &mut ChaCha8Rng)
 }
 
 /// Gives the noise of a plan the kind of that name.
-pub(super) fn make(name: &str, noise: &mut NoisePlan, random: &mut ChaCha8Rng) {
+pub(super) fn apply(name: &str, noise: &mut NoisePlan, random: &mut ChaCha8Rng) {
     if let Some((_, change)) = NULLS.iter().find(|kind| kind.0 == name) {
         change(noise, random);
     }

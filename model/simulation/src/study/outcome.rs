@@ -8,10 +8,10 @@ use pinswitch_calibration::inference::{
 use pinswitch_calibration::table::{Frame, PlateauRow, PlateauTable};
 use pinswitch_calibration::{Verdict, calibrate};
 
+use super::answer::CalibratorAnswer;
 use super::case::Case;
 use super::cases::plan_of;
-use super::said::Said;
-use super::shown::shows_all;
+use super::visibility::is_visible;
 use crate::next_session::next_session;
 use crate::plan::Plan;
 use crate::simulate::simulate;
@@ -28,7 +28,7 @@ pub struct CaseOutcome {
     /// Root mean square errors on the readings of the next session of the same rig, baseline and augmented, in newtons.
     pub next_n: [f64; 2],
     /// Error promised for a new session over that on the next one; none unless one was promised.
-    pub promise_ratio: Option<f64>,
+    pub expected_error_ratio: Option<f64>,
     /// Whether the answer is the right one: the truth alone, or both rivals where the protocol confounds them.
     pub exact: bool,
     /// Whether every true effect is named or among the rivals, and nothing else stands alone.
@@ -60,7 +60,7 @@ pub struct CaseOutcome {
 /// Simulates one rig and calibrates it from the table's text alone. `None` if its table cannot be read back.
 ///
 /// `promised` asks for the error promised for a new session too, which repeats the whole procedure four times.
-pub fn run_case(case: &Case, seed: u64, levels: Levels, promised: bool) -> Option<CaseOutcome> {
+pub fn run_case(case: &Case, seed: u64, levels: Levels, with_expected_error: bool) -> Option<CaseOutcome> {
     let plan = plan_of(case, seed);
     let simulated = simulate(&plan);
     let rows = PlateauTable::read(PlateauTable::write(&simulated.rows).as_bytes(), "simulated").ok()?.rows;
@@ -76,8 +76,8 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels, promised: bool) -> Optio
     let mut named: Vec<String> = sets.iter().map(|s| s.join("|")).collect();
     named.extend(found.structure.map(|s| format!("{UNATTRIBUTED}:{}", s.covariate.as_str())));
     named.sort();
-    let said = Said { sets: &sets, place: found.structure.map(|s| s.covariate), verdict };
-    let (exact, honest) = said.judged(case, &plan);
+    let answer = CalibratorAnswer { sets: &sets, place: found.structure.map(|s| s.covariate), verdict };
+    let (exact, honest) = answer.grade(case, &plan);
     let largest_gain = found.candidates.first().map_or(0.0, |c| c.gain);
     let degrees = degrees_of_freedom(&data, found.baseline.model.values().len());
     let reaches = averaged_intervals(&found.augmented, &Weighed::new(&data, found.noise));
@@ -85,15 +85,15 @@ pub fn run_case(case: &Case, seed: u64, levels: Levels, promised: bool) -> Optio
         verdict,
         fresh_n: [error_n(baseline, &frame, fresh)?, error_n(augmented, &frame, fresh)?],
         next_n,
-        promise_ratio: promised
+        expected_error_ratio: with_expected_error
             .then(|| calibrate(&rows, levels).ok()?.report.promise_n)
             .flatten()
             .map(|promise_n| promise_n / next_n[1].max(1e-9)),
         exact,
         honest,
-        open: said.extras(case).is_empty() && left_open(&plan, &found),
-        visible: shows_all(&plan, &simulated.marks, levels)?,
-        extras: said.extras(case),
+        open: answer.extras(case).is_empty() && left_open(&plan, &found),
+        visible: is_visible(&plan, &simulated.traits, levels)?,
+        extras: answer.extras(case),
         covered: covered(&plan, &found, &reaches),
         across_zero: across_zero(verdict, &found, &reaches),
         largest_gain,

@@ -4,7 +4,7 @@ use pinswitch_calibration::effects::Covariate;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget, Turns};
+use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget, OperatorSchedule};
 use crate::plan::Protocol;
 
 /// What lies outside the vocabulary in the study, and the covariates of which any is right.
@@ -97,7 +97,7 @@ pub(super) fn outside(
             of(DisturbanceKind::Swap { at, silicone }, DisturbanceTarget::Friction, sign * friction)
         }
         "two operators" => {
-            let turns = if even { Turns::Series } else { Turns::Half };
+            let turns = if even { OperatorSchedule::Series } else { OperatorSchedule::Half };
             of(DisturbanceKind::Operators { turns }, DisturbanceTarget::Reading, sign * newtons)
         }
         "Stribeck's dip" => {

@@ -58,7 +58,8 @@ impl Study {
                 attributed.len()
             ));
         }
-        let mut promises: Vec<f64> = self.of(|_| true).iter().filter_map(|o| o.promise_ratio).collect();
+        let mut promises: Vec<f64> =
+            self.of(|_| true).iter().filter_map(|o| o.expected_error_ratio).collect();
         promises.sort_by(f64::total_cmp);
         if let (Some(least), Some(most)) = (promises.first(), promises.last()) {
             let below = promises.iter().filter(|p| **p < LEAST_PROMISE).count();
@@ -138,7 +139,7 @@ fn row(name: &str, outcomes: &[&CaseOutcome]) -> String {
     let mut extras: Vec<(&str, usize)> = extras.into_iter().collect();
     extras.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let extras: Vec<String> = extras.into_iter().map(|(name, count)| format!("{name} ({count})")).collect();
-    let promises: Vec<f64> = outcomes.iter().filter_map(|o| o.promise_ratio).collect();
+    let promises: Vec<f64> = outcomes.iter().filter_map(|o| o.expected_error_ratio).collect();
     format!(
         "| {name} | {} | {} | {} | {:.3} N | {:.3} | {} | {} |\n",
         outcomes.len(),
@@ -178,7 +179,7 @@ mod tests {
             named: Vec::new(),
             fresh_n: [0.2, 0.1],
             next_n: [0.4, 0.3],
-            promise_ratio: None,
+            expected_error_ratio: None,
             exact,
             honest: exact,
             open: false,
@@ -209,7 +210,7 @@ mod tests {
         assert_eq!(words.lines().count(), 6, "{words}");
         assert!(words.contains("... of those that the session could show: 1 of 1"), "{words}");
         let mut promised = outcome(true, &[]);
-        promised.promise_ratio = Some(1.1);
+        promised.expected_error_ratio = Some(1.1);
         let null = study_cases().into_iter().find(|c| c.group == Group::Nulls);
         study.add(null.unwrap(), vec![promised]);
         let row = "| no effect | 1 | 1 (100.0 %) | 1 (100.0 %) | 0.300 N | 0.750 | 1.100 |  |";

@@ -3,7 +3,7 @@
 use pinswitch_friction::{LayoutLaw, Substrate, published};
 
 use crate::plan::Plan;
-use crate::row_covariates::Moment;
+use crate::row_covariates::RowCovariates;
 
 /// Reference load in newtons (`model/doc/effect-catalogue.md`).
 pub(super) const F0_N: f64 = 50.0;
@@ -60,7 +60,7 @@ impl TwinContact {
     }
 
     /// Tension in newtons at a load, when the tension of the round before is known.
-    pub(super) fn tension_n(&self, plan: &Plan, at: &Moment, load_n: f64, before_n: f64) -> f64 {
+    pub(super) fn tension_n(&self, plan: &Plan, at: &RowCovariates, load_n: f64, before_n: f64) -> f64 {
         let x = self.exponents(plan, at, load_n, before_n);
         let grow = |x: f64| load_n * (at.sign * x).exp();
         let c = plan.effects.iter().find(|e| e.id == "adhesion");
@@ -83,7 +83,7 @@ impl TwinContact {
     }
 
     /// How far a device has switched, 0..1.
-    fn switched(&self, plan: &Plan, at: &Moment, load_n: f64, tension_n: f64) -> f64 {
+    fn switched(&self, plan: &Plan, at: &RowCovariates, load_n: f64, tension_n: f64) -> f64 {
         let mut half_n = self.half_load_n;
         let mut local = None;
         for e in &plan.effects {
@@ -108,7 +108,7 @@ impl TwinContact {
     }
 
     /// Friction exponents with all effects that change them.
-    fn exponents(&self, plan: &Plan, at: &Moment, load_n: f64, tension_n: f64) -> Exponents {
+    fn exponents(&self, plan: &Plan, at: &RowCovariates, load_n: f64, tension_n: f64) -> Exponents {
         let share = load_n / F0_N;
         let mean_share = 0.5 * (load_n + tension_n) / F0_N;
         let (mut pins, mut silicone, mut both, mut ploughing) = (1.0, 1.0, at.seating, 0.0);
@@ -129,14 +129,14 @@ impl TwinContact {
                 ("dwell_relaxation", 1) => silicone *= (at.dwell_s / published::DWELL_S).powf(k),
                 ("dwell_relaxation", _) => silicone *= 1.0 + k * (at.dwell_s / published::DWELL_S).ln(),
                 ("run_in", 1) => silicone *= 1.0 + k / (1.0 + (at.repetition - 1.0) / shape),
-                ("run_in", 2) => silicone *= 1.0 + k * (-(at.through - 1.0) / shape).exp(),
+                ("run_in", 2) => silicone *= 1.0 + k * (-(at.series_repetition - 1.0) / shape).exp(),
                 ("run_in", _) => {
                     let anew = if at.sign > 0.0 { e.values.get(2).copied().unwrap_or(1.0) } else { 1.0 };
                     silicone *= 1.0 + anew * k * (-(at.repetition - 1.0) / shape).exp();
                 }
-                ("wear_drift", 1) => both *= 1.0 + k * at.travel,
-                ("wear_drift", 2) => both *= 1.0 + k * at.clock,
-                ("wear_drift", _) => both *= 1.0 + k * settling(at.travel, shape),
+                ("wear_drift", 1) => both *= 1.0 + k * at.travel_share,
+                ("wear_drift", 2) => both *= 1.0 + k * at.time_share,
+                ("wear_drift", _) => both *= 1.0 + k * settling(at.travel_share, shape),
                 ("rate_dependence", 1) => both *= (at.speed_pct / at.mean_speed_pct).powf(k),
                 ("rate_dependence", _) => both *= 1.0 + k * (at.speed_pct / at.mean_speed_pct).ln(),
                 ("direction_asymmetry", 1) => both *= (at.sign * k / 2.0).exp(),
@@ -145,9 +145,9 @@ impl TwinContact {
                 ("fixture_compliance", 2) => both *= 1.0 + k * share.powf(0.8),
                 ("fixture_compliance", _) => both *= 1.0 + k * share,
                 ("stroke_position", 1) => {
-                    both *= 1.0 + k * (std::f64::consts::PI * (at.place - 0.5)).sin() / 2.0;
+                    both *= 1.0 + k * (std::f64::consts::PI * (at.stroke_share - 0.5)).sin() / 2.0;
                 }
-                ("stroke_position", _) => both *= 1.0 + k * (at.place - 0.5),
+                ("stroke_position", _) => both *= 1.0 + k * (at.stroke_share - 0.5),
                 _ => {}
             }
         }

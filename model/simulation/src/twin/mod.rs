@@ -16,11 +16,11 @@ use pinswitch_friction::published;
 
 use crate::effect_forms::has_own_formula;
 use crate::plan::Plan;
-use crate::row_covariates::Moment;
-use crate::series_traits::SeriesMarks;
+use crate::row_covariates::RowCovariates;
+use crate::series_traits::SessionTraits;
 
 /// Readings in newtons without noise, one per row of a whole session in the order of time.
-pub(super) fn readings(plan: &Plan, session: &[PlateauRow], marks: &SeriesMarks) -> Vec<f64> {
+pub(super) fn readings(plan: &Plan, session: &[PlateauRow], traits: &SessionTraits) -> Vec<f64> {
     let end_s = session.iter().map(|r| r.time_s).fold(1e-9, f64::max);
     let mean_speed_pct =
         (session.iter().map(|r| r.speed_pct.ln()).sum::<f64>() / session.len().max(1) as f64).exp();
@@ -37,35 +37,35 @@ pub(super) fn readings(plan: &Plan, session: &[PlateauRow], marks: &SeriesMarks)
             devices += usize::from(contact.switches());
             contact
         });
-        let through: &mut f64 = in_series.entry(row.series.clone()).or_insert(0.0);
-        *through += 1.0;
+        let series_repetition: &mut f64 = in_series.entry(row.series.clone()).or_insert(0.0);
+        *series_repetition += 1.0;
         if name != row.series {
             (name, before_n, load_n) = (&row.series, load_n, row.load_n);
         }
-        let mark = marks.of(&row.series);
-        let moment = Moment {
+        let mark = traits.of(&row.series);
+        let moment = RowCovariates {
             sign: row.direction.sign(),
             down: row.sweep == pinswitch_calibration::table::Sweep::Down,
             speed_pct: row.speed_pct,
             mean_speed_pct,
             dwell_s: row.dwell_s,
             repetition: f64::from(row.repetition),
-            through: *through,
-            place: row.position_mm / published::STROKE_MM,
-            clock: row.time_s / end_s,
-            travel: made as f64 / session.len() as f64,
+            series_repetition: *series_repetition,
+            stroke_share: row.position_mm / published::STROKE_MM,
+            time_share: row.time_s / end_s,
+            travel_share: made as f64 / session.len() as f64,
             step_down: (before_n - load_n) / most_n,
             operator: mark.operator,
             seating: mark.friction_factor,
         };
         out.push(reading(plan, contact, &moment, row));
     }
-    add_lent_traces(plan, session, &mut out);
+    add_fitter_effects(plan, session, &mut out);
     out
 }
 
 /// Adds what effects without a formula in the twin do to the fitter's own model at the plan's constants.
-fn add_lent_traces(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) {
+fn add_fitter_effects(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) {
     let lent: Vec<_> = plan
         .effects
         .iter()
@@ -92,7 +92,7 @@ fn add_lent_traces(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) 
 }
 
 /// One reading: hook, contact, guide pulleys, cell.
-fn reading(plan: &Plan, contact: &TwinContact, at: &Moment, row: &PlateauRow) -> f64 {
+fn reading(plan: &Plan, contact: &TwinContact, at: &RowCovariates, row: &PlateauRow) -> f64 {
     let has = |id: &str| plan.effects.iter().find(|e| e.id == id).map(|e| (e.values.as_slice(), e.form));
     let hook_n = published::HOOK_MASS_G * 1e-3 * published::GRAVITY_M_S2;
     let load_n = row.load_n + if has("hook_omitted").is_some() { hook_n } else { 0.0 };
@@ -115,7 +115,7 @@ fn reading(plan: &Plan, contact: &TwinContact, at: &Moment, row: &PlateauRow) ->
         force_n += k[0];
     }
     if let Some((k, _)) = has("thermal_drift") {
-        force_n += k[0] * at.clock;
+        force_n += k[0] * at.time_share;
     }
     for d in &plan.disturbances {
         force_n += d.on_reading_n(at, &row.pins);
@@ -153,7 +153,7 @@ mod tests {
             let frame = Frame::new(&rows);
             let model = Model::baseline(frame.clone()).with_term(Term::Named(*effect), &values);
             let fitters = model.predict(&frame.points(&rows).unwrap());
-            let worst = readings(&plan, &rows, &SeriesMarks::default())
+            let worst = readings(&plan, &rows, &SessionTraits::default())
                 .iter()
                 .zip(&fitters)
                 .map(|(a, b)| (a - b).abs())
@@ -177,7 +177,7 @@ mod tests {
                     plan.effects.push(EffectPlan { id: id.to_owned(), values, form });
                 }
                 let mut random = rand::SeedableRng::seed_from_u64(3);
-                readings(&plan, &crate::protocol::rows(&plan, &mut random), &SeriesMarks::default())
+                readings(&plan, &crate::protocol::rows(&plan, &mut random), &SessionTraits::default())
             };
             let distance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).abs()).sum::<f64>();
             let (none, first) = (with(None), with(Some(0)));
@@ -195,26 +195,26 @@ mod tests {
         let mut plan = Plan::default();
         let mut random = rand::SeedableRng::seed_from_u64(3);
         let rows = crate::protocol::rows(&plan, &mut random);
-        let without = readings(&plan, &rows, &SeriesMarks::default());
+        let without = readings(&plan, &rows, &SessionTraits::default());
         let kind = DisturbanceKind::Memory { repetitions: 20.0 };
         plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Silicone, size: 0.5 });
-        let with = readings(&plan, &rows, &SeriesMarks::default());
+        let with = readings(&plan, &rows, &SessionTraits::default());
         let exponent = |force_n: f64, row: &PlateauRow| (force_n / row.load_n).ln();
         let most_n = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
-        let (mut before_n, mut series, mut through) = (0.0, &rows[0], 0);
+        let (mut before_n, mut series, mut series_repetition) = (0.0, &rows[0], 0);
         for ((row, a), b) in rows.iter().zip(&without).zip(&with) {
             if row.series != series.series {
-                (before_n, series, through) = (series.load_n, row, 0);
+                (before_n, series, series_repetition) = (series.load_n, row, 0);
             }
             if row.substrate == Some(pinswitch_friction::Substrate::Abs) {
                 assert_eq!(a, b);
             } else if row.pins.is_empty() {
-                let kept = (-f64::from(through) / 20.0).exp();
+                let kept = (-f64::from(series_repetition) / 20.0).exp();
                 let expected = 1.0 + 0.5 * (before_n - row.load_n) / most_n * kept;
                 let found = exponent(*b, row) / exponent(*a, row);
                 assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
             }
-            through += 1;
+            series_repetition += 1;
         }
     }
 }

@@ -14,7 +14,7 @@ use rand_distr::{Distribution, StandardNormal};
 ///
 /// # Errors
 /// [`ModelFileError`] as in [`ModelFile::model`]. `file` is the name of the model, used in errors.
-pub fn rehearse(
+pub fn simulate_from_model(
     model: &ModelFile,
     file: &str,
     mut rows: Vec<PlateauRow>,

@@ -8,7 +8,7 @@ use super::case::{Case, Truth};
 use crate::plan::Plan;
 
 /// What the calibrator said of one rig.
-pub(super) struct Said<'a> {
+pub(super) struct CalibratorAnswer<'a> {
     /// The effects named, each with its rivals.
     pub(super) sets: &'a [Vec<&'a str>],
     /// Where structure lies that has no name.
@@ -17,9 +17,9 @@ pub(super) struct Said<'a> {
     pub(super) verdict: Verdict,
 }
 
-impl Said<'_> {
+impl CalibratorAnswer<'_> {
     /// Whether it is the right answer, and whether it is an honest one.
-    pub(super) fn judged(&self, case: &Case, plan: &Plan) -> (bool, bool) {
+    pub(super) fn grade(&self, case: &Case, plan: &Plan) -> (bool, bool) {
         match &case.truth {
             Truth::Nothing => {
                 let silent = self.sets.is_empty() && self.place.is_none();
@@ -28,21 +28,21 @@ impl Said<'_> {
                 (silent, silent || mounts && self.sets.is_empty())
             }
             Truth::Effects(ids) => {
-                let holds = self.holds(ids);
-                (holds && self.verdict == Verdict::Attributed, holds)
+                let matches = self.matches(ids);
+                (matches && self.verdict == Verdict::Attributed, matches)
             }
             Truth::Confounded(ids) => {
-                let holds = self.holds(ids);
-                (holds && self.verdict == Verdict::Ambiguous, holds)
+                let matches = self.matches(ids);
+                (matches && self.verdict == Verdict::Ambiguous, matches)
             }
             Truth::SmallConfounded([id, rival]) => {
                 let both = self.sets.iter().any(|s| s.contains(id) && s.contains(rival));
-                let right = self.holds(&[id]) && both || self.is_inconclusive();
+                let right = self.matches(&[id]) && both || self.is_inconclusive();
                 (right, right)
             }
             Truth::Outside { covariates, or_named } => {
                 let right = self.place.is_some_and(|place| covariates.contains(&place));
-                let named = or_named.is_some_and(|name| self.holds(&[name]));
+                let named = or_named.is_some_and(|name| self.matches(&[name]));
                 (right && self.sets.is_empty() || named, right || named)
             }
         }
@@ -64,7 +64,7 @@ impl Said<'_> {
     }
 
     /// Whether every one of these is named or among the rivals, and nothing else stands alone.
-    fn holds(&self, truth: &[&str]) -> bool {
+    fn matches(&self, truth: &[&str]) -> bool {
         self.place.is_none()
             && self.sets.iter().all(|s| truth.iter().any(|t| s.contains(t)))
             && truth.iter().all(|t| self.sets.iter().any(|s| s.contains(t)))
@@ -85,7 +85,7 @@ mod tests {
     use crate::plan::Protocol;
     use crate::study::case::Group;
 
-    fn judged(truth: Truth, sets: &[Vec<&str>], place: Option<Covariate>) -> ((bool, bool), Vec<String>) {
+    fn graded(truth: Truth, sets: &[Vec<&str>], place: Option<Covariate>) -> ((bool, bool), Vec<String>) {
         let case = Case {
             name: String::new(),
             protocol: Protocol::Paper,
@@ -99,29 +99,29 @@ mod tests {
             (sets, None) if sets.iter().any(|s| s.len() > 1) => Verdict::Ambiguous,
             _ => Verdict::Attributed,
         };
-        let said = Said { sets, place, verdict };
+        let answer = CalibratorAnswer { sets, place, verdict };
         let mut plan = Plan::default();
         plan.noise.mount_scale = 0.02;
-        (said.judged(&case, &plan), said.extras(&case))
+        (answer.grade(&case, &plan), answer.extras(&case))
     }
 
     #[test]
     fn small_confounded_effects_need_both_names() {
         let truth = || Truth::SmallConfounded(["rate_dependence", "fixture_compliance"]);
         let both = vec!["rate_dependence", "fixture_compliance"];
-        assert_eq!(judged(truth(), &[both], None), ((true, true), vec![]));
-        assert_eq!(judged(truth(), &[], None).0, (false, false));
-        assert_eq!(judged(truth(), &[vec!["rate_dependence"]], None).0, (false, false));
+        assert_eq!(graded(truth(), &[both], None), ((true, true), vec![]));
+        assert_eq!(graded(truth(), &[], None).0, (false, false));
+        assert_eq!(graded(truth(), &[vec!["rate_dependence"]], None).0, (false, false));
     }
 
     #[test]
     fn what_is_said_beside_the_truth_is_an_extra() {
         let truth = || Truth::Effects(vec!["guide_drag", "load_cell_gain"]);
         let right = [vec!["guide_drag"], vec!["load_cell_gain"]];
-        assert_eq!(judged(truth(), &right, None), ((true, true), vec![]));
+        assert_eq!(graded(truth(), &right, None), ((true, true), vec![]));
         let more = [right.to_vec(), vec![vec!["run_in", "adhesion"]]].concat();
         let extras = vec!["run_in|adhesion".to_owned(), "unattributed:time".to_owned()];
-        assert_eq!(judged(truth(), &more, Some(Covariate::Time)), ((false, false), extras));
+        assert_eq!(graded(truth(), &more, Some(Covariate::Time)), ((false, false), extras));
     }
 
     #[test]
@@ -129,21 +129,21 @@ mod tests {
         let truth =
             |or_named| Truth::Outside { covariates: &[Covariate::Load, Covariate::Repetition], or_named };
         for place in [Covariate::Load, Covariate::Repetition] {
-            assert_eq!(judged(truth(None), &[], Some(place)), ((true, true), vec![]));
+            assert_eq!(graded(truth(None), &[], Some(place)), ((true, true), vec![]));
         }
-        let elsewhere = judged(truth(None), &[], Some(Covariate::Time));
+        let elsewhere = graded(truth(None), &[], Some(Covariate::Time));
         assert_eq!(elsewhere, ((false, false), vec!["unattributed:time".to_owned()]));
-        let beside = judged(truth(None), &[vec!["run_in"]], Some(Covariate::Load));
+        let beside = graded(truth(None), &[vec!["run_in"]], Some(Covariate::Load));
         assert_eq!(beside, ((false, true), vec!["run_in".to_owned()]));
         let offset = [vec!["load_cell_offset"]];
-        assert_eq!(judged(truth(Some("load_cell_offset")), &offset, None), ((true, true), vec![]));
-        assert_eq!(judged(truth(None), &offset, None).0, (false, false));
+        assert_eq!(graded(truth(Some("load_cell_offset")), &offset, None), ((true, true), vec![]));
+        assert_eq!(graded(truth(None), &offset, None).0, (false, false));
     }
 
     #[test]
     fn mounts_that_differ_may_be_told_by_their_conditions() {
-        assert_eq!(judged(Truth::Nothing, &[], None).0, (true, true));
-        assert_eq!(judged(Truth::Nothing, &[], Some(Covariate::Condition)).0, (false, true));
-        assert_eq!(judged(Truth::Nothing, &[], Some(Covariate::Time)).0, (false, false));
+        assert_eq!(graded(Truth::Nothing, &[], None).0, (true, true));
+        assert_eq!(graded(Truth::Nothing, &[], Some(Covariate::Condition)).0, (false, true));
+        assert_eq!(graded(Truth::Nothing, &[], Some(Covariate::Time)).0, (false, false));
     }
 }

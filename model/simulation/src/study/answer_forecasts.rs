@@ -3,7 +3,7 @@
 
 /// One question of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Promised {
+pub struct AnswerForecast {
     /// Probability of an answer that was told.
     pub probability: f64,
     /// Whether there was one.
@@ -14,7 +14,7 @@ pub struct Promised {
 const UP_TO: [f64; 7] = [0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
 
 /// What was told against what came, of the proposed sessions and of the protocol repeated, by what was told; in Markdown.
-pub(super) fn table_of(proposed: &[Promised], repeated: &[Promised]) -> String {
+pub(super) fn table_of(proposed: &[AnswerForecast], repeated: &[AnswerForecast]) -> String {
     let mut text = String::from(
         "| told probability of an answer | questions of proposed sessions | told, mean | answered | questions of the protocol repeated | told, mean | answered |\n|---|---|---|---|---|---|---|\n",
     );
@@ -36,15 +36,15 @@ pub(super) fn table_of(proposed: &[Promised], repeated: &[Promised]) -> String {
     text
 }
 
-fn cells(all: &[Promised], within: impl Fn(f64) -> bool) -> String {
-    let told: Vec<&Promised> = all.iter().filter(|p| within(p.probability)).collect();
-    if told.is_empty() {
+fn cells(all: &[AnswerForecast], within: impl Fn(f64) -> bool) -> String {
+    let group: Vec<&AnswerForecast> = all.iter().filter(|p| within(p.probability)).collect();
+    if group.is_empty() {
         return "0 |  | ".to_owned();
     }
-    let mean = told.iter().map(|p| p.probability).sum::<f64>() / told.len() as f64;
-    let answered = told.iter().filter(|p| p.is_answered).count();
-    let share = 100.0 * answered as f64 / told.len() as f64;
-    format!("{} | {:.1} % | {answered} ({share:.1} %)", told.len(), 100.0 * mean)
+    let mean = group.iter().map(|p| p.probability).sum::<f64>() / group.len() as f64;
+    let answered = group.iter().filter(|p| p.is_answered).count();
+    let share = 100.0 * answered as f64 / group.len() as f64;
+    format!("{} | {:.1} % | {answered} ({share:.1} %)", group.len(), 100.0 * mean)
 }
 
 #[cfg(test)]
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn each_question_is_counted_once_by_what_was_told() {
-        let of = |probability, is_answered| Promised { probability, is_answered };
+        let of = |probability, is_answered| AnswerForecast { probability, is_answered };
         let table =
             table_of(&[of(0.0, false), of(0.8, true), of(0.9, false), of(1.0, true)], &[of(0.5, true)]);
         let rows: Vec<&str> = table.lines().skip(2).collect();

@@ -8,7 +8,7 @@ use pinswitch_calibration::inference::{
 use pinswitch_calibration::table::Frame;
 
 use crate::plan::{EffectPlan, Plan};
-use crate::series_traits::SeriesMarks;
+use crate::series_traits::SessionTraits;
 use crate::simulate::simulate;
 use crate::twin::readings;
 
@@ -22,7 +22,7 @@ const MOUNTS_WITHOUT_ALARM: f64 = 0.04;
 /// a first name, or of a shape. It asks more of a further name, so that it may miss what is called visible here; a
 /// disturbance must be found beside mounts that may differ as much as those of rigs of which nothing may be said. True of
 /// a plan without either.
-pub(super) fn shows_all(plan: &Plan, marks: &SeriesMarks, levels: Levels) -> Option<bool> {
+pub(super) fn is_visible(plan: &Plan, traits: &SessionTraits, levels: Levels) -> Option<bool> {
     if plan.effects.is_empty() && plan.disturbances.is_empty() {
         return Some(true);
     }
@@ -32,7 +32,7 @@ pub(super) fn shows_all(plan: &Plan, marks: &SeriesMarks, levels: Levels) -> Opt
     let mut data = Observations::new(&frame, &rows)?;
     let alone = select(&Model::baseline(frame), &mut data, levels);
     let degrees = degrees_of_freedom(&data, alone.baseline.model.values().len());
-    let seats = marks.seated_ideally();
+    let seats = traits.seated_ideally();
     let all = readings(plan, &rows, &seats);
     let change_n = |without: &Plan| -> Vec<f64> {
         all.iter().zip(readings(without, &rows, &seats)).map(|(with, without)| with - without).collect()
@@ -72,7 +72,7 @@ mod tests {
     use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
 
     fn shown(plan: &Plan) -> bool {
-        shows_all(plan, &simulate(plan).marks, Levels::default()).unwrap()
+        is_visible(plan, &simulate(plan).traits, Levels::default()).unwrap()
     }
 
     fn with(effects: &[(&str, f64)]) -> Plan {

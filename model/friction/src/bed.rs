@@ -1,21 +1,23 @@
-//! What carries the tendon: dimensions and stiffness of pins, silicone and tendon.
+//! The support of the tendon: dimensions and stiffness of pins, silicone and tendon.
 
 use serde::Serialize;
 
-/// Where, outside the outermost pins, the silicone can touch the tendon. The paper does not describe the tendon's path
-/// there (14 to 20 degrees a side with three pins); [`crate::physics::hypotheses`] weighs what its own facts say.
+/// Part of the wrap outside the outermost pins where silicone can touch the tendon.
+///
+/// The paper does not describe the tendon's path there (14 to 20 degrees a side with three pins);
+/// [`crate::physics::hypotheses`] compares the alternatives with the published facts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OutsidePins {
-    /// Nowhere beyond the grooves of the outermost pins: free spans lead to the guide pulleys.
+    /// None beyond the grooves of the outermost pins: free spans lead to the guide pulleys.
     Free,
-    /// As far as the next groove beyond the outermost pins.
+    /// The span to the next groove beyond the outermost pins.
     NextGroove,
-    /// Over the whole wrap.
+    /// The whole wrap.
     OnSilicone,
 }
 
-/// Dimensions and stiffness of what the tendon lies on. Lengths in mm.
+/// Dimensions and stiffness of the support under the tendon. Lengths are in mm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bed {
     /// Radius of the silicone's surface.
@@ -30,42 +32,47 @@ pub struct Bed {
     pub layer_mm: f64,
     /// Width of the silicone along the pins.
     pub layer_width_mm: f64,
-    /// Young's modulus of the silicone in MPa; only its ratio to the published bed's counts.
+    /// Young's modulus of the silicone in MPa; only its ratio to that of the published bed matters.
     pub modulus_mpa: f64,
-    /// Foundation stiffness of the published bed, force per length and depth, in N/mm²; [`Bed::stiffness_n_mm2`] is this
-    /// bed's. The published maxima do not resolve it: from 50 to 1000 they change by less than their scatter.
+    /// Foundation stiffness of the published bed, force per length and depth, in N/mm²;
+    /// [`Bed::stiffness_n_mm2`] scales it to this bed. The published maxima do not determine it:
+    /// from 50 to 1000 they change by less than their scatter.
     pub foundation_n_mm2: f64,
-    /// Bending stiffness of the published tendon in N mm², 0 for a string; [`Bed::tendon_bending_n_mm2`] is this bed's.
+    /// Bending stiffness of the published tendon in N mm², 0 for a string;
+    /// [`Bed::tendon_bending_n_mm2`] scales it to this bed.
     pub bending_n_mm2: f64,
-    /// `b` of the pin's support, `N = N0 (1 + b) x/(1 + b x)` at sinking `x h0`: a hyperbolic p-y curve, as of a pile
-    /// pushed sideways into soft ground. 0 is a linear spring.
+    /// `b` of the pin's support, `N = N0 (1 + b) x/(1 + b x)` at a sinking of `x h0`: a hyperbolic
+    /// p-y curve, as for a laterally loaded pile in soft ground. 0 is a linear spring.
     pub softening: f64,
-    /// Where the silicone touches outside the pins.
+    /// Part of the wrap outside the pins where silicone can touch the tendon.
     pub outside: OutsidePins,
 }
 
-/// Bending stiffness of the published tendon: puts the onset of three-double at the printed 15.31 N (a test). The
-/// coating's tube alone, 1.2 to 1.7 mm of PA12 at 1.4 GPa, would have 430 N mm² when perfectly bonded; strands that slip
-/// and a coating that creeps leave less.
+/// Bending stiffness of the published tendon, with which three-double begins to switch at the
+/// printed 15.31 N (a test checks it). The tube of the coating alone, 1.2 to 1.7 mm of PA12 at 1.4
+/// GPa, would have 430 N mm² if perfectly bonded; slip of the strands and creep of the coating
+/// reduce it.
 const BENDING_N_MM2: f64 = 95.0;
 
-/// Bending stiffness over `T Rc^2` at which a tendon gives way.
-const MOST_BENDING: f64 = 0.5;
+/// Largest bending stiffness of a tendon, as a multiple of `T Rc^2`.
+const MAX_BENDING: f64 = 0.5;
 
-/// Young's modulus in MPa of rubber of this hardness (Gent 1958, doi:10.5254/1.3542351).
+/// Returns Young's modulus in MPa of rubber of a Shore A hardness (Gent 1958,
+/// doi:10.5254/1.3542351).
 pub fn modulus_of_shore_a_mpa(shore_a: f64) -> f64 {
     0.0981 * (56.0 + 7.62336 * shore_a) / (0.137505 * (254.0 - 2.54 * shore_a))
 }
 
-/// Hardness in Shore A of rubber of this Young's modulus: the inverse of [`modulus_of_shore_a_mpa`].
+/// Returns the Shore A hardness of rubber with this Young's modulus: the inverse of
+/// [`modulus_of_shore_a_mpa`].
 pub fn shore_a_of_modulus_mpa(modulus_mpa: f64) -> f64 {
     let scaled = modulus_mpa * 0.137505 / 0.0981;
     (254.0 * scaled - 56.0) / (7.62336 + 2.54 * scaled)
 }
 
 impl Bed {
-    /// The bed of the paper (`model/doc/friction-laws.md`): 2 mm of silicone on a shell of 20 mm, pins of 0.94 mm,
-    /// tendon of 1.7 mm over its coating.
+    /// Returns the bed of the paper (`model/doc/friction-laws.md`): 2 mm of silicone on a shell of
+    /// 20 mm radius, pins 0.94 mm in diameter, and a tendon 1.7 mm in diameter over its coating.
     pub fn published() -> Self {
         Self {
             contact_radius_mm: 22.0,
@@ -82,48 +89,56 @@ impl Bed {
         }
     }
 
-    /// `Rc`: radius of the tendon's axis when its underside lies on the undeformed silicone.
+    /// Returns `Rc`, the radius of the tendon's axis when its underside is on the undeformed
+    /// silicone.
     pub fn axis_radius_mm(&self) -> f64 {
         self.contact_radius_mm + self.tendon_radius_mm
     }
 
-    /// `h0`: height of a resting pin's top over the silicone. A pin that lies below its surface counts as a hair above
-    /// it, a thousandth of its diameter: it carries next to nothing.
+    /// Returns `h0`, the height of a resting pin's top over the silicone. It is at least a
+    /// thousandth of the pin's diameter, so that the support of a pin below the surface is small
+    /// but defined.
     pub fn protrusion_mm(&self) -> f64 {
         (self.pin_diameter_mm - self.groove_radius_mm).max(1e-3 * self.pin_diameter_mm)
     }
 
-    /// Force that sinks a pin flush, against the published bed: a strip of the pin's width on a layer, `E d w h0/t`.
-    /// An assumption for beds that nobody measured.
+    /// Returns the force that sinks a pin flush, relative to the published bed: a strip of the
+    /// pin's width on a layer, `E d w h0/t`. This scaling is assumed, not measured.
     pub fn flush_force_ratio(&self) -> f64 {
         let strip =
             |b: &Self| b.modulus_mpa * b.pin_diameter_mm * b.layer_width_mm * b.protrusion_mm() / b.layer_mm;
         strip(self) / strip(&Self::published())
     }
 
-    /// `kappa` against the published bed. A cylinder ploughs with a coefficient that follows the half width `b` of the
-    /// contact over its radius (Greenwood & Tabor 1958, doi:10.1088/0370-1328/71/6/312). By Hertz `b^2 = 4 N' r/(pi E)`
-    /// under a line load `N'`; the pin's force spreads over a length that goes with the tendon's radius. So `mu` goes
-    /// with `sqrt(N/(E r_pin r_tendon))`, and `kappa` with the root of one over both radii: a dimensionless coefficient,
-    /// as similarity asks for. The coating's modulus `E` is taken as the published tendon's.
+    /// Returns `kappa` relative to the published bed.
+    ///
+    /// The ploughing coefficient of a cylinder is proportional to the half width `b` of the contact
+    /// over its radius (Greenwood & Tabor 1958, doi:10.1088/0370-1328/71/6/312). By Hertz,
+    /// `b^2 = 4 N' r/(pi E)` under a line load `N'`, and the pin's force spreads over a length
+    /// proportional to the tendon's radius. So `mu` is proportional to
+    /// `sqrt(N/(E r_pin r_tendon))`, and `kappa` to the inverse root of both radii, which satisfies
+    /// similarity. The coating is assumed to have the modulus `E` of the published tendon.
     pub fn ploughing_ratio(&self) -> f64 {
         let radii = |b: &Self| b.pin_diameter_mm * b.tendon_radius_mm;
         (radii(&Self::published()) / radii(self)).sqrt()
     }
 
-    /// Stiffness of this bed's foundation in N/mm²: a strip as wide as the tendon on a layer, `E w/t`.
+    /// Returns the foundation stiffness of this bed in N/mm²: a strip as wide as the tendon on a
+    /// layer, `E w/t`.
     pub fn stiffness_n_mm2(&self) -> f64 {
         let strip = |b: &Self| b.modulus_mpa * b.tendon_radius_mm / b.layer_mm;
         self.foundation_n_mm2 * strip(self) / strip(&Self::published())
     }
 
-    /// Bending stiffness of this bed's tendon under a tension of `tension_n` newtons, in N mm²: a round section of the
-    /// same build, `E I ~ r^4`, that gives way where it would stand off the pulley. A rope's strands slip under bending
-    /// (Papailiou 1997, doi:10.1109/61.634188), and the bending of a tendon that is light against `EI/Rc^2` is not small;
-    /// at the published loads this takes off 1 to 11 %.
+    /// Returns the bending stiffness of the tendon in N mm² under a tension of `tension_n` newtons.
+    ///
+    /// It scales as a round section of the same build, `E I ~ r^4`, and is limited at low tension,
+    /// where a stiff tendon would lift off the pulley: the strands of a rope slip under bending
+    /// (Papailiou 1997, doi:10.1109/61.634188). At the published loads the limit reduces it by 1 to
+    /// 11 %.
     pub fn tendon_bending_n_mm2(&self, tension_n: f64) -> f64 {
         let whole = self.bending_n_mm2 * (self.tendon_radius_mm / Self::published().tendon_radius_mm).powi(4);
-        whole / (1.0 + whole / (MOST_BENDING * tension_n * self.axis_radius_mm().powi(2)))
+        whole / (1.0 + whole / (MAX_BENDING * tension_n * self.axis_radius_mm().powi(2)))
     }
 }
 
@@ -132,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_published_bed_is_its_own_reference() {
+    fn published_bed_is_the_reference() {
         let bed = Bed::published();
         assert!((bed.axis_radius_mm() - 22.85).abs() < 1e-12);
         assert!((bed.protrusion_mm() - 0.44).abs() < 1e-12);
@@ -142,7 +157,7 @@ mod tests {
         );
     }
 
-    /// Gent's table: 50 Shore A is about 2.5 MPa.
+    /// By Gent's table, 50 Shore A is about 2.5 MPa.
     #[test]
     fn harder_rubber_is_stiffer() {
         assert!((modulus_of_shore_a_mpa(50.0) - 2.5).abs() < 0.2);

@@ -1,4 +1,4 @@
-//! A predicted friction curve, with its band and a word on how far to trust it.
+//! Predicted friction curves.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,15 +10,15 @@ use crate::status::{PredictionStatus, is_measured};
 use crate::substrate::Substrate;
 use crate::switch::SwitchState;
 
-/// Tension and friction over load, as columns of equal length; forces in newtons.
+/// Tension and friction over load, as columns of equal length. Forces are in newtons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrictionCurve {
-    /// The law behind the curve.
+    /// Law of the curve.
     pub law: Law,
-    /// How far to trust it.
+    /// Support of the prediction by measurements.
     #[serde(rename = "trust")]
     pub status: PredictionStatus,
-    /// Why it is trusted no further, where laws disagree, and what the law is known to get wrong.
+    /// Reasons for the status, disagreements between laws, and known errors of the law.
     pub reasons: Vec<String>,
     /// Load on the tendon.
     pub load_n: Vec<f64>,
@@ -26,28 +26,28 @@ pub struct FrictionCurve {
     pub eccentric_n: Vec<f64>,
     /// Tension while the load is pulled.
     pub concentric_n: Vec<f64>,
-    /// Friction `D = (F_c - F_e)/2`.
+    /// Friction `D = (T_c - T_e)/2`.
     pub friction_n: Vec<f64>,
     /// Lower edge of the band of `D`.
     pub band_low_n: Vec<f64>,
     /// Upper edge of the band of `D`.
     pub band_high_n: Vec<f64>,
-    /// Share of `D` that the silicone makes, 0..1.
+    /// Share of `D` that comes from the silicone, 0 to 1.
     pub silicone_share: Vec<f64>,
 }
 
-/// A measured friction maximum or onset that the paper prints for a contact.
+/// Friction maximum or onset that the paper prints for a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PublishedPoint {
     /// Load in newtons.
     pub load_n: f64,
-    /// Friction in newtons; `None` where the paper gives a load only (the onset of three-double).
+    /// Friction in newtons; `None` for the onset of three-double, whose load alone is printed.
     pub friction_n: Option<f64>,
 }
 
 impl FrictionCurve {
-    /// The curve of these states by a law, within `band`.
-    pub(crate) fn of(
+    /// Creates the curve of these states by a law, with the edges of `band`.
+    pub(crate) fn from_states(
         law: Law,
         status: PredictionStatus,
         reasons: Vec<String>,
@@ -74,7 +74,8 @@ impl FrictionCurve {
     }
 }
 
-/// What the paper prints for this contact: its maximum, and for three-double the onset of switching.
+/// Returns the published points of this contact: its maximum, and the onset of switching of
+/// three-double. Empty for a contact that the paper did not measure.
 pub fn published_points(contact: &Contact) -> Vec<PublishedPoint> {
     if !is_measured(contact) {
         return Vec::new();

@@ -1,12 +1,13 @@
-//! Numbers of things in words: one is one.
+//! Counts in messages.
 
-/// A number of things in words.
+/// Returns a count with its noun, in the plural unless the count is one.
 ///
 /// ```
 /// use pinswitch_friction::pluralise;
 ///
-/// assert_eq!((pluralise(1, "pin"), pluralise(2, "pin")), ("1 pin".to_owned(), "2 pins".to_owned()));
+/// assert_eq!(pluralise(1, "pin"), "1 pin");
+/// assert_eq!(pluralise(2, "pin"), "2 pins");
 /// ```
-pub fn pluralise(number: usize, thing: &str) -> String {
-    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+pub fn pluralise(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }

@@ -1,4 +1,4 @@
-//! Predictions: the default law, a chosen one, and the others for comparison.
+//! Predictions by the default law, by a chosen law, and by all others for comparison.
 
 use pinswitch_diagnostic::Diagnostic;
 
@@ -10,24 +10,27 @@ use crate::law::{Law, LawError, paper};
 use crate::published;
 use crate::status::{PredictionStatus, prediction_status};
 
-/// Predicts tension and friction of `contact` at `loads_n` newtons by this law.
+/// Smallest ratio of the frictions of two laws that the reasons of a curve mention.
+const NOTEWORTHY: f64 = 1.25;
+
+/// Predicts tension and friction of `contact` at `loads_n` newtons by `law`.
 ///
 /// ```
 /// use pinswitch_friction::{Contact, Law, PinPattern, Substrate, predict_by};
 ///
 /// let uneven = PinPattern::new(vec![-0.3, 0.0, 0.2]);
 /// let contact = Contact::new(Substrate::Silicone, uneven, 1.115)?;
-/// assert!(predict_by(Law::Paper, &contact, &[20.0]).is_err(), "the paper measured no such layout");
+/// assert!(predict_by(Law::Paper, &contact, &[20.0]).is_err(), "not a published layout");
 /// let curve = predict_by(Law::Physics, &contact, &[20.0])?;
 /// assert!(curve.friction_n[0] > 1.0 && curve.law.as_str() == "physics");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// [`LawError`] if the law does not apply or has no solution.
+/// [`LawError`] if the law does not apply, or the physics does not converge.
 pub fn predict_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<FrictionCurve, LawError> {
     let states = law.states(contact, loads_n)?;
-    let band = Band::of(law, contact, loads_n)?;
+    let band = Band::new(law, contact, loads_n)?;
     let (status, mut reasons) = prediction_status(contact, &band.deviations, loads_n);
     if let Some((rival, load_n, ratio)) = band.widest_rival(NOTEWORTHY) {
         let law = law.title();
@@ -43,24 +46,25 @@ pub fn predict_by(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Fricti
         });
     }
     reasons.extend(law.remark(contact));
-    Ok(FrictionCurve::of(law, status, reasons, &states, &band))
+    Ok(FrictionCurve::from_states(law, status, reasons, &states, &band))
 }
 
-/// Ratio of two laws' frictions that a curve's reasons name.
-const NOTEWORTHY: f64 = 1.25;
-
-/// Predicts by [`Law::DEFAULT`], the same law for every contact. Should it have no solution, the layout law or the
-/// paper's capstan stands in, and the curve says so in its reasons and in its law.
+/// Predicts tension and friction of `contact` at `loads_n` newtons by [`Law::DEFAULT`].
+///
+/// If the default law does not converge, the layout law or the capstan of the paper is the
+/// fallback. The curve then has the fallback's law, and a reason explains it.
 ///
 /// ```
-/// use pinswitch_friction::{Contact, Law, PinPattern, Substrate, PredictionStatus, predict, published};
+/// use pinswitch_friction::published::wrap_angle_rad;
+/// use pinswitch_friction::{Contact, Law, PinPattern, PredictionStatus, Substrate, predict};
 ///
-/// // Four pins, 14 degrees apart: between the layouts that the paper measured.
+/// // Four pins, 14 degrees apart: between the measured layouts.
 /// let pins = PinPattern::even(4, 14f64.to_radians());
-/// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
+/// let contact = Contact::new(Substrate::Silicone, pins, wrap_angle_rad())?;
 /// let curve = predict(&contact, &[10.0, 40.0]);
 /// assert_eq!((curve.law, curve.status), (Law::Physics, PredictionStatus::Interpolated));
-/// assert!(curve.band_low_n[1] < curve.friction_n[1] && curve.friction_n[1] < curve.band_high_n[1]);
+/// assert!(curve.band_low_n[1] < curve.friction_n[1]);
+/// assert!(curve.friction_n[1] < curve.band_high_n[1]);
 /// # Ok::<(), pinswitch_friction::ContactError>(())
 /// ```
 pub fn predict(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
@@ -76,21 +80,22 @@ pub fn predict(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
     curve
 }
 
-/// The paper's capstan on one material, for a contact that nothing else describes; its band is a factor e.
+/// Returns the capstan of the paper on one material, the fallback for any contact; its band is a
+/// factor e.
 fn capstan_curve(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
     let bare = contact.pins().count() == 0;
     let (mu, share) = if bare { (published::MU_SILICONE, 1.0) } else { (published::MU_PINS, 0.0) };
     let states = paper::capstan(contact, mu, share, loads_n);
     let band = Band {
         load_n: vec![published::heaviest_load_n()],
-        sources: vec![BandSource::even("model", vec![1.0])],
+        sources: vec![BandSource::symmetric("model", vec![1.0])],
         rivals: Vec::new(),
         deviations: Vec::new(),
     };
-    FrictionCurve::of(Law::Paper, PredictionStatus::Extrapolated, contact.remarks(), &states, &band)
+    FrictionCurve::from_states(Law::Paper, PredictionStatus::Extrapolated, contact.remarks(), &states, &band)
 }
 
-/// The curves of all other laws that apply, for comparison; never mixed into the main one.
+/// Returns the curves of all other laws that apply, for comparison with that of `main`.
 pub fn other_laws(main: Law, contact: &Contact, loads_n: &[f64]) -> Vec<FrictionCurve> {
     Law::predictive()
         .filter(|law| *law != main)

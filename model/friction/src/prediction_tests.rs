@@ -1,4 +1,4 @@
-//! Predictions against the published measurements, and the properties that every curve has.
+//! Tests of predictions against the published measurements, and of the properties of every curve.
 
 use proptest::prelude::*;
 
@@ -18,7 +18,7 @@ fn contact(substrate: Substrate, pins: PinPattern) -> Contact {
 }
 
 #[test]
-fn every_published_condition_is_published_and_its_band_holds_the_measured_maximum() {
+fn bands_contain_the_published_maxima() {
     let mut conditions = vec![contact(Substrate::Silicone, PinPattern::default())];
     for l in &published::LAYOUTS {
         for substrate in [Substrate::Silicone, Substrate::Abs] {
@@ -36,9 +36,9 @@ fn every_published_condition_is_published_and_its_band_holds_the_measured_maximu
     }
 }
 
-/// No two laws have bands that do not meet, anywhere, on any layout.
+/// The bands of any two laws overlap at every load, on measured and on other layouts.
 #[test]
-fn bands_of_the_laws_meet_everywhere() {
+fn bands_of_the_laws_overlap() {
     let loads: Vec<f64> = (0..20).map(|i| 3.0766 + 2.4523 * f64::from(i)).collect();
     for pins in [
         PinPattern::even(6, published::LAYOUTS[0].pitch_rad()),
@@ -61,7 +61,7 @@ fn bands_of_the_laws_meet_everywhere() {
 }
 
 #[test]
-fn other_layouts_say_how_far_they_are_known() {
+fn status_has_reasons() {
     let between = contact(Substrate::Silicone, PinPattern::even(4, 0.25));
     assert_eq!(predict(&between, &[20.0]).status, PredictionStatus::Interpolated);
     let reasons = |pins| predict(&contact(Substrate::Silicone, pins), &[20.0]);
@@ -79,7 +79,7 @@ fn other_layouts_say_how_far_they_are_known() {
 }
 
 #[test]
-fn what_no_law_knows_of_makes_a_published_layout_an_extrapolation() {
+fn unmodelled_deviations_are_extrapolated() {
     let l = &published::LAYOUTS[1];
     let plain = contact(Substrate::Silicone, PinPattern::even(l.pins, l.pitch_rad()));
     let mixed = plain.clone().with_unmodelled(vec!["another mix".to_owned()]);
@@ -89,20 +89,20 @@ fn what_no_law_knows_of_makes_a_published_layout_an_extrapolation() {
     assert!(published_points(&mixed).is_empty());
 }
 
-/// Loads are a parameter, too: outside the tested ones nothing is published, and the band widens.
+/// Beyond the tested loads the band widens.
 #[test]
-fn loads_beyond_those_tested_are_extrapolated() {
+fn heavier_loads_are_extrapolated() {
     let l = &published::LAYOUTS[1];
     let c = contact(Substrate::Silicone, PinPattern::even(l.pins, l.pitch_rad()));
     let (inside, beyond) = (predict(&c, &[49.6]), predict(&c, &[49.6, 120.0]));
     assert_eq!((inside.status, beyond.status), (PredictionStatus::Published, PredictionStatus::Extrapolated));
-    assert!(beyond.reasons.iter().any(|r| r.contains("tested were")), "{:?}", beyond.reasons);
+    assert!(beyond.reasons.iter().any(|r| r.contains("tested range")), "{:?}", beyond.reasons);
     let width = |curve: &FrictionCurve, i: usize| libm::log(curve.band_high_n[i] / curve.band_low_n[i]);
     assert!(width(&beyond, 1) > width(&inside, 0) + 0.2);
 }
 
 #[test]
-fn laws_that_do_not_apply_say_why() {
+fn inapplicable_laws_return_their_domain() {
     let uneven = contact(Substrate::Silicone, PinPattern::new(vec![-0.3, 0.0, 0.2]));
     let proxy = contact(Substrate::Abs, PinPattern::even(3, 0.2));
     for (law, contact, word) in [
@@ -117,16 +117,16 @@ fn laws_that_do_not_apply_say_why() {
 }
 
 #[test]
-fn laws_stand_side_by_side() {
+fn other_laws_exclude_the_main_law() {
     let double = contact(Substrate::Silicone, PinPattern::even(3, published::LAYOUTS[1].pitch_rad()));
     let laws: Vec<_> = other_laws(Law::Paper, &double, &[20.0]).iter().map(|c| c.law).collect();
     let others: Vec<_> = Law::predictive().filter(|law| *law != Law::Paper).collect();
-    assert_eq!(laws, others, "all of them apply to a published layout, and none is mixed into another");
+    assert_eq!(laws, others, "all laws apply to a published layout");
     assert!(laws.starts_with(&[Law::Layout, Law::Physics]));
 }
 
 #[test]
-fn the_default_law_predicts_every_contact() {
+fn default_law_predicts_every_contact() {
     for (substrate, pins) in [
         (Substrate::Silicone, PinPattern::default()),
         (Substrate::Silicone, PinPattern::new(vec![0.1])),
@@ -137,10 +137,10 @@ fn the_default_law_predicts_every_contact() {
     }
 }
 
-/// `model/doc/friction-laws.md`: the model's root mean square relative error on the paper's own seven maxima is 31
-/// %.
+/// `model/doc/friction-laws.md`: the paper's model has a root mean square relative error of 31 % on
+/// its seven maxima.
 #[test]
-fn misses_the_seven_published_maxima_by_31_percent() {
+fn paper_model_error_is_31_percent() {
     let max = |substrate, pins| {
         let contact = Contact::new(substrate, pins, published::wrap_angle_rad()).unwrap();
         predict_by(Law::Paper, &contact, &[published::heaviest_load_n()]).unwrap().friction_n[0]
@@ -158,7 +158,7 @@ fn misses_the_seven_published_maxima_by_31_percent() {
 }
 
 #[test]
-fn a_single_pin_gets_a_band_that_covers_both_readings_of_its_free_spans() {
+fn one_pin_has_an_upper_band() {
     let curve =
         predict_by(Law::Physics, &contact(Substrate::Silicone, PinPattern::new(vec![0.0])), &[HEAVIEST_N])
             .unwrap();
@@ -173,7 +173,7 @@ fn patterns() -> impl Strategy<Value = PinPattern> {
 
 proptest! {
     #[test]
-    fn bands_hold_the_curve_and_forces_stay_ordered(
+    fn bands_contain_the_curve(
         count in 0usize..15, pitch in 0.02..0.5f64, load in 0.0..80.0f64, wrap in 0.1..3.0f64
     ) {
         let c = Contact::new(Substrate::Silicone, PinPattern::even(count, pitch), wrap).unwrap();
@@ -185,7 +185,7 @@ proptest! {
     }
 
     #[test]
-    fn any_pattern_gives_an_ordered_curve(pins in patterns()) {
+    fn friction_rises_with_load(pins in patterns()) {
         let loads: Vec<f64> = (1..=12).map(|i| 5.0 * f64::from(i)).collect();
         let curve = predict_by(Law::Physics, &contact(Substrate::Silicone, pins), &loads).unwrap();
         for (i, load) in loads.iter().enumerate() {

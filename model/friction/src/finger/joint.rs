@@ -1,4 +1,5 @@
-//! The gains over the angle of a joint: the wrap follows the joint, and the pins that the tendon touches follow the wrap.
+//! Gains over the flexion of a joint. The flexion determines the wrap, and the wrap the pins under
+//! the tendon.
 
 use pinswitch_diagnostic::{Diagnostic, Location};
 use serde::Serialize;
@@ -15,9 +16,9 @@ use crate::status::PredictionStatus;
 const LARGEST_FLEXION_DEG: f64 = 180.0;
 /// Largest wrap of a straight finger in degrees.
 const LARGEST_START_DEG: f64 = 180.0;
-/// Most degrees of wrap that a degree of flexion can add.
+/// Largest wrap per flexion, in degrees per degree.
 const LARGEST_SHARE: f64 = 2.0;
-/// Wraps nearer to each other than this are one, in radians.
+/// Wrap below which the tendon touches nothing, in radians.
 const SAME_RAD: f64 = 1e-9;
 
 /// A value of a joint or of its tendon path that is out of bounds.
@@ -59,16 +60,18 @@ fn within(
     }
 }
 
-/// How the wrap on the switch follows the flexion of the joint that it sits on: `wrap = start + share flexion`.
+/// Relation between the flexion of a joint and the wrap on its switch:
+/// `wrap = start + share flexion`.
 ///
-/// The default is a two-link finger whose tendon runs straight along both links: its direction then turns by the flexion,
-/// and all of that on the switch. Assumed, since no path is published (`model/doc/finger.md`).
+/// The default is a two-link finger with a straight tendon along both links: its direction turns by
+/// the flexion, all of it on the switch. This is an assumption, because no path is published
+/// (`model/doc/finger.md`).
 ///
 /// ```
 /// use pinswitch_friction::finger::JointPath;
 ///
 /// assert_eq!(JointPath::default().wrap_deg(83.0)?, 83.0);
-/// // A finger that is bent a little when it is called straight, and guides that take a fifth of the turn.
+/// // A wrap of 10 degrees at the straight finger, and guides that take a fifth of the turn.
 /// let path = JointPath::new(10.0, 0.8)?;
 /// assert_eq!(path.wrap_deg(50.0)?, 50.0);
 /// let error = path.wrap_deg(-5.0).unwrap_err();
@@ -88,13 +91,13 @@ impl Default for JointPath {
 }
 
 impl JointPath {
-    /// A wrap of `wrap_at_straight_deg` degrees at the straight finger, and `wrap_per_flexion` degrees more for each degree
-    /// of flexion.
+    /// Creates a path with a wrap of `wrap_at_straight_deg` degrees at the straight finger, and
+    /// `wrap_per_flexion` more degrees for each degree of flexion.
     ///
     /// # Errors
-    /// [`JointPathError`] names field, value, bound and remedy.
+    /// [`JointPathError`] if a value is out of bounds.
     pub fn new(wrap_at_straight_deg: f64, wrap_per_flexion: f64) -> Result<Self, JointPathError> {
-        const START: &str = "give the wrap of the straight finger in degrees, 0 if its tendon runs straight";
+        const START: &str = "give the wrap of the straight finger in degrees, 0 if its tendon is straight";
         const SHARE: &str =
             "give the share of the flexion that turns the tendon on the switch, 1 for all of it";
         Ok(Self {
@@ -108,18 +111,18 @@ impl JointPath {
         })
     }
 
-    /// The wrap at a flexion, both in degrees.
+    /// Returns the wrap at a flexion, both in degrees.
     ///
     /// # Errors
-    /// [`JointPathError`] for a flexion that no joint has.
+    /// [`JointPathError`] if the flexion is out of bounds.
     pub fn wrap_deg(&self, joint_deg: f64) -> Result<f64, JointPathError> {
         let help = "give flexions between a straight and a folded finger";
         within("joint angle (deg)", joint_deg, (0.0, LARGEST_FLEXION_DEG), help)
             .map(|joint_deg| self.wrap_at_straight_deg + self.wrap_per_flexion * joint_deg)
     }
 
-    /// The flexion at which the wrap is that of the paper's experiment, in degrees: the one place of a curve over the joint
-    /// that was measured. `None` if no flexion gives it.
+    /// Returns the flexion in degrees at which the wrap is that of the paper's experiment, if any:
+    /// the only measured point of a curve over the joint.
     pub fn measured_joint_deg(&self) -> Option<f64> {
         let joint_deg = (published::WRAP_ANGLE_DEG - self.wrap_at_straight_deg) / self.wrap_per_flexion;
         (0.0..=LARGEST_FLEXION_DEG).contains(&joint_deg).then_some(joint_deg)
@@ -140,9 +143,9 @@ pub struct JointPoint {
     pub joint_deg: f64,
     /// Wrap of the tendon on the switch, degrees.
     pub wrap_deg: f64,
-    /// Pins that the tendon touches.
+    /// Number of pins within the wrap.
     pub pins: usize,
-    /// How far the friction at this wrap is known from measurements.
+    /// Support of the prediction at this wrap by measurements.
     #[serde(rename = "trust")]
     pub status: PredictionStatus,
     /// Gains and costs.
@@ -153,21 +156,22 @@ pub struct JointPoint {
 /// Gains over the joint at one load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JointCurve {
-    /// Load held or pulled, N.
+    /// Load, N.
     pub load_n: f64,
-    /// The laws behind the points, in the order of their first use; more than one where the first does not apply.
+    /// Laws of the points, in the order of their first use; more than one with a fallback.
     pub laws: Vec<Law>,
-    /// How far to trust the whole: as its least trusted point.
+    /// Status of the least supported point.
     #[serde(rename = "trust")]
     pub status: PredictionStatus,
-    /// Why it is trusted no further, and what was left out.
+    /// Reasons for the status, and the flexions that are left out.
     pub reasons: Vec<String>,
-    /// In the order of the flexions that were asked for.
+    /// Points, in the order of the given flexions.
     pub points: Vec<JointPoint>,
 }
 
-/// The gains of a part at `load_n` newtons over the flexions `joints_deg` of the joint that it sits on, with the curves
-/// of `predict`. Flexions at which the law does not apply are left out, and a reason says so.
+/// Computes the gains of a part at `load_n` newtons over the flexions `joints_deg` of its joint,
+/// with the curves of `predict`. Leaves out flexions to which the law does not apply, and adds a
+/// reason.
 ///
 /// ```
 /// use pinswitch_friction::finger::{JointPath, over_joint};
@@ -177,14 +181,14 @@ pub struct JointCurve {
 /// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
 /// let predicted = |contact: &Contact, loads_n: &[f64]| Ok(predict(contact, loads_n));
 /// let curve = over_joint(&contact, &JointPath::default(), &[0.0, 30.0, 83.0], 49.671, predicted)?;
-/// let difference: Vec<f64> = curve.points.iter().map(|p| p.gains.force_difference.value).collect();
-/// assert_eq!(difference[0], 0.0, "a straight tendon rubs nowhere");
-/// assert!(difference[1] < difference[2]);
+/// let difference = |i: usize| curve.points[i].gains.force_difference.value;
+/// assert_eq!(difference(0), 0.0, "a straight tendon touches nothing");
+/// assert!(difference(1) < difference(2));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// [`JointPathError`] for a flexion that no joint has.
+/// [`JointPathError`] if a flexion is out of bounds.
 pub fn over_joint(
     contact: &Contact,
     path: &JointPath,
@@ -229,7 +233,7 @@ pub fn over_joint(
     Ok(curve)
 }
 
-/// What a contact does at one wrap.
+/// State of a contact at one wrap.
 #[derive(Clone, Copy)]
 struct State {
     tensions: Tensions,
@@ -238,6 +242,7 @@ struct State {
     status: PredictionStatus,
 }
 
+/// Predicts the state of a contact with another wrap.
 fn state(
     contact: &Contact,
     wrap_rad: f64,
@@ -246,12 +251,12 @@ fn state(
 ) -> Result<State, Diagnostic> {
     if wrap_rad < SAME_RAD {
         let tensions = Tensions::without_friction(load_n);
-        // Nothing touches, so nothing rubs: this needs no measurement.
+        // A tendon that touches nothing has no friction: this needs no measurement.
         return Ok(State { tensions, pins: 0, law: None, status: PredictionStatus::Published });
     }
     let contact = contact.at_wrap(wrap_rad)?;
     let curve = predict(&contact, &[load_n])?;
-    let tensions = Tensions::of(&curve, 0).ok_or("the law gives no point at this load")?;
+    let tensions = Tensions::from_curve(&curve, 0).ok_or("the law gives no point at this load")?;
     Ok(State { tensions, pins: contact.pins().count(), law: Some(curve.law), status: curve.status })
 }
 
@@ -276,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn bare_silicone_follows_the_capstan_of_the_joint() {
+    fn bare_silicone_follows_the_capstan() {
         let joints: Vec<f64> = (0..=9).map(|i| 10.0 * f64::from(i)).collect();
         let curve =
             over_joint(&part(PinPattern::default()), &JointPath::default(), &joints, 30.0, best).unwrap();
@@ -289,9 +294,9 @@ mod tests {
         assert_eq!(curve.status, PredictionStatus::Extrapolated);
     }
 
-    /// No wrap is drawn with a pin that comes or goes at once: friction would jump.
+    /// A pin enters and leaves the wrap continuously.
     #[test]
-    fn friction_does_not_jump_where_a_pin_is_met() {
+    fn friction_is_continuous_over_the_joint() {
         let joints: Vec<f64> = (0..=360).map(|i| 0.25 * f64::from(i)).collect();
         for layout in &published::LAYOUTS {
             let contact = part(PinPattern::even(layout.pins, layout.pitch_rad()));
@@ -305,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn the_measured_wrap_is_as_good_as_the_measured_part() {
+    fn measured_wrap_is_not_extrapolated() {
         let layout = &published::LAYOUTS[1];
         let contact = part(PinPattern::even(layout.pins, layout.pitch_rad()));
         let path = JointPath::new(13.89, 1.0).unwrap();
@@ -318,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn a_law_that_does_not_apply_leaves_flexions_out_and_says_so() {
+    fn inapplicable_flexions_are_left_out() {
         let layout = &published::LAYOUTS[1];
         let contact = part(PinPattern::even(layout.pins, layout.pitch_rad()));
         let paper = |c: &Contact, n: &[f64]| predict_by(Law::Paper, c, n);
@@ -328,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn unusable_paths_are_refused_by_name() {
+    fn invalid_paths_are_refused() {
         for (path, word) in [
             (JointPath::new(-1.0, 1.0), "wrap at the straight finger (deg) = -1"),
             (JointPath::new(f64::NAN, 1.0), "NaN"),

@@ -1,12 +1,15 @@
-//! What a switch buys at the system level, as the paper argues it: a finger holds more than its motor pulls.
+//! Benefit of a switch in a tendon-driven finger: friction supports part of the load, so that the
+//! motor can be smaller.
 //!
-//! In eccentric use (holding, giving way) friction carries a part of the load: a motor of tension `T` holds `F > T`. In
-//! concentric use (pulling) it must overcome the friction. A switch has little friction when light and much when heavy:
-//! quick to move, strong to hold.
+//! In eccentric use (holding, yielding) friction supports part of the load: a motor with a tension
+//! `T` supports a load `F > T`. In concentric use (pulling) the motor must overcome the friction. A
+//! switch has little friction at light loads, where the finger moves, and much at heavy loads,
+//! where it grips.
 //!
-//! Two quantities say how much, and must not be mixed: the *force difference* `(T_c - T_e)/F`, which is what was measured
-//! on human fingers, and the *extra holding* `F/T_e - 1`, about half of it. `model/doc/finger.md` has the definitions, the
-//! human figures and every assumption.
+//! Two quantities measure the benefit. The *force difference* `(T_c - T_e)/F` was measured on human
+//! fingers. The *extra holding* `F/T_e - 1` is about half of it. `F` is the load, `T_e` the
+//! eccentric and `T_c` the concentric tension. `model/doc/finger.md` has the definitions, the human
+//! data and every assumption.
 
 mod gains;
 mod joint;

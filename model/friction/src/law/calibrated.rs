@@ -1,4 +1,5 @@
-//! `calibrated`: a model fitted to measured data; its curves come from a model file, not from a contact alone.
+//! `calibrated`: a model fitted to measured data. Its curves come from a model file, not from a
+//! contact alone.
 
 use super::definition::LawDefinition;
 use super::error::LawError;
@@ -6,8 +7,8 @@ use super::error::LawError;
 pub(super) static DEFINITION: LawDefinition = LawDefinition {
     word: "calibrated",
     title: "calibrated model",
-    summary: "A model calibrated on measured data: the layouts of its rig",
-    source: "a model calibrated on measured data, see the reasons for what it holds",
+    summary: "Model calibrated on measured data: the layouts of its rig",
+    source: "a model calibrated on measured data; the reasons list its effects",
     needs_model: true,
     states: |_, _| Err(NEEDS_MODEL),
     uncertain: |_, _| Err(NEEDS_MODEL),

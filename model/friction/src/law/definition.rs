@@ -1,32 +1,32 @@
-//! What each law's file declares.
+//! The definition of a law, which each law's file declares.
 
 use super::error::LawError;
 use crate::band_source::BandSource;
 use crate::contact::Contact;
 use crate::switch::SwitchState;
 
-/// What a law is and does.
+/// Definition of a law.
 pub(crate) struct LawDefinition {
-    /// The word in files and on the command line.
+    /// Name in files and on the command line.
     pub(crate) word: &'static str,
-    /// What it is called in a legend.
+    /// Name in legends.
     pub(crate) title: &'static str,
-    /// What it is and where it applies, in one line.
+    /// Description with the domain, in one line.
     pub(crate) summary: &'static str,
-    /// Where it comes from.
+    /// Source of the equation or of the constants.
     pub(crate) source: &'static str,
-    /// Whether it needs a model file beside the contact.
+    /// Whether it needs a model file in addition to the contact.
     pub(crate) needs_model: bool,
     /// Predicts the states of a contact at loads in newtons.
     pub(crate) states: fn(&Contact, &[f64]) -> Result<Vec<SwitchState>, LawError>,
-    /// Friction at loads in newtons, with what the law itself leaves uncertain about it: its constants, its scatter on
-    /// what was measured.
+    /// Predicts friction at loads in newtons, with the uncertainty of the law itself: its
+    /// constants, and its scatter about the measurements.
     pub(crate) uncertain: fn(&Contact, &[f64]) -> Result<UncertainFriction, LawError>,
-    /// What the law is known to get wrong of a contact, in words.
+    /// Returns a known error of the law for a contact, as text.
     pub(crate) remark: fn(&Contact) -> Option<String>,
 }
 
-/// Friction in newtons with the sources of a law's own uncertainty, load by load.
+/// Friction in newtons with the uncertainty of the law itself, load by load.
 pub(crate) struct UncertainFriction {
     pub(crate) friction_n: Vec<f64>,
     pub(crate) sources: Vec<BandSource>,

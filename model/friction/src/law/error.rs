@@ -16,7 +16,7 @@ pub enum LawError {
         /// Laws to use instead, or where to get what it needs.
         help: &'static str,
     },
-    /// The physics has no solution.
+    /// The physics does not converge.
     Physics(#[from] PhysicsError),
 }
 

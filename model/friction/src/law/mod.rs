@@ -1,7 +1,8 @@
-//! The laws that predict friction, one file per law, and the one that is used unless another is asked for.
+//! Laws of friction, one file per law, and the default law.
 //!
-//! To add a law, write its file with a `DEFINITION` and add its line to the list below; comparison, bands, words and
-//! sources follow from there. `model/doc/friction-laws.md` explains the laws with their sources.
+//! To add a law, write its file with a `DEFINITION` and add its line to `laws!` below. Comparison,
+//! bands, names and sources follow from the definition. `model/doc/friction-laws.md` explains the
+//! laws with their sources.
 
 mod definition;
 mod error;
@@ -15,19 +16,19 @@ use definition::LawDefinition;
 pub(crate) use definition::UncertainFriction;
 pub use error::LawError;
 
-/// Declares the files of the laws, their ids and the registry.
+/// Declares the files of the laws, the variants of [`Law`], and their definitions.
 macro_rules! laws {
     ($($law:ident: $file:ident, $doc:literal;)*) => {
         $(pub(crate) mod $file;)*
 
-        /// The law behind a curve.
+        /// Law of friction.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Law {
             $(#[doc = $doc] $law,)*
         }
 
         impl Law {
-            /// Every law.
+            /// All laws.
             pub const ALL: &[Law] = &[$(Law::$law),*];
 
             fn definition(self) -> &'static LawDefinition {
@@ -40,66 +41,68 @@ macro_rules! laws {
 }
 
 laws! {
-    Paper: paper, "The paper's capstan and eq. 4, with its constants.";
-    Layout: layout, "The law fitted to the thresholds of the three published layouts.";
-    Physics: physics, "A string over sinking pins on a foundation, see [`crate::physics`].";
-    Calibrated: calibrated, "A model calibrated on measured data.";
+    Paper: paper, "Capstan and eq. 4 of the paper, with its constants.";
+    Layout: layout, "Law fitted to the thresholds of the three published layouts.";
+    Physics: physics, "String over sinking pins on a foundation, see [`crate::physics`].";
+    Calibrated: calibrated, "Model calibrated on measured data.";
 }
 
 impl Law {
-    /// The law of every curve for which no other is asked: of those that predict every contact and change with each of
-    /// its parameters, the one whose error is smallest on published layouts of which it was told nothing
-    /// (`model/doc/friction-laws.md` has the table, [`crate::validation`] makes it).
+    /// Default law. Of the laws that predict every contact and depend on all of its parameters, it
+    /// has the smallest leave-one-layout-out error on the published layouts (table in
+    /// `model/doc/friction-laws.md`, computed by [`crate::validation`]).
     pub const DEFAULT: Self = Self::Physics;
 
-    /// The law of a word, such as `paper`.
+    /// Returns the law with a name such as `paper`.
     pub fn named(word: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|law| law.as_str() == word)
     }
 
-    /// The laws that predict from a contact alone: those a user can choose.
+    /// Returns the laws that predict from a contact alone, which a user can choose.
     ///
     /// ```
     /// use pinswitch_friction::Law;
     ///
     /// let words: Vec<_> = Law::predictive().map(Law::as_str).collect();
-    /// assert!(words.starts_with(&["paper", "layout", "physics"]) && !words.contains(&"calibrated"));
+    /// assert!(words.starts_with(&["paper", "layout", "physics"]));
+    /// assert!(!words.contains(&"calibrated"));
     /// ```
     pub fn predictive() -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(|law| !law.definition().needs_model)
     }
 
-    /// The word in files and on the command line, such as `paper`.
+    /// Returns the name in files and on the command line, such as `paper`.
     pub fn as_str(self) -> &'static str {
         self.definition().word
     }
 
-    /// What it is called in a legend.
+    /// Returns the name in legends.
     pub fn title(self) -> &'static str {
         self.definition().title
     }
 
-    /// What it is and where it applies, in one line.
+    /// Returns a description with the domain, in one line.
     pub fn summary(self) -> &'static str {
         self.definition().summary
     }
 
-    /// Where it comes from: the equation of the paper, or what it was fitted to.
+    /// Returns the source: an equation of the paper, or the data of the fit.
     pub fn source(self) -> &'static str {
         self.definition().source
     }
 
-    /// States of `contact` by this law at `loads_n` newtons.
+    /// Predicts the states of `contact` at `loads_n` newtons.
     pub(crate) fn states(self, contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, LawError> {
         (self.definition().states)(contact, loads_n)
     }
 
-    /// Friction of `contact` by this law at `loads_n` newtons, without band.
+    /// Predicts the friction of `contact` at `loads_n` newtons, in newtons.
     pub(crate) fn friction_n(self, contact: &Contact, loads_n: &[f64]) -> Result<Vec<f64>, LawError> {
         Ok(self.states(contact, loads_n)?.iter().map(|s| s.friction_n).collect())
     }
 
-    /// Friction of `contact` by this law, with what the law itself leaves uncertain.
+    /// Predicts the friction of `contact` at `loads_n` newtons, with the uncertainty of the law
+    /// itself.
     pub(crate) fn uncertain_friction(
         self,
         contact: &Contact,
@@ -108,7 +111,7 @@ impl Law {
         (self.definition().uncertain)(contact, loads_n)
     }
 
-    /// What the law is known to get wrong of `contact`, in words.
+    /// Returns a known error of the law for `contact`, as text.
     pub(crate) fn remark(self, contact: &Contact) -> Option<String> {
         (self.definition().remark)(contact)
     }
@@ -139,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_name_laws_and_are_what_json_holds() {
+    fn names_round_trip_through_json() {
         for law in Law::ALL {
             assert_eq!(Law::named(law.as_str()), Some(*law));
             assert_eq!(serde_json::to_string(law).unwrap(), format!("\"{}\"", law.as_str()));

@@ -1,4 +1,5 @@
-//! `paper`: the paper's own capstan and eq. 4, with its constants, for its three layouts and for one material alone.
+//! `paper`: capstan and eq. 4 of the paper, with its constants, for its three layouts and for one
+//! material alone.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -14,7 +15,7 @@ use crate::switch::{PaperSwitch, Switch, SwitchState};
 pub(super) static DEFINITION: LawDefinition = LawDefinition {
     word: "paper",
     title: "the paper's model",
-    summary: "Capstan and eq. 4 with the paper's constants: its three layouts only",
+    summary: "Capstan and eq. 4 with the constants of the paper: its three layouts only",
     source: "capstan and eq. 4 of Dermitzakis & Carbajal, arXiv:1401.5232, with its constants",
     needs_model: false,
     states: paper_states,
@@ -22,7 +23,8 @@ pub(super) static DEFINITION: LawDefinition = LawDefinition {
     remark: threshold_remark,
 };
 
-/// The paper's model; it gives no constants for other pins on silicone than its three layouts.
+/// Predicts by the model of the paper, which has constants for three layouts of pins on silicone
+/// only.
 fn paper_states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, LawError> {
     match (contact.substrate(), contact.published_layout()) {
         (Substrate::Silicone, Some(layout)) => {
@@ -38,7 +40,8 @@ fn paper_states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, 
     }
 }
 
-/// A plain capstan: the friction of one material, of which silicone makes `share`.
+/// Returns the states of a capstan with one coefficient `mu`; `share` is the silicone's share of
+/// the friction.
 pub(crate) fn capstan(contact: &Contact, mu: f64, share: f64, loads_n: &[f64]) -> Vec<SwitchState> {
     let x = mu * contact.wrap_rad();
     loads_n
@@ -53,12 +56,13 @@ pub(crate) fn capstan(contact: &Contact, mu: f64, share: f64, loads_n: &[f64]) -
         .collect()
 }
 
-/// The law's own error: how far it misses the maxima of the same kind, root mean square as logarithms, times Student's
-/// factor for so few. A layout's own miss is not its band.
+/// Returns the uncertainty of the law: the root mean square of its logarithmic errors on all maxima
+/// of the same kind, times Student's t quantile for their number. The error on a single layout
+/// would underestimate it.
 fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<UncertainFriction, LawError> {
     let friction_n = paper_states(contact, loads_n)?.iter().map(|s| s.friction_n).collect();
     let (wrap, heaviest) = (published::wrap_angle_rad(), published::heaviest_load_n());
-    let misses: Vec<f64> = match (contact.substrate(), contact.pins().count()) {
+    let errors: Vec<f64> = match (contact.substrate(), contact.pins().count()) {
         (Substrate::Silicone, 0) => {
             let model = capstan_friction_n(heaviest, published::MU_SILICONE * wrap);
             vec![libm::log(model / published::SILICONE_ALONE_MAX_N)]
@@ -72,20 +76,20 @@ fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<UncertainFricti
             LAYOUTS.iter().map(|l| libm::log(model / l.pins_max_n)).collect()
         }
     };
-    let count = misses.len() as f64;
-    let rms = (misses.iter().map(|m| m * m).sum::<f64>() / count).sqrt();
+    let count = errors.len() as f64;
+    let rms = (errors.iter().map(|e| e * e).sum::<f64>() / count).sqrt();
     let quantile = StudentsT::new(0.0, 1.0, count).map_or(12.7, |t| t.inverse_cdf(0.975));
-    let own = BandSource::even("misses at the measured maxima", vec![quantile * rms; loads_n.len()]);
-    Ok(UncertainFriction { friction_n, sources: vec![own] })
+    let source = BandSource::symmetric("errors at the measured maxima", vec![quantile * rms; loads_n.len()]);
+    Ok(UncertainFriction { friction_n, sources: vec![source] })
 }
 
-/// Says when `F_thr` of six-single is not read as printed.
+/// Returns a remark if `F_thr` of six-single is not the printed one.
 fn threshold_remark(contact: &Contact) -> Option<String> {
     let (read, printed) = (contact.published_layout()?, LAYOUTS[0]);
     (read.name == printed.name
         && read.threshold != printed.threshold
         && contact.substrate() == Substrate::Silicone)
         .then(|| {
-            format!("F_thr of six-single is read as {}, printed is {}", read.threshold, printed.threshold)
+            format!("F_thr of six-single is {} instead of the printed {}", read.threshold, printed.threshold)
         })
 }

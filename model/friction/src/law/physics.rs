@@ -1,4 +1,4 @@
-//! `physics`: a string over sinking pins on silicone, for any layout.
+//! `physics`: a tendon over sinking pins on silicone, for any layout.
 
 use nalgebra::Matrix3;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -14,7 +14,7 @@ use crate::substrate::Substrate;
 pub(super) static DEFINITION: LawDefinition = LawDefinition {
     word: "physics",
     title: "physics",
-    summary: "A tendon over sinking pins on silicone: any layout; the default",
+    summary: "Tendon over sinking pins on silicone: any layout; the default",
     source: "tendon over sinking pins on a silicone foundation, ploughing of the coating; three constants fitted to the \
              seven published maxima",
     needs_model: false,
@@ -23,35 +23,35 @@ pub(super) static DEFINITION: LawDefinition = LawDefinition {
     remark: unexplained,
 };
 
-/// Share of cases that a band should hold.
+/// Coverage of a band.
 const CONFIDENCE: f64 = 0.95;
 
-/// Friction of `contact`, and what the physics leaves uncertain of `ln D` at 95 %: its constants, by their covariance, and
-/// its own error, which is that of published layouts left out of the fit.
+/// Predicts the friction of `contact` with two sources of uncertainty: the constants, by their
+/// covariance, and the model, by its leave-one-layout-out error on the published layouts.
 fn uncertain(contact: &Contact, loads_n: &[f64]) -> Result<UncertainFriction, LawError> {
     let fit = &PUBLISHED_FIT;
     let switch = PhysicsSwitch::new(contact, fit.constants());
     let (friction_n, sensitivities) = switch.friction_and_sensitivities(loads_n)?;
     let covariance = Matrix3::from_row_slice(&fit.covariance.concat());
-    let quantile =
-        StudentsT::new(0.0, 1.0, fit.freedom).map_or(2.78, |t| t.inverse_cdf(0.5 + CONFIDENCE / 2.0));
+    let quantile = StudentsT::new(0.0, 1.0, fit.degrees_of_freedom)
+        .map_or(2.78, |t| t.inverse_cdf(0.5 + CONFIDENCE / 2.0));
     let constants =
         sensitivities.iter().map(|g| quantile * (g.transpose() * covariance * g)[(0, 0)].sqrt()).collect();
     Ok(UncertainFriction {
         friction_n,
         sources: vec![
-            BandSource::even("constants", constants),
-            BandSource::even("model", vec![quantile * fit.left_out_rms; loads_n.len()]),
+            BandSource::symmetric("constants", constants),
+            BandSource::symmetric("model", vec![quantile * fit.left_out_rms; loads_n.len()]),
         ],
     })
 }
 
-/// What the physics is known not to explain of a published condition.
+/// Returns the known error of the physics for a published condition.
 fn unexplained(contact: &Contact) -> Option<String> {
     let layout = contact.published_layout().filter(|_| contact.substrate() == Substrate::Silicone)?;
     (layout.pins == 3).then(|| {
         format!(
-            "physics gives three-double and three-single nearly the same maximum; {:.2} and {:.2} N were measured",
+            "physics predicts nearly the same maximum for three-double and three-single, measured are {:.2} and {:.2} N",
             published::LAYOUTS[1].device_max_n,
             published::LAYOUTS[2].device_max_n
         )
@@ -65,20 +65,22 @@ mod tests {
     use super::*;
     use crate::pattern::PinPattern;
 
-    /// The short cut of the curve's sensitivities, against the long way.
+    /// The approximate sensitivities of the band agree with those by finite differences.
     #[test]
-    fn bands_follow_the_sensitivities() {
+    fn band_follows_the_sensitivities() {
         let layout = &published::LAYOUTS[1];
         let pins = PinPattern::even(layout.pins, layout.pitch_rad());
         let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap();
         let loads = [10.0, 30.0, 49.671];
-        let found = uncertain(&contact, &loads).unwrap();
-        let constants = found.sources.iter().find(|s| s.name == "constants").unwrap();
+        let predicted = uncertain(&contact, &loads).unwrap();
+        let constants = predicted.sources.iter().find(|s| s.name == "constants").unwrap();
         let covariance = Matrix3::from_row_slice(&PUBLISHED_FIT.covariance.concat());
         for (i, load) in loads.iter().enumerate() {
             let at = Constants::published().logarithms();
             let log_friction = |at: &Vector3<f64>| {
-                libm::log(PhysicsSwitch::new(&contact, Constants::from_logarithms(at)).friction_n(*load).unwrap())
+                libm::log(
+                    PhysicsSwitch::new(&contact, Constants::from_logarithms(at)).friction_n(*load).unwrap(),
+                )
             };
             let slope = Vector3::from_fn(|k, _| {
                 let mut moved = at;
@@ -86,7 +88,11 @@ mod tests {
                 (log_friction(&moved) - log_friction(&at)) / 1e-3
             });
             let exact = 2.776 * (slope.transpose() * covariance * slope)[(0, 0)].sqrt();
-            assert!((constants.up[i] / exact - 1.0).abs() < 0.15, "at {load} N: {} for {exact}", constants.up[i]);
+            assert!(
+                (constants.up[i] / exact - 1.0).abs() < 0.15,
+                "at {load} N: {} for {exact}",
+                constants.up[i]
+            );
         }
     }
 }

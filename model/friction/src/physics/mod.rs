@@ -1,9 +1,11 @@
-//! Friction from physics: a string over sinking pins on a silicone foundation, for any layout.
+//! Friction from contact mechanics: a tendon over sinking pins on a silicone foundation, for any
+//! layout.
 //!
-//! The paper's equation cannot predict a layout that it was not fitted to. This model can: the tendon's shape follows
-//! from a balance of forces (`equilibrium.rs`, `model/doc/friction-laws.md`), each contact's friction from its force
-//! (`march.rs`), and three constants fitted to the published maxima (`fit.rs`) carry the materials. What it does not
-//! explain stands in [`hypotheses`] and in every curve's reasons.
+//! The equation of the paper has constants for three layouts only. This model predicts any layout:
+//! the shape of the tendon follows from the balance of forces (`equilibrium.rs`,
+//! `model/doc/friction-laws.md`), the friction of each contact from its force (`march.rs`), and the
+//! materials have three constants, fitted to the published maxima (`fit.rs`). [`hypotheses`] and
+//! the reasons of every curve list the facts that it does not explain.
 
 mod banded;
 mod constants;

@@ -1,5 +1,5 @@
-//! What nobody has named: steps, waves, worn spots, resonances, Stribeck's dip, one defective layout, a material that
-//! remembers, another tendon, two operators.
+//! Disturbances outside the vocabulary of effects: steps, waves, worn spots, resonances, a Stribeck
+//! minimum, a defective layout, material memory, a replaced tendon, and two operators.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,134 +8,136 @@ use serde::{Deserialize, Serialize};
 
 use crate::row_covariates::RowCovariates;
 
-/// What a disturbance acts on.
+/// Quantity that a disturbance acts on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DisturbanceTarget {
-    /// A share of the friction coefficients of pins and silicone.
+    /// Friction coefficients of pins and silicone, by a relative change.
     #[default]
     Friction,
-    /// A share of the friction coefficient of the pins.
+    /// Friction coefficient of the pins, by a relative change.
     Pins,
-    /// A share of the friction coefficient of the silicone.
+    /// Friction coefficient of the silicone, by a relative change.
     Silicone,
-    /// Newtons on the reading.
+    /// Reading, by newtons.
     Reading,
-    /// Newtons against the motion.
+    /// Tension, by newtons against the motion.
     Drag,
 }
 
-/// A disturbance outside the vocabulary.
+/// Disturbance outside the vocabulary of effects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
-    /// Its course.
+    /// Shape over time, stroke or another covariate.
     pub kind: DisturbanceKind,
-    /// What it acts on.
+    /// Quantity that it acts on.
     #[serde(default)]
     pub target: DisturbanceTarget,
-    /// Its size: a share of friction, or newtons.
+    /// Size: a share of friction, or newtons.
     pub size: f64,
 }
 
-/// DisturbanceKind of a disturbance; shares of time and stroke are 0..1.
+/// Shape of a disturbance. Shares of the session and of the stroke are from 0 to 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum DisturbanceKind {
-    /// From a share of the session on; `over` is the share it takes to rise.
+    /// Step, or ramp, in the session.
     Step {
-        /// Where it begins.
+        /// Begin, as a share of the session.
         at: f64,
-        /// How long it takes.
+        /// Duration of the ramp, as a share of the session.
         #[serde(default)]
         over: f64,
     },
-    /// Only between two shares of the session.
+    /// Another level in a part of the session.
     Window {
-        /// Where it begins.
+        /// Begin, as a share of the session.
         from: f64,
-        /// Where it ends.
+        /// End, as a share of the session.
         to: f64,
     },
-    /// A sine over the session.
+    /// Sine over the session.
     TimeWave {
-        /// Cycles.
+        /// Number of cycles.
         cycles: f64,
         /// Phase in radians.
         phase: f64,
     },
-    /// A sine, or a square wave, along the stroke.
+    /// Sine, or square wave, along the stroke.
     StrokeWave {
-        /// Cycles.
+        /// Number of cycles.
         cycles: f64,
         /// Phase in radians.
         phase: f64,
-        /// Square instead of sine.
+        /// Square wave instead of a sine.
         #[serde(default)]
         square: bool,
     },
-    /// A worn spot: half a sine over `width` of the stroke, or a box.
+    /// Worn spot: half a cosine, or a box, along the stroke.
     Spot {
-        /// Centre.
+        /// Centre, as a share of the stroke.
         at: f64,
-        /// Whole width.
+        /// Full width, as a share of the stroke.
         width: f64,
-        /// A box instead of half a sine.
+        /// Box instead of half a cosine.
         #[serde(default)]
         flat: bool,
     },
-    /// A resonance: Lorentz curve over the speed.
+    /// Resonance: Lorentz curve over the speed.
     Resonance {
-        /// Speed in percent.
+        /// Speed of the maximum, in percent of full speed.
         speed_pct: f64,
-        /// Half width at half height, in percent of full speed.
+        /// Half width at half maximum, in percent of full speed.
         width_pct: f64,
     },
-    /// Stribeck's dip: friction falls to its lowest at a speed, where `size` of it is missing, and rises beyond; a bell
-    /// over the logarithm of the speed.
+    /// Stribeck minimum: friction is lower by `size` at a speed, with a Gaussian shape over the
+    /// logarithm of the speed.
     Stribeck {
-        /// Speed of least friction in percent.
+        /// Speed of the minimum, in percent of full speed.
         speed_pct: f64,
-        /// Ratio of speeds, as its logarithm, at which a share of 1/e is left of the dip.
+        /// Logarithm of the ratio of speeds at which a share of 1/e is left.
         width: f64,
     },
-    /// One layout, wherever its pins stand.
+    /// One layout.
     Layout {
-        /// Its occupied grooves.
+        /// Occupied grooves of the layout.
         pins: Vec<usize>,
     },
-    /// The material remembers the load of the series before: the step down from it, as a share of the highest load of
-    /// the session, forgotten exponentially. The session begins after no load.
+    /// Memory of the silicone for the load of the previous series: proportional to the decrease of
+    /// the load from it, as a share of the highest load of the session, with exponential decay. The
+    /// load before the session is zero.
     Memory {
-        /// Repetitions through both directions after which a share of 1/e is left.
+        /// Repetitions, counted through both directions, after which a share of 1/e is left.
         repetitions: f64,
     },
-    /// Another tendon from a share of the session on. `size` is the share by which the friction of the pins changes.
+    /// Another tendon in the rest of the session. `size` is the relative change of friction on the
+    /// pins.
     Swap {
-        /// When.
+        /// Time of the replacement, as a share of the session.
         at: f64,
-        /// Share by which the friction of the silicone changes.
+        /// Relative change of friction on the silicone.
         silicone: f64,
     },
-    /// Two operators; the second zeroes the cell off by `size`.
+    /// Two operators: the zero of the load cell differs by `size` for the second one.
     Operators {
-        /// How they take turns.
+        /// Schedule of the operators.
         turns: OperatorSchedule,
     },
 }
 
-/// How two operators take turns.
+/// Schedule of two operators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum OperatorSchedule {
-    /// Each series has one of them at random.
+    /// Random for each series.
     Series,
-    /// One has the first half of the session's series, the other the second; who begins is random.
+    /// One operator in each half of the session; which one begins is random.
     Half,
 }
 
 impl DisturbanceKind {
-    /// Numbers of the disturbance with their keys below `kind`.
+    /// Returns the numbers of the disturbance with their keys below `kind`.
     pub(super) fn numbers(&self) -> Vec<(&'static str, f64)> {
         match *self {
             Self::Step { at, over } => vec![("step.at", at), ("step.over", over)],
@@ -157,7 +159,7 @@ impl DisturbanceKind {
         }
     }
 
-    /// Numbers that the formula divides by, with their keys below `kind`.
+    /// Returns the numbers that the formula divides by, with their keys below `kind`.
     pub(super) fn divisors(&self) -> Vec<(&'static str, f64)> {
         match *self {
             Self::Spot { width, .. } => vec![("spot.width", width)],
@@ -169,7 +171,7 @@ impl DisturbanceKind {
 }
 
 impl Disturbance {
-    /// Where a calibration may find it: any of these is right.
+    /// Returns the covariates to which a calibration can correctly assign the disturbance.
     pub fn covariates(&self) -> &'static [Covariate] {
         match self.kind {
             DisturbanceKind::Step { .. }
@@ -180,12 +182,13 @@ impl Disturbance {
             DisturbanceKind::Resonance { .. } | DisturbanceKind::Stribeck { .. } => &[Covariate::Speed],
             DisturbanceKind::Layout { .. } => &[Covariate::Condition],
             DisturbanceKind::Memory { .. } => &[Covariate::Load, Covariate::Repetition],
-            // Groups of series at random go along with everything a little, and with nothing clearly.
+            // A random group of series correlates weakly with every covariate.
             DisturbanceKind::Operators { .. } => &Covariate::ALL,
         }
     }
 
-    fn course(&self, at: &RowCovariates, pins: &[usize]) -> f64 {
+    /// Returns the value of the shape in a row, with a size of one.
+    fn shape(&self, at: &RowCovariates, pins: &[usize]) -> f64 {
         let flag = |b: bool| f64::from(u8::from(b));
         let RowCovariates { time_share, stroke_share, speed_pct, .. } = *at;
         match &self.kind {
@@ -223,25 +226,25 @@ impl Disturbance {
         }
     }
 
-    /// Newtons on a reading.
+    /// Returns the change of a reading in newtons.
     pub(super) fn on_reading_n(&self, at: &RowCovariates, pins: &[usize]) -> f64 {
-        let course = || self.size * self.course(at, pins);
+        let change_n = || self.size * self.shape(at, pins);
         match self.target {
-            DisturbanceTarget::Reading => course(),
-            DisturbanceTarget::Drag => at.sign * course(),
+            DisturbanceTarget::Reading => change_n(),
+            DisturbanceTarget::Drag => at.sign * change_n(),
             DisturbanceTarget::Friction | DisturbanceTarget::Pins | DisturbanceTarget::Silicone => 0.0,
         }
     }
 
-    /// Factors on the friction of pins and silicone.
+    /// Returns the factors on the friction of pins and silicone.
     pub(super) fn on_friction(&self, at: &RowCovariates, pins: &[usize]) -> (f64, f64) {
-        let course = self.course(at, pins);
-        let factor = 1.0 + self.size * course;
+        let shape = self.shape(at, pins);
+        let factor = 1.0 + self.size * shape;
         match (self.target, &self.kind) {
             (DisturbanceTarget::Friction, DisturbanceKind::Swap { silicone, .. }) => {
-                (factor, 1.0 + silicone * course)
+                (factor, 1.0 + silicone * shape)
             }
-            // Pins do not remember.
+            // Pins have no memory.
             (DisturbanceTarget::Friction, DisturbanceKind::Memory { .. })
             | (DisturbanceTarget::Silicone, _) => (1.0, factor),
             (DisturbanceTarget::Friction, _) => (factor, factor),
@@ -256,7 +259,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_spot_and_a_resonance_end_where_they_should() {
+    fn shapes_have_their_width() {
         let on = |kind: DisturbanceKind, time_share, stroke_share, speed_pct| {
             let at = RowCovariates { time_share, stroke_share, speed_pct, ..RowCovariates::default() };
             Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.5 }.on_friction(&at, &[]).0
@@ -270,12 +273,12 @@ mod tests {
         assert_eq!(on(resonance, 0.0, 0.0, 51.0), 1.25);
         let dip = || DisturbanceKind::Stribeck { speed_pct: 50.0, width: 0.5 };
         assert_eq!(on(dip(), 0.0, 0.0, 50.0), 0.5);
-        let beside = on(dip(), 0.0, 0.0, 50.0 * 0.5f64.exp());
-        assert!((beside - 1.0 + 0.5 / 1f64.exp()).abs() < 1e-12, "{beside}");
+        let flank = on(dip(), 0.0, 0.0, 50.0 * 0.5f64.exp());
+        assert!((flank - 1.0 + 0.5 / 1f64.exp()).abs() < 1e-12, "{flank}");
     }
 
     #[test]
-    fn silicone_forgets_and_pins_never_knew() {
+    fn only_silicone_has_memory() {
         let memory = Disturbance {
             kind: DisturbanceKind::Memory { repetitions: 10.0 },
             target: DisturbanceTarget::Friction,
@@ -295,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn another_tendon_rubs_otherwise_on_pins_and_on_silicone() {
+    fn swap_changes_pins_and_silicone() {
         let swap = Disturbance {
             kind: DisturbanceKind::Swap { at: 0.5, silicone: -0.1 },
             target: DisturbanceTarget::Friction,
@@ -307,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn the_second_operator_alone_is_off() {
+    fn second_operator_has_an_offset() {
         let two = Disturbance {
             kind: DisturbanceKind::Operators { turns: OperatorSchedule::Series },
             target: DisturbanceTarget::Reading,

@@ -1,11 +1,11 @@
 //! Covariates of one row.
 
-/// What an effect may depend on in one row, beside the load and the contact.
+/// Covariates of a row that an effect can depend on, in addition to load and contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct RowCovariates {
     /// -1 eccentric, +1 concentric.
     pub(crate) sign: f64,
-    /// Whether loads descend.
+    /// Whether the sweep descends.
     pub(crate) down: bool,
     /// Speed in percent.
     pub(crate) speed_pct: f64,
@@ -13,20 +13,20 @@ pub(crate) struct RowCovariates {
     pub(crate) mean_speed_pct: f64,
     /// Pause before the reading in seconds.
     pub(crate) dwell_s: f64,
-    /// Repetition inside series and direction, from 1.
+    /// Repetition within series and direction, from 1.
     pub(crate) repetition: f64,
-    /// Repetition inside the series, both directions counted, from 1.
+    /// Repetition within the series, counted through both directions, from 1.
     pub(crate) series_repetition: f64,
-    /// Share of the stroke, 0..1.
+    /// Position, as a share of the stroke.
     pub(crate) stroke_share: f64,
-    /// Share of the session's time, 0..1.
+    /// Time, as a share of the session.
     pub(crate) time_share: f64,
-    /// Share of the session's repetitions made before, 0..1.
+    /// Repetitions before this one, as a share of the session's repetitions.
     pub(crate) travel_share: f64,
-    /// The step down from the load of the series before, as a share of the session's highest load.
+    /// Decrease of the load from the previous series, as a share of the session's highest load.
     pub(crate) step_down: f64,
-    /// Who measures: 1 or 2.
+    /// Operator: 1 or 2.
     pub(crate) operator: u32,
-    /// Factor on all friction that this seating of the tendon has.
+    /// Factor of this tendon seating and mount on all friction.
     pub(crate) seating: f64,
 }

@@ -1,6 +1,7 @@
-//! What each series of a session has of its own: its mount, its operator, how the tendon is seated, its offset.
+//! Random effects of the series of a session: mount, operator, tendon seating and offset.
 //!
-//! Each part is drawn from a stream of its own, so that a part that is switched on leaves all else as it was.
+//! Each random effect has a separate stream of random numbers, so that enabling one does not change
+//! the others.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,20 +13,20 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::disturbance::{DisturbanceKind, OperatorSchedule};
 use crate::plan::{ColumnsPlan, Plan};
 
-/// Streams of the random numbers beside the one that everything else is drawn from.
+/// Streams of random numbers, in addition to stream 0 of all other random numbers.
 const SERIES_SCALE: u64 = 1;
 const MOUNT_SCALE: u64 = 2;
 const COMMON_OFFSET: u64 = 3;
 const OPERATORS: u64 = 4;
 
-/// What one series has of its own.
+/// Mount, operator and random effects of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeriesTraits {
-    /// Number of the mount, from 1: it grows each time another condition is put on.
+    /// Number of the mount, from 1; a new one begins whenever the condition changes.
     pub mount: u32,
-    /// Who measured it: 1 or 2.
+    /// Operator: 1 or 2.
     pub operator: u32,
-    /// Factor on all friction, of the mount and of the series.
+    /// Factor of mount and series on all friction.
     pub friction_factor: f64,
     /// Offset of both directions, in its standard deviations.
     pub common_offset: f64,
@@ -37,12 +38,12 @@ impl Default for SeriesTraits {
     }
 }
 
-/// What the series of a session have of their own, by name.
+/// Traits of the series of a session, by the name of the series.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SessionTraits(BTreeMap<String, SeriesTraits>);
 
 impl SessionTraits {
-    /// Draws it for a session whose rows are in the order of time.
+    /// Draws the traits for a session whose rows are in the order of time.
     pub(crate) fn draw(plan: &Plan, session: &[PlateauRow]) -> Self {
         let stream = |number| {
             let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
@@ -52,7 +53,7 @@ impl SessionTraits {
         let mut seats = stream(SERIES_SCALE);
         let mut mounts = stream(MOUNT_SCALE);
         let mut offsets = Ar1::new(plan.noise.series_walk, stream(COMMON_OFFSET));
-        let mut operators = Operators::of(plan, session, stream(OPERATORS));
+        let mut operators = Operators::new(plan, session, stream(OPERATORS));
         let mut traits = BTreeMap::new();
         let mut before: Option<&PlateauRow> = None;
         let (mut mount, mut wrap) = (0, 0.0);
@@ -66,44 +67,44 @@ impl SessionTraits {
             }
             before = Some(row);
             let seat = plan.noise.series_scale * normal(&mut seats);
-            let mark = SeriesTraits {
+            let series = SeriesTraits {
                 mount,
                 operator: operators.next(),
                 friction_factor: (wrap + seat).exp(),
                 common_offset: offsets.next(),
             };
-            traits.insert(row.series.clone(), mark);
+            traits.insert(row.series.clone(), series);
         }
         Self(traits)
     }
 
-    /// That of a series.
+    /// Returns the traits of a series.
     pub fn of(&self, series: &str) -> SeriesTraits {
         self.0.get(series).copied().unwrap_or_default()
     }
 
-    /// The same series as if the tendon had been seated ideally in each.
-    pub(crate) fn seated_ideally(&self) -> Self {
-        let ideal = |mark: &SeriesTraits| SeriesTraits { friction_factor: 1.0, ..*mark };
-        Self(self.0.iter().map(|(series, mark)| (series.clone(), ideal(mark))).collect())
+    /// Returns the same traits without random effects on friction.
+    pub(crate) fn without_friction_factors(&self) -> Self {
+        let ideal = |traits: &SeriesTraits| SeriesTraits { friction_factor: 1.0, ..*traits };
+        Self(self.0.iter().map(|(series, traits)| (series.clone(), ideal(traits))).collect())
     }
 
-    /// Adds the optional columns to the text of a table of these rows.
+    /// Adds the optional columns to the CSV text of these rows.
     pub(crate) fn add_columns(&self, columns: ColumnsPlan, rows: &[PlateauRow], text: String) -> String {
         if columns.is_empty() {
             return text;
         }
-        let asked = [("mount", columns.mount), ("operator", columns.operator)];
-        let names = asked.iter().filter(|a| a.1).fold(String::new(), |line, a| line + "," + a.0);
+        let optional = [("mount", columns.mount), ("operator", columns.operator)];
+        let names = optional.iter().filter(|c| c.1).fold(String::new(), |line, c| line + "," + c.0);
         let cells = rows.iter().map(|row| {
-            let mark = self.of(&row.series);
-            [mark.mount, mark.operator]
+            let traits = self.of(&row.series);
+            [traits.mount, traits.operator]
                 .iter()
-                .zip(asked)
-                .filter(|(_, a)| a.1)
+                .zip(optional)
+                .filter(|(_, c)| c.1)
                 .fold(String::new(), |line, (value, _)| format!("{line},{value}"))
         });
-        // Names of simulated series are numbers: no cell breaks a line.
+        // The names of simulated series are numbers, so that a line of text is a row.
         text.lines()
             .zip(std::iter::once(names).chain(cells))
             .map(|(line, more)| format!("{line}{more}\n"))
@@ -115,7 +116,7 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(random)
 }
 
-/// Unit normal numbers, each correlated with the one before.
+/// AR(1) process with unit variance.
 #[derive(Debug)]
 pub(crate) struct Ar1 {
     correlation: f64,
@@ -136,12 +137,13 @@ impl Ar1 {
     }
 }
 
-/// A unit normal number, correlated with the last one; it is `unit` itself where nothing is.
+/// Returns the next value of an AR(1) process with unit variance, from a unit normal number; the
+/// first value is that number.
 pub(crate) fn ar1_step(correlation: f64, last: Option<f64>, unit: f64) -> f64 {
     last.map_or(unit, |last| correlation * last + (1.0 - correlation * correlation).sqrt() * unit)
 }
 
-/// Who has which turn.
+/// Operators of the series, in order.
 struct Operators {
     turns: Option<OperatorSchedule>,
     random: ChaCha8Rng,
@@ -151,7 +153,7 @@ struct Operators {
 }
 
 impl Operators {
-    fn of(plan: &Plan, session: &[PlateauRow], mut random: ChaCha8Rng) -> Self {
+    fn new(plan: &Plan, session: &[PlateauRow], mut random: ChaCha8Rng) -> Self {
         let turns = plan.disturbances.iter().find_map(|d| match d.kind {
             DisturbanceKind::Operators { turns } => Some(turns),
             _ => None,
@@ -191,13 +193,13 @@ mod tests {
         (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
     }
 
-    /// One repetition a series, and each value over many seeds.
+    /// Returns values of many seeds, with one repetition per series.
     fn over_seeds(plan: &Plan, of: impl Fn(Vec<SeriesTraits>) -> Vec<f64>) -> Vec<f64> {
         (0..300).flat_map(|seed| of(traits(&Plan { seed, repetitions: [1, 1], ..plan.clone() }))).collect()
     }
 
     #[test]
-    fn each_part_scatters_as_much_as_the_plan_says() {
+    fn random_effects_have_the_planned_scatter() {
         let logs = |traits: Vec<SeriesTraits>| traits.iter().map(|m| m.friction_factor.ln()).collect();
         let mut plan = Plan::randomised();
         assert!(over_seeds(&plan, logs).iter().all(|v| *v == 0.0));
@@ -210,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn offsets_walk_as_strongly_as_the_plan_says() {
+    fn offsets_have_the_planned_correlation() {
         for walk in [0.0, 0.8] {
             let mut plan = Plan::default();
             plan.noise.series_walk = walk;
@@ -223,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_condition_is_one_mount_unless_it_is_taken_off_between() {
+    fn mounts_change_with_the_condition() {
         let mut plan = Plan::randomised();
         plan.noise.mount_scale = 0.02;
         let once = traits(&plan);
@@ -236,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn operators_take_turns() {
+    fn operators_follow_their_schedule() {
         let of = |turns| {
             let mut plan = Plan { seed: 3, ..Plan::randomised() };
             let kind = DisturbanceKind::Operators { turns };

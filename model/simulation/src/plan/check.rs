@@ -12,8 +12,8 @@ use super::rig_plan::{EffectPlan, Plan, Protocol};
 use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
 use crate::effect_forms::forms_of;
 
-/// Largest weight in grams, speed in percent, dwell in seconds, force in newtons and constant of an effect: far above
-/// any real one.
+/// Largest weight in grams, speed in percent, dwell in seconds, force in newtons and constant of an
+/// effect: far above any real one.
 const MAX_VALUE: f64 = 1e6;
 /// Largest friction coefficient.
 const MAX_FRICTION: f64 = 10.0;
@@ -222,7 +222,7 @@ fn check_disturbance(index: usize, d: &Disturbance) -> Result<(), Diagnostic> {
     let field = |name: &str| format!("disturbances[{index}].{name}");
     require_within(&field("size"), d.size, -1000.0..=1000.0, "give a share of friction, or newtons")?;
     for (name, value) in d.kind.numbers() {
-        let help = "give a share, a speed in percent, or a number of cycles";
+        let help = "give a finite number";
         require_within(&field(&format!("kind.{name}")), value, -MAX_VALUE..=MAX_VALUE, help)?;
     }
     for (name, value) in d.kind.divisors() {

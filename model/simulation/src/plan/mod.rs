@@ -1,4 +1,4 @@
-//! `PLAN.toml`: what a synthetic rig does and what is wrong with it.
+//! `PLAN.toml`: a synthetic rig with its session, effects, disturbances and noise.
 
 mod check;
 mod columns;

@@ -9,33 +9,33 @@ use super::noise::NoisePlan;
 use super::raw::RawPlan;
 use crate::disturbance::Disturbance;
 
-/// Order and settings of the series.
+/// Order and settings of the series of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Protocol {
-    /// Loads ascending once, speed follows load, one dwell, many repetitions.
+    /// Ascending loads, speed proportional to load, one dwell, many repetitions.
     #[default]
     Paper,
-    /// Loads up and down, several speeds and dwells in random order, layouts in random order.
+    /// Ascending and descending loads; random speeds, dwells and order of layouts.
     Randomised,
 }
 
-/// One effect of the vocabulary with its constants.
+/// Effect of the vocabulary with its constants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EffectPlan {
-    /// Its id.
+    /// Id of the effect.
     pub id: String,
-    /// Its constants, in the order of its formula.
+    /// Constants, in the order of the formula.
     #[serde(default)]
     pub values: Vec<f64>,
-    /// In which of its forms: 0 is that of `model/doc/effect-catalogue.md`, others bend otherwise than the model that
-    /// is fitted.
+    /// Form: 0 is that of `model/doc/effect-catalogue.md`, which the calibrator fits; others are
+    /// equally plausible.
     #[serde(default)]
     pub form: u8,
 }
 
-/// RigConstants of the paper's model on this rig.
+/// Constants of the paper's model on a rig.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RigConstants {
@@ -43,14 +43,14 @@ pub struct RigConstants {
     pub mu_p: f64,
     /// Friction coefficient on the silicone.
     pub mu_s: f64,
-    /// Factors on the layout law's half load, one per layout; missing ones are 1.
+    /// Factors on the half load of the layout law, one per layout; missing ones are 1.
     pub half_load_factor: Vec<f64>,
     /// Steepness of the switch, one per layout; missing ones are [`LayoutLaw::STEEPNESS`].
     pub steepness: Vec<f64>,
 }
 
 impl RigConstants {
-    /// Steepness of the switch of a layout, by its place among the layouts.
+    /// Returns the steepness of the switch of layout number `layout`.
     pub fn steepness_of(&self, layout: usize) -> f64 {
         self.steepness.get(layout).copied().unwrap_or(LayoutLaw::STEEPNESS)
     }
@@ -67,52 +67,54 @@ impl Default for RigConstants {
     }
 }
 
-/// A synthetic rig.
+/// Synthetic rig with its session.
 ///
 /// ```
 /// use pinswitch_simulation::Plan;
 ///
-/// let plan = Plan::parse("weights_g = [251.2, 2005.0, 5002.5]\nlayouts = [[5, 8, 11]]", "plan.toml")?;
+/// let text = "weights_g = [251.2, 2005.0, 5002.5]\nlayouts = [[5, 8, 11]]";
+/// let plan = Plan::parse(text, "plan.toml")?;
 /// assert_eq!(plan.repetitions, Plan::default().repetitions);
 /// let error = Plan::parse("weights_g = [-1.0]", "plan.toml").unwrap_err();
 /// assert_eq!(error.location().and_then(|at| at.line), Some(1));
-/// assert!(error.to_string().starts_with("plan.toml:1:13: weights_g = [-1.0]: must be 1 to 1000 numbers"));
+/// assert!(error.to_string().starts_with("plan.toml:1:13: weights_g = [-1.0]: must be 1 to 1000"));
 /// # Ok::<(), pinswitch_diagnostic::Diagnostic>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Plan {
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Order and settings of the series.
     pub protocol: Protocol,
-    /// All series of the randomised protocol in one random order, instead of sweep by sweep.
+    /// Whether all series of the randomised protocol are in random order, instead of sweep by
+    /// sweep.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub shuffled: bool,
-    /// Wrap angle of the tendon in degrees; the paper's is not written.
+    /// Wrap angle of the tendon in degrees.
     #[serde(skip_serializing_if = "is_published_wrap")]
     pub wrap_angle_deg: f64,
-    /// Layouts as lists of occupied grooves.
+    /// Layouts, as lists of occupied grooves.
     pub layouts: Vec<Vec<usize>>,
-    /// Whether silicone without pins is measured.
+    /// Whether the session includes silicone without pins.
     pub silicone: bool,
-    /// Whether the layouts are measured on the rigid proxy.
+    /// Whether the session includes the layouts on the rigid proxy.
     pub proxy: bool,
     /// Weights in grams, ascending.
     pub weights_g: Vec<f64>,
-    /// Speeds in percent; the paper's protocol runs each weight at one of them.
+    /// Speeds in percent; the paper's protocol has one of them for each weight.
     pub speeds_pct: Vec<f64>,
     /// Dwells in seconds; the paper's protocol uses the first.
     pub dwells_s: Vec<f64>,
     /// Repetitions per series, eccentric and concentric.
     pub repetitions: [u32; 2],
-    /// How far the repetitions of the paper's protocol vary from series to series.
+    /// Range of the number of repetitions between series.
     pub repetitions_spread: u32,
-    /// The paper's model on this rig.
+    /// Constants of the paper's model.
     pub constants: RigConstants,
-    /// What the paper's model lacks on it.
+    /// Effects in addition to the paper's model.
     pub effects: Vec<EffectPlan>,
-    /// What nobody has named.
+    /// Disturbances outside the vocabulary of effects.
     pub disturbances: Vec<Disturbance>,
     /// Noise.
     pub noise: NoisePlan,
@@ -121,12 +123,12 @@ pub struct Plan {
     /// Optional columns of the table.
     #[serde(skip_serializing_if = "ColumnsPlan::is_empty")]
     pub columns: ColumnsPlan,
-    /// The effects that may be among those of the plan; a file of a plan does not hold it.
+    /// Vocabulary of the effects; not a part of the file.
     #[serde(skip)]
     pub vocabulary: Vocabulary,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_published_wrap(degrees: &f64) -> bool {
     *degrees == published::WRAP_ANGLE_DEG
 }
@@ -158,7 +160,8 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// The randomised protocol: loads up and down, four speeds, three dwells, fewer repetitions.
+    /// Returns a plan with the randomised protocol: ascending and descending loads, four speeds,
+    /// three dwells, and fewer repetitions than the paper.
     pub fn randomised() -> Self {
         Self {
             protocol: Protocol::Randomised,
@@ -170,7 +173,7 @@ impl Plan {
         }
     }
 
-    /// Puts an effect into the rig. Of one of one's own, constants that are left out are at their start values.
+    /// Adds an effect. Missing constants of a user-defined effect have their start values.
     pub fn add_effect(&mut self, id: &str, mut values: Vec<f64>) {
         let own = self.vocabulary.own().find(|own| own.definition().id == id);
         let starts = own.map_or(&[][..], |own| &own.definition().parameters);

@@ -63,8 +63,8 @@ fn located(error: Diagnostic, text: &str, file: &str) -> Diagnostic {
     }
 }
 
-/// Bytes of the value of a field such as `noise.series_N` or `effects[0].values[1]`; those of the innermost table or
-/// list that the text has, if it does not have the whole path.
+/// Bytes of the value of a field such as `noise.series_N` or `effects[0].values[1]`; those of the
+/// innermost table or list that the text has, if it does not have the whole path.
 fn value_span(text: &str, field: &str) -> Option<Range<usize>> {
     let root = DeTable::parse(text).ok()?;
     let mut steps = field.split(['.', '[', ']']).filter(|step| !step.is_empty());
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_plan_names_what_it_cannot_use() {
+    fn invalid_plans_are_located() {
         let cases = [
             ("weights_g = []", "plan.toml:1:13: weights_g = []: must be 1 to 1000 numbers"),
             ("layouts = [[3], [16]]", "plan.toml:1:17: layouts[1] = [16]"),
@@ -143,9 +143,9 @@ mod tests {
         assert_eq!(Plan::parse("", "plan.toml").unwrap(), Plan::default());
     }
 
-    /// The text of a plan without scatter is what it was before there were keys for it.
+    /// The text of a plan has the optional keys only if they differ from their defaults.
     #[test]
-    fn keys_of_scatter_are_written_only_where_they_say_something() {
+    fn default_values_are_not_written() {
         let text = Plan::default().to_text().unwrap();
         for key in ["scale", "common", "walk", "resolution", "shuffled", "columns"] {
             assert!(!text.contains(key), "{key}");

@@ -1,25 +1,26 @@
-//! Whether questions come out answered as often as was told before the session: a forecast is right if of those told with
-//! 80 % four in five come true.
+//! Reliability of the forecasts that a session answers a question: of the questions with a forecast
+//! of 80 %, four in five should be answered.
 
-/// One question of a plan.
+/// Forecast for a question of a proposed session, with its outcome.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnswerForecast {
-    /// Probability of an answer that was told.
+    /// Forecast probability of an answer.
     pub probability: f64,
-    /// Whether there was one.
+    /// Whether the session answered the question.
     pub is_answered: bool,
 }
 
-/// Where the rows of the table end.
-const UP_TO: [f64; 7] = [0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
+/// Upper bounds of the forecast probability in the rows of the table.
+const UPPER_BOUNDS: [f64; 7] = [0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
 
-/// What was told against what came, of the proposed sessions and of the protocol repeated, by what was told; in Markdown.
+/// Returns the reliability table of both kinds of session, in Markdown: mean forecast and share of
+/// answered questions, by forecast probability.
 pub(super) fn table_of(proposed: &[AnswerForecast], repeated: &[AnswerForecast]) -> String {
     let mut text = String::from(
-        "| told probability of an answer | questions of proposed sessions | told, mean | answered | questions of the protocol repeated | told, mean | answered |\n|---|---|---|---|---|---|---|\n",
+        "| forecast probability of an answer | questions of proposed sessions | mean forecast | answered | questions of repeated protocols | mean forecast | answered |\n|---|---|---|---|---|---|---|\n",
     );
     let mut from = 0.0;
-    for to in UP_TO {
+    for to in UPPER_BOUNDS {
         let is_last = to >= 1.0;
         let within = |p: f64| p >= from && (p < to || is_last);
         let cells = [proposed, repeated].map(|all| cells(all, within));
@@ -36,6 +37,8 @@ pub(super) fn table_of(proposed: &[AnswerForecast], repeated: &[AnswerForecast])
     text
 }
 
+/// Returns the cells of the forecasts within a range: number, mean forecast, and answered
+/// questions.
 fn cells(all: &[AnswerForecast], within: impl Fn(f64) -> bool) -> String {
     let group: Vec<&AnswerForecast> = all.iter().filter(|p| within(p.probability)).collect();
     if group.is_empty() {
@@ -52,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_question_is_counted_once_by_what_was_told() {
+    fn each_question_is_counted_once() {
         let of = |probability, is_answered| AnswerForecast { probability, is_answered };
         let table =
             table_of(&[of(0.0, false), of(0.8, true), of(0.9, false), of(1.0, true)], &[of(0.5, true)]);

@@ -1,32 +1,32 @@
-//! One kind of rig in the study.
+//! A kind of rig in the study.
 
 use pinswitch_calibration::effects::Covariate;
 
 use super::nulls::{NULLS, OFTEN};
 use crate::plan::Protocol;
 
-/// What is true of a rig.
+/// Truth about a rig.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Truth {
-    /// The paper's model.
+    /// No effect: the paper's model.
     Nothing,
     /// Effects of the vocabulary.
     Effects(Vec<&'static str>),
-    /// Effects of which this protocol cannot tell one from another: the answer must name both.
+    /// Effects that are confounded in this protocol: the answer must report all of them.
     Confounded(Vec<&'static str>),
-    /// The first of two effects that this protocol cannot tell apart, so small that it may be missed: the answer must
-    /// name both, or say that it cannot be excluded.
+    /// Small effect, the first of two that are confounded in this protocol: the answer must report
+    /// both, or be inconclusive.
     SmallConfounded([&'static str; 2]),
-    /// Something outside the vocabulary.
+    /// Disturbance outside the vocabulary.
     Outside {
-        /// Where it may be found: any of these is right.
+        /// Correct covariates; any of them will do.
         covariates: &'static [Covariate],
-        /// A name that is as right.
+        /// Effect of the vocabulary that is also a correct answer.
         or_named: Option<&'static str>,
     },
 }
 
-/// A group of kinds of rig.
+/// Group of kinds of rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
     /// No effect.
@@ -37,16 +37,16 @@ pub enum Group {
     Scattered,
     /// Two effects.
     Pairs,
-    /// A drag of the guide pulleys that hides a second effect.
+    /// A drag of the guide pulleys, and a second effect that it may mask.
     Masks,
-    /// One effect that the protocol cannot tell from another.
+    /// One effect that is confounded with another in the protocol.
     Confounded,
-    /// Something outside the vocabulary.
+    /// A disturbance outside the vocabulary.
     Outside,
 }
 
 impl Group {
-    /// All of them.
+    /// All groups.
     pub const ALL: [Group; 7] = [
         Group::Nulls,
         Group::Singles,
@@ -57,7 +57,7 @@ impl Group {
         Group::Outside,
     ];
 
-    /// Its word.
+    /// Returns the name on the command line, such as `nulls`.
     pub fn as_str(self) -> &'static str {
         match self {
             Group::Nulls => "nulls",
@@ -71,23 +71,23 @@ impl Group {
     }
 }
 
-/// One kind of rig.
+/// Kind of rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// Its effects, or what is wrong with it, in words.
+    /// Effects or disturbance, as text.
     pub name: String,
-    /// Its protocol.
+    /// Protocol of the session.
     pub protocol: Protocol,
-    /// The group it is counted in.
+    /// Group of the kind.
     pub group: Group,
-    /// What is true of it.
+    /// Effects or disturbance.
     pub truth: Truth,
-    /// Whether it holds every kind of noise at once, whatever it would have of its own.
+    /// Whether the rig has every kind of noise at once, instead of the noise of its kind.
     pub every_noise: bool,
 }
 
 impl Case {
-    /// Whether a word means it: that of its group, or else a part of its name.
+    /// Whether the word is the name of its group, or else a part of its own name.
     pub fn matches(&self, word: &str) -> bool {
         match Group::ALL.iter().find(|g| g.as_str() == word) {
             Some(group) => self.group == *group,
@@ -95,7 +95,8 @@ impl Case {
         }
     }
 
-    /// How many rigs of it a study makes that makes `seeds` of every kind: more of the first kinds without effect.
+    /// Returns the number of rigs of this kind in a study with `seeds` rigs of every kind; the
+    /// first kinds without effect have two and a half times as many.
     pub fn rigs(&self, seeds: u64) -> u64 {
         let often = NULLS.iter().take(OFTEN).any(|kind| kind.0 == self.name);
         if often { (10 * seeds).div_ceil(4) } else { seeds }

@@ -1,4 +1,4 @@
-//! Results of the study by case.
+//! Results of the study by kind of rig.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use super::case::Case;
 use super::figures::{answer_text, median_of};
 use super::outcome::CaseOutcome;
 
-/// Results by case.
+/// Results by kind of rig.
 ///
 /// ```
 /// use pinswitch_calibration::inference::Levels;
@@ -14,7 +14,7 @@ use super::outcome::CaseOutcome;
 ///
 /// let case = study_cases().into_iter().find(|c| c.name == "load_cell_gain").ok_or("not a case")?;
 /// let outcome = run_case(&case, 1, Levels::default(), false).ok_or("the table reads back")?;
-/// assert!(outcome.honest, "{:?}", outcome.named);
+/// assert!(outcome.consistent, "{:?}", outcome.named);
 /// let mut study = Study::default();
 /// study.add(case, vec![outcome]);
 /// assert!(study.table().contains("load_cell_gain"));
@@ -27,20 +27,20 @@ pub struct Study {
 }
 
 impl Study {
-    /// Adds the outcomes of a case.
+    /// Adds the outcomes of a kind.
     pub fn add(&mut self, case: Case, outcomes: Vec<CaseOutcome>) {
         self.outcomes.push((case, outcomes));
     }
 
-    /// The confusion matrix by case, in Markdown.
+    /// Returns the results by kind, in Markdown.
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "| protocol | group | rig | sets | right | of the visible | honest | left open | error after/before | next session | intervals that hold | said instead |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+            "| protocol | group | rig | sets | exact | exact of the visible | consistent | left open | error after/before | next session | intervals with the truth | other answers |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         );
         for (case, outcomes) in &self.outcomes {
             let exact = outcomes.iter().filter(|o| o.exact).count();
-            let honest = outcomes.iter().filter(|o| o.exact || o.honest).count();
-            let open = outcomes.iter().filter(|o| o.open && !o.exact && !o.honest).count();
+            let consistent = outcomes.iter().filter(|o| o.exact || o.consistent).count();
+            let open = outcomes.iter().filter(|o| o.left_open && !o.exact && !o.consistent).count();
             let visible = outcomes.iter().filter(|o| o.visible).count();
             let seen = outcomes.iter().filter(|o| o.visible && o.exact).count();
             let mut other: BTreeMap<String, usize> = BTreeMap::new();
@@ -49,14 +49,14 @@ impl Study {
             }
             let other: Vec<String> = other.into_iter().map(|(answer, k)| format!("{answer} ({k})")).collect();
             text.push_str(&format!(
-                "| {} | {} | {} | {} | {exact} | {seen} of {visible} | {honest} | {open} | {:.3} | {:.3} | {} | {} |\n",
+                "| {} | {} | {} | {} | {exact} | {seen} of {visible} | {consistent} | {open} | {:.3} | {:.3} | {} | {} |\n",
                 format!("{:?}", case.protocol).to_lowercase(),
                 case.group.as_str(),
                 case.name,
                 outcomes.len(),
                 median_of(outcomes.iter().map(|o| o.fresh_n[1] / o.fresh_n[0].max(1e-9))),
                 median_of(outcomes.iter().map(|o| o.next_n[1] / o.next_n[0].max(1e-9))),
-                held(outcomes),
+                covered(outcomes),
                 other.join("; ").replace('|', " or ")
             ));
         }
@@ -64,8 +64,8 @@ impl Study {
     }
 }
 
-/// How many of the intervals hold the truth; empty without any.
-fn held(outcomes: &[CaseOutcome]) -> String {
+/// Returns the number of intervals that contain the true size, as text; empty without intervals.
+fn covered(outcomes: &[CaseOutcome]) -> String {
     let all: Vec<bool> = outcomes.iter().flat_map(|o| o.covered.iter().copied()).collect();
     if all.is_empty() {
         return String::new();

@@ -1,4 +1,4 @@
-//! Kinds of rig in the study, and the plan of each for a seed.
+//! Kinds of rig in the study, and the random plan of each.
 
 use pinswitch_calibration::effects::{CATALOGUE, Covariate, PaperProtocol, effect_named};
 use rand::{RngExt, SeedableRng};
@@ -19,11 +19,11 @@ const PAIRS: [(&str, &str); 4] = [
     ("coating_stiffening", "run_in"),
 ];
 
-/// Small effects that the paper's protocol cannot tell from another, with their sizes.
+/// Small effects that are confounded with another in the paper's protocol, with their sizes.
 const SMALL: [(&str, &str, f64); 2] =
     [("rate_dependence", "fixture_compliance", 0.2), ("fixture_compliance", "rate_dependence", 0.05)];
 
-/// All kinds of rig. Effects that a protocol cannot show are left out of it.
+/// Returns all kinds of rig, without effects that are invisible in the protocol.
 pub fn study_cases() -> Vec<Case> {
     let protocols = || [Protocol::Paper, Protocol::Randomised].into_iter();
     let later = protocols()
@@ -74,7 +74,7 @@ fn cases_of(protocol: Protocol) -> Vec<Case> {
     cases
 }
 
-/// The plan of a case and a seed: constants, sizes, forms and noise all drawn.
+/// Returns the plan of a kind and a seed, with random constants, sizes, forms and noise.
 pub fn plan_of(case: &Case, seed: u64) -> Plan {
     let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_mul(0x9E37_79B9).wrapping_add(77));
     let mut plan = match case.protocol {
@@ -125,15 +125,16 @@ pub fn plan_of(case: &Case, seed: u64) -> Plan {
     plan
 }
 
-/// Whether the series of a randomised rig stand in one random order: where the load before matters, and in half of the
-/// rigs whose friction differs from series to series or that hide an effect.
+/// Whether all series of a randomised rig are in random order: always if the previous load matters,
+/// and in half of the rigs with random effects of series or masked effects.
 fn is_shuffled(case: &Case, seed: u64) -> bool {
     let half = matches!(case.group, Group::Scattered | Group::Masks) || case.name.contains("series scale");
     let always = case.name == "memory of the load before";
     case.protocol == Protocol::Randomised && (always || half && (seed / 2).is_multiple_of(2))
 }
 
-/// An effect with its size, shape and form drawn; the size from the range of the study unless another is given.
+/// Draws size, shape and form of an effect; the range of the size is that of the study, unless
+/// `sizes` is given.
 fn draw_effect(id: &str, sizes: Option<(f64, f64)>, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
     let range = effect_named(id)?.description().study;
     let mut values = Vec::new();
@@ -154,7 +155,7 @@ mod tests {
     use crate::simulate::simulate;
 
     #[test]
-    fn plans_of_the_study_can_be_written_and_read() {
+    fn plans_round_trip_through_toml() {
         for case in study_cases() {
             let plan = plan_of(&case, 3);
             let text = toml::to_string(&plan).unwrap();
@@ -162,7 +163,7 @@ mod tests {
         }
     }
 
-    /// The kinds that the study began with.
+    /// Returns the kinds of the first study.
     fn first_kinds() -> impl Iterator<Item = Case> {
         let first = |case: &Case| match case.group {
             Group::Nulls => NULLS[..4].iter().any(|k| k.0 == case.name),
@@ -174,9 +175,9 @@ mod tests {
         study_cases().into_iter().filter(first)
     }
 
-    /// FNV-1a over the tables of these: figures of the study before and after compare.
+    /// FNV-1a hash of the tables: the results of earlier and later studies stay comparable.
     #[test]
-    fn the_first_kinds_make_the_bytes_they_always_made() {
+    fn tables_of_first_kinds_are_unchanged() {
         assert_eq!(first_kinds().count(), 72);
         let mut hash = 0xcbf2_9ce4_8422_2325u64;
         for case in first_kinds() {
@@ -187,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn plans_are_what_the_names_say() {
+    fn plans_match_their_names() {
         let plan = |name: &str, protocol| {
             let case = study_cases().into_iter().find(|c| c.name == name && c.protocol == protocol);
             plan_of(&case.unwrap(), 4)
@@ -210,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn every_noise_is_that_of_the_rigs_without_effect_that_hold_it() {
+    fn every_noise_applies_to_all_kinds() {
         for case in study_cases() {
             let noise = plan_of(&Case { every_noise: true, ..case }, 4).noise;
             assert!((0.01..0.04).contains(&noise.series_scale) && (0.01..0.03).contains(&noise.mount_scale));
@@ -224,12 +225,12 @@ mod tests {
     }
 
     #[test]
-    fn a_word_means_a_group_or_else_names() {
-        let meant = |word: &str| study_cases().iter().filter(|c| c.matches(word)).count();
-        assert_eq!(meant("nulls"), 2 * NULLS.len());
-        assert_eq!(meant("masks"), 21);
-        assert_eq!(meant("worn spot"), 2);
-        assert!(meant("singles") > 30 && meant("scattered") >= meant("singles"));
-        assert_eq!(meant("nothing like it"), 0);
+    fn words_match_groups_or_names() {
+        let matches = |word: &str| study_cases().iter().filter(|c| c.matches(word)).count();
+        assert_eq!(matches("nulls"), 2 * NULLS.len());
+        assert_eq!(matches("masks"), 21);
+        assert_eq!(matches("worn spot"), 2);
+        assert!(matches("singles") > 30 && matches("scattered") >= matches("singles"));
+        assert_eq!(matches("an unknown kind"), 0);
     }
 }

@@ -1,5 +1,5 @@
-//! The study's chapter on the next experiment: rigs whose first table leaves open what is true, and what one proposed session
-//! makes of them, beside as many minutes of the paper's protocol.
+//! Study of proposed experiments: rigs whose first session is ambiguous, after one proposed
+//! session, and after as many minutes of the paper's protocol instead.
 
 use pinswitch_calibration::effects::{Vocabulary, effect_named};
 use pinswitch_calibration::experiment::{
@@ -17,11 +17,12 @@ use crate::next_session::plan_for;
 use crate::plan::{Plan, Protocol};
 use crate::simulate::{simulate, simulate_rows};
 
-/// Minutes of the proposed session.
+/// Duration of the proposed session in minutes.
 const MINUTES: f64 = 60.0;
 
-/// Effects that the paper's protocol may leave open: rate against compliance against saturation, adhesion against drag, gain
-/// against nonlinearity. Each with the share of its drawn size that is put in: small ones are left open more often.
+/// Effects that the paper's protocol may leave ambiguous: rate, compliance or saturation; adhesion
+/// or drag; gain or nonlinearity. Each has a factor on its random size, because small effects are
+/// ambiguous more often.
 const OPEN: [(&str, f64); 7] = [
     ("rate_dependence", 1.0),
     ("fixture_compliance", 1.0),
@@ -32,35 +33,35 @@ const OPEN: [(&str, f64); 7] = [
     ("load_cell_nonlinearity", 0.25),
 ];
 
-/// What a table says, as far as this chapter asks.
+/// State of the attribution after a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Attribution {
-    /// The true effect is attributed, alone.
+    /// The true effect alone is attributed.
     Alone,
-    /// `ambiguous` or `inconclusive`.
+    /// The verdict is `ambiguous` or `inconclusive`.
     Open,
-    /// Anything else.
+    /// Any other answer.
     Other,
 }
 
-/// What became of one rig.
+/// Outcome of a rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExperimentOutcome {
-    /// After the paper's protocol.
+    /// Attribution after the paper's protocol.
     pub first: Attribution,
-    /// After one proposed session more; `None` where nothing was open.
+    /// Attribution after one more session, as proposed; `None` if the first was not open.
     pub proposed: Option<Attribution>,
-    /// After as many minutes of the paper's protocol instead.
+    /// Attribution after as many minutes of the paper's protocol instead.
     pub repeated: Option<Attribution>,
-    /// Minutes that the proposal took.
+    /// Duration of the proposed session in minutes.
     pub minutes: f64,
-    /// What was told of each question, and whether the proposed session answered it.
+    /// Forecasts for the questions of the proposed session.
     pub forecasts: Vec<AnswerForecast>,
-    /// The same of the paper's protocol.
+    /// Forecasts for the same questions with the paper's protocol.
     pub repetition_forecasts: Vec<AnswerForecast>,
 }
 
-/// The kinds of rig of this chapter.
+/// Returns the kinds of rig of this study.
 pub fn experiment_cases() -> Vec<Case> {
     OPEN.map(|(id, _)| Case {
         name: id.to_owned(),
@@ -72,7 +73,8 @@ pub fn experiment_cases() -> Vec<Case> {
     .to_vec()
 }
 
-/// The plan of a kind and a seed: the form is the fitter's, and the size its share of that drawn, times `factor`.
+/// Returns the plan of a kind and a seed, with the fitter's form and a size multiplied by the
+/// factor of [`OPEN`] and by `factor`.
 fn open_plan(case: &Case, seed: u64, factor: f64) -> Plan {
     let mut plan = plan_of(case, seed);
     let share = OPEN.iter().find(|(id, _)| *id == case.name).map_or(1.0, |(_, share)| factor * *share);
@@ -84,13 +86,14 @@ fn open_plan(case: &Case, seed: u64, factor: f64) -> Plan {
     plan
 }
 
-/// Calibrates one rig whose effect is `factor` times as large as this chapter's, proposes a session where something is open,
-/// makes it, and calibrates both tables together. `None` if a table cannot be used.
+/// Calibrates a rig whose effect is larger by `factor` than usual in this study. If the result is
+/// open, proposes a session, simulates it, and calibrates both tables together. Returns `None` if a
+/// table is not usable.
 pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) -> Option<ExperimentOutcome> {
     let plan = open_plan(case, seed, factor);
     let rows = simulate(&plan).rows;
-    let found = calibrate(&rows, levels).ok()?;
-    let first = attribution(case, &found);
+    let calibration = calibrate(&rows, levels).ok()?;
+    let first = attribution(case, &calibration);
     if first != Attribution::Open {
         return Some(ExperimentOutcome {
             first,
@@ -102,7 +105,7 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
         });
     }
     let rig = RigLimits::default();
-    let proposal = proposed(&found, &rows, &rig, levels)?;
+    let proposal = proposed(&calibration, &rows, &rig, levels)?;
     let after = |runs: &[PlannedRun], probability: fn(&QuestionOutlook) -> f64| {
         let asked = Asked {
             minutes: proposal.minutes,
@@ -114,11 +117,11 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
         let Ok(both) = calibrate(&rows, levels) else { return (None, Vec::new()) };
         let highest_n = rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
         let answers = asked.answered(&both.report, highest_n).questions;
-        let promised = answers.iter().map(|q| AnswerForecast {
+        let forecasts = answers.iter().map(|q| AnswerForecast {
             probability: q.resolved_probability,
             is_answered: q.answer != Answer::Open,
         });
-        (Some(attribution(case, &both)), promised.collect())
+        (Some(attribution(case, &both)), forecasts.collect())
     };
     let (proposed, forecasts) = after(&proposal.runs, |q| q.resolved_probability);
     let (repeated, repetition_forecasts) = after(&paper_runs(&rig, proposal.minutes), |q| q.by_repeating);
@@ -132,7 +135,7 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
     })
 }
 
-/// A question as a plan's file holds it.
+/// Converts a question to the form of a plan's file.
 fn asked(question: &QuestionOutlook, resolved_probability: f64) -> AskedQuestion {
     AskedQuestion {
         between: question.between.clone(),
@@ -143,23 +146,32 @@ fn asked(question: &QuestionOutlook, resolved_probability: f64) -> AskedQuestion
     }
 }
 
-fn attribution(case: &Case, found: &Calibration) -> Attribution {
-    let named: Vec<Vec<&str>> = found.selection.effects.iter().map(FoundEffect::ids).collect();
-    match found.report.verdict {
+/// Returns the state of the attribution of a calibration.
+fn attribution(case: &Case, calibration: &Calibration) -> Attribution {
+    let named: Vec<Vec<&str>> = calibration.selection.effects.iter().map(FoundEffect::ids).collect();
+    match calibration.report.verdict {
         Verdict::Attributed if named == [vec![case.name.as_str()]] => Attribution::Alone,
         Verdict::Ambiguous | Verdict::Inconclusive => Attribution::Open,
         _ => Attribution::Other,
     }
 }
 
-fn proposed(found: &Calibration, rows: &[PlateauRow], rig: &RigLimits, levels: Levels) -> Option<Proposal> {
-    let model = ModelFile::new(&found.selection.augmented, &found.data, found.selection.noise);
+/// Proposes a session after a calibration.
+fn proposed(
+    calibration: &Calibration,
+    rows: &[PlateauRow],
+    rig: &RigLimits,
+    levels: Levels,
+) -> Option<Proposal> {
+    let model =
+        ModelFile::new(&calibration.selection.augmented, &calibration.data, calibration.selection.noise);
     let vocabulary = Vocabulary::built_in();
-    let known = Known { report: &found.report, model: &model, rows, vocabulary: &vocabulary, name: "study" };
+    let known =
+        Known { report: &calibration.report, model: &model, rows, vocabulary: &vocabulary, name: "study" };
     propose(known, rig, MINUTES, levels).ok()
 }
 
-/// The runs made on the rig of a plan, as a later session.
+/// Simulates the runs as a later session of the rig of a plan.
 fn session(plan: &Plan, runs: &[PlannedRun], rig: &RigLimits) -> Option<Vec<PlateauRow>> {
     let rows = rows_of(runs, rig, "");
     if rows.is_empty() {
@@ -168,7 +180,7 @@ fn session(plan: &Plan, runs: &[PlannedRun], rig: &RigLimits) -> Option<Vec<Plat
     Some(simulate_rows(&plan_for(plan, &rows), rows).rows)
 }
 
-/// Both tables as the command line joins them.
+/// Joins both tables like the command line.
 fn joined(first: &[PlateauRow], second: Vec<PlateauRow>) -> Option<Vec<PlateauRow>> {
     let table = |rows: &[PlateauRow], name: &str| {
         Some((PlateauTable::read(PlateauTable::write(rows).as_bytes(), name).ok()?, name.to_owned()))
@@ -177,7 +189,7 @@ fn joined(first: &[PlateauRow], second: Vec<PlateauRow>) -> Option<Vec<PlateauRo
     Some(PlateauTable::joined(tables).ok()?.rows)
 }
 
-/// The outcomes by kind.
+/// Outcomes by kind of rig.
 #[derive(Clone, Debug, Default)]
 pub struct ExperimentStudy {
     outcomes: Vec<(Case, Vec<ExperimentOutcome>)>,
@@ -189,23 +201,24 @@ impl ExperimentStudy {
         self.outcomes.push((case, outcomes));
     }
 
-    /// A row for each kind, and one for all, in Markdown.
+    /// Returns a row for each kind, one for all, and the reliability of the forecasts, in Markdown.
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "| rig | rigs | attributed alone at first | open at first | of these attributed alone after one proposed session | after as many minutes of the paper's protocol | median minutes |\n|---|---|---|---|---|---|---|\n",
+            "| rig | rigs | attributed alone after the first session | open | of these attributed alone after one proposed session | after as many minutes of the paper's protocol | median minutes |\n|---|---|---|---|---|---|---|\n",
         );
         for (case, outcomes) in &self.outcomes {
             text.push_str(&row(&case.name, &outcomes.iter().collect::<Vec<_>>()));
         }
         let all: Vec<&ExperimentOutcome> = self.outcomes.iter().flat_map(|(_, o)| o).collect();
         text.push_str(&row("all", &all));
-        let promised = |of: fn(&ExperimentOutcome) -> &Vec<AnswerForecast>| -> Vec<AnswerForecast> {
+        let forecasts = |of: fn(&ExperimentOutcome) -> &Vec<AnswerForecast>| -> Vec<AnswerForecast> {
             all.iter().flat_map(|outcome| of(outcome)).copied().collect()
         };
-        format!("{text}\n{}", table_of(&promised(|o| &o.forecasts), &promised(|o| &o.repetition_forecasts)))
+        format!("{text}\n{}", table_of(&forecasts(|o| &o.forecasts), &forecasts(|o| &o.repetition_forecasts)))
     }
 }
 
+/// Returns a row of the table.
 fn row(name: &str, outcomes: &[&ExperimentOutcome]) -> String {
     let count = |of: &dyn Fn(&ExperimentOutcome) -> bool| outcomes.iter().filter(|o| of(o)).count();
     format!(
@@ -224,7 +237,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_proposed_hour_settles_what_the_paper_leaves_open() {
+    fn proposed_sessions_resolve_more_than_repetitions() {
         let case = experiment_cases().remove(0);
         let outcomes: Vec<_> = (900_001..900_004)
             .filter_map(|seed| run_experiment_case(&case, seed, 1.0, Levels::default()))

@@ -1,4 +1,5 @@
-//! The study of the calibrator: rigs of every kind with sizes, forms and noise drawn, and what it says of them.
+//! The study of the calibrator: random rigs of every kind, and the answers of the calibrator
+//! compared with the truth.
 
 mod answer;
 mod answer_forecasts;

@@ -1,4 +1,4 @@
-//! What lies outside the vocabulary in the study.
+//! Disturbances outside the vocabulary in the study.
 
 use pinswitch_calibration::effects::Covariate;
 use rand::RngExt;
@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget, OperatorSchedule};
 use crate::plan::Protocol;
 
-/// What lies outside the vocabulary in the study, and the covariates of which any is right.
+/// Kinds of disturbance, with the covariates of a correct answer.
 pub(super) const OUTSIDE: [(&str, &[Covariate]); 12] = [
     ("step of friction in mid-session", &[Covariate::Time]),
     ("step of the reading in mid-session", &[Covariate::Time]),
@@ -23,10 +23,11 @@ pub(super) const OUTSIDE: [(&str, &[Covariate]); 12] = [
     ("two operators", &Covariate::ALL),
 ];
 
-/// Kinds that came later: they stand behind all others, whose seeds go by their places.
+/// Kinds that were added later. They follow all others, because the seeds of a kind depend on its
+/// index.
 pub(super) const LATER: [(&str, &[Covariate]); 1] = [("Stribeck's dip", &[Covariate::Speed])];
 
-/// Something outside the vocabulary.
+/// Draws the disturbance of a kind.
 pub(super) fn outside(
     name: &str,
     protocol: Protocol,
@@ -75,13 +76,15 @@ pub(super) fn outside(
             of(DisturbanceKind::Spot { at, width, flat: even }, DisturbanceTarget::Friction, friction)
         }
         "one defective layout" => {
-            // With three layouts, the one with another number of pins is what bending is known by.
+            // Of three layouts, the one with another number of pins identifies the effect of
+            // bending.
             let pins = layouts[random.random_range(1..layouts.len())].clone();
             let target = if even { DisturbanceTarget::Friction } else { DisturbanceTarget::Pins };
             of(DisturbanceKind::Layout { pins }, target, sign * friction * if even { 1.0 } else { 2.0 })
         }
         "memory of the load before" => {
-            // Where loads go up step by step, the load before is never far.
+            // With ascending loads the previous load is always similar, so that the effect must be
+            // larger.
             let share = if protocol == Protocol::Paper { 5.0 } else { 2.5 };
             let repetitions = random.random_range(15.0..25.0);
             of(DisturbanceKind::Memory { repetitions }, DisturbanceTarget::Silicone, share * friction)
@@ -101,7 +104,7 @@ pub(super) fn outside(
             of(DisturbanceKind::Operators { turns }, DisturbanceTarget::Reading, sign * newtons)
         }
         "Stribeck's dip" => {
-            // Speeds that follow the load lie within a fifth of each other.
+            // In the paper's protocol all speeds are within 20 % of each other.
             let (speed_pct, width) = match protocol {
                 Protocol::Paper => (random.random_range(50.0..54.0), random.random_range(0.015..0.04)),
                 Protocol::Randomised => (random.random_range(45.0..65.0), random.random_range(0.1..0.35)),

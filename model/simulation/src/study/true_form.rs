@@ -1,5 +1,5 @@
-//! What a disturbance truly is, as effects of one's own with only their sizes free: what a form that was drawn is held
-//! against.
+//! The true form of a disturbance, as user-defined effects with free sizes: the reference for
+//! estimated forms.
 
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
@@ -10,10 +10,10 @@ use pinswitch_calibration::table::Frame;
 
 use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
 
-/// The vocabulary with the true forms of a disturbance, and their ids; `None` where no formula can say it: an operator
-/// who comes and goes is no variable.
+/// Returns the vocabulary with the true forms of a disturbance, and their ids. `None` for
+/// operators, which no variable of a formula describes.
 pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vocabulary, Vec<String>)> {
-    let course = course(disturbance, frame)?;
+    let shape = shape_formula(disturbance, frame)?;
     let size = disturbance.size;
     let parts = match (&disturbance.kind, disturbance.target) {
         (DisturbanceKind::Swap { silicone, .. }, _) => {
@@ -40,7 +40,7 @@ pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vo
                 covariate,
                 acts_on,
                 combine: if is_force { Combine::Sum } else { Combine::Factor },
-                formula: format!("a*{direction}{course}"),
+                formula: format!("a*{direction}{shape}"),
                 one_sided: false,
                 confused_with: Vec::new(),
                 experiment: String::new(),
@@ -60,8 +60,8 @@ pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vo
     Some((Vocabulary::built_in().with(effects).ok()?, ids))
 }
 
-/// The course of a disturbance of size one, in the language of formulas.
-fn course(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
+/// Returns the formula of a disturbance of size one.
+fn shape_formula(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
     Some(match &disturbance.kind {
         DisturbanceKind::Step { at, over } if *over > 0.0 => format!("min(1, max(0, (time - {at})/{over}))"),
         DisturbanceKind::Step { at, .. } | DisturbanceKind::Swap { at, .. } => format!("(time >= {at})"),
@@ -97,13 +97,13 @@ fn course(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
     })
 }
 
-/// The shape of a disturbance in the words of a report: any of these is right. None where no shape is asked for.
+/// Returns the correct names of the shape in a report; empty if no shape is expected.
 pub(super) fn true_shapes(disturbance: &Disturbance) -> &'static [&'static str] {
     match disturbance.kind {
         DisturbanceKind::Step { .. } | DisturbanceKind::Swap { .. } => &["step"],
         DisturbanceKind::Window { .. } | DisturbanceKind::Layout { .. } => &["level"],
         DisturbanceKind::TimeWave { .. } | DisturbanceKind::StrokeWave { .. } => &["sine"],
-        // A worn spot with sharp ends is another level between them.
+        // A box is another level between its ends.
         DisturbanceKind::Spot { flat, .. } => {
             if flat {
                 &["bump", "dip", "level"]
@@ -126,9 +126,9 @@ mod tests {
     use crate::study::cases::{plan_of, study_cases};
     use pinswitch_calibration::inference::{Model, Noise, Observations, Term, Weighed, fit};
 
-    /// The twin and the formula say the same: the true form leaves nothing of a rig that scatters hardly.
+    /// On a rig with little noise, a fit of the true form leaves no structure.
     #[test]
-    fn a_true_form_leaves_nothing() {
+    fn true_forms_explain_the_twin() {
         for case in study_cases().into_iter().filter(|c| c.group == Group::Outside) {
             let mut plan = plan_of(&case, 3);
             plan.noise = NoisePlan {

@@ -1,4 +1,4 @@
-//! What a session of a plan could show at all, whoever looks for it: the bound that a calibrator is held against.
+//! Visibility of the effects of a plan: an upper bound on the detection rate of any calibrator.
 
 use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 use pinswitch_calibration::inference::{
@@ -12,16 +12,18 @@ use crate::series_traits::SessionTraits;
 use crate::simulate::simulate;
 use crate::twin::readings;
 
-/// Scatter of friction from mount to mount beside which something without a name must be seen: rigs without effect have
-/// it, and of them nothing may be said.
-const MOUNTS_WITHOUT_ALARM: f64 = 0.04;
+/// Smallest standard deviation of mount effects for the visibility of a disturbance: some rigs
+/// without effect have it, and must not raise an alarm.
+const MOUNT_SCALE_WITHOUT_ALARM: f64 = 0.04;
 
-/// Whether a session of this plan could show each of its effects and disturbances. Generalised least squares are told the
-/// noise of the same rig without any of them and the course of what they look for, and of the other effects which there
-/// are, but no size. They would have to find each with a probability of at least [`VISIBLE`] at the calibrator's level of
-/// a first name, or of a shape. It asks more of a further name, so that it may miss what is called visible here; a
-/// disturbance must be found beside mounts that may differ as much as those of rigs of which nothing may be said. True of
-/// a plan without either.
+/// Whether a session of this plan could detect each of its effects and disturbances; true for a
+/// plan without either.
+///
+/// The detector is generalised least squares with the noise of the same rig without effects, the
+/// true shape of each effect, and the other effects in the model, with unknown sizes. It must
+/// detect each with a probability of at least [`VISIBLE`] at the calibrator's level of a first
+/// effect, or of structure. The calibrator has a stricter level for further effects, so that it can
+/// miss a visible one. A disturbance must be distinguishable from mount effects.
 pub(super) fn is_visible(plan: &Plan, traits: &SessionTraits, levels: Levels) -> Option<bool> {
     if plan.effects.is_empty() && plan.disturbances.is_empty() {
         return Some(true);
@@ -32,32 +34,32 @@ pub(super) fn is_visible(plan: &Plan, traits: &SessionTraits, levels: Levels) ->
     let mut data = Observations::new(&frame, &rows)?;
     let alone = select(&Model::baseline(frame), &mut data, levels);
     let degrees = degrees_of_freedom(&data, alone.baseline.model.values().len());
-    let seats = traits.seated_ideally();
-    let all = readings(plan, &rows, &seats);
+    let ideal = traits.without_friction_factors();
+    let all = readings(plan, &rows, &ideal);
     let change_n = |without: &Plan| -> Vec<f64> {
-        all.iter().zip(readings(without, &rows, &seats)).map(|(with, without)| with - without).collect()
+        all.iter().zip(readings(without, &rows, &ideal)).map(|(with, without)| with - without).collect()
     };
     let weighed = Weighed::new(&data, alone.noise);
     let shows_effect = |effect: &EffectPlan| {
         let effects: Vec<_> = plan.effects.iter().filter(|e| e.id != effect.id).cloned().collect();
-        let others = beside(&alone.baseline.model, &effects);
+        let others = with_effects(&alone.baseline.model, &effects);
         let gain = expected_gain(&others, &weighed, &change_n(&Plan { effects, ..plan.clone() }));
         probability_found(gain, levels, CATALOGUE.len(), degrees) >= VISIBLE
     };
-    let mount_scale = alone.noise.mount_scale.max(MOUNTS_WITHOUT_ALARM);
+    let mount_scale = alone.noise.mount_scale.max(MOUNT_SCALE_WITHOUT_ALARM);
     let scattered = Weighed::new(&data, Noise { mount_scale, ..alone.noise });
     let shows_disturbance = |at: usize| {
         let mut without = plan.clone();
         without.disturbances.remove(at);
-        let others = beside(&alone.baseline.model, &plan.effects);
+        let others = with_effects(&alone.baseline.model, &plan.effects);
         let gain = expected_gain(&others, &scattered, &change_n(&without));
         probability_structure_found(gain, levels, alone.structures_tried, degrees) >= VISIBLE
     };
     Some(plan.effects.iter().all(shows_effect) && (0..plan.disturbances.len()).all(shows_disturbance))
 }
 
-/// A model that knows of these effects, in the fitter's forms.
-fn beside(model: &Model, effects: &[EffectPlan]) -> Model {
+/// Returns the model with these effects, in the fitter's forms.
+fn with_effects(model: &Model, effects: &[EffectPlan]) -> Model {
     effects.iter().filter_map(|e| effect_named(&e.id)).fold(model.clone(), |model, effect| {
         match effect.starts(&model.frame).first() {
             Some(start) => model.with_term(Term::Named(effect), start),
@@ -71,7 +73,7 @@ mod tests {
     use super::*;
     use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
 
-    fn shown(plan: &Plan) -> bool {
+    fn visible(plan: &Plan) -> bool {
         is_visible(plan, &simulate(plan).traits, Levels::default()).unwrap()
     }
 
@@ -85,17 +87,17 @@ mod tests {
     }
 
     #[test]
-    fn what_is_large_is_shown_and_what_is_tiny_is_not() {
-        assert!(shown(&Plan { seed: 5, ..Plan::default() }), "nothing is missed where nothing is");
-        assert!(shown(&with(&[("load_cell_gain", 0.05)])));
-        assert!(!shown(&with(&[("load_cell_gain", 0.0005)])));
-        // Each of several must be.
-        assert!(shown(&with(&[("load_cell_gain", 0.05), ("guide_drag", 0.8)])));
-        assert!(!shown(&with(&[("load_cell_gain", 0.05), ("guide_drag", 0.003)])));
+    fn large_effects_are_visible() {
+        assert!(visible(&Plan { seed: 5, ..Plan::default() }), "a plan without effects");
+        assert!(visible(&with(&[("load_cell_gain", 0.05)])));
+        assert!(!visible(&with(&[("load_cell_gain", 0.0005)])));
+        // Each of several effects must be visible.
+        assert!(visible(&with(&[("load_cell_gain", 0.05), ("guide_drag", 0.8)])));
+        assert!(!visible(&with(&[("load_cell_gain", 0.05), ("guide_drag", 0.003)])));
     }
 
     #[test]
-    fn a_disturbance_is_shown_beside_mounts_that_differ() {
+    fn large_disturbances_are_visible() {
         let step = |target, size| Plan {
             disturbances: vec![Disturbance {
                 kind: DisturbanceKind::Step { at: 0.5, over: 0.0 },
@@ -104,10 +106,11 @@ mod tests {
             }],
             ..with(&[])
         };
-        assert!(shown(&step(DisturbanceTarget::Reading, 0.8)));
-        assert!(!shown(&step(DisturbanceTarget::Reading, 0.01)));
-        assert!(shown(&step(DisturbanceTarget::Friction, 0.6)));
-        // A layout that is worn by no more than mounts differ cannot be told from its mount.
+        assert!(visible(&step(DisturbanceTarget::Reading, 0.8)));
+        assert!(!visible(&step(DisturbanceTarget::Reading, 0.01)));
+        assert!(visible(&step(DisturbanceTarget::Friction, 0.6)));
+        // Wear of a layout that is not larger than the mount effects cannot be distinguished from
+        // them.
         let pins = Plan::default().layouts[1].clone();
         let layout = |size| Plan {
             disturbances: vec![Disturbance {
@@ -117,6 +120,6 @@ mod tests {
             }],
             ..with(&[])
         };
-        assert!(!shown(&layout(0.06)));
+        assert!(!visible(&layout(0.06)));
     }
 }

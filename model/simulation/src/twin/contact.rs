@@ -1,4 +1,4 @@
-//! Friction at the contact: pins, silicone and the switch between them, with what the paper's model lacks.
+//! Friction at the contact: pins, silicone and the switch between them, with the effects of a plan.
 
 use pinswitch_friction::{LayoutLaw, Substrate, published};
 
@@ -8,7 +8,7 @@ use crate::row_covariates::RowCovariates;
 /// Reference load in newtons (`model/doc/effect-catalogue.md`).
 pub(super) const F0_N: f64 = 50.0;
 
-/// One kind of contact.
+/// Contact of a condition.
 #[derive(Clone, Debug)]
 pub(super) struct TwinContact {
     substrate: Option<Substrate>,
@@ -20,14 +20,14 @@ pub(super) struct TwinContact {
     steepness: f64,
 }
 
-/// Exponents of one row after all effects, before the capstan.
+/// Friction exponents of a row, with all effects.
 struct Exponents {
     pins: f64,
     silicone: f64,
 }
 
 impl TwinContact {
-    /// The contact of a condition; `device` counts the switching layouts before it.
+    /// Creates the contact of a condition; `device` is the number of layouts on silicone before it.
     pub(super) fn new(plan: &Plan, substrate: Option<Substrate>, pins: &[usize], device: usize) -> Self {
         let wrap_rad = if substrate.is_none() { 1.0 } else { plan.wrap_angle_deg.to_radians() };
         let at: Vec<f64> =
@@ -54,12 +54,12 @@ impl TwinContact {
         }
     }
 
-    /// Whether pins stand in silicone here.
+    /// Whether the contact is a layout on silicone.
     pub(super) fn switches(&self) -> bool {
         self.substrate == Some(Substrate::Silicone) && !self.pins.is_empty()
     }
 
-    /// Tension in newtons at a load, when the tension of the round before is known.
+    /// Returns the tension in newtons at a load, from the tension of the previous iteration.
     pub(super) fn tension_n(&self, plan: &Plan, at: &RowCovariates, load_n: f64, before_n: f64) -> f64 {
         let x = self.exponents(plan, at, load_n, before_n);
         let grow = |x: f64| load_n * (at.sign * x).exp();
@@ -82,7 +82,7 @@ impl TwinContact {
             + stuck(carried)
     }
 
-    /// How far a device has switched, 0..1.
+    /// Returns the share of the contact that has switched to silicone, 0 to 1.
     fn switched(&self, plan: &Plan, at: &RowCovariates, load_n: f64, tension_n: f64) -> f64 {
         let mut half_n = self.half_load_n;
         let mut local = None;
@@ -107,7 +107,7 @@ impl TwinContact {
         }
     }
 
-    /// Friction exponents with all effects that change them.
+    /// Returns the friction exponents with all effects that change them.
     fn exponents(&self, plan: &Plan, at: &RowCovariates, load_n: f64, tension_n: f64) -> Exponents {
         let share = load_n / F0_N;
         let mean_share = 0.5 * (load_n + tension_n) / F0_N;
@@ -131,8 +131,8 @@ impl TwinContact {
                 ("run_in", 1) => silicone *= 1.0 + k / (1.0 + (at.repetition - 1.0) / shape),
                 ("run_in", 2) => silicone *= 1.0 + k * (-(at.series_repetition - 1.0) / shape).exp(),
                 ("run_in", _) => {
-                    let anew = if at.sign > 0.0 { e.values.get(2).copied().unwrap_or(1.0) } else { 1.0 };
-                    silicone *= 1.0 + anew * k * (-(at.repetition - 1.0) / shape).exp();
+                    let restart = if at.sign > 0.0 { e.values.get(2).copied().unwrap_or(1.0) } else { 1.0 };
+                    silicone *= 1.0 + restart * k * (-(at.repetition - 1.0) / shape).exp();
                 }
                 ("wear_drift", 1) => both *= 1.0 + k * at.travel_share,
                 ("wear_drift", 2) => both *= 1.0 + k * at.time_share,
@@ -163,7 +163,7 @@ impl TwinContact {
         }
     }
 
-    /// Exponent that ploughing adds on the pins.
+    /// Returns the friction exponent from ploughing at the pins.
     fn ploughing(&self, form: u8, kappa: f64, sign: f64, load_n: f64) -> f64 {
         match form {
             1 => {
@@ -185,7 +185,7 @@ impl TwinContact {
         }
     }
 
-    /// Factor of bending at the pins on their friction; the reference turn is 20 degrees.
+    /// Returns the factor of bending on the friction of the pins; the reference turn is 20 degrees.
     fn bending(&self, form: u8, k: f64) -> f64 {
         let n = self.turns_rad.len();
         if n == 0 {
@@ -204,7 +204,7 @@ impl TwinContact {
     }
 }
 
-/// 0 at 0, 1 at 1, settling with time constant `t`.
+/// Returns an exponential approach with time constant `t`, which is 0 at `u = 0` and 1 at `u = 1`.
 fn settling(u: f64, t: f64) -> f64 {
     (1.0 - (-u / t).exp()) / (1.0 - (-1.0 / t).exp())
 }

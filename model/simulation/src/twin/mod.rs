@@ -1,9 +1,9 @@
-//! The physical twin: readings of a synthetic rig by formulas of its own.
+//! The physical twin: noise-free readings of a synthetic rig.
 //!
-//! It shares no formula with the fitter, so that the study of the calibrator also tests what happens when the truth
-//! bends otherwise than the model fitted. Form 0 of every effect is that of the effect catalogue, and a test holds it
-//! against the fitter's; the other forms are in `effect_forms`. Only an effect without any formula here is lent the
-//! fitter's trace.
+//! It shares no formula with the fitter, so that the study of the calibrator also covers effects
+//! whose true form differs from the fitted one. Form 0 of every effect is that of the effect
+//! catalogue, and a test compares it with the fitter's; `effect_forms` lists the other forms. Only
+//! for an effect without a formula here does the twin use the fitter's model.
 
 mod contact;
 
@@ -19,7 +19,8 @@ use crate::plan::Plan;
 use crate::row_covariates::RowCovariates;
 use crate::series_traits::SessionTraits;
 
-/// Readings in newtons without noise, one per row of a whole session in the order of time.
+/// Computes the readings in newtons without noise, one per row of a whole session in the order of
+/// time.
 pub(super) fn readings(plan: &Plan, session: &[PlateauRow], traits: &SessionTraits) -> Vec<f64> {
     let end_s = session.iter().map(|r| r.time_s).fold(1e-9, f64::max);
     let mean_speed_pct =
@@ -64,16 +65,17 @@ pub(super) fn readings(plan: &Plan, session: &[PlateauRow], traits: &SessionTrai
     out
 }
 
-/// Adds what effects without a formula in the twin do to the fitter's own model at the plan's constants.
+/// Adds the effects without a formula in the twin: their change of the fitter's model with the
+/// constants of the plan.
 fn add_fitter_effects(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) {
-    let lent: Vec<_> = plan
+    let effects: Vec<_> = plan
         .effects
         .iter()
         .filter(|e| !has_own_formula(&e.id))
         .filter_map(|e| Some((plan.vocabulary.named(&e.id)?, e.values.as_slice())))
         .collect();
     let frame = Frame::new(session);
-    let Some(points) = frame.points(session).filter(|_| !lent.is_empty()) else { return };
+    let Some(points) = frame.points(session).filter(|_| !effects.is_empty()) else { return };
     let mut model = Model::baseline(frame);
     let mut values = model.values();
     (values[0], values[1]) = (plan.constants.mu_p, plan.constants.mu_s);
@@ -85,18 +87,18 @@ fn add_fitter_effects(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64
     model.set_values(&values);
     let without = model.predict(&points);
     let with =
-        lent.iter().fold(model, |m, (effect, k)| m.with_term(Term::Named(*effect), k)).predict(&points);
+        effects.iter().fold(model, |m, (effect, k)| m.with_term(Term::Named(*effect), k)).predict(&points);
     for ((reading, with), without) in readings_n.iter_mut().zip(with).zip(without) {
         *reading += with - without;
     }
 }
 
-/// One reading: hook, contact, guide pulleys, cell.
+/// Computes a reading in newtons: hook, contact, guide pulleys, load cell.
 fn reading(plan: &Plan, contact: &TwinContact, at: &RowCovariates, row: &PlateauRow) -> f64 {
     let has = |id: &str| plan.effects.iter().find(|e| e.id == id).map(|e| (e.values.as_slice(), e.form));
     let hook_n = published::HOOK_MASS_G * 1e-3 * published::GRAVITY_M_S2;
     let load_n = row.load_n + if has("hook_omitted").is_some() { hook_n } else { 0.0 };
-    // What the tendon's own tension decides is found by substitution; it settles in a few rounds.
+    // Effects of the local tension: a fixed-point iteration, which converges in a few steps.
     let mut tension_n = load_n;
     for _ in 0..8 {
         tension_n = contact.tension_n(plan, at, load_n, tension_n);
@@ -122,7 +124,7 @@ fn reading(plan: &Plan, contact: &TwinContact, at: &RowCovariates, row: &Plateau
     }
     if let Some((k, form)) = has("load_cell_saturation") {
         force_n = if form == 1 {
-            // A knee half a newton wide instead of a corner.
+            // A smooth transition over half a newton instead of a corner.
             k[0] - 0.25 * ((k[0] - force_n) / 0.25).exp().ln_1p()
         } else {
             force_n.min(k[0])
@@ -139,10 +141,9 @@ mod tests {
     use crate::plan::EffectPlan;
     use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 
-    /// Two implementations of `model/doc/effect-catalogue.md`, the twin's and the fitter's, agree on form 0 of every
-    /// effect.
+    /// The twin and the fitter implement `model/doc/effect-catalogue.md` independently.
     #[test]
-    fn the_first_form_of_every_effect_is_the_fitters() {
+    fn first_forms_match_the_fitter() {
         for effect in CATALOGUE {
             let (id, range) = (effect.id(), effect.description().study);
             let mut plan = Plan::randomised();
@@ -158,16 +159,16 @@ mod tests {
                 .zip(&fitters)
                 .map(|(a, b)| (a - b).abs())
                 .fold(0.0, f64::max);
-            // The fitter reads the share of travel off 400 points.
-            // The fitter substitutes the local tension three times, the twin until it settles.
+            // The fitter interpolates the share of travel between 400 points, and iterates the
+            // local tension three times; the twin iterates it until it converges.
             let bound = if ["wear_drift", "switch_local_tension"].contains(&id) { 1e-2 } else { 1e-3 };
             assert!(worst < bound, "{id}: {worst} N");
         }
     }
 
-    /// Every other form differs from form 0; up to what a refitted baseline takes over, by less than the effect.
+    /// Every other form differs from form 0 by less than 1.5 times the effect.
     #[test]
-    fn other_forms_bend_the_effect_without_replacing_it() {
+    fn other_forms_differ_from_the_first() {
         for (id, names) in FORMS {
             let range = effect_named(id).unwrap().description().study;
             let with = |form: Option<u8>| {
@@ -189,9 +190,10 @@ mod tests {
         }
     }
 
-    /// Through a whole session: each series on silicone remembers the load before it, pins alone remember nothing.
+    /// In a whole session, each series on silicone depends on the load of the previous one, and
+    /// pins alone do not.
     #[test]
-    fn a_series_remembers_the_load_before_it() {
+    fn silicone_remembers_the_previous_load() {
         let mut plan = Plan::default();
         let mut random = rand::SeedableRng::seed_from_u64(3);
         let rows = crate::protocol::rows(&plan, &mut random);
@@ -209,10 +211,10 @@ mod tests {
             if row.substrate == Some(pinswitch_friction::Substrate::Abs) {
                 assert_eq!(a, b);
             } else if row.pins.is_empty() {
-                let kept = (-f64::from(series_repetition) / 20.0).exp();
-                let expected = 1.0 + 0.5 * (before_n - row.load_n) / most_n * kept;
-                let found = exponent(*b, row) / exponent(*a, row);
-                assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+                let left = (-f64::from(series_repetition) / 20.0).exp();
+                let expected = 1.0 + 0.5 * (before_n - row.load_n) / most_n * left;
+                let factor = exponent(*b, row) / exponent(*a, row);
+                assert!((factor - expected).abs() < 1e-9, "{factor} instead of {expected}");
             }
             series_repetition += 1;
         }

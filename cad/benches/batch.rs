@@ -1,4 +1,5 @@
-//! Times of a batch: counting its variants, checking one, making many with and without equal parts.
+//! Benchmarks of a batch: count the variants, check one, and make many with and without equal
+//! parts.
 
 #![allow(clippy::expect_used)]
 
@@ -13,7 +14,7 @@ fn main() {
     divan::main();
 }
 
-/// Five parts a variant, and none of them equal to another variant's.
+/// Five parts for each variant, all of them different.
 const DIFFERENT: &str = r#"
 [sweep]
 base = "three-double"
@@ -22,7 +23,7 @@ parts = ["shell", "mould-core", "mould-ring", "support-left", "support-right"]
 "shell.outer_radius_mm" = { from = 19.5, to = 24.5, count = 20 }
 "shell.width_mm" = { from = 13, to = 15, count = 5 }
 "#;
-/// All parts equal but for their labels.
+/// The same five parts for every variant.
 const EQUAL: &str = r#"
 [sweep]
 base = "three-double"
@@ -32,7 +33,7 @@ parts = ["shell", "mould-core", "mould-ring", "support-left", "support-right"]
 [axes]
 "tendon.length_mm" = { from = 200, to = 299, count = 100 }
 "#;
-/// A hundred thousand variants.
+/// 100 000 variants.
 const MANY: &str = r#"
 [axes]
 "shell.width_mm" = { from = 13, to = 15, count = 100 }

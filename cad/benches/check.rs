@@ -1,4 +1,5 @@
-//! Times of `pinswitch check` on meshes of other programs: reading a large binary STL, and examining it.
+//! Benchmarks of `pinswitch check` on meshes of other programs: read a large binary STL, and check
+//! it.
 
 #![allow(clippy::expect_used, clippy::cast_precision_loss)]
 
@@ -14,7 +15,7 @@ fn main() {
     divan::main();
 }
 
-/// A closed wavy torus of `2 * around * across` triangles.
+/// Returns a closed wavy torus of `2 * around * across` triangles.
 fn torus(around: u32, across: u32) -> Mesh {
     let at = |i: u32, j: u32| {
         let (u, v) = (TAU * f64::from(i) / f64::from(around), TAU * f64::from(j) / f64::from(across));
@@ -31,7 +32,7 @@ fn torus(around: u32, across: u32) -> Mesh {
     Mesh::new(squares().map(|(i, j)| at(i, j)).collect(), triangles.collect())
 }
 
-/// Squares around and across: compact triangles, and long thin ones.
+/// Numbers of squares around and across the torus: compact triangles, and long thin ones.
 const SQUARES: [(u32, u32); 3] = [(40, 25), (1000, 500), (20_000, 25)];
 
 #[divan::bench(args = SQUARES, sample_count = 5)]

@@ -1,4 +1,4 @@
-//! Calibration of a 3,000-row table and segmentation of a raw log.
+//! Benchmarks of the calibration of a table of 3000 rows, and of the segmentation of a raw log.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -15,7 +15,7 @@ fn main() {
     divan::main();
 }
 
-/// Unpacks a file of `tests/data`.
+/// Returns the unpacked content of a file of `tests/data`.
 fn unpack(name: &str) -> Vec<u8> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data").join(name);
     let mut bytes = Vec::new();
@@ -25,14 +25,14 @@ fn unpack(name: &str) -> Vec<u8> {
     bytes
 }
 
-/// The bound is 2 s on one core.
+/// At most 2 s on one core.
 #[divan::bench(args = ["set-01", "set-04", "set-14", "set-16"], sample_count = 5)]
 fn calibration(bencher: Bencher, name: &str) {
     let table = PlateauTable::read(unpack(&format!("{name}.csv.gz")).as_slice(), name).expect("a table");
     bencher.bench_local(|| calibrate(black_box(&table.rows), Levels::default()));
 }
 
-/// One of 77 logs; the bound for all of them is 3 s.
+/// One of 77 logs; at most 3 s for all of them.
 #[divan::bench]
 fn segmentation_of_one_log(bencher: Bencher) {
     let rig = Rig {

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Our shell beside that of the peers in ../shared/tools/peers: the same shell and tolerance, in one run on one machine.
+"""Compares pinswitch with other CAD programs (peers): the same shell and tolerance, in one run on one machine.
 
 usage: cargo build --release && cad/benches/peers.py [name part ...]
 
-Runs the peers' own script first (it installs what it needs; names choose peers, "none" leaves them out), then adds our
-rows to its table. Ours do more for a part: the mesh is examined, hashed and listed in a manifest with the friction curve
-and the bill of materials, and a table, plots and a page are written. All that is in the figures.
+The folder PEERS_DIR has the peers' script run_peers.sh, which installs what it needs. The arguments select peers; "none"
+omits them. The script runs first, then this program adds the rows of pinswitch to its table. pinswitch does more for each
+part: it checks and hashes the mesh, and writes a manifest with friction curve and bill of materials, a table, plots and a
+page. The figures include all of that.
 """
 import csv, json, os, shutil, statistics, subprocess, sys, tempfile
 
@@ -15,7 +16,7 @@ VENV = "/tmp/peers-venv/bin/python"
 BINARY = os.environ.get("PINSWITCH", os.path.join(ROOT, "target", "release", "pinswitch"))
 RUNS = int(os.environ.get("RUNS", 3))
 
-# The reference shell of the peers (spec.py): contact radius 22, wall 3, width 10, 15 grooves of 0.5, no holes, no label.
+# Reference shell of the peers (spec.py): contact radius 22, wall 3, width 10, 15 grooves of 0.5, no holes, no label.
 SHELL = """
 [sweep]
 parts = ["shell"]
@@ -41,7 +42,7 @@ def sweep(folder, radii):
 
 
 def run(folder, threads):
-    """Seconds, processor seconds and peak memory in MB of one batch in a fresh folder."""
+    """Returns wall time, processor time (both in s) and peak memory (MB) of one batch in an empty folder."""
     shutil.rmtree(f"{folder}/out", ignore_errors=True)
     command = [BINARY, "-q", "batch", "sweep.toml", "--out", "out", "--threads", str(threads)]
     import time
@@ -70,8 +71,8 @@ def row(name, threads):
         loops = [run(folder, threads) for _ in range(RUNS)]
         shells(folder, f"{folder}/loop", "v{:02}.stl")
         stl = f"{folder}/one/shell.stl"
-        said = subprocess.check_output([VENV, "check.py", "--json", stl, f"{folder}/loop", "20"], cwd=PEERS, text=True)
-        c = json.loads(said)
+        report = subprocess.check_output([VENV, "check.py", "--json", stl, f"{folder}/loop", "20"], cwd=PEERS, text=True)
+        c = json.loads(report)
     med = statistics.median
     yes = lambda good: "yes" if good else "NO"
     print(f"| **{name}** | {yes(c['watertight'] and c['winding'])} / {yes(c['all_watertight'])} | {c['vol_err_pct']:+.3f} ({c['worst_vol_err_pct']:+.3f}) "
@@ -81,7 +82,7 @@ def row(name, threads):
 
 if __name__ == "__main__":
     if sys.argv[1:] != ["none"]:
-        # Without its last line, the footnote, so that our rows stand in the same table.
+        # Without its last line, a footnote, so that the rows of pinswitch follow in the same table.
         table = subprocess.run([f"{PEERS}/run_peers.sh", *sys.argv[1:]], text=True, stdout=subprocess.PIPE, check=True).stdout
         print(table[: table.rindex("\n\n")].rstrip())
     row("pinswitch batch, whole process", 1)

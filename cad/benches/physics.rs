@@ -1,4 +1,5 @@
-//! The physics: one curve of 50 loads, and sweeps over pin patterns. `cargo bench --bench physics`.
+//! Benchmarks of the physics: a curve of 50 loads, and sweeps over pin patterns.
+//! `cargo bench --bench physics`.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -21,21 +22,21 @@ fn loads() -> Vec<f64> {
     (0..50).map(|i| 3.0766 + (49.671 - 3.0766) * f64::from(i) / 49.0).collect()
 }
 
-/// Tensions and friction, both directions.
+/// Tensions and friction in both directions.
 #[divan::bench(args = [0, 1, 2])]
 fn states_50_loads(bencher: Bencher, layout: usize) {
     let (switch, loads) = (PhysicsSwitch::new(&device(layout), Constants::published()), loads());
     bencher.bench(|| switch.states(&loads).unwrap());
 }
 
-/// The same with its band.
+/// A curve with its band.
 #[divan::bench(args = [0, 1, 2])]
 fn curve_50_loads(bencher: Bencher, layout: usize) {
     let (contact, loads) = (device(layout), loads());
     bencher.bench(|| predict_by(Law::Physics, &contact, &loads).unwrap());
 }
 
-/// All patterns of the grooves that the published wrap touches, and of all 15.
+/// All patterns of the 11 grooves within the published wrap, and of all 15 grooves.
 #[divan::bench(args = [11, 15], sample_count = 1)]
 fn sweep(bencher: Bencher, grooves: usize) {
     let pitch = published::GROOVE_PITCH_DEG.to_radians();

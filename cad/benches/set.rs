@@ -1,4 +1,5 @@
-//! Times of the main job, step by step: profile, mesh, oracle, STL bytes, and the whole set.
+//! Benchmarks of a set, step by step: solids, mesh, mesh check, STL bytes, friction curve, and the
+//! whole set.
 
 #![allow(clippy::expect_used)]
 
@@ -69,7 +70,7 @@ fn friction_curve(bencher: Bencher) {
     bencher.bench_local(|| predicted_curve(black_box(&design)));
 }
 
-/// The set of a design in these formats, from its configuration on.
+/// Makes the set of a design in these formats.
 fn set(design: &Design, formats: &[&str]) -> Set {
     let built = Built::new(design.clone()).expect("a valid design");
     let prediction = Prediction::of(design);

@@ -1,7 +1,9 @@
-//! Twenty asks, six of them impossible: what was proposed, what is stated of it, and how often simulated prints within
-//! tolerance meet the ask. `cad/doc/design.md` shows its table.
+//! Twenty design requests, six of them impossible: the proposals, their stated probabilities, and
+//! the share of simulated prints within tolerance that meet the request. `cad/doc/design.md` shows
+//! the table.
 //!
-//! `cargo run --release --example asks` (some minutes; a number as argument takes that ask alone)
+//! `cargo run --release --example asks [NUMBER]` takes some minutes; with a number it runs one
+//! request.
 
 use std::time::Instant;
 
@@ -10,10 +12,11 @@ use pinswitch::switch::config::Configuration;
 use pinswitch::switch::design::Design;
 use pinswitch::switch::design_search::{Found, Options, PublishedPhysics, Silent, search, simulated};
 
-/// Prints that are simulated, with a seed that the search does not use.
+/// Number of simulated prints.
 const PRINTS: usize = 2000;
+/// Seed of the prints, different from that of the search.
 const SEED: u64 = 20_260;
-/// Within how much a stated probability must hold.
+/// Largest error of a stated probability.
 const POINTS: f64 = 0.05;
 
 const ASKS: [(&str, bool); 20] = [
@@ -60,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     base.layout.pins = vec![5, 8, 11];
     let base = Design::new(base)?;
     let mut wrong = 0;
-    println!("| | asked | proposed | predicted | stated | simulated | s |");
+    println!("| | request | proposal | predicted | stated | simulated | s |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     for (i, (text, is_possible)) in ASKS.iter().enumerate().filter(|(i, _)| only.is_none_or(|n| n == i + 1)) {
         let ask = Ask::read(text, &format!("ask {}", i + 1))?;
@@ -70,16 +73,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         wrong += usize::from(found.blocked.is_none() != *is_possible);
         wrong += row(i + 1, &ask, &found, seconds)?;
     }
-    println!("\n{wrong} are not as expected: possible or not, or stated within {} points", 100.0 * POINTS);
+    println!(
+        "\n{wrong} unexpected results: possibility, or stated probability off by more than {} points",
+        100.0 * POINTS
+    );
     Ok(())
 }
 
-/// Prints the row of an ask; returns how many of its proposals state a probability that does not hold.
+/// Prints the row of a request; returns the number of proposals with a wrong probability.
 fn row(number: usize, ask: &Ask, found: &Found, seconds: f64) -> Result<usize, Box<dyn std::error::Error>> {
-    let asked: Vec<String> = ask.targets.iter().map(ToString::to_string).collect();
-    let asked = asked.join("; ");
+    let targets: Vec<String> = ask.targets.iter().map(ToString::to_string).collect();
+    let targets = targets.join("; ");
     let Some(best) = found.proposals.first() else {
-        println!("| {number} | {asked} | nothing | | | | {seconds:.1} |");
+        println!("| {number} | {targets} | none | | | | {seconds:.1} |");
         return Ok(1);
     };
     let predicted: Vec<String> = best.targets.iter().map(|t| format!("{:.3}", t.value)).collect();
@@ -92,17 +98,17 @@ fn row(number: usize, ask: &Ask, found: &Found, seconds: f64) -> Result<usize, B
     let proposed = format!("{:?}, {}", best.pins, varied.join(", "));
     if let Some(blocked) = &found.blocked {
         let by: Vec<String> = blocked.missed.iter().map(|m| format!("{:.0} %", 100.0 * m.by)).collect();
-        let moved = blocked.moves.first().map_or("nothing moves it".to_owned(), |m| {
+        let moved = blocked.moves.first().map_or("no change helps".to_owned(), |m| {
             format!(
                 "{} {:.2} to {:.2} {}",
                 m.parameter.name(),
                 m.from,
                 m.to,
-                if m.meets { "meets it" } else { "comes nearer" }
+                if m.meets { "meets it" } else { "is closer" }
             )
         });
         println!(
-            "| {number} | {asked} | impossible; nearest {proposed} | {}, off by {} | blocked by {} | {moved} | {seconds:.1} |",
+            "| {number} | {targets} | impossible; nearest {proposed} | {}, off by {} | blocked by {} | {moved} | {seconds:.1} |",
             predicted.join(", "),
             by.join(", "),
             blocked.limit
@@ -113,13 +119,13 @@ fn row(number: usize, ask: &Ask, found: &Found, seconds: f64) -> Result<usize, B
     for p in &found.proposals {
         let design = Design::new(p.configuration.clone())?;
         let made = simulated(&design, ask, &PublishedPhysics::default(), PRINTS, SEED)
-            .ok_or("a proposal cannot be predicted again")?;
+            .ok_or("a proposal is not predictable")?;
         wrong += usize::from((made.all - p.probability.all).abs() > POINTS);
         stated.push(format!("{:.0}", 100.0 * p.probability.all));
         frequencies.push(format!("{:.0}", 100.0 * made.all));
     }
     println!(
-        "| {number} | {asked} | {proposed} | {} | {} % | {} % | {seconds:.1} |",
+        "| {number} | {targets} | {proposed} | {} | {} % | {} % | {seconds:.1} |",
         predicted.join(", "),
         stated.join(", "),
         frequencies.join(", ")

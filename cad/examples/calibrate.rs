@@ -1,7 +1,7 @@
-//! A plateau table, calibrated: what does the paper's model lack on this rig?
+//! Calibrates a plateau table: which effects does the rig have in addition to the paper's model?
 //!
-//! The table is simulated in memory with an effect that the calibrator is not told of. Read your own with
-//! `PlateauTable::read` instead.
+//! The table is simulated in memory, with an effect that the calibrator has to detect. For a
+//! measured table, use `PlateauTable::read` with its file.
 //!
 //! `cargo run --release --example calibrate`
 
@@ -11,7 +11,7 @@ use pinswitch::calibration::table::PlateauTable;
 use pinswitch::simulation::{EffectPlan, Plan, simulate};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // A session whose load cell reads 0.8 N too much, with noise.
+    // A session with noise, and an offset of the load cell of 0.8 N.
     let mut plan = Plan { seed: 3, ..Plan::randomised() };
     plan.effects.push(EffectPlan { id: "load_cell_offset".to_owned(), values: vec![0.8], form: 0 });
     let csv = PlateauTable::write(&simulate(&plan).rows);
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         effect.rivals.iter().for_each(|rival| println!("  or {}: {}", rival.id, rival.experiment));
     }
     for blind in &report.invisible {
-        println!("cannot be seen here: {} ({})", blind.id, blind.why);
+        println!("invisible in this session: {} ({})", blind.id, blind.why);
     }
     Ok(())
 }

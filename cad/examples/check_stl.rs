@@ -1,6 +1,7 @@
-//! Reads an STL, ours or not, and prints what it measures and what is wrong with it.
+//! Reads any STL file, and prints its dimensions and faults.
 //!
-//! `cargo run --release --example check_stl [FILE]`; without a file it looks at a cube with a hole in its surface.
+//! `cargo run --release --example check_stl [FILE]`; without a file it checks a cube with a hole in
+//! its surface.
 
 use std::fs::File;
 use std::io::{BufReader, Cursor};
@@ -10,7 +11,7 @@ use pinswitch::solid::profile::{ChordTolerance, Contour, Point2};
 use pinswitch::solid::solid::Solid;
 use pinswitch::solid::validity::{Expectation, examine};
 
-/// A cube from which one triangle is missing, through its file.
+/// Returns a cube without one of its triangles, read from the bytes of its file.
 fn broken_cube() -> Result<StlFile, Box<dyn std::error::Error>> {
     let square = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)];
     let outline = Contour::polygon(square.map(|(x, y)| Point2::new(x, y)).to_vec());
@@ -24,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some(path) => read_stl(&mut BufReader::new(File::open(path)?))?,
         None => broken_cube()?,
     };
-    // What is not asked for is not judged: any number of bodies, any volume, but walls of 0.4 mm.
+    // Any number of bodies and any volume, but walls of at least 0.4 mm.
     let examination = examine(&stl.mesh, &Expectation { min_wall_mm: 0.4, ..Expectation::default() });
     let facts = &examination.facts;
     println!("{} triangles over {} vertices, {} bodies", facts.triangles, facts.vertices, facts.bodies);
@@ -33,11 +34,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         facts.volume_mm3, facts.surface_mm2, facts.low_mm, facts.high_mm
     );
     if stl.contrary_normals > 0 {
-        println!("{} stored normals contradict the order of the corners", stl.contrary_normals);
+        println!("{} stored normals contradict the order of the vertices", stl.contrary_normals);
     }
     println!("{}", if examination.is_valid() { "valid" } else { "NOT VALID" });
     for fault in &examination.faults {
-        // Its text begins with `fault.check`, the name to match on; `count` and `at_mm` are fields too.
+        // The text begins with `fault.check`, the name of the check; `count` and `at_mm` are
+        // further fields.
         println!("  {fault}");
     }
     Ok(())

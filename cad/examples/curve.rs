@@ -1,6 +1,7 @@
-//! The friction curve of any layout of pins, by every law that applies to it.
+//! Prints the friction curve of any layout of pins, by every law that applies to it.
 //!
-//! `cargo run --release --example curve [DEGREES …]`: angles of the pins about the middle of the wrap.
+//! `cargo run --release --example curve [DEGREES …]`; the arguments are the angles of the pins from
+//! the middle of the wrap.
 
 use pinswitch::friction::{
     Contact, FrictionCurve, Law, PinPattern, Substrate, Transition, other_laws, predict, published,
@@ -8,9 +9,9 @@ use pinswitch::friction::{
 
 fn describe(curve: &FrictionCurve) {
     println!("\n{}: {}", curve.law.as_str(), curve.law.summary());
-    println!("  {:?}", curve.trust);
+    println!("  {:?}", curve.status);
     curve.reasons.iter().for_each(|reason| println!("    {reason}"));
-    println!("  load, N   friction, N   band, N           silicone's share");
+    println!("  load, N   friction, N   band, N           share of silicone");
     for i in 0..curve.load_n.len() {
         println!(
             "  {:7.2}   {:11.3}   {:6.3} to {:6.3}  {:5.1} %",
@@ -22,14 +23,14 @@ fn describe(curve: &FrictionCurve) {
         );
     }
     match Transition::of(curve) {
-        Some(at) => println!("  silicone makes half of the friction at {:.1} N", at.threshold_n),
-        None => println!("  silicone makes half of the friction at none of these loads"),
+        Some(at) => println!("  silicone carries half of the friction at {:.1} N", at.threshold_n),
+        None => println!("  the threshold is not within these loads"),
     }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let given: Vec<f64> = std::env::args().skip(1).map(|a| a.parse()).collect::<Result<_, _>>()?;
-    // Uneven and off centre: no layout that the paper measured.
+    // Uneven and off centre, unlike the layouts that the paper measured.
     let degrees = if given.is_empty() { vec![-20.0, -2.0, 10.0] } else { given };
     let pins = PinPattern::new(degrees.into_iter().map(f64::to_radians).collect());
     let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
@@ -40,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     describe(&best);
     other_laws(best.law, &contact, &loads_n).iter().for_each(describe);
     for law in Law::predictive() {
-        println!("\n{} comes from: {}", law.as_str(), law.source());
+        println!("\nsource of {}: {}", law.as_str(), law.source());
     }
     Ok(())
 }

@@ -1,7 +1,8 @@
-//! An effect of one's own, in Rust: a load cell that reads more the longer it is left alone.
+//! A user-defined effect in Rust: creep of the load cell, whose reading grows with the dwell.
 //!
-//! It is put into simulated readings and found again by a fit. To have it tried by `calibrate`, give it a file among
-//! the effects of `pinswitch-calibration` (CONTRIBUTING.md).
+//! The example adds the effect to simulated readings and estimates its size with a fit. For
+//! `calibrate` to use such an effect, add a file to the effects of `pinswitch-calibration`
+//! (CONTRIBUTING.md).
 //!
 //! `cargo run --release --example custom_effect`
 
@@ -52,7 +53,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     const TRUE_SIZE: f64 = 0.03;
     let rows = simulate(&Plan { seed: 5, ..Plan::randomised() }).rows;
     let frame = Frame::new(&rows);
-    let mut data = Observations::new(&frame, &rows).ok_or("a condition is new")?;
+    let mut data = Observations::new(&frame, &rows).ok_or("unknown condition")?;
     for (force_n, point) in data.force_n.iter_mut().zip(&data.points) {
         *force_n = Creep.on_reading(&[TRUE_SIZE], point, &frame.conditions[point.condition], *force_n);
     }
@@ -62,12 +63,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let with =
         fit(&without.model.with_term(Term::Named(&Creep), &Creep.starts(&without.model.frame)[0]), &weighed);
     let rms = |r: &[f64]| (r.iter().map(|r| r * r).sum::<f64>() / r.len() as f64).sqrt();
-    println!("without {}: {:.3} N are left", Creep.id(), rms(&without.residual_n));
-    println!("with it: {:.3} N", rms(&with.residual_n));
+    println!("residual RMS without {}: {:.3} N", Creep.id(), rms(&without.residual_n));
+    println!("residual RMS with it: {:.3} N", rms(&with.residual_n));
     let widths = interval_half_widths(&with, &weighed);
     for (((name, unit), value), width) in with.model.names().iter().zip(with.model.values()).zip(widths) {
         println!("  {name} = {value:.4} +- {width:.4} {unit}");
     }
-    println!("put in: {TRUE_SIZE}");
+    println!("true k = {TRUE_SIZE}");
     Ok(())
 }

@@ -1,7 +1,7 @@
-//! A part of one's own, which has nothing to do with switches: a bracket with round corners and a hole.
+//! A user-defined part, unrelated to switches: a bracket with rounded corners and a hole.
 //!
-//! An exact contour becomes a prism, the prism a mesh that is examined, and both become files: STL from the mesh, STEP
-//! from the exact solid.
+//! An exact contour becomes a prism, and the prism a mesh. The example checks the mesh, and writes
+//! an STL file of the mesh and a STEP file of the exact solid.
 //!
 //! `cargo run --release --example own_part [FOLDER]`
 
@@ -12,7 +12,7 @@ use pinswitch::solid::profile::{ChordTolerance, Contour, Pen, Point2};
 use pinswitch::solid::solid::Solid;
 use pinswitch::solid::validity::{Expectation, examine};
 
-/// A rectangle about the origin whose corners are rounded, counter-clockwise.
+/// Returns a rectangle about the origin with rounded corners, counter-clockwise.
 fn plate(width_mm: f64, depth_mm: f64, corner_mm: f64) -> Contour {
     let (x, y, r) = (width_mm / 2.0, depth_mm / 2.0, corner_mm);
     let at = Point2::new;
@@ -30,7 +30,7 @@ fn plate(width_mm: f64, depth_mm: f64, corner_mm: f64) -> Contour {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args_os().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
-    // Outlines run counter-clockwise and holes clockwise: material lies to the left.
+    // Outlines are counter-clockwise and holes clockwise: the material is on the left.
     let hole = Contour::circle(Point2::new(5.0, 0.0), 3.4 / 2.0).reversed();
     let bracket = Solid::prism(&plate(30.0, 16.0, 3.0), &[hole], 0.0, 4.0, 0.3)?;
     let mesh = bracket.mesh(ChordTolerance::new(0.01)?)?;

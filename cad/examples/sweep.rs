@@ -1,4 +1,5 @@
-//! A sweep in code: every variant of a configuration made in parallel, with one table of all.
+//! A sweep in code: makes every variant of a configuration in parallel, and prints the table of all
+//! variants.
 //!
 //! `cargo run --release --example sweep`
 
@@ -17,10 +18,10 @@ parts = ["shell", "support-left", "support-right"]
 "layout.pins" = [[5, 8, 11], [4, 6, 8, 10, 12]]
 [[constraints]]
 require = "land_on_shell_mm >= 1.0"
-because = "a land of two printed lines, and a little"
+because = "a land of at least two printed lines"
 "#;
 
-/// Prints what was refused; a program with a window would draw its progress here.
+/// Observer that prints refused variants; a graphical program would show its progress here.
 struct Printer;
 
 impl Observer for Printer {
@@ -47,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Options { shard: Shard::WHOLE, threads: 0, fail_fast: false, mesh_maker: mesh_file, slicer: None };
     let tally = run(&variants, &source, &destination, options, &Printer)?;
     println!("{} made, {} refused, {} failed", tally.made, tally.refused, tally.failed);
-    println!("{} part files, {} of them different", tally.parts, tally.distinct_parts);
+    println!("{} part files, {} distinct", tally.parts, tally.distinct_parts);
 
     let mut table = csv::Reader::from_path(out.join("variants.csv"))?;
     let header = table.headers()?.clone();

@@ -134,14 +134,14 @@ fn other_layouts_say_how_far_to_trust_them() {
         (
             "silicone.thickness_mm=3",
             "extrapolated",
-            "layer thickness is 3 mm, measured was 2 mm; physics says +",
+            "layer thickness is 3 mm (published rig: 2 mm); predicted change of friction +",
         ),
-        ("shell.outer_radius_mm=140", "extrapolated", "assumed for the published rig is 22 mm"),
+        ("shell.outer_radius_mm=140", "extrapolated", "(published rig, assumed: 22 mm)"),
         ("shell.width_mm=20", "extrapolated", "layer width is 19.6 mm"),
         ("silicone.hardness_shore_a=45", "extrapolated", "hardness of the silicone is 45 Shore A"),
         ("silicone.mix_ratio=9", "extrapolated", "silicone.mix_ratio is 9"),
         ("layout.wrap_angle_deg=70", "extrapolated", "wrap angle is 70 deg"),
-        ("friction.load_max_n=80", "extrapolated", "tested were 3.08 to 49.67 N"),
+        ("friction.load_max_n=80", "extrapolated", "exceed the tested range, 3.08 to 49.67 N"),
     ] {
         let (law, trust, reasons) = trust(set);
         assert_eq!((law.as_str(), trust.as_str()), ("physics", word), "{set}");

@@ -101,9 +101,9 @@ fn fingers_that_cannot_be_are_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, words) in [
         (&["no-such-template"][..], "no such file or template"),
-        (&["--joint", "0..200"], "joint angle (deg) = 200 is outside 0 to 180"),
-        (&["--joint=-5..20"], "= -5 is outside"),
-        (&["--wrap-per-flexion", "3"], "wrap per flexion = 3 is outside 0 to 2"),
+        (&["--joint", "0..200"], "joint angle (deg) = 200: must be from 0 to 180"),
+        (&["--joint=-5..20"], "= -5: must be"),
+        (&["--wrap-per-flexion", "3"], "wrap per flexion = 3: must be from 0 to 2"),
         (&["--wrap-at-straight", "NaN"], "wrap at the straight finger (deg) = NaN"),
         (&["--load", "0"], "--load = 0.0 is outside"),
     ] {

@@ -165,8 +165,8 @@ fn problems_are_located() {
     }
     for (effect, words) in [
         ("lubricant_dp=0.1,50,5", "did you mean lubricant_dip?"),
-        ("coating_stiffening=1,99", "m = 99 is outside 0.9 to 2.1"),
-        ("adhesion=-1", "c = -1 is below 0"),
+        ("coating_stiffening=1,99", "= 99: m must be from 0.9 to 2.1"),
+        ("adhesion=-1", "= -1: c must not be negative"),
     ] {
         let (code, said) =
             ended(at, &["simulate", "--effects", "mine.toml", "--effect", effect, "--out", "x"]);

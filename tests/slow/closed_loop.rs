@@ -247,7 +247,7 @@ fn requested_effects_are_checked() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
         ("--effect gravity=1", "known are"),
-        ("--effect run_in=0.1", "3 value(s)"),
+        ("--effect run_in=0.1", "run_in needs 3 values"),
         ("--effect adhesion=much", "values are numbers"),
     ] {
         let output = pinswitch(2, folder.path(), &format!("simulate {options} --out rig"));

@@ -2,7 +2,7 @@
 
 use pinswitch_calibration::ModelFile;
 use pinswitch_friction::physics::Bed;
-use pinswitch_friction::{Carry, Contact, ContactError, FrictionCurve, PinPattern, published};
+use pinswitch_friction::{Contact, ContactError, FrictionCurve, PinPattern, Transfer, published};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::prediction::loads_n;
 
@@ -26,8 +26,8 @@ pub fn calibrated_curve(design: &Design, model: &ModelFile, name: &str) -> Resul
     let substrate = design.contact().substrate();
     let curve = model.part_curve(substrate, &pins, &loads_n, name).map_err(|e| e.to_string())?;
     let rig = rig_contact(design.contact(), &pins).map_err(|e| format!("{name}: {e}"))?;
-    let carry = Carry::between(&rig, design.contact(), &loads_n).map_err(|e| e.to_string())?;
-    Ok(carry.carried(curve))
+    let transfer = Transfer::between(&rig, design.contact(), &loads_n).map_err(|e| e.to_string())?;
+    Ok(transfer.apply(curve))
 }
 
 /// The grooves of the rig, numbered from 1, that lie as far from its middle as these among `grooves`; ascending. `None` if

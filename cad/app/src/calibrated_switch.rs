@@ -4,7 +4,7 @@
 use std::sync::Mutex;
 
 use pinswitch_calibration::ModelFile;
-use pinswitch_friction::{Carry, Contact, FrictionCurve, Substrate};
+use pinswitch_friction::{Contact, FrictionCurve, Substrate, Transfer};
 use pinswitch_switch::design_search::{Belief, Curve, Part};
 
 use crate::calibrated_curve::rig_contact;
@@ -17,7 +17,7 @@ const KEPT: usize = 24;
 pub struct CalibratedSwitch {
     file: ModelFile,
     name: String,
-    recent: Mutex<Vec<(Contact, Vec<f64>, Carry)>>,
+    recent: Mutex<Vec<(Contact, Vec<f64>, Transfer)>>,
 }
 
 impl CalibratedSwitch {
@@ -27,25 +27,25 @@ impl CalibratedSwitch {
     }
 
     /// The change from the same grooves of the rig to `part`, remembered.
-    fn carry(&self, part: &Part, loads_n: &[f64]) -> Option<Carry> {
-        let known = |recent: &Vec<(Contact, Vec<f64>, Carry)>| {
+    fn transfer(&self, part: &Part, loads_n: &[f64]) -> Option<Transfer> {
+        let known = |recent: &Vec<(Contact, Vec<f64>, Transfer)>| {
             recent
                 .iter()
                 .find(|(c, l, _)| *c == part.contact && l == loads_n)
-                .map(|(_, _, carry)| carry.clone())
+                .map(|(_, _, transfer)| transfer.clone())
         };
-        if let Some(carry) = self.recent.lock().ok().and_then(|recent| known(&recent)) {
-            return Some(carry);
+        if let Some(transfer) = self.recent.lock().ok().and_then(|recent| known(&recent)) {
+            return Some(transfer);
         }
         let rig = rig_contact(&part.contact, &part.pins).ok()?;
-        let carry = Carry::between(&rig, &part.contact, loads_n).ok()?;
+        let transfer = Transfer::between(&rig, &part.contact, loads_n).ok()?;
         if let Ok(mut recent) = self.recent.lock() {
             if recent.len() >= KEPT {
                 recent.remove(0);
             }
-            recent.push((part.contact.clone(), loads_n.to_vec(), carry.clone()));
+            recent.push((part.contact.clone(), loads_n.to_vec(), transfer.clone()));
         }
-        Some(carry)
+        Some(transfer)
     }
 }
 
@@ -55,16 +55,16 @@ impl Belief for CalibratedSwitch {
     }
 
     fn curve(&self, part: &Part, loads_n: &[f64], z: &[f64]) -> Option<Curve> {
-        let carry = self.carry(part, loads_n)?;
+        let transfer = self.transfer(part, loads_n)?;
         let (rig_n, rig_share) =
             self.file.drawn_part(Substrate::Silicone, &part.pins, loads_n, z, &self.name).ok()?;
-        let (friction_n, silicone_share) = carry.applied(loads_n, &rig_n, &rig_share);
+        let (friction_n, silicone_share) = transfer.friction_and_share(loads_n, &rig_n, &rig_share);
         let friction_n = friction_n.into_iter().map(|d| d.max(1e-6)).collect();
         Some(Curve { load_n: loads_n.to_vec(), friction_n, silicone_share })
     }
 
     fn banded(&self, part: &Part, loads_n: &[f64]) -> Option<FrictionCurve> {
         let curve = self.file.part_curve(Substrate::Silicone, &part.pins, loads_n, &self.name).ok()?;
-        Some(self.carry(part, loads_n)?.carried(curve))
+        Some(self.transfer(part, loads_n)?.apply(curve))
     }
 }

@@ -8,7 +8,7 @@ use pinswitch_friction::finger::{
     over_joint,
 };
 use pinswitch_friction::published::{HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENCE, HUMAN_PEAK_JOINT_DEG};
-use pinswitch_friction::{Contact, FrictionCurve, Law, Trust};
+use pinswitch_friction::{Contact, FrictionCurve, Law, PredictionStatus};
 use pinswitch_report::{FingerLayout, finger_svg};
 use serde::Serialize;
 
@@ -82,7 +82,7 @@ pub(super) struct Arguments {
 pub(super) struct Layout {
     pub(super) name: String,
     pub(super) law: Law,
-    pub(super) trust: Trust,
+    pub(super) trust: PredictionStatus,
     pub(super) reasons: Vec<String>,
     /// Wrap of `points`, degrees.
     pub(super) wrap_deg: f64,
@@ -175,7 +175,7 @@ fn layout(
     Ok(Layout {
         name: design.configuration().switch.name.to_string(),
         law: curve.law,
-        trust: curve.trust,
+        trust: curve.status,
         reasons: curve.reasons.clone(),
         wrap_deg: contact.wrap_rad().to_degrees(),
         measured: measured_gains(contact),

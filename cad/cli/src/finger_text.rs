@@ -161,7 +161,7 @@ pub(super) fn csv(report: &Report) -> String {
         }
         for point in layout.over_joint.iter().flat_map(|joint| &joint.points) {
             let (joint, wrap) = (format!("{:.4}", point.joint_deg), format!("{:.4}", point.wrap_deg));
-            row(&mut text, [&layout.name, "joint", &joint, &wrap], &point.gains, &word(&point.trust));
+            row(&mut text, [&layout.name, "joint", &joint, &wrap], &point.gains, &word(&point.status));
         }
     }
     text

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_friction::evidence::{LawEvidence, evidence};
 use pinswitch_friction::physics::hypotheses::{HypothesisFinding, hypotheses, weights};
 use pinswitch_friction::physics::{
     Bed, FitError, LayoutLeftOut, MaximaFit, contact_profile, fit_maxima, leave_one_layout_out,
 };
+use pinswitch_friction::validation::{LawValidation, validate_laws};
 use pinswitch_friction::{Direction, Law, Substrate};
 use serde::Serialize;
 
@@ -45,7 +45,7 @@ struct Report {
     bed: Bed,
     fit: MaximaFit,
     left_out: Vec<LayoutLeftOut>,
-    evidence: Vec<LawEvidence>,
+    evidence: Vec<LawValidation>,
     hypotheses: Vec<HypothesisFinding>,
 }
 
@@ -86,7 +86,7 @@ fn report() -> Result<Report, FitError> {
         bed,
         fit: fit_maxima(&bed)?,
         left_out: leave_one_layout_out(&bed)?,
-        evidence: evidence()?,
+        evidence: validate_laws()?,
         hypotheses: hypotheses().iter().map(|h| h.test()).collect::<Result<_, _>>()?,
     })
 }

@@ -70,5 +70,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 pub(super) fn noise_of(model: &Path) -> Result<NoisePlan, Failure> {
     let name = model.display().to_string();
     let file = ModelFile::parse(&read_text_file(model)?, &name).map_err(Failure::bad_input)?;
-    Ok(NoisePlan::of_rig(file.noise()))
+    Ok(NoisePlan::from_estimate(file.noise()))
 }

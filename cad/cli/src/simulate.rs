@@ -11,8 +11,8 @@ use pinswitch_calibration::experiment::{RigLimits, read_runs, rows_of};
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
 use pinswitch_simulation::{
-    Case, ExperimentStudy, FormStudy, Group, Plan, RawRun, Study, experiment_cases, next_session, rehearse,
-    run_case, run_experiment_case, run_form_case, simulate, simulate_rows, study_cases,
+    Case, ExperimentStudy, FormStudy, Group, Plan, RawRun, Study, experiment_cases, next_session, run_case,
+    run_experiment_case, run_form_case, simulate, simulate_from_model, simulate_rows, study_cases,
 };
 use rayon::prelude::*;
 
@@ -158,7 +158,8 @@ fn rehearsed(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failu
             let name = path.display().to_string();
             let model = ModelFile::parse(&read_text_file(path)?, &name).map_err(Failure::bad_input)?;
             let rows = rows_of(&runs, &rig.wrapped_by(model.usual_wrap_deg()), "");
-            rehearse(&model, &name, rows, arguments.seed.unwrap_or(1)).map_err(Failure::bad_input)?
+            simulate_from_model(&model, &name, rows, arguments.seed.unwrap_or(1))
+                .map_err(Failure::bad_input)?
         }
         None => {
             let (mut plan, name) = plan(arguments)?;
@@ -264,7 +265,7 @@ fn each_case<T: Send>(
     mut add: impl FnMut(Case, Vec<T>),
 ) -> Result<(), Failure> {
     for word in &arguments.only {
-        if !cases.iter().any(|(_, case)| case.is_meant_by(word)) {
+        if !cases.iter().any(|(_, case)| case.matches(word)) {
             let mut groups: Vec<&str> = cases.iter().map(|(_, case)| case.group.as_str()).collect();
             groups.sort_unstable();
             groups.dedup();
@@ -275,7 +276,7 @@ fn each_case<T: Send>(
         }
     }
     let is_asked_for =
-        |case: &Case| arguments.only.is_empty() || arguments.only.iter().any(|word| case.is_meant_by(word));
+        |case: &Case| arguments.only.is_empty() || arguments.only.iter().any(|word| case.matches(word));
     for (place, case) in cases.into_iter().filter(|(_, case)| is_asked_for(case)) {
         // One draw of noise must not decide of every kind of rig: each has seeds of its own.
         let own = arguments.first_seed + SEEDS_PER_CASE * place;

@@ -19,7 +19,7 @@
 //! has a default with a reason:
 //!
 //! ```
-//! use pinswitch::friction::{Transition, Trust};
+//! use pinswitch::friction::{Transition, PredictionStatus};
 //! use pinswitch::solid::validity::{Expectation, examine};
 //! use pinswitch::switch::{built::Built, config, design::Design, formats, prediction::Prediction, set::Set};
 //!
@@ -31,7 +31,7 @@
 //! // Its curve says which law it comes from and how far to trust it.
 //! let prediction = Prediction::of(&design);
 //! let curve = &prediction.curve;
-//! assert_eq!(curve.trust, Trust::Interpolated);
+//! assert_eq!(curve.status, PredictionStatus::Interpolated);
 //! let transition = Transition::of(curve).ok_or("it never switches")?;
 //! assert!(transition.low_n < transition.threshold_n && transition.threshold_n < transition.high_n);
 //!

@@ -4,7 +4,7 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
 use pinswitch_friction::{
-    Contact, FrictionCurve, Law, Trust, capstan_friction_n, published, published_points,
+    Contact, FrictionCurve, Law, PredictionStatus, capstan_friction_n, published, published_points,
 };
 
 use super::legend::{Legend, Measures};
@@ -93,7 +93,7 @@ fn draw(
     let lower = curve.load_n.iter().copied().zip(curve.band_low_n.iter().copied());
     let band: Vec<_> = upper.chain(lower.rev()).collect();
     chart.draw_series(std::iter::once(Polygon::new(band, CURVE.mix(0.18))))?;
-    legend.line(format!("band ({})", trust_label(curve.trust)), |(x, y)| {
+    legend.line(format!("band ({})", trust_label(curve.status)), |(x, y)| {
         Rectangle::new(
             [(x, y - fine::<i32>(5)), (x + fine::<i32>(22), y + fine::<i32>(5))],
             CURVE.mix(0.18).filled(),
@@ -161,11 +161,11 @@ fn dashed_sample((x, y): (i32, i32), [dash, gap]: [u8; 2], colour: RGBColor) -> 
     DashedPathElement::new(ends, fine::<u32>(dash), fine::<u32>(gap), colour.stroke_width(fine(1)))
 }
 
-fn trust_label(trust: Trust) -> &'static str {
+fn trust_label(trust: PredictionStatus) -> &'static str {
     match trust {
-        Trust::Published => "published layout",
-        Trust::Interpolated => "interpolated",
-        Trust::Extrapolated => "extrapolated: a guess",
+        PredictionStatus::Published => "published layout",
+        PredictionStatus::Interpolated => "interpolated",
+        PredictionStatus::Extrapolated => "extrapolated: a guess",
     }
 }
 

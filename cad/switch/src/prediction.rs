@@ -84,10 +84,10 @@ mod tests {
         };
         let at_heaviest = |c: Configuration| {
             let curve = predicted_curve(&Design::new(c).ok()?);
-            Some((*curve.friction_n.last()?, curve.trust, curve.reasons))
+            Some((*curve.friction_n.last()?, curve.status, curve.reasons))
         };
         let published = at_heaviest(base()).unwrap();
-        assert_eq!(published.1, pinswitch_friction::Trust::Published);
+        assert_eq!(published.1, pinswitch_friction::PredictionStatus::Published);
         let mut moving = Vec::new();
         // Where a curve ends is no change of the part.
         for parameter in Configuration::PARAMETERS.iter().filter(|p| p.path() != "friction.load_max_n") {

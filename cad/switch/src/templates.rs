@@ -22,7 +22,7 @@ mod tests {
     use super::*;
     use crate::config::read;
     use crate::design::Design;
-    use pinswitch_friction::{Trust, predict, published};
+    use pinswitch_friction::{PredictionStatus, predict, published};
 
     #[test]
     fn every_template_can_be_built() {
@@ -41,7 +41,7 @@ mod tests {
             assert_eq!(configuration.switch.name.as_str(), template.name);
             let design = Design::new(configuration).unwrap();
             let curve = predict(design.contact(), &[published::heaviest_load_n()]);
-            assert_eq!(curve.trust, Trust::Published, "{}: {:?}", template.name, curve.reasons);
+            assert_eq!(curve.status, PredictionStatus::Published, "{}: {:?}", template.name, curve.reasons);
         }
     }
 

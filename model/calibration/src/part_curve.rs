@@ -2,7 +2,7 @@
 //! excludes those of the rig.
 
 use pinswitch_diagnostic::Diagnostic;
-use pinswitch_friction::{Direction, FrictionCurve, Law, Substrate, Trust, published};
+use pinswitch_friction::{Direction, FrictionCurve, Law, PredictionStatus, Substrate, published};
 
 use crate::inference::prediction_sd_n;
 use crate::model_check::check_friction;
@@ -98,7 +98,11 @@ impl ModelFile {
         check_friction(loads_n, &friction, &half).map_err(|e| e.or_in_file(file))?;
         Ok(FrictionCurve {
             law: Law::Calibrated,
-            trust: if measured && within { Trust::Interpolated } else { Trust::Extrapolated },
+            status: if measured && within {
+                PredictionStatus::Interpolated
+            } else {
+                PredictionStatus::Extrapolated
+            },
             reasons,
             load_n: loads_n.to_vec(),
             eccentric_n: tension[..n].to_vec(),

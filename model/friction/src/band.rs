@@ -1,67 +1,56 @@
-//! The band of a curve: what is uncertain about it, source by source.
+//! The 95 % band of a curve, source by source.
 //!
-//! Each source gives half widths of `ln D` at 95 %, downwards and upwards; independent sources add as squares. They are
-//! computed at a few loads and drawn through in the logarithm of the load, as they change slowly.
+//! Each source has half widths of `ln D` at 95 %, downwards and upwards. Independent sources add in
+//! squares. They change slowly, so they are computed at a few loads and interpolated in the
+//! logarithm of the load.
+//!
+//! A constant marked *chosen* is a judgement: no published measurement determines it.
 
 use serde::Serialize;
 
-use crate::departure::{Departure, departures, published_rig};
-use crate::law::{Law, LawError, Uncertain, friction_by, uncertain_by};
-use crate::physics::{Bed, Constants, OutsidePins, PhysicsSwitch};
-use crate::trust::{is_measured, layout_distance};
-use crate::{Contact, Substrate, published};
+use crate::band_source::{BandSource, NORMAL_95};
+use crate::bed::{Bed, OutsidePins};
+use crate::contact::Contact;
+use crate::deviation::{Deviation, deviations, published_rig};
+use crate::law::{Law, LawError, UncertainFriction};
+use crate::physics::{Constants, PhysicsSwitch};
+use crate::published;
+use crate::status::{is_measured, layout_distance};
+use crate::substrate::Substrate;
 
-/// Loads at which the sources are computed.
+/// Largest number of loads at which the sources are computed.
 const LOADS: usize = 10;
-/// Half width of a standard normal distribution at 95 %.
-pub(crate) const NORMAL_95: f64 = 1.96;
-/// What a departure may do that physics does not know of, as a standard deviation for a factor e. Chosen.
+/// Standard deviation of `ln D` from an effect outside the physics, for a parameter that deviates
+/// by a factor e. Chosen.
 const UNKNOWN_EFFECT: f64 = 0.1;
-/// Standard deviation for a remark on the contact that no law knows of. Chosen.
+/// Standard deviation of `ln D` for each deviation that no law models. Chosen.
 const REMARK: f64 = 0.1;
-/// Standard deviation for a factor e in number or pitch of the pins beyond the measured ones. Chosen.
+/// Standard deviation of `ln D` for a factor e in number or pitch of the pins beyond the measured
+/// range. Chosen.
 const BEYOND_LAYOUTS: f64 = 0.3;
-/// Standard deviation for a factor e in load beyond the tested ones. Chosen.
+/// Standard deviation of `ln D` for a factor e in load beyond the tested range. Chosen.
 const BEYOND_LOADS: f64 = 0.15;
-/// Distance from a measured load, as a logarithm, at which rivals count for two thirds.
+/// Distance from a measured load, as a logarithm, at which the weight of rival laws is `1 - 1/e`.
 const NEAR_LOAD: f64 = 0.5;
-/// The same for the distance from a measured condition.
+/// The same for the distance from a measured condition, see [`layout_distance`].
 const NEAR_CONDITION: f64 = 0.15;
 
-/// Half widths of `ln D` at 95 % that come from one source, load by load; none is negative.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BandSource {
-    /// The source, such as `constants` or `layer thickness`.
-    pub name: String,
-    /// Downwards.
-    pub down: Vec<f64>,
-    /// Upwards.
-    pub up: Vec<f64>,
-}
-
-impl BandSource {
-    /// A source that is as wide downwards as upwards.
-    pub(crate) fn even(name: impl Into<String>, half: Vec<f64>) -> Self {
-        Self { name: name.into(), down: half.clone(), up: half }
-    }
-}
-
-/// The band of a curve with its sources.
+/// 95 % band of a curve, with its sources.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Band {
-    /// Loads at which the sources are given, ascending, in newtons.
+    /// Loads of the sources in newtons, ascending.
     pub load_n: Vec<f64>,
-    /// The sources: the law's own, what departs from the measured rig, and the rival laws.
+    /// Sources: those of the law, the deviations from the published rig, and the rival laws.
     pub sources: Vec<BandSource>,
-    /// The rivals whose friction the band covers where nothing was measured: name and `ln` of their friction over the
-    /// law's, at each load.
+    /// Rival laws, whose friction the band covers away from the measurements: name, and `ln` of
+    /// their friction over that of the law at each load.
     pub rivals: Vec<(String, Vec<f64>)>,
-    /// What departs from the published rig, with its effect at each load.
-    pub departures: Vec<Departure>,
+    /// Deviations from the published rig, with their effects at each load.
+    pub deviations: Vec<Deviation>,
 }
 
 impl Band {
-    /// The band of `law` for `contact` over the range of `loads_n`.
+    /// Computes the band of `law` for `contact` over the range of `loads_n` newtons.
     ///
     /// ```
     /// use pinswitch_friction::{Band, Contact, Law, PinPattern, Substrate, published};
@@ -69,33 +58,33 @@ impl Band {
     /// let six = &published::LAYOUTS[0];
     /// let pins = PinPattern::even(six.pins, six.pitch_rad());
     /// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
-    /// let band = Band::of(Law::Physics, &contact, &[3.08, 49.67])?;
+    /// let band = Band::new(Law::Physics, &contact, &[3.08, 49.67])?;
     /// let [light, heavy] = [0, 1].map(|load| band.half_width(load).1);
-    /// // Its maximum was measured; what it does at light load was not, and the laws disagree there.
+    /// // The maximum was measured. At a light load nothing was, and the laws disagree.
     /// assert!(heavy < 0.25 && light > 0.9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
     /// [`LawError`] if the law does not describe the contact.
-    pub fn of(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Self, LawError> {
+    pub fn new(law: Law, contact: &Contact, loads_n: &[f64]) -> Result<Self, LawError> {
         let load_n = spaced(loads_n);
-        let departures = departures(contact, &load_n);
-        let Uncertain { friction_n, mut sources } = uncertain_by(law, contact, &load_n)?;
-        for departure in &departures {
-            sources.push(departure_source(departure, load_n.len()));
+        let deviations = deviations(contact, &load_n);
+        let UncertainFriction { friction_n, mut sources } = law.uncertain_friction(contact, &load_n)?;
+        for deviation in &deviations {
+            sources.push(deviation_source(deviation, load_n.len()));
         }
         let remarks = contact.unmodelled().len() as f64;
         if remarks > 0.0 {
-            sources.push(BandSource::even(
-                "what no law knows of",
+            sources.push(BandSource::symmetric(
+                "deviations that no law models",
                 vec![NORMAL_95 * REMARK * remarks.sqrt(); load_n.len()],
             ));
         }
         let (nearest, beyond) = layout_distance(contact);
         if beyond > 0.0 {
-            sources.push(BandSource::even(
-                "layout beyond the measured ones",
+            sources.push(BandSource::symmetric(
+                "layout beyond the measured range",
                 vec![NORMAL_95 * BEYOND_LAYOUTS * beyond; load_n.len()],
             ));
         }
@@ -103,22 +92,23 @@ impl Band {
             sources.push(source);
         }
         let rivals = rivals(law, contact, &load_n, &friction_n)?;
-        // On another rig rivals may happen to agree: doubt is no less than with the same pins on the published one.
-        let on_published = match published_rig(contact).filter(|_| !departures.is_empty()) {
+        // On another rig the rivals may agree by chance: the band is at least as wide as on the
+        // published rig.
+        let on_published = match published_rig(contact).filter(|_| !deviations.is_empty()) {
             Some(rig) => {
-                self::rivals(law, &rig, &load_n, &friction_by(law, &rig, &load_n)?).unwrap_or_default()
+                self::rivals(law, &rig, &load_n, &law.friction_n(&rig, &load_n)?).unwrap_or_default()
             }
             None => Vec::new(),
         };
-        // A measured condition is near itself; any other is as far as its layout and its departures take it.
-        let apart = departures.iter().map(|d| d.log_ratio.powi(2)).sum::<f64>() + nearest.powi(2);
-        let apart = if is_measured(contact) { 0.0 } else { apart.sqrt() };
-        let doubted: Vec<_> = rivals.iter().chain(&on_published).cloned().collect();
-        sources.push(rival_source(&doubted, &load_n, apart));
-        Ok(Self { load_n, sources, rivals, departures })
+        // Distance from the nearest measured condition: layout and deviations.
+        let distance = deviations.iter().map(|d| d.log_ratio.powi(2)).sum::<f64>() + nearest.powi(2);
+        let distance = if is_measured(contact) { 0.0 } else { distance.sqrt() };
+        let all_rivals: Vec<_> = rivals.iter().chain(&on_published).cloned().collect();
+        sources.push(rival_source(&all_rivals, &load_n, distance));
+        Ok(Self { load_n, sources, rivals, deviations })
     }
 
-    /// Half widths of `ln D` at the load of this index, downwards and upwards.
+    /// Returns the half widths of `ln D` at the load of this index, downwards and upwards.
     pub fn half_width(&self, load: usize) -> (f64, f64) {
         let root = |side: fn(&BandSource) -> &Vec<f64>| {
             self.sources.iter().map(|s| side(s)[load].powi(2)).sum::<f64>().sqrt()
@@ -126,7 +116,8 @@ impl Band {
         (root(|s| &s.down), root(|s| &s.up))
     }
 
-    /// Half widths of `ln D` at `load_n` newtons, between those of the loads given.
+    /// Returns the half widths of `ln D` at `load_n` newtons, interpolated between the loads of the
+    /// sources.
     pub fn half_width_at(&self, load_n: f64) -> (f64, f64) {
         let above = self.load_n.partition_point(|l| *l < load_n);
         if above == 0 {
@@ -141,8 +132,9 @@ impl Band {
         (a + share * (c - a), b + share * (d - b))
     }
 
-    /// The rival that differs most from the law, wherever it does: its name, the load, and the ratio of its friction to
-    /// the law's. `None` if all lie within a factor of `tolerance`.
+    /// Returns the largest difference between a rival and the law: name of the rival, load, and
+    /// ratio of its friction to that of the law. `None` if all ratios are within a factor of
+    /// `tolerance`.
     pub fn widest_rival(&self, tolerance: f64) -> Option<(&str, f64, f64)> {
         let all = self.rivals.iter().flat_map(|(name, logs)| {
             logs.iter().zip(&self.load_n).map(move |(log, load)| (name.as_str(), *load, *log))
@@ -153,7 +145,8 @@ impl Band {
     }
 }
 
-/// A few loads over the range of `loads_n`, evenly in their logarithm; the loads themselves if they are few.
+/// Returns the loads of the sources: those of `loads_n` if they are few, else evenly spaced in the
+/// logarithm.
 fn spaced(loads_n: &[f64]) -> Vec<f64> {
     let mut positive: Vec<f64> = loads_n.iter().copied().filter(|l| *l > 0.0).collect();
     positive.sort_by(f64::total_cmp);
@@ -167,27 +160,27 @@ fn spaced(loads_n: &[f64]) -> Vec<f64> {
     (0..LOADS).map(|i| from * libm::pow(to / from, i as f64 / (LOADS - 1) as f64)).collect()
 }
 
-fn departure_source(departure: &Departure, loads: usize) -> BandSource {
-    let unknown = UNKNOWN_EFFECT * departure.log_ratio;
+fn deviation_source(deviation: &Deviation, loads: usize) -> BandSource {
+    let unknown = UNKNOWN_EFFECT * deviation.log_ratio;
     let half = (0..loads)
         .map(|i| {
-            // Where physics cannot say, a change counts in full.
+            // Without an equilibrium to compare, the whole change is uncertain.
             let effect =
-                departure.log_effect.get(i).copied().unwrap_or(departure.log_ratio / departure.unsure);
-            NORMAL_95 * libm::hypot(departure.unsure * effect, unknown)
+                deviation.log_effect.get(i).copied().unwrap_or(deviation.log_ratio / deviation.uncertainty);
+            NORMAL_95 * libm::hypot(deviation.uncertainty * effect, unknown)
         })
         .collect();
-    BandSource::even(departure.parameter, half)
+    BandSource::symmetric(deviation.parameter, half)
 }
 
 fn beyond_loads(load_n: &[f64]) -> Option<BandSource> {
     let (from, to) = (published::lightest_load_n(), published::heaviest_load_n());
     let beyond = |load: f64| libm::log(from / load).max(libm::log(load / to)).max(0.0);
     let half: Vec<f64> = load_n.iter().map(|load| NORMAL_95 * BEYOND_LOADS * beyond(*load)).collect();
-    half.iter().any(|h| *h > 0.0).then(|| BandSource::even("loads beyond the tested ones", half))
+    half.iter().any(|h| *h > 0.0).then(|| BandSource::symmetric("loads beyond the tested range", half))
 }
 
-/// What the rivals of `law` say: `ln` of their friction over its own.
+/// Computes the rivals of `law`: name, and `ln` of their friction over `own`, that of the law.
 fn rivals(
     law: Law,
     contact: &Contact,
@@ -196,11 +189,12 @@ fn rivals(
 ) -> Result<Vec<(String, Vec<f64>)>, LawError> {
     let on_proxy = contact.substrate() == Substrate::Abs;
     let mut all: Vec<(String, Vec<f64>)> = Law::predictive()
-        // The paper's constants are those of three layouts and one wrap: as a rival they would come and go at once. At light
-        // load the layout law says the same; on the proxy what is left of the constant coefficient, which its own maxima
-        // refute, is its trend with load, see below.
+        // The paper's model has constants for three layouts and one wrap. As a rival it would make
+        // the band jump between contacts. At light loads the layout law agrees with it. On the
+        // proxy its constant coefficient contradicts its own maxima; only its trend with load is
+        // used, see below.
         .filter(|other| *other != law && *other != Law::Paper)
-        .filter_map(|other| Some((other.title().to_owned(), friction_by(other, contact, load_n).ok()?)))
+        .filter_map(|other| Some((other.title().to_owned(), other.friction_n(contact, load_n).ok()?)))
         .collect();
     if law == Law::Physics && !on_proxy && contact.all_pins().count() > 0 {
         let free = Bed { outside: OutsidePins::Free, bending_n_mm2: 0.0, ..*contact.bed() };
@@ -212,7 +206,7 @@ fn rivals(
     }
     if law == Law::Physics && on_proxy {
         let heaviest = published::heaviest_load_n();
-        let at = friction_by(law, contact, &[heaviest])?[0] / heaviest;
+        let at = law.friction_n(contact, &[heaviest])?[0] / heaviest;
         all.push(("a constant coefficient".to_owned(), load_n.iter().map(|l| l * at).collect()));
     }
     let logs = |friction: Vec<f64>| -> Vec<f64> {
@@ -222,11 +216,11 @@ fn rivals(
     Ok(all.into_iter().map(|(name, friction)| (name, logs(friction))).collect())
 }
 
-/// The rivals count where nothing was measured: not at all at the heaviest load of a measured condition, wholly far from
-/// it in load or in the contact.
-fn rival_source(rivals: &[(String, Vec<f64>)], load_n: &[f64], apart: f64) -> BandSource {
+/// Weights the rivals by the distance from the measurements: 0 at the heaviest load of a measured
+/// condition, 1 far from it in load or contact.
+fn rival_source(rivals: &[(String, Vec<f64>)], load_n: &[f64], distance: f64) -> BandSource {
     let far = |distance: f64, near: f64| -libm::expm1(-(distance / near).powi(2));
-    let contact = far(apart, NEAR_CONDITION);
+    let contact = far(distance, NEAR_CONDITION);
     let side = |sign: f64| {
         load_n
             .iter()

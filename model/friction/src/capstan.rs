@@ -1,19 +1,19 @@
-//! The capstan equation: tension across a wrapped contact with friction.
+//! The capstan equation: tension across a wrapped contact.
 
 use serde::{Deserialize, Serialize};
 
-/// Which way the load moves while the tension is read.
+/// Direction of the load's motion while the tension is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Direction {
-    /// The load is released: friction helps to hold it (`d = -1`).
+    /// The load is released, and friction reduces the tension (`d = -1`).
     Eccentric,
-    /// The load is pulled: friction adds to it (`d = +1`).
+    /// The load is pulled, and friction adds to the tension (`d = +1`).
     Concentric,
 }
 
 impl Direction {
-    /// The word in tables and reports: `eccentric` or `concentric`.
+    /// Returns the word of tables and reports: `eccentric` or `concentric`.
     pub fn as_str(self) -> &'static str {
         match self {
             Direction::Eccentric => "eccentric",
@@ -21,7 +21,7 @@ impl Direction {
         }
     }
 
-    /// `d` of the capstan equation: -1 eccentric, +1 concentric.
+    /// Returns `d` of the capstan equation: -1 for eccentric, +1 for concentric.
     pub fn sign(self) -> f64 {
         match self {
             Direction::Eccentric => -1.0,
@@ -30,14 +30,15 @@ impl Direction {
     }
 }
 
-/// Tension in newtons that moves a load of `load_n`: `T = F exp(d x)` (capstan equation, paper eq. 1).
+/// Returns the tension in newtons that moves a load of `load_n` newtons, `T = F exp(d x)` (eq. 1 of
+/// the paper).
 ///
-/// `exponent` is the friction exponent `x = mu a` (dimensionless).
+/// `exponent` is the friction exponent `x = mu a`, dimensionless.
 pub fn capstan_tension_n(load_n: f64, exponent: f64, direction: Direction) -> f64 {
     load_n * libm::exp(direction.sign() * exponent)
 }
 
-/// Friction in newtons as the paper plots it, `D = (F_c - F_e)/2 = F sinh(x)`.
+/// Returns the friction in newtons as the paper plots it, `D = (T_c - T_e)/2 = F sinh(x)`.
 pub fn capstan_friction_n(load_n: f64, exponent: f64) -> f64 {
     load_n * libm::sinh(exponent)
 }
@@ -49,14 +50,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn friction_is_half_the_gap_between_the_branches(load in 0.0..100.0f64, x in 0.0..2.0f64) {
+        fn friction_is_half_the_tension_difference(load in 0.0..100.0f64, x in 0.0..2.0f64) {
             let gap = capstan_tension_n(load, x, Direction::Concentric)
                 - capstan_tension_n(load, x, Direction::Eccentric);
             prop_assert!((capstan_friction_n(load, x) - gap / 2.0).abs() <= 1e-12 * (1.0 + gap));
         }
 
         #[test]
-        fn the_geometric_mean_of_the_branches_is_the_load(load in 0.1..100.0f64, x in 0.0..2.0f64) {
+        fn geometric_mean_tension_is_the_load(load in 0.1..100.0f64, x in 0.0..2.0f64) {
             let mean = (capstan_tension_n(load, x, Direction::Concentric)
                 * capstan_tension_n(load, x, Direction::Eccentric)).sqrt();
             prop_assert!((mean / load - 1.0).abs() < 1e-12);

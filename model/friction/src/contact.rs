@@ -1,67 +1,64 @@
-//! What the tendon lies on: the validated input of every prediction.
+//! The contact of a tendon with a switch: the validated input of every prediction.
 
-use serde::{Deserialize, Serialize};
+use pinswitch_diagnostic::{Diagnostic, Location};
 
-use crate::PinPattern;
-use crate::counted;
-use crate::physics::Bed;
+use crate::bed::Bed;
+use crate::pattern::PinPattern;
+use crate::plural::pluralise;
 use crate::published::{self, PublishedLayout};
+use crate::substrate::Substrate;
 
-/// What lies under the pins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Substrate {
-    /// The cast silicone layer: pins sink as load grows.
-    Silicone,
-    /// The rigid printed proxy of that layer: the pins alone carry the tendon.
-    Abs,
+/// Largest wrap angle in degrees: two turns.
+const MAX_WRAP_DEG: f64 = 720.0;
+/// Largest difference from the pitch of a published layout, in radians (0.006 degrees).
+const SAME_PITCH_RAD: f64 = 1e-4;
+
+/// Reason why a contact cannot be predicted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", Diagnostic::from(self.clone()))]
+#[non_exhaustive]
+pub enum ContactError {
+    /// The wrap angle is not a positive finite angle of at most two turns.
+    WrapAngle {
+        /// Wrap angle as given, in degrees.
+        degrees: f64,
+    },
+    /// No pin of a rigid proxy is within the wrap, so the tendon touches nothing.
+    NoPinInWrap {
+        /// Wrap angle in degrees.
+        degrees: f64,
+    },
 }
 
-impl Substrate {
-    /// The word in tables and configurations: `silicone` or `abs`.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Substrate::Silicone => "silicone",
-            Substrate::Abs => "abs",
+impl From<ContactError> for Diagnostic {
+    fn from(error: ContactError) -> Self {
+        match error {
+            ContactError::WrapAngle { degrees } => {
+                Self::new(format!("must be above 0 and at most {MAX_WRAP_DEG}"))
+                    .with_location(Location::field("wrap angle (deg)", degrees.to_string()))
+                    .with_help("give the angle over which the tendon touches the pulley")
+            }
+            ContactError::NoPinInWrap { degrees } => {
+                Self::new(format!("no pin of the rigid proxy is within the wrap of {degrees:.2} deg"))
+                    .with_help("move a pin into the wrap, or use silicone")
+            }
         }
     }
 }
 
-/// Why a contact cannot be predicted.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ContactError {
-    /// The wrap angle is not a positive finite angle of at most two turns.
-    #[error(
-        "wrap angle {degrees} deg is outside 0 < angle <= 720; give the angle over which the tendon touches the pulley"
-    )]
-    WrapAngle {
-        /// The angle given, in degrees.
-        degrees: f64,
-    },
-    /// A rigid proxy without pins within the wrap carries nothing.
-    #[error(
-        "the rigid proxy has no pin within the wrap of {degrees:.2} deg; put a pin there or use silicone"
-    )]
-    NothingTouches {
-        /// The wrap angle in degrees.
-        degrees: f64,
-    },
-}
-
-/// Substrate, the pins that the tendon touches, and the wrap angle.
+/// Surface under the tendon: substrate, pins, wrap angle and dimensions.
 ///
 /// ```
 /// use pinswitch_friction::{Contact, ContactError, PinPattern, Substrate};
 ///
-/// // Three pins over a wrap of 64 degrees; the one beside it does not touch the tendon.
+/// // Four pins, three of them within a wrap of 64 degrees.
 /// let pins = PinPattern::new([-15.0f64, 0.0, 15.0, 40.0].map(f64::to_radians).to_vec());
 /// let contact = Contact::new(Substrate::Silicone, pins, 64f64.to_radians())?;
 /// assert_eq!(contact.pins().count(), 3);
 /// assert!(contact.remarks().iter().any(|reason| reason.contains("outside the wrap")));
 ///
 /// let nothing = Contact::new(Substrate::Abs, PinPattern::default(), 1.0);
-/// assert!(matches!(nothing, Err(ContactError::NothingTouches { .. })));
+/// assert!(matches!(nothing, Err(ContactError::NoPinInWrap { .. })));
 /// # Ok::<(), ContactError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -76,18 +73,20 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// A contact over `wrap_rad` radians: the angle between the directions in which the tendon arrives and leaves.
+    /// Creates a contact over `wrap_rad` radians, the angle between the directions of the incoming
+    /// and the outgoing tendon. Its dimensions are those of the published bed.
     ///
     /// # Errors
-    /// [`ContactError`] if the angle is unusable or if nothing would touch the tendon.
+    /// [`ContactError`] if the angle is out of bounds, or if a rigid proxy has no pin within the
+    /// wrap.
     pub fn new(substrate: Substrate, pins: PinPattern, wrap_rad: f64) -> Result<Self, ContactError> {
         let degrees = wrap_rad.to_degrees();
-        if !(degrees > 0.0 && degrees <= 720.0) {
+        if !(degrees > 0.0 && degrees <= MAX_WRAP_DEG) {
             return Err(ContactError::WrapAngle { degrees });
         }
         let touched = pins.within(wrap_rad);
         if substrate == Substrate::Abs && touched.count() == 0 {
-            return Err(ContactError::NothingTouches { degrees });
+            return Err(ContactError::NoPinInWrap { degrees });
         }
         Ok(Self {
             substrate,
@@ -100,7 +99,7 @@ impl Contact {
         })
     }
 
-    /// Reads `F_thr` of six-single as `threshold` instead of the printed 5.7: the paper leaves it open
+    /// Sets `F_thr` of six-single, which the paper prints as 5.7 but leaves ambiguous
     /// (`model/doc/friction-laws.md`).
     #[must_use]
     pub fn with_six_single_threshold(mut self, threshold: f64) -> Self {
@@ -108,15 +107,15 @@ impl Contact {
         self
     }
 
-    /// Adds ways in which the part departs from the one that was measured and of which no law knows (another mix of the
-    /// silicone): the friction numbers are then an extrapolation, and each is shown.
+    /// Sets the deviations from the measured part that no law models, such as another mix of the
+    /// silicone. Predictions are then extrapolated, and list each deviation as a reason.
     #[must_use]
     pub fn with_unmodelled(mut self, unmodelled: Vec<String>) -> Self {
         self.unmodelled = unmodelled;
         self
     }
 
-    /// The same part under a tendon that wraps it over another angle, in radians.
+    /// Returns the same part with another wrap angle, in radians.
     ///
     /// # Errors
     /// [`ContactError`] as [`Contact::new`].
@@ -130,61 +129,63 @@ impl Contact {
         })
     }
 
-    /// Lays the pins on `bed` instead of the published one; the physics reads it.
+    /// Sets the dimensions and stiffness of the support, which the physics uses.
     #[must_use]
     pub fn with_bed(mut self, bed: Bed) -> Self {
         self.bed = bed;
         self
     }
 
-    /// Dimensions and stiffness of what carries the tendon.
+    /// Returns the dimensions and stiffness of the support.
     pub fn bed(&self) -> &Bed {
         &self.bed
     }
 
-    /// What lies under the pins.
+    /// Returns the material under the pins.
     pub fn substrate(&self) -> Substrate {
         self.substrate
     }
 
-    /// The pins within the wrap.
+    /// Returns the pins within the wrap.
     pub fn pins(&self) -> &PinPattern {
         &self.pins
     }
 
-    /// All pins of the part. One just beyond the wrap may still touch the span that leaves it, and carries less the
-    /// farther it lies: the physics asks for all.
+    /// Returns all pins of the part. The physics needs them all, because a pin just beyond the wrap
+    /// may still touch the free span.
     pub fn all_pins(&self) -> &PinPattern {
         &self.all_pins
     }
 
-    /// The wrap angle in radians.
+    /// Returns the wrap angle in radians.
     pub fn wrap_rad(&self) -> f64 {
         self.wrap_rad
     }
 
-    /// What departs from the published rig of which no law knows.
+    /// Returns the deviations from the measured part that no law models.
     pub fn unmodelled(&self) -> &[String] {
         &self.unmodelled
     }
 
-    /// In what this contact departs from the published rig that no parameter of its bed shows.
+    /// Returns the remarks on this contact for a prediction: what no law models, and pins outside
+    /// the wrap.
     pub fn remarks(&self) -> Vec<String> {
         let mut all = self.unmodelled.clone();
         let outside = self.all_pins.count() - self.pins.count();
         if outside > 0 {
-            let verb = if outside == 1 { "lies" } else { "lie" };
-            all.push(format!("{} {verb} outside the wrap", counted(outside, "pin")));
+            let verb = if outside == 1 { "is" } else { "are" };
+            all.push(format!("{} {verb} outside the wrap", pluralise(outside, "pin")));
         }
         all
     }
 
-    /// The published layout whose pins these are: same number, same even pitch, centred on the wrap.
+    /// Returns the published layout with these pins (same number, same even pitch, centred on the
+    /// wrap), if any.
     pub fn published_layout(&self) -> Option<PublishedLayout> {
         let pitch = self.pins.mean_pitch_rad()?;
         let mut layout = *published::LAYOUTS.iter().find(|l| {
             l.pins == self.pins.count()
-                && (l.pitch_rad() - pitch).abs() < 1e-4
+                && (l.pitch_rad() - pitch).abs() < SAME_PITCH_RAD
                 && self.pins.is_even()
                 && self.pins.is_centred()
         })?;
@@ -200,7 +201,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn published_layouts_are_recognised_and_others_are_not() {
+    fn published_layouts_are_recognised() {
         for layout in &published::LAYOUTS {
             let pins = PinPattern::even(layout.pins, layout.pitch_rad());
             let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap();
@@ -213,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn another_wrap_touches_other_pins_of_the_same_part() {
+    fn wrap_angle_selects_the_pins() {
         let pins = PinPattern::even(3, 0.3);
         let contact = Contact::new(Substrate::Silicone, pins.clone(), published::wrap_angle_rad()).unwrap();
         let contact = contact.with_unmodelled(vec!["another mix".to_owned()]);
@@ -225,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn unusable_contacts_are_refused() {
+    fn invalid_contacts_are_refused() {
         for wrap in [0.0, -1.0, f64::NAN, f64::INFINITY, 13.0] {
             assert!(matches!(
                 Contact::new(Substrate::Silicone, PinPattern::default(), wrap),
@@ -234,7 +235,7 @@ mod tests {
         }
         assert!(matches!(
             Contact::new(Substrate::Abs, PinPattern::new(vec![0.9]), 1.0),
-            Err(ContactError::NothingTouches { .. })
+            Err(ContactError::NoPinInWrap { .. })
         ));
     }
 }

@@ -1,21 +1,26 @@
-//! Backwards: which pins make a wanted curve. Every pattern of occupied grooves is tried with the physics.
+//! Search over pin patterns for a wanted curve: evaluates every pattern of occupied grooves with
+//! the physics.
 
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::physics::{Bed, Constants, PhysicsSwitch};
-use crate::sort_by_number;
-use crate::{Contact, PinPattern, Substrate, Transition};
+use crate::bed::Bed;
+use crate::contact::Contact;
+use crate::pattern::PinPattern;
+use crate::physics::{Constants, PhysicsSwitch};
+use crate::sort::sort_by_number;
+use crate::substrate::Substrate;
+use crate::transition::Transition;
 
-/// Loads at which the sweep computes a pattern: the threshold comes out within about 1 %.
+/// Number of loads per pattern; the error of the threshold is about 1 %.
 const LOADS: usize = 24;
-/// Most grooves under the tendon: `2^20` patterns take over half an hour.
+/// Largest number of grooves under the tendon: `2^20` patterns take over half an hour.
 pub const MAX_GROOVES: usize = 20;
-/// Angles that differ by less are mirror images.
+/// Largest deviation of mirror images from symmetry, in radians.
 const SYMMETRY_RAD: f64 = 1e-9;
 
-/// The grooves to fill and the loads to look at. Angles in radians, loads in newtons.
+/// Grooves, number of pins, and loads of a search. Angles are in radians, loads in newtons.
 ///
 /// ```
 /// use pinswitch_friction::layout_search::{Search, pareto_front};
@@ -32,38 +37,39 @@ const SYMMETRY_RAD: f64 = 1e-9;
 ///     pins: (2, 3),
 /// };
 /// let candidates = search.sweep();
-/// // 10 pairs and 10 triples, mirror images once.
+/// // 10 pairs and 10 triples, counting mirror images once.
 /// assert_eq!(candidates.len(), 12);
 /// assert!(pareto_front(&candidates).len() < candidates.len());
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
-    /// Angles of the grooves that the tendon touches, ascending, with their numbers from 1.
+    /// Numbers (from 1) and angles of the grooves under the tendon, in ascending order.
     pub grooves: Vec<(usize, f64)>,
     /// Wrap angle.
     pub wrap_rad: f64,
-    /// What carries the tendon.
+    /// Support of the tendon.
     pub bed: Bed,
     /// Lightest and heaviest load.
     pub loads_n: (f64, f64),
-    /// Fewest and most pins.
+    /// Smallest and largest number of pins.
     pub pins: (usize, usize),
 }
 
-/// A pattern and what the physics says of it.
+/// Pin pattern with its threshold and friction by the physics.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LayoutCandidate {
     /// Occupied grooves, numbered from 1.
     pub pins: Vec<usize>,
-    /// Load at which silicone makes half of the friction, N; `None` if it does not within the loads.
+    /// Load at which silicone carries half of the friction, N; `None` if it is not within the
+    /// loads.
     pub threshold_n: Option<f64>,
     /// Friction at the heaviest load, N.
     pub friction_n: f64,
 }
 
 impl Search {
-    /// Every pattern, mirror images once, in the order of its occupancy as a binary number. A pattern whose equilibrium is
-    /// not found is left out.
+    /// Evaluates every pattern of [`patterns`], in its order. Skips a pattern without an
+    /// equilibrium.
     pub fn sweep(&self) -> Vec<LayoutCandidate> {
         let all = patterns(&self.grooves, self.pins);
         #[cfg(feature = "parallel")]
@@ -91,9 +97,11 @@ impl Search {
     }
 }
 
-/// Every choice of at least and at most so many of `grooves` (numbers and angles, ascending), in the order of its occupancy
-/// as a binary number. Of two that mirror each other about the middle of the wrap only the first is listed: which way
-/// around a switch lies moves its friction by less than a thousandth.
+/// Returns every selection of `fewest` to `most` of `grooves` (numbers and angles, ascending),
+/// ordered by its occupancy as a binary number.
+///
+/// Of two mirror images about the middle of the wrap it returns the first only: mirroring changes
+/// the friction of a switch by less than 0.1 %.
 ///
 /// ```
 /// use pinswitch_friction::layout_search::patterns;
@@ -106,7 +114,7 @@ impl Search {
 pub fn patterns(grooves: &[(usize, f64)], (fewest, most): (usize, usize)) -> Vec<Vec<usize>> {
     let grooves = &grooves[..grooves.len().min(MAX_GROOVES)];
     let count = grooves.len() as u32;
-    // Only if each groove has a partner on the other side does a mirrored pattern exist.
+    // A pattern has a mirror image only if each groove has a partner on the other side.
     let is_symmetric =
         grooves.iter().zip(grooves.iter().rev()).all(|(a, b)| (a.1 + b.1).abs() < SYMMETRY_RAD);
     let mirrored = |mask: u32| mask.reverse_bits() >> (u32::BITS - count.max(1));
@@ -119,7 +127,8 @@ pub fn patterns(grooves: &[(usize, f64)], (fewest, most): (usize, usize)) -> Vec
         .collect()
 }
 
-/// Candidates that no other beats in both threshold and friction, by ascending threshold.
+/// Returns the candidates that no other exceeds in both threshold and friction, by ascending
+/// threshold.
 pub fn pareto_front(candidates: &[LayoutCandidate]) -> Vec<&LayoutCandidate> {
     let mut switching: Vec<(f64, &LayoutCandidate)> =
         candidates.iter().filter_map(|c| Some((c.threshold_n?, c))).collect();
@@ -156,18 +165,18 @@ mod tests {
     }
 
     #[test]
-    fn every_pattern_is_tried() {
+    fn every_pattern_is_evaluated() {
         let search = search(6..=10);
         let all = search.sweep();
-        // 31 occupancies; 7 of them mirror themselves, the others one another.
+        // 31 occupancies: 7 are symmetric, the others are pairs of mirror images.
         assert_eq!(all.len(), (31 - 7) / 2 + 7);
         let three = all.iter().find(|c| c.pins == [6, 8, 10]).unwrap();
-        // three-single by physics, see physics::tests.
+        // three-single by the physics, see physics::tests.
         assert!((three.friction_n - 8.99).abs() < 0.03, "{three:?}");
     }
 
     #[test]
-    fn the_front_holds_what_nothing_beats() {
+    fn front_dominates_all_candidates() {
         let all = search(6..=10).sweep();
         let front = pareto_front(&all);
         assert!(

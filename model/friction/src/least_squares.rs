@@ -1,52 +1,66 @@
-//! Nonlinear least squares by Levenberg and Marquardt with forward differences, for a handful of parameters.
+//! Nonlinear least squares with few parameters: the Levenberg-Marquardt method with forward
+//! differences.
 
 use nalgebra::{DMatrix, DVector};
+use pinswitch_diagnostic::Diagnostic;
 
-/// Steps before the search ends.
+/// Largest number of steps.
 const MAX_STEPS: usize = 60;
-/// Relative gain of a step below which the search has converged.
+/// Relative decrease of the sum of squares below which the iteration has converged.
 const MIN_GAIN: f64 = 1e-12;
 
-/// Where the sum of squares is least.
+/// Minimum of a sum of squares.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// The parameters.
+    /// Parameters at the minimum.
     pub at: Vec<f64>,
-    /// The residuals there.
+    /// Residuals at the minimum.
     pub residuals: Vec<f64>,
-    /// `(J'J)^-1`: times the residuals' variance, the covariance of the parameters.
+    /// `(J'J)^-1`; multiplied by the variance of the residuals, the covariance of the parameters.
     pub inverse_normal: DMatrix<f64>,
 }
 
-/// Why there is no solution.
+/// Reason why a least-squares problem has no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", Diagnostic::from(self.clone()))]
 #[non_exhaustive]
 pub enum LeastSquaresError {
     /// The residuals do not depend on some direction of the parameters.
-    #[error("the data do not determine the {parameters} parameters")]
     Undetermined {
         /// Number of parameters.
         parameters: usize,
     },
 }
 
-/// Minimises the sum of squares of `residuals` from `start`; derivatives by forward differences of `step`. The inner
-/// result carries errors of the residuals themselves.
+impl From<LeastSquaresError> for Diagnostic {
+    fn from(error: LeastSquaresError) -> Self {
+        let LeastSquaresError::Undetermined { parameters } = error;
+        Self::new(format!("the data do not determine the {parameters} parameters"))
+            .with_help("add observations, or fit fewer parameters")
+    }
+}
+
+/// Minimises the sum of squares of `residuals` from `start`, with derivatives by forward
+/// differences of `step`.
+///
+/// The outer result has the errors of `residuals`, the inner one those of the method.
 ///
 /// ```
 /// use pinswitch_friction::least_squares::minimise;
 /// use std::convert::Infallible;
 ///
 /// // A line through three points.
-/// let residuals = |p: &[f64]| Ok::<_, Infallible>(vec![p[0] - 1.0, p[0] + p[1] - 3.0, p[0] + 2.0 * p[1] - 5.0]);
-/// let Ok(found) = minimise(&[0.0, 0.0], 1e-6, residuals);
-/// let line = found?.at;
+/// let points = [(0.0, 1.0), (1.0, 3.0), (2.0, 5.0)];
+/// let residuals =
+///     |p: &[f64]| Ok::<_, Infallible>(points.iter().map(|(x, y)| p[0] + p[1] * x - y).collect());
+/// let Ok(solution) = minimise(&[0.0, 0.0], 1e-6, residuals);
+/// let line = solution?.at;
 /// assert!((line[0] - 1.0).abs() < 1e-6 && (line[1] - 2.0).abs() < 1e-6);
 /// # Ok::<(), pinswitch_friction::least_squares::LeastSquaresError>(())
 /// ```
 ///
 /// # Errors
-/// [`LeastSquaresError::Undetermined`]; whatever `residuals` returns.
+/// Any error of `residuals`, and [`LeastSquaresError::Undetermined`].
 pub fn minimise<E>(
     start: &[f64],
     step: f64,
@@ -64,11 +78,11 @@ pub fn minimise<E>(
         let Some(move_by) = damped.cholesky().map(|c| c.solve(&gradient)) else {
             return Ok(Err(LeastSquaresError::Undetermined { parameters: at.len() }));
         };
-        let tried: Vec<f64> = at.iter().zip(move_by.iter()).map(|(a, m)| a - m).collect();
-        let there = DVector::from_vec(residuals(&tried)?);
+        let trial: Vec<f64> = at.iter().zip(move_by.iter()).map(|(a, m)| a - m).collect();
+        let there = DVector::from_vec(residuals(&trial)?);
         let gain = here.norm_squared() - there.norm_squared();
         if gain > 0.0 {
-            at = tried;
+            at = trial;
             let done = gain <= MIN_GAIN * here.norm_squared();
             here = there;
             damping = (damping / 10.0).max(1e-12);
@@ -89,6 +103,7 @@ pub fn minimise<E>(
     })
 }
 
+/// Returns the Jacobian of `residuals` at `at`.
 fn derivatives<E>(
     at: &[f64],
     here: &DVector<f64>,
@@ -110,19 +125,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn finds_the_valley_of_rosenbrock() {
+    fn rosenbrock_minimum_is_found() {
         let residuals =
             |p: &[f64]| Ok::<_, std::convert::Infallible>(vec![10.0 * (p[1] - p[0] * p[0]), 1.0 - p[0]]);
-        let Ok(found) = minimise(&[-1.2, 1.0], 1e-7, residuals);
-        let found = found.unwrap();
-        assert!(found.at.iter().all(|p| (p - 1.0).abs() < 1e-5), "{:?}", found.at);
+        let Ok(solution) = minimise(&[-1.2, 1.0], 1e-7, residuals);
+        let at = solution.unwrap().at;
+        assert!(at.iter().all(|p| (p - 1.0).abs() < 1e-5), "{at:?}");
     }
 
     #[test]
-    fn parameters_that_do_nothing_are_undetermined() {
-        let Ok(found) = minimise(&[1.0, 1.0], 1e-6, |p: &[f64]| {
+    fn unused_parameters_are_undetermined() {
+        let Ok(solution) = minimise(&[1.0, 1.0], 1e-6, |p: &[f64]| {
             Ok::<_, std::convert::Infallible>(vec![p[0], 2.0 * p[0]])
         });
-        assert!(found.is_err());
+        assert!(solution.is_err());
     }
 }

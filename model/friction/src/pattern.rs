@@ -1,9 +1,9 @@
-//! Where the pins lie along the wrap.
+//! Pin positions along the wrap.
 
-/// How far two pitches may differ and still count as even, in radians (0.006 degrees).
+/// Largest difference between two pitches of an even pattern, in radians (0.006 degrees).
 const EVEN_TOLERANCE_RAD: f64 = 1e-4;
 
-/// Angles of the pins around the axis, ascending, in radians; zero is the middle of the wrap.
+/// Angles of the pins about the axis, ascending, in radians; zero is the middle of the wrap.
 ///
 /// ```
 /// use pinswitch_friction::PinPattern;
@@ -19,46 +19,46 @@ pub struct PinPattern {
 }
 
 impl PinPattern {
-    /// A pattern from the angles of its pins in radians, in any order.
+    /// Creates a pattern from the angles of its pins in radians, in any order.
     pub fn new(mut angles_rad: Vec<f64>) -> Self {
         angles_rad.sort_by(f64::total_cmp);
         Self { angles_rad }
     }
 
-    /// `count` pins, `pitch_rad` apart, centred on the wrap.
+    /// Creates a pattern of `count` pins with a pitch of `pitch_rad`, centred on the wrap.
     pub fn even(count: usize, pitch_rad: f64) -> Self {
         let middle = (count as f64 - 1.0) / 2.0;
         Self::new((0..count).map(|i| (i as f64 - middle) * pitch_rad).collect())
     }
 
-    /// Angles of the pins in radians, ascending.
+    /// Returns the angles of the pins in radians, ascending.
     pub fn angles_rad(&self) -> &[f64] {
         &self.angles_rad
     }
 
-    /// Number of pins.
+    /// Returns the number of pins.
     pub fn count(&self) -> usize {
         self.angles_rad.len()
     }
 
-    /// Angle between the first and the last pin in radians; `None` without pins.
+    /// Returns the angle from the first to the last pin in radians, or `None` without pins.
     pub fn span_rad(&self) -> Option<f64> {
         Some(self.angles_rad.last()? - self.angles_rad.first()?)
     }
 
-    /// Mean centre-to-centre pitch in radians; `None` with fewer than two pins.
+    /// Returns the mean centre-to-centre pitch in radians, or `None` with fewer than two pins.
     pub fn mean_pitch_rad(&self) -> Option<f64> {
         (self.count() > 1).then(|| self.span_rad().map(|s| s / (self.count() - 1) as f64))?
     }
 
-    /// Whether all neighbouring pins are equally far apart.
+    /// Whether the pitch is the same between all neighbouring pins.
     pub fn is_even(&self) -> bool {
         self.mean_pitch_rad().is_none_or(|mean| {
             self.angles_rad.windows(2).all(|w| (w[1] - w[0] - mean).abs() < EVEN_TOLERANCE_RAD)
         })
     }
 
-    /// Whether the pins lie symmetrically about the middle of the wrap.
+    /// Whether the pins are symmetric about the middle of the wrap.
     pub fn is_centred(&self) -> bool {
         self.angles_rad
             .iter()
@@ -66,7 +66,7 @@ impl PinPattern {
             .all(|(a, b)| (a + b).abs() < EVEN_TOLERANCE_RAD)
     }
 
-    /// The pins that a tendon wrapped over `wrap_rad` touches.
+    /// Returns the pins within a wrap of `wrap_rad` radians.
     pub fn within(&self, wrap_rad: f64) -> Self {
         let half = wrap_rad / 2.0 + EVEN_TOLERANCE_RAD;
         Self::new(self.angles_rad.iter().copied().filter(|a| a.abs() <= half).collect())
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_even_pattern_is_centred_and_has_its_pitch() {
+    fn even_patterns_are_centred() {
         let pattern = PinPattern::even(6, 0.2);
         assert!(pattern.is_even() && pattern.is_centred());
         assert!((pattern.mean_pitch_rad().unwrap() - 0.2).abs() < 1e-12);
@@ -86,14 +86,14 @@ mod tests {
     }
 
     #[test]
-    fn pins_outside_the_wrap_do_not_count() {
+    fn pins_outside_the_wrap_are_dropped() {
         let pattern = PinPattern::new(vec![-0.9, -0.1, 0.3, 0.8]);
         assert_eq!(pattern.within(1.0).angles_rad(), &[-0.1, 0.3]);
         assert!(!pattern.is_even() && !pattern.is_centred());
     }
 
     #[test]
-    fn fewer_than_two_pins_have_no_pitch() {
+    fn one_pin_has_no_pitch() {
         assert_eq!(PinPattern::even(1, 0.2).mean_pitch_rad(), None);
         assert_eq!(PinPattern::default().span_rad(), None);
     }

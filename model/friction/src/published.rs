@@ -1,23 +1,24 @@
-//! The numbers printed in the paper (Dermitzakis & Carbajal, arXiv:1401.5232), as data, and those of human fingers that are
-//! set beside them.
+//! Numbers printed in the paper (Dermitzakis & Carbajal, arXiv:1401.5232), and those of human
+//! fingers for comparison.
 
-use crate::Substrate;
+use crate::substrate::Substrate;
 
-/// Standard gravity in m/s², which turns the published masses into loads.
+/// Standard gravity in m/s², which converts the published masses into loads.
 pub const GRAVITY_M_S2: f64 = 9.80665;
-/// Mass of the hook that carries the weights, in grams; it counts as load (`model/doc/friction-laws.md`).
+/// Mass of the hook that carries the weights, in grams; it is part of the load
+/// (`model/doc/friction-laws.md`).
 pub const HOOK_MASS_G: f64 = 62.53;
-/// The eleven weights in grams, without the hook.
+/// Eleven weights in grams, without the hook.
 pub const WEIGHTS_G: [f64; 11] =
     [251.2, 503.6, 1003.2, 1503.9, 2005.0, 2505.4, 3007.2, 3508.6, 4007.8, 4504.5, 5002.5];
-/// Contact angle of the tendon in every experiment, in degrees.
+/// Wrap angle of the tendon in every experiment, in degrees.
 pub const WRAP_ANGLE_DEG: f64 = 63.89;
 /// Pause after each move and before each reading, in seconds.
 pub const DWELL_S: f64 = 3.0;
 /// Stroke of the actuator in millimetres.
 pub const STROKE_MM: f64 = 152.4;
-/// `kappa` in `x = kappa sqrt(T) sum theta_i^1.5`, the ploughing of the coating, in `N^-0.5`: fitted to the three
-/// maxima of pins alone (`model/doc/friction-laws.md`).
+/// Ploughing coefficient `kappa` of the coating in N^-0.5, `x = kappa sqrt(T) sum theta_i^1.5`:
+/// fitted to the three maxima of pins alone (`model/doc/friction-laws.md`).
 pub const PLOUGHING_KAPPA: f64 = 0.0237;
 /// Angle of the grooved segment in degrees.
 pub const SEGMENT_DEG: f64 = 89.45;
@@ -29,44 +30,46 @@ pub const GROOVE_PITCH_DEG: f64 = SEGMENT_DEG / GROOVES as f64;
 pub const MU_PINS: f64 = 0.05;
 /// Friction coefficient of the coated tendon on the silicone (fit of the paper).
 pub const MU_SILICONE: f64 = 0.24;
-/// Load in newtons at which three-double leaves the curve of its pins.
+/// Load in newtons at which the friction of three-double first exceeds that of its pins.
 pub const THREE_DOUBLE_ONSET_N: f64 = 15.31;
-/// The largest friction measured on silicone without pins, in newtons.
+/// Largest friction measured on silicone without pins, in newtons.
 pub const SILICONE_ALONE_MAX_N: f64 = 12.97;
 
-/// Post-eccentric minus post-concentric force of the human finger as a share of its output force: 9 to 12 % at high load
-/// (the paper's abstract). To be set beside [`crate::finger::FingerPoint::force_difference`].
+/// Post-eccentric minus post-concentric force of the human finger, as a fraction of its output
+/// force: 9 to 12 % at high load (the paper's abstract). Comparable with
+/// [`crate::finger::FingerPoint::force_difference`].
 pub const HUMAN_FORCE_DIFFERENCE: (f64, f64) = (0.09, 0.12);
-/// The flexion of the human middle joint at which its force difference is largest, in degrees (Schweizer et al., J.
-/// Biomech. 42, 2009, 1856-1861: six cadaver fingers, 40 N on each flexor tendon).
+/// Flexion of the human middle joint at its largest force difference, in degrees (Schweizer et al.,
+/// J. Biomech. 42, 2009, 1856-1861: six cadaver fingers, 40 N on each flexor tendon).
 pub const HUMAN_PEAK_JOINT_DEG: f64 = 83.0;
-/// The mean force difference there, a fraction (same source).
+/// Mean force difference at that flexion, a fraction (same source).
 pub const HUMAN_PEAK_DIFFERENCE: f64 = 0.11;
 
-/// One published layout with the constants of eq. 4 and the maxima measured on it.
+/// Published layout with its constants of eq. 4 and its measured maxima.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PublishedLayout {
-    /// The paper's name for it.
+    /// Name in the paper.
     pub name: &'static str,
     /// Number of pins.
     pub pins: usize,
-    /// Distance between neighbouring pins in grooves (1 = every groove).
+    /// Pitch of the pins in grooves (1: every groove has a pin).
     pub step: usize,
-    /// Occupied grooves, numbered from 1, in one centred choice.
+    /// Occupied grooves, numbered from 1, centred on the segment.
     pub grooves: &'static [usize],
     /// Weight `w` of eq. 4, dimensionless.
     pub weight: f64,
     /// Threshold `F_thr` on the scale of `F_r`.
     pub threshold: f64,
-    /// Interval onto which the tested loads are mapped, the scale of `F_r`.
+    /// Interval of `F_r` onto which the tested loads are mapped.
     pub reduced_load: (f64, f64),
     /// Largest friction of the device (pins in silicone), in newtons.
     pub device_max_n: f64,
-    /// Largest friction of its pins alone (on the rigid proxy), in newtons.
+    /// Largest friction of the pins alone (on the rigid proxy), in newtons.
     pub pins_max_n: f64,
 }
 
-/// The three layouts of the paper. `six-single` uses `F_thr = 5.7` as printed (`model/doc/friction-laws.md`).
+/// The three layouts of the paper. `six-single` has the printed `F_thr = 5.7`
+/// (`model/doc/friction-laws.md`).
 pub const LAYOUTS: [PublishedLayout; 3] = [
     PublishedLayout {
         name: "six-single",
@@ -104,12 +107,12 @@ pub const LAYOUTS: [PublishedLayout; 3] = [
 ];
 
 impl PublishedLayout {
-    /// Centre-to-centre pitch of the pins in radians.
+    /// Returns the centre-to-centre pitch of the pins in radians.
     pub fn pitch_rad(&self) -> f64 {
         self.step as f64 * GROOVE_PITCH_DEG.to_radians()
     }
 
-    /// The measured maximum on `substrate`, in newtons.
+    /// Returns the measured maximum on `substrate`, in newtons.
     pub fn max_n(&self, substrate: Substrate) -> f64 {
         match substrate {
             Substrate::Silicone => self.device_max_n,
@@ -118,22 +121,22 @@ impl PublishedLayout {
     }
 }
 
-/// The wrap angle in radians.
+/// Returns [`WRAP_ANGLE_DEG`] in radians.
 pub fn wrap_angle_rad() -> f64 {
     WRAP_ANGLE_DEG.to_radians()
 }
 
-/// Load in newtons that a weight of `mass_g` grams on the hook puts on the tendon.
+/// Returns the load in newtons of a weight of `mass_g` grams with the hook.
 pub fn load_n(mass_g: f64) -> f64 {
     (mass_g + HOOK_MASS_G) * 1e-3 * GRAVITY_M_S2
 }
 
-/// The lightest load of the paper's experiment in newtons (3.077).
+/// Returns the lightest load of the paper's experiment in newtons (3.077).
 pub fn lightest_load_n() -> f64 {
     load_n(WEIGHTS_G[0])
 }
 
-/// The heaviest load of the paper's experiment in newtons (49.671).
+/// Returns the heaviest load of the paper's experiment in newtons (49.671).
 pub fn heaviest_load_n() -> f64 {
     load_n(WEIGHTS_G[WEIGHTS_G.len() - 1])
 }

@@ -1,33 +1,35 @@
-//! Where a curve switches: the load at which the silicone makes half of the friction.
+//! The transition of a curve: the load at which silicone carries half of the friction.
 
 use serde::Serialize;
 
-use crate::FrictionCurve;
+use crate::curve::FrictionCurve;
 
-/// The switching of a curve within its loads.
+/// Transition of a curve from the pins to the silicone.
 ///
 /// ```
-/// use pinswitch_friction::{Contact, Law, PinPattern, Substrate, Transition, predict_by, published};
+/// use pinswitch_friction::{Contact, Law, PinPattern, Substrate, Transition, predict_by};
+/// use pinswitch_friction::published::{LAYOUTS, wrap_angle_rad};
 ///
-/// let pins = PinPattern::even(3, published::LAYOUTS[1].pitch_rad());
-/// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
+/// let pins = PinPattern::even(3, LAYOUTS[1].pitch_rad());
+/// let contact = Contact::new(Substrate::Silicone, pins, wrap_angle_rad())?;
 /// let loads_n: Vec<f64> = (1..=50).map(f64::from).collect();
 /// let curve = predict_by(Law::Layout, &contact, &loads_n)?;
-/// let transition = Transition::of(&curve).ok_or("it switches at none of these loads")?;
-/// assert!(transition.low_n < transition.threshold_n && transition.threshold_n < transition.high_n);
+/// let transition = Transition::of(&curve).ok_or("no transition within these loads")?;
+/// assert!(transition.low_n < transition.threshold_n);
+/// assert!(transition.threshold_n < transition.high_n);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Transition {
-    /// Load at which silicone and pins make the same friction, N.
+    /// Load at which silicone and pins carry the same friction, N.
     pub threshold_n: f64,
-    /// Load at which the upper edge of the band reaches the friction of the threshold, N.
+    /// Load at which the upper edge of the band reaches the friction at the threshold, N.
     pub low_n: f64,
-    /// Load at which the lower edge does, N; the heaviest load if it does not.
+    /// Load at which the lower edge of the band reaches it, N; the heaviest load if it does not.
     pub high_n: f64,
 }
 
-/// Load at which a rising `column` first reaches `level`, between its points.
+/// Returns the load at which a rising `column` first reaches `level`, by linear interpolation.
 fn crossing(load_n: &[f64], column: &[f64], level: f64) -> Option<f64> {
     let i = column.iter().position(|v| *v >= level)?;
     let Some(before) = i.checked_sub(1) else { return load_n.first().copied() };
@@ -36,11 +38,12 @@ fn crossing(load_n: &[f64], column: &[f64], level: f64) -> Option<f64> {
 }
 
 impl Transition {
-    /// The transition of `curve`; `None` if silicone makes half of the friction at none of its loads, or at all.
+    /// Returns the transition of `curve`, or `None` if the silicone's share of friction does not
+    /// cross one half within its loads.
     pub fn of(curve: &FrictionCurve) -> Option<Self> {
         let threshold_n = Self::threshold_n(&curve.load_n, &curve.silicone_share)?;
         let reach = |column: &[f64]| {
-            let friction = at(&curve.load_n, &curve.friction_n, threshold_n);
+            let friction = interpolated(&curve.load_n, &curve.friction_n, threshold_n);
             crossing(&curve.load_n, column, friction)
         };
         Some(Self {
@@ -50,15 +53,16 @@ impl Transition {
         })
     }
 
-    /// The threshold of states at ascending loads, for a sweep that needs no band.
+    /// Returns the threshold in newtons from the silicone's share of friction at ascending loads,
+    /// if it is among them.
     pub fn threshold_n(load_n: &[f64], silicone_share: &[f64]) -> Option<f64> {
         let starts_on_pins = *silicone_share.first()? < 0.5;
         starts_on_pins.then(|| crossing(load_n, silicone_share, 0.5)).flatten()
     }
 }
 
-/// `column` at `load`, linear between its points.
-pub(crate) fn at(load_n: &[f64], column: &[f64], load: f64) -> f64 {
+/// Returns `column` at `load`, by linear interpolation.
+pub(crate) fn interpolated(load_n: &[f64], column: &[f64], load: f64) -> f64 {
     let i = load_n.partition_point(|l| *l < load).clamp(1, load_n.len().saturating_sub(1).max(1));
     match (load_n.get(i - 1).zip(load_n.get(i)), column.get(i - 1).zip(column.get(i))) {
         (Some((l0, l1)), Some((c0, c1))) => c0 + (c1 - c0) * (load - l0) / (l1 - l0),
@@ -69,32 +73,38 @@ pub(crate) fn at(load_n: &[f64], column: &[f64], load: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Contact, Law, PinPattern, Substrate, predict_by, published};
+    use crate::contact::Contact;
+    use crate::law::Law;
+    use crate::pattern::PinPattern;
+    use crate::prediction::predict_by;
+    use crate::published;
+    use crate::substrate::Substrate;
 
     #[test]
-    fn the_layout_law_switches_near_its_half_load() {
+    fn threshold_is_below_the_half_load() {
         let pins = PinPattern::even(3, published::LAYOUTS[1].pitch_rad());
         let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap();
         let loads: Vec<f64> = (1..=100).map(|i| 0.5 * f64::from(i)).collect();
         let curve = predict_by(Law::Layout, &contact, &loads).unwrap();
-        let found = Transition::of(&curve).unwrap();
-        // Silicone rubs five times as hard: it makes half of the friction well before half of the contact has switched.
-        assert!(found.threshold_n > 15.0 && found.threshold_n < 38.0, "{found:?}");
-        assert!(found.low_n < found.threshold_n && found.threshold_n < found.high_n);
+        let t = Transition::of(&curve).unwrap();
+        // The coefficient of silicone is five times that of the pins, so that it carries half of
+        // the friction well before half of the contact has switched.
+        assert!(t.threshold_n > 15.0 && t.threshold_n < 38.0, "{t:?}");
+        assert!(t.low_n < t.threshold_n && t.threshold_n < t.high_n);
     }
 
     #[test]
-    fn pins_alone_never_switch() {
+    fn pins_alone_have_no_transition() {
         let pins = PinPattern::even(3, 0.3);
         let contact = Contact::new(Substrate::Abs, pins, published::wrap_angle_rad()).unwrap();
         assert_eq!(Transition::of(&predict_by(Law::Physics, &contact, &[1.0, 50.0]).unwrap()), None);
     }
 
     #[test]
-    fn crossings_lie_between_points() {
+    fn crossings_are_interpolated() {
         assert_eq!(crossing(&[1.0, 2.0], &[0.0, 1.0], 0.25), Some(1.25));
         assert_eq!(crossing(&[1.0, 2.0], &[0.6, 1.0], 0.25), Some(1.0));
         assert_eq!(crossing(&[1.0, 2.0], &[0.0, 0.1], 0.25), None);
-        assert_eq!(at(&[1.0, 2.0], &[0.0, 1.0], 1.25), 0.25);
+        assert_eq!(interpolated(&[1.0, 2.0], &[0.0, 1.0], 1.25), 0.25);
     }
 }

@@ -1,14 +1,15 @@
-//! What only a rig with known effects and noise can tell about the calibrator.
+//! Tests of the calibrator that need a rig with known effects and noise.
 
 use pinswitch_calibration::calibrate;
 use pinswitch_calibration::inference::{Levels, Model, Observations, Weighed, interval_half_widths, select};
 use pinswitch_calibration::segmentation::segment_run;
 use pinswitch_calibration::table::{Frame, PlateauTable};
 
-use crate::{
-    Case, Course, Disturbance, DisturbanceTarget, EffectPlan, Group, Plan, Protocol, RawRun, run_case,
-    simulate, study_cases,
-};
+use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
+use crate::plan::{EffectPlan, NoisePlan, Plan, Protocol};
+use crate::raw::RawRun;
+use crate::simulate::simulate;
+use crate::study::{Case, Group, run_case, study_cases};
 
 fn estimated_correlation(plan: &Plan) -> f64 {
     let rows = simulate(plan).rows;
@@ -18,7 +19,7 @@ fn estimated_correlation(plan: &Plan) -> f64 {
 }
 
 #[test]
-fn a_chain_is_found_as_strong_as_it_is() {
+fn autocorrelation_is_estimated() {
     for (rho, seed) in [(0.25, 5), (0.5, 6), (0.8, 7)] {
         let mut plan = Plan { seed, ..Plan::default() };
         plan.noise.autocorrelation = rho;
@@ -28,44 +29,45 @@ fn a_chain_is_found_as_strong_as_it_is() {
 }
 
 #[test]
-fn independent_repetitions_are_left_alone_even_where_the_stroke_has_a_course() {
+fn structure_is_not_autocorrelation() {
     let mut plan = Plan { seed: 8, ..Plan::default() };
     assert_eq!(estimated_correlation(&plan), 0.0);
-    let kind = Course::Spot { at: 0.4, width: 0.15, flat: false };
+    let kind = DisturbanceKind::Spot { at: 0.4, width: 0.15, flat: false };
     plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.2 });
     assert_eq!(estimated_correlation(&plan), 0.0);
-    plan.disturbances[0].kind = Course::TimeWave { cycles: 20.0, phase: 0.3 };
+    plan.disturbances[0].kind = DisturbanceKind::TimeWave { cycles: 20.0, phase: 0.3 };
     (plan.disturbances[0].target, plan.disturbances[0].size) = (DisturbanceTarget::Reading, 0.2);
     assert!(estimated_correlation(&plan) < 0.25, "a slow wave is mostly a drift inside a series");
 }
 
-/// One absurd reading of three thousand is weighed down so far that not even the intervals notice.
+/// The weight of one gross error among three thousand readings is so small that the interval widths
+/// stay the same.
 #[test]
-fn a_spike_of_any_size_leaves_sizes_and_intervals_alone() {
+fn one_spike_changes_no_estimate() {
     let mut plan = Plan::default();
     plan.effects.push(EffectPlan { id: "load_cell_gain".to_owned(), values: vec![0.03], form: 0 });
     let rows = simulate(&plan).rows;
-    let found = |spike_n: f64| {
+    let estimate = |spike_n: f64| {
         let mut rows = rows.clone();
         rows[5].force_n += spike_n;
         let frame = Frame::new(&rows);
         let mut data = Observations::new(&frame, &rows).unwrap();
-        let found = select(&Model::baseline(frame), &mut data, Levels::default());
-        let widths = interval_half_widths(&found.augmented, &Weighed::new(&data, found.noise));
-        (found.augmented.model.values().pop().unwrap(), widths.last().copied().unwrap())
+        let selection = select(&Model::baseline(frame), &mut data, Levels::default());
+        let widths = interval_half_widths(&selection.augmented, &Weighed::new(&data, selection.noise));
+        (selection.augmented.model.values().pop().unwrap(), widths.last().copied().unwrap())
     };
-    let (size, width) = found(0.0);
+    let (size, width) = estimate(0.0);
     for spike_n in [3.0, 1e3, 1e5] {
-        let (with, wide) = found(spike_n);
+        let (with, wide) = estimate(spike_n);
         assert!((with - size).abs() < 0.05 * width, "{with} instead of {size} with {spike_n} N");
         assert!((wide / width - 1.0).abs() < 0.02, "{wide} instead of {width} with {spike_n} N");
     }
 }
 
-/// A rig with another wrap angle: the coefficients come out as they are once the table says the angle, and wrong by the
-/// ratio of the angles if it does not.
+/// With another wrap angle, the estimated coefficients are correct if the table has the angle.
+/// Without it, they are wrong by the ratio of the angles.
 #[test]
-fn the_wrap_angle_of_the_table_reaches_the_fit() {
+fn fit_uses_the_wrap_angle() {
     let plan = Plan { wrap_angle_deg: 95.0, seed: 4, ..Plan::default() };
     let table = PlateauTable::write(&simulate(&plan).rows);
     let coefficients = |table: &str| {
@@ -76,37 +78,38 @@ fn the_wrap_angle_of_the_table_reaches_the_fit() {
     let [mu_p, mu_s] = coefficients(&table);
     assert!((mu_p / plan.constants.mu_p - 1.0).abs() < 0.03, "{mu_p}");
     assert!((mu_s / plan.constants.mu_s - 1.0).abs() < 0.03, "{mu_s}");
-    let silent = table.replace(",wrap_angle_deg", "").replace(",95\n", "\n");
-    let [_, mu_s] = coefficients(&silent);
+    let without_angle = table.replace(",wrap_angle_deg", "").replace(",95\n", "\n");
+    let [_, mu_s] = coefficients(&without_angle);
     assert!((mu_s / plan.constants.mu_s - 95.0 / 63.89).abs() < 0.1, "{mu_s}");
 }
 
-/// From `run.toml` to the table: the angle of the rig stands in every row, and the paper's in none.
+/// Every row has the wrap angle of `run.toml`. The published angle needs no column.
 #[test]
-fn the_wrap_angle_of_a_run_reaches_the_table() {
+fn table_has_the_wrap_angle() {
     for (wrap_angle_deg, column) in [(95.0, true), (63.89, false)] {
         let plan =
             Plan { wrap_angle_deg, weights_g: vec![251.2, 2505.4], layouts: Vec::new(), ..Plan::default() };
         let rows = simulate(&plan).rows;
         let run = RawRun::new(&plan, &rows, "plan").unwrap();
         let logs: Vec<_> = (0..run.logs()).filter_map(|i| run.log(i)).collect();
-        let found = segment_run(&run.description(""), "run.toml", |file| {
+        let segmented = segment_run(&run.description(""), "run.toml", |file| {
             logs.iter()
                 .find(|log| log.file == file)
                 .map(|log| log.text.clone().into_bytes())
                 .ok_or(std::io::Error::from(std::io::ErrorKind::NotFound))
         })
         .unwrap();
-        assert_eq!(found.report.series.len(), 2);
-        assert!(found.rows.iter().all(|row| row.wrap_angle_deg == wrap_angle_deg));
-        assert_eq!(PlateauTable::write(&found.rows).contains("wrap_angle_deg"), column);
+        assert_eq!(segmented.report.series.len(), 2);
+        assert!(segmented.rows.iter().all(|row| row.wrap_angle_deg == wrap_angle_deg));
+        assert_eq!(PlateauTable::write(&segmented.rows).contains("wrap_angle_deg"), column);
     }
 }
 
-/// Beside every kind of noise at once, shapes found before any scatter was known stood where a strong name had stood, and a
-/// second name where mounts and a walk explain the same.
+/// Regression test with every kind of noise at once: the calibrator once reported a shape in place
+/// of a strong effect, and a second effect where the random effects of mounts and series explain
+/// the data.
 #[test]
-fn no_scatter_is_told_as_a_shape_or_a_second_name_beside_a_strong_one() {
+fn scatter_is_not_attributed() {
     let cases = [
         ("run_in", Protocol::Paper, 2_023_002),
         ("stroke_position", Protocol::Randomised, 2_111_002),
@@ -121,16 +124,38 @@ fn no_scatter_is_told_as_a_shape_or_a_second_name_beside_a_strong_one() {
     }
 }
 
-/// Between the places of the library lie waves that a fit from them does not reach.
+/// The frequencies are between those of the shape library, too far for a local fit from either
+/// neighbour.
 #[test]
-fn a_quick_wave_is_drawn_with_its_own_frequency() {
+fn fast_waves_have_the_right_frequency() {
     for (cycles, seed) in [(14.25, 2), (20.1, 9), (38.4, 3), (61.7, 4)] {
         let mut plan = Plan { seed, ..Plan::default() };
-        let kind = Course::TimeWave { cycles, phase: 2.0 };
+        let kind = DisturbanceKind::TimeWave { cycles, phase: 2.0 };
         plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Reading, size: 0.15 });
         let form = calibrate(&simulate(&plan).rows, Levels::default()).unwrap().form.unwrap().report;
         let (size, frequency) = (form.parameters["a"].value.abs(), form.parameters["f"].value);
         assert!(form.shape == "sine" && (frequency / cycles - 1.0).abs() < 0.02, "{cycles}: {form:?}");
         assert!((size / 0.15 - 1.0).abs() < 0.2, "{cycles}: {form:?}");
+    }
+}
+
+/// The estimate of the noise is a plan for a rig with the same noise.
+#[test]
+fn estimated_noise_is_reproduced() {
+    let estimate = |plan: &Plan| {
+        let rows = simulate(plan).rows;
+        let frame = Frame::new(&rows);
+        let mut data = Observations::new(&frame, &rows).unwrap();
+        select(&Model::baseline(frame), &mut data, Levels::default()).noise
+    };
+    let noise = NoisePlan { series_scale: 0.03, repetition_n: 0.12, series_n: 0.08, ..NoisePlan::default() };
+    let first = estimate(&Plan { seed: 11, noise, ..Plan::default() });
+    let again = estimate(&Plan { seed: 12, noise: NoisePlan::from_estimate(first), ..Plan::default() });
+    for (name, a, b, factor) in [
+        ("repetition", first.repetition.at(20.0), again.repetition.at(20.0), 1.1),
+        ("series", first.series.at(20.0), again.series.at(20.0), 1.5),
+        ("scale", first.series_scale, again.series_scale, 1.5),
+    ] {
+        assert!(a / b < factor && b / a < factor, "{name}: {a} and {b}");
     }
 }

@@ -1,186 +1,208 @@
-//! What nobody has named: steps, waves, worn spots, resonances, Stribeck's dip, one defective layout, a material that
-//! remembers, another tendon, two operators.
+//! Disturbances outside the vocabulary of effects: steps, waves, worn spots, resonances, a Stribeck
+//! minimum, a defective layout, material memory, a replaced tendon, and two operators.
 
 use std::f64::consts::{PI, TAU};
 
 use pinswitch_calibration::effects::Covariate;
 use serde::{Deserialize, Serialize};
 
-use crate::twin::Moment;
+use crate::row_covariates::RowCovariates;
 
-/// What a disturbance acts on.
+/// Quantity that a disturbance acts on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DisturbanceTarget {
-    /// A share of the friction coefficients of pins and silicone.
+    /// Friction coefficients of pins and silicone, by a relative change.
     #[default]
     Friction,
-    /// A share of the friction coefficient of the pins.
+    /// Friction coefficient of the pins, by a relative change.
     Pins,
-    /// A share of the friction coefficient of the silicone.
+    /// Friction coefficient of the silicone, by a relative change.
     Silicone,
-    /// Newtons on the reading.
+    /// Reading, by newtons.
     Reading,
-    /// Newtons against the motion.
+    /// Tension, by newtons against the motion.
     Drag,
 }
 
-/// A disturbance outside the vocabulary.
+/// Disturbance outside the vocabulary of effects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
-    /// Its course.
-    pub kind: Course,
-    /// What it acts on.
+    /// Shape over time, stroke or another covariate.
+    pub kind: DisturbanceKind,
+    /// Quantity that it acts on.
     #[serde(default)]
     pub target: DisturbanceTarget,
-    /// Its size: a share of friction, or newtons.
+    /// Size: a share of friction, or newtons.
     pub size: f64,
 }
 
-/// Course of a disturbance; shares of time and stroke are 0..1.
+/// Shape of a disturbance. Shares of the session and of the stroke are from 0 to 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Course {
-    /// From a share of the session on; `over` is the share it takes to rise.
+pub enum DisturbanceKind {
+    /// Step, or ramp, in the session.
     Step {
-        /// Where it begins.
+        /// Begin, as a share of the session.
         at: f64,
-        /// How long it takes.
+        /// Duration of the ramp, as a share of the session.
         #[serde(default)]
         over: f64,
     },
-    /// Only between two shares of the session.
+    /// Another level in a part of the session.
     Window {
-        /// Where it begins.
+        /// Begin, as a share of the session.
         from: f64,
-        /// Where it ends.
+        /// End, as a share of the session.
         to: f64,
     },
-    /// A sine over the session.
+    /// Sine over the session.
     TimeWave {
-        /// Cycles.
+        /// Number of cycles.
         cycles: f64,
         /// Phase in radians.
         phase: f64,
     },
-    /// A sine, or a square wave, along the stroke.
+    /// Sine, or square wave, along the stroke.
     StrokeWave {
-        /// Cycles.
+        /// Number of cycles.
         cycles: f64,
         /// Phase in radians.
         phase: f64,
-        /// Square instead of sine.
+        /// Square wave instead of a sine.
         #[serde(default)]
         square: bool,
     },
-    /// A worn spot: half a sine over `width` of the stroke, or a box.
+    /// Worn spot: half a cosine, or a box, along the stroke.
     Spot {
-        /// Centre.
+        /// Centre, as a share of the stroke.
         at: f64,
-        /// Whole width.
+        /// Full width, as a share of the stroke.
         width: f64,
-        /// A box instead of half a sine.
+        /// Box instead of half a cosine.
         #[serde(default)]
         flat: bool,
     },
-    /// A resonance: Lorentz curve over the speed.
+    /// Resonance: Lorentz curve over the speed.
     Resonance {
-        /// Speed in percent.
+        /// Speed of the maximum, in percent of full speed.
         speed_pct: f64,
-        /// Half width at half height, in percent of full speed.
+        /// Half width at half maximum, in percent of full speed.
         width_pct: f64,
     },
-    /// Stribeck's dip: friction falls to its lowest at a speed, where `size` of it is missing, and rises beyond; a bell
-    /// over the logarithm of the speed.
+    /// Stribeck minimum: friction is lower by `size` at a speed, with a Gaussian shape over the
+    /// logarithm of the speed.
     Stribeck {
-        /// Speed of least friction in percent.
+        /// Speed of the minimum, in percent of full speed.
         speed_pct: f64,
-        /// Ratio of speeds, as its logarithm, at which a share of 1/e is left of the dip.
+        /// Logarithm of the ratio of speeds at which a share of 1/e is left.
         width: f64,
     },
-    /// One layout, wherever its pins stand.
+    /// One layout.
     Layout {
-        /// Its occupied grooves.
+        /// Occupied grooves of the layout.
         pins: Vec<usize>,
     },
-    /// The material remembers the load of the series before: the step down from it, as a share of the highest load of
-    /// the session, forgotten exponentially. The session begins after no load.
+    /// Memory of the silicone for the load of the previous series: proportional to the decrease of
+    /// the load from it, as a share of the highest load of the session, with exponential decay. The
+    /// load before the session is zero.
     Memory {
-        /// Repetitions through both directions after which a share of 1/e is left.
+        /// Repetitions, counted through both directions, after which a share of 1/e is left.
         repetitions: f64,
     },
-    /// Another tendon from a share of the session on. `size` is the share by which the friction of the pins changes.
+    /// Another tendon in the rest of the session. `size` is the relative change of friction on the
+    /// pins.
     Swap {
-        /// When.
+        /// Time of the replacement, as a share of the session.
         at: f64,
-        /// Share by which the friction of the silicone changes.
+        /// Relative change of friction on the silicone.
         silicone: f64,
     },
-    /// Two operators; the second zeroes the cell off by `size`.
+    /// Two operators: the zero of the load cell differs by `size` for the second one.
     Operators {
-        /// How they take turns.
-        turns: Turns,
+        /// Schedule of the operators.
+        turns: OperatorSchedule,
     },
 }
 
-/// How two operators take turns.
+/// Schedule of two operators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Turns {
-    /// Each series has one of them at random.
+pub enum OperatorSchedule {
+    /// Random for each series.
     Series,
-    /// One has the first half of the session's series, the other the second; who begins is random.
+    /// One operator in each half of the session; which one begins is random.
     Half,
 }
 
+impl DisturbanceKind {
+    /// Returns the numbers of the disturbance with their keys below `kind`.
+    pub(super) fn numbers(&self) -> Vec<(&'static str, f64)> {
+        match *self {
+            Self::Step { at, over } => vec![("step.at", at), ("step.over", over)],
+            Self::Window { from, to } => vec![("window.from", from), ("window.to", to)],
+            Self::TimeWave { cycles, phase } => {
+                vec![("time_wave.cycles", cycles), ("time_wave.phase", phase)]
+            }
+            Self::StrokeWave { cycles, phase, .. } => {
+                vec![("stroke_wave.cycles", cycles), ("stroke_wave.phase", phase)]
+            }
+            Self::Spot { at, width, .. } => vec![("spot.at", at), ("spot.width", width)],
+            Self::Resonance { speed_pct, width_pct } => {
+                vec![("resonance.speed_pct", speed_pct), ("resonance.width_pct", width_pct)]
+            }
+            Self::Stribeck { speed_pct, width } => {
+                vec![("stribeck.speed_pct", speed_pct), ("stribeck.width", width)]
+            }
+            Self::Layout { .. } | Self::Swap { .. } | Self::Operators { .. } | Self::Memory { .. } => vec![],
+        }
+    }
+
+    /// Returns the numbers that the formula divides by, with their keys below `kind`.
+    pub(super) fn divisors(&self) -> Vec<(&'static str, f64)> {
+        match *self {
+            Self::Spot { width, .. } => vec![("spot.width", width)],
+            Self::Resonance { width_pct, .. } => vec![("resonance.width_pct", width_pct)],
+            Self::Stribeck { .. } => self.numbers(),
+            _ => vec![],
+        }
+    }
+}
+
 impl Disturbance {
-    /// Where a calibration may find it: any of these is right.
+    /// Returns the covariates to which a calibration can correctly assign the disturbance.
     pub fn covariates(&self) -> &'static [Covariate] {
         match self.kind {
-            Course::Step { .. } | Course::Window { .. } | Course::TimeWave { .. } | Course::Swap { .. } => {
-                &[Covariate::Time]
-            }
-            Course::StrokeWave { .. } | Course::Spot { .. } => &[Covariate::Position],
-            Course::Resonance { .. } | Course::Stribeck { .. } => &[Covariate::Speed],
-            Course::Layout { .. } => &[Covariate::Condition],
-            Course::Memory { .. } => &[Covariate::Load, Covariate::Repetition],
-            // Groups of series at random go along with everything a little, and with nothing clearly.
-            Course::Operators { .. } => &Covariate::ALL,
+            DisturbanceKind::Step { .. }
+            | DisturbanceKind::Window { .. }
+            | DisturbanceKind::TimeWave { .. }
+            | DisturbanceKind::Swap { .. } => &[Covariate::Time],
+            DisturbanceKind::StrokeWave { .. } | DisturbanceKind::Spot { .. } => &[Covariate::Position],
+            DisturbanceKind::Resonance { .. } | DisturbanceKind::Stribeck { .. } => &[Covariate::Speed],
+            DisturbanceKind::Layout { .. } => &[Covariate::Condition],
+            DisturbanceKind::Memory { .. } => &[Covariate::Load, Covariate::Repetition],
+            // A random group of series correlates weakly with every covariate.
+            DisturbanceKind::Operators { .. } => &Covariate::ALL,
         }
     }
 
-    /// Every number of its course, and those of them that are divided by.
-    pub(super) fn numbers(&self) -> (Vec<f64>, Vec<f64>) {
-        match self.kind {
-            Course::Step { at, over } => (vec![at, over], vec![]),
-            Course::Window { from, to } => (vec![from, to], vec![]),
-            Course::TimeWave { cycles, phase } | Course::StrokeWave { cycles, phase, .. } => {
-                (vec![cycles, phase], vec![])
-            }
-            Course::Spot { at, width, .. } => (vec![at, width], vec![width]),
-            Course::Resonance { speed_pct, width_pct } => (vec![speed_pct, width_pct], vec![width_pct]),
-            Course::Stribeck { speed_pct, width } => (vec![speed_pct, width], vec![speed_pct, width]),
-            Course::Layout { .. }
-            | Course::Swap { .. }
-            | Course::Operators { .. }
-            | Course::Memory { .. } => (vec![], vec![]),
-        }
-    }
-
-    fn course(&self, at: &Moment, pins: &[usize]) -> f64 {
+    /// Returns the value of the shape in a row, with a size of one.
+    fn shape(&self, at: &RowCovariates, pins: &[usize]) -> f64 {
         let flag = |b: bool| f64::from(u8::from(b));
-        let Moment { clock, place, speed_pct, .. } = *at;
+        let RowCovariates { time_share, stroke_share, speed_pct, .. } = *at;
         match &self.kind {
-            Course::Step { at: from, over } => ((clock - from) / over.max(1e-9)).clamp(0.0, 1.0),
-            Course::Window { from, to } => flag(clock >= *from && clock < *to),
-            Course::TimeWave { cycles, phase } => (TAU * cycles * clock + phase).sin(),
-            Course::StrokeWave { cycles, phase, square } => {
-                let wave = (TAU * cycles * place + phase).sin();
+            DisturbanceKind::Step { at: from, over } => {
+                ((time_share - from) / over.max(1e-9)).clamp(0.0, 1.0)
+            }
+            DisturbanceKind::Window { from, to } => flag(time_share >= *from && time_share < *to),
+            DisturbanceKind::TimeWave { cycles, phase } => (TAU * cycles * time_share + phase).sin(),
+            DisturbanceKind::StrokeWave { cycles, phase, square } => {
+                let wave = (TAU * cycles * stroke_share + phase).sin();
                 if *square { wave.signum() * PI / 4.0 } else { wave }
             }
-            Course::Spot { at: centre, width, flat } => {
-                let x = (place - centre) / width;
+            DisturbanceKind::Spot { at: centre, width, flat } => {
+                let x = (stroke_share - centre) / width;
                 if x.abs() > 0.5 {
                     0.0
                 } else if *flat {
@@ -189,39 +211,42 @@ impl Disturbance {
                     (PI * x).cos()
                 }
             }
-            Course::Resonance { speed_pct: v, width_pct } => {
+            DisturbanceKind::Resonance { speed_pct: v, width_pct } => {
                 1.0 / (1.0 + ((speed_pct - v) / width_pct).powi(2))
             }
-            Course::Stribeck { speed_pct: lowest, width } => {
+            DisturbanceKind::Stribeck { speed_pct: lowest, width } => {
                 -(-((speed_pct / lowest).ln() / width).powi(2)).exp()
             }
-            Course::Layout { pins: defective } => flag(pins == defective.as_slice()),
-            Course::Memory { repetitions } => at.step_down * (-(at.through - 1.0) / repetitions).exp(),
-            Course::Swap { at: from, .. } => flag(clock >= *from),
-            Course::Operators { .. } => flag(at.operator == 2),
+            DisturbanceKind::Layout { pins: defective } => flag(pins == defective.as_slice()),
+            DisturbanceKind::Memory { repetitions } => {
+                at.step_down * (-(at.series_repetition - 1.0) / repetitions).exp()
+            }
+            DisturbanceKind::Swap { at: from, .. } => flag(time_share >= *from),
+            DisturbanceKind::Operators { .. } => flag(at.operator == 2),
         }
     }
 
-    /// Newtons on a reading.
-    pub(super) fn on_reading_n(&self, at: &Moment, pins: &[usize]) -> f64 {
-        let course = || self.size * self.course(at, pins);
+    /// Returns the change of a reading in newtons.
+    pub(super) fn on_reading_n(&self, at: &RowCovariates, pins: &[usize]) -> f64 {
+        let change_n = || self.size * self.shape(at, pins);
         match self.target {
-            DisturbanceTarget::Reading => course(),
-            DisturbanceTarget::Drag => at.sign * course(),
+            DisturbanceTarget::Reading => change_n(),
+            DisturbanceTarget::Drag => at.sign * change_n(),
             DisturbanceTarget::Friction | DisturbanceTarget::Pins | DisturbanceTarget::Silicone => 0.0,
         }
     }
 
-    /// Factors on the friction of pins and silicone.
-    pub(super) fn on_friction(&self, at: &Moment, pins: &[usize]) -> (f64, f64) {
-        let course = self.course(at, pins);
-        let factor = 1.0 + self.size * course;
+    /// Returns the factors on the friction of pins and silicone.
+    pub(super) fn on_friction(&self, at: &RowCovariates, pins: &[usize]) -> (f64, f64) {
+        let shape = self.shape(at, pins);
+        let factor = 1.0 + self.size * shape;
         match (self.target, &self.kind) {
-            (DisturbanceTarget::Friction, Course::Swap { silicone, .. }) => (factor, 1.0 + silicone * course),
-            // Pins do not remember.
-            (DisturbanceTarget::Friction, Course::Memory { .. }) | (DisturbanceTarget::Silicone, _) => {
-                (1.0, factor)
+            (DisturbanceTarget::Friction, DisturbanceKind::Swap { silicone, .. }) => {
+                (factor, 1.0 + silicone * shape)
             }
+            // Pins have no memory.
+            (DisturbanceTarget::Friction, DisturbanceKind::Memory { .. })
+            | (DisturbanceTarget::Silicone, _) => (1.0, factor),
             (DisturbanceTarget::Friction, _) => (factor, factor),
             (DisturbanceTarget::Pins, _) => (factor, 1.0),
             (DisturbanceTarget::Reading | DisturbanceTarget::Drag, _) => (1.0, 1.0),
@@ -234,33 +259,36 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_spot_and_a_resonance_end_where_they_should() {
-        let on = |kind: Course, clock, place, speed_pct| {
-            let at = Moment { clock, place, speed_pct, ..Moment::default() };
+    fn shapes_have_their_width() {
+        let on = |kind: DisturbanceKind, time_share, stroke_share, speed_pct| {
+            let at = RowCovariates { time_share, stroke_share, speed_pct, ..RowCovariates::default() };
             Disturbance { kind, target: DisturbanceTarget::Friction, size: 0.5 }.on_friction(&at, &[]).0
         };
-        let spot = || Course::Spot { at: 0.5, width: 0.1, flat: false };
+        let spot = || DisturbanceKind::Spot { at: 0.5, width: 0.1, flat: false };
         assert_eq!(on(spot(), 0.0, 0.5, 50.0), 1.5);
         assert_eq!(on(spot(), 0.0, 0.56, 50.0), 1.0);
-        let step = || Course::Step { at: 0.4, over: 0.0 };
+        let step = || DisturbanceKind::Step { at: 0.4, over: 0.0 };
         assert_eq!((on(step(), 0.39, 0.0, 50.0), on(step(), 0.41, 0.0, 50.0)), (1.0, 1.5));
-        let resonance = Course::Resonance { speed_pct: 50.0, width_pct: 1.0 };
+        let resonance = DisturbanceKind::Resonance { speed_pct: 50.0, width_pct: 1.0 };
         assert_eq!(on(resonance, 0.0, 0.0, 51.0), 1.25);
-        let dip = || Course::Stribeck { speed_pct: 50.0, width: 0.5 };
+        let dip = || DisturbanceKind::Stribeck { speed_pct: 50.0, width: 0.5 };
         assert_eq!(on(dip(), 0.0, 0.0, 50.0), 0.5);
-        let beside = on(dip(), 0.0, 0.0, 50.0 * 0.5f64.exp());
-        assert!((beside - 1.0 + 0.5 / 1f64.exp()).abs() < 1e-12, "{beside}");
+        let flank = on(dip(), 0.0, 0.0, 50.0 * 0.5f64.exp());
+        assert!((flank - 1.0 + 0.5 / 1f64.exp()).abs() < 1e-12, "{flank}");
     }
 
     #[test]
-    fn silicone_forgets_and_pins_never_knew() {
+    fn only_silicone_has_memory() {
         let memory = Disturbance {
-            kind: Course::Memory { repetitions: 10.0 },
+            kind: DisturbanceKind::Memory { repetitions: 10.0 },
             target: DisturbanceTarget::Friction,
             size: 0.5,
         };
-        let on = |step_down, through| {
-            memory.on_friction(&Moment { step_down, through, ..Moment::default() }, &[3, 5])
+        let on = |step_down, series_repetition| {
+            memory.on_friction(
+                &RowCovariates { step_down, series_repetition, ..RowCovariates::default() },
+                &[3, 5],
+            )
         };
         assert_eq!(on(0.8, 1.0), (1.0, 1.4));
         assert_eq!(on(-0.8, 1.0), (1.0, 0.6));
@@ -270,24 +298,25 @@ mod tests {
     }
 
     #[test]
-    fn another_tendon_rubs_otherwise_on_pins_and_on_silicone() {
+    fn swap_changes_pins_and_silicone() {
         let swap = Disturbance {
-            kind: Course::Swap { at: 0.5, silicone: -0.1 },
+            kind: DisturbanceKind::Swap { at: 0.5, silicone: -0.1 },
             target: DisturbanceTarget::Friction,
             size: 0.2,
         };
-        let on = |clock| swap.on_friction(&Moment { clock, ..Moment::default() }, &[]);
+        let on =
+            |time_share| swap.on_friction(&RowCovariates { time_share, ..RowCovariates::default() }, &[]);
         assert_eq!((on(0.4), on(0.6)), ((1.0, 1.0), (1.2, 0.9)));
     }
 
     #[test]
-    fn the_second_operator_alone_is_off() {
+    fn second_operator_has_an_offset() {
         let two = Disturbance {
-            kind: Course::Operators { turns: Turns::Series },
+            kind: DisturbanceKind::Operators { turns: OperatorSchedule::Series },
             target: DisturbanceTarget::Reading,
             size: 0.5,
         };
-        let on = |operator| two.on_reading_n(&Moment { operator, ..Moment::default() }, &[]);
+        let on = |operator| two.on_reading_n(&RowCovariates { operator, ..RowCovariates::default() }, &[]);
         assert_eq!((on(1), on(2)), (0.0, 0.5));
     }
 }

@@ -1,12 +1,13 @@
-//! The forms in which the twin has each effect: the first is that of the effect catalogue, the others are as plausible.
+//! Forms of each effect in the twin: form 0 is that of the effect catalogue, the others are equally
+//! plausible.
 //!
-//! Their formulas stand in the twin. An effect of the catalogue that is not listed here has no formula in the twin,
-//! which then adds the fitter's own trace of it: a new effect can be simulated before it has a second formula.
+//! The formulas are in the twin. For an effect without a formula there, such as a new or a
+//! user-defined one, the twin uses the fitter's model of the effect.
 
-/// The form of an effect that the twin has in one form only.
+/// Description of the form of an effect with one form.
 const AS_CATALOGUED: &[&str] = &["as in model/doc/effect-catalogue.md"];
 
-/// Forms by effect, of every effect that the twin has a formula for.
+/// Forms of every effect with a formula in the twin.
 pub(crate) const FORMS: [(&str, &[&str]); 21] = [
     (
         "coating_stiffening",
@@ -24,15 +25,12 @@ pub(crate) const FORMS: [(&str, &[&str]); 21] = [
             "F^0.45 and theta^1.45 of equal size at F0 and 0.3 rad",
         ],
     ),
-    ("polygon_bending", &["mean turn per pin", "the square of it", "each pin by its own turn"]),
-    ("substrate_saturation", &["as its shape h says", "(1 + F/F0)^-k", "1/sqrt(1 + 2 k F/F0)"]),
+    ("polygon_bending", &["mean turn per pin", "square of the mean turn", "turn of each pin"]),
+    ("substrate_saturation", &["by its shape h", "(1 + F/F0)^-k", "1/sqrt(1 + 2 k F/F0)"]),
     ("adhesion", &["c S on a device", "c (1 - w) S on a device"]),
     ("dwell_relaxation", &["1 + k ln(dwell/3 s)", "(dwell/3 s)^k"]),
     ("run_in", &["exp(-(r-1)/r0) in each direction", "1/(1 + (r-1)/r0)", "r counts through both directions"]),
-    (
-        "wear_drift",
-        &["as its shape t says", "linear in the share of repetitions", "linear in the share of time"],
-    ),
+    ("wear_drift", &["by its shape t", "linear in the share of repetitions", "linear in the share of time"]),
     ("rate_dependence", &["1 + k ln(v/v0)", "(v/v0)^k"]),
     ("switching_hysteresis", &["down - H", "up + H/2, down - H/2"]),
     (
@@ -51,12 +49,12 @@ pub(crate) const FORMS: [(&str, &[&str]); 21] = [
     ("hook_omitted", AS_CATALOGUED),
 ];
 
-/// Descriptions of the forms of an effect.
+/// Returns the descriptions of the forms of an effect.
 pub(crate) fn forms_of(id: &str) -> &'static [&'static str] {
     FORMS.iter().find(|f| f.0 == id).map_or(AS_CATALOGUED, |f| f.1)
 }
 
-/// Whether the twin has a formula of its own for an effect.
+/// Whether the twin has a formula for an effect.
 pub(crate) fn has_own_formula(id: &str) -> bool {
     FORMS.iter().any(|f| f.0 == id)
 }

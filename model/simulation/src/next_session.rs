@@ -1,4 +1,4 @@
-//! A later session of the same rig, to judge by what a calibration promises of it.
+//! A later session of the same rig, for comparison with the predictions of a calibration.
 
 use pinswitch_calibration::table::PlateauRow;
 use pinswitch_friction::Substrate;
@@ -7,12 +7,13 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::plan::Plan;
 use crate::protocol;
-use crate::simulate::{Simulated, simulate};
+use crate::simulate::{SimulatedSession, simulate};
 
-/// Runs a later session of the rig of a plan: the same constants, effects and disturbances; noise, seatings, mounts,
-/// turns of operators and random order are its own. Time, and with it drift and wear, begins anew.
+/// Simulates a later session of the rig of a plan.
 ///
-/// No weight is written down wrongly: that is a slip, and nothing that a calibration could promise about the rig.
+/// Constants, effects and disturbances are the same. Noise, tendon seatings, mounts, operators and
+/// random order are drawn again, and time starts at zero, and with it drift and wear. No weight is
+/// mislabelled: a mislabelled weight is an error of one session, not a property of the rig.
 ///
 /// ```
 /// use pinswitch_simulation::{Plan, next_session, simulate};
@@ -22,32 +23,33 @@ use crate::simulate::{Simulated, simulate};
 /// assert_ne!(next.rows, simulate(&plan).rows);
 /// assert_eq!(next, next_session(&plan), "the same plan makes the same rows");
 /// ```
-pub fn next_session(plan: &Plan) -> Simulated {
+pub fn next_session(plan: &Plan) -> SimulatedSession {
     simulate(&next_plan(plan))
 }
 
-/// The plan of the later session.
+/// Returns the plan of the later session.
 fn next_plan(plan: &Plan) -> Plan {
     let next = later(plan);
     let order = layouts(&protocol::rows(&next, &mut ChaCha8Rng::seed_from_u64(next.seed)));
     with_constants_of(next, plan, &order)
 }
 
-/// The plan of a later session of a rig in which these rows are made.
+/// Returns the plan of a later session with these rows.
 pub(crate) fn plan_for(plan: &Plan, rows: &[PlateauRow]) -> Plan {
     with_constants_of(later(plan), plan, &layouts(rows))
 }
 
-/// The same rig with noise of its own.
+/// Returns the same rig with another seed.
 fn later(plan: &Plan) -> Plan {
     let mut next = plan.clone();
-    // Far from the seeds that a study counts through.
+    // Far from the consecutive seeds of a study.
     next.seed = plan.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x5EC0_4D5E_5510_4E37;
     next.noise.mislabelled_series = 0;
     next
 }
 
-/// Constants of layouts are listed in the order in which the layouts are measured, which may be another now.
+/// Reorders the constants of layouts: they are listed in the order of measurement, which can differ
+/// between sessions.
 fn with_constants_of(mut next: Plan, plan: &Plan, order: &[Vec<usize>]) -> Plan {
     let before = layouts(&protocol::rows(plan, &mut ChaCha8Rng::seed_from_u64(plan.seed)));
     let places: Vec<usize> =
@@ -59,15 +61,15 @@ fn with_constants_of(mut next: Plan, plan: &Plan, order: &[Vec<usize>]) -> Plan 
     next
 }
 
-/// The layouts on silicone in the order in which they are measured.
+/// Returns the layouts on silicone in the order of measurement.
 fn layouts(rows: &[PlateauRow]) -> Vec<Vec<usize>> {
-    let mut found: Vec<Vec<usize>> = Vec::new();
+    let mut all: Vec<Vec<usize>> = Vec::new();
     for row in rows.iter().filter(|r| r.substrate == Some(Substrate::Silicone) && !r.pins.is_empty()) {
-        if !found.contains(&row.pins) {
-            found.push(row.pins.clone());
+        if !all.contains(&row.pins) {
+            all.push(row.pins.clone());
         }
     }
-    found
+    all
 }
 
 #[cfg(test)]
@@ -75,9 +77,9 @@ mod tests {
     use super::*;
     use crate::plan::EffectPlan;
 
-    /// Without noise, a reading of the later session is that of the same setting in the first.
+    /// Without noise, readings with the same settings are equal in both sessions.
     #[test]
-    fn a_layout_keeps_its_constants_in_another_order() {
+    fn layouts_keep_their_constants() {
         for seed in 0..6 {
             let mut plan = Plan { seed, dwells_s: vec![3.0], speeds_pct: vec![50.0], ..Plan::randomised() };
             plan.constants.half_load_factor = vec![0.8, 1.0, 1.2];

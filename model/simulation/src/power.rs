@@ -1,4 +1,5 @@
-//! What a planned experiment could see and tell apart, before anything is measured.
+//! Detection rates of a planned experiment: which effects it can detect, and distinguish from
+//! others.
 
 use std::collections::BTreeMap;
 
@@ -6,41 +7,43 @@ use pinswitch_calibration::inference::{Levels, Model, Observations, select};
 use pinswitch_calibration::table::Frame;
 use serde::Serialize;
 
-use super::plan::{EffectPlan, Plan};
-use super::simulate::simulate;
+use crate::plan::{EffectPlan, Plan};
+use crate::simulate::simulate;
 
-/// What the plan makes of one effect at one size.
+/// Detection rate of an effect with one size.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Power {
     /// Id of the effect.
     pub id: &'static str,
-    /// Its constants.
+    /// Constants of the effect.
     pub values: Vec<f64>,
-    /// Runs simulated.
+    /// Number of simulated runs.
     pub runs: usize,
-    /// Runs in which it was named alone.
+    /// Runs in which it was attributed alone.
     pub named: usize,
-    /// Runs in which it was named with rivals.
+    /// Runs in which it was reported with rivals.
     pub ambiguous: usize,
-    /// Runs in which it was not seen.
+    /// Runs in which it was not detected.
     pub missed: usize,
-    /// What was named with it or instead of it, and how often.
+    /// Other effects that were reported, with the number of runs.
     pub others: BTreeMap<&'static str, usize>,
 }
 
-/// Puts each effect at a small and a large typical size into the plan, `runs` times each, and calibrates.
+/// Simulates and calibrates the plan with each effect, with a small and a large typical size,
+/// `runs` times each.
 ///
 /// ```
 /// use pinswitch_calibration::effects::CATALOGUE;
 /// use pinswitch_calibration::inference::Levels;
 /// use pinswitch_simulation::{Plan, power};
 ///
-/// // Silicone alone, a few repetitions: what could such a session see?
-/// let plan = Plan { layouts: Vec::new(), repetitions: [4, 4], repetitions_spread: 0, ..Plan::default() };
+/// // Bare silicone, with few repetitions.
+/// let mut plan = Plan { layouts: Vec::new(), repetitions: [4, 4], ..Plan::default() };
+/// plan.repetitions_spread = 0;
 /// let table = power(&plan, 1, Levels::default());
-/// assert!(table.len() > CATALOGUE.len(), "each effect at a small and a large size");
+/// assert!(table.len() > CATALOGUE.len(), "two sizes of each effect");
 /// let dwell = table.iter().find(|p| p.id == "dwell_relaxation").ok_or("not in the catalogue")?;
-/// assert_eq!(dwell.missed, dwell.runs, "one dwell cannot show it");
+/// assert_eq!(dwell.missed, dwell.runs, "the plan has a single dwell");
 /// # Ok::<(), &str>(())
 /// ```
 pub fn power(plan: &Plan, runs: u64, levels: Levels) -> Vec<Power> {
@@ -55,6 +58,7 @@ pub fn power(plan: &Plan, runs: u64, levels: Levels) -> Vec<Power> {
     all
 }
 
+/// Simulates and calibrates the plan with one effect.
 fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64, levels: Levels) -> Power {
     let mut power = Power {
         id,
@@ -72,10 +76,10 @@ fn one(plan: &Plan, id: &'static str, values: Vec<f64>, runs: u64, levels: Level
         let rows = simulate(&planned).rows;
         let frame = Frame::new(&rows);
         let Some(mut data) = Observations::new(&frame, &rows) else { continue };
-        let found = select(&Model::baseline(frame).among(&plan.vocabulary), &mut data, levels);
+        let selection = select(&Model::baseline(frame).among(&plan.vocabulary), &mut data, levels);
         power.runs += 1;
         let (mut alone, mut with_rivals) = (false, false);
-        for effect in &found.effects {
+        for effect in &selection.effects {
             let ids = effect.ids();
             let here = ids.contains(&id);
             alone |= here && effect.rivals.is_empty();

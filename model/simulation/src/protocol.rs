@@ -1,4 +1,4 @@
-//! From a plan to the rows of a session, before any force is known.
+//! Rows of a session, with its settings and times, before the forces are known.
 
 use pinswitch_calibration::table::{Labels, PlateauRow, Sweep};
 use pinswitch_friction::published;
@@ -7,12 +7,12 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-use super::plan::{Plan, Protocol};
+use crate::plan::{Plan, Protocol};
 
 /// Time of one move in seconds.
 const MOVE_S: f64 = 0.5;
 
-/// One series before its rows.
+/// Settings of a series.
 struct Setting<'a> {
     substrate: Option<Substrate>,
     pins: &'a [usize],
@@ -22,7 +22,7 @@ struct Setting<'a> {
     dwell_s: f64,
 }
 
-/// The rows of a session with zero forces.
+/// Returns the rows of a session with zero forces.
 pub(super) fn rows(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<PlateauRow> {
     let mut conditions: Vec<(Option<Substrate>, &[usize])> = Vec::new();
     if plan.silicone {
@@ -67,7 +67,7 @@ pub(super) fn rows(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<PlateauRow> {
     session
 }
 
-/// The rows of a session whose series stand in one random order.
+/// Returns the rows of a session with all series in random order.
 fn shuffled(
     plan: &Plan,
     conditions: &[(Option<Substrate>, &[usize])],
@@ -93,7 +93,7 @@ fn shuffled(
     session
 }
 
-/// Appends the rows of one series: all eccentric, then all concentric.
+/// Appends the rows of a series: all eccentric repetitions, then all concentric ones.
 fn series(
     plan: &Plan,
     setting: &Setting<'_>,

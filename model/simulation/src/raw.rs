@@ -1,8 +1,9 @@
-//! Raw logs of a synthetic run: force, position and power as the rig samples them, with what goes wrong on a rig.
+//! Raw logs of a synthetic run: sampled force, position and power, with faults.
 
 use std::fmt::Write;
 
 use pinswitch_calibration::table::{PlateauRow, substrate_word};
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::published;
 use pinswitch_friction::{Direction, Substrate};
 use rand::{RngExt, SeedableRng};
@@ -10,37 +11,37 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 
-use super::plan::{Plan, PlanError, RawPlan};
+use crate::plan::{Plan, RawPlan};
 
-/// What was put wrong into a log on purpose.
+/// Faults that a log contains on purpose.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Faults {
-    /// Samples with a spike.
+    /// Number of samples with a spike.
     pub spikes: usize,
-    /// Samples left out.
+    /// Number of lost samples.
     pub lost: usize,
-    /// The move that was too short: direction and repetition.
+    /// Move that is too short: direction and repetition.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub odd_speed: Option<(Direction, u32)>,
-    /// The repetition after which one is missing.
+    /// Repetition after which one is missing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing_after: Option<(Direction, u32)>,
 }
 
-/// One log.
+/// Raw log of a series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RawLog {
-    /// Its file name, without `.gz`.
+    /// File name, without `.gz`.
     pub file: String,
-    /// Its text: `time_s,force_N,position_mm,power_W`.
+    /// CSV text with the columns `time_s,force_N,position_mm,power_W`.
     pub text: String,
-    /// Its true plateaus: direction, repetition as counted in the log, force in newtons.
+    /// True plateaus: direction, repetition as counted in the log, force in newtons.
     pub truth: Vec<(Direction, u32, f64)>,
-    /// What is wrong with it.
+    /// Faults of the log.
     pub faults: Faults,
 }
 
-/// A raw run whose logs are made one at a time: they are long.
+/// Raw run, which makes its long logs one at a time.
 ///
 /// ```
 /// use pinswitch_calibration::segmentation::segment_run;
@@ -50,8 +51,9 @@ pub struct RawLog {
 /// let rows = simulate(&plan).rows;
 /// let run = RawRun::new(&plan, &rows, "plan.toml")?;
 /// let log = run.log(0).ok_or("a run of one log")?;
-/// let found = segment_run(&run.description(""), "run.toml", |_| Ok::<_, std::io::Error>(log.text.clone().into_bytes()))?;
-/// assert_eq!(found.rows.len(), log.truth.len(), "every repetition is found again");
+/// let read = |_: &str| Ok::<_, String>(log.text.clone().into_bytes());
+/// let segmented = segment_run(&run.description(""), "run.toml", read)?;
+/// assert_eq!(segmented.rows.len(), log.truth.len(), "every repetition has its plateau");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -60,27 +62,27 @@ pub struct RawRun<'a> {
     series: Vec<Vec<PlateauRow>>,
 }
 
-/// Seconds that the actuator runs.
+/// Duration of a move in seconds.
 const ON_S: f64 = 0.5;
-/// Seconds before the first move and after the last rest.
+/// Time before the first move and after the last rest, in seconds.
 const LEAD_S: f64 = 2.0;
-/// Seconds over which the plateau is read.
+/// Time over which a plateau is averaged, in seconds.
 const READ_S: f64 = 1.0;
+/// Shortest dwell of a raw log in seconds: the force settles before the plateau is read.
+const MIN_DWELL_S: f64 = 1.5;
 
 impl<'a> RawRun<'a> {
-    /// The run that recorded the rows of a session. `file` is the name used in errors.
+    /// Creates the run that records the rows of a session; `file` is the name of the plan in
+    /// errors.
     ///
     /// # Errors
-    /// [`PlanError::Bound`] if the plan has several dwells: a run has one.
-    pub fn new(plan: &'a Plan, rows: &[PlateauRow], file: &str) -> Result<Self, PlanError> {
-        if plan.dwells_s.len() != 1 || plan.dwells_s[0] < 1.5 {
-            return Err(PlanError::Bound {
-                file: file.to_owned(),
-                field: "dwells_s",
-                value: format!("{:?}", plan.dwells_s),
-                bound: "one dwell of at least 1.5 s for raw logs",
-                remedy: "a run.toml has one dwell_s; make one plan per dwell",
-            });
+    /// A [`Diagnostic`] unless the plan has one dwell that is long enough to read a plateau.
+    pub fn new(plan: &'a Plan, rows: &[PlateauRow], file: &str) -> Result<Self, Diagnostic> {
+        if plan.dwells_s.len() != 1 || plan.dwells_s[0] < MIN_DWELL_S {
+            let location = Location::file(file).with_field("dwells_s", format!("{:?}", plan.dwells_s));
+            return Err(Diagnostic::new(format!("raw logs need one dwell of at least {MIN_DWELL_S} s"))
+                .with_location(location)
+                .with_help("make one plan per dwell, since a run.toml has one dwell_s"));
         }
         let mut series: Vec<Vec<PlateauRow>> = Vec::new();
         for row in rows {
@@ -92,12 +94,12 @@ impl<'a> RawRun<'a> {
         Ok(Self { plan, series })
     }
 
-    /// Number of logs.
+    /// Returns the number of logs.
     pub fn logs(&self) -> usize {
         self.series.len()
     }
 
-    /// The text of `run.toml`; logs are named with this suffix.
+    /// Returns the text of `run.toml`; `suffix` is appended to the names of the logs.
     pub fn description(&self, suffix: &str) -> String {
         let mut text = format!(
             "[rig]\nwrap_angle_deg = {}\nsample_rate_hz = {:?}\nhook_mass_g = {}\nstroke_mm = {}\non_s = {ON_S:?}\n\
@@ -124,7 +126,7 @@ impl<'a> RawRun<'a> {
         text
     }
 
-    /// A log by its index. The same plan makes the same bytes.
+    /// Makes the log with this index. The same plan makes the same bytes.
     pub fn log(&self, index: usize) -> Option<RawLog> {
         let rows = self.series.get(index)?;
         let first = rows.first()?;
@@ -142,7 +144,7 @@ impl<'a> RawRun<'a> {
         for (i, row) in rows.iter().enumerate() {
             let slot = usize::from(row.direction == Direction::Concentric);
             let in_direction = rows.iter().filter(|r| r.direction == row.direction).count();
-            // Not at the turn, where a longer pause is no fault.
+            // Not where the direction changes, since a longer pause is normal there.
             let turns = [i.wrapping_sub(1), i + 1]
                 .iter()
                 .any(|j| rows.get(*j).is_none_or(|r| r.direction != row.direction));
@@ -167,7 +169,7 @@ impl<'a> RawRun<'a> {
     }
 }
 
-/// `012-device-5-8-11_2505g.csv`.
+/// Returns the file name of a log, such as `012-device-5-8-11_2505g.csv`.
 fn file_name(index: usize, row: &PlateauRow) -> String {
     let pins: Vec<String> = row.pins.iter().map(usize::to_string).collect();
     let contact = match row.substrate {
@@ -178,7 +180,7 @@ fn file_name(index: usize, row: &PlateauRow) -> String {
     format!("{index:03}-{contact}_{:04.0}g.csv", row.load_mass_g)
 }
 
-/// Writes samples as time goes on.
+/// Writer of the samples of a log.
 struct Recorder<'a> {
     raw: &'a RawPlan,
     random: &'a mut ChaCha8Rng,
@@ -205,6 +207,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
+    /// Returns the force as the channel records it.
     fn clipped(&self, force_n: f64) -> f64 {
         self.raw.clip_n.map_or(force_n, |clip| force_n.min(clip))
     }
@@ -232,26 +235,29 @@ impl<'a> Recorder<'a> {
     }
 
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a log, checked")]
+    /// Returns the number of samples in a time.
     fn samples(&self, seconds: f64) -> u32 {
         (seconds * self.raw.sample_rate_hz).round() as u32
     }
 
-    /// A rest at a plateau that the force approaches from `excess_n` above it, with a swinging weight.
+    /// Writes a rest at a plateau. The force starts `excess_n` above it and decays; the weight
+    /// swings by `swing_n`.
     fn rest(&mut self, seconds: f64, plateau_n: f64, excess_n: f64, swing_n: f64) {
-        let course = |t: f64| {
+        let transient = |t: f64| {
             excess_n * (-t / 0.4).exp() + swing_n * (-t / 0.9).exp() * (std::f64::consts::TAU * 1.7 * t).sin()
         };
         let count = self.samples(seconds);
         let time = |i: u32| f64::from(i) / self.raw.sample_rate_hz;
-        // The plateau is the mean over the last second: what the course leaves there is taken out.
+        // The plateau is the mean over the last second: the mean of the transient there is
+        // subtracted.
         let read = self.samples(READ_S.min(seconds));
-        let left = (count - read..count).map(|i| course(time(i))).sum::<f64>() / f64::from(read.max(1));
-        let values: Vec<f64> = (0..count).map(|i| plateau_n - left + course(time(i))).collect();
+        let left = (count - read..count).map(|i| transient(time(i))).sum::<f64>() / f64::from(read.max(1));
+        let values: Vec<f64> = (0..count).map(|i| plateau_n - left + transient(time(i))).collect();
         values.into_iter().for_each(|force_n| self.write(force_n, 0.0));
         self.force_n = plateau_n;
     }
 
-    /// A move over `way_mm` and the rest after it.
+    /// Writes a move over `way_mm` and the rest after it.
     fn step(&mut self, way_mm: f64, plateau_n: f64, sign: f64, dwell_s: f64) {
         let count = self.samples(ON_S);
         let (from_mm, from_n) = (self.position_mm, self.force_n);
@@ -270,12 +276,12 @@ impl<'a> Recorder<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulate;
+    use crate::simulate::simulate;
     use pinswitch_calibration::segmentation::{Finding, Log, RunPlan, segment};
 
-    /// What `segment` reads out of the logs is what was put in, and what was put wrong is found.
+    /// Segmentation recovers the plateaus and reports the faults.
     #[test]
-    fn logs_are_read_back_with_their_faults() {
+    fn logs_round_trip_through_segmentation() {
         let mut plan = Plan { weights_g: vec![251.2, 2505.4, 5002.5], ..Plan::default() };
         plan.raw.odd_speed_share = 0.5;
         plan.raw.missing_share = 0.5;
@@ -288,25 +294,26 @@ mod tests {
         for index in 0..run.logs() {
             let raw = run.log(index).unwrap();
             let log = Log::parse(raw.text.as_bytes(), &raw.file).unwrap();
-            let found = segment(&log, &description.rig);
-            let got: Vec<_> = found.plateaus.iter().map(|p| (p.direction, p.repetition)).collect();
+            let segmented = segment(&log, &description.rig);
+            let got: Vec<_> = segmented.plateaus.iter().map(|p| (p.direction, p.repetition)).collect();
             let put: Vec<_> = raw.truth.iter().map(|t| (t.0, t.1)).collect();
             assert_eq!(got, put, "{}", raw.file);
-            for (p, t) in found.plateaus.iter().zip(&raw.truth) {
+            for (p, t) in segmented.plateaus.iter().zip(&raw.truth) {
                 sum += (p.force_n - t.2).powi(2);
                 count += 1.0;
             }
-            let missing = found.findings.iter().any(|f| matches!(f, Finding::MissingRepetition { .. }));
-            assert_eq!(missing, raw.faults.missing_after.is_some(), "{}: {:?}", raw.file, found.findings);
-            let odd = found.findings.iter().any(|f| matches!(f, Finding::OddSpeed { .. }));
-            assert_eq!(odd, raw.faults.odd_speed.is_some(), "{}: {:?}", raw.file, found.findings);
+            let findings = &segmented.findings;
+            let missing = findings.iter().any(|f| matches!(f, Finding::MissingRepetition { .. }));
+            assert_eq!(missing, raw.faults.missing_after.is_some(), "{}: {findings:?}", raw.file);
+            let odd = findings.iter().any(|f| matches!(f, Finding::OddSpeed { .. }));
+            assert_eq!(odd, raw.faults.odd_speed.is_some(), "{}: {findings:?}", raw.file);
         }
         let rms = f64::sqrt(sum / count);
         assert!(rms < 0.02, "{rms}");
     }
 
     #[test]
-    fn several_dwells_make_no_run() {
+    fn several_dwells_are_refused() {
         let plan = Plan::randomised();
         let error = RawRun::new(&plan, &[], "plan.toml").unwrap_err().to_string();
         assert!(error.contains("dwells_s") && error.contains("plan.toml"), "{error}");

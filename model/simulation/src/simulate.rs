@@ -1,86 +1,94 @@
-//! Readings of a synthetic rig: the forward model at the plan's constants, then noise.
+//! Readings of a synthetic rig: the twin's readings with the constants of the plan, plus noise.
 
 use std::collections::BTreeMap;
 
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::published;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
-use super::plan::{Plan, PlanError};
-use super::series_marks::{SeriesMarks, walked};
-use super::{protocol, twin};
+use crate::plan::Plan;
+use crate::series_traits::{SessionTraits, ar1_step};
+use crate::{protocol, twin};
 
-/// The tables that a plan makes.
+/// Simulated session of a plan.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Simulated {
-    /// The table as it would be recorded.
+pub struct SimulatedSession {
+    /// Rows as the rig would record them.
     pub rows: Vec<PlateauRow>,
-    /// Rows of the same rig without noise, a part of the session, to judge predictions by. The tendon is seated ideally
-    /// in all of them.
+    /// A sample of the rows without noise and random effects, for comparison with predictions.
     pub fresh: Vec<PlateauRow>,
-    /// What each series has of its own.
-    pub marks: SeriesMarks,
+    /// Random effects of the series.
+    pub traits: SessionTraits,
 }
 
-impl Simulated {
-    /// The text of the table, with the optional columns that the plan asks for.
+impl SimulatedSession {
+    /// Returns the rows as CSV, with the optional columns of the plan.
     pub fn table(&self, plan: &Plan) -> String {
-        self.marks.add_columns(plan.columns, &self.rows, PlateauTable::write(&self.rows))
+        self.traits.add_columns(plan.columns, &self.rows, PlateauTable::write(&self.rows))
     }
 
-    /// The text of the rows without noise, with the optional columns that the plan asks for.
+    /// Returns the rows without noise as CSV, with the optional columns of the plan.
     pub fn fresh_table(&self, plan: &Plan) -> String {
-        self.marks.add_columns(plan.columns, &self.fresh, PlateauTable::write(&self.fresh))
+        self.traits.add_columns(plan.columns, &self.fresh, PlateauTable::write(&self.fresh))
     }
 }
 
 /// Largest reading in newtons, as in a table.
 const MAX_N: f64 = 1e5;
 
-impl Simulated {
-    /// Whether these are readings that a load cell can give. `file` is the name of the plan, used in errors.
+impl SimulatedSession {
+    /// Checks that a load cell can give these readings; `file` is the name of the plan in errors.
     ///
     /// # Errors
-    /// [`PlanError::Reading`] at the first that is none.
-    pub fn check(&self, file: &str) -> Result<(), PlanError> {
+    /// A [`Diagnostic`] at the first reading that is not finite or beyond the range of a table.
+    pub fn check(&self, file: &str) -> Result<(), Diagnostic> {
         let is_reading = |row: &PlateauRow| row.force_n.abs() <= MAX_N && row.load_n <= MAX_N;
         for rows in [&self.rows, &self.fresh] {
             if let Some(at) = rows.iter().position(|row| !is_reading(row)) {
-                let reading = rows[at].force_n.to_string();
-                return Err(PlanError::Reading { file: file.to_owned(), row: at + 1, reading, most: MAX_N });
+                let problem = format!(
+                    "the plan makes a reading of {} N in row {}, at most {MAX_N} N are possible",
+                    rows[at].force_n,
+                    at + 1
+                );
+                return Err(Diagnostic::new(problem)
+                    .with_location(Location::file(file))
+                    .with_help("lower its constants, effects or noise"));
             }
         }
         Ok(())
     }
 }
 
-/// Runs a plan. The same plan makes the same rows, bit for bit.
+/// Simulates a plan. The same plan makes the same rows, bit by bit.
 ///
 /// ```
-/// use pinswitch_simulation::{EffectPlan, Plan, simulate};
+/// use pinswitch_simulation::{Plan, simulate};
 ///
 /// let mut plan = Plan { seed: 7, ..Plan::randomised() };
-/// plan.effects.push(EffectPlan { id: "coating_ploughing".to_owned(), values: vec![0.024], form: 0 });
+/// plan.add_effect("coating_ploughing", vec![0.024]);
 /// let simulated = simulate(&plan);
 /// assert_eq!(simulated, simulate(&plan), "the same plan makes the same rows");
 /// assert!(simulated.fresh.len() < simulated.rows.len());
 /// ```
-pub fn simulate(plan: &Plan) -> Simulated {
+pub fn simulate(plan: &Plan) -> SimulatedSession {
     let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
     let rows = protocol::rows(plan, &mut random);
     recorded(plan, rows, &mut random)
 }
 
-/// Makes these rows on the rig of a plan, whatever its protocol says: the runs of a proposed experiment.
-pub fn simulate_rows(plan: &Plan, rows: Vec<PlateauRow>) -> Simulated {
+/// Simulates these rows, such as those of a proposed experiment, on the rig of a plan. The protocol
+/// of the plan is ignored.
+pub fn simulate_rows(plan: &Plan, rows: Vec<PlateauRow>) -> SimulatedSession {
     recorded(plan, rows, &mut ChaCha8Rng::seed_from_u64(plan.seed))
 }
 
-fn recorded(plan: &Plan, mut rows: Vec<PlateauRow>, random: &mut ChaCha8Rng) -> Simulated {
-    let marks = SeriesMarks::draw(plan, &rows);
-    read(plan, &mut rows, &marks.seated_ideally());
+/// Computes the readings of the rows, a sample of them without noise, and adds the noise.
+fn recorded(plan: &Plan, mut rows: Vec<PlateauRow>, random: &mut ChaCha8Rng) -> SimulatedSession {
+    let traits = SessionTraits::draw(plan, &rows);
+    read(plan, &mut rows, &traits.without_friction_factors());
     let mut fresh = Vec::new();
     let share = 400.0 / rows.len().max(1) as f64;
     for row in &rows {
@@ -89,38 +97,41 @@ fn recorded(plan: &Plan, mut rows: Vec<PlateauRow>, random: &mut ChaCha8Rng) -> 
         }
     }
     if plan.noise.series_scale > 0.0 || plan.noise.mount_scale > 0.0 {
-        read(plan, &mut rows, &marks);
+        read(plan, &mut rows, &traits);
     }
-    disturb(plan, &marks, &mut rows, random);
-    Simulated { rows, fresh, marks }
+    add_noise(plan, &traits, &mut rows, random);
+    SimulatedSession { rows, fresh, traits }
 }
 
 /// Writes the readings without noise into the rows.
-fn read(plan: &Plan, rows: &mut [PlateauRow], marks: &SeriesMarks) {
-    let forces = twin::readings(plan, rows, marks);
+fn read(plan: &Plan, rows: &mut [PlateauRow], traits: &SessionTraits) {
+    let forces = twin::readings(plan, rows, traits);
     rows.iter_mut().zip(forces).for_each(|(row, force)| row.force_n = force);
 }
 
-/// Adds noise per repetition, per series and direction, and per series; gross errors; rounds; loses rows.
-fn disturb(plan: &Plan, marks: &SeriesMarks, rows: &mut Vec<PlateauRow>, random: &mut ChaCha8Rng) {
+/// Adds noise of repetitions, of series and directions, and of series, and gross errors; rounds;
+/// mislabels and loses rows.
+fn add_noise(plan: &Plan, traits: &SessionTraits, rows: &mut Vec<PlateauRow>, random: &mut ChaCha8Rng) {
     let noise = &plan.noise;
     let heavy = StudentT::new(3.0).ok();
-    // Of each series and direction: its offset, its factor on the repetition noise, and the last repetition's noise.
+    // By series and direction: offset, factor on the repetition noise, and noise of the last
+    // repetition.
     let mut cells: BTreeMap<(String, bool), (f64, f64, f64)> = BTreeMap::new();
     let rho = noise.autocorrelation;
-    // The last series' offset in each direction, in its standard deviations.
+    // Offset of the last series by direction, in standard deviations.
     let mut last = [None; 2];
     for row in rows.iter_mut() {
         let up = row.direction == pinswitch_friction::Direction::Concentric;
         let cell = cells.entry((row.series.clone(), up)).or_insert_with(|| {
             let [offset, factor, before]: [f64; 3] = std::array::from_fn(|_| StandardNormal.sample(random));
             let sd = noise.series_n.hypot(noise.series_per_load * row.load_n);
-            let offset = walked(noise.series_walk, last[usize::from(up)], offset);
+            let offset = ar1_step(noise.series_walk, last[usize::from(up)], offset);
             last[usize::from(up)] = Some(offset);
             (offset * sd, (noise.uneven * factor).exp(), before)
         });
         let unit: f64 = match (noise.heavy_tails, &heavy) {
-            // The quartiles of t with three degrees of freedom lie at 0.765, those of the normal law at 0.674.
+            // The quartiles of t with three degrees of freedom are at 0.765, those of the normal
+            // distribution at 0.674.
             (true, Some(t)) => t.sample(random) * 0.674 / 0.765,
             _ => StandardNormal.sample(random),
         };
@@ -133,7 +144,7 @@ fn disturb(plan: &Plan, marks: &SeriesMarks, rows: &mut Vec<PlateauRow>, random:
         }
         let common_n = noise.series_common_n.hypot(noise.series_common_per_load * row.load_n);
         if common_n > 0.0 {
-            error += common_n * marks.of(&row.series).common_offset;
+            error += common_n * traits.of(&row.series).common_offset;
         }
         row.force_n += error;
         if noise.resolution_n > 0.0 {
@@ -146,7 +157,7 @@ fn disturb(plan: &Plan, marks: &SeriesMarks, rows: &mut Vec<PlateauRow>, random:
     }
 }
 
-/// Writes down a neighbouring weight for some series.
+/// Replaces the weight of some series by a neighbouring one.
 fn mislabel(plan: &Plan, rows: &mut [PlateauRow], random: &mut ChaCha8Rng) {
     let mut names: Vec<String> = rows.iter().map(|r| r.series.clone()).collect();
     names.dedup();
@@ -168,7 +179,7 @@ mod tests {
     use crate::plan::NoisePlan;
 
     #[test]
-    fn a_rig_that_cannot_be_read_is_refused() {
+    fn impossible_readings_are_refused() {
         assert_eq!(simulate(&Plan::default()).check("plan.toml"), Ok(()));
         let plan = Plan::parse("wrap_angle_deg = 720\n[constants]\nmu_s = 9\n", "plan.toml").unwrap();
         let error = simulate(&plan).check("plan.toml").unwrap_err().to_string();
@@ -176,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_plan_makes_the_same_rows_and_another_seed_others() {
+    fn rows_depend_on_the_seed() {
         let plan = Plan::default();
         assert_eq!(simulate(&plan), simulate(&plan));
         let other = Plan { seed: 2, ..plan.clone() };
@@ -184,7 +195,7 @@ mod tests {
         assert!(simulate(&plan).rows.len() > 2500);
     }
 
-    /// Standard deviation over the series of a mean over each of them.
+    /// Returns the standard deviation of the means of the series.
     fn sd_of_means(rows: &[PlateauRow], of: impl Fn(&PlateauRow) -> Option<f64>) -> f64 {
         let mut series: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
         for row in rows {
@@ -195,8 +206,8 @@ mod tests {
         (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / means.len() as f64).sqrt()
     }
 
-    /// A rig without any noise; many series of one load on silicone.
-    fn silent() -> Plan {
+    /// Returns a plan without noise, with many series of one load on silicone.
+    fn noiseless() -> Plan {
         let mut plan = Plan { weights_g: vec![3007.2; 400], layouts: Vec::new(), ..Plan::default() };
         plan.speeds_pct = vec![50.0];
         plan.noise = NoisePlan {
@@ -211,17 +222,17 @@ mod tests {
     }
 
     #[test]
-    fn the_rows_scatter_as_much_as_the_plan_says() {
-        let mut plan = silent();
-        // Of the capstan exponent, in both directions.
+    fn rows_have_the_planned_scatter() {
+        let mut plan = noiseless();
+        // Friction exponent of the capstan.
         let exponent = |r: &PlateauRow| Some((r.force_n / r.load_n).ln() * r.direction.sign());
         assert!(sd_of_means(&simulate(&plan).rows, exponent) < 1e-9);
         plan.noise.series_scale = 0.02;
         let x = plan.constants.mu_s * plan.wrap_angle_deg.to_radians();
         let made = simulate(&plan);
         assert!((sd_of_means(&made.rows, exponent) / x / 0.02 - 1.0).abs() < 0.1);
-        assert!(sd_of_means(&made.fresh, exponent) < 1e-9, "fresh rows are seated ideally");
-        let mut plan = silent();
+        assert!(sd_of_means(&made.fresh, exponent) < 1e-9, "fresh rows have no random effects");
+        let mut plan = noiseless();
         (plan.noise.series_common_n, plan.noise.series_common_per_load) = (0.03, 0.004);
         let rows = simulate(&plan).rows;
         let expected = 0.03f64.hypot(0.004 * rows[0].load_n);
@@ -231,11 +242,11 @@ mod tests {
         }
     }
 
-    /// Offsets of a series and direction walk as those do that both directions share.
+    /// The offsets of a series and direction have the same autocorrelation as those of a series.
     #[test]
-    fn offsets_of_a_direction_walk_as_strongly_as_the_plan_says() {
+    fn direction_offsets_are_correlated() {
         for walk in [0.0, 0.7] {
-            let mut plan = silent();
+            let mut plan = noiseless();
             plan.speeds_pct = vec![50.0];
             (plan.noise.series_n, plan.noise.series_walk) = (0.1, walk);
             let rows = simulate(&plan).rows;
@@ -258,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_with_steps_reads_multiples_of_them() {
+    fn readings_are_multiples_of_the_resolution() {
         let mut plan = Plan::default();
         plan.noise.resolution_n = 0.05;
         for row in simulate(&plan).rows {
@@ -268,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn optional_columns_stand_in_the_table_if_asked_for() {
+    fn optional_columns_follow_the_plan() {
         let mut plan = Plan::randomised();
         let made = simulate(&plan);
         assert_eq!(made.table(&plan), PlateauTable::write(&made.rows));
@@ -290,9 +301,10 @@ mod tests {
         PlateauTable::write(&made.rows) + &PlateauTable::write(&made.fresh)
     }
 
-    /// What a plan could say before series had scatter of their own makes the bytes that it made then.
+    /// Regression test: features added later do not change the tables of plans that do not use
+    /// them.
     #[test]
-    fn plans_without_scatter_make_the_bytes_they_always_made() {
+    fn tables_of_old_plans_are_unchanged() {
         let mut noisy = Plan { seed: 9, ..Plan::randomised() };
         noisy.noise.heavy_tails = true;
         noisy.noise.autocorrelation = 0.4;

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 use pinswitch_friction::physics::{Constants, PhysicsSwitch};
-use pinswitch_friction::{Contact, FrictionCurve, Law, Transition, Trust, predict_by};
+use pinswitch_friction::{Contact, FrictionCurve, Law, PredictionStatus, Transition, predict_by};
 
 use super::curve::Curve;
 
@@ -45,7 +45,7 @@ impl ModelError {
 #[derive(Clone, Debug)]
 pub struct Believed {
     /// How far the model is to be trusted.
-    pub trust: Trust,
+    pub trust: PredictionStatus,
     /// The best guess.
     pub middle: Curve,
     /// The curve with each constant's standard normal at one.
@@ -107,7 +107,7 @@ pub trait Belief: Sync {
             threshold_earlier: earlier,
             threshold_later: later,
         };
-        Some(Believed { trust: banded.trust, middle, moved: all_moved, error })
+        Some(Believed { trust: banded.status, middle, moved: all_moved, error })
     }
 }
 

@@ -8,7 +8,7 @@ use super::relaxed::usual;
 use super::space::{Space, is_predictable};
 use crate::ask::{Ask, Limits, Materials, Parameter, Target, Vary};
 use crate::config::Configuration;
-use pinswitch_friction::{counted, sort_by_number};
+use pinswitch_friction::{pluralise, sort_by_number};
 
 /// Steps of the search over all parameters together.
 const TOGETHER_STEPS: u64 = 400;
@@ -104,7 +104,7 @@ pub(super) fn blocked(
     });
     let of_pins = |pins: usize, effect: &str| {
         let asked = trial.ask.limits.pins.map_or_else(String::new, |(a, b)| format!("{a}..{b}"));
-        format!("limits.pins = {asked}: with {} the ask {effect}", counted(pins, "pin"))
+        format!("limits.pins = {asked}: with {} the ask {effect}", pluralise(pins, "pin"))
     };
     let limit = match (moves.first(), other_pins) {
         (Some(first), _) if first.meets => first.forbidden_by.clone(),

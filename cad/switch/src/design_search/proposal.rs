@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_friction::Trust;
+use pinswitch_friction::PredictionStatus;
 use pinswitch_friction::layout_search::LayoutCandidate;
 use serde::Serialize;
 
@@ -46,7 +46,7 @@ pub struct Proposal {
     /// Width of the assembled switch, mm.
     pub outer_width_mm: f64,
     /// How far the model is to be trusted there.
-    pub trust: Trust,
+    pub trust: PredictionStatus,
     /// Threshold by the best guess, N; absent if it does not switch within the loads.
     pub threshold_n: Option<f64>,
     /// Friction at the heaviest load by the best guess, N.
@@ -105,7 +105,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
         outer_radius_mm: design.support_radius_mm(),
         outer_width_mm: outer_width_mm(&configuration),
         // Of the loads that were asked about; the search looks beyond them.
-        trust: trial.belief.banded(&part, &[trial.range_n.0, trial.range_n.1])?.trust,
+        trust: trial.belief.banded(&part, &[trial.range_n.0, trial.range_n.1])?.status,
         threshold_n: within.then_some(threshold_n),
         friction_n: curve.value(Quantity::MaxFriction, trial.range_n),
         standard_error: probability.standard_error(),

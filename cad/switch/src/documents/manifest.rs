@@ -1,6 +1,6 @@
 //! `manifest.json`: everything that a person or a program needs to know of a set, and to check it.
 
-use pinswitch_friction::{FrictionCurve, Law, Transition, Trust};
+use pinswitch_friction::{FrictionCurve, Law, PredictionStatus, Transition};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -81,7 +81,7 @@ pub struct FrictionEntry {
     /// The law.
     pub law: Law,
     /// How far to trust it.
-    pub trust: Trust,
+    pub trust: PredictionStatus,
     /// Why no further.
     pub reasons: Vec<String>,
     /// Where the law comes from.
@@ -106,7 +106,7 @@ pub struct LawEntry {
     /// The law.
     pub law: Law,
     /// How far to trust it.
-    pub trust: Trust,
+    pub trust: PredictionStatus,
     /// Why no further.
     pub reasons: Vec<String>,
     /// Where it comes from.
@@ -238,7 +238,7 @@ impl Manifest {
             bill_of_materials: bill_of_materials(design),
             friction: FrictionEntry {
                 law: curve.law,
-                trust: curve.trust,
+                trust: curve.status,
                 reasons: curve.reasons.clone(),
                 source: curve.law.source(),
                 load_n: last(&curve.load_n),
@@ -276,7 +276,7 @@ fn last(column: &[f64]) -> f64 {
 fn law_entry(curve: &FrictionCurve) -> LawEntry {
     LawEntry {
         law: curve.law,
-        trust: curve.trust,
+        trust: curve.status,
         reasons: curve.reasons.clone(),
         source: curve.law.source(),
         friction_n: last(&curve.friction_n),

@@ -1,38 +1,38 @@
-//! Gains and costs of one curve, load by load, with their bands and what was measured.
+//! Gains and costs of a curve, load by load, with their bands and the measured values.
 
 use serde::Serialize;
 
-use super::extra_holding_of;
-use crate::{Contact, FrictionCurve, published_points};
+use crate::contact::Contact;
+use crate::curve::{FrictionCurve, published_points};
 
-/// A share with its band; fractions, 0.1 is 10 %.
+/// Gain or cost with its band, as a fraction (0.1 is 10 %).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Gain {
-    /// The share that the curve gives.
+    /// Value of the curve.
     pub value: f64,
-    /// At the lower edge of the curve's band.
+    /// Value at the lower edge of the curve's band.
     pub low: f64,
-    /// At the upper edge of the curve's band.
+    /// Value at the upper edge of the curve's band.
     pub high: f64,
 }
 
 /// Gains and costs at one load.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FingerPoint {
-    /// Load held or pulled, N.
+    /// Load, N.
     pub load_n: f64,
-    /// Tension that the motor holds it with, N.
+    /// Tension of the motor for holding it, N.
     pub holding_n: f64,
-    /// Tension that the motor pulls it with, N.
+    /// Tension of the motor for pulling it, N.
     pub pulling_n: f64,
-    /// Post-eccentric minus post-concentric force as a share of the output: `(T_c - T_e)/F = 2 D/F`. Like for like with
-    /// the human 9 to 12 %.
+    /// Post-eccentric minus post-concentric force as a fraction of the output,
+    /// `(T_c - T_e)/F = 2 D/F`; comparable with the 9 to 12 % of human fingers.
     pub force_difference: Gain,
-    /// Load held beyond the motor's tension, at no cost of the motor: `F/T_e - 1`. About half the force difference.
+    /// Load supported beyond the motor's tension, `F/T_e - 1`; about half the force difference.
     pub extra_holding: Gain,
-    /// Motor mass saved for the same holding load, with mass in proportion to torque: `1 - T_e/F`.
+    /// Motor mass saved for the same holding load, with mass proportional to torque, `1 - T_e/F`.
     pub motor_mass_saved: Gain,
-    /// Tension lost to friction when pulling: `T_c/F - 1`.
+    /// Tension lost to friction while pulling, `T_c/F - 1`.
     pub concentric_penalty: Gain,
 }
 
@@ -47,8 +47,8 @@ pub(super) struct Tensions {
 }
 
 impl Tensions {
-    /// Those of `curve` at its load number `i`.
-    pub(super) fn of(curve: &FrictionCurve, i: usize) -> Option<Self> {
+    /// Returns the tensions of `curve` at load number `i`.
+    pub(super) fn from_curve(curve: &FrictionCurve, i: usize) -> Option<Self> {
         Some(Self {
             eccentric_n: *curve.eccentric_n.get(i)?,
             concentric_n: *curve.concentric_n.get(i)?,
@@ -58,15 +58,16 @@ impl Tensions {
         })
     }
 
-    /// A tendon that touches nothing.
+    /// Returns the tensions of a tendon that touches nothing.
     pub(super) const fn without_friction(load_n: f64) -> Self {
         Self { eccentric_n: load_n, concentric_n: load_n, friction_n: 0.0, low_n: 0.0, high_n: 0.0 }
     }
 
-    /// The gains at `load_n`; `None` without load or without a tension that holds it.
+    /// Returns the gains at `load_n` newtons, or `None` without load or without holding tension.
     ///
-    /// The band of the curve is one of `D`. It reaches the other shares through the friction exponent: `D = F sinh(x)`, and
-    /// each direction's own exponent `ln(F/T_e)`, `ln(T_c/F)` scales as `x` does (`model/doc/finger.md`).
+    /// The band of the curve is that of `D`. The bands of the gains follow from the friction
+    /// exponent: `D = F sinh(x)`, and the exponents of both directions, `ln(F/T_e)` and
+    /// `ln(T_c/F)`, are proportional to `x` (`model/doc/finger.md`).
     pub(super) fn gains(self, load_n: f64) -> Option<FingerPoint> {
         if !(load_n > 0.0 && self.eccentric_n > 0.0) {
             return None;
@@ -98,37 +99,53 @@ impl Tensions {
     }
 }
 
-/// The gains of a curve, load by load. Loads of zero are left out.
+/// Returns the gains of a curve, load by load, without loads of zero.
 ///
 /// ```
 /// use pinswitch_friction::finger::finger;
 /// use pinswitch_friction::{Contact, PinPattern, Substrate, predict, published};
 ///
-/// let contact = Contact::new(Substrate::Silicone, PinPattern::default(), published::wrap_angle_rad())?;
+/// let pins = PinPattern::default();
+/// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
 /// let points = finger(&predict(&contact, &[25.0]));
-/// assert!(points[0].holding_n < 25.0 && points[0].extra_holding.value > 0.2, "bare silicone holds a third more");
+/// assert!(points[0].holding_n < 25.0 && points[0].extra_holding.value > 0.2);
 /// let difference = points[0].force_difference;
 /// assert!(difference.low < difference.value && difference.value < difference.high);
 /// # Ok::<(), pinswitch_friction::ContactError>(())
 /// ```
 pub fn finger(curve: &FrictionCurve) -> Vec<FingerPoint> {
-    let point = |(i, load_n): (usize, &f64)| Tensions::of(curve, i)?.gains(*load_n);
+    let point = |(i, load_n): (usize, &f64)| Tensions::from_curve(curve, i)?.gains(*load_n);
     curve.load_n.iter().enumerate().filter_map(point).collect()
 }
 
-/// A force difference that the paper measured.
+/// Returns the extra holding `F/T_e - 1` of a force difference, if both directions have the same
+/// friction exponent `x`: `exp(x) - 1`, where the force difference is `2 sinh(x)`.
+///
+/// ```
+/// use pinswitch_friction::finger::extra_holding_of;
+/// use pinswitch_friction::published;
+///
+/// let (low, high) = published::HUMAN_FORCE_DIFFERENCE;
+/// let extra = [low, high].map(|d| format!("{:.1} %", 100.0 * extra_holding_of(d)));
+/// assert_eq!(extra, ["4.6 %", "6.2 %"], "half of 9 to 12 %");
+/// ```
+pub fn extra_holding_of(force_difference: f64) -> f64 {
+    libm::expm1((force_difference / 2.0).asinh())
+}
+
+/// Force difference from a measurement of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeasuredGain {
     /// Load, N.
     pub load_n: f64,
     /// `2 D/F` of the measured friction, a fraction.
     pub force_difference: f64,
-    /// `F/T_e - 1`, a fraction. Derived: the paper prints half the gap of the two directions only, and both are given one
-    /// friction exponent.
+    /// `F/T_e - 1`, a fraction. Derived with the same friction exponent for both directions,
+    /// because the paper prints half of their difference only.
     pub extra_holding: f64,
 }
 
-/// What the paper measured of this contact; empty for any other.
+/// Returns the measurements of the paper for this contact; empty if it was not measured.
 ///
 /// ```
 /// use pinswitch_friction::finger::measured_gains;
@@ -157,20 +174,23 @@ pub fn measured_gains(contact: &Contact) -> Vec<MeasuredGain> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{PinPattern, Substrate, predict, published};
+    use crate::pattern::PinPattern;
+    use crate::prediction::predict;
+    use crate::published;
+    use crate::substrate::Substrate;
     use proptest::prelude::*;
 
     fn contact(pins: PinPattern, wrap_rad: f64) -> Contact {
         Contact::new(Substrate::Silicone, pins, wrap_rad).unwrap()
     }
 
-    /// On bare silicone the capstan gives all four in closed form, and their bands too.
+    /// On bare silicone the capstan gives all four gains and their bands in closed form.
     #[test]
-    fn a_capstan_gains_and_costs_its_exponent() {
+    fn capstan_gains_have_closed_forms() {
         let wrap = published::wrap_angle_rad();
         let curve = predict(&contact(PinPattern::default(), wrap), &[0.0, 5.0, 50.0]);
         let points = finger(&curve);
-        assert_eq!(points.len(), 2, "nothing is gained without load");
+        assert_eq!(points.len(), 2, "the load of zero has no gains");
         for (i, point) in points.iter().enumerate() {
             let exponent = |d: f64| (d / point.load_n).asinh();
             let (x, low) = (exponent(curve.friction_n[i + 1]), exponent(curve.band_low_n[i + 1]));
@@ -186,9 +206,10 @@ mod tests {
         }
     }
 
-    /// The point of a switch: light loads cost less than on silicone, heavy loads hold nearly as much.
+    /// Compared with bare silicone: a small penalty at light load, and more than half of the
+    /// holding at heavy load.
     #[test]
-    fn a_switch_is_quick_when_light_and_strong_when_heavy() {
+    fn switches_cost_little_at_light_load() {
         let of = |pins| finger(&predict(&contact(pins, published::wrap_angle_rad()), &[3.0766, 49.671]));
         let (bare, switch) =
             (of(PinPattern::default()), of(PinPattern::even(3, published::LAYOUTS[1].pitch_rad())));
@@ -197,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn only_measured_contacts_have_measured_gains() {
+    fn unmeasured_contacts_have_no_measured_gains() {
         let wrap = published::wrap_angle_rad();
         let differences: Vec<f64> = published::LAYOUTS
             .iter()
@@ -205,15 +226,15 @@ mod tests {
                 measured_gains(&contact(PinPattern::even(l.pins, l.pitch_rad()), wrap))[0].force_difference
             })
             .collect();
-        for (found, layout) in differences.iter().zip(&published::LAYOUTS) {
-            assert!((found - 2.0 * layout.device_max_n / published::heaviest_load_n()).abs() < 1e-12);
+        for (difference, layout) in differences.iter().zip(&published::LAYOUTS) {
+            assert!((difference - 2.0 * layout.device_max_n / published::heaviest_load_n()).abs() < 1e-12);
         }
         assert_eq!(measured_gains(&contact(PinPattern::even(4, 0.2), wrap)), []);
     }
 
     proptest! {
         #[test]
-        fn every_band_holds_its_share_and_the_difference_is_twice_the_friction(
+        fn bands_contain_the_gains(
             count in 0usize..8, pitch in 0.05..0.4f64, load in 0.1..80.0f64, wrap in 0.2..2.0f64
         ) {
             let curve = predict(&contact(PinPattern::even(count, pitch), wrap), &[load]);

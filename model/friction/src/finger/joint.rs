@@ -1,64 +1,81 @@
-//! The gains over the angle of a joint: the wrap follows the joint, and the pins that the tendon touches follow the wrap.
+//! Gains over the flexion of a joint. The flexion determines the wrap, and the wrap the pins under
+//! the tendon.
 
+use pinswitch_diagnostic::{Diagnostic, Location};
 use serde::Serialize;
 
-use super::FingerPoint;
-use super::gains::Tensions;
-use crate::{Contact, FrictionCurve, Law, LawError, Trust, published};
+use super::gains::{FingerPoint, Tensions};
+use crate::contact::Contact;
+use crate::curve::FrictionCurve;
+use crate::law::{Law, LawError};
+use crate::plural::pluralise;
+use crate::published;
+use crate::status::PredictionStatus;
 
 /// Largest flexion of a joint in degrees.
 const LARGEST_FLEXION_DEG: f64 = 180.0;
 /// Largest wrap of a straight finger in degrees.
 const LARGEST_START_DEG: f64 = 180.0;
-/// Most degrees of wrap that a degree of flexion can add.
+/// Largest wrap per flexion, in degrees per degree.
 const LARGEST_SHARE: f64 = 2.0;
-/// Wraps nearer to each other than this are one, in radians.
+/// Wrap below which the tendon touches nothing, in radians.
 const SAME_RAD: f64 = 1e-9;
 
-/// A joint or its tendon path cannot be used.
+/// A value of a joint or of its tendon path that is out of bounds.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{field} = {value} is outside {low} to {high}; {remedy}")]
+#[error("{}", Diagnostic::from(*self))]
 pub struct JointPathError {
-    /// The field.
+    /// Field, with its unit.
     pub field: &'static str,
-    /// Its value.
+    /// Value as given.
     pub value: f64,
-    /// Least value that can be used.
+    /// Least allowed value.
     pub low: f64,
-    /// Largest value that can be used.
+    /// Largest allowed value.
     pub high: f64,
-    /// What to do.
-    pub remedy: &'static str,
+    /// What to do about it.
+    pub help: &'static str,
 }
 
+impl From<JointPathError> for Diagnostic {
+    fn from(error: JointPathError) -> Self {
+        let JointPathError { field, value, low, high, help } = error;
+        Self::new(format!("must be from {low} to {high}"))
+            .with_location(Location::field(field, value.to_string()))
+            .with_help(help)
+    }
+}
+
+/// Returns the value if it is from `low` to `high`.
 fn within(
     field: &'static str,
     value: f64,
-    low: f64,
-    high: f64,
-    remedy: &'static str,
+    (low, high): (f64, f64),
+    help: &'static str,
 ) -> Result<f64, JointPathError> {
     if (low..=high).contains(&value) {
         Ok(value)
     } else {
-        Err(JointPathError { field, value, low, high, remedy })
+        Err(JointPathError { field, value, low, high, help })
     }
 }
 
-/// How the wrap on the switch follows the flexion of the joint that it sits on: `wrap = start + share flexion`.
+/// Relation between the flexion of a joint and the wrap on its switch:
+/// `wrap = start + share flexion`.
 ///
-/// The default is a two-link finger whose tendon runs straight along both links: its direction then turns by the flexion,
-/// and all of that on the switch. Assumed, since no path is published (`model/doc/finger.md`).
+/// The default is a two-link finger with a straight tendon along both links: its direction turns by
+/// the flexion, all of it on the switch. This is an assumption, because no path is published
+/// (`model/doc/finger.md`).
 ///
 /// ```
 /// use pinswitch_friction::finger::JointPath;
 ///
 /// assert_eq!(JointPath::default().wrap_deg(83.0)?, 83.0);
-/// // A finger that is bent a little when it is called straight, and guides that take a fifth of the turn.
+/// // A wrap of 10 degrees at the straight finger, and guides that take a fifth of the turn.
 /// let path = JointPath::new(10.0, 0.8)?;
 /// assert_eq!(path.wrap_deg(50.0)?, 50.0);
 /// let error = path.wrap_deg(-5.0).unwrap_err();
-/// assert!(error.to_string().starts_with("joint angle (deg) = -5 is outside 0 to 180"));
+/// assert!(error.to_string().starts_with("joint angle (deg) = -5: must be from 0 to 180"));
 /// # Ok::<(), pinswitch_friction::finger::JointPathError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -74,39 +91,38 @@ impl Default for JointPath {
 }
 
 impl JointPath {
-    /// A wrap of `wrap_at_straight_deg` degrees at the straight finger, and `wrap_per_flexion` degrees more for each degree
-    /// of flexion.
+    /// Creates a path with a wrap of `wrap_at_straight_deg` degrees at the straight finger, and
+    /// `wrap_per_flexion` more degrees for each degree of flexion.
     ///
     /// # Errors
-    /// [`JointPathError`] names field, value, bound and remedy.
+    /// [`JointPathError`] if a value is out of bounds.
     pub fn new(wrap_at_straight_deg: f64, wrap_per_flexion: f64) -> Result<Self, JointPathError> {
-        const START: &str = "give the wrap of the straight finger in degrees, 0 if its tendon runs straight";
+        const START: &str = "give the wrap of the straight finger in degrees, 0 if its tendon is straight";
         const SHARE: &str =
             "give the share of the flexion that turns the tendon on the switch, 1 for all of it";
         Ok(Self {
             wrap_at_straight_deg: within(
                 "wrap at the straight finger (deg)",
                 wrap_at_straight_deg,
-                0.0,
-                LARGEST_START_DEG,
+                (0.0, LARGEST_START_DEG),
                 START,
             )?,
-            wrap_per_flexion: within("wrap per flexion", wrap_per_flexion, 0.0, LARGEST_SHARE, SHARE)?,
+            wrap_per_flexion: within("wrap per flexion", wrap_per_flexion, (0.0, LARGEST_SHARE), SHARE)?,
         })
     }
 
-    /// The wrap at a flexion, both in degrees.
+    /// Returns the wrap at a flexion, both in degrees.
     ///
     /// # Errors
-    /// [`JointPathError`] for a flexion that no joint has.
+    /// [`JointPathError`] if the flexion is out of bounds.
     pub fn wrap_deg(&self, joint_deg: f64) -> Result<f64, JointPathError> {
-        let remedy = "give flexions between a straight and a folded finger";
-        within("joint angle (deg)", joint_deg, 0.0, LARGEST_FLEXION_DEG, remedy)
+        let help = "give flexions between a straight and a folded finger";
+        within("joint angle (deg)", joint_deg, (0.0, LARGEST_FLEXION_DEG), help)
             .map(|joint_deg| self.wrap_at_straight_deg + self.wrap_per_flexion * joint_deg)
     }
 
-    /// The flexion at which the wrap is that of the paper's experiment, in degrees: the one place of a curve over the joint
-    /// that was measured. `None` if no flexion gives it.
+    /// Returns the flexion in degrees at which the wrap is that of the paper's experiment, if any:
+    /// the only measured point of a curve over the joint.
     pub fn measured_joint_deg(&self) -> Option<f64> {
         let joint_deg = (published::WRAP_ANGLE_DEG - self.wrap_at_straight_deg) / self.wrap_per_flexion;
         (0.0..=LARGEST_FLEXION_DEG).contains(&joint_deg).then_some(joint_deg)
@@ -127,10 +143,11 @@ pub struct JointPoint {
     pub joint_deg: f64,
     /// Wrap of the tendon on the switch, degrees.
     pub wrap_deg: f64,
-    /// Pins that the tendon touches.
+    /// Number of pins within the wrap.
     pub pins: usize,
-    /// How far the friction at this wrap is known from measurements.
-    pub trust: Trust,
+    /// Support of the prediction at this wrap by measurements.
+    #[serde(rename = "trust")]
+    pub status: PredictionStatus,
     /// Gains and costs.
     #[serde(flatten)]
     pub gains: FingerPoint,
@@ -139,20 +156,22 @@ pub struct JointPoint {
 /// Gains over the joint at one load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JointCurve {
-    /// Load held or pulled, N.
+    /// Load, N.
     pub load_n: f64,
-    /// The laws behind the points, in the order of their first use; more than one where the first does not apply.
+    /// Laws of the points, in the order of their first use; more than one with a fallback.
     pub laws: Vec<Law>,
-    /// How far to trust the whole: as its least trusted point.
-    pub trust: Trust,
-    /// Why it is trusted no further, and what was left out.
+    /// Status of the least supported point.
+    #[serde(rename = "trust")]
+    pub status: PredictionStatus,
+    /// Reasons for the status, and the flexions that are left out.
     pub reasons: Vec<String>,
-    /// In the order of the flexions that were asked for.
+    /// Points, in the order of the given flexions.
     pub points: Vec<JointPoint>,
 }
 
-/// The gains of a part at `load_n` newtons over the flexions `joints_deg` of the joint that it sits on, with the curves
-/// of `predict`. Flexions at which the law does not apply are left out, and a reason says so.
+/// Computes the gains of a part at `load_n` newtons over the flexions `joints_deg` of its joint,
+/// with the curves of `predict`. Leaves out flexions to which the law does not apply, and adds a
+/// reason.
 ///
 /// ```
 /// use pinswitch_friction::finger::{JointPath, over_joint};
@@ -162,14 +181,14 @@ pub struct JointCurve {
 /// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
 /// let predicted = |contact: &Contact, loads_n: &[f64]| Ok(predict(contact, loads_n));
 /// let curve = over_joint(&contact, &JointPath::default(), &[0.0, 30.0, 83.0], 49.671, predicted)?;
-/// let difference: Vec<f64> = curve.points.iter().map(|p| p.gains.force_difference.value).collect();
-/// assert_eq!(difference[0], 0.0, "a straight tendon rubs nowhere");
-/// assert!(difference[1] < difference[2]);
+/// let difference = |i: usize| curve.points[i].gains.force_difference.value;
+/// assert_eq!(difference(0), 0.0, "a straight tendon touches nothing");
+/// assert!(difference(1) < difference(2));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// [`JointPathError`] for a flexion that no joint has.
+/// [`JointPathError`] if a flexion is out of bounds.
 pub fn over_joint(
     contact: &Contact,
     path: &JointPath,
@@ -180,71 +199,74 @@ pub fn over_joint(
     let mut curve = JointCurve {
         load_n,
         laws: Vec::new(),
-        trust: Trust::Published,
+        status: PredictionStatus::Published,
         reasons: Vec::new(),
         points: Vec::new(),
     };
-    let mut left_out: Vec<(f64, String)> = Vec::new();
+    let mut left_out: Vec<(f64, Diagnostic)> = Vec::new();
     for &joint_deg in joints_deg {
         let wrap_deg = path.wrap_deg(joint_deg)?;
         let wrap_rad = wrap_deg.to_radians();
         match state(contact, wrap_rad, load_n, &predict) {
             Ok(state) => {
                 let Some(gains) = state.tensions.gains(load_n) else { continue };
-                curve.trust = curve.trust.max(state.trust);
+                curve.status = curve.status.max(state.status);
                 if let Some(law) = state.law.filter(|law| !curve.laws.contains(law)) {
                     curve.laws.push(law);
                 }
-                let State { pins, trust, .. } = state;
-                curve.points.push(JointPoint { joint_deg, wrap_deg, pins, trust, gains });
+                let State { pins, status, .. } = state;
+                curve.points.push(JointPoint { joint_deg, wrap_deg, pins, status, gains });
             }
-            Err(why) => left_out.push((joint_deg, why)),
+            Err(error) => left_out.push((joint_deg, error)),
         }
     }
-    if curve.trust == Trust::Extrapolated {
+    if curve.status == PredictionStatus::Extrapolated {
         curve.reasons.push(format!(
             "one wrap was measured, {} deg: every other flexion is extrapolated",
             published::WRAP_ANGLE_DEG
         ));
     }
-    if let Some((first_deg, why)) = left_out.first() {
-        curve
-            .reasons
-            .push(format!("{} flexion(s) are left out, the first at {first_deg} deg: {why}", left_out.len()));
+    if let Some((first_deg, error)) = left_out.first() {
+        let count = pluralise(left_out.len(), "flexion");
+        curve.reasons.push(format!("{count} left out, the first at {first_deg} deg: {}", error.problem()));
     }
     Ok(curve)
 }
 
-/// What a contact does at one wrap.
+/// State of a contact at one wrap.
 #[derive(Clone, Copy)]
 struct State {
     tensions: Tensions,
     pins: usize,
     law: Option<Law>,
-    trust: Trust,
+    status: PredictionStatus,
 }
 
+/// Predicts the state of a contact with another wrap.
 fn state(
     contact: &Contact,
     wrap_rad: f64,
     load_n: f64,
     predict: &impl Fn(&Contact, &[f64]) -> Result<FrictionCurve, LawError>,
-) -> Result<State, String> {
+) -> Result<State, Diagnostic> {
     if wrap_rad < SAME_RAD {
         let tensions = Tensions::without_friction(load_n);
-        // Nothing touches, so nothing rubs: this needs no measurement.
-        return Ok(State { tensions, pins: 0, law: None, trust: Trust::Published });
+        // A tendon that touches nothing has no friction: this needs no measurement.
+        return Ok(State { tensions, pins: 0, law: None, status: PredictionStatus::Published });
     }
-    let contact = contact.at_wrap(wrap_rad).map_err(|e| e.to_string())?;
-    let curve = predict(&contact, &[load_n]).map_err(|e| e.to_string())?;
-    let tensions = Tensions::of(&curve, 0).ok_or("the law gives no point")?;
-    Ok(State { tensions, pins: contact.pins().count(), law: Some(curve.law), trust: curve.trust })
+    let contact = contact.at_wrap(wrap_rad)?;
+    let curve = predict(&contact, &[load_n])?;
+    let tensions = Tensions::from_curve(&curve, 0).ok_or("the law gives no point at this load")?;
+    Ok(State { tensions, pins: contact.pins().count(), law: Some(curve.law), status: curve.status })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{PinPattern, Substrate, predict, predict_by};
+    use crate::finger::gains::finger;
+    use crate::pattern::PinPattern;
+    use crate::prediction::{predict, predict_by};
+    use crate::substrate::Substrate;
 
     fn part(pins: PinPattern) -> Contact {
         Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad()).unwrap()
@@ -259,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn bare_silicone_follows_the_capstan_of_the_joint() {
+    fn bare_silicone_follows_the_capstan() {
         let joints: Vec<f64> = (0..=9).map(|i| 10.0 * f64::from(i)).collect();
         let curve =
             over_joint(&part(PinPattern::default()), &JointPath::default(), &joints, 30.0, best).unwrap();
@@ -269,12 +291,12 @@ mod tests {
         for point in &curve.points {
             assert!((exponent(point) - mu * point.joint_deg.to_radians()).abs() < 1e-9, "{point:?}");
         }
-        assert_eq!(curve.trust, Trust::Extrapolated);
+        assert_eq!(curve.status, PredictionStatus::Extrapolated);
     }
 
-    /// No wrap is drawn with a pin that comes or goes at once: friction would jump.
+    /// A pin enters and leaves the wrap continuously.
     #[test]
-    fn friction_does_not_jump_where_a_pin_is_met() {
+    fn friction_is_continuous_over_the_joint() {
         let joints: Vec<f64> = (0..=360).map(|i| 0.25 * f64::from(i)).collect();
         for layout in &published::LAYOUTS {
             let contact = part(PinPattern::even(layout.pins, layout.pitch_rad()));
@@ -288,34 +310,34 @@ mod tests {
     }
 
     #[test]
-    fn the_measured_wrap_is_as_good_as_the_measured_part() {
+    fn measured_wrap_is_not_extrapolated() {
         let layout = &published::LAYOUTS[1];
         let contact = part(PinPattern::even(layout.pins, layout.pitch_rad()));
         let path = JointPath::new(13.89, 1.0).unwrap();
         assert!((path.measured_joint_deg().unwrap() - 50.0).abs() < 1e-9);
         let curve = over_joint(&contact, &path, &[50.0], 40.0, best).unwrap();
-        let straight = super::super::finger(&predict(&contact, &[40.0]));
+        let straight = finger(&predict(&contact, &[40.0]));
         let (a, b) = (curve.points[0].gains.force_difference, straight[0].force_difference);
         assert!((a.value - b.value).abs() < 1e-6 && (a.high - b.high).abs() < 1e-6, "{a:?} {b:?}");
-        assert_ne!(curve.trust, Trust::Extrapolated);
+        assert_ne!(curve.status, PredictionStatus::Extrapolated);
     }
 
     #[test]
-    fn a_law_that_does_not_apply_leaves_flexions_out_and_says_so() {
+    fn inapplicable_flexions_are_left_out() {
         let layout = &published::LAYOUTS[1];
         let contact = part(PinPattern::even(layout.pins, layout.pitch_rad()));
         let paper = |c: &Contact, n: &[f64]| predict_by(Law::Paper, c, n);
         let curve = over_joint(&contact, &JointPath::default(), &[10.0, 60.0], 40.0, paper).unwrap();
         assert_eq!(curve.points.len(), 1);
-        assert!(curve.reasons.iter().any(|r| r.contains("1 flexion(s) are left out, the first at 10 deg")));
+        assert!(curve.reasons.iter().any(|r| r.contains("1 flexion left out, the first at 10 deg")));
     }
 
     #[test]
-    fn unusable_paths_are_refused_by_name() {
+    fn invalid_paths_are_refused() {
         for (path, word) in [
             (JointPath::new(-1.0, 1.0), "wrap at the straight finger (deg) = -1"),
             (JointPath::new(f64::NAN, 1.0), "NaN"),
-            (JointPath::new(0.0, 3.0), "wrap per flexion = 3 is outside 0 to 2"),
+            (JointPath::new(0.0, 3.0), "wrap per flexion = 3: must be from 0 to 2"),
         ] {
             assert!(path.unwrap_err().to_string().contains(word), "{path:?}");
         }

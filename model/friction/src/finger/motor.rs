@@ -1,33 +1,36 @@
-//! The motor that a switch allows: sized by what it must hold, and what it can then still pull.
+//! Size of a motor that holds a load with the help of friction.
 
 use serde::Serialize;
 
-use super::{FingerPoint, Gain};
+use super::gains::{FingerPoint, Gain};
 
-/// A motor that is just strong enough to hold the heaviest load of a curve.
+/// Motor that is just strong enough to hold the heaviest load of a curve.
 ///
-/// Assumed: mass in proportion to torque, on the same drum; the motor holds by its torque (no brake, no self-locking
-/// gear); friction carries its full share when the load is held (`model/doc/finger.md`).
+/// Assumptions: mass is proportional to torque, with the same drum; the motor holds by its torque,
+/// without a brake or a self-locking gear; friction supports its full share while the load is held
+/// (`model/doc/finger.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MotorSizing {
-    /// The load that it holds, N.
+    /// Load that it can hold, N.
     pub holds_n: f64,
-    /// The tension that it needs for this, N.
+    /// Tension for holding that load, N.
     pub tension_n: f64,
-    /// Mass saved against the motor of a tendon without friction, a fraction.
+    /// Mass saved compared with the motor of a tendon without friction, a fraction.
     pub mass_saved: Gain,
-    /// The heaviest load that it can pull, N: friction is against it then.
+    /// Heaviest load that it can pull against friction, N.
     pub pulls_n: f64,
 }
 
 impl MotorSizing {
-    /// The motor for the heaviest of `points`, which are in the order of their loads; `None` without points.
+    /// Sizes the motor for the last of `points`, which have ascending loads. Returns `None` without
+    /// points.
     ///
     /// ```
     /// use pinswitch_friction::finger::{MotorSizing, finger};
     /// use pinswitch_friction::{Contact, PinPattern, Substrate, predict, published};
     ///
-    /// let contact = Contact::new(Substrate::Silicone, PinPattern::default(), published::wrap_angle_rad())?;
+    /// let pins = PinPattern::default();
+    /// let contact = Contact::new(Substrate::Silicone, pins, published::wrap_angle_rad())?;
     /// let motor = MotorSizing::of(&finger(&predict(&contact, &[10.0, 50.0]))).ok_or("no load")?;
     /// assert!(motor.pulls_n < motor.tension_n && motor.tension_n < motor.holds_n);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -35,7 +38,7 @@ impl MotorSizing {
     pub fn of(points: &[FingerPoint]) -> Option<Self> {
         let heaviest = points.last()?;
         let tension_n = heaviest.holding_n;
-        // From no load at no tension, straight between the loads of the curve.
+        // Linear interpolation between the loads of the curve, starting at zero load and tension.
         let mut before = (0.0, 0.0);
         let mut pulls_n = 0.0;
         for point in points {
@@ -54,13 +57,17 @@ impl MotorSizing {
 
 #[cfg(test)]
 mod tests {
-    use super::super::finger;
     use super::*;
-    use crate::{Contact, PinPattern, Substrate, predict, published};
+    use crate::contact::Contact;
+    use crate::finger::gains::finger;
+    use crate::pattern::PinPattern;
+    use crate::prediction::predict;
+    use crate::published;
+    use crate::substrate::Substrate;
 
-    /// On one material a motor that holds `F` with `F exp(-x)` pulls `F exp(-2 x)`.
+    /// With one material, a motor that holds `F` with a tension of `F exp(-x)` pulls `F exp(-2 x)`.
     #[test]
-    fn a_capstan_pulls_what_two_exponents_leave() {
+    fn capstan_motor_has_a_closed_form() {
         let contact =
             Contact::new(Substrate::Silicone, PinPattern::default(), published::wrap_angle_rad()).unwrap();
         let loads: Vec<f64> = (1..=100).map(|i| 0.5 * f64::from(i)).collect();

@@ -1,12 +1,14 @@
-//! `calibrated`: a model fitted to measured data; its curves come from a model file, not from a contact alone.
+//! `calibrated`: a model fitted to measured data. Its curves come from a model file, not from a
+//! contact alone.
 
-use super::{Definition, LawError};
+use super::definition::LawDefinition;
+use super::error::LawError;
 
-pub(super) static DEFINITION: Definition = Definition {
+pub(super) static DEFINITION: LawDefinition = LawDefinition {
     word: "calibrated",
     title: "calibrated model",
-    summary: "A model calibrated on measured data: the layouts of its rig",
-    source: "a model calibrated on measured data, see the reasons for what it holds",
+    summary: "Model calibrated on measured data: the layouts of its rig",
+    source: "a model calibrated on measured data; the reasons list its effects",
     needs_model: true,
     states: |_, _| Err(NEEDS_MODEL),
     uncertain: |_, _| Err(NEEDS_MODEL),
@@ -14,4 +16,4 @@ pub(super) static DEFINITION: Definition = Definition {
 };
 
 const NEEDS_MODEL: LawError =
-    LawError::DoesNotApply { why: "a calibrated law comes from a model file; give it with --model" };
+    LawError::DoesNotApply { problem: "a calibrated law needs a model file", help: "give one with --model" };

@@ -1,14 +1,18 @@
-//! `layout`: from number and pitch of the pins to a switch, fitted to the three published layouts.
+//! `layout`: a switch from the number and pitch of the pins, fitted to the three published layouts.
 
-use super::{Definition, LawError, Uncertain};
-use crate::band::BandSource;
+use super::definition::{LawDefinition, UncertainFriction};
+use super::error::LawError;
+use crate::band_source::BandSource;
+use crate::contact::Contact;
+use crate::pattern::PinPattern;
 use crate::published::{self, PublishedLayout};
-use crate::{Contact, PinPattern, Substrate, Switch, SwitchState};
+use crate::substrate::Substrate;
+use crate::switch::{Switch, SwitchState};
 
-pub(super) static DEFINITION: Definition = Definition {
+pub(super) static DEFINITION: LawDefinition = LawDefinition {
     word: "layout",
     title: "layout law",
-    summary: "The law fitted to the three layouts' thresholds: number and pitch of the pins",
+    summary: "Fit to the thresholds of the three published layouts: number and pitch of the pins",
     source: "layout law fitted to the three published layouts: F_half = 13.1 N sqrt(n/(a p)), s = 4.64",
     needs_model: false,
     states: layout_states,
@@ -16,17 +20,20 @@ pub(super) static DEFINITION: Definition = Definition {
     remark: |_| None,
 };
 
-/// Relative uncertainty of friction besides that of the half load: what the law misses of the three maxima.
+/// Relative standard deviation of friction from errors other than that of the half load: the law's
+/// error on the three maxima.
 const FRICTION_UNCERTAINTY: f64 = 0.10;
 
-/// Number of pins that the tendon touches: one beyond the wrap counts less and less, and not at all half a pitch from its
-/// end, where the chord to its neighbour has turned as far as the tendon.
+/// Returns the number of pins under the tendon. The weight of a pin falls from one at the end of
+/// the wrap to zero at half a pitch beyond it, where the chord to its neighbour has the direction
+/// of the tendon.
 fn touching(contact: &Contact, pitch_rad: f64) -> f64 {
     let half = contact.wrap_rad() / 2.0;
     let share = |angle: &f64| (1.0 - (angle.abs() - half) / (pitch_rad / 2.0)).clamp(0.0, 1.0);
     contact.all_pins().angles_rad().iter().map(share).sum()
 }
 
+/// Returns the layout law of a contact with pins on silicone.
 fn law_of(contact: &Contact) -> Result<LayoutLaw, LawError> {
     (contact.substrate() == Substrate::Silicone)
         .then(|| {
@@ -35,7 +42,8 @@ fn law_of(contact: &Contact) -> Result<LayoutLaw, LawError> {
         })
         .flatten()
         .ok_or(LawError::DoesNotApply {
-            why: "the layout law describes pins on silicone only; use the law paper or physics",
+            problem: "the layout law describes pins on silicone only",
+            help: "use the law paper or physics",
         })
 }
 
@@ -44,8 +52,8 @@ fn layout_states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>,
     Ok(loads_n.iter().map(|&load| law.state(load, contact.wrap_rad())).collect())
 }
 
-/// What the half load and the misses at the maxima leave open, at twice their standard deviations.
-fn layout_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawError> {
+/// Propagates the uncertainties of the half load and of the maxima, at two standard deviations.
+fn layout_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<UncertainFriction, LawError> {
     let law = law_of(contact)?;
     let factor = 1.0 + 2.0 * LayoutLaw::UNCERTAINTY;
     let (early, late) = (law.with_half_load_scaled(1.0 / factor), law.with_half_load_scaled(factor));
@@ -53,28 +61,32 @@ fn layout_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, Law
     let side = |moved: &LayoutLaw, sign: f64| {
         loads_n.iter().map(|&load| (sign * (log(moved, load) - log(&law, load))).max(0.0)).collect()
     };
-    Ok(Uncertain {
+    Ok(UncertainFriction {
         friction_n: loads_n.iter().map(|&load| libm::exp(log(&law, load))).collect(),
         sources: vec![
             BandSource { name: "half load".to_owned(), down: side(&late, -1.0), up: side(&early, 1.0) },
-            BandSource::even(
-                "misses at the measured maxima",
+            BandSource::symmetric(
+                "errors at the measured maxima",
                 vec![2.0 * FRICTION_UNCERTAINTY; loads_n.len()],
             ),
         ],
     })
 }
 
-/// `w = n/30` reproduces the three published weights.
+/// Weight per pin: `w = n/30` reproduces the three published weights.
 const WEIGHT_PER_PIN: f64 = 1.0 / 30.0;
 
-/// `S = 1/(1 + exp(-s (F/F_half - 1)))` with `F_half = C sqrt(n/(a p))` (`model/doc/friction-laws.md`).
+/// Logistic switch whose half load follows from the layout (`model/doc/friction-laws.md`):
+/// `S = 1/(1 + exp(-s (F/F_half - 1)))` with `F_half = C sqrt(n/(a p))`.
+///
+/// `F` is the load and `F_half` the half load (N), `s` the steepness, `C` the scale (N), `n` the
+/// number of pins, `a` the wrap angle and `p` the pitch (rad).
 ///
 /// ```
 /// use pinswitch_friction::{LayoutLaw, PinPattern, Switch, published};
 ///
 /// let pins = PinPattern::even(4, 14f64.to_radians());
-/// let law = LayoutLaw::new(&pins, published::wrap_angle_rad()).ok_or("no pins, nothing to switch")?;
+/// let law = LayoutLaw::new(&pins, published::wrap_angle_rad()).ok_or("no pins")?;
 /// assert!((law.switched(law.half_load_n()) - 0.5).abs() < 1e-12);
 /// # Ok::<(), &str>(())
 /// ```
@@ -85,7 +97,7 @@ pub struct LayoutLaw {
     weight: f64,
 }
 
-/// How a half load follows from a layout: `F_half = C sqrt(n/(a p))`, with one steepness for all.
+/// Constants of the rule `F_half = C sqrt(n/(a p))`, with one steepness for all layouts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThresholdRule {
     /// `C`, in newtons.
@@ -95,8 +107,11 @@ pub struct ThresholdRule {
 }
 
 impl ThresholdRule {
-    /// The rule that the printed thresholds of these layouts follow, on average; `None` without any. The half load is
-    /// where `F_r` reaches `F_thr`, the steepness the slope of `F_r` there times that load.
+    /// Fits the rule to the printed thresholds of these layouts, or returns `None` without layouts.
+    ///
+    /// The half load of a layout is the load at which `F_r` reaches `F_thr`, its steepness the
+    /// slope of `F_r` times that load. The scale is the geometric mean over the layouts, the
+    /// steepness the arithmetic mean.
     pub fn fitted(layouts: &[PublishedLayout]) -> Option<Self> {
         let (light, heavy) = (published::lightest_load_n(), published::heaviest_load_n());
         let (mut log_scale, mut steepness) = (0.0, 0.0);
@@ -113,30 +128,33 @@ impl ThresholdRule {
 }
 
 impl LayoutLaw {
-    /// Steepness `s` of the switch, dimensionless: describes all three published layouts.
+    /// Steepness `s` of the switch, dimensionless, for all three published layouts.
     pub const STEEPNESS: f64 = 4.64;
 
-    /// The rule of both constants.
+    /// Rule with both constants.
     pub const RULE: ThresholdRule = ThresholdRule { scale_n: Self::SCALE_N, steepness: Self::STEEPNESS };
 
-    /// `C` of `F_half = C sqrt(n/(a p))`, in newtons: describes all three published layouts.
+    /// `C` of `F_half = C sqrt(n/(a p))` in newtons, for all three published layouts.
     pub const SCALE_N: f64 = 13.1;
 
     /// Relative uncertainty of the half load between the published layouts.
     pub const UNCERTAINTY: f64 = 0.12;
 
-    /// `F_half = C sqrt(n/(a p))` in newtons for `n` pins a pitch `p` apart on a wrap `a`, both in radians.
+    /// Returns `F_half = C sqrt(n/(a p))` in newtons for `n` pins with a pitch `p` on a wrap `a`,
+    /// both in radians.
     pub fn half_load_at_n(pins: f64, pitch_rad: f64, wrap_rad: f64) -> f64 {
         Self::SCALE_N * (pins / (wrap_rad * pitch_rad)).sqrt()
     }
 
-    /// The law for `pins` within a wrap of `wrap_rad` radians; uneven pins enter with their mean pitch,
-    /// a single pin with the whole wrap as its pitch. `None` without pins: there is nothing to switch.
+    /// Creates the law for `pins` within a wrap of `wrap_rad` radians, or returns `None` without
+    /// pins.
+    ///
+    /// Uneven pins have their mean pitch; the pitch of a single pin is the whole wrap.
     pub fn new(pins: &PinPattern, wrap_rad: f64) -> Option<Self> {
         Self::by_rule(pins, wrap_rad, Self::RULE)
     }
 
-    /// The law for `pins` by another rule than its own.
+    /// Creates the law for `pins` by another rule.
     pub fn by_rule(pins: &PinPattern, wrap_rad: f64, rule: ThresholdRule) -> Option<Self> {
         let pitch_rad = pins.mean_pitch_rad().unwrap_or(wrap_rad);
         Self::of_count(pins.count() as f64, pitch_rad, wrap_rad, rule)
@@ -150,13 +168,13 @@ impl LayoutLaw {
         })
     }
 
-    /// The same law with its half load scaled by `factor`: how the band is propagated.
+    /// Returns the same law with its half load multiplied by `factor`.
     #[must_use]
     pub fn with_half_load_scaled(self, factor: f64) -> Self {
         Self { half_load_n: self.half_load_n * factor, ..self }
     }
 
-    /// Load in newtons at which half of the contact has switched.
+    /// Returns the load in newtons at which half of the contact has switched.
     pub fn half_load_n(&self) -> f64 {
         self.half_load_n
     }
@@ -176,10 +194,10 @@ impl Switch for LayoutLaw {
 mod tests {
     use super::*;
 
-    /// `model/doc/friction-laws.md`: the maxima come out at 0.0 / +6.5 / -3.4 %; its constants are printed to three
-    /// digits, which leaves 0.7 % open.
+    /// `model/doc/friction-laws.md`: the errors of the maxima are 0.0, +6.5 and -3.4 %. The
+    /// constants are printed with three digits, hence the tolerance of 0.7 %.
     #[test]
-    fn describes_the_three_published_maxima() {
+    fn published_maxima_are_reproduced() {
         let errors: Vec<_> = published::LAYOUTS
             .iter()
             .map(|l| {
@@ -195,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn more_pins_switch_later_and_wider_pins_earlier() {
+    fn half_load_follows_the_layout() {
         let half = |n, p| LayoutLaw::new(&PinPattern::even(n, p), 1.1).unwrap().half_load_n();
         assert!(half(6, 0.2) > half(3, 0.2));
         assert!(half(3, 0.3) < half(3, 0.2));
@@ -204,7 +222,7 @@ mod tests {
 
     /// `model/doc/friction-laws.md`: half loads of 68.3, 39.5 and 44.0 N.
     #[test]
-    fn a_rule_follows_from_the_printed_thresholds() {
+    fn rules_fit_the_printed_thresholds() {
         for (layout, half_load) in published::LAYOUTS.iter().zip([68.3, 39.5, 44.0]) {
             let rule = ThresholdRule::fitted(&[*layout]).unwrap();
             let pins = PinPattern::even(layout.pins, layout.pitch_rad());
@@ -215,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn the_source_names_the_constants_that_are_used() {
+    fn source_text_has_the_constants() {
         let named = format!("F_half = {} N sqrt(n/(a p)), s = {}", LayoutLaw::SCALE_N, LayoutLaw::STEEPNESS);
         assert!(DEFINITION.source.ends_with(&named), "{}", DEFINITION.source);
     }

@@ -1,17 +1,21 @@
-//! `paper`: the paper's own capstan and eq. 4, with its constants, for its three layouts and for one material alone.
+//! `paper`: capstan and eq. 4 of the paper, with its constants, for its three layouts and for one
+//! material alone.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::{Definition, Law, LawError, Uncertain};
-use crate::band::BandSource;
+use super::definition::{LawDefinition, UncertainFriction};
+use super::error::LawError;
+use crate::band_source::BandSource;
 use crate::capstan::{Direction, capstan_friction_n, capstan_tension_n};
+use crate::contact::Contact;
 use crate::published::{self, LAYOUTS};
-use crate::{Contact, FrictionCurve, PaperSwitch, Substrate, Switch, SwitchState};
+use crate::substrate::Substrate;
+use crate::switch::{PaperSwitch, Switch, SwitchState};
 
-pub(super) static DEFINITION: Definition = Definition {
+pub(super) static DEFINITION: LawDefinition = LawDefinition {
     word: "paper",
     title: "the paper's model",
-    summary: "Capstan and eq. 4 with the paper's constants: its three layouts only",
+    summary: "Capstan and eq. 4 with the constants of the paper: its three layouts only",
     source: "capstan and eq. 4 of Dermitzakis & Carbajal, arXiv:1401.5232, with its constants",
     needs_model: false,
     states: paper_states,
@@ -19,7 +23,8 @@ pub(super) static DEFINITION: Definition = Definition {
     remark: threshold_remark,
 };
 
-/// The paper's model; it gives no constants for other pins on silicone than its three layouts.
+/// Predicts by the model of the paper, which has constants for three layouts of pins on silicone
+/// only.
 fn paper_states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, LawError> {
     match (contact.substrate(), contact.published_layout()) {
         (Substrate::Silicone, Some(layout)) => {
@@ -27,15 +32,17 @@ fn paper_states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, 
             Ok(loads_n.iter().map(|&load| switch.state(load, contact.wrap_rad())).collect())
         }
         (Substrate::Silicone, None) if contact.pins().count() > 0 => Err(LawError::DoesNotApply {
-            why: "the paper gives constants for six-single, three-double and three-single only (pinswitch layouts shows them); use the law layout or physics",
+            problem: "the paper gives constants for six-single, three-double and three-single only",
+            help: "use the law layout or physics (`pinswitch layouts` shows the three layouts)",
         }),
         (Substrate::Silicone, None) => Ok(capstan(contact, published::MU_SILICONE, 1.0, loads_n)),
         (Substrate::Abs, _) => Ok(capstan(contact, published::MU_PINS, 0.0, loads_n)),
     }
 }
 
-/// A plain capstan: the friction of one material, of which silicone makes `share`.
-fn capstan(contact: &Contact, mu: f64, share: f64, loads_n: &[f64]) -> Vec<SwitchState> {
+/// Returns the states of a capstan with one coefficient `mu`; `share` is the silicone's share of
+/// the friction.
+pub(crate) fn capstan(contact: &Contact, mu: f64, share: f64, loads_n: &[f64]) -> Vec<SwitchState> {
     let x = mu * contact.wrap_rad();
     loads_n
         .iter()
@@ -49,26 +56,13 @@ fn capstan(contact: &Contact, mu: f64, share: f64, loads_n: &[f64]) -> Vec<Switc
         .collect()
 }
 
-/// The paper's capstan on one material, for a contact that nothing else describes; its band is a factor e.
-pub(super) fn capstan_curve(contact: &Contact, loads_n: &[f64]) -> FrictionCurve {
-    let bare = contact.pins().count() == 0;
-    let (mu, share) = if bare { (published::MU_SILICONE, 1.0) } else { (published::MU_PINS, 0.0) };
-    let states = capstan(contact, mu, share, loads_n);
-    let band = crate::band::Band {
-        load_n: vec![published::heaviest_load_n()],
-        sources: vec![BandSource::even("model", vec![1.0])],
-        rivals: Vec::new(),
-        departures: Vec::new(),
-    };
-    FrictionCurve::of(Law::Paper, crate::Trust::Extrapolated, contact.remarks(), &states, &band)
-}
-
-/// The law's own error: how far it misses the maxima of the same kind, root mean square as logarithms, times Student's
-/// factor for so few. A layout's own miss is not its band.
-fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawError> {
+/// Returns the uncertainty of the law: the root mean square of its logarithmic errors on all maxima
+/// of the same kind, times Student's t quantile for their number. The error on a single layout
+/// would underestimate it.
+fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<UncertainFriction, LawError> {
     let friction_n = paper_states(contact, loads_n)?.iter().map(|s| s.friction_n).collect();
     let (wrap, heaviest) = (published::wrap_angle_rad(), published::heaviest_load_n());
-    let misses: Vec<f64> = match (contact.substrate(), contact.pins().count()) {
+    let errors: Vec<f64> = match (contact.substrate(), contact.pins().count()) {
         (Substrate::Silicone, 0) => {
             let model = capstan_friction_n(heaviest, published::MU_SILICONE * wrap);
             vec![libm::log(model / published::SILICONE_ALONE_MAX_N)]
@@ -82,20 +76,20 @@ fn paper_uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, LawE
             LAYOUTS.iter().map(|l| libm::log(model / l.pins_max_n)).collect()
         }
     };
-    let count = misses.len() as f64;
-    let rms = (misses.iter().map(|m| m * m).sum::<f64>() / count).sqrt();
+    let count = errors.len() as f64;
+    let rms = (errors.iter().map(|e| e * e).sum::<f64>() / count).sqrt();
     let quantile = StudentsT::new(0.0, 1.0, count).map_or(12.7, |t| t.inverse_cdf(0.975));
-    let own = BandSource::even("misses at the measured maxima", vec![quantile * rms; loads_n.len()]);
-    Ok(Uncertain { friction_n, sources: vec![own] })
+    let source = BandSource::symmetric("errors at the measured maxima", vec![quantile * rms; loads_n.len()]);
+    Ok(UncertainFriction { friction_n, sources: vec![source] })
 }
 
-/// Says when `F_thr` of six-single is not read as printed.
+/// Returns a remark if `F_thr` of six-single is not the printed one.
 fn threshold_remark(contact: &Contact) -> Option<String> {
     let (read, printed) = (contact.published_layout()?, LAYOUTS[0]);
     (read.name == printed.name
         && read.threshold != printed.threshold
         && contact.substrate() == Substrate::Silicone)
         .then(|| {
-            format!("F_thr of six-single is read as {}, printed is {}", read.threshold, printed.threshold)
+            format!("F_thr of six-single is {} instead of the printed {}", read.threshold, printed.threshold)
         })
 }

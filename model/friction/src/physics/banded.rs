@@ -1,6 +1,7 @@
-//! Symmetric positive definite systems with two off-diagonals: those of a bent string on a foundation.
+//! Symmetric positive definite systems with two off-diagonals, as of a bent string on a foundation.
 
-/// A symmetric matrix of half-bandwidth 2, row by row: diagonal, and the entries one and two columns to the right.
+/// Symmetric matrix of half-bandwidth 2, stored by row: the diagonal, and the entries one and two
+/// columns to the right.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct BandedMatrix {
     /// `A[i][i]`.
@@ -12,12 +13,12 @@ pub(super) struct BandedMatrix {
 }
 
 impl BandedMatrix {
-    /// A matrix of zeros with `n` rows.
+    /// Creates a matrix of zeros with `n` rows.
     pub(super) fn zeros(n: usize) -> Self {
         Self { diagonal: vec![0.0; n], first: vec![0.0; n], second: vec![0.0; n] }
     }
 
-    /// `A u`.
+    /// Returns `A u`.
     pub(super) fn times(&self, u: &[f64]) -> Vec<f64> {
         let mut out: Vec<f64> = self.diagonal.iter().zip(u).map(|(a, u)| a * u).collect();
         for (distance, entries) in [(1, &self.first), (2, &self.second)] {
@@ -32,8 +33,8 @@ impl BandedMatrix {
         out
     }
 
-    /// Solves `A x = b` in place of `b` by the factors `L D L'`, and uses the matrix up. `false` if `A` is not positive
-    /// definite; `b` is then meaningless.
+    /// Solves `A x = b` in place of `b` by the factors `L D L'`, and overwrites the matrix. Returns
+    /// `false` if `A` is not positive definite; `b` is then meaningless.
     pub(super) fn solve(&mut self, b: &mut [f64]) -> bool {
         let n = b.len();
         let (diagonal, first, second) =
@@ -78,7 +79,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_solved_multiplies_back(
+        fn solutions_multiply_back(
             rows in prop::collection::vec((0.1..2.0f64, -1.0..1.0f64, -1.0..1.0f64, -5.0..5.0f64), 1..40)
         ) {
             let n = rows.len();
@@ -90,14 +91,14 @@ mod tests {
             let x: Vec<f64> = rows.iter().map(|r| r.3).collect();
             let mut b = a.times(&x);
             prop_assert!(a.solve(&mut b));
-            for (found, true_x) in b.iter().zip(&x) {
-                prop_assert!((found - true_x).abs() < 1e-9);
+            for (solved, true_x) in b.iter().zip(&x) {
+                prop_assert!((solved - true_x).abs() < 1e-9);
             }
         }
     }
 
     #[test]
-    fn an_indefinite_matrix_is_refused() {
+    fn indefinite_matrices_are_refused() {
         let mut a = BandedMatrix::zeros(3);
         a.diagonal = vec![1.0, -1.0, 1.0];
         assert!(!a.solve(&mut [1.0, 1.0, 1.0]));

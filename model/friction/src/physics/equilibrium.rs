@@ -1,31 +1,40 @@
-//! The tendon's shape under a given tension: a string, stiff if wanted, over sinking pins on a foundation.
+//! The tendon's shape under a given tension: a string with bending stiffness over sinking pins on a
+//! foundation.
 //!
-//! Minimises the energy of `model/doc/friction-laws.md` over the gap `u` between the tendon's underside and the
-//! undeformed silicone:
+//! Minimises the energy of `model/doc/friction-laws.md` over the gap `u` between the tendon's
+//! underside and the undeformed silicone:
 //!
-//! `E = int [T/2 u'^2 - T u^2/(2 Rc^2) + T u/Rc + EI/2 (u'' + u/Rc^2 - 1/Rc)^2 + k_s/2 <-u>^2] ds + sum W(<h0 - u_i>)`
+//! ```text
+//! E = int [T/2 u'^2 - T u^2/(2 Rc^2) + T u/Rc + EI/2 (u'' + u/Rc^2 - 1/Rc)^2 + k_s/2 <-u>^2] ds
+//!     + sum W(<h0 - u_i>)
+//! ```
 //!
-//! with ends that point along the tangents at both ends of the wrap, and `W' = N`, the support of a pin. Newton's method on the active set of touching nodes, with a
-//! line search along each step.
+//! `T` is the tension, `Rc` the radius of the tendon's axis, `EI` its bending stiffness, `k_s` the
+//! foundation stiffness, `h0` the protrusion of a resting pin, `s` the arc length, and
+//! `<x> = max(x, 0)`. `W' = N` is the support force of a pin. The ends of the tendon point along
+//! the tangents at both ends of the wrap. The solver is Newton's method on the active set of
+//! touching nodes, with a line search along each step.
 
 use super::banded::BandedMatrix;
+use super::error::PhysicsError;
 use super::grid::Grid;
-use super::{Bed, PhysicsError};
+use crate::bed::Bed;
 
-/// Newton steps before the search is given up; 3 to 10 are usual.
+/// Largest number of Newton steps; 3 to 10 are usual.
 const MAX_STEPS: usize = 60;
-/// Largest force left unbalanced at a node, as a share of the tension and of `EI/Rc^2`.
+/// Largest unbalanced force at a node, relative to the tension plus `EI/Rc^2`.
 const BALANCE: f64 = 1e-8;
-/// Rounding of a node's force, as a share of the largest product that adds to it.
+/// Rounding error of a node's force, relative to its largest summand.
 const ROUNDING: f64 = 1e-12;
-/// Cuts of a step before it is taken as it is.
-const MAX_HALVINGS: usize = 30;
-/// Largest multiple of the string's own negative stiffness that is added to a Newton step's matrix.
-const MOST_SHIFT: f64 = 1e4;
-/// Share of the energy's first slope below which a step has reached the valley.
+/// Largest number of cuts of a step; the last one is used then.
+const MAX_CUTS: usize = 30;
+/// Largest multiple of the string's negative stiffness that is added to the matrix of a Newton
+/// step.
+const MAX_SHIFT: f64 = 1e4;
+/// The line search ends when the slope of the energy is below this share of its initial value.
 const FLAT: f64 = 0.5;
 
-/// The shape and what carries it.
+/// Equilibrium shape with the forces of its supports.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Equilibrium {
     /// Gap over the undeformed silicone at each node, mm; negative where the silicone is pressed.
@@ -38,23 +47,26 @@ pub(super) struct Equilibrium {
     pub(super) steps: usize,
 }
 
-/// The supports of a tendon: grid, bed and the force that sinks a pin flush.
+/// Supports of a tendon.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Supports<'a> {
+    /// Nodes along the wrap.
     pub(super) grid: &'a Grid,
+    /// Dimensions and stiffness.
     pub(super) bed: &'a Bed,
     /// `N0` of this bed, N.
     pub(super) flush_force_n: f64,
 }
 
-/// Force and stiffness of a pin that has sunk.
+/// Force and stiffness of a pin that is pressed into the silicone.
 struct Support {
     force_n: f64,
     stiffness_n_mm: f64,
 }
 
 impl Supports<'_> {
-    /// The pin's support at a gap of `u` mm over it: `N = N0 (1 + b) x/(1 + b x)`, `x = <h0 - u>/h0`.
+    /// Returns the support of a pin at a gap of `u` mm: `N = N0 (1 + b) x/(1 + b x)` with `x = <h0
+    /// - u>/h0`.
     fn pin(&self, gap_mm: f64) -> Support {
         let h0 = self.bed.protrusion_mm();
         let (x, b) = ((h0 - gap_mm).max(0.0) / h0, self.bed.softening);
@@ -65,7 +77,7 @@ impl Supports<'_> {
         Support { force_n: scale * x / soft, stiffness_n_mm: scale / (h0 * soft * soft) }
     }
 
-    /// Quadratic form and linear term of string and bending: `E = u'Au/2 - r'u`.
+    /// Returns the quadratic form and the linear term of string and bending: `E = u'Au/2 - r'u`.
     fn string(&self, tension_n: &[f64]) -> (BandedMatrix, Vec<f64>) {
         let (grid, rc) = (self.grid, self.bed.axis_radius_mm());
         let n = grid.len();
@@ -82,8 +94,8 @@ impl Supports<'_> {
             a.diagonal[i] -= pressed * per_rc;
             load[i] -= pressed;
         }
-        // Both ends point along the tangents at the ends of the wrap, from which the nodes beyond turn away: a free string
-        // with u' = 0 at the end of the wrap has u' = tan(m) (1 - u/Rc) at m beyond it.
+        // Both ends point along the tangents at the ends of the wrap: a free string with u' = 0 at
+        // the end of the wrap has u' = tan(m) (1 - u/Rc) at an angle m beyond it.
         let tilt = libm::tan(grid.reach_rad);
         for end in [0, n.saturating_sub(1)] {
             load[end] += tension_n[end] * tilt;
@@ -92,7 +104,8 @@ impl Supports<'_> {
         (a, load)
     }
 
-    /// The energy's gradient, and what springs add to the second derivative's diagonal, at `u`.
+    /// Returns the gradient of the energy at `u`, and the springs' part of the second derivative's
+    /// diagonal.
     fn evaluate(&self, a: &BandedMatrix, load: &[f64], u: &[f64]) -> State {
         let mut gradient = a.times(u);
         let mut springs = vec![0.0; u.len()];
@@ -113,7 +126,7 @@ impl Supports<'_> {
         State { gradient, springs }
     }
 
-    /// The equilibrium under `tension_n` at the nodes, searched from `start` (a gap at each node).
+    /// Computes the equilibrium under `tension_n` at the nodes, from an initial gap at each node.
     ///
     /// # Errors
     /// [`PhysicsError::NotConverged`] if Newton's method does not balance the forces.
@@ -124,7 +137,7 @@ impl Supports<'_> {
     ) -> Result<Equilibrium, PhysicsError> {
         let (a, load) = self.string(tension_n);
         let bent_n = self.bending_n_mm2(tension_n) / self.bed.axis_radius_mm().powi(2);
-        let known = BALANCE * (tension_n.iter().copied().fold(0.0, f64::max) + bent_n);
+        let tolerance_n = BALANCE * (tension_n.iter().copied().fold(0.0, f64::max) + bent_n);
         let stiffest = a.diagonal.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
         let rc = self.bed.axis_radius_mm();
         let hanging: Vec<f64> =
@@ -133,29 +146,30 @@ impl Supports<'_> {
         let mut here = self.evaluate(&a, &load, &u);
         for steps in 0..MAX_STEPS {
             let largest_gap = u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
-            if here.unbalanced_n() <= known + ROUNDING * stiffest * largest_gap {
-                return Ok(self.carried(u, steps));
+            if here.unbalanced_n() <= tolerance_n + ROUNDING * stiffest * largest_gap {
+                return Ok(self.supported(u, steps));
             }
             let step = newton_step(&a, &hanging, &here);
-            (u, here) = self.along(&a, &load, &u, &step, &here);
+            (u, here) = self.line_search(&a, &load, &u, &step, &here);
         }
         Err(PhysicsError::NotConverged { unbalanced_n: here.unbalanced_n(), steps: MAX_STEPS })
     }
 
-    /// The tendon's bending stiffness under these tensions, taken at the lowest, N mm².
+    /// Returns the tendon's bending stiffness under the lowest of these tensions, N mm².
     fn bending_n_mm2(&self, tension_n: &[f64]) -> f64 {
         self.bed.tendon_bending_n_mm2(tension_n.iter().copied().fold(f64::INFINITY, f64::min))
     }
 
-    /// A first guess: the tendon lies on silicone alone.
+    /// Returns the initial gap: that of a tendon on silicone without pins.
     fn pressed(&self, tension_n: &[f64]) -> Vec<f64> {
         let k = self.bed.stiffness_n_mm2() * self.bed.axis_radius_mm();
         tension_n.iter().map(|t| -t / k).collect()
     }
 
-    /// Where along `step` the energy stops falling, nearly: the slope of the energy is sought, as the energy itself drowns
-    /// in rounding. The energy is convex along almost every step, so the slope crosses zero once.
-    fn along(
+    /// Finds an approximate minimum of the energy along `step`, from its slope: differences of the
+    /// energy itself are lost in rounding. The energy is convex along almost every step, so the
+    /// slope crosses zero once.
+    fn line_search(
         &self,
         a: &BandedMatrix,
         load: &[f64],
@@ -172,9 +186,9 @@ impl Supports<'_> {
         let falling = slope(here);
         let (mut low, mut high) = ((0.0, falling), None);
         let mut share = 1.0;
-        let mut tried = at(share);
-        for _ in 0..MAX_HALVINGS {
-            let now = slope(&tried.1);
+        let mut trial = at(share);
+        for _ in 0..MAX_CUTS {
+            let now = slope(&trial.1);
             if now.abs() <= FLAT * falling.abs() {
                 break;
             }
@@ -184,20 +198,21 @@ impl Supports<'_> {
                 low = (share, now);
             }
             share = match high {
-                // A full step that still falls is taken: Newton's method speeds up by itself.
+                // A full step along which the energy still falls is accepted.
                 None => break,
-                // Regula falsi, kept away from both ends.
+                // Regula falsi, limited to the inner part of the interval.
                 Some((end, rising)) => {
                     let cut = low.0 + (end - low.0) * low.1.abs() / (low.1.abs() + rising);
                     cut.clamp(low.0 + 0.1 * (end - low.0), end - 0.1 * (end - low.0))
                 }
             };
-            tried = at(share);
+            trial = at(share);
         }
-        tried
+        trial
     }
 
-    fn carried(&self, gap_mm: Vec<f64>, steps: usize) -> Equilibrium {
+    /// Returns the equilibrium with this gap.
+    fn supported(&self, gap_mm: Vec<f64>, steps: usize) -> Equilibrium {
         let k = self.bed.stiffness_n_mm2();
         let silicone_n =
             gap_mm.iter().zip(&self.grid.silicone_mm).map(|(u, w)| k * w * (-u).max(0.0)).collect();
@@ -213,15 +228,15 @@ struct State {
 }
 
 impl State {
-    /// The largest force left unbalanced at a node, N.
+    /// Returns the largest unbalanced force at a node, N.
     fn unbalanced_n(&self) -> f64 {
         self.gradient.iter().fold(0.0, |worst, g| worst.max(g.abs()))
     }
 }
 
-/// A direction that lowers the energy: Newton's, or Newton's with a stiffer diagonal where the tendon hangs free. All
-/// that can make the second derivative indefinite is the string's own `-T/Rc^2`, given in `hanging`; a multiple of it is
-/// added until it is not.
+/// Returns a direction in which the energy falls: Newton's step, with a stiffer diagonal if the
+/// second derivative is not positive definite. Only the string's term `-T/Rc^2` can make it so;
+/// increasing multiples of its magnitude, `hanging`, are added.
 fn newton_step(string: &BandedMatrix, hanging: &[f64], here: &State) -> Vec<f64> {
     let mut multiple = 0.0;
     loop {
@@ -230,7 +245,7 @@ fn newton_step(string: &BandedMatrix, hanging: &[f64], here: &State) -> Vec<f64>
             *d += spring + multiple * own;
         }
         let mut step: Vec<f64> = here.gradient.iter().map(|g| -g).collect();
-        if matrix.solve(&mut step) || multiple > MOST_SHIFT {
+        if matrix.solve(&mut step) || multiple > MAX_SHIFT {
             return step;
         }
         multiple = if multiple == 0.0 { 1.5 } else { multiple * 4.0 };

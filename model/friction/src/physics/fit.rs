@@ -1,53 +1,24 @@
-//! The constants, fitted to the seven published maxima, and how well they predict a layout that was left out.
+//! Fits of the constants to the seven published maxima, with cross-validation.
 
 use nalgebra::{Matrix3, Vector3};
+use pinswitch_diagnostic::Diagnostic;
 use serde::Serialize;
 
-use super::{Bed, Constants, PhysicsError, PhysicsSwitch};
+use super::constants::{Constants, PUBLISHED_FIT};
+use super::error::PhysicsError;
+use super::switch::PhysicsSwitch;
+use crate::bed::Bed;
+use crate::contact::Contact;
 use crate::least_squares::{self, LeastSquaresError};
+use crate::pattern::PinPattern;
 use crate::published::{self, LAYOUTS};
-use crate::{Contact, PinPattern, Substrate};
+use crate::substrate::Substrate;
 
-/// A fit, as data: constants, covariance of their logarithms, and errors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PublishedFit {
-    /// kappa in N^-0.5, mu_s, N0 in N.
-    pub(crate) constants: [f64; 3],
-    /// Covariance of their logarithms.
-    pub(crate) covariance: [[f64; 3]; 3],
-    /// Scatter of the maxima about the fit, relative.
-    pub(crate) scatter: f64,
-    /// Root mean square error of layouts left out, relative.
-    pub(crate) left_out_rms: f64,
-    /// Maxima less constants.
-    pub(crate) freedom: f64,
-}
-
-/// The fit to the seven maxima on the published bed; a test makes it again.
-pub(crate) const PUBLISHED_FIT: PublishedFit = PublishedFit {
-    constants: [0.023634, 0.23221, 8.0572],
-    covariance: [
-        [7.775e-4, 8.4e-6, 4.461e-4],
-        [8.4e-6, 1.2615e-3, 9.142e-4],
-        [4.461e-4, 9.142e-4, 2.6036e-3],
-    ],
-    scatter: 0.0488,
-    left_out_rms: 0.0552,
-    freedom: 4.0,
-};
-
-impl PublishedFit {
-    pub(crate) fn constants(&self) -> Constants {
-        let [kappa_per_sqrt_n, mu_silicone, flush_force_n] = self.constants;
-        Constants { kappa_per_sqrt_n, mu_silicone, flush_force_n }
-    }
-}
-
-/// Why no constants could be fitted.
+/// Reason why the constants cannot be fitted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// The model has no solution somewhere on the way.
+    /// The model does not converge for some of the evaluated constants.
     #[error(transparent)]
     Physics(#[from] PhysicsError),
     /// The maxima do not determine the constants.
@@ -55,18 +26,30 @@ pub enum FitError {
     LeastSquares(#[from] LeastSquaresError),
 }
 
-/// One published maximum.
+impl From<FitError> for Diagnostic {
+    fn from(error: FitError) -> Self {
+        match error {
+            FitError::Physics(error) => error.into(),
+            FitError::LeastSquares(error) => error.into(),
+        }
+    }
+}
+
+/// Published maximum of a condition.
 #[derive(Clone, Debug)]
 pub(super) struct Maximum {
-    /// `three-double, device`.
+    /// Name, such as `three-double, device`.
     pub(super) name: String,
-    /// Which of the three layouts; `None` for silicone alone.
+    /// Index of the layout; `None` for silicone alone.
     pub(super) layout: Option<usize>,
+    /// Contact of the condition.
     pub(super) contact: Contact,
+    /// Measured friction at the heaviest load, N.
     pub(super) friction_n: f64,
 }
 
-/// The seven maxima, all at the heaviest load; `wrap` returns the angle in radians over which the tendon turns.
+/// Returns the seven maxima, all at the heaviest load; `wrap` returns the wrap angle of a pattern
+/// in radians.
 pub(super) fn published_maxima(wrap: impl Fn(&PinPattern) -> f64) -> Vec<Maximum> {
     let of = |name: String, layout, substrate, pins: PinPattern, friction_n| {
         let wrap = wrap(&pins);
@@ -92,38 +75,40 @@ pub(super) fn published_maxima(wrap: impl Fn(&PinPattern) -> f64) -> Vec<Maximum
 /// Constants fitted to published maxima.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MaximaFit {
-    /// The constants.
+    /// Fitted constants.
     pub constants: Constants,
     /// Covariance of their logarithms, from the scatter of the maxima about the fit.
     pub covariance: [[f64; 3]; 3],
-    /// Relative error of each maximum, model over measured less one: name and error.
+    /// Name and relative error of each maximum: predicted over measured, minus one.
     pub errors: Vec<(String, f64)>,
     /// Root mean square of the errors.
     pub rms: f64,
-    /// Scatter of the maxima about the fit: the same sum over maxima less constants.
+    /// Scatter of the maxima about the fit: root of the sum of squared errors over the degrees of
+    /// freedom.
     pub scatter: f64,
 }
 
-/// The maxima of a layout, predicted by constants fitted to the others.
+/// Errors of the maxima of a layout, predicted with constants that are fitted to the others.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LayoutLeftOut {
-    /// The layout.
+    /// Name of the layout.
     pub layout: &'static str,
-    /// Constants fitted without it.
+    /// Constants fitted without the layout.
     pub constants: Constants,
-    /// Relative error of its pins alone.
+    /// Relative error of the pins alone.
     pub pins_error: f64,
-    /// Relative error of its device.
+    /// Relative error of the device.
     pub device_error: f64,
 }
 
+/// Returns the relative error of a maximum: predicted over measured, minus one.
 fn error(maximum: &Maximum, bed: &Bed, constants: Constants) -> Result<f64, PhysicsError> {
     let contact = maximum.contact.clone().with_bed(*bed);
     let friction = PhysicsSwitch::new(&contact, constants).friction_n(published::heaviest_load_n())?;
     Ok(friction / maximum.friction_n - 1.0)
 }
 
-/// Least squares of the relative errors over these maxima.
+/// Fits the constants by least squares of the relative errors of these maxima.
 pub(super) fn fit(bed: &Bed, maxima: &[&Maximum]) -> Result<MaximaFit, FitError> {
     let start = PUBLISHED_FIT.constants().logarithms();
     let errors = |at: &[f64]| -> Result<Vec<f64>, PhysicsError> {
@@ -147,14 +132,15 @@ pub(super) fn fit(bed: &Bed, maxima: &[&Maximum]) -> Result<MaximaFit, FitError>
 /// Fits the three constants to the seven published maxima on `bed`.
 ///
 /// # Errors
-/// [`FitError`] if the model cannot be solved or the maxima do not determine the constants.
+/// [`FitError`] if the model does not converge, or the maxima do not determine the constants.
 pub fn fit_maxima(bed: &Bed) -> Result<MaximaFit, FitError> {
     let maxima = published_maxima(|_| published::wrap_angle_rad());
     fit(bed, &maxima.iter().collect::<Vec<_>>())
 }
 
-/// Relative error of each of the seven maxima, predicted by constants fitted to those of other conditions alone: without
-/// both maxima of its layout, or without the bare silicone. Name and error, in the order of [`fit_maxima`].
+/// Returns name and relative error of each of the seven maxima, in the order of [`fit_maxima`],
+/// with constants that are fitted without its condition: without both maxima of its layout, or
+/// without the bare silicone.
 ///
 /// # Errors
 /// As [`fit_maxima`].
@@ -170,7 +156,7 @@ pub fn leave_one_condition_out(bed: &Bed) -> Result<Vec<(String, f64)>, FitError
         .collect()
 }
 
-/// Predicts the maxima of each layout from the others'.
+/// Predicts the maxima of each layout with constants that are fitted to the others.
 ///
 /// # Errors
 /// As [`fit_maxima`].

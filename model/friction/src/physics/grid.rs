@@ -1,16 +1,17 @@
-//! Nodes along the wrap and a little beyond: one at every pin, so that the tendon's kinks lie on nodes and refinement
-//! converges in second order.
+//! Nodes along the wrap and a short span beyond it. Every pin has a node, so that kinks of the
+//! tendon are at nodes and refinement converges in second order.
 
 use super::banded::BandedMatrix;
-use super::{Bed, OutsidePins};
+use crate::bed::{Bed, OutsidePins};
 use crate::published;
 
-/// Nodes of a wrap and of the spans that lead to it. Angles in radians, zero in the middle; lengths in mm along the tendon's axis.
+/// Nodes of a wrap and of the spans that lead to it. Angles are in radians, zero in the middle;
+/// lengths are in mm along the tendon's axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grid {
     /// Angles of the nodes, ascending.
     pub(super) angle_rad: Vec<f64>,
-    /// One over the lengths of the elements between the nodes.
+    /// Inverse lengths of the elements between the nodes.
     pub(super) per_element_mm: Vec<f64>,
     /// Quadratic form and linear term of bending, for a stiffness of 1 N mm².
     unit_bending: (BandedMatrix, Vec<f64>),
@@ -20,53 +21,57 @@ pub(super) struct Grid {
     pub(super) silicone_mm: Vec<f64>,
     /// Nodes of the pins.
     pub(super) pins: Vec<usize>,
-    /// How far the nodes reach beyond each end of the wrap.
+    /// Angle of the span beyond each end of the wrap.
     pub(super) reach_rad: f64,
 }
 
-/// Length of an element of the straight spans over that of others.
+/// Length of an element of the straight spans, relative to the others.
 const STRAIGHT: f64 = 1.5;
-/// Two angles closer than this are one, in radians.
+/// Largest difference between equal angles, in radians.
 const SAME_RAD: f64 = 1e-9;
-/// Where the straight span beyond the wrap has risen to this many times a resting pin's height, no pin touches it.
+/// Clearance of the straight span beyond the wrap at which no pin touches it, in heights of a
+/// resting pin.
 const CLEAR_OF_PINS: f64 = 1.2;
 
-/// How far beyond an end of the wrap a pin could still touch the span that leaves it: a tangent at `Rc` has risen by
-/// `Rc delta^2/2` there.
+/// Returns the angle in radians beyond an end of the wrap within which a pin can touch the straight
+/// span: a tangent at `Rc` rises by `Rc delta^2/2`.
 pub(super) fn reach_rad(bed: &Bed) -> f64 {
     (2.0 * CLEAR_OF_PINS * bed.protrusion_mm() / bed.axis_radius_mm()).sqrt()
 }
 
-/// Fewest elements over a wrap.
-const FEWEST_ELEMENTS: usize = 2;
-/// Length of an element over the length along which the tendon comes down from a pin, `sqrt(h0 Rc)`.
+/// Smallest number of elements over a wrap.
+const MIN_ELEMENTS: usize = 2;
+/// Length of an element, relative to the length over which the tendon descends from a pin,
+/// `sqrt(h0 Rc)`.
 const ELEMENT_OF_SPAN: f64 = 0.08;
-/// Length of an element over the length along which a stiff tendon presses into silicone, `(EI/k)^(1/4)`.
+/// Length of an element, relative to the length over which a stiff tendon presses into silicone,
+/// `(EI/k)^(1/4)`.
 const ELEMENT_OF_PRESS: f64 = 0.35;
-/// Most elements, for wraps that are very long against their pins.
-const MOST_ELEMENTS: usize = 1500;
+/// Largest number of elements, for wraps that are long compared with their pins.
+const MAX_ELEMENTS: usize = 1500;
 
-/// Elements over `wrap_rad` on `bed` with which friction lies within 0.2 % of that of ever finer ones (a test): at the
-/// published bed 101, by the lengths over which the tendon's shape changes.
+/// Returns the number of elements over `wrap_rad` on `bed` with a discretisation error of friction
+/// below 0.2 % (a test checks it), from the lengths over which the tendon's shape changes. It is
+/// 101 for the published rig.
 pub(super) fn elements(wrap_rad: f64, bed: &Bed) -> usize {
     let span_mm = ELEMENT_OF_SPAN * (bed.protrusion_mm() * bed.axis_radius_mm()).sqrt();
     let press_mm =
         ELEMENT_OF_PRESS * (bed.tendon_bending_n_mm2(f64::INFINITY) / bed.stiffness_n_mm2()).sqrt().sqrt();
     let element_mm = if press_mm > 0.0 { span_mm.min(press_mm) } else { span_mm };
     let needed = (wrap_rad * bed.axis_radius_mm() / element_mm).ceil() as usize;
-    needed.clamp(FEWEST_ELEMENTS, MOST_ELEMENTS)
+    needed.clamp(MIN_ELEMENTS, MAX_ELEMENTS)
 }
 
 impl Grid {
-    /// Nodes over `wrap_rad` and [`reach_rad`] beyond both ends, about `wrap_rad / elements` apart, with one at each of
-    /// `pins_rad` (ascending; those out of reach are left out).
+    /// Creates nodes over `wrap_rad` and [`reach_rad`] beyond both ends, about
+    /// `wrap_rad / elements` apart, with one at each of `pins_rad` (ascending) within that reach.
     pub(super) fn new(wrap_rad: f64, pins_rad: &[f64], bed: &Bed, elements: usize) -> Self {
         let half = wrap_rad / 2.0;
         let reach = reach_rad(bed);
         let end = half + reach;
         let inside: Vec<f64> = pins_rad.iter().copied().filter(|p| p.abs() < end).collect();
         let margin = match bed.outside {
-            // Up to the edge of the outermost pins' grooves: the silicone that holds them.
+            // Up to the edge of the outermost pins' grooves.
             OutsidePins::Free => bed.groove_radius_mm / bed.contact_radius_mm,
             OutsidePins::NextGroove => published::GROOVE_PITCH_DEG.to_radians(),
             OutsidePins::OnSilicone => f64::INFINITY,
@@ -82,7 +87,7 @@ impl Grid {
         let step = wrap_rad / elements.max(1) as f64;
         let mut angle_rad: Vec<f64> = corners.first().copied().into_iter().collect();
         for pair in corners.windows(2) {
-            // Beyond the wrap the tendon is all but straight.
+            // Beyond the wrap the tendon is almost straight.
             let beyond = pair[0] + pair[1] > wrap_rad || pair[0] + pair[1] < -wrap_rad;
             let step = if beyond { STRAIGHT * step } else { step };
             let pieces = ((pair[1] - pair[0]) / step).ceil().max(1.0);
@@ -110,7 +115,8 @@ impl Grid {
         Self { angle_rad, per_element_mm, unit_bending, share_mm, silicone_mm, pins, reach_rad: reach }
     }
 
-    /// Quadratic form and linear term of bending, `EI/2 (u'' + u/Rc^2 - 1/Rc)^2`, for a stiffness in N mm².
+    /// Returns the quadratic form and the linear term of bending, `EI/2 (u'' + u/Rc^2 - 1/Rc)^2`,
+    /// for a stiffness in N mm².
     pub(super) fn bending(&self, stiffness_n_mm2: f64) -> (BandedMatrix, Vec<f64>) {
         let (unit, load) = &self.unit_bending;
         let scaled = |entries: &[f64]| entries.iter().map(|entry| stiffness_n_mm2 * entry).collect();
@@ -122,13 +128,14 @@ impl Grid {
         (form, scaled(load))
     }
 
-    /// Number of nodes.
+    /// Returns the number of nodes.
     pub(super) fn len(&self) -> usize {
         self.angle_rad.len()
     }
 }
 
-/// Bending by the three-point second difference, with no moment at both ends.
+/// Returns the terms of bending for a stiffness of 1 N mm², by the three-point second difference,
+/// with free ends.
 fn unit_bending(element_mm: &[f64], rc: f64) -> (BandedMatrix, Vec<f64>) {
     let n = element_mm.len() + 1;
     let mut form = BandedMatrix::zeros(n);
@@ -158,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pin_has_a_node_and_lengths_add_up() {
+    fn every_pin_has_a_node() {
         let bed = Bed { outside: OutsidePins::OnSilicone, ..Bed::published() };
         let pins = [-0.4, -0.1, 0.55];
         let grid = Grid::new(1.1, &pins, &bed, 100);
@@ -173,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn free_ends_have_silicone_between_the_pins_only() {
+    fn free_spans_have_no_silicone() {
         let bed = Bed { outside: OutsidePins::Free, ..Bed::published() };
         let grid = Grid::new(1.1, &[-0.2, 0.2], &bed, 100);
         let silicone: f64 = grid.silicone_mm.iter().sum();

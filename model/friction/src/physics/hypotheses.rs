@@ -1,87 +1,97 @@
-//! What the tendon does outside the pins: hypotheses weighed by every fact that the paper prints.
+//! Hypotheses about the tendon's path outside the pins, weighted by the facts that the paper
+//! prints.
 //!
-//! The wrap is 63.89 degrees, the pins span 24 to 60, and the paper does not say what the tendon does on the rest. Each
-//! hypothesis gets the three constants that fit the seven maxima best, and is compared with each fact by the scatter that
-//! the fact has. A constant that was set by a fact is not judged by it. The radius, which the paper does not give either,
-//! is varied, and the likelihoods are averaged.
+//! The wrap is 63.89 degrees, the pins span 24 to 60 degrees, and the paper does not describe the
+//! rest. Each hypothesis has the three constants that fit the seven maxima best, and is compared
+//! with each fact, relative to the scatter of the fact. A fact that set a constant of a hypothesis
+//! is not used to test it. The paper does not give the radius either: the likelihoods are averaged
+//! over possible radii.
 
 use serde::Serialize;
 
+use super::constants::Constants;
 use super::fit::{FitError, fit, published_maxima};
-use super::{Bed, Constants, OutsidePins, PhysicsSwitch};
+use super::switch::PhysicsSwitch;
+use crate::bed::{Bed, OutsidePins};
+use crate::contact::Contact;
+use crate::pattern::PinPattern;
 use crate::published::{self, LAYOUTS};
-use crate::{Contact, PinPattern, Substrate};
+use crate::substrate::Substrate;
 
-/// Scatter of the maxima about a fit, relative.
+/// Relative scatter of the maxima about a fit.
 const MAXIMA_SCATTER: f64 = 0.05;
-/// Standard deviation of the printed onset, N: it is one of the weights, about 5 N apart.
+/// Standard deviation of the printed onset, N: the weights are about 5 N apart.
 const ONSET_SD_N: f64 = 1.4;
-/// Standard deviation of a statement that two curves are the same, relative.
+/// Relative standard deviation of a statement that two curves are equal.
 const SAME_SD: f64 = 0.05;
-/// Standard deviation of the logarithm of the ratio in which three-single begins to switch after three-double, by the
-/// paper's eq. 4: it puts the beginning of three-double at 8.5 N, where 15.31 N is printed, a factor of 1.8 for each.
+/// Standard deviation of the logarithm of [`ORDER_RATIO`]: by eq. 4 three-double begins to switch
+/// at 8.5 N, and the paper prints 15.31 N, a factor of 1.8 for each layout.
 const ORDER_SD: f64 = 0.85;
-/// That ratio by eq. 4: the half loads are 39.5 and 44.0 N.
+/// Ratio of the loads at which three-single and three-double begin to switch, by eq. 4 with half
+/// loads of 44.0 and 39.5 N.
 const ORDER_RATIO: f64 = 44.0 / 39.5;
-/// Silicone's share of friction at which a curve visibly leaves that of its pins.
+/// Silicone's share of friction at which a curve visibly deviates from that of its pins.
 const VISIBLE_SHARE: f64 = 0.02;
-/// Share at which a device has begun to switch: where the thresholds are compared.
+/// Silicone's share of friction at which a device has begun to switch.
 const BEGUN_SHARE: f64 = 0.10;
-/// Radii of the silicone's surface that the paper leaves possible, mm.
+/// Possible radii of the silicone's surface, mm.
 const RADII_MM: [f64; 3] = [18.0, 22.0, 26.0];
-/// Heaviest load at which a beginning is looked for, N, and the step.
-const LOOKED_N: (f64, f64) = (80.0, 0.5);
+/// Heaviest load and step of the search for the begin of switching, N.
+const SEARCH_N: (f64, f64) = (80.0, 0.5);
 
-/// The angle over which the tendon turns.
+/// Angle over which the tendon turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Turned {
-    /// 63.89 degrees with every layout.
+pub enum TurnAngle {
+    /// The wrap angle, 63.89 degrees with every layout.
     FullWrap,
-    /// What the pins span.
+    /// The angle from the first to the last pin.
     PinSpan,
 }
 
-/// A hypothesis.
+/// Hypothesis about the path of the tendon.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Hypothesis {
-    /// In words.
+    /// Description.
     pub name: &'static str,
-    /// What carries the tendon.
+    /// Support of the tendon.
     pub bed: Bed,
-    /// Where it turns.
-    pub turned: Turned,
-    /// Whether the onset of three-double set one of its constants; then the onset says nothing about it.
+    /// Angle over which the tendon turns.
+    #[serde(rename = "turned")]
+    pub turn_angle: TurnAngle,
+    /// Whether the onset of three-double set one of its constants; it is then not tested by the
+    /// onset.
     pub set_by_onset: bool,
 }
 
-/// A fact, and what a hypothesis makes of it.
+/// Comparison of a hypothesis with a fact.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Compared {
-    /// The fact.
+pub struct FactComparison {
+    /// Fact.
     pub fact: &'static str,
-    /// What the hypothesis says, in words.
+    /// Value of the hypothesis, as text.
     pub here: String,
-    /// Squared deviation over squared scatter: 1 is usual, 9 is three standard deviations off. Of the maxima, their sum.
+    /// Squared deviation over squared scatter: 1 is usual, 9 is a deviation of three standard
+    /// deviations. For the maxima, the sum over them.
     pub chi_squared: f64,
 }
 
-/// What the facts say of a hypothesis.
+/// Result of the test of a hypothesis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HypothesisFinding {
-    /// The hypothesis.
+    /// Hypothesis.
     pub hypothesis: Hypothesis,
-    /// The constants that fit the seven maxima best, at the published bed's radius.
+    /// Constants that fit the seven maxima best, with the radius of the published bed.
     pub constants: Constants,
-    /// Their root mean square relative error.
+    /// Root mean square relative error of the maxima.
     pub rms: f64,
-    /// Every fact that may judge it, at that radius.
-    pub compared: Vec<Compared>,
-    /// Natural logarithm of its likelihood, averaged over the radii that the paper leaves possible.
+    /// Comparison with every fact that can test it, with that radius.
+    pub compared: Vec<FactComparison>,
+    /// Natural logarithm of the likelihood, averaged over the possible radii.
     pub log_likelihood: f64,
 }
 
-/// The hypotheses that are weighed, the default of [`Bed::published`] first.
+/// Returns the hypotheses, that of [`Bed::published`] first.
 pub fn hypotheses() -> Vec<Hypothesis> {
     let bed =
         |outside, softening, bending_n_mm2| Bed { outside, softening, bending_n_mm2, ..Bed::published() };
@@ -94,32 +104,34 @@ pub fn hypotheses() -> Vec<Hypothesis> {
         ("free outside the pins, a string", bed(free, soft, 0.0), true),
         ("free outside the pins, tendon stiff in bending", bed(free, 0.0, stiff), false),
     ]
-    .map(|(name, bed, set_by_onset)| Hypothesis { name, bed, turned: Turned::FullWrap, set_by_onset })
+    .map(|(name, bed, set_by_onset)| Hypothesis { name, bed, turn_angle: TurnAngle::FullWrap, set_by_onset })
     .into_iter()
     .chain([Hypothesis {
         name: "the tendon turns over the pins' span only",
         bed: Bed::published(),
-        turned: Turned::PinSpan,
+        turn_angle: TurnAngle::PinSpan,
         set_by_onset: false,
     }])
     .collect()
 }
 
-/// The same hypothesis at one radius.
+/// Test of a hypothesis at one radius.
 struct AtRadius {
     constants: Constants,
     rms: f64,
-    compared: Vec<Compared>,
+    compared: Vec<FactComparison>,
 }
 
 impl Hypothesis {
+    /// Returns the angle in radians over which the tendon turns with these pins.
     fn wrap_rad(&self, pins: &PinPattern) -> f64 {
-        match (self.turned, pins.span_rad()) {
-            (Turned::PinSpan, Some(span)) => span,
+        match (self.turn_angle, pins.span_rad()) {
+            (TurnAngle::PinSpan, Some(span)) => span,
             _ => published::wrap_angle_rad(),
         }
     }
 
+    /// Returns the switch of a published layout.
     fn switch(&self, layout: usize, substrate: Substrate, constants: Constants) -> Option<PhysicsSwitch> {
         let pins = PinPattern::even(LAYOUTS[layout].pins, LAYOUTS[layout].pitch_rad());
         let wrap = self.wrap_rad(&pins);
@@ -127,10 +139,10 @@ impl Hypothesis {
         Some(PhysicsSwitch::new(&contact, constants))
     }
 
-    /// Fits the constants and compares with every fact, at each radius.
+    /// Fits the constants and compares the hypothesis with every fact, at each radius.
     ///
     /// # Errors
-    /// [`FitError`] if the hypothesis cannot be computed.
+    /// [`FitError`] if the model does not converge.
     pub fn test(&self) -> Result<HypothesisFinding, FitError> {
         let here = self.at_radius()?;
         let mut likelihoods = Vec::with_capacity(RADII_MM.len());
@@ -149,6 +161,7 @@ impl Hypothesis {
         })
     }
 
+    /// Tests the hypothesis at the radius of its bed.
     fn at_radius(&self) -> Result<AtRadius, FitError> {
         let maxima = published_maxima(|pins| self.wrap_rad(pins));
         let fitted = fit(&self.bed, &maxima.iter().collect::<Vec<_>>())?;
@@ -157,7 +170,7 @@ impl Hypothesis {
             let Some(switch) = self.switch(layout, Substrate::Silicone, constants) else {
                 return Ok(f64::INFINITY);
             };
-            let (most, step) = LOOKED_N;
+            let (most, step) = SEARCH_N;
             let loads: Vec<f64> = (1..=(most / step) as usize).map(|i| step * i as f64).collect();
             let states = switch.states(&loads)?;
             let Some(above) = states.iter().position(|s| s.silicone_share >= share) else { return Ok(most) };
@@ -174,13 +187,13 @@ impl Hypothesis {
         let weights = published::WEIGHTS_G.map(published::load_n);
         let onset = published::THREE_DOUBLE_ONSET_N;
         let before = weights.iter().copied().rev().find(|w| *w < onset).unwrap_or(weights[0]);
-        let mut compared = vec![Compared {
+        let mut compared = vec![FactComparison {
             fact: "the seven maxima",
             here: format!("RMS {:.1} %", 100.0 * fitted.rms),
             chi_squared: fitted.errors.iter().map(|(_, e)| (e / MAXIMA_SCATTER).powi(2)).sum(),
         }];
         let mut fact = |fact: &'static str, here: String, deviation: f64| {
-            compared.push(Compared { fact, here, chi_squared: deviation.powi(2) });
+            compared.push(FactComparison { fact, here, chi_squared: deviation.powi(2) });
         };
         if !self.set_by_onset {
             let here = reaches(1, VISIBLE_SHARE)?;
@@ -189,7 +202,7 @@ impl Hypothesis {
         let double = excess(1, before)?;
         fact("three-double on its pins only before the onset", percent(double), double / SAME_SD);
         let six = excess(0, weights[weights.len() / 2])?;
-        fact("six-single alike with and without silicone", percent(six), six / SAME_SD);
+        fact("six-single equal with and without silicone", percent(six), six / SAME_SD);
         let (double, single) = (reaches(1, BEGUN_SHARE)?, reaches(2, BEGUN_SHARE)?);
         fact(
             "three-single begins to switch after three-double",
@@ -204,8 +217,7 @@ fn percent(share: f64) -> String {
     format!("{:+.0} %", 100.0 * share)
 }
 
-/// Each finding's share of the likelihood of all: how strongly the facts favour it over the others, were all as likely
-/// beforehand.
+/// Returns the posterior probability of each hypothesis, with equal prior probabilities.
 pub fn weights(findings: &[HypothesisFinding]) -> Vec<f64> {
     let best = findings.iter().map(|f| f.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
     let raw: Vec<f64> = findings.iter().map(|f| libm::exp(f.log_likelihood - best)).collect();

@@ -1,26 +1,28 @@
-//! Tension marched along the wrap, from the load to the motor, in one direction of motion.
+//! Tension along the wrap, integrated from the load to the motor for one direction of motion.
 //!
-//! A contact that turns the tendon by `theta` raises the friction exponent by `kappa sqrt(T theta) theta` at a pin
-//! (ploughing of the coating, `model/doc/friction-laws.md`: `mu = kappa sqrt(N)`) and by `mu_s theta` on the silicone;
-//! `T` is the local tension. Shape and tension depend on each other, and are found in turn until neither changes.
+//! A contact that turns the tendon by `theta` raises the friction exponent by
+//! `kappa sqrt(T theta) theta` at a pin (ploughing of the coating, `model/doc/friction-laws.md`:
+//! `mu = kappa sqrt(N)`), and by `mu_s theta` on the silicone; `T` is the local tension. Shape and
+//! tension depend on each other: a fixed-point iteration computes both.
 
+use super::constants::Constants;
 use super::equilibrium::{Equilibrium, Supports};
-use super::{Constants, PhysicsError};
-use crate::Direction;
+use super::error::PhysicsError;
+use crate::capstan::Direction;
 
-/// Rounds of shape and tension before the search is given up; 3 to 6 are usual.
-const MAX_ROUNDS: usize = 40;
-/// Rounds in which the tension found is taken as it is.
-const UNDAMPED_ROUNDS: usize = 8;
-/// Largest relative change of the tension between rounds at which they agree.
-const AGREEMENT: f64 = 1e-6;
+/// Largest number of iterations; 3 to 6 are usual.
+const MAX_ITERATIONS: usize = 40;
+/// Number of iterations without damping of the tension.
+const UNDAMPED_ITERATIONS: usize = 8;
+/// Largest relative change of the tension in the last iteration.
+const TOLERANCE: f64 = 1e-6;
 
-/// A loaded tendon that slides in one direction.
+/// State of a loaded tendon that slides in one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sliding {
-    /// Friction exponent from the pins: their part of `ln(T/F)`, without its sign.
+    /// Friction exponent of the pins: their part of `|ln(T/F)|`.
     pub(super) pins_exponent: f64,
-    /// Friction exponent from the silicone.
+    /// Friction exponent of the silicone.
     pub(super) silicone_exponent: f64,
     /// Turn at each pin, rad.
     pub(super) pin_turn_rad: Vec<f64>,
@@ -28,35 +30,38 @@ pub(super) struct Sliding {
     pub(super) silicone_turn_rad: f64,
     /// Tension at each node, N.
     pub(super) tension_n: Vec<f64>,
-    /// Shape and forces.
+    /// Shape and support forces.
     pub(super) shape: Equilibrium,
-    /// Factor that makes the turns sum to the wrap: 1 within a few percent, what the string's linearisation leaves.
+    /// Factor that makes the turns sum to the wrap. It differs from 1 by a few percent, the error
+    /// of the linearised string.
     pub(super) closure: f64,
 }
 
-/// A tendon about to slide over its supports.
+/// Problem of a tendon that slides over its supports.
 #[derive(Clone, Copy)]
 pub(super) struct Slide<'a> {
-    /// What carries it.
+    /// Supports of the tendon.
     pub(super) supports: Supports<'a>,
-    /// Friction of its materials.
+    /// Friction of the materials.
     pub(super) constants: &'a Constants,
     /// Sum of all turns, rad.
     pub(super) wrap_rad: f64,
-    /// Load that holds its first node, N.
+    /// Load at the first node, N.
     pub(super) load_n: f64,
-    /// Which way it moves.
+    /// Direction of motion.
     pub(super) direction: Direction,
 }
 
-/// Slides a tendon; `start` is a state nearby, such as the one at the load before.
+/// Computes the state of a sliding tendon; `start` is a similar state, such as that at the previous
+/// load.
 ///
 /// # Errors
-/// [`PhysicsError`] if the shape or the tension does not settle, or if nothing carries the tendon.
+/// [`PhysicsError`] if the shape or the tension does not converge, or if nothing supports the
+/// tendon.
 pub(super) fn slide(tendon: Slide<'_>, start: Option<&Sliding>) -> Result<Sliding, PhysicsError> {
     let Slide { supports, load_n, .. } = tendon;
     let nodes = supports.grid.len();
-    // A nearby state's tension, scaled to the new load.
+    // The tension of the similar state, scaled to the load.
     let mut tension_n = match start.filter(|s| s.tension_n.len() == nodes) {
         Some(near) => {
             let scale = load_n / near.tension_n.first().copied().unwrap_or(load_n);
@@ -65,26 +70,27 @@ pub(super) fn slide(tendon: Slide<'_>, start: Option<&Sliding>) -> Result<Slidin
         None => vec![load_n; nodes],
     };
     let mut gap: Option<Vec<f64>> = start.map(|s| s.shape.gap_mm.clone()).filter(|gap| gap.len() == nodes);
-    for round in 0..MAX_ROUNDS {
+    for iteration in 0..MAX_ITERATIONS {
         let shape = supports
             .equilibrium(&tension_n, gap.as_deref())
             .or_else(|_| supports.equilibrium(&tension_n, None))?;
         let (sliding, change) = march(tendon, &tension_n, shape)?;
-        if change <= AGREEMENT {
+        if change <= TOLERANCE {
             return Ok(sliding);
         }
-        if round < UNDAMPED_ROUNDS {
+        if iteration < UNDAMPED_ITERATIONS {
             tension_n = sliding.tension_n;
         } else {
-            // Shape and tension chase each other: meet half-way.
+            // Shape and tension oscillate: damp by the geometric mean.
             tension_n.iter_mut().zip(&sliding.tension_n).for_each(|(t, new)| *t = (*t * new).sqrt());
         }
         gap = Some(sliding.shape.gap_mm);
     }
-    Err(PhysicsError::TensionUnsettled { load_n, rounds: MAX_ROUNDS })
+    Err(PhysicsError::TensionNotConverged { load_n, iterations: MAX_ITERATIONS })
 }
 
-/// One pass along the wrap: turns from the forces, tension from the turns. Also the largest relative change of tension.
+/// Integrates along the wrap: turns from the forces, tension from the turns. Also returns the
+/// largest relative change of the tension.
 fn march(tendon: Slide<'_>, tension_n: &[f64], shape: Equilibrium) -> Result<(Sliding, f64), PhysicsError> {
     let Slide { supports, constants, wrap_rad, load_n, direction } = tendon;
     let grid = supports.grid;
@@ -92,7 +98,7 @@ fn march(tendon: Slide<'_>, tension_n: &[f64], shape: Equilibrium) -> Result<(Sl
     let turned: f64 = shape.silicone_n.iter().zip(tension_n).map(|(q, t)| q / t).sum::<f64>()
         + shape.pin_n.iter().zip(&grid.pins).map(at_pin).sum::<f64>();
     if turned.is_nan() || turned <= 0.0 {
-        return Err(PhysicsError::NothingCarries);
+        return Err(PhysicsError::NoSupport);
     }
     let closure = wrap_rad / turned;
     let pin_turn_rad: Vec<f64> = shape.pin_n.iter().zip(&grid.pins).map(|p| closure * at_pin(p)).collect();
@@ -113,7 +119,7 @@ fn march(tendon: Slide<'_>, tension_n: &[f64], shape: Equilibrium) -> Result<(Sl
             rise += ploughing;
             next += 1;
         }
-        // The tension at a node is that in the middle of what it carries.
+        // The tension of a node is that in the middle of its contact.
         let here = load_n * libm::exp(direction.sign() * (log_ratio + rise / 2.0));
         log_ratio += rise;
         change = change.max((here / t - 1.0).abs());
@@ -131,9 +137,9 @@ fn march(tendon: Slide<'_>, tension_n: &[f64], shape: Equilibrium) -> Result<(Sl
     Ok((sliding, change))
 }
 
-/// Turn at each pin of a rigid proxy that touches, rad: half of both neighbouring pitches, the outermost take what the
-/// wrap leaves. A pin beyond the wrap touches as long as the chord to its neighbour turns less than the tendon does in
-/// the end; there its turn reaches zero.
+/// Returns the turn at each touching pin of a rigid proxy, rad: half of both neighbouring pitches,
+/// and the rest of the wrap at the outermost pins. A pin beyond the wrap touches while the chord to
+/// its neighbour turns less than the tendon; its turn then falls continuously to zero.
 pub(super) fn polygon_turns_rad(pins_rad: &[f64], wrap_rad: f64) -> Vec<f64> {
     let mut pins_rad = pins_rad;
     while let [.., before, last] = pins_rad
@@ -157,10 +163,12 @@ pub(super) fn polygon_turns_rad(pins_rad: &[f64], wrap_rad: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Friction exponent of pins on a rigid proxy, marched from the load in `direction`; `kappa` in N^-0.5.
+/// Returns the friction exponent of pins on a rigid proxy, integrated from the load in `direction`;
+/// `kappa` in N^-0.5.
 pub(super) fn pins_alone_exponent(turns_rad: &[f64], kappa: f64, load_n: f64, direction: Direction) -> f64 {
     turns_rad.iter().fold(0.0, |x, theta| {
-        // T in the middle of the pin, by two steps of the fixed point; the rise is a few percent.
+        // The tension in the middle of the pin, by two fixed-point iterations; the rise is a few
+        // percent.
         let middle = |rise: f64| load_n * libm::exp(direction.sign() * (x + rise / 2.0));
         let plough = |t: f64| kappa * (t * theta).sqrt() * theta;
         let first = plough(middle(0.0));

@@ -1,20 +1,22 @@
-//! Where the tendon turns: forces of pins and silicone along the wrap, for figures and for checks.
+//! Forces and gaps along the wrap, for figures and checks.
 
 use serde::Serialize;
 
-use super::fit::PUBLISHED_FIT;
+use super::constants::PUBLISHED_FIT;
+use super::error::PhysicsError;
 use super::march::Sliding;
-use super::{PhysicsError, PhysicsSwitch};
-use crate::{Contact, Direction};
+use super::switch::PhysicsSwitch;
+use crate::capstan::Direction;
+use crate::contact::Contact;
 
-/// The tendon along the wrap at one load, sliding in one direction.
+/// Tendon along the wrap at one load, sliding in one direction.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContactProfile {
-    /// Angles in radians, ascending; zero in the middle.
+    /// Angles in radians, ascending; zero is the middle of the wrap.
     pub angle_rad: Vec<f64>,
     /// Gap between the tendon's underside and the undeformed silicone, mm.
     pub gap_mm: Vec<f64>,
-    /// Angles between which the silicone can touch, rad.
+    /// First and last angle at which silicone can touch the tendon, rad.
     pub silicone_rad: (f64, f64),
     /// Local tension, N.
     pub tension_n: Vec<f64>,
@@ -28,10 +30,10 @@ pub struct ContactProfile {
     pub silicone_turn_rad: f64,
 }
 
-/// The profile of `contact` under `load_n`, with the constants fitted to the published maxima.
+/// Computes the profile of `contact` under `load_n` newtons, with the published constants.
 ///
 /// # Errors
-/// [`PhysicsError`] if the equilibrium is not found.
+/// [`PhysicsError`] if the model does not converge.
 pub fn contact_profile(
     contact: &Contact,
     load_n: f64,
@@ -41,10 +43,11 @@ pub fn contact_profile(
     Ok(profile(&switch, switch.sliding(load_n, direction, None)?))
 }
 
-/// The profiles under several loads, each found from the one before: neighbours are much alike.
+/// Computes the profiles under several loads in newtons. Each starts from the previous one, which
+/// is fast for similar loads.
 ///
 /// # Errors
-/// [`PhysicsError`] if an equilibrium is not found.
+/// [`PhysicsError`] if the model does not converge.
 pub fn contact_profiles(
     contact: &Contact,
     loads_n: &[f64],

@@ -1,4 +1,4 @@
-//! The noise of a synthetic rig.
+//! Noise of a synthetic rig.
 
 use pinswitch_calibration::inference::Noise;
 use serde::{Deserialize, Serialize};
@@ -7,52 +7,54 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct NoisePlan {
-    /// Of one repetition at zero load, in newtons.
+    /// Standard deviation of a repetition at zero load, in newtons.
     #[serde(rename = "repetition_N")]
     pub repetition_n: f64,
-    /// Its growth with load, dimensionless.
+    /// Increase of that standard deviation with load, dimensionless; both add in squares.
     pub repetition_per_load: f64,
-    /// Of a series and direction at zero load, in newtons.
+    /// Standard deviation of the offset of a series and direction at zero load, in newtons.
     #[serde(rename = "series_N")]
     pub series_n: f64,
-    /// Its growth with load, dimensionless.
+    /// Increase of that standard deviation with load, dimensionless; both add in squares.
     pub series_per_load: f64,
     /// Share of rows with a gross error.
     pub outlier_share: f64,
-    /// Size of gross errors in newtons.
+    /// Standard deviation of gross errors in newtons.
     #[serde(rename = "outlier_N")]
     pub outlier_n: f64,
-    /// Share of rows that are lost.
+    /// Share of lost rows.
     pub lost_share: f64,
-    /// Correlation of neighbouring repetitions, 0..1.
+    /// Autocorrelation of successive repetitions: AR(1), 0 to 1.
     pub autocorrelation: f64,
-    /// Logarithmic standard deviation of the repetition noise from series to series.
+    /// Standard deviation of the logarithm of the repetition noise between series.
     pub uneven: f64,
-    /// Series whose weight is written down as that of a neighbour.
+    /// Number of series that are labelled with a neighbouring weight.
     pub mislabelled_series: u32,
-    /// Heavy tails: Student's t with three degrees of freedom instead of a normal law, of the same quartiles.
+    /// Student's t distribution with three degrees of freedom instead of a normal distribution with
+    /// the same quartiles.
     pub heavy_tails: bool,
-    /// Logarithmic standard deviation of friction from series to series: the tendon is seated anew.
+    /// Standard deviation of the logarithm of friction between series: tendon seatings.
     #[serde(skip_serializing_if = "is_zero")]
     pub series_scale: f64,
-    /// Logarithmic standard deviation of friction from mount to mount: the tendon wraps a little more or less.
+    /// Standard deviation of the logarithm of friction between mounts.
     #[serde(skip_serializing_if = "is_zero")]
     pub mount_scale: f64,
-    /// Of a series, shared by both directions, at zero load, in newtons.
+    /// Standard deviation of the offset of a series, common to both directions, at zero load, in
+    /// newtons.
     #[serde(rename = "series_common_N", skip_serializing_if = "is_zero")]
     pub series_common_n: f64,
-    /// Its growth with load, dimensionless.
+    /// Increase of that standard deviation with load, dimensionless; both add in squares.
     #[serde(skip_serializing_if = "is_zero")]
     pub series_common_per_load: f64,
-    /// Correlation of the offsets of a series with those of the series before it in time, 0..1.
+    /// Autocorrelation of the offsets of successive series: AR(1), 0 to 1.
     #[serde(skip_serializing_if = "is_zero")]
     pub series_walk: f64,
-    /// Step of the load cell in newtons: readings are multiples of it.
+    /// Resolution of the load cell in newtons.
     #[serde(rename = "resolution_N", skip_serializing_if = "is_zero")]
     pub resolution_n: f64,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
@@ -82,18 +84,20 @@ impl Default for NoisePlan {
 }
 
 impl NoisePlan {
-    /// The noise that a calibration found on a rig, part by part, for rigs like it.
+    /// Converts the estimated noise of a calibration.
     ///
-    /// Offsets that wander in part do so whole here, with less memory: their correlation from series to series is kept. A
-    /// part that groups of rows share (sessions, operators, specimens) is left out: a plan has one of each. What a
-    /// calibration does not estimate (outliers, lost rows, uneven noise, steps of the cell) is absent.
-    pub fn of_rig(noise: Noise) -> Self {
+    /// A calibration splits offsets into an AR(1) process and white noise. Here the whole offset is
+    /// an AR(1) process with the same correlation between successive series. Offsets of sessions,
+    /// operators and specimens are omitted, because a plan has one of each. Outliers, lost rows,
+    /// uneven noise and the resolution, which a calibration does not estimate, are zero.
+    pub fn from_estimate(noise: Noise) -> Self {
         let walk = noise.walk;
-        // Sizes of the offsets' parts are shares of what they are as a whole.
-        let wanders = |share: f64| {
+        // The calibration has the parts as shares of the whole offset.
+        let whole_and_share = |share: f64| {
             if walk.correlation > 0.0 && share > 0.0 { (walk.white.hypot(share), share) } else { (1.0, 0.0) }
         };
-        let ((direction, moving), (common, _)) = (wanders(walk.direction), wanders(walk.common));
+        let ((direction, moving), (common, _)) =
+            (whole_and_share(walk.direction), whole_and_share(walk.common));
         Self {
             repetition_n: noise.repetition.constant_n,
             repetition_per_load: noise.repetition.per_load,
@@ -107,38 +111,6 @@ impl NoisePlan {
             series_common_per_load: common * noise.series_common.per_load,
             series_walk: walk.correlation * (moving / direction).powi(2),
             ..Self::default()
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use pinswitch_calibration::inference::{Levels, Model, Observations, select};
-    use pinswitch_calibration::table::Frame;
-
-    use crate::plan::Plan;
-    use crate::simulate::simulate;
-
-    /// A rig made by the noise that was found on another has that noise: what is planned by it is planned for that rig.
-    #[test]
-    fn the_noise_that_was_found_is_found_again_on_a_rig_made_by_it() {
-        let found = |plan: &Plan| {
-            let rows = simulate(plan).rows;
-            let frame = Frame::new(&rows);
-            let mut data = Observations::new(&frame, &rows).unwrap();
-            select(&Model::baseline(frame), &mut data, Levels::default()).noise
-        };
-        let noise =
-            NoisePlan { series_scale: 0.03, repetition_n: 0.12, series_n: 0.08, ..NoisePlan::default() };
-        let first = found(&Plan { seed: 11, noise, ..Plan::default() });
-        let again = found(&Plan { seed: 12, noise: NoisePlan::of_rig(first), ..Plan::default() });
-        for (name, a, b, factor) in [
-            ("repetition", first.repetition.at(20.0), again.repetition.at(20.0), 1.1),
-            ("series", first.series.at(20.0), again.series.at(20.0), 1.5),
-            ("scale", first.series_scale, again.series_scale, 1.5),
-        ] {
-            assert!(a / b < factor && b / a < factor, "{name}: {a} and {b}");
         }
     }
 }

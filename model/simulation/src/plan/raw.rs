@@ -1,8 +1,8 @@
-//! Sampling of raw logs and what goes wrong in them.
+//! Sampling and faults of raw logs.
 
 use serde::{Deserialize, Serialize};
 
-/// Sampling of the logs, and how often what goes wrong. Shares are of samples, repetitions or logs.
+/// Sampling of the logs, and rates of faults.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RawPlan {
@@ -13,16 +13,16 @@ pub struct RawPlan {
     pub sample_n: f64,
     /// Standard deviation of a time stamp, in seconds.
     pub jitter_s: f64,
-    /// Share of the samples with an electrical spike.
+    /// Share of samples with an electrical spike.
     pub spike_share: f64,
-    /// Share of the samples that are lost.
+    /// Share of lost samples.
     pub lost_share: f64,
-    /// Force at which the channel clips, in newtons; absent, it does not.
+    /// Force at which the channel clips, in newtons; `None` without clipping.
     #[serde(rename = "clip_N", skip_serializing_if = "Option::is_none")]
     pub clip_n: Option<f64>,
-    /// Share of the logs with one move of another length.
+    /// Share of logs with a move of another length.
     pub odd_speed_share: f64,
-    /// Share of the logs in which one repetition is missing.
+    /// Share of logs with a missing repetition.
     pub missing_share: f64,
 }
 

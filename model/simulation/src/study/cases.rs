@@ -1,111 +1,15 @@
-//! Kinds of rig in the study, and the plan of each for a seed.
+//! Kinds of rig in the study, and the random plan of each.
 
 use pinswitch_calibration::effects::{CATALOGUE, Covariate, PaperProtocol, effect_named};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::case::{Case, Group, Truth};
 use super::masks::{drag_n, masked, sizes};
-use super::nulls::{self, NULLS, OFTEN};
+use super::nulls::{self, NULLS};
 use super::outside::{LATER, OUTSIDE, outside};
 use crate::effect_forms::forms_of;
 use crate::plan::{EffectPlan, Plan, Protocol};
-
-/// What is true of a rig.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Truth {
-    /// The paper's model.
-    Nothing,
-    /// Effects of the vocabulary.
-    Effects(Vec<&'static str>),
-    /// Effects of which this protocol cannot tell one from another: the answer must name both.
-    Confounded(Vec<&'static str>),
-    /// The first of two effects that this protocol cannot tell apart, so small that it may be missed: the answer must
-    /// name both, or say that it cannot be excluded.
-    SmallConfounded([&'static str; 2]),
-    /// Something outside the vocabulary.
-    Outside {
-        /// Where it may be found: any of these is right.
-        covariates: &'static [Covariate],
-        /// A name that is as right.
-        or_named: Option<&'static str>,
-    },
-}
-
-/// A group of kinds of rig.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Group {
-    /// No effect.
-    Nulls,
-    /// One effect.
-    Singles,
-    /// One effect, and friction that differs by 1 to 2 % from series to series.
-    Scattered,
-    /// Two effects.
-    Pairs,
-    /// A drag of the guide pulleys that hides a second effect.
-    Masks,
-    /// One effect that the protocol cannot tell from another.
-    Confounded,
-    /// Something outside the vocabulary.
-    Outside,
-}
-
-impl Group {
-    /// All of them.
-    pub const ALL: [Group; 7] = [
-        Group::Nulls,
-        Group::Singles,
-        Group::Scattered,
-        Group::Pairs,
-        Group::Masks,
-        Group::Confounded,
-        Group::Outside,
-    ];
-
-    /// Its word.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Group::Nulls => "nulls",
-            Group::Singles => "singles",
-            Group::Scattered => "scattered",
-            Group::Pairs => "pairs",
-            Group::Masks => "masks",
-            Group::Confounded => "confounded",
-            Group::Outside => "outside",
-        }
-    }
-}
-
-/// One kind of rig.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Case {
-    /// Its effects, or what is wrong with it, in words.
-    pub name: String,
-    /// Its protocol.
-    pub protocol: Protocol,
-    /// The group it is counted in.
-    pub group: Group,
-    /// What is true of it.
-    pub truth: Truth,
-    /// Whether it holds every kind of noise at once, whatever it would have of its own.
-    pub every_noise: bool,
-}
-
-impl Case {
-    /// Whether a word means it: that of its group, or else a part of its name.
-    pub fn is_meant_by(&self, word: &str) -> bool {
-        match Group::ALL.iter().find(|g| g.as_str() == word) {
-            Some(group) => self.group == *group,
-            None => self.name.contains(word),
-        }
-    }
-
-    /// How many rigs of it a study makes that makes `seeds` of every kind: more of the first kinds without effect.
-    pub fn rigs(&self, seeds: u64) -> u64 {
-        let often = NULLS.iter().take(OFTEN).any(|kind| kind.0 == self.name);
-        if often { (10 * seeds).div_ceil(4) } else { seeds }
-    }
-}
 
 /// Pairs of effects in the study.
 const PAIRS: [(&str, &str); 4] = [
@@ -115,11 +19,11 @@ const PAIRS: [(&str, &str); 4] = [
     ("coating_stiffening", "run_in"),
 ];
 
-/// Small effects that the paper's protocol cannot tell from another, with their sizes.
+/// Small effects that are confounded with another in the paper's protocol, with their sizes.
 const SMALL: [(&str, &str, f64); 2] =
     [("rate_dependence", "fixture_compliance", 0.2), ("fixture_compliance", "rate_dependence", 0.05)];
 
-/// All kinds of rig. Effects that a protocol cannot show are left out of it.
+/// Returns all kinds of rig, without effects that are invisible in the protocol.
 pub fn study_cases() -> Vec<Case> {
     let protocols = || [Protocol::Paper, Protocol::Randomised].into_iter();
     let later = protocols()
@@ -170,7 +74,7 @@ fn cases_of(protocol: Protocol) -> Vec<Case> {
     cases
 }
 
-/// The plan of a case and a seed: constants, sizes, forms and noise all drawn.
+/// Returns the plan of a kind and a seed, with random constants, sizes, forms and noise.
 pub fn plan_of(case: &Case, seed: u64) -> Plan {
     let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_mul(0x9E37_79B9).wrapping_add(77));
     let mut plan = match case.protocol {
@@ -191,20 +95,20 @@ pub fn plan_of(case: &Case, seed: u64) -> Plan {
     plan.noise.uneven = if seed.is_multiple_of(2) { 0.15 } else { 0.0 };
     plan.noise.lost_share = if seed.is_multiple_of(4) { 0.03 } else { 0.0 };
     match &case.truth {
-        Truth::Nothing => nulls::make(&case.name, &mut plan.noise, &mut random),
+        Truth::Nothing => nulls::apply(&case.name, &mut plan.noise, &mut random),
         Truth::Effects(ids) | Truth::Confounded(ids) => {
             let drag_n = drag_n(&case.name);
             for id in ids {
                 plan.effects.extend(match drag_n {
-                    Some(n) if *id == "guide_drag" => drawn(id, Some((n, n)), &mut random),
-                    Some(_) => drawn(id, sizes(id, case.protocol), &mut random),
-                    None => drawn(id, None, &mut random),
+                    Some(n) if *id == "guide_drag" => draw_effect(id, Some((n, n)), &mut random),
+                    Some(_) => draw_effect(id, sizes(id, case.protocol), &mut random),
+                    None => draw_effect(id, None, &mut random),
                 });
             }
         }
         Truth::SmallConfounded([id, _]) => {
             let size = SMALL.iter().find(|s| s.0 == *id).map(|s| (s.2, s.2));
-            plan.effects.extend(drawn(id, size, &mut random));
+            plan.effects.extend(draw_effect(id, size, &mut random));
         }
         Truth::Outside { .. } => {
             let layouts = plan.layouts.clone();
@@ -221,16 +125,17 @@ pub fn plan_of(case: &Case, seed: u64) -> Plan {
     plan
 }
 
-/// Whether the series of a randomised rig stand in one random order: where the load before matters, and in half of the
-/// rigs whose friction differs from series to series or that hide an effect.
+/// Whether all series of a randomised rig are in random order: always if the previous load matters,
+/// and in half of the rigs with random effects of series or masked effects.
 fn is_shuffled(case: &Case, seed: u64) -> bool {
     let half = matches!(case.group, Group::Scattered | Group::Masks) || case.name.contains("series scale");
     let always = case.name == "memory of the load before";
     case.protocol == Protocol::Randomised && (always || half && (seed / 2).is_multiple_of(2))
 }
 
-/// An effect with its size, shape and form drawn; the size from the range of the study unless another is given.
-fn drawn(id: &str, sizes: Option<(f64, f64)>, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
+/// Draws size, shape and form of an effect; the range of the size is that of the study, unless
+/// `sizes` is given.
+fn draw_effect(id: &str, sizes: Option<(f64, f64)>, random: &mut ChaCha8Rng) -> Option<EffectPlan> {
     let range = effect_named(id)?.description().study;
     let mut values = Vec::new();
     if let Some((least, most)) = sizes.or(range.size) {
@@ -247,9 +152,10 @@ mod tests {
     use pinswitch_calibration::table::PlateauTable;
 
     use super::*;
+    use crate::simulate::simulate;
 
     #[test]
-    fn plans_of_the_study_can_be_written_and_read() {
+    fn plans_round_trip_through_toml() {
         for case in study_cases() {
             let plan = plan_of(&case, 3);
             let text = toml::to_string(&plan).unwrap();
@@ -257,7 +163,7 @@ mod tests {
         }
     }
 
-    /// The kinds that the study began with.
+    /// Returns the kinds of the first study.
     fn first_kinds() -> impl Iterator<Item = Case> {
         let first = |case: &Case| match case.group {
             Group::Nulls => NULLS[..4].iter().any(|k| k.0 == case.name),
@@ -269,20 +175,20 @@ mod tests {
         study_cases().into_iter().filter(first)
     }
 
-    /// FNV-1a over the tables of these: figures of the study before and after compare.
+    /// FNV-1a hash of the tables: the results of earlier and later studies stay comparable.
     #[test]
-    fn the_first_kinds_make_the_bytes_they_always_made() {
+    fn tables_of_first_kinds_are_unchanged() {
         assert_eq!(first_kinds().count(), 72);
         let mut hash = 0xcbf2_9ce4_8422_2325u64;
         for case in first_kinds() {
-            let text = PlateauTable::write(&crate::simulate(&plan_of(&case, 3)).rows);
+            let text = PlateauTable::write(&simulate(&plan_of(&case, 3)).rows);
             hash = text.bytes().fold(hash, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
         }
         assert_eq!(hash, 0x7cd8_2337_9b64_01d8, "{hash:x}");
     }
 
     #[test]
-    fn plans_are_what_the_names_say() {
+    fn plans_match_their_names() {
         let plan = |name: &str, protocol| {
             let case = study_cases().into_iter().find(|c| c.name == name && c.protocol == protocol);
             plan_of(&case.unwrap(), 4)
@@ -305,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn every_noise_is_that_of_the_rigs_without_effect_that_hold_it() {
+    fn every_noise_applies_to_all_kinds() {
         for case in study_cases() {
             let noise = plan_of(&Case { every_noise: true, ..case }, 4).noise;
             assert!((0.01..0.04).contains(&noise.series_scale) && (0.01..0.03).contains(&noise.mount_scale));
@@ -319,12 +225,12 @@ mod tests {
     }
 
     #[test]
-    fn a_word_means_a_group_or_else_names() {
-        let meant = |word: &str| study_cases().iter().filter(|c| c.is_meant_by(word)).count();
-        assert_eq!(meant("nulls"), 2 * NULLS.len());
-        assert_eq!(meant("masks"), 21);
-        assert_eq!(meant("worn spot"), 2);
-        assert!(meant("singles") > 30 && meant("scattered") >= meant("singles"));
-        assert_eq!(meant("nothing like it"), 0);
+    fn words_match_groups_or_names() {
+        let matches = |word: &str| study_cases().iter().filter(|c| c.matches(word)).count();
+        assert_eq!(matches("nulls"), 2 * NULLS.len());
+        assert_eq!(matches("masks"), 21);
+        assert_eq!(matches("worn spot"), 2);
+        assert!(matches("singles") > 30 && matches("scattered") >= matches("singles"));
+        assert_eq!(matches("an unknown kind"), 0);
     }
 }

@@ -1,5 +1,5 @@
-//! The study's chapter on the next experiment: rigs whose first table leaves open what is true, and what one proposed session
-//! makes of them, beside as many minutes of the paper's protocol.
+//! Study of proposed experiments: rigs whose first session is ambiguous, after one proposed
+//! session, and after as many minutes of the paper's protocol instead.
 
 use pinswitch_calibration::effects::{Vocabulary, effect_named};
 use pinswitch_calibration::experiment::{
@@ -7,19 +7,22 @@ use pinswitch_calibration::experiment::{
 };
 use pinswitch_calibration::inference::{FoundEffect, Levels};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
-use pinswitch_calibration::{Answer, Calibration, ModelFile, PlanQuestion, SessionPlan, Verdict, calibrate};
+use pinswitch_calibration::{Answer, Asked, AskedQuestion, Calibration, ModelFile, Verdict, calibrate};
 
-use super::cases::{Case, Group, Truth, plan_of};
-use super::told_probability::{Promised, table_of};
+use super::answer_forecasts::{AnswerForecast, table_of};
+use super::case::{Case, Group, Truth};
+use super::cases::plan_of;
+use super::figures::median_text;
 use crate::next_session::plan_for;
 use crate::plan::{Plan, Protocol};
 use crate::simulate::{simulate, simulate_rows};
 
-/// Minutes of the proposed session.
+/// Duration of the proposed session in minutes.
 const MINUTES: f64 = 60.0;
 
-/// Effects that the paper's protocol may leave open: rate against compliance against saturation, adhesion against drag, gain
-/// against nonlinearity. Each with the share of its drawn size that is put in: small ones are left open more often.
+/// Effects that the paper's protocol may leave ambiguous: rate, compliance or saturation; adhesion
+/// or drag; gain or nonlinearity. Each has a factor on its random size, because small effects are
+/// ambiguous more often.
 const OPEN: [(&str, f64); 7] = [
     ("rate_dependence", 1.0),
     ("fixture_compliance", 1.0),
@@ -30,35 +33,35 @@ const OPEN: [(&str, f64); 7] = [
     ("load_cell_nonlinearity", 0.25),
 ];
 
-/// What a table says, as far as this chapter asks.
+/// State of the attribution after a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standing {
-    /// The true effect is attributed, alone.
+pub enum Attribution {
+    /// The true effect alone is attributed.
     Alone,
-    /// `ambiguous` or `inconclusive`.
+    /// The verdict is `ambiguous` or `inconclusive`.
     Open,
-    /// Anything else.
+    /// Any other answer.
     Other,
 }
 
-/// What became of one rig.
+/// Outcome of a rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExperimentOutcome {
-    /// After the paper's protocol.
-    pub first: Standing,
-    /// After one proposed session more; `None` where nothing was open.
-    pub proposed: Option<Standing>,
-    /// After as many minutes of the paper's protocol instead.
-    pub repeated: Option<Standing>,
-    /// Minutes that the proposal took.
+    /// Attribution after the paper's protocol.
+    pub first: Attribution,
+    /// Attribution after one more session, as proposed; `None` if the first was not open.
+    pub proposed: Option<Attribution>,
+    /// Attribution after as many minutes of the paper's protocol instead.
+    pub repeated: Option<Attribution>,
+    /// Duration of the proposed session in minutes.
     pub minutes: f64,
-    /// What was told of each question, and whether the proposed session answered it.
-    pub told: Vec<Promised>,
-    /// The same of the paper's protocol.
-    pub told_of_repeating: Vec<Promised>,
+    /// Forecasts for the questions of the proposed session.
+    pub forecasts: Vec<AnswerForecast>,
+    /// Forecasts for the same questions with the paper's protocol.
+    pub repetition_forecasts: Vec<AnswerForecast>,
 }
 
-/// The kinds of rig of this chapter.
+/// Returns the kinds of rig of this study.
 pub fn experiment_cases() -> Vec<Case> {
     OPEN.map(|(id, _)| Case {
         name: id.to_owned(),
@@ -70,7 +73,8 @@ pub fn experiment_cases() -> Vec<Case> {
     .to_vec()
 }
 
-/// The plan of a kind and a seed: the form is the fitter's, and the size its share of that drawn, times `factor`.
+/// Returns the plan of a kind and a seed, with the fitter's form and a size multiplied by the
+/// factor of [`OPEN`] and by `factor`.
 fn open_plan(case: &Case, seed: u64, factor: f64) -> Plan {
     let mut plan = plan_of(case, seed);
     let share = OPEN.iter().find(|(id, _)| *id == case.name).map_or(1.0, |(_, share)| factor * *share);
@@ -82,49 +86,58 @@ fn open_plan(case: &Case, seed: u64, factor: f64) -> Plan {
     plan
 }
 
-/// Calibrates one rig whose effect is `factor` times as large as this chapter's, proposes a session where something is open,
-/// makes it, and calibrates both tables together. `None` if a table cannot be used.
+/// Calibrates a rig whose effect is larger by `factor` than usual in this study. If the result is
+/// open, proposes a session, simulates it, and calibrates both tables together. Returns `None` if a
+/// table is not usable.
 pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) -> Option<ExperimentOutcome> {
     let plan = open_plan(case, seed, factor);
     let rows = simulate(&plan).rows;
-    let found = calibrate(&rows, levels).ok()?;
-    let first = standing(case, &found);
-    if first != Standing::Open {
+    let calibration = calibrate(&rows, levels).ok()?;
+    let first = attribution(case, &calibration);
+    if first != Attribution::Open {
         return Some(ExperimentOutcome {
             first,
             proposed: None,
             repeated: None,
             minutes: 0.0,
-            told: Vec::new(),
-            told_of_repeating: Vec::new(),
+            forecasts: Vec::new(),
+            repetition_forecasts: Vec::new(),
         });
     }
     let rig = RigLimits::default();
-    let proposal = proposed(&found, &rows, &rig, levels)?;
-    let after = |runs: &[PlannedRun], told: fn(&QuestionOutlook) -> f64| {
-        let asked = SessionPlan {
+    let proposal = proposed(&calibration, &rows, &rig, levels)?;
+    let after = |runs: &[PlannedRun], probability: fn(&QuestionOutlook) -> f64| {
+        let asked = Asked {
             minutes: proposal.minutes,
             runs: Vec::new(),
-            questions: proposal.questions.iter().map(|q| asked(q, told(q))).collect(),
+            questions: proposal.questions.iter().map(|q| asked(q, probability(q))).collect(),
         };
         let Some(session) = session(&plan, runs, &rig) else { return (None, Vec::new()) };
         let Some(rows) = joined(&rows, session) else { return (None, Vec::new()) };
         let Ok(both) = calibrate(&rows, levels) else { return (None, Vec::new()) };
         let highest_n = rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
         let answers = asked.answered(&both.report, highest_n).questions;
-        let promised = answers
-            .iter()
-            .map(|q| Promised { probability: q.resolved_probability, is_answered: q.answer != Answer::Open });
-        (Some(standing(case, &both)), promised.collect())
+        let forecasts = answers.iter().map(|q| AnswerForecast {
+            probability: q.resolved_probability,
+            is_answered: q.answer != Answer::Open,
+        });
+        (Some(attribution(case, &both)), forecasts.collect())
     };
-    let (proposed, told) = after(&proposal.runs, |q| q.resolved_probability);
-    let (repeated, told_of_repeating) = after(&paper_runs(&rig, proposal.minutes), |q| q.by_repeating);
-    Some(ExperimentOutcome { first, proposed, repeated, minutes: proposal.minutes, told, told_of_repeating })
+    let (proposed, forecasts) = after(&proposal.runs, |q| q.resolved_probability);
+    let (repeated, repetition_forecasts) = after(&paper_runs(&rig, proposal.minutes), |q| q.by_repeating);
+    Some(ExperimentOutcome {
+        first,
+        proposed,
+        repeated,
+        minutes: proposal.minutes,
+        forecasts,
+        repetition_forecasts,
+    })
 }
 
-/// A question as a plan's file holds it.
-fn asked(question: &QuestionOutlook, resolved_probability: f64) -> PlanQuestion {
-    PlanQuestion {
+/// Converts a question to the form of a plan's file.
+fn asked(question: &QuestionOutlook, resolved_probability: f64) -> AskedQuestion {
+    AskedQuestion {
         between: question.between.clone(),
         size: question.size,
         resolved_probability,
@@ -133,23 +146,32 @@ fn asked(question: &QuestionOutlook, resolved_probability: f64) -> PlanQuestion 
     }
 }
 
-fn standing(case: &Case, found: &Calibration) -> Standing {
-    let named: Vec<Vec<&str>> = found.selection.effects.iter().map(FoundEffect::ids).collect();
-    match found.report.verdict {
-        Verdict::Attributed if named == [vec![case.name.as_str()]] => Standing::Alone,
-        Verdict::Ambiguous | Verdict::Inconclusive => Standing::Open,
-        _ => Standing::Other,
+/// Returns the state of the attribution of a calibration.
+fn attribution(case: &Case, calibration: &Calibration) -> Attribution {
+    let named: Vec<Vec<&str>> = calibration.selection.effects.iter().map(FoundEffect::ids).collect();
+    match calibration.report.verdict {
+        Verdict::Attributed if named == [vec![case.name.as_str()]] => Attribution::Alone,
+        Verdict::Ambiguous | Verdict::Inconclusive => Attribution::Open,
+        _ => Attribution::Other,
     }
 }
 
-fn proposed(found: &Calibration, rows: &[PlateauRow], rig: &RigLimits, levels: Levels) -> Option<Proposal> {
-    let model = ModelFile::new(&found.selection.augmented, &found.data, found.selection.noise);
+/// Proposes a session after a calibration.
+fn proposed(
+    calibration: &Calibration,
+    rows: &[PlateauRow],
+    rig: &RigLimits,
+    levels: Levels,
+) -> Option<Proposal> {
+    let model =
+        ModelFile::new(&calibration.selection.augmented, &calibration.data, calibration.selection.noise);
     let vocabulary = Vocabulary::built_in();
-    let known = Known { report: &found.report, model: &model, rows, vocabulary: &vocabulary, name: "study" };
+    let known =
+        Known { report: &calibration.report, model: &model, rows, vocabulary: &vocabulary, name: "study" };
     propose(known, rig, MINUTES, levels).ok()
 }
 
-/// The runs made on the rig of a plan, as a later session.
+/// Simulates the runs as a later session of the rig of a plan.
 fn session(plan: &Plan, runs: &[PlannedRun], rig: &RigLimits) -> Option<Vec<PlateauRow>> {
     let rows = rows_of(runs, rig, "");
     if rows.is_empty() {
@@ -158,7 +180,7 @@ fn session(plan: &Plan, runs: &[PlannedRun], rig: &RigLimits) -> Option<Vec<Plat
     Some(simulate_rows(&plan_for(plan, &rows), rows).rows)
 }
 
-/// Both tables as the command line joins them.
+/// Joins both tables like the command line.
 fn joined(first: &[PlateauRow], second: Vec<PlateauRow>) -> Option<Vec<PlateauRow>> {
     let table = |rows: &[PlateauRow], name: &str| {
         Some((PlateauTable::read(PlateauTable::write(rows).as_bytes(), name).ok()?, name.to_owned()))
@@ -167,7 +189,7 @@ fn joined(first: &[PlateauRow], second: Vec<PlateauRow>) -> Option<Vec<PlateauRo
     Some(PlateauTable::joined(tables).ok()?.rows)
 }
 
-/// The outcomes by kind.
+/// Outcomes by kind of rig.
 #[derive(Clone, Debug, Default)]
 pub struct ExperimentStudy {
     outcomes: Vec<(Case, Vec<ExperimentOutcome>)>,
@@ -179,33 +201,34 @@ impl ExperimentStudy {
         self.outcomes.push((case, outcomes));
     }
 
-    /// A row for each kind, and one for all, in Markdown.
+    /// Returns a row for each kind, one for all, and the reliability of the forecasts, in Markdown.
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "| rig | rigs | attributed alone at first | open at first | of these attributed alone after one proposed session | after as many minutes of the paper's protocol | median minutes |\n|---|---|---|---|---|---|---|\n",
+            "| rig | rigs | attributed alone after the first session | open | of these attributed alone after one proposed session | after as many minutes of the paper's protocol | median minutes |\n|---|---|---|---|---|---|---|\n",
         );
         for (case, outcomes) in &self.outcomes {
             text.push_str(&row(&case.name, &outcomes.iter().collect::<Vec<_>>()));
         }
         let all: Vec<&ExperimentOutcome> = self.outcomes.iter().flat_map(|(_, o)| o).collect();
         text.push_str(&row("all", &all));
-        let promised = |of: fn(&ExperimentOutcome) -> &Vec<Promised>| -> Vec<Promised> {
+        let forecasts = |of: fn(&ExperimentOutcome) -> &Vec<AnswerForecast>| -> Vec<AnswerForecast> {
             all.iter().flat_map(|outcome| of(outcome)).copied().collect()
         };
-        format!("{text}\n{}", table_of(&promised(|o| &o.told), &promised(|o| &o.told_of_repeating)))
+        format!("{text}\n{}", table_of(&forecasts(|o| &o.forecasts), &forecasts(|o| &o.repetition_forecasts)))
     }
 }
 
+/// Returns a row of the table.
 fn row(name: &str, outcomes: &[&ExperimentOutcome]) -> String {
     let count = |of: &dyn Fn(&ExperimentOutcome) -> bool| outcomes.iter().filter(|o| of(o)).count();
     format!(
         "| {name} | {} | {} | {} | {} | {} | {} |\n",
         outcomes.len(),
-        count(&|o| o.first == Standing::Alone),
-        count(&|o| o.first == Standing::Open),
-        count(&|o| o.proposed == Some(Standing::Alone)),
-        count(&|o| o.repeated == Some(Standing::Alone)),
-        super::summary::median_told(outcomes.iter().filter(|o| o.proposed.is_some()).map(|o| o.minutes), 0)
+        count(&|o| o.first == Attribution::Alone),
+        count(&|o| o.first == Attribution::Open),
+        count(&|o| o.proposed == Some(Attribution::Alone)),
+        count(&|o| o.repeated == Some(Attribution::Alone)),
+        median_text(outcomes.iter().filter(|o| o.proposed.is_some()).map(|o| o.minutes), 0)
     )
 }
 
@@ -214,17 +237,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_proposed_hour_settles_what_the_paper_leaves_open() {
+    fn proposed_sessions_resolve_more_than_repetitions() {
         let case = experiment_cases().remove(0);
         let outcomes: Vec<_> = (900_001..900_004)
             .filter_map(|seed| run_experiment_case(&case, seed, 1.0, Levels::default()))
             .collect();
         assert_eq!(outcomes.len(), 3);
-        let open: Vec<_> = outcomes.iter().filter(|o| o.first == Standing::Open).collect();
+        let open: Vec<_> = outcomes.iter().filter(|o| o.first == Attribution::Open).collect();
         assert!(!open.is_empty(), "{outcomes:?}");
         assert!(open.iter().all(|o| o.minutes <= MINUTES), "{open:?}");
-        let settled = open.iter().filter(|o| o.proposed == Some(Standing::Alone)).count();
-        let repeated = open.iter().filter(|o| o.repeated == Some(Standing::Alone)).count();
+        let settled = open.iter().filter(|o| o.proposed == Some(Attribution::Alone)).count();
+        let repeated = open.iter().filter(|o| o.repeated == Some(Attribution::Alone)).count();
         assert!(settled > repeated, "{outcomes:?}");
         let mut study = ExperimentStudy::default();
         study.add(case, outcomes);

@@ -1,55 +1,56 @@
-//! The study's chapter on what has no name: is its form drawn rightly, does the form predict a later session as the truth
-//! would, and is it confirmed and refuted where it should be.
+//! Study of estimated forms of unattributed structure: are they correct, do they predict a later
+//! session as well as the true form, and are they confirmed or refuted by other sessions?
 
 use pinswitch_calibration::effects::{OwnEffect, Vocabulary};
 use pinswitch_calibration::inference::{Levels, Model, Observations, Term, Weighed, fit, select};
 use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_calibration::{CONFIRMED_P, Calibration, TrialOutcome, TrialReport, calibrate, trials};
 
-use super::cases::{Case, Truth, plan_of};
+use super::case::{Case, Truth};
+use super::cases::plan_of;
+use super::figures::median_text;
 use super::outcome::error_n;
-use super::shown::shows_all;
-use super::summary::median_told;
 use super::true_form::{true_forms, true_shapes};
+use super::visibility::is_visible;
 use crate::disturbance::Disturbance;
 use crate::next_session::next_session;
 use crate::plan::Plan;
 use crate::simulate::simulate;
 
-/// Offset of the seed of a rig without the disturbance.
+/// Offset of the seed for a rig without the disturbance.
 const OTHER_RIG: u64 = 500_000_000;
 
-/// What became of one rig outside the vocabulary.
+/// Outcome of a rig with a disturbance outside the vocabulary.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormOutcome {
-    /// Whether structure was found where it is.
-    pub place_is_right: bool,
-    /// Whether the session could show it beside mounts that differ as much as those of rigs of which nothing may be said.
+    /// Whether the calibration reports structure over a correct covariate.
+    pub is_covariate_right: bool,
+    /// Whether the session could detect the disturbance despite mount effects.
     pub visible: bool,
-    /// The shape that was drawn; `None` where no structure was found.
+    /// Estimated shape; `None` without structure.
     pub shape: Option<String>,
-    /// Whether it is the true one, or the true one is among its rivals; `None` where no shape can be asked for.
-    pub shape_is_right: Option<bool>,
-    /// Root mean square errors on the readings of a later session, in newtons: the refitted baseline, the calibration's
-    /// model, and the same with the drawn form in place of shapes.
+    /// Whether the estimated shape or a rival is the true one; `None` if no shape is expected.
+    pub is_shape_right: Option<bool>,
+    /// Root mean square errors on a later session, in newtons: of the refitted baseline, of the
+    /// calibration's model, and of that model with the estimated form in place of the structure.
     pub next_n: [Option<f64>; 3],
-    /// That of the true form, its sizes fitted by the same code; `None` where no formula can say it.
+    /// The same error of the true form with fitted sizes; `None` if no formula describes it.
     pub truth_n: Option<f64>,
-    /// What a later session of the same rig says of the drawn form.
-    pub again: Option<TrialReport>,
-    /// What a session of another rig, without the disturbance, says of it.
-    pub absent: Option<TrialReport>,
+    /// Test of the estimated form on a later session of the same rig.
+    pub later_trial: Option<TrialReport>,
+    /// Test of the estimated form on a session of another rig without the disturbance.
+    pub absent_trial: Option<TrialReport>,
 }
 
 impl FormOutcome {
-    /// Error of the calibration's model on a later session over that of the true form.
+    /// Returns the error of the calibration's model on a later session, over that of the true form.
     pub fn over_truth(&self) -> Option<f64> {
         Some(self.next_n[1]? / self.truth_n?.max(1e-9))
     }
 }
 
-/// Draws the form of one rig from its table, and lets two other tables decide on it. `None` if a table cannot be used, or
-/// the case has no disturbance.
+/// Estimates the form of the disturbance of a rig, and tests it on two other sessions. Returns
+/// `None` if a table is not usable, or the kind of rig has no disturbance.
 pub fn run_form_case(case: &Case, seed: u64, levels: Levels) -> Option<FormOutcome> {
     let Truth::Outside { covariates, .. } = case.truth else { return None };
     let plan = plan_of(case, seed);
@@ -61,7 +62,7 @@ pub fn run_form_case(case: &Case, seed: u64, levels: Levels) -> Option<FormOutco
     let next = next_session(&plan).rows;
     let error = |model: &Model| error_n(model, &frame, &next);
     let place = selection.structure.map(|s| s.covariate);
-    let judged = |rows: &[PlateauRow]| {
+    let trial = |rows: &[PlateauRow]| {
         let form = form.as_ref()?;
         let own = OwnEffect::new(form.definition.clone()).ok()?;
         let vocabulary = Vocabulary::built_in().with(vec![own]).ok()?;
@@ -69,22 +70,24 @@ pub fn run_form_case(case: &Case, seed: u64, levels: Levels) -> Option<FormOutco
     };
     let without = Plan { disturbances: Vec::new(), seed: seed + OTHER_RIG, ..plan.clone() };
     Some(FormOutcome {
-        place_is_right: place.is_some_and(|place| covariates.contains(&place)),
-        visible: shows_all(&plan, &simulated.marks, levels)?,
+        is_covariate_right: place.is_some_and(|place| covariates.contains(&place)),
+        visible: is_visible(&plan, &simulated.traits, levels)?,
         shape: form.as_ref().map(|f| f.report.shape.clone()),
-        shape_is_right: shape_is_right(disturbance, form.as_ref().map(|f| &f.report)),
+        is_shape_right: is_shape_right(disturbance, form.as_ref().map(|f| &f.report)),
         next_n: [
             error(&selection.baseline.model),
             error(&selection.augmented.model),
             form.as_ref().and_then(|f| error(&f.fitted.model)),
         ],
         truth_n: with_truth(disturbance, &frame, &data, &selection).and_then(|model| error(&model)),
-        again: judged(&next),
-        absent: judged(&simulate(&without).rows),
+        later_trial: trial(&next),
+        absent_trial: trial(&simulate(&without).rows),
     })
 }
 
-fn shape_is_right(
+/// Whether the estimated shape or one of its rivals is the true one; `None` if no shape is
+/// expected.
+fn is_shape_right(
     disturbance: &Disturbance,
     form: Option<&pinswitch_calibration::FormReport>,
 ) -> Option<bool> {
@@ -98,7 +101,7 @@ fn shape_is_right(
     }))
 }
 
-/// The baseline with the true form, its sizes fitted.
+/// Fits the baseline with the true form.
 fn with_truth(
     disturbance: &Disturbance,
     frame: &Frame,
@@ -115,15 +118,15 @@ fn with_truth(
     Some(fit(&model, &Weighed::new(data, selection.noise)).model)
 }
 
-/// The trial of the one effect of one's own on a table.
+/// Tests the only user-defined effect of a vocabulary on a table.
 fn trial_on(rows: &[PlateauRow], vocabulary: &Vocabulary, levels: Levels) -> Option<TrialReport> {
     let frame = Frame::new(rows);
     let mut data = Observations::new(&frame, rows)?;
-    let found = select(&Model::baseline(frame).among(vocabulary), &mut data, levels);
-    trials(rows, &found, &data).pop()
+    let selection = select(&Model::baseline(frame).among(vocabulary), &mut data, levels);
+    trials(rows, &selection, &data).pop()
 }
 
-/// The outcomes by kind of rig.
+/// Outcomes by kind of rig.
 #[derive(Clone, Debug, Default)]
 pub struct FormStudy {
     outcomes: Vec<(Case, Vec<FormOutcome>)>,
@@ -135,10 +138,10 @@ impl FormStudy {
         self.outcomes.push((case, outcomes));
     }
 
-    /// A row for each kind, and one for all, in Markdown.
+    /// Returns a row for each kind, and one for all, in Markdown.
     pub fn table(&self) -> String {
         let mut text = String::from(
-            "| protocol | rig | rigs | right place | of the visible | right shape | later session, model / true form | form / true form | confirmed by a later session | refuted where absent | p >= 0.01 where absent |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+            "| protocol | rig | rigs | right covariate | right covariate of the visible | right shape | later session, model / true form | form / true form | confirmed by a later session | refuted if absent | p >= 0.01 if absent |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
         );
         for (case, outcomes) in &self.outcomes {
             let protocol = format!("{:?}", case.protocol).to_lowercase();
@@ -150,25 +153,26 @@ impl FormStudy {
     }
 }
 
+/// Returns a row of the table.
 fn row(protocol: &str, name: &str, outcomes: &[&FormOutcome]) -> String {
-    // Of two operators no shape is asked.
+    // Two operators have no shape.
     let of = |values: Vec<bool>| match values.len() {
         0 => String::new(),
         all => format!("{} of {all}", values.iter().filter(|v| **v).count()),
     };
-    let shapes = outcomes.iter().filter_map(|o| o.shape_is_right).collect();
-    let drawn = |o: &&FormOutcome| Some(o.next_n[2]? / o.truth_n?.max(1e-9));
-    let again = outcomes.iter().filter_map(|o| o.again.as_ref());
-    let absent = || outcomes.iter().filter_map(|o| o.absent.as_ref());
+    let shapes = outcomes.iter().filter_map(|o| o.is_shape_right).collect();
+    let form_over_truth = |o: &&FormOutcome| Some(o.next_n[2]? / o.truth_n?.max(1e-9));
+    let later = outcomes.iter().filter_map(|o| o.later_trial.as_ref());
+    let absent = || outcomes.iter().filter_map(|o| o.absent_trial.as_ref());
     format!(
         "| {protocol} | {name} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
         outcomes.len(),
-        outcomes.iter().filter(|o| o.place_is_right).count(),
-        of(outcomes.iter().filter(|o| o.visible).map(|o| o.place_is_right).collect()),
+        outcomes.iter().filter(|o| o.is_covariate_right).count(),
+        of(outcomes.iter().filter(|o| o.visible).map(|o| o.is_covariate_right).collect()),
         of(shapes),
-        median_told(outcomes.iter().filter_map(|o| o.over_truth()), 2),
-        median_told(outcomes.iter().filter_map(drawn), 2),
-        of(again.map(|t| t.outcome == TrialOutcome::Confirmed).collect()),
+        median_text(outcomes.iter().filter_map(|o| o.over_truth()), 2),
+        median_text(outcomes.iter().filter_map(form_over_truth), 2),
+        of(later.map(|t| t.outcome == TrialOutcome::Confirmed).collect()),
         of(absent().map(|t| t.outcome == TrialOutcome::Refuted).collect()),
         of(absent().map(|t| t.p_value.is_none_or(|p| p >= CONFIRMED_P)).collect()),
     )
@@ -177,23 +181,22 @@ fn row(protocol: &str, name: &str, outcomes: &[&FormOutcome]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::study_cases;
+    use crate::plan::Protocol;
+    use crate::study::cases::study_cases;
 
     #[test]
-    fn a_step_is_drawn_confirmed_and_refuted() {
+    fn step_form_is_confirmed_and_refuted() {
         let case = study_cases()
             .into_iter()
-            .find(|c| {
-                c.name == "step of the reading in mid-session" && c.protocol == crate::Protocol::Randomised
-            })
+            .find(|c| c.name == "step of the reading in mid-session" && c.protocol == Protocol::Randomised)
             .unwrap();
-        let found = run_form_case(&case, 2, Levels::default()).unwrap();
-        assert!(found.place_is_right && found.shape_is_right == Some(true), "{found:?}");
-        assert!(found.over_truth().unwrap() < 1.3, "{found:?}");
-        assert_eq!(found.again.as_ref().unwrap().outcome, TrialOutcome::Confirmed);
-        assert_eq!(found.absent.as_ref().unwrap().outcome, TrialOutcome::Refuted);
+        let outcome = run_form_case(&case, 2, Levels::default()).unwrap();
+        assert!(outcome.is_covariate_right && outcome.is_shape_right == Some(true), "{outcome:?}");
+        assert!(outcome.over_truth().unwrap() < 1.3, "{outcome:?}");
+        assert_eq!(outcome.later_trial.as_ref().unwrap().outcome, TrialOutcome::Confirmed);
+        assert_eq!(outcome.absent_trial.as_ref().unwrap().outcome, TrialOutcome::Refuted);
         let mut study = FormStudy::default();
-        study.add(case, vec![found]);
+        study.add(case, vec![outcome]);
         assert!(study.table().contains("| 1 | 1 | 1 of 1 | 1 of 1 |"), "{}", study.table());
     }
 }

@@ -1,15 +1,15 @@
-//! Rigs whose guide pulleys drag, little or much, and have a second effect beside it.
+//! Rigs with a small or large drag of the guide pulleys, and a second effect that it may mask.
 
 use pinswitch_calibration::effects::{PaperProtocol, effect_named};
 
-use super::cases::Truth;
+use super::case::Truth;
 use crate::plan::Protocol;
 
 /// Drags of the guide pulleys in newtons.
 const DRAGS_N: [f64; 3] = [0.25, 2.0, 10.0];
 
-/// The second effects, with sizes in the paper's protocol and in the randomised one. The least changes friction or
-/// reading by 3 % where it acts most; a test holds them to that.
+/// Second effects, with ranges of size in the paper's protocol and in the randomised one. The lower
+/// bound changes friction or reading by 3 % at most (a test checks it).
 const MASKED: [(&str, [(f64, f64); 2]); 4] = [
     ("rate_dependence", [(0.36, 0.5), (0.15, 0.5)]),
     ("load_cell_gain", [(0.03, 0.06), (0.03, 0.06)]),
@@ -17,7 +17,7 @@ const MASKED: [(&str, [(f64, f64); 2]); 4] = [
     ("substrate_saturation", [(0.12, 0.33), (0.12, 0.33)]),
 ];
 
-/// Names and truths of the masked rigs of a protocol.
+/// Returns names and truths of the masked rigs of a protocol.
 pub(super) fn masked(protocol: Protocol) -> Vec<(String, Truth)> {
     let mut all = Vec::new();
     for drag_n in DRAGS_N {
@@ -34,12 +34,12 @@ pub(super) fn masked(protocol: Protocol) -> Vec<(String, Truth)> {
     all
 }
 
-/// The drag of a masked rig in newtons, by its name.
+/// Returns the drag of a masked rig in newtons, from its name.
 pub(super) fn drag_n(name: &str) -> Option<f64> {
     name.strip_prefix("guide_drag of ")?.split(' ').next()?.parse().ok()
 }
 
-/// Least and largest size of a masked effect.
+/// Returns the range of size of a masked effect.
 pub(super) fn sizes(id: &str, protocol: Protocol) -> Option<(f64, f64)> {
     let (_, [paper, randomised]) = MASKED.iter().find(|m| m.0 == id)?;
     Some(if protocol == Protocol::Paper { *paper } else { *randomised })
@@ -49,10 +49,10 @@ pub(super) fn sizes(id: &str, protocol: Protocol) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
     use crate::plan::{EffectPlan, NoisePlan, Plan};
-    use crate::series_marks::SeriesMarks;
+    use crate::series_traits::SessionTraits;
 
     #[test]
-    fn a_masked_effect_changes_friction_or_reading_by_three_percent() {
+    fn masked_effects_change_three_percent() {
         for protocol in [Protocol::Paper, Protocol::Randomised] {
             for (id, _) in MASKED {
                 let study = effect_named(id).unwrap().description().study;
@@ -63,10 +63,10 @@ mod tests {
                 plan.noise = NoisePlan::default();
                 let mut random = rand::SeedableRng::seed_from_u64(3);
                 let rows = crate::protocol::rows(&plan, &mut random);
-                let without = crate::twin::readings(&plan, &rows, &SeriesMarks::default());
+                let without = crate::twin::readings(&plan, &rows, &SessionTraits::default());
                 let values = study.values_at(sizes(id, protocol).map(|s| s.0));
                 plan.effects.push(EffectPlan { id: id.to_owned(), values, form: 0 });
-                let with = crate::twin::readings(&plan, &rows, &SeriesMarks::default());
+                let with = crate::twin::readings(&plan, &rows, &SessionTraits::default());
                 let change = rows
                     .iter()
                     .zip(without.iter().zip(&with))

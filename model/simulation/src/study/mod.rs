@@ -1,93 +1,28 @@
-//! The study of the calibrator: rigs of every kind with sizes, forms and noise drawn, and what it says of them.
+//! The study of the calibrator: random rigs of every kind, and the answers of the calibrator
+//! compared with the truth.
 
+mod answer;
+mod answer_forecasts;
+mod case;
+mod case_study;
 mod cases;
 mod experiment_study;
+mod figures;
 mod form_study;
 mod masks;
 mod nulls;
 mod outcome;
 mod outside;
-mod said;
-mod shown;
 mod summary;
-mod told_probability;
 mod true_form;
+mod visibility;
 
-use std::collections::BTreeMap;
-
-pub use cases::{Case, Group, Truth, plan_of, study_cases};
+pub use answer_forecasts::AnswerForecast;
+pub use case::{Case, Group, Truth};
+pub use case_study::Study;
+pub use cases::{plan_of, study_cases};
 pub use experiment_study::{
-    ExperimentOutcome, ExperimentStudy, Standing, experiment_cases, run_experiment_case,
+    Attribution, ExperimentOutcome, ExperimentStudy, experiment_cases, run_experiment_case,
 };
 pub use form_study::{FormOutcome, FormStudy, run_form_case};
 pub use outcome::{CaseOutcome, run_case};
-pub use told_probability::Promised;
-
-use summary::{median_of, said};
-
-/// Results by case.
-///
-/// ```
-/// use pinswitch_calibration::inference::Levels;
-/// use pinswitch_simulation::{Study, run_case, study_cases};
-///
-/// let case = study_cases().into_iter().find(|c| c.name == "load_cell_gain").ok_or("not a case")?;
-/// let outcome = run_case(&case, 1, Levels::default(), false).ok_or("the table reads back")?;
-/// assert!(outcome.honest, "{:?}", outcome.named);
-/// let mut study = Study::default();
-/// study.add(case, vec![outcome]);
-/// assert!(study.table().contains("load_cell_gain"));
-/// assert!(study.groups().contains("| singles | 1 |"));
-/// # Ok::<(), &str>(())
-/// ```
-#[derive(Clone, Debug, Default)]
-pub struct Study {
-    outcomes: Vec<(Case, Vec<CaseOutcome>)>,
-}
-
-impl Study {
-    /// Adds the outcomes of a case.
-    pub fn add(&mut self, case: Case, outcomes: Vec<CaseOutcome>) {
-        self.outcomes.push((case, outcomes));
-    }
-
-    /// The confusion matrix by case, in Markdown.
-    pub fn table(&self) -> String {
-        let mut text = String::from(
-            "| protocol | group | rig | sets | right | of the visible | honest | left open | error after/before | next session | intervals that hold | said instead |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-        );
-        for (case, outcomes) in &self.outcomes {
-            let exact = outcomes.iter().filter(|o| o.exact).count();
-            let honest = outcomes.iter().filter(|o| o.exact || o.honest).count();
-            let open = outcomes.iter().filter(|o| o.open && !o.exact && !o.honest).count();
-            let visible = outcomes.iter().filter(|o| o.visible).count();
-            let seen = outcomes.iter().filter(|o| o.visible && o.exact).count();
-            let mut other: BTreeMap<String, usize> = BTreeMap::new();
-            for o in outcomes.iter().filter(|o| !o.exact) {
-                *other.entry(said(o)).or_default() += 1;
-            }
-            let other: Vec<String> = other.into_iter().map(|(said, k)| format!("{said} ({k})")).collect();
-            text.push_str(&format!(
-                "| {} | {} | {} | {} | {exact} | {seen} of {visible} | {honest} | {open} | {:.3} | {:.3} | {} | {} |\n",
-                format!("{:?}", case.protocol).to_lowercase(),
-                case.group.as_str(),
-                case.name,
-                outcomes.len(),
-                median_of(outcomes.iter().map(|o| o.fresh_n[1] / o.fresh_n[0].max(1e-9))),
-                median_of(outcomes.iter().map(|o| o.next_n[1] / o.next_n[0].max(1e-9))),
-                held(outcomes),
-                other.join("; ").replace('|', " or ")
-            ));
-        }
-        text
-    }
-}
-
-/// How many of the intervals hold the truth; empty without any.
-fn held(outcomes: &[CaseOutcome]) -> String {
-    let all: Vec<bool> = outcomes.iter().flat_map(|o| o.covered.iter().copied()).collect();
-    if all.is_empty() {
-        return String::new();
-    }
-    format!("{} of {}", all.iter().filter(|c| **c).count(), all.len())
-}

@@ -1,11 +1,11 @@
-//! Kinds of noise on the rigs of the study that have no effect.
+//! Kinds of noise of the rigs without effect.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::plan::NoisePlan;
 
-/// One kind: its name, and what it makes of the noise that every rig has.
+/// Name of a kind, and its change of the noise that every rig has.
 type Kind = (&'static str, fn(&mut NoisePlan, &mut ChaCha8Rng));
 
 /// All kinds.
@@ -37,15 +37,17 @@ pub(super) const NULLS: [Kind; 18] = [
     ("no effect, everything at once", everything_at_once),
 ];
 
-/// Kinds of which the study makes two and a half times as many rigs: with few alarms, their rate needs many.
+/// Number of kinds with two and a half times as many rigs: the rate of rare alarms needs many rigs.
 pub(super) const OFTEN: usize = 4;
 
+/// Adds offsets of a series that are common to both directions.
 fn common_offsets(noise: &mut NoisePlan) {
     (noise.series_common_n, noise.series_common_per_load) = (0.05, 0.004);
 }
 
-/// All that a rig of another hand may do at once: mounts and seatings that differ, offsets that depend on load and walk, chains of
-/// repetitions, heavy tails, a cell with steps, rows that are missing.
+/// Adds all kinds of noise of an unknown rig at once: random effects of mounts and series,
+/// autocorrelated offsets that grow with load, autocorrelated repetitions, heavy tails, a coarse
+/// resolution, and missing rows.
 pub(super) fn everything_at_once(noise: &mut NoisePlan, random: &mut ChaCha8Rng) {
     common_offsets(noise);
     noise.series_scale = random.random_range(0.01..0.04);
@@ -55,8 +57,8 @@ pub(super) fn everything_at_once(noise: &mut NoisePlan, random: &mut ChaCha8Rng)
     (noise.resolution_n, noise.lost_share) = (0.05, 0.03);
 }
 
-/// Gives the noise of a plan the kind of that name.
-pub(super) fn make(name: &str, noise: &mut NoisePlan, random: &mut ChaCha8Rng) {
+/// Applies the kind with this name to the noise of a plan.
+pub(super) fn apply(name: &str, noise: &mut NoisePlan, random: &mut ChaCha8Rng) {
     if let Some((_, change)) = NULLS.iter().find(|kind| kind.0 == name) {
         change(noise, random);
     }

@@ -1,13 +1,13 @@
-//! What lies outside the vocabulary in the study.
+//! Disturbances outside the vocabulary in the study.
 
 use pinswitch_calibration::effects::Covariate;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use crate::disturbance::{Course, Disturbance, DisturbanceTarget, Turns};
+use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget, OperatorSchedule};
 use crate::plan::Protocol;
 
-/// What lies outside the vocabulary in the study, and the covariates of which any is right.
+/// Kinds of disturbance, with the covariates of a correct answer.
 pub(super) const OUTSIDE: [(&str, &[Covariate]); 12] = [
     ("step of friction in mid-session", &[Covariate::Time]),
     ("step of the reading in mid-session", &[Covariate::Time]),
@@ -23,10 +23,11 @@ pub(super) const OUTSIDE: [(&str, &[Covariate]); 12] = [
     ("two operators", &Covariate::ALL),
 ];
 
-/// Kinds that came later: they stand behind all others, whose seeds go by their places.
+/// Kinds that were added later. They follow all others, because the seeds of a kind depend on its
+/// index.
 pub(super) const LATER: [(&str, &[Covariate]); 1] = [("Stribeck's dip", &[Covariate::Speed])];
 
-/// Something outside the vocabulary.
+/// Draws the disturbance of a kind.
 pub(super) fn outside(
     name: &str,
     protocol: Protocol,
@@ -43,70 +44,72 @@ pub(super) fn outside(
         "step of friction in mid-session" => {
             let over = if even { 0.0 } else { 0.02 };
             of(
-                Course::Step { at: random.random_range(0.3..0.7), over },
+                DisturbanceKind::Step { at: random.random_range(0.3..0.7), over },
                 DisturbanceTarget::Friction,
                 sign * friction,
             )
         }
         "step of the reading in mid-session" => of(
-            Course::Step { at: random.random_range(0.3..0.7), over: 0.0 },
+            DisturbanceKind::Step { at: random.random_range(0.3..0.7), over: 0.0 },
             DisturbanceTarget::Reading,
             sign * newtons,
         ),
         "another level for a while" => {
             let from = random.random_range(0.2..0.6);
             let to = from + random.random_range(0.1..0.3);
-            of(Course::Window { from, to }, DisturbanceTarget::Reading, sign * newtons)
+            of(DisturbanceKind::Window { from, to }, DisturbanceTarget::Reading, sign * newtons)
         }
         "wave in time" => {
             let cycles = random.random_range(3.0..40.0);
-            of(Course::TimeWave { cycles, phase }, DisturbanceTarget::Reading, 0.5 * newtons)
+            of(DisturbanceKind::TimeWave { cycles, phase }, DisturbanceTarget::Reading, 0.5 * newtons)
         }
         "wave along the stroke" => {
             let cycles = random.random_range(1.5..4.5);
             of(
-                Course::StrokeWave { cycles, phase, square: even },
+                DisturbanceKind::StrokeWave { cycles, phase, square: even },
                 DisturbanceTarget::Friction,
                 0.5 * friction,
             )
         }
         "worn spot" => {
             let (at, width) = (random.random_range(0.25..0.75), random.random_range(0.08..0.2));
-            of(Course::Spot { at, width, flat: even }, DisturbanceTarget::Friction, friction)
+            of(DisturbanceKind::Spot { at, width, flat: even }, DisturbanceTarget::Friction, friction)
         }
         "one defective layout" => {
-            // With three layouts, the one with another number of pins is what bending is known by.
+            // Of three layouts, the one with another number of pins identifies the effect of
+            // bending.
             let pins = layouts[random.random_range(1..layouts.len())].clone();
             let target = if even { DisturbanceTarget::Friction } else { DisturbanceTarget::Pins };
-            of(Course::Layout { pins }, target, sign * friction * if even { 1.0 } else { 2.0 })
+            of(DisturbanceKind::Layout { pins }, target, sign * friction * if even { 1.0 } else { 2.0 })
         }
         "memory of the load before" => {
-            // Where loads go up step by step, the load before is never far.
+            // With ascending loads the previous load is always similar, so that the effect must be
+            // larger.
             let share = if protocol == Protocol::Paper { 5.0 } else { 2.5 };
             let repetitions = random.random_range(15.0..25.0);
-            of(Course::Memory { repetitions }, DisturbanceTarget::Silicone, share * friction)
+            of(DisturbanceKind::Memory { repetitions }, DisturbanceTarget::Silicone, share * friction)
         }
         "slow sine of friction" => {
             let cycles = random.random_range(0.5..2.0);
-            of(Course::TimeWave { cycles, phase }, DisturbanceTarget::Friction, friction)
+            of(DisturbanceKind::TimeWave { cycles, phase }, DisturbanceTarget::Friction, friction)
         }
         "another tendon from mid-session on" => {
             let at = random.random_range(0.4..0.6);
             let other = random.random_range(0.08..0.25);
             let silicone = if even { -sign * other } else { 0.5 * sign * other };
-            of(Course::Swap { at, silicone }, DisturbanceTarget::Friction, sign * friction)
+            of(DisturbanceKind::Swap { at, silicone }, DisturbanceTarget::Friction, sign * friction)
         }
         "two operators" => {
-            let turns = if even { Turns::Series } else { Turns::Half };
-            of(Course::Operators { turns }, DisturbanceTarget::Reading, sign * newtons)
+            let turns = if even { OperatorSchedule::Series } else { OperatorSchedule::Half };
+            of(DisturbanceKind::Operators { turns }, DisturbanceTarget::Reading, sign * newtons)
         }
         "Stribeck's dip" => {
-            // Speeds that follow the load lie within a fifth of each other.
+            // In the paper's protocol all speeds are within 20 % of each other.
             let (speed_pct, width) = match protocol {
                 Protocol::Paper => (random.random_range(50.0..54.0), random.random_range(0.015..0.04)),
                 Protocol::Randomised => (random.random_range(45.0..65.0), random.random_range(0.1..0.35)),
             };
-            of(Course::Stribeck { speed_pct, width }, DisturbanceTarget::Friction, friction)
+            of(DisturbanceKind::Stribeck { speed_pct, width }, DisturbanceTarget::Friction, friction)
         }
         _ => {
             let (least, most, width_pct) = match protocol {
@@ -117,7 +120,7 @@ pub(super) fn outside(
             if protocol == Protocol::Randomised {
                 speed_pct = (speed_pct / 10.0).round().clamp(5.0, 6.0) * 10.0;
             }
-            of(Course::Resonance { speed_pct, width_pct }, DisturbanceTarget::Friction, friction)
+            of(DisturbanceKind::Resonance { speed_pct, width_pct }, DisturbanceTarget::Friction, friction)
         }
     }
 }

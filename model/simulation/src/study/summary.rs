@@ -2,18 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_calibration::median;
+use super::case::{Case, Group};
+use super::case_study::Study;
+use super::figures::median_of;
+use super::outcome::CaseOutcome;
 
-use super::{Case, CaseOutcome, Group, Study};
-
-/// A promise below this share of what a new session has is broken.
-const LEAST_PROMISE: f64 = 0.8;
+/// Ratio of expected to actual error of a new session below which the expectation is too
+/// optimistic.
+const LEAST_RATIO: f64 = 0.8;
 
 impl Study {
-    /// A row for each group, and one for each kind of rig without effect, in Markdown.
+    /// Returns a row for each group, and one for each kind of rig without effect, in Markdown.
     pub fn groups(&self) -> String {
         let mut text = String::from(
-            "| group | sets | right | honest | error on the next session | after/before | promised/that | said beside the truth |\n|---|---|---|---|---|---|---|---|\n",
+            "| group | sets | exact | consistent | error on the next session | after/before | expected/actual | false parts |\n|---|---|---|---|---|---|---|---|\n",
         );
         for group in Group::ALL {
             text.push_str(&row(group.as_str(), &self.of(|case| case.group == group)));
@@ -30,21 +32,21 @@ impl Study {
         text
     }
 
-    /// The figures in words, of the groups that were run.
+    /// Returns the main figures of every group with outcomes, one per line.
     pub fn summary(&self) -> String {
         let mut lines = Vec::new();
         for group in Group::ALL {
             let outcomes = self.of(|case| case.group == group);
             if !outcomes.is_empty() {
-                lines.extend(in_words(group, &outcomes));
+                lines.extend(group_lines(group, &outcomes));
             }
         }
         let all: Vec<bool> = self.of(|_| true).iter().flat_map(|o| o.covered.iter().copied()).collect();
         if !all.is_empty() {
-            let held = all.iter().filter(|c| **c).count();
-            let percent = 100.0 * held as f64 / all.len() as f64;
+            let covered = all.iter().filter(|c| **c).count();
+            let percent = 100.0 * covered as f64 / all.len() as f64;
             lines.push(format!(
-                "95 % intervals that hold the true size: {held} of {} ({percent:.1} %)",
+                "95 % intervals that contain the true size: {covered} of {} ({percent:.1} %)",
                 all.len()
             ));
         }
@@ -53,81 +55,82 @@ impl Study {
         if !attributed.is_empty() {
             let across = attributed.iter().filter(|a| **a).count();
             lines.push(format!(
-                "attributed sizes whose interval holds zero: {across} of {}",
+                "attributed effects whose interval contains zero: {across} of {}",
                 attributed.len()
             ));
         }
-        let mut promises: Vec<f64> = self.of(|_| true).iter().filter_map(|o| o.promise_ratio).collect();
-        promises.sort_by(f64::total_cmp);
-        if let (Some(least), Some(most)) = (promises.first(), promises.last()) {
-            let below = promises.iter().filter(|p| **p < LEAST_PROMISE).count();
+        let mut ratios: Vec<f64> = self.of(|_| true).iter().filter_map(|o| o.expected_error_ratio).collect();
+        ratios.sort_by(f64::total_cmp);
+        if let (Some(least), Some(most)) = (ratios.first(), ratios.last()) {
+            let below = ratios.iter().filter(|r| **r < LEAST_RATIO).count();
             lines.push(format!(
-                "error promised for a new session over that of the next one: median {:.3}, {least:.3} to {most:.3}; \
-                 below {LEAST_PROMISE} in {below} of {}",
-                median_of(promises.iter().copied()),
-                promises.len()
+                "expected error of a new session over the actual one: median {:.3}, {least:.3} to {most:.3}; \
+                 below {LEAST_RATIO} in {below} of {}",
+                median_of(ratios.iter().copied()),
+                ratios.len()
             ));
         }
         lines.iter().map(|l| format!("- {l}\n")).collect()
     }
 
+    /// Returns the outcomes of the selected kinds.
     fn of(&self, wanted: impl Fn(&Case) -> bool) -> Vec<&CaseOutcome> {
         self.outcomes.iter().filter(|(case, _)| wanted(case)).flat_map(|(_, outcomes)| outcomes).collect()
     }
 }
 
-/// The figures of one group.
-fn in_words(group: Group, outcomes: &[&CaseOutcome]) -> Vec<String> {
-    let (exact, honest) = (share(outcomes, |o| o.exact), share(outcomes, |o| o.exact || o.honest));
+/// Returns the main figures of a group.
+fn group_lines(group: Group, outcomes: &[&CaseOutcome]) -> Vec<String> {
+    let (exact, consistent) = (share(outcomes, |o| o.exact), share(outcomes, |o| o.exact || o.consistent));
     let visible: Vec<&CaseOutcome> = outcomes.iter().filter(|o| o.visible).copied().collect();
-    let named = |what: &str| {
+    let attributed = |what: &str| {
         vec![
-            format!("{what} named exactly: {exact}"),
-            format!("... of those that the session could show: {}", share(&visible, |o| o.exact)),
-            format!("{what} named or among the rivals: {honest}"),
-            format!("... of those that the session could show: {}", share(&visible, |o| o.exact || o.honest)),
+            format!("{what} attributed exactly: {exact}"),
+            format!("... of the visible ones: {}", share(&visible, |o| o.exact)),
+            format!("{what} attributed or among the rivals: {consistent}"),
+            format!("... of the visible ones: {}", share(&visible, |o| o.exact || o.consistent)),
             format!(
-                "... or left open: within the limits told, or told as invisible: {}",
-                share(outcomes, |o| o.exact || o.honest || o.open)
+                "... or left open (within the reported limits, or reported as invisible): {}",
+                share(outcomes, |o| o.exact || o.consistent || o.left_open)
             ),
         ]
     };
     match group {
         Group::Nulls => vec![
-            format!("rigs without effect: an alarm in {}", share(outcomes, |o| !o.exact)),
-            format!("their probabilities by chance: {}", calibration_of_p(outcomes)),
+            format!("rigs without effect, false alarms: {}", share(outcomes, |o| !o.exact)),
+            format!("rigs without effect, p-value: {}", calibration_of_p(outcomes)),
         ],
         Group::Singles => {
-            let mut lines = named("single effects");
+            let mut lines = attributed("single effects");
             let ratio = median_of(outcomes.iter().map(|o| o.fresh_n[1] / o.fresh_n[0].max(1e-9)));
-            lines.push(format!("error on fresh rows after/before, median over the singles: {ratio:.3}"));
+            lines.push(format!("single effects, median error on noise-free rows after/before: {ratio:.3}"));
             lines
         }
-        Group::Scattered => named("single effects under scatter"),
-        Group::Pairs => named("pairs"),
-        Group::Masks => named("effects beside a drag that may hide them"),
+        Group::Scattered => attributed("single effects with scatter"),
+        Group::Pairs => attributed("pairs"),
+        Group::Masks => attributed("effects with a drag that may mask them"),
         Group::Confounded => vec![
-            format!("confounded designs called ambiguous, or inconclusive where small: {exact}"),
-            format!("confounded designs with the truth named or among the rivals: {honest}"),
+            format!("confounded effects, ambiguous (or inconclusive if small): {exact}"),
+            format!("confounded effects, attributed or among the rivals: {consistent}"),
         ],
         Group::Outside => vec![
-            format!("outside the vocabulary, unattributed with the right covariate: {honest}"),
+            format!("outside the vocabulary, unattributed with the right covariate: {consistent}"),
             format!(
-                "... of those that the session could show beside mounts that differ: {}",
-                share(&visible, |o| o.exact || o.honest)
+                "... of those that are visible despite mount effects: {}",
+                share(&visible, |o| o.exact || o.consistent)
             ),
-            format!("outside the vocabulary, no name beside it: {exact}"),
+            format!("outside the vocabulary, and no effect reported: {exact}"),
         ],
     }
 }
 
-/// One row; nothing without outcomes.
+/// Returns a row of the table; empty without outcomes.
 fn row(name: &str, outcomes: &[&CaseOutcome]) -> String {
     if outcomes.is_empty() {
         return String::new();
     }
-    let count = |holds: fn(&CaseOutcome) -> bool| {
-        let count = outcomes.iter().filter(|o| holds(o)).count();
+    let count = |predicate: fn(&CaseOutcome) -> bool| {
+        let count = outcomes.iter().filter(|o| predicate(o)).count();
         format!("{count} ({:.1} %)", 100.0 * count as f64 / outcomes.len() as f64)
     };
     let mut extras: BTreeMap<&str, usize> = BTreeMap::new();
@@ -137,43 +140,27 @@ fn row(name: &str, outcomes: &[&CaseOutcome]) -> String {
     let mut extras: Vec<(&str, usize)> = extras.into_iter().collect();
     extras.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let extras: Vec<String> = extras.into_iter().map(|(name, count)| format!("{name} ({count})")).collect();
-    let promises: Vec<f64> = outcomes.iter().filter_map(|o| o.promise_ratio).collect();
+    let ratios: Vec<f64> = outcomes.iter().filter_map(|o| o.expected_error_ratio).collect();
     format!(
         "| {name} | {} | {} | {} | {:.3} N | {:.3} | {} | {} |\n",
         outcomes.len(),
         count(|o| o.exact),
-        count(|o| o.exact || o.honest),
+        count(|o| o.exact || o.consistent),
         median_of(outcomes.iter().map(|o| o.next_n[1])),
         median_of(outcomes.iter().map(|o| o.next_n[1] / o.next_n[0].max(1e-9))),
-        if promises.is_empty() { String::new() } else { format!("{:.3}", median_of(promises.into_iter())) },
+        if ratios.is_empty() { String::new() } else { format!("{:.3}", median_of(ratios.into_iter())) },
         extras.join("; ").replace('|', " or ")
     )
 }
 
-/// What was said, as one text: what was named, or else the verdict.
-pub(super) fn said(outcome: &CaseOutcome) -> String {
-    if outcome.named.is_empty() { outcome.verdict.as_str().to_owned() } else { outcome.named.join(" + ") }
-}
-
-/// Median; not a number without values.
-pub(super) fn median_of(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    if values.is_empty() { f64::NAN } else { median(&mut values) }
-}
-
-/// The median with so many digits after the point; nothing without values.
-pub(super) fn median_told(values: impl Iterator<Item = f64>, digits: usize) -> String {
-    let median = median_of(values);
-    if median.is_nan() { String::new() } else { format!("{median:.digits$}") }
-}
-
-/// Percentage of the outcomes for which something holds, with their number.
-fn share(outcomes: &[&CaseOutcome], holds: impl Fn(&CaseOutcome) -> bool) -> String {
-    let count = outcomes.iter().filter(|o| holds(o)).count();
+/// Returns number and percentage of the outcomes that satisfy a predicate, as text.
+fn share(outcomes: &[&CaseOutcome], predicate: impl Fn(&CaseOutcome) -> bool) -> String {
+    let count = outcomes.iter().filter(|o| predicate(o)).count();
     format!("{count} of {} ({:.1} %)", outcomes.len(), 100.0 * count as f64 / outcomes.len().max(1) as f64)
 }
 
-/// How often the probability of the largest gain falls below some levels; it should as often as the level says.
+/// Returns the share of rigs whose p-value is below some levels, as text; without effects it should
+/// equal the level.
 fn calibration_of_p(nulls: &[&CaseOutcome]) -> String {
     let below = |level: f64| {
         let count = nulls.iter().filter(|o| o.p_value < level).count();
@@ -185,7 +172,7 @@ fn calibration_of_p(nulls: &[&CaseOutcome]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::study_cases;
+    use crate::study::cases::study_cases;
     use pinswitch_calibration::Verdict;
 
     fn outcome(exact: bool, extras: &[&str]) -> CaseOutcome {
@@ -194,10 +181,10 @@ mod tests {
             named: Vec::new(),
             fresh_n: [0.2, 0.1],
             next_n: [0.4, 0.3],
-            promise_ratio: None,
+            expected_error_ratio: None,
             exact,
-            honest: exact,
-            open: false,
+            consistent: exact,
+            left_open: false,
             visible: exact,
             extras: extras.iter().map(|e| (*e).to_owned()).collect(),
             covered: vec![exact],
@@ -210,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn a_summary_has_a_row_for_each_group_that_was_run_and_counts_extras() {
+    fn every_group_has_a_row() {
         let mut study = Study::default();
         let mask = study_cases().into_iter().find(|c| c.group == Group::Masks);
         study.add(
@@ -221,13 +208,13 @@ mod tests {
         let row = "| masks | 3 | 1 (33.3 %) | 1 (33.3 %) | 0.300 N | 0.750 |  | c (2); a or b (1) |";
         assert!(text.contains(row) && text.lines().count() == 3, "{text}");
         let words = study.summary();
-        assert!(words.contains("95 % intervals that hold the true size: 1 of 3"), "{words}");
+        assert!(words.contains("95 % intervals that contain the true size: 1 of 3"), "{words}");
         assert_eq!(words.lines().count(), 6, "{words}");
-        assert!(words.contains("... of those that the session could show: 1 of 1"), "{words}");
-        let mut promised = outcome(true, &[]);
-        promised.promise_ratio = Some(1.1);
+        assert!(words.contains("... of the visible ones: 1 of 1"), "{words}");
+        let mut with_ratio = outcome(true, &[]);
+        with_ratio.expected_error_ratio = Some(1.1);
         let null = study_cases().into_iter().find(|c| c.group == Group::Nulls);
-        study.add(null.unwrap(), vec![promised]);
+        study.add(null.unwrap(), vec![with_ratio]);
         let row = "| no effect | 1 | 1 (100.0 %) | 1 (100.0 %) | 0.300 N | 0.750 | 1.100 |  |";
         assert!(study.groups().contains(row), "{}", study.groups());
     }

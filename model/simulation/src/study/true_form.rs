@@ -1,5 +1,5 @@
-//! What a disturbance truly is, as effects of one's own with only their sizes free: what a form that was drawn is held
-//! against.
+//! The true form of a disturbance, as user-defined effects with free sizes: the reference for
+//! estimated forms.
 
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
@@ -8,16 +8,20 @@ use pinswitch_calibration::effects::{
 };
 use pinswitch_calibration::table::Frame;
 
-use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
+use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
 
-/// The vocabulary with the true forms of a disturbance, and their ids; `None` where no formula can say it: an operator
-/// who comes and goes is no variable.
+/// Returns the vocabulary with the true forms of a disturbance, and their ids. `None` for
+/// operators, which no variable of a formula describes.
 pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vocabulary, Vec<String>)> {
-    let course = course(disturbance, frame)?;
+    let shape = shape_formula(disturbance, frame)?;
     let size = disturbance.size;
     let parts = match (&disturbance.kind, disturbance.target) {
-        (Course::Swap { silicone, .. }, _) => vec![(ActsOn::MuPins, size), (ActsOn::MuSilicone, *silicone)],
-        (Course::Memory { .. }, _) | (_, DisturbanceTarget::Silicone) => vec![(ActsOn::MuSilicone, size)],
+        (DisturbanceKind::Swap { silicone, .. }, _) => {
+            vec![(ActsOn::MuPins, size), (ActsOn::MuSilicone, *silicone)]
+        }
+        (DisturbanceKind::Memory { .. }, _) | (_, DisturbanceTarget::Silicone) => {
+            vec![(ActsOn::MuSilicone, size)]
+        }
         (_, DisturbanceTarget::Friction) => vec![(ActsOn::Mu, size)],
         (_, DisturbanceTarget::Pins) => vec![(ActsOn::MuPins, size)],
         (_, DisturbanceTarget::Reading) => vec![(ActsOn::Reading, size)],
@@ -36,7 +40,7 @@ pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vo
                 covariate,
                 acts_on,
                 combine: if is_force { Combine::Sum } else { Combine::Factor },
-                formula: format!("a*{direction}{course}"),
+                formula: format!("a*{direction}{shape}"),
                 one_sided: false,
                 confused_with: Vec::new(),
                 experiment: String::new(),
@@ -56,28 +60,28 @@ pub(super) fn true_forms(disturbance: &Disturbance, frame: &Frame) -> Option<(Vo
     Some((Vocabulary::built_in().with(effects).ok()?, ids))
 }
 
-/// The course of a disturbance of size one, in the language of formulas.
-fn course(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
+/// Returns the formula of a disturbance of size one.
+fn shape_formula(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
     Some(match &disturbance.kind {
-        Course::Step { at, over } if *over > 0.0 => format!("min(1, max(0, (time - {at})/{over}))"),
-        Course::Step { at, .. } | Course::Swap { at, .. } => format!("(time >= {at})"),
-        Course::Window { from, to } => format!("(time >= {from})*(time < {to})"),
-        Course::TimeWave { cycles, phase } => format!("sin({}*time + {phase})", TAU * cycles),
-        Course::StrokeWave { cycles, phase, square } => {
+        DisturbanceKind::Step { at, over } if *over > 0.0 => format!("min(1, max(0, (time - {at})/{over}))"),
+        DisturbanceKind::Step { at, .. } | DisturbanceKind::Swap { at, .. } => format!("(time >= {at})"),
+        DisturbanceKind::Window { from, to } => format!("(time >= {from})*(time < {to})"),
+        DisturbanceKind::TimeWave { cycles, phase } => format!("sin({}*time + {phase})", TAU * cycles),
+        DisturbanceKind::StrokeWave { cycles, phase, square } => {
             let wave = format!("sin({}*stroke + {phase})", TAU * cycles);
             if *square { format!("{FRAC_PI_4}*(2*({wave} > 0) - 1)") } else { wave }
         }
-        Course::Spot { at, width, flat } => {
+        DisturbanceKind::Spot { at, width, flat } => {
             let inside = format!("(abs(stroke - {at}) <= {})", 0.5 * width);
             if *flat { inside } else { format!("{inside}*cos({}*(stroke - {at}))", PI / width) }
         }
-        Course::Resonance { speed_pct, width_pct } => {
+        DisturbanceKind::Resonance { speed_pct, width_pct } => {
             format!("1/(1 + ((speed_pct - {speed_pct})/{width_pct})^2)")
         }
-        Course::Stribeck { speed_pct, width } => {
+        DisturbanceKind::Stribeck { speed_pct, width } => {
             format!("(0 - exp(-(ln(speed_pct/{speed_pct})/{width})^2))")
         }
-        Course::Layout { pins } => {
+        DisturbanceKind::Layout { pins } => {
             let condition = frame.conditions.iter().find(|c| c.pins == *pins)?;
             format!(
                 "(abs(pin_count - {}) < 0.5)*(abs(turn_unevenness - {:.5}) < 0.0005)",
@@ -85,54 +89,57 @@ fn course(disturbance: &Disturbance, frame: &Frame) -> Option<String> {
                 condition.turn_unevenness()
             )
         }
-        Course::Memory { repetitions } => format!(
+        DisturbanceKind::Memory { repetitions } => format!(
             "(previous_load_n - load_n)/{:.6}*exp(-repetitions_so_far/{repetitions})",
             frame.load_range_n.1
         ),
-        Course::Operators { .. } => return None,
+        DisturbanceKind::Operators { .. } => return None,
     })
 }
 
-/// The shape of a disturbance in the words of a report: any of these is right. None where no shape is asked for.
+/// Returns the correct names of the shape in a report; empty if no shape is expected.
 pub(super) fn true_shapes(disturbance: &Disturbance) -> &'static [&'static str] {
     match disturbance.kind {
-        Course::Step { .. } | Course::Swap { .. } => &["step"],
-        Course::Window { .. } | Course::Layout { .. } => &["level"],
-        Course::TimeWave { .. } | Course::StrokeWave { .. } => &["sine"],
-        // A worn spot with sharp ends is another level between them.
-        Course::Spot { flat, .. } => {
+        DisturbanceKind::Step { .. } | DisturbanceKind::Swap { .. } => &["step"],
+        DisturbanceKind::Window { .. } | DisturbanceKind::Layout { .. } => &["level"],
+        DisturbanceKind::TimeWave { .. } | DisturbanceKind::StrokeWave { .. } => &["sine"],
+        // A box is another level between its ends.
+        DisturbanceKind::Spot { flat, .. } => {
             if flat {
                 &["bump", "dip", "level"]
             } else {
                 &["bump", "dip"]
             }
         }
-        Course::Resonance { .. } | Course::Stribeck { .. } => &["bump", "dip"],
-        Course::Memory { .. } => &["memory"],
-        Course::Operators { .. } => &[],
+        DisturbanceKind::Resonance { .. } | DisturbanceKind::Stribeck { .. } => &["bump", "dip"],
+        DisturbanceKind::Memory { .. } => &["memory"],
+        DisturbanceKind::Operators { .. } => &[],
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::{Group, plan_of, study_cases};
+    use crate::plan::NoisePlan;
+    use crate::simulate::simulate;
+    use crate::study::case::Group;
+    use crate::study::cases::{plan_of, study_cases};
     use pinswitch_calibration::inference::{Model, Noise, Observations, Term, Weighed, fit};
 
-    /// The twin and the formula say the same: the true form leaves nothing of a rig that scatters hardly.
+    /// On a rig with little noise, a fit of the true form leaves no structure.
     #[test]
-    fn a_true_form_leaves_nothing() {
+    fn true_forms_explain_the_twin() {
         for case in study_cases().into_iter().filter(|c| c.group == Group::Outside) {
             let mut plan = plan_of(&case, 3);
-            plan.noise = crate::NoisePlan {
+            plan.noise = NoisePlan {
                 repetition_n: 0.01,
                 repetition_per_load: 0.0,
                 series_n: 0.001,
                 series_per_load: 0.0,
                 outlier_share: 0.0,
-                ..crate::NoisePlan::default()
+                ..NoisePlan::default()
             };
-            let rows = crate::simulate(&plan).rows;
+            let rows = simulate(&plan).rows;
             let frame = Frame::new(&rows);
             let Some((vocabulary, ids)) = true_forms(&plan.disturbances[0], &frame) else { continue };
             let data = Observations::new(&frame, &rows).unwrap();

@@ -1,11 +1,14 @@
-//! Friction at the contact: pins, silicone and the switch between them, with what the paper's model lacks.
+//! Friction at the contact: pins, silicone and the switch between them, with the effects of a plan.
 
 use pinswitch_friction::{LayoutLaw, Substrate, published};
 
-use super::{F0_N, Moment, settling};
 use crate::plan::Plan;
+use crate::row_covariates::RowCovariates;
 
-/// One kind of contact.
+/// Reference load in newtons (`model/doc/effect-catalogue.md`).
+pub(super) const F0_N: f64 = 50.0;
+
+/// Contact of a condition.
 #[derive(Clone, Debug)]
 pub(super) struct TwinContact {
     substrate: Option<Substrate>,
@@ -17,14 +20,14 @@ pub(super) struct TwinContact {
     steepness: f64,
 }
 
-/// Exponents of one row after all effects, before the capstan.
+/// Friction exponents of a row, with all effects.
 struct Exponents {
     pins: f64,
     silicone: f64,
 }
 
 impl TwinContact {
-    /// The contact of a condition; `device` counts the switching layouts before it.
+    /// Creates the contact of a condition; `device` is the number of layouts on silicone before it.
     pub(super) fn new(plan: &Plan, substrate: Option<Substrate>, pins: &[usize], device: usize) -> Self {
         let wrap_rad = if substrate.is_none() { 1.0 } else { plan.wrap_angle_deg.to_radians() };
         let at: Vec<f64> =
@@ -51,13 +54,13 @@ impl TwinContact {
         }
     }
 
-    /// Whether pins stand in silicone here.
+    /// Whether the contact is a layout on silicone.
     pub(super) fn switches(&self) -> bool {
         self.substrate == Some(Substrate::Silicone) && !self.pins.is_empty()
     }
 
-    /// Tension in newtons at a load, when the tension of the round before is known.
-    pub(super) fn tension_n(&self, plan: &Plan, at: &Moment, load_n: f64, before_n: f64) -> f64 {
+    /// Returns the tension in newtons at a load, from the tension of the previous iteration.
+    pub(super) fn tension_n(&self, plan: &Plan, at: &RowCovariates, load_n: f64, before_n: f64) -> f64 {
         let x = self.exponents(plan, at, load_n, before_n);
         let grow = |x: f64| load_n * (at.sign * x).exp();
         let c = plan.effects.iter().find(|e| e.id == "adhesion");
@@ -79,8 +82,8 @@ impl TwinContact {
             + stuck(carried)
     }
 
-    /// How far a device has switched, 0..1.
-    fn switched(&self, plan: &Plan, at: &Moment, load_n: f64, tension_n: f64) -> f64 {
+    /// Returns the share of the contact that has switched to silicone, 0 to 1.
+    fn switched(&self, plan: &Plan, at: &RowCovariates, load_n: f64, tension_n: f64) -> f64 {
         let mut half_n = self.half_load_n;
         let mut local = None;
         for e in &plan.effects {
@@ -104,8 +107,8 @@ impl TwinContact {
         }
     }
 
-    /// Friction exponents with all effects that change them.
-    fn exponents(&self, plan: &Plan, at: &Moment, load_n: f64, tension_n: f64) -> Exponents {
+    /// Returns the friction exponents with all effects that change them.
+    fn exponents(&self, plan: &Plan, at: &RowCovariates, load_n: f64, tension_n: f64) -> Exponents {
         let share = load_n / F0_N;
         let mean_share = 0.5 * (load_n + tension_n) / F0_N;
         let (mut pins, mut silicone, mut both, mut ploughing) = (1.0, 1.0, at.seating, 0.0);
@@ -126,14 +129,14 @@ impl TwinContact {
                 ("dwell_relaxation", 1) => silicone *= (at.dwell_s / published::DWELL_S).powf(k),
                 ("dwell_relaxation", _) => silicone *= 1.0 + k * (at.dwell_s / published::DWELL_S).ln(),
                 ("run_in", 1) => silicone *= 1.0 + k / (1.0 + (at.repetition - 1.0) / shape),
-                ("run_in", 2) => silicone *= 1.0 + k * (-(at.through - 1.0) / shape).exp(),
+                ("run_in", 2) => silicone *= 1.0 + k * (-(at.series_repetition - 1.0) / shape).exp(),
                 ("run_in", _) => {
-                    let anew = if at.sign > 0.0 { e.values.get(2).copied().unwrap_or(1.0) } else { 1.0 };
-                    silicone *= 1.0 + anew * k * (-(at.repetition - 1.0) / shape).exp();
+                    let restart = if at.sign > 0.0 { e.values.get(2).copied().unwrap_or(1.0) } else { 1.0 };
+                    silicone *= 1.0 + restart * k * (-(at.repetition - 1.0) / shape).exp();
                 }
-                ("wear_drift", 1) => both *= 1.0 + k * at.travel,
-                ("wear_drift", 2) => both *= 1.0 + k * at.clock,
-                ("wear_drift", _) => both *= 1.0 + k * settling(at.travel, shape),
+                ("wear_drift", 1) => both *= 1.0 + k * at.travel_share,
+                ("wear_drift", 2) => both *= 1.0 + k * at.time_share,
+                ("wear_drift", _) => both *= 1.0 + k * settling(at.travel_share, shape),
                 ("rate_dependence", 1) => both *= (at.speed_pct / at.mean_speed_pct).powf(k),
                 ("rate_dependence", _) => both *= 1.0 + k * (at.speed_pct / at.mean_speed_pct).ln(),
                 ("direction_asymmetry", 1) => both *= (at.sign * k / 2.0).exp(),
@@ -142,9 +145,9 @@ impl TwinContact {
                 ("fixture_compliance", 2) => both *= 1.0 + k * share.powf(0.8),
                 ("fixture_compliance", _) => both *= 1.0 + k * share,
                 ("stroke_position", 1) => {
-                    both *= 1.0 + k * (std::f64::consts::PI * (at.place - 0.5)).sin() / 2.0;
+                    both *= 1.0 + k * (std::f64::consts::PI * (at.stroke_share - 0.5)).sin() / 2.0;
                 }
-                ("stroke_position", _) => both *= 1.0 + k * (at.place - 0.5),
+                ("stroke_position", _) => both *= 1.0 + k * (at.stroke_share - 0.5),
                 _ => {}
             }
         }
@@ -160,7 +163,7 @@ impl TwinContact {
         }
     }
 
-    /// Exponent that ploughing adds on the pins.
+    /// Returns the friction exponent from ploughing at the pins.
     fn ploughing(&self, form: u8, kappa: f64, sign: f64, load_n: f64) -> f64 {
         match form {
             1 => {
@@ -182,7 +185,7 @@ impl TwinContact {
         }
     }
 
-    /// Factor of bending at the pins on their friction; the reference turn is 20 degrees.
+    /// Returns the factor of bending on the friction of the pins; the reference turn is 20 degrees.
     fn bending(&self, form: u8, k: f64) -> f64 {
         let n = self.turns_rad.len();
         if n == 0 {
@@ -199,4 +202,9 @@ impl TwinContact {
             _ => 1.0 + k * mean,
         }
     }
+}
+
+/// Returns an exponential approach with time constant `t`, which is 0 at `u = 0` and 1 at `u = 1`.
+fn settling(u: f64, t: f64) -> f64 {
+    (1.0 - (-u / t).exp()) / (1.0 - (-1.0 / t).exp())
 }

@@ -1,59 +1,27 @@
-//! The physical twin: readings of a synthetic rig by formulas of its own.
+//! The physical twin: noise-free readings of a synthetic rig.
 //!
-//! It shares no formula with the fitter, so that the study of the calibrator also tests what happens when the truth
-//! bends otherwise than the model fitted. Form 0 of every effect is that of the effect catalogue, and a test holds it
-//! against the fitter's; the other forms are in `effect_forms`. Only an effect without any formula here is lent the
-//! fitter's trace.
+//! It shares no formula with the fitter, so that the study of the calibrator also covers effects
+//! whose true form differs from the fitted one. Form 0 of every effect is that of the effect
+//! catalogue, and a test compares it with the fitter's; `effect_forms` lists the other forms. Only
+//! for an effect without a formula here does the twin use the fitter's model.
 
 mod contact;
 
 use std::collections::BTreeMap;
 
-use contact::TwinContact;
+use contact::{F0_N, TwinContact};
 use pinswitch_calibration::inference::{Model, Term};
 use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_friction::published;
 
 use crate::effect_forms::has_own_formula;
 use crate::plan::Plan;
-use crate::series_marks::SeriesMarks;
+use crate::row_covariates::RowCovariates;
+use crate::series_traits::SessionTraits;
 
-/// Reference load in newtons (`model/doc/effect-catalogue.md`).
-const F0_N: f64 = 50.0;
-
-/// What an effect may depend on in one row, beside the load and the contact.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Moment {
-    /// -1 eccentric, +1 concentric.
-    pub(crate) sign: f64,
-    /// Whether loads descend.
-    pub(crate) down: bool,
-    /// Speed in percent.
-    pub(crate) speed_pct: f64,
-    /// Geometric mean of the session's speeds in percent.
-    pub(crate) mean_speed_pct: f64,
-    /// Pause before the reading in seconds.
-    pub(crate) dwell_s: f64,
-    /// Repetition inside series and direction, from 1.
-    pub(crate) repetition: f64,
-    /// Repetition inside the series, both directions counted, from 1.
-    pub(crate) through: f64,
-    /// Share of the stroke, 0..1.
-    pub(crate) place: f64,
-    /// Share of the session's time, 0..1.
-    pub(crate) clock: f64,
-    /// Share of the session's repetitions made before, 0..1.
-    pub(crate) travel: f64,
-    /// The step down from the load of the series before, as a share of the session's highest load.
-    pub(crate) step_down: f64,
-    /// Who measures: 1 or 2.
-    pub(crate) operator: u32,
-    /// Factor on all friction that this seating of the tendon has.
-    pub(crate) seating: f64,
-}
-
-/// Readings in newtons without noise, one per row of a whole session in the order of time.
-pub(super) fn readings(plan: &Plan, session: &[PlateauRow], marks: &SeriesMarks) -> Vec<f64> {
+/// Computes the readings in newtons without noise, one per row of a whole session in the order of
+/// time.
+pub(super) fn readings(plan: &Plan, session: &[PlateauRow], traits: &SessionTraits) -> Vec<f64> {
     let end_s = session.iter().map(|r| r.time_s).fold(1e-9, f64::max);
     let mean_speed_pct =
         (session.iter().map(|r| r.speed_pct.ln()).sum::<f64>() / session.len().max(1) as f64).exp();
@@ -70,43 +38,44 @@ pub(super) fn readings(plan: &Plan, session: &[PlateauRow], marks: &SeriesMarks)
             devices += usize::from(contact.switches());
             contact
         });
-        let through: &mut f64 = in_series.entry(row.series.clone()).or_insert(0.0);
-        *through += 1.0;
+        let series_repetition: &mut f64 = in_series.entry(row.series.clone()).or_insert(0.0);
+        *series_repetition += 1.0;
         if name != row.series {
             (name, before_n, load_n) = (&row.series, load_n, row.load_n);
         }
-        let mark = marks.of(&row.series);
-        let moment = Moment {
+        let mark = traits.of(&row.series);
+        let moment = RowCovariates {
             sign: row.direction.sign(),
             down: row.sweep == pinswitch_calibration::table::Sweep::Down,
             speed_pct: row.speed_pct,
             mean_speed_pct,
             dwell_s: row.dwell_s,
             repetition: f64::from(row.repetition),
-            through: *through,
-            place: row.position_mm / published::STROKE_MM,
-            clock: row.time_s / end_s,
-            travel: made as f64 / session.len() as f64,
+            series_repetition: *series_repetition,
+            stroke_share: row.position_mm / published::STROKE_MM,
+            time_share: row.time_s / end_s,
+            travel_share: made as f64 / session.len() as f64,
             step_down: (before_n - load_n) / most_n,
             operator: mark.operator,
             seating: mark.friction_factor,
         };
         out.push(reading(plan, contact, &moment, row));
     }
-    add_lent_traces(plan, session, &mut out);
+    add_fitter_effects(plan, session, &mut out);
     out
 }
 
-/// Adds what effects without a formula in the twin do to the fitter's own model at the plan's constants.
-fn add_lent_traces(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) {
-    let lent: Vec<_> = plan
+/// Adds the effects without a formula in the twin: their change of the fitter's model with the
+/// constants of the plan.
+fn add_fitter_effects(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) {
+    let effects: Vec<_> = plan
         .effects
         .iter()
         .filter(|e| !has_own_formula(&e.id))
         .filter_map(|e| Some((plan.vocabulary.named(&e.id)?, e.values.as_slice())))
         .collect();
     let frame = Frame::new(session);
-    let Some(points) = frame.points(session).filter(|_| !lent.is_empty()) else { return };
+    let Some(points) = frame.points(session).filter(|_| !effects.is_empty()) else { return };
     let mut model = Model::baseline(frame);
     let mut values = model.values();
     (values[0], values[1]) = (plan.constants.mu_p, plan.constants.mu_s);
@@ -118,18 +87,18 @@ fn add_lent_traces(plan: &Plan, session: &[PlateauRow], readings_n: &mut [f64]) 
     model.set_values(&values);
     let without = model.predict(&points);
     let with =
-        lent.iter().fold(model, |m, (effect, k)| m.with_term(Term::Named(*effect), k)).predict(&points);
+        effects.iter().fold(model, |m, (effect, k)| m.with_term(Term::Named(*effect), k)).predict(&points);
     for ((reading, with), without) in readings_n.iter_mut().zip(with).zip(without) {
         *reading += with - without;
     }
 }
 
-/// One reading: hook, contact, guide pulleys, cell.
-fn reading(plan: &Plan, contact: &TwinContact, at: &Moment, row: &PlateauRow) -> f64 {
+/// Computes a reading in newtons: hook, contact, guide pulleys, load cell.
+fn reading(plan: &Plan, contact: &TwinContact, at: &RowCovariates, row: &PlateauRow) -> f64 {
     let has = |id: &str| plan.effects.iter().find(|e| e.id == id).map(|e| (e.values.as_slice(), e.form));
     let hook_n = published::HOOK_MASS_G * 1e-3 * published::GRAVITY_M_S2;
     let load_n = row.load_n + if has("hook_omitted").is_some() { hook_n } else { 0.0 };
-    // What the tendon's own tension decides is found by substitution; it settles in a few rounds.
+    // Effects of the local tension: a fixed-point iteration, which converges in a few steps.
     let mut tension_n = load_n;
     for _ in 0..8 {
         tension_n = contact.tension_n(plan, at, load_n, tension_n);
@@ -148,14 +117,14 @@ fn reading(plan: &Plan, contact: &TwinContact, at: &Moment, row: &PlateauRow) ->
         force_n += k[0];
     }
     if let Some((k, _)) = has("thermal_drift") {
-        force_n += k[0] * at.clock;
+        force_n += k[0] * at.time_share;
     }
     for d in &plan.disturbances {
         force_n += d.on_reading_n(at, &row.pins);
     }
     if let Some((k, form)) = has("load_cell_saturation") {
         force_n = if form == 1 {
-            // A knee half a newton wide instead of a corner.
+            // A smooth transition over half a newton instead of a corner.
             k[0] - 0.25 * ((k[0] - force_n) / 0.25).exp().ln_1p()
         } else {
             force_n.min(k[0])
@@ -164,23 +133,17 @@ fn reading(plan: &Plan, contact: &TwinContact, at: &Moment, row: &PlateauRow) ->
     force_n
 }
 
-/// 0 at 0, 1 at 1, settling with time constant `t`.
-fn settling(u: f64, t: f64) -> f64 {
-    (1.0 - (-u / t).exp()) / (1.0 - (-1.0 / t).exp())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::disturbance::{Course, Disturbance, DisturbanceTarget};
+    use crate::disturbance::{Disturbance, DisturbanceKind, DisturbanceTarget};
     use crate::effect_forms::FORMS;
     use crate::plan::EffectPlan;
     use pinswitch_calibration::effects::{CATALOGUE, effect_named};
 
-    /// Two implementations of `model/doc/effect-catalogue.md`, the twin's and the fitter's, agree on form 0 of every
-    /// effect.
+    /// The twin and the fitter implement `model/doc/effect-catalogue.md` independently.
     #[test]
-    fn the_first_form_of_every_effect_is_the_fitters() {
+    fn first_forms_match_the_fitter() {
         for effect in CATALOGUE {
             let (id, range) = (effect.id(), effect.description().study);
             let mut plan = Plan::randomised();
@@ -191,21 +154,21 @@ mod tests {
             let frame = Frame::new(&rows);
             let model = Model::baseline(frame.clone()).with_term(Term::Named(*effect), &values);
             let fitters = model.predict(&frame.points(&rows).unwrap());
-            let worst = readings(&plan, &rows, &SeriesMarks::default())
+            let worst = readings(&plan, &rows, &SessionTraits::default())
                 .iter()
                 .zip(&fitters)
                 .map(|(a, b)| (a - b).abs())
                 .fold(0.0, f64::max);
-            // The fitter reads the share of travel off 400 points.
-            // The fitter substitutes the local tension three times, the twin until it settles.
+            // The fitter interpolates the share of travel between 400 points, and iterates the
+            // local tension three times; the twin iterates it until it converges.
             let bound = if ["wear_drift", "switch_local_tension"].contains(&id) { 1e-2 } else { 1e-3 };
             assert!(worst < bound, "{id}: {worst} N");
         }
     }
 
-    /// Every other form differs from form 0; up to what a refitted baseline takes over, by less than the effect.
+    /// Every other form differs from form 0 by less than 1.5 times the effect.
     #[test]
-    fn other_forms_bend_the_effect_without_replacing_it() {
+    fn other_forms_differ_from_the_first() {
         for (id, names) in FORMS {
             let range = effect_named(id).unwrap().description().study;
             let with = |form: Option<u8>| {
@@ -215,7 +178,7 @@ mod tests {
                     plan.effects.push(EffectPlan { id: id.to_owned(), values, form });
                 }
                 let mut random = rand::SeedableRng::seed_from_u64(3);
-                readings(&plan, &crate::protocol::rows(&plan, &mut random), &SeriesMarks::default())
+                readings(&plan, &crate::protocol::rows(&plan, &mut random), &SessionTraits::default())
             };
             let distance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).abs()).sum::<f64>();
             let (none, first) = (with(None), with(Some(0)));
@@ -227,32 +190,33 @@ mod tests {
         }
     }
 
-    /// Through a whole session: each series on silicone remembers the load before it, pins alone remember nothing.
+    /// In a whole session, each series on silicone depends on the load of the previous one, and
+    /// pins alone do not.
     #[test]
-    fn a_series_remembers_the_load_before_it() {
+    fn silicone_remembers_the_previous_load() {
         let mut plan = Plan::default();
         let mut random = rand::SeedableRng::seed_from_u64(3);
         let rows = crate::protocol::rows(&plan, &mut random);
-        let without = readings(&plan, &rows, &SeriesMarks::default());
-        let kind = Course::Memory { repetitions: 20.0 };
+        let without = readings(&plan, &rows, &SessionTraits::default());
+        let kind = DisturbanceKind::Memory { repetitions: 20.0 };
         plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Silicone, size: 0.5 });
-        let with = readings(&plan, &rows, &SeriesMarks::default());
+        let with = readings(&plan, &rows, &SessionTraits::default());
         let exponent = |force_n: f64, row: &PlateauRow| (force_n / row.load_n).ln();
         let most_n = rows.iter().map(|r| r.load_n).fold(0.0, f64::max);
-        let (mut before_n, mut series, mut through) = (0.0, &rows[0], 0);
+        let (mut before_n, mut series, mut series_repetition) = (0.0, &rows[0], 0);
         for ((row, a), b) in rows.iter().zip(&without).zip(&with) {
             if row.series != series.series {
-                (before_n, series, through) = (series.load_n, row, 0);
+                (before_n, series, series_repetition) = (series.load_n, row, 0);
             }
             if row.substrate == Some(pinswitch_friction::Substrate::Abs) {
                 assert_eq!(a, b);
             } else if row.pins.is_empty() {
-                let kept = (-f64::from(through) / 20.0).exp();
-                let expected = 1.0 + 0.5 * (before_n - row.load_n) / most_n * kept;
-                let found = exponent(*b, row) / exponent(*a, row);
-                assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+                let left = (-f64::from(series_repetition) / 20.0).exp();
+                let expected = 1.0 + 0.5 * (before_n - row.load_n) / most_n * left;
+                let factor = exponent(*b, row) / exponent(*a, row);
+                assert!((factor - expected).abs() < 1e-9, "{factor} instead of {expected}");
             }
-            through += 1;
+            series_repetition += 1;
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::design::Design;
 use crate::documents::Manifest;
 use crate::parts::{LeftOut, printed, touches};
 use crate::scene::Stage;
-use pinswitch_friction::{Substrate, counted};
+use pinswitch_friction::{Substrate, pluralise};
 
 /// Writes the section; returns what each of its steps adds.
 pub(super) fn assembly_section(
@@ -24,7 +24,7 @@ pub(super) fn assembly_section(
         stages.push(Stage::CutPins);
         steps.push(format!(
             "Cut {} of {} mm and {:.1} mm long ({} to spare); break their edges, polish them.",
-            counted(bill.pins.number + bill.pins.spares, "pin"),
+            pluralise(bill.pins.number + bill.pins.spares, "pin"),
             bill.pins.diameter_mm,
             bill.pins.length_mm,
             bill.pins.spares
@@ -47,7 +47,7 @@ pub(super) fn assembly_section(
              dimensions. ",
             design.layer_width_mm(),
             c.silicone.thickness_mm,
-            counted(c.segment.grooves, "groove")
+            pluralise(c.segment.grooves, "groove")
         )
     } else {
         String::new()
@@ -190,13 +190,13 @@ fn fastening_step(design: &Design, manifest: &Manifest) -> Option<String> {
     let screws = match f.right_length_mm {
         Some(right_mm) => format!(
             "{} {} x {} from the left and {} {} x {right_mm} from the right",
-            counted(f.number / 2, "screw"),
+            pluralise(f.number / 2, "screw"),
             f.thread,
             f.length_mm,
             f.number / 2,
             f.thread
         ),
-        None => format!("{} {} x {}", counted(f.number, "screw"), f.thread, f.length_mm),
+        None => format!("{} {} x {}", pluralise(f.number, "screw"), f.thread, f.length_mm),
     };
     Some(format!("Fasten with {screws} {into}{tight}.{pierced}"))
 }

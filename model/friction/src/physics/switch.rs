@@ -1,23 +1,22 @@
-//! A switch of any layout, from physics: its state at a load, and what is uncertain about it.
+//! States of a switch with any layout, by the physics, and their sensitivities to the constants.
 
-use nalgebra::{Matrix3, Vector3};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use nalgebra::Vector3;
 
+use super::constants::Constants;
 use super::equilibrium::Supports;
-use super::fit::PUBLISHED_FIT;
+use super::error::PhysicsError;
 use super::grid::{self, Grid};
 use super::march::{Slide, Sliding, pins_alone_exponent, polygon_turns_rad, slide};
-use super::{Bed, Constants, PhysicsError};
-use crate::band::BandSource;
-use crate::law::Uncertain;
-use crate::published;
-use crate::{Contact, Direction, Substrate, SwitchState, capstan_tension_n};
+use crate::bed::Bed;
+use crate::capstan::{Direction, capstan_tension_n};
+use crate::contact::Contact;
+use crate::substrate::Substrate;
+use crate::switch::SwitchState;
 
-/// Share of cases that a band should hold.
-const CONFIDENCE: f64 = 0.95;
-/// Step of a logarithm for the sensitivities.
+/// Step of a logarithm for finite differences.
 const STEP: f64 = 1e-3;
-/// Contact, bed and constants: all that the friction of a switch depends on.
+
+/// Switch whose friction follows from its contact, bed and material constants.
 ///
 /// ```
 /// use pinswitch_friction::physics::{Constants, PhysicsSwitch};
@@ -27,7 +26,7 @@ const STEP: f64 = 1e-3;
 /// let contact = Contact::new(Substrate::Silicone, uneven, published::wrap_angle_rad())?;
 /// let switch = PhysicsSwitch::new(&contact, Constants::published());
 /// let states = switch.states(&[10.0, 50.0])?;
-/// assert!(states[0].silicone_share < states[1].silicone_share, "the pins sink as load grows");
+/// assert!(states[0].silicone_share < states[1].silicone_share, "the pins sink as the load grows");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -38,49 +37,49 @@ pub struct PhysicsSwitch {
     grid: Grid,
 }
 
-/// States at the load before, from which the next search starts.
+/// States at the previous load, from which the next iteration starts.
 #[derive(Default)]
-struct Nearby {
+struct PreviousStates {
     eccentric: Option<Sliding>,
     concentric: Option<Sliding>,
 }
 
 impl PhysicsSwitch {
-    /// The switch of `contact` on the bed that the contact carries, with these constants of the published bed.
+    /// Creates the switch of `contact` on its bed, with these constants for the published bed.
     pub fn new(contact: &Contact, constants: Constants) -> Self {
         let bed = *contact.bed();
         Self::with_elements(contact, bed, constants, grid::elements(contact.wrap_rad(), &bed))
     }
 
-    /// The same with another bed and another number of elements over the wrap.
+    /// Creates the switch with another bed and another number of elements over the wrap.
     pub fn with_elements(contact: &Contact, bed: Bed, constants: Constants, elements: usize) -> Self {
         let grid = Grid::new(contact.wrap_rad(), contact.all_pins().angles_rad(), &bed, elements);
         Self { contact: contact.clone(), bed, constants, grid }
     }
 
-    /// The same switch with other constants.
+    /// Returns the same switch with other constants.
     #[must_use]
     pub fn with_constants(&self, constants: Constants) -> Self {
         Self { constants, ..self.clone() }
     }
 
-    /// States at `loads_n` newtons; ascending loads are fastest.
+    /// Computes the states at `loads_n` newtons; ascending loads are fastest.
     ///
     /// # Errors
-    /// [`PhysicsError`] if a load's equilibrium is not found.
+    /// [`PhysicsError`] if the model does not converge at a load.
     pub fn states(&self, loads_n: &[f64]) -> Result<Vec<SwitchState>, PhysicsError> {
         Ok(self.points(loads_n)?.iter().map(|p| p.state).collect())
     }
 
-    /// Friction at one load in newtons.
+    /// Computes the friction at one load, in newtons.
     ///
     /// # Errors
-    /// [`PhysicsError`] if the equilibrium is not found.
+    /// [`PhysicsError`] if the model does not converge.
     pub fn friction_n(&self, load_n: f64) -> Result<f64, PhysicsError> {
-        self.point_from(load_n, &mut Nearby::default()).map(|p| p.state.friction_n)
+        self.point_from(load_n, &mut PreviousStates::default()).map(|p| p.state.friction_n)
     }
 
-    /// The loaded tendon sliding in one direction.
+    /// Computes the state of the tendon that slides in one direction.
     pub(super) fn sliding(
         &self,
         load_n: f64,
@@ -93,23 +92,25 @@ impl PhysicsSwitch {
         slide(Slide { supports, constants, wrap_rad, load_n, direction }, start)
     }
 
-    /// Angles between which the silicone can touch.
+    /// Returns the first and the last angle at which silicone can touch the tendon, in radians.
     pub(super) fn silicone_rad(&self) -> (f64, f64) {
-        let touched = || self.grid.angle_rad.iter().zip(&self.grid.silicone_mm).filter(|(_, w)| **w > 0.0);
+        let nodes = || self.grid.angle_rad.iter().zip(&self.grid.silicone_mm).filter(|(_, w)| **w > 0.0);
         let angle = |node: Option<(&f64, &f64)>| node.map_or(0.0, |(angle, _)| *angle);
-        (angle(touched().next()), angle(touched().next_back()))
+        (angle(nodes().next()), angle(nodes().next_back()))
     }
 
-    /// Angles of the pins that the tendon can reach.
+    /// Returns the angles of the pins that the tendon can touch, in radians.
     pub(super) fn pins_rad(&self) -> Vec<f64> {
         self.grid.pins.iter().map(|node| self.grid.angle_rad[*node]).collect()
     }
 
+    /// Returns the angles of the nodes, in radians.
     pub(super) fn angles_rad(&self) -> &[f64] {
         &self.grid.angle_rad
     }
 
-    /// Exponents of pins and silicone in a direction, and the state for the next load.
+    /// Computes the friction exponents of pins and silicone in a direction, and updates the state
+    /// for the next load.
     fn exponents(
         &self,
         load_n: f64,
@@ -135,9 +136,10 @@ impl PhysicsSwitch {
         Ok(exponent)
     }
 
-    fn point_from(&self, load_n: f64, nearby: &mut Nearby) -> Result<Point, PhysicsError> {
-        let eccentric = self.exponents(load_n, Direction::Eccentric, &mut nearby.eccentric)?;
-        let concentric = self.exponents(load_n, Direction::Concentric, &mut nearby.concentric)?;
+    /// Computes the state at one load, starting from that at the previous load.
+    fn point_from(&self, load_n: f64, previous: &mut PreviousStates) -> Result<Point, PhysicsError> {
+        let eccentric = self.exponents(load_n, Direction::Eccentric, &mut previous.eccentric)?;
+        let concentric = self.exponents(load_n, Direction::Concentric, &mut previous.concentric)?;
         let total = |x: Exponent| x.pins + x.silicone;
         let eccentric_n = capstan_tension_n(load_n, total(eccentric), Direction::Eccentric);
         let concentric_n = capstan_tension_n(load_n, total(concentric), Direction::Concentric);
@@ -153,22 +155,30 @@ impl PhysicsSwitch {
         Ok(Point { state, eccentric, concentric })
     }
 
+    /// Computes the states at several loads, each starting from the previous one.
     fn points(&self, loads_n: &[f64]) -> Result<Vec<Point>, PhysicsError> {
-        let mut nearby = Nearby::default();
-        loads_n.iter().map(|load| self.point_from(*load, &mut nearby)).collect()
+        let mut previous = PreviousStates::default();
+        loads_n.iter().map(|load| self.point_from(*load, &mut previous)).collect()
     }
 
-    /// Sensitivities of `ln D` to the logarithms of the constants, load by load; zero where there is no friction. The
-    /// exponents are proportional to `kappa` and `mu_s` but for the feedback of tension on shape, which is left out;
-    /// the flush force moves the shape, and takes a second curve.
-    fn sensitivities(&self, loads_n: &[f64], points: &[Point]) -> Result<Vec<Vector3<f64>>, PhysicsError> {
+    /// Computes friction at `loads_n` newtons, and the sensitivities of `ln D` to the logarithms of
+    /// the constants.
+    ///
+    /// A sensitivity is zero without friction. The exponents are proportional to `kappa` and
+    /// `mu_s`; the feedback of the tension on the shape is neglected. The flush force changes the
+    /// shape, and needs a second curve.
+    pub(crate) fn friction_and_sensitivities(
+        &self,
+        loads_n: &[f64],
+    ) -> Result<(Vec<f64>, Vec<Vector3<f64>>), PhysicsError> {
+        let points = self.points(loads_n)?;
         let mut at = self.constants.logarithms();
         at[2] += STEP;
         let stiffer = match self.contact.substrate() {
             Substrate::Silicone => self.with_constants(Constants::from_logarithms(&at)).points(loads_n)?,
-            Substrate::Abs => points.to_vec(),
+            Substrate::Abs => points.clone(),
         };
-        Ok(points
+        let sensitivities = points
             .iter()
             .zip(&stiffer)
             .map(|(point, stiffer)| {
@@ -183,18 +193,19 @@ impl PhysicsSwitch {
                     Vector3::zeros()
                 }
             })
-            .collect())
+            .collect();
+        Ok((points.iter().map(|p| p.state.friction_n).collect(), sensitivities))
     }
 }
 
-/// Parts of a friction exponent, `ln(T/F)` without its sign.
+/// Parts of a friction exponent `|ln(T/F)|`.
 #[derive(Clone, Copy, Debug)]
 struct Exponent {
     pins: f64,
     silicone: f64,
 }
 
-/// A state with the exponents of both directions.
+/// State with the exponents of both directions.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     state: SwitchState,
@@ -203,55 +214,10 @@ struct Point {
 }
 
 impl Point {
-    /// `dD` for a relative change of this part of the exponent: `(F_e x_e + F_c x_c)/2`.
+    /// Returns the derivative of `D` with respect to a relative change of this part of the
+    /// exponents: `(T_e x_e + T_c x_c)/2`.
     fn friction_per_exponent(&self, part: impl Fn(&Exponent) -> f64) -> f64 {
         (self.state.eccentric_n * part(&self.eccentric) + self.state.concentric_n * part(&self.concentric))
             / 2.0
     }
-}
-
-/// The states of `contact` at `loads_n` newtons, with constants fitted to the published maxima.
-///
-/// # Errors
-/// [`PhysicsError`] if a load's equilibrium is not found.
-pub(crate) fn states(contact: &Contact, loads_n: &[f64]) -> Result<Vec<SwitchState>, PhysicsError> {
-    PhysicsSwitch::new(contact, PUBLISHED_FIT.constants()).states(loads_n)
-}
-
-/// Friction of `contact`, and what the physics leaves uncertain of `ln D` at 95 %: its constants, by their covariance, and its own error, which is
-/// that of published layouts left out of the fit.
-///
-/// # Errors
-/// [`PhysicsError`] if a load's equilibrium is not found.
-pub(crate) fn uncertain(contact: &Contact, loads_n: &[f64]) -> Result<Uncertain, PhysicsError> {
-    let fit = &PUBLISHED_FIT;
-    let switch = PhysicsSwitch::new(contact, fit.constants());
-    let points = switch.points(loads_n)?;
-    let covariance = Matrix3::from_row_slice(&fit.covariance.concat());
-    let quantile =
-        StudentsT::new(0.0, 1.0, fit.freedom).map_or(2.78, |t| t.inverse_cdf(0.5 + CONFIDENCE / 2.0));
-    let constants = switch
-        .sensitivities(loads_n, &points)?
-        .iter()
-        .map(|g| quantile * (g.transpose() * covariance * g)[(0, 0)].sqrt())
-        .collect();
-    Ok(Uncertain {
-        friction_n: points.iter().map(|p| p.state.friction_n).collect(),
-        sources: vec![
-            BandSource::even("constants", constants),
-            BandSource::even("model", vec![quantile * fit.left_out_rms; loads_n.len()]),
-        ],
-    })
-}
-
-/// What the physics is known not to explain of a published condition.
-pub(crate) fn unexplained(contact: &Contact) -> Option<String> {
-    let layout = contact.published_layout().filter(|_| contact.substrate() == Substrate::Silicone)?;
-    (layout.pins == 3).then(|| {
-        format!(
-            "physics gives three-double and three-single nearly the same maximum; {:.2} and {:.2} N were measured",
-            published::LAYOUTS[1].device_max_n,
-            published::LAYOUTS[2].device_max_n
-        )
-    })
 }

@@ -1,6 +1,7 @@
-//! What each series of a session has of its own: its mount, its operator, how the tendon is seated, its offset.
+//! Random effects of the series of a session: mount, operator, tendon seating and offset.
 //!
-//! Each part is drawn from a stream of its own, so that a part that is switched on leaves all else as it was.
+//! Each random effect has a separate stream of random numbers, so that enabling one does not change
+//! the others.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,40 +10,40 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::disturbance::{Course, Turns};
+use crate::disturbance::{DisturbanceKind, OperatorSchedule};
 use crate::plan::{ColumnsPlan, Plan};
 
-/// Streams of the random numbers beside the one that everything else is drawn from.
+/// Streams of random numbers, in addition to stream 0 of all other random numbers.
 const SERIES_SCALE: u64 = 1;
 const MOUNT_SCALE: u64 = 2;
 const COMMON_OFFSET: u64 = 3;
 const OPERATORS: u64 = 4;
 
-/// What one series has of its own.
+/// Mount, operator and random effects of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeriesMark {
-    /// Number of the mount, from 1: it grows each time another condition is put on.
+pub struct SeriesTraits {
+    /// Number of the mount, from 1; a new one begins whenever the condition changes.
     pub mount: u32,
-    /// Who measured it: 1 or 2.
+    /// Operator: 1 or 2.
     pub operator: u32,
-    /// Factor on all friction, of the mount and of the series.
+    /// Factor of mount and series on all friction.
     pub friction_factor: f64,
     /// Offset of both directions, in its standard deviations.
     pub common_offset: f64,
 }
 
-impl Default for SeriesMark {
+impl Default for SeriesTraits {
     fn default() -> Self {
         Self { mount: 1, operator: 1, friction_factor: 1.0, common_offset: 0.0 }
     }
 }
 
-/// What the series of a session have of their own, by name.
+/// Traits of the series of a session, by the name of the series.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SeriesMarks(BTreeMap<String, SeriesMark>);
+pub struct SessionTraits(BTreeMap<String, SeriesTraits>);
 
-impl SeriesMarks {
-    /// Draws it for a session whose rows are in the order of time.
+impl SessionTraits {
+    /// Draws the traits for a session whose rows are in the order of time.
     pub(crate) fn draw(plan: &Plan, session: &[PlateauRow]) -> Self {
         let stream = |number| {
             let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
@@ -51,9 +52,9 @@ impl SeriesMarks {
         };
         let mut seats = stream(SERIES_SCALE);
         let mut mounts = stream(MOUNT_SCALE);
-        let mut offsets = Walk::new(plan.noise.series_walk, stream(COMMON_OFFSET));
-        let mut operators = Operators::of(plan, session, stream(OPERATORS));
-        let mut marks = BTreeMap::new();
+        let mut offsets = Ar1::new(plan.noise.series_walk, stream(COMMON_OFFSET));
+        let mut operators = Operators::new(plan, session, stream(OPERATORS));
+        let mut traits = BTreeMap::new();
         let mut before: Option<&PlateauRow> = None;
         let (mut mount, mut wrap) = (0, 0.0);
         for row in session {
@@ -66,44 +67,44 @@ impl SeriesMarks {
             }
             before = Some(row);
             let seat = plan.noise.series_scale * normal(&mut seats);
-            let mark = SeriesMark {
+            let series = SeriesTraits {
                 mount,
                 operator: operators.next(),
                 friction_factor: (wrap + seat).exp(),
                 common_offset: offsets.next(),
             };
-            marks.insert(row.series.clone(), mark);
+            traits.insert(row.series.clone(), series);
         }
-        Self(marks)
+        Self(traits)
     }
 
-    /// That of a series.
-    pub fn of(&self, series: &str) -> SeriesMark {
+    /// Returns the traits of a series.
+    pub fn of(&self, series: &str) -> SeriesTraits {
         self.0.get(series).copied().unwrap_or_default()
     }
 
-    /// The same series as if the tendon had been seated ideally in each.
-    pub(crate) fn seated_ideally(&self) -> Self {
-        let ideal = |mark: &SeriesMark| SeriesMark { friction_factor: 1.0, ..*mark };
-        Self(self.0.iter().map(|(series, mark)| (series.clone(), ideal(mark))).collect())
+    /// Returns the same traits without random effects on friction.
+    pub(crate) fn without_friction_factors(&self) -> Self {
+        let ideal = |traits: &SeriesTraits| SeriesTraits { friction_factor: 1.0, ..*traits };
+        Self(self.0.iter().map(|(series, traits)| (series.clone(), ideal(traits))).collect())
     }
 
-    /// Adds the optional columns to the text of a table of these rows.
+    /// Adds the optional columns to the CSV text of these rows.
     pub(crate) fn add_columns(&self, columns: ColumnsPlan, rows: &[PlateauRow], text: String) -> String {
         if columns.is_empty() {
             return text;
         }
-        let asked = [("mount", columns.mount), ("operator", columns.operator)];
-        let names = asked.iter().filter(|a| a.1).fold(String::new(), |line, a| line + "," + a.0);
+        let optional = [("mount", columns.mount), ("operator", columns.operator)];
+        let names = optional.iter().filter(|c| c.1).fold(String::new(), |line, c| line + "," + c.0);
         let cells = rows.iter().map(|row| {
-            let mark = self.of(&row.series);
-            [mark.mount, mark.operator]
+            let traits = self.of(&row.series);
+            [traits.mount, traits.operator]
                 .iter()
-                .zip(asked)
-                .filter(|(_, a)| a.1)
+                .zip(optional)
+                .filter(|(_, c)| c.1)
                 .fold(String::new(), |line, (value, _)| format!("{line},{value}"))
         });
-        // Names of simulated series are numbers: no cell breaks a line.
+        // The names of simulated series are numbers, so that a line of text is a row.
         text.lines()
             .zip(std::iter::once(names).chain(cells))
             .map(|(line, more)| format!("{line}{more}\n"))
@@ -115,35 +116,36 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(random)
 }
 
-/// Unit normal numbers, each correlated with the one before.
+/// AR(1) process with unit variance.
 #[derive(Debug)]
-pub(crate) struct Walk {
+pub(crate) struct Ar1 {
     correlation: f64,
     last: Option<f64>,
     random: ChaCha8Rng,
 }
 
-impl Walk {
+impl Ar1 {
     fn new(correlation: f64, random: ChaCha8Rng) -> Self {
         Self { correlation, last: None, random }
     }
 
     fn next(&mut self) -> f64 {
         let unit = normal(&mut self.random);
-        let value = walked(self.correlation, self.last, unit);
+        let value = ar1_step(self.correlation, self.last, unit);
         self.last = Some(value);
         value
     }
 }
 
-/// A unit normal number, correlated with the last one; it is `unit` itself where nothing is.
-pub(crate) fn walked(correlation: f64, last: Option<f64>, unit: f64) -> f64 {
+/// Returns the next value of an AR(1) process with unit variance, from a unit normal number; the
+/// first value is that number.
+pub(crate) fn ar1_step(correlation: f64, last: Option<f64>, unit: f64) -> f64 {
     last.map_or(unit, |last| correlation * last + (1.0 - correlation * correlation).sqrt() * unit)
 }
 
-/// Who has which turn.
+/// Operators of the series, in order.
 struct Operators {
-    turns: Option<Turns>,
+    turns: Option<OperatorSchedule>,
     random: ChaCha8Rng,
     begins: bool,
     half: usize,
@@ -151,9 +153,9 @@ struct Operators {
 }
 
 impl Operators {
-    fn of(plan: &Plan, session: &[PlateauRow], mut random: ChaCha8Rng) -> Self {
+    fn new(plan: &Plan, session: &[PlateauRow], mut random: ChaCha8Rng) -> Self {
         let turns = plan.disturbances.iter().find_map(|d| match d.kind {
-            Course::Operators { turns } => Some(turns),
+            DisturbanceKind::Operators { turns } => Some(turns),
             _ => None,
         });
         let series: BTreeSet<&str> = session.iter().map(|r| r.series.as_str()).collect();
@@ -166,8 +168,8 @@ impl Operators {
         self.served += 1;
         let second = match self.turns {
             None => false,
-            Some(Turns::Series) => self.random.random(),
-            Some(Turns::Half) => first_half == self.begins,
+            Some(OperatorSchedule::Series) => self.random.random(),
+            Some(OperatorSchedule::Half) => first_half == self.begins,
         };
         1 + u32::from(second)
     }
@@ -178,12 +180,12 @@ mod tests {
     use super::*;
     use crate::disturbance::{Disturbance, DisturbanceTarget};
 
-    fn marks(plan: &Plan) -> Vec<SeriesMark> {
+    fn traits(plan: &Plan) -> Vec<SeriesTraits> {
         let rows = crate::protocol::rows(plan, &mut ChaCha8Rng::seed_from_u64(plan.seed));
-        let marks = SeriesMarks::draw(plan, &rows);
+        let traits = SessionTraits::draw(plan, &rows);
         let mut names: Vec<&str> = rows.iter().map(|r| r.series.as_str()).collect();
         names.dedup();
-        names.into_iter().map(|n| marks.of(n)).collect()
+        names.into_iter().map(|n| traits.of(n)).collect()
     }
 
     fn sd(values: &[f64]) -> f64 {
@@ -191,31 +193,31 @@ mod tests {
         (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
     }
 
-    /// One repetition a series, and each value over many seeds.
-    fn over_seeds(plan: &Plan, of: impl Fn(Vec<SeriesMark>) -> Vec<f64>) -> Vec<f64> {
-        (0..300).flat_map(|seed| of(marks(&Plan { seed, repetitions: [1, 1], ..plan.clone() }))).collect()
+    /// Returns values of many seeds, with one repetition per series.
+    fn over_seeds(plan: &Plan, of: impl Fn(Vec<SeriesTraits>) -> Vec<f64>) -> Vec<f64> {
+        (0..300).flat_map(|seed| of(traits(&Plan { seed, repetitions: [1, 1], ..plan.clone() }))).collect()
     }
 
     #[test]
-    fn each_part_scatters_as_much_as_the_plan_says() {
-        let logs = |marks: Vec<SeriesMark>| marks.iter().map(|m| m.friction_factor.ln()).collect();
+    fn random_effects_have_the_planned_scatter() {
+        let logs = |traits: Vec<SeriesTraits>| traits.iter().map(|m| m.friction_factor.ln()).collect();
         let mut plan = Plan::randomised();
         assert!(over_seeds(&plan, logs).iter().all(|v| *v == 0.0));
         plan.noise.series_scale = 0.03;
         assert!((sd(&over_seeds(&plan, logs)) / 0.03 - 1.0).abs() < 0.03);
         (plan.noise.series_scale, plan.noise.mount_scale) = (0.0, 0.04);
         assert!((sd(&over_seeds(&plan, logs)) / 0.04 - 1.0).abs() < 0.05);
-        let common = |marks: Vec<SeriesMark>| marks.iter().map(|m| m.common_offset).collect();
+        let common = |traits: Vec<SeriesTraits>| traits.iter().map(|m| m.common_offset).collect();
         assert!((sd(&over_seeds(&plan, common)) - 1.0).abs() < 0.03);
     }
 
     #[test]
-    fn offsets_walk_as_strongly_as_the_plan_says() {
+    fn offsets_have_the_planned_correlation() {
         for walk in [0.0, 0.8] {
             let mut plan = Plan::default();
             plan.noise.series_walk = walk;
-            let products = over_seeds(&plan, |marks| {
-                marks.windows(2).map(|m| m[0].common_offset * m[1].common_offset).collect()
+            let products = over_seeds(&plan, |traits| {
+                traits.windows(2).map(|m| m[0].common_offset * m[1].common_offset).collect()
             });
             let correlation = products.iter().sum::<f64>() / products.len() as f64;
             assert!((correlation - walk).abs() < 0.05, "{correlation} instead of {walk}");
@@ -223,30 +225,30 @@ mod tests {
     }
 
     #[test]
-    fn a_condition_is_one_mount_unless_it_is_taken_off_between() {
+    fn mounts_change_with_the_condition() {
         let mut plan = Plan::randomised();
         plan.noise.mount_scale = 0.02;
-        let once = marks(&plan);
+        let once = traits(&plan);
         assert_eq!(once.last().map(|m| m.mount), Some(7));
         for pair in once.windows(2) {
             assert_eq!(pair[0].mount == pair[1].mount, pair[0].friction_factor == pair[1].friction_factor);
         }
         plan.shuffled = true;
-        assert!(marks(&plan).last().is_some_and(|m| m.mount > 50));
+        assert!(traits(&plan).last().is_some_and(|m| m.mount > 50));
     }
 
     #[test]
-    fn operators_take_turns() {
+    fn operators_follow_their_schedule() {
         let of = |turns| {
             let mut plan = Plan { seed: 3, ..Plan::randomised() };
-            let kind = Course::Operators { turns };
+            let kind = DisturbanceKind::Operators { turns };
             plan.disturbances.push(Disturbance { kind, target: DisturbanceTarget::Reading, size: 0.5 });
-            marks(&plan).iter().map(|m| m.operator).collect::<Vec<_>>()
+            traits(&plan).iter().map(|m| m.operator).collect::<Vec<_>>()
         };
         let changes = |turns: &[u32]| turns.windows(2).filter(|w| w[0] != w[1]).count();
-        assert_eq!(changes(&of(Turns::Half)), 1);
-        let by_series = of(Turns::Series);
+        assert_eq!(changes(&of(OperatorSchedule::Half)), 1);
+        let by_series = of(OperatorSchedule::Series);
         assert!((50..104).contains(&changes(&by_series)), "{by_series:?}");
-        assert!(marks(&Plan::randomised()).iter().all(|m| m.operator == 1));
+        assert!(traits(&Plan::randomised()).iter().all(|m| m.operator == 1));
     }
 }

@@ -1,33 +1,36 @@
-//! Planned runs on the rig of a model on file: what they would give if the model were the truth.
+//! Planned runs on a rig that a model file describes.
 
 use std::collections::BTreeMap;
 
-use pinswitch_calibration::ModelFile;
 use pinswitch_calibration::table::{Frame, PlateauRow};
-use pinswitch_diagnostic::Diagnostic;
+use pinswitch_calibration::{ModelFile, ModelFileError};
 use pinswitch_friction::Direction;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// Writes readings into rows: those of the model, with its noise drawn anew part by part. Offsets that wandered from series
-/// to series are drawn for each by itself. The same seed gives the same readings.
+/// Simulates readings for the rows: the predictions of the model plus noise with its variance
+/// components. Offsets are independent from series to series, without the autocorrelation of the
+/// model. The same seed gives the same readings.
+///
+/// `file` is the name of the model in errors.
 ///
 /// # Errors
-/// As [`ModelFile::model`]. `file` is the name of the model in errors.
-pub fn rehearse(
+/// Those of [`ModelFile::model`].
+pub fn simulate_from_model(
     model: &ModelFile,
     file: &str,
     mut rows: Vec<PlateauRow>,
     seed: u64,
-) -> Result<Vec<PlateauRow>, Diagnostic> {
+) -> Result<Vec<PlateauRow>, ModelFileError> {
     let (readings_n, _) = model.predict(&rows, file)?;
     let (known, noise) = (model.model(file)?, model.noise());
     let mut frame: Frame = known.frame.clone();
     rows.iter().for_each(|row| frame.extend(row));
     let known = known.in_frame(frame);
     let points = known.frame.points(&rows).unwrap_or_default();
-    // Newtons by which a reading changes when the friction exponent grows by one part in one.
+    // Derivative of a reading with respect to a relative change of the friction exponent, in
+    // newtons.
     let friction_n = known.friction_n(&points);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut draw = || -> f64 { StandardNormal.sample(&mut random) };

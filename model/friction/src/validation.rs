@@ -1,40 +1,46 @@
-//! What each law is worth: its error on the seven published maxima, in sample and on layouts left out with nothing of
-//! theirs given. The default law is chosen by this table.
+//! Validation of the laws: errors on the seven published maxima, in sample and
+//! leave-one-layout-out. The default law has the smallest leave-one-layout-out error.
 
 use serde::Serialize;
 
-use crate::law::friction_by;
-use crate::law::layout::ThresholdRule;
-use crate::physics::{Bed, FitError, fit_maxima, leave_one_condition_out};
+use crate::bed::Bed;
+use crate::contact::Contact;
+use crate::law::Law;
+use crate::law::layout::{LayoutLaw, ThresholdRule};
+use crate::pattern::PinPattern;
+use crate::physics::{FitError, fit_maxima, leave_one_condition_out};
 use crate::published::{self, LAYOUTS};
-use crate::{Contact, Law, LayoutLaw, PinPattern, Substrate, Switch};
+use crate::substrate::Substrate;
+use crate::switch::Switch;
 
-/// A law's error on one published maximum, relative: predicted over measured, less one.
+/// Relative errors of a law on one published maximum: predicted over measured, minus one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MaximumError {
-    /// The maximum, such as `three-double, device`.
+    /// Name of the maximum, such as `three-double, device`.
     pub maximum: String,
-    /// With the constants that the law uses; `None` if it does not describe the condition.
+    /// Error with the constants of the law; `None` if it does not describe the condition.
     pub in_sample: Option<f64>,
-    /// With constants to which nothing of this layout contributed; `None` if the law then has none.
+    /// Error with constants that are fitted without this layout; `None` if they are printed for the
+    /// layout itself.
     pub left_out: Option<f64>,
 }
 
-/// A law's errors on all seven maxima.
+/// Errors of a law on all seven maxima.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LawEvidence {
-    /// The law.
+pub struct LawValidation {
+    /// Law.
     pub law: Law,
-    /// Its error on each maximum.
+    /// Errors by maximum.
     pub errors: Vec<MaximumError>,
-    /// Root mean square in sample, over those that it describes.
+    /// Root mean square of the in-sample errors, over the conditions that the law describes.
     pub rms_in_sample: Option<f64>,
-    /// Root mean square left out, over those that it then predicts.
+    /// Root mean square of the leave-one-layout-out errors, over the conditions that the law then
+    /// describes.
     pub rms_left_out: Option<f64>,
 }
 
-impl LawEvidence {
-    fn of(law: Law, errors: Vec<MaximumError>) -> Self {
+impl LawValidation {
+    fn new(law: Law, errors: Vec<MaximumError>) -> Self {
         let rms = |errors: Vec<f64>| {
             let count = errors.len() as f64;
             (count > 0.0).then(|| (errors.iter().map(|e| e * e).sum::<f64>() / count).sqrt())
@@ -48,27 +54,28 @@ impl LawEvidence {
     }
 }
 
-/// The evidence of every law that predicts from a contact alone, made anew.
+/// Validates every law that predicts from a contact alone.
 ///
 /// ```no_run
-/// for law in pinswitch_friction::evidence::evidence()? {
-///     println!("{}: {:.1?} % left out", law.law.as_str(), law.rms_left_out.map(|rms| 100.0 * rms));
+/// for law in pinswitch_friction::validation::validate_laws()? {
+///     println!("{}: {:.3?} left-out RMS error", law.law.as_str(), law.rms_left_out);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
 /// [`FitError`] if the physics cannot be fitted.
-pub fn evidence() -> Result<Vec<LawEvidence>, FitError> {
+pub fn validate_laws() -> Result<Vec<LawValidation>, FitError> {
     let physics = physics_errors()?;
     Ok(Law::predictive()
         .map(|law| match law {
-            Law::Physics => LawEvidence::of(law, physics.clone()),
-            _ => LawEvidence::of(law, printed_errors(law)),
+            Law::Physics => LawValidation::new(law, physics.clone()),
+            _ => LawValidation::new(law, printed_errors(law)),
         })
         .collect())
 }
 
+/// Returns the errors of the physics, fitted to all maxima and without each condition.
 fn physics_errors() -> Result<Vec<MaximumError>, FitError> {
     let bed = Bed::published();
     let fitted = fit_maxima(&bed)?;
@@ -85,7 +92,8 @@ fn physics_errors() -> Result<Vec<MaximumError>, FitError> {
         .collect())
 }
 
-/// The seven conditions, in the order of the physics' fit: name, contact and measured maximum.
+/// Returns the seven conditions in the order of [`fit_maxima`]: name, layout, substrate and
+/// measured maximum in newtons.
 fn conditions() -> Vec<(String, Option<usize>, Substrate, f64)> {
     let bare = ("silicone alone".to_owned(), None, Substrate::Silicone, published::SILICONE_ALONE_MAX_N);
     let layouts = LAYOUTS.iter().enumerate().flat_map(|(i, l)| {
@@ -95,7 +103,8 @@ fn conditions() -> Vec<(String, Option<usize>, Substrate, f64)> {
     std::iter::once(bare).chain(layouts).collect()
 }
 
-/// The laws whose constants are printed in the paper or follow from its thresholds.
+/// Returns the errors of a law whose constants are printed in the paper or follow from the printed
+/// thresholds.
 fn printed_errors(law: Law) -> Vec<MaximumError> {
     let (wrap, heaviest) = (published::wrap_angle_rad(), published::heaviest_load_n());
     conditions()
@@ -106,7 +115,7 @@ fn printed_errors(law: Law) -> Vec<MaximumError> {
             let contact = Contact::new(substrate, pins, wrap).ok();
             let error = |friction: f64| friction / measured - 1.0;
             let in_sample =
-                contact.as_ref().and_then(|c| Some(error(*friction_by(law, c, &[heaviest]).ok()?.first()?)));
+                contact.as_ref().and_then(|c| Some(error(*law.friction_n(c, &[heaviest]).ok()?.first()?)));
             let left_out = match (law, layout, substrate) {
                 (Law::Layout, Some(left_out), Substrate::Silicone) => {
                     let others: Vec<_> =
@@ -117,9 +126,11 @@ fn printed_errors(law: Law) -> Vec<MaximumError> {
                         Some(error(law.state(heaviest, wrap).friction_n))
                     })
                 }
-                // The coefficient of the pins is one for all layouts, printed; it is not refitted.
+                // The printed coefficient of the pins is the same for all layouts and is not
+                // refitted.
                 (Law::Paper, Some(_), Substrate::Abs) => in_sample,
-                // Thresholds and the silicone's coefficient are printed for the very condition.
+                // The paper prints thresholds and the coefficient of silicone for the same
+                // condition.
                 _ => None,
             };
             MaximumError { maximum, in_sample, left_out }
@@ -131,10 +142,11 @@ fn printed_errors(law: Law) -> Vec<MaximumError> {
 mod tests {
     use super::*;
 
-    /// The default law is the one that misses least of what it was told nothing of, among those that describe all.
+    /// Compared with each other law on the maxima that both predict. The default law must describe
+    /// all of them.
     #[test]
-    fn the_default_law_is_the_best_on_layouts_left_out() {
-        let all = evidence().unwrap();
+    fn default_law_has_the_smallest_error() {
+        let all = validate_laws().unwrap();
         let of = |law| all.iter().find(|e| e.law == law).unwrap();
         let default = of(Law::DEFAULT);
         assert!(default.errors.iter().all(|e| e.in_sample.is_some() && e.left_out.is_some()));

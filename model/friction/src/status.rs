@@ -1,31 +1,37 @@
-//! How far the friction of a contact is known from measurements, and why no further.
+//! The status of a prediction: how well measurements support it, with the reasons.
 
 use serde::{Deserialize, Serialize};
 
-use crate::departure::{Departure, is_published_rig};
+use crate::contact::Contact;
+use crate::deviation::{Deviation, is_published_rig};
+use crate::plural::pluralise;
 use crate::published;
-use crate::{Contact, Substrate, counted};
+use crate::substrate::Substrate;
 
-/// Number of pins between which the published layouts lie.
+/// Numbers of pins covered by the published layouts.
 const PINS_MEASURED: std::ops::RangeInclusive<usize> = 3..=6;
-/// Slack on the published pitches, in radians.
+/// Tolerance of the published pitches, in radians.
 const PITCH_SLACK_RAD: f64 = 1e-3;
-/// Slack on the tested loads, relative.
+/// Relative tolerance of the tested loads.
 const LOAD_SLACK: f64 = 1e-3;
 
-/// How far a curve can be trusted.
+/// Share of the heaviest load below which nothing was measured, so that the laws are compared.
+const UNMEASURED_BELOW: f64 = 0.9;
+
+/// Support of a prediction by measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Trust {
-    /// A condition that the paper measured.
+pub enum PredictionStatus {
+    /// Condition that the paper measured.
     Published,
-    /// Between measured conditions.
+    /// Condition between measured ones.
     Interpolated,
-    /// Outside them: a guess.
+    /// Condition outside the measured range.
     Extrapolated,
 }
 
-/// Whether the paper measured this very condition: silicone alone or one of its layouts, on its rig.
+/// Whether the paper measured the condition: bare silicone or a published layout, on the published
+/// rig.
 pub(crate) fn is_measured(contact: &Contact) -> bool {
     let bare = contact.substrate() == Substrate::Silicone && contact.all_pins().count() == 0;
     (bare || contact.published_layout().is_some())
@@ -33,10 +39,15 @@ pub(crate) fn is_measured(contact: &Contact) -> bool {
         && is_published_rig(contact)
 }
 
-/// How far the friction of `contact` is known at `loads_n`, and why no further; `departures` are its own.
-pub(crate) fn trust(contact: &Contact, departures: &[Departure], loads_n: &[f64]) -> (Trust, Vec<String>) {
+/// Returns the status of a prediction for `contact` at `loads_n` newtons, with its reasons;
+/// `deviations` are those of the contact.
+pub(crate) fn prediction_status(
+    contact: &Contact,
+    deviations: &[Deviation],
+    loads_n: &[f64],
+) -> (PredictionStatus, Vec<String>) {
     let heaviest_n = loads_n.iter().copied().fold(0.0, f64::max);
-    let mut reasons: Vec<String> = departures.iter().map(|d| d.reason(heaviest_n)).collect();
+    let mut reasons: Vec<String> = deviations.iter().map(|d| d.reason(heaviest_n)).collect();
     reasons.extend(contact.remarks());
     reasons.extend(untested_loads(loads_n));
     let measured = contact.published_layout().is_some() || contact.all_pins().count() == 0;
@@ -44,56 +55,57 @@ pub(crate) fn trust(contact: &Contact, departures: &[Departure], loads_n: &[f64]
         reasons.extend(unmeasured_layout(contact));
     }
     if !reasons.is_empty() {
-        return (Trust::Extrapolated, reasons);
+        return (PredictionStatus::Extrapolated, reasons);
     }
     if measured {
         let (light, heavy) = (published::lightest_load_n(), published::heaviest_load_n());
-        if loads_n.iter().any(|load| *load < 0.9 * heavy) {
+        if loads_n.iter().any(|load| *load < UNMEASURED_BELOW * heavy) {
             reasons.push(format!(
-                "the paper prints the friction of this condition at {heavy:.2} N only; from {light:.2} N up to there the band also covers what the laws disagree on"
+                "the paper prints the friction of this condition at {heavy:.2} N only; from {light:.2} N to {heavy:.2} N the band includes the disagreement of the laws"
             ));
         }
-        return (Trust::Published, reasons);
+        return (PredictionStatus::Published, reasons);
     }
     let (narrow, wide) = measured_pitches_rad();
     reasons.push(format!(
-        "{} pins {:.2} deg apart lie between the layouts that were measured: 3 to 6 pins, {:.2} to {:.2} deg",
+        "{} pins {:.2} deg apart are between the measured layouts: 3 to 6 pins, {:.2} to {:.2} deg",
         contact.pins().count(),
         contact.pins().mean_pitch_rad().unwrap_or_default().to_degrees(),
         narrow.to_degrees(),
         wide.to_degrees()
     ));
-    (Trust::Interpolated, reasons)
+    (PredictionStatus::Interpolated, reasons)
 }
 
-/// The loads outside those tested, in words.
+/// Returns the reason text for loads outside the tested range, if any.
 fn untested_loads(loads_n: &[f64]) -> Option<String> {
     let lightest = loads_n.iter().copied().fold(f64::INFINITY, f64::min);
     let heaviest = loads_n.iter().copied().fold(0.0, f64::max);
     let (from, to) = (published::lightest_load_n(), published::heaviest_load_n());
     (lightest < from * (1.0 - LOAD_SLACK) || heaviest > to * (1.0 + LOAD_SLACK)).then(|| {
-        format!("the loads reach from {lightest:.2} to {heaviest:.2} N; tested were {from:.2} to {to:.2} N")
+        format!("loads from {lightest:.2} to {heaviest:.2} N exceed the tested range, {from:.2} to {to:.2} N")
     })
 }
 
+/// Returns the smallest and the largest published pitch in radians.
 fn measured_pitches_rad() -> (f64, f64) {
     let pitches = published::LAYOUTS.map(|l| l.pitch_rad());
     (pitches.iter().copied().fold(f64::MAX, f64::min), pitches.iter().copied().fold(0.0, f64::max))
 }
 
-/// In what a layout lies outside the measured ones.
+/// Returns the reason texts for a layout outside the measured range.
 fn unmeasured_layout(contact: &Contact) -> Vec<String> {
     let pins = contact.pins();
     let mut reasons = Vec::new();
     if !PINS_MEASURED.contains(&pins.count()) {
-        reasons.push(format!("{}; measured were 3 and 6", counted(pins.count(), "pin")));
+        reasons.push(format!("{}; the measured layouts have 3 or 6", pluralise(pins.count(), "pin")));
     }
     let (narrow, wide) = measured_pitches_rad();
     if let Some(pitch) = pins.mean_pitch_rad()
         && !(narrow - PITCH_SLACK_RAD..=wide + PITCH_SLACK_RAD).contains(&pitch)
     {
         reasons.push(format!(
-            "the pitch is {:.2} deg; measured were {:.2} to {:.2} deg",
+            "the pitch is {:.2} deg; those of the measured layouts are {:.2} to {:.2} deg",
             pitch.to_degrees(),
             narrow.to_degrees(),
             wide.to_degrees()
@@ -104,19 +116,25 @@ fn unmeasured_layout(contact: &Contact) -> Vec<String> {
         angles.join(", ")
     };
     if !pins.is_even() {
-        reasons.push(format!("the pins are unevenly spaced, at {} deg; measured were even ones", degrees()));
+        reasons.push(format!(
+            "the pins are unevenly spaced, at {} deg; the measured layouts are even",
+            degrees()
+        ));
     }
     if !pins.is_centred() {
         reasons.push(format!(
-            "the pins lie off the middle of the wrap, at {} deg; measured were centred ones",
+            "the pins are off the middle of the wrap, at {} deg; the measured layouts are centred",
             degrees()
         ));
     }
     reasons
 }
 
-/// How far the layout of `contact` lies from the nearest measured one, as a length in the logarithms of number and
-/// pitch, unevenness and offset; and how far beyond the range of the measured ones.
+/// Returns two distances of the layout of `contact`: from the nearest measured layout, and from the
+/// measured range.
+///
+/// A distance is a length over the logarithms of number and pitch, the unevenness, and the offset
+/// from the middle.
 pub(crate) fn layout_distance(contact: &Contact) -> (f64, f64) {
     let pins = contact.all_pins();
     if pins.count() == 0 {

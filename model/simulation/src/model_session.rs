@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use pinswitch_calibration::table::{Frame, PlateauRow};
-use pinswitch_calibration::{ModelFile, ModelFileError};
+use pinswitch_calibration::ModelFile;
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -22,7 +23,7 @@ pub fn simulate_from_model(
     file: &str,
     mut rows: Vec<PlateauRow>,
     seed: u64,
-) -> Result<Vec<PlateauRow>, ModelFileError> {
+) -> Result<Vec<PlateauRow>, Diagnostic> {
     let (readings_n, _) = model.predict(&rows, file)?;
     let (known, noise) = (model.model(file)?, model.noise());
     let mut frame: Frame = known.frame.clone();

@@ -276,7 +276,7 @@ fn check_effect(index: usize, planned: &EffectPlan, vocabulary: &Vocabulary) -> 
     let at = |name: &str, value: String| Location::field(format!("effects[{index}].{name}"), value);
     let id = || format!("\"{}\"", planned.id);
     let Some(effect) = vocabulary.named(&planned.id) else {
-        return Err(Diagnostic::new(vocabulary.unknown(&planned.id)).with_location(at("id", id())));
+        return Err(vocabulary.unknown(&planned.id).with_location(at("id", id())));
     };
     let names: Vec<&str> = effect.parameters().iter().map(|p| p.name).collect();
     if names.len() != planned.values.len() {

@@ -41,15 +41,13 @@ impl Plan {
 
 /// An error of the TOML reader: not TOML, an unknown key, or a value of a wrong type.
 fn syntax_error(text: &str, file: &str, error: &toml::de::Error) -> Diagnostic {
-    let (_, problem) = toml_error(file, text, error);
-    let help = if problem.contains("unit variant") {
+    let diagnostic = toml_error(file, text, error);
+    let help = if diagnostic.problem().contains("unit variant") {
         "give a kind its values in a table: kind.resonance = { speed_pct = 52, width_pct = 2 }"
     } else {
         "see model/doc/file-formats.md for the keys of a plan"
     };
-    let location =
-        error.span().map_or_else(|| Location::file(file), |span| Location::in_text(file, text, span));
-    Diagnostic::new(problem).with_location(location).with_help(help)
+    diagnostic.with_help(help)
 }
 
 /// The same error with the line of its field, if the text has that field.

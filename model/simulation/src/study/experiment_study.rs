@@ -7,7 +7,7 @@ use pinswitch_calibration::experiment::{
 };
 use pinswitch_calibration::inference::{FoundEffect, Levels};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
-use pinswitch_calibration::{Answer, Asked, AskedQuestion, Calibration, ModelFile, Verdict, calibrate};
+use pinswitch_calibration::{Answer, SessionPlan, PlanQuestion, Calibration, ModelFile, Verdict, calibrate};
 
 use super::answer_forecasts::{AnswerForecast, table_of};
 use super::case::{Case, Group, Truth};
@@ -107,7 +107,7 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
     let rig = RigLimits::default();
     let proposal = proposed(&calibration, &rows, &rig, levels)?;
     let after = |runs: &[PlannedRun], probability: fn(&QuestionOutlook) -> f64| {
-        let asked = Asked {
+        let asked = SessionPlan {
             minutes: proposal.minutes,
             runs: Vec::new(),
             questions: proposal.questions.iter().map(|q| asked(q, probability(q))).collect(),
@@ -136,8 +136,8 @@ pub fn run_experiment_case(case: &Case, seed: u64, factor: f64, levels: Levels) 
 }
 
 /// Converts a question to the form of a plan's file.
-fn asked(question: &QuestionOutlook, resolved_probability: f64) -> AskedQuestion {
-    AskedQuestion {
+fn asked(question: &QuestionOutlook, resolved_probability: f64) -> PlanQuestion {
+    PlanQuestion {
         between: question.between.clone(),
         size: question.size,
         resolved_probability,

@@ -8,6 +8,7 @@
 
 mod annotation;
 mod clearance;
+mod contour;
 mod draft;
 mod dxf;
 mod escape;
@@ -15,19 +16,23 @@ mod font;
 mod frame;
 mod geometry;
 mod index;
+mod layout;
 mod pdf;
 mod sheet;
 mod svg;
 mod table;
+pub mod view;
 
 pub use annotation::{Angular, Callout, Label, Leader, Linear};
 pub use clearance::{Collision, collisions};
+pub use contour::{circle, hexagon, lettering, same};
 pub use draft::Draft;
 pub use dxf::drawing_dxf;
 pub use escape::escape;
 pub use font::{CAPITAL_PER_EM, fitted, text_width_mm};
 pub use frame::{Projection, TitleBlock};
 pub use geometry::{Extent, Point};
+pub use layout::{ABOVE_ASSEMBLY_MM, ABOVE_MM, Layout, Sizes, assembly_formats, part_formats};
 pub use pdf::drawing_pdf;
 pub use sheet::{Annotation, Entity, Layer, Paper, Shape, Sheet, Text, View};
 pub use svg::drawing_svg;

@@ -4,9 +4,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::dimensions::{Wanted, numbered};
 use super::features::Features;
-use super::plan::Place;
 use super::words;
 use pinswitch_drafting::Angular;
+use pinswitch_drafting::view::Place;
 use pinswitch_solid::profile::Point2;
 
 /// Where a part lies in its front view, and where it would lie if the last of its copies were the first: nothing lies beyond

@@ -1,10 +1,9 @@
 //! What is bought, as simple outlines on the sheet of the assembly: screws, nuts, dowels, the bearing and its bolt.
 
-use super::elevation::Stroke;
-use super::plan::Trace;
 use crate::config::MountKind;
 use crate::design::{Design, Thread};
 use pinswitch_drafting::Layer;
+use pinswitch_drafting::view::{Stroke, Trace};
 use pinswitch_solid::profile::{Point2, Vector2, polar};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 

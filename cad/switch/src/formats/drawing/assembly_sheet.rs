@@ -1,21 +1,18 @@
 //! The sheet of the assembly: assembled, from above, cut open, with balloons and the list of its parts.
 
-use super::assembly_front::front_lines;
 use super::assembly_hardware;
-use super::body::{Body, Side};
-use super::elevation::{Elevation, elevation, joined, legible};
-use super::features::lettering;
-use super::layout::{ABOVE_ASSEMBLY_MM, ABOVE_MM, Layout, Sizes, choices_of_assembly};
-use super::part_sheet::{CROWDED_MM, HATCH_MM, Letter, put_strokes, section_mark};
 use super::parts_list::{Item, items};
-use super::plan::{Place, Trace, draw};
-use super::section::Face;
 use super::words;
 use crate::built::Built;
 use crate::design::Design;
 use crate::parts::{Part, Role};
+use pinswitch_drafting::view::{
+    Body, CROWDED_MM, Elevation, Face, HATCH_MM, Letter, Place, Placed, Side, Trace, draw_plan,
+    draw_section_mark, draw_strokes, elevation, joined, legible, stacked_plan,
+};
 use pinswitch_drafting::{
-    Callout, Draft, Extent, Layer, Leader, Linear, Paper, Point, Projection, Shape, Sheet, Table, TitleBlock,
+    ABOVE_ASSEMBLY_MM, ABOVE_MM, Callout, Draft, Extent, Layer, Layout, Leader, Linear, Paper, Point,
+    Projection, Shape, Sheet, Sizes, Table, TitleBlock, assembly_formats, lettering,
 };
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Arc, Contour, Point2, polar};
@@ -58,13 +55,13 @@ pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, asked: Paper) -> 
         items: items(built),
         above: elevation(&seen(&bodies, z_mm.0, Side::Above), None),
         cut_x,
-        faces: from_side.iter().map(|body| Face::of(body, cut)).collect(),
+        faces: from_side.iter().map(|body| Face::new(body, cut)).collect(),
         behind: elevation(&from_side, Some(cut)),
         bodies,
         title,
         z_mm,
     };
-    choices_of_assembly(asked)
+    assembly_formats(asked)
         .into_iter()
         .find_map(|(paper, scale, columns)| assembly.attempt(paper, scale, columns))
 }
@@ -79,7 +76,7 @@ fn cut_x(design: &Design) -> f64 {
 /// The bodies from a side, the lowest at z = 0.
 fn seen(bodies: &[(&Part, Pose)], lowest_mm: f64, side: Side) -> Vec<Body> {
     let place = |pose: &Pose| Pose { z_mm: pose.z_mm - lowest_mm, ..*pose };
-    bodies.iter().map(|(part, pose)| Body::seen(&part.solid, place(pose), side)).collect()
+    bodies.iter().map(|(part, pose)| Body::new(&part.solid, place(pose), side)).collect()
 }
 
 impl Assembly<'_> {
@@ -102,7 +99,7 @@ impl Assembly<'_> {
             table_mm: list_mm + 3.0,
             beside_mm: [0.0, 0.0],
         };
-        let layout = Layout::on(&draft, &sizes, projection)?;
+        let layout = Layout::new(&draft, &sizes, projection)?;
         for (i, list) in lists.iter().enumerate() {
             let corner = if i == 0 {
                 Point::new(block.high.x, block.high.y)
@@ -123,7 +120,7 @@ impl Assembly<'_> {
         };
         let lowest = if above.low.y < front.low.y { above } else { front };
         let mark = [front.low.y - 2.0, front.high.y + 2.0];
-        section_mark(
+        draw_section_mark(
             &mut draft,
             place.at(Point2::new(cut_x, 0.0)).x,
             mark,
@@ -162,9 +159,16 @@ impl Assembly<'_> {
     /// What lies on top, what is seen of everything else but the other support and what is hidden of it, and the tendon.
     fn front(&self, draft: &mut Draft, place: &Place) {
         let chamfer_mm = self.design.configuration().print.elephant_foot_mm;
-        let lines = front_lines(&self.bodies, self.z_mm.0, chamfer_mm);
+        // The support on the far side is behind its equal.
+        let placed = self.bodies.iter().map(|(part, pose)| Placed {
+            solid: &part.solid,
+            pose: *pose,
+            is_drawn: !matches!(part.role, Role::Support { .. }),
+        });
+        let bodies: Vec<Placed<'_>> = placed.collect();
+        let lines = stacked_plan(&bodies, self.z_mm.0, chamfer_mm);
         let view = draft.view("FRONT", place.origin, place.scale);
-        draw(draft, &lines, place, view);
+        draw_plan(draft, &lines, place, view);
         let group = draft.group();
         for (layer, trace) in assembly_hardware::front(self.design) {
             draft.put(layer, place.shape(&trace), None, group);
@@ -201,9 +205,9 @@ impl Assembly<'_> {
         let visible = legible(&self.above.visible, &[], CROWDED_MM / scale);
         let at = |p: [f64; 2]| origin + Point::new(p[0], -p[1]) * scale;
         let group = draft.group();
-        put_strokes(draft, Layer::Visible, &visible, at, Some(view), group);
+        draw_strokes(draft, Layer::Visible, &visible, at, Some(view), group);
         let screws = assembly_hardware::beside(self.design, self.z_mm.0, |p| Some(p.x));
-        put_strokes(draft, Layer::Visible, &screws, at, None, group);
+        draw_strokes(draft, Layer::Visible, &screws, at, None, group);
     }
 
     /// The section: each body hatched its own way, pins not at all. Returns what it covers, and a place in each body.
@@ -224,13 +228,13 @@ impl Assembly<'_> {
                 continue;
             }
             let apart = HATCH_MM / scale * if part.role == Role::Layer { 0.55 } else { 1.0 };
-            put_strokes(draft, Layer::Hatch, &face.hatch(apart, i % 2 == 0), at, Some(view), group);
+            draw_strokes(draft, Layer::Hatch, &face.hatch(apart, i % 2 == 0), at, Some(view), group);
         }
         let outlines = joined(&outlines, &[]);
-        put_strokes(draft, Layer::Visible, &outlines, at, Some(view), group);
+        draw_strokes(draft, Layer::Visible, &outlines, at, Some(view), group);
         let is_behind = |x: f64| (x - self.cut_x) * if self.is_seen_from_left() { 1.0 } else { -1.0 } > 0.0;
         let screws = assembly_hardware::beside(self.design, self.z_mm.0, |p| is_behind(p.x).then_some(p.y));
-        put_strokes(draft, Layer::Visible, &screws, at, None, group);
+        draw_strokes(draft, Layer::Visible, &screws, at, None, group);
         let corners = outlines.iter().flatten().map(|p| Extent::between(at(*p), at(*p)));
         (corners.reduce(Extent::joined).unwrap_or(Extent::between(origin, origin)), inside)
     }

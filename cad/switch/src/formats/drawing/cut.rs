@@ -1,9 +1,8 @@
 //! What a sheet cuts open, and what it draws larger.
 
-use super::body::Side;
 use super::features::Features;
-use super::plan::{Place, Trace, draw, within};
 use super::words;
+use pinswitch_drafting::view::{Place, Side, Trace, draw_plan, within};
 use pinswitch_drafting::{Draft, Extent, Layer, Point, Shape, Sheet};
 use pinswitch_solid::profile::{Point2, polar};
 
@@ -107,7 +106,7 @@ pub(super) fn draw_detail(
         .flat_map(|(layer, t)| within(t, detail.middle, detail.radius_mm).into_iter().map(|t| (*layer, t)))
         .collect();
     let view = draft.view(format!("DETAIL_{letter}"), middle, scale);
-    draw(draft, &kept, &place, view);
+    draw_plan(draft, &kept, &place, view);
     let group = draft.group();
     let radius_mm = detail.radius_mm * scale;
     draft.put(Layer::Thin, Shape::Circle { centre: middle, radius_mm }, None, group);

@@ -9,10 +9,10 @@ use super::bore::bore as words_of_bore;
 use super::cut::Detail;
 use super::features::{Features, Slot, same};
 use super::hole_table;
-use super::plan::Place;
 use super::words;
 use crate::design::Design;
 use crate::parts::Part;
+use pinswitch_drafting::view::Place;
 use pinswitch_drafting::{Angular, Callout, Draft, Extent, Label, Leader, Linear, Point};
 use pinswitch_solid::profile::{Arc, Point2};
 

@@ -5,8 +5,8 @@ use pinswitch_friction::sort_by_number;
 
 use super::dimensions::Wanted;
 use super::features::Features;
-use super::plan::Place;
 use super::words::number;
+use pinswitch_drafting::view::Place;
 use pinswitch_drafting::{Label, Table};
 use pinswitch_solid::profile::Point2;
 

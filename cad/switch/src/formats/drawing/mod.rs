@@ -1,23 +1,17 @@
 //! The drawing: one sheet of the assembly and one per part, as SVG, PDF and DXF (cad/doc/drawing.md).
 
 mod angles;
-mod assembly_front;
 mod assembly_hardware;
 mod assembly_sheet;
-mod body;
 mod bore;
 mod chains;
 mod cut;
 mod dimensions;
-mod elevation;
 mod features;
 mod fits;
 mod hole_table;
-mod layout;
 mod part_sheet;
 mod parts_list;
-mod plan;
-mod section;
 mod sides;
 mod words;
 

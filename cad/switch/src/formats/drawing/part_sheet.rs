@@ -1,34 +1,28 @@
 //! The sheet of one part: front view, view from above, section, details, and every dimension once.
 
-use std::f64::consts::FRAC_PI_2;
-
 use super::angles::{Places, angles};
-use super::body::{Body, Side};
 use super::cut::{Detail, cut_x, draw_detail, enlarged};
 use super::dimensions::{self, Wanted};
-use super::elevation::{Elevation, Stroke, elevation, joined, legible};
-use super::features::{Features, features, lettering};
+use super::features::{Features, features};
 use super::fits;
 use super::hole_table;
-use super::layout::{ABOVE_MM, Layout, Sizes, choices};
-use super::plan::{Place, draw, plan};
-use super::section::Face;
 use super::sides;
 use super::words;
 use crate::design::Design;
 use crate::parts::{Part, Role};
+use pinswitch_drafting::view::{
+    Body, CROWDED_MM, Elevation, Face, HATCH_MM, Letter, Place, Side, draw_plan, draw_section_mark,
+    draw_strokes, elevation, joined, legible, plan,
+};
 use pinswitch_drafting::{
-    Draft, Extent, Layer, Linear, Paper, Point, Projection, Shape, Sheet, Table, Text, TitleBlock,
+    ABOVE_MM, Draft, Extent, Layer, Layout, Linear, Paper, Point, Projection, Shape, Sheet, Sizes, Table,
+    TitleBlock, lettering, part_formats,
 };
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::Point2;
 
 /// Scale down to which room is looked for, as a share of the largest at which the views fit.
 const LEAST_SHARE: f64 = 0.5;
-/// Between hatching lines, mm on paper.
-pub(super) const HATCH_MM: f64 = 1.8;
-/// Parallel lines of a view from a side are no nearer to each other than this, mm on paper.
-pub(super) const CROWDED_MM: f64 = 0.8;
 /// The axis is shown where it lies no further from the part, mm on paper.
 const AXIS_NEAR_MM: f64 = 26.0;
 
@@ -66,15 +60,6 @@ struct Form {
     letter: Letter,
 }
 
-/// Where the letter of a section stands at its mark: extension lines pass where it is not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Letter {
-    /// On the other side of the line than the arrow.
-    BehindLine,
-    /// At the arrow's tip.
-    BeforeArrow,
-}
-
 /// The sheet of `part`; nothing for a part without extent. It is drawn as a workshop holds it, where that differs from how
 /// it lies in the set.
 pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked: Paper) -> Option<Sheet> {
@@ -87,16 +72,16 @@ pub(super) fn part_sheet(design: &Design, part: &Part, title: TitleBlock, asked:
     let side = if title.projection == Projection::First { Side::Left } else { Side::Right };
     let cut_x = cut_x(&features, side, (low, high));
     let cut = if side == Side::Left { -cut_x } else { cut_x };
-    let seen = |side| Body::seen(&part.solid, Pose::upright(-low.z), side);
+    let seen = |side| Body::new(&part.solid, Pose::upright(-low.z), side);
     let above = elevation(&[seen(Side::Above)], None);
     let body = seen(side);
-    let face = Face::of(&body, cut);
+    let face = Face::new(&body, cut);
     let behind = elevation(&[body], Some(cut));
     let subject = Subject { design, part, title, features, above, cut_x, face, behind, low, high };
     // The first sheet that holds the views with all that is to be said. A part is not drawn smaller and smaller until
     // nothing is in the way of anything.
     let mut first: Option<(Form, Vec<Wanted>)> = None;
-    let forms = choices(asked).into_iter().flat_map(|(paper, scale)| {
+    let forms = part_formats(asked).into_iter().flat_map(|(paper, scale)| {
         [Letter::BehindLine, Letter::BeforeArrow].map(|letter| Form { paper, scale, letter })
     });
     for form in forms {
@@ -145,14 +130,14 @@ impl Subject<'_> {
             table_mm: 0.0,
             beside_mm: table.as_ref().map_or([0.0, 0.0], Table::size_mm),
         };
-        let layout = Layout::on(draft, &sizes, self.title.projection)?;
+        let layout = Layout::new(draft, &sizes, self.title.projection)?;
         if let Some(table) = table {
             table.draw(draft, layout.beside);
         }
         let place = Place::straight(layout.front, scale);
         let lines = plan(&self.part.solid, false, self.design.configuration().print.elephant_foot_mm);
         let view = draft.view("FRONT", layout.front, scale);
-        draw(draft, &lines, &place, view);
+        draw_plan(draft, &lines, &place, view);
         self.view_from_above(draft, &layout, scale);
         let section = self.section(draft, &layout, scale);
         let front = Extent { low: sizes.front.low + layout.front, high: sizes.front.high + layout.front };
@@ -160,7 +145,7 @@ impl Subject<'_> {
         if self.is_cut() {
             let x = place.at(Point2::new(self.cut_x, 0.0)).x;
             let ends = [front.low.y - 2.0, self.mark_top(front)];
-            section_mark(draft, x, ends, layout.section_sense, letter);
+            draw_section_mark(draft, x, ends, layout.section_sense, letter);
             if !draft.place_title("section title", "A-A", 3.5, section, true) {
                 return None;
             }
@@ -243,7 +228,7 @@ impl Subject<'_> {
         let at = |p: [f64; 2]| origin + Point::new(p[0], -p[1]) * scale;
         let group = draft.group();
         for (layer, strokes) in [(Layer::Visible, &visible), (Layer::Hidden, &hidden)] {
-            put_strokes(draft, layer, strokes, at, Some(view), group);
+            draw_strokes(draft, layer, strokes, at, Some(view), group);
         }
     }
 
@@ -257,9 +242,16 @@ impl Subject<'_> {
         let outline = self.face.outline();
         let behind = legible(&self.behind.visible, &outline, CROWDED_MM / scale);
         let visible = joined(&[outline, behind].concat(), &[]);
-        put_strokes(draft, Layer::Visible, &visible, at, Some(view), group);
+        draw_strokes(draft, Layer::Visible, &visible, at, Some(view), group);
         if self.is_cut() {
-            put_strokes(draft, Layer::Hatch, &self.face.hatch(HATCH_MM / scale, true), at, Some(view), group);
+            draw_strokes(
+                draft,
+                Layer::Hatch,
+                &self.face.hatch(HATCH_MM / scale, true),
+                at,
+                Some(view),
+                group,
+            );
         }
         let ends = visible.iter().flatten().map(|p| Extent::between(at(*p), at(*p)));
         ends.reduce(Extent::joined).unwrap_or(Extent::between(origin, origin))
@@ -332,39 +324,5 @@ impl Subject<'_> {
                 })
             })
             .collect()
-    }
-}
-
-/// Draws strokes of a view from a side.
-pub(super) fn put_strokes(
-    draft: &mut Draft,
-    layer: Layer,
-    strokes: &[Stroke],
-    at: impl Fn([f64; 2]) -> Point,
-    view: Option<usize>,
-    group: usize,
-) {
-    for [from, to] in strokes {
-        draft.put(layer, Shape::Line { from: at(*from), to: at(*to) }, view, group);
-    }
-}
-
-/// The plane of the section at `x`: a chain line through the view, thick beyond it, with arrows along the line of sight.
-pub(super) fn section_mark(draft: &mut Draft, x: f64, [low, high]: [f64; 2], sense: f64, letter: Letter) {
-    let group = draft.group();
-    let line = |from: f64, to: f64| Shape::Line { from: Point::new(x, from), to: Point::new(x, to) };
-    draft.put(Layer::Centre, line(low, high), None, group);
-    for (from, to) in [(low, low - 5.0), (high, high + 5.0)] {
-        draft.put(Layer::Frame, line(from, to), None, group);
-        let foot = Point::new(x, f64::midpoint(from, to));
-        let direction = Point::towards(if sense > 0.0 { 0.0 } else { 2.0 * FRAC_PI_2 });
-        let tip = foot + direction * 6.0;
-        draft.put(Layer::Dimension, Shape::Line { from: foot, to: tip }, None, group);
-        draft.put(Layer::Dimension, Shape::Arrow { tip, direction }, None, group);
-        let is_left = (sense > 0.0) == (letter == Letter::BehindLine);
-        let from = if letter == Letter::BehindLine { foot } else { tip };
-        let at = from + Point::new(if is_left { -4.0 } else { 1.6 }, -1.75);
-        let letter = Text { at, height_mm: 3.5, content: "A".to_owned(), upright: false };
-        draft.put(Layer::Text, Shape::Text(letter), None, group);
     }
 }

@@ -4,8 +4,8 @@ use pinswitch_friction::sort_by_number;
 
 use super::dimensions::Wanted;
 use super::features::{Features, same};
-use super::plan::Place;
 use super::words::number;
+use pinswitch_drafting::view::Place;
 use pinswitch_drafting::{Extent, Linear};
 use pinswitch_solid::profile::Point2;
 

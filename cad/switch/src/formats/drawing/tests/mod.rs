@@ -18,7 +18,7 @@ use crate::built::Built;
 use crate::config::{self, Configuration};
 use crate::design::Design;
 use crate::templates::TEMPLATES;
-use pinswitch_drafting::{Shape, Sheet, collisions};
+use pinswitch_drafting::{Entity, Layer, Shape, Sheet, collisions};
 
 /// The built set of a configuration, if it is a valid one.
 fn built(text: &str) -> Option<Built> {
@@ -282,7 +282,7 @@ fn both_supports_are_seen_alike_from_above() {
         let all = sheets(&built(text).unwrap());
         let view = all[0].views.iter().position(|v| v.name == "ABOVE");
         let lines = all[0].entities.iter().filter(|e| e.view == view);
-        let level = |e: &pinswitch_drafting::Entity| match &e.shape {
+        let level = |e: &Entity| match &e.shape {
             Shape::Line { from, to } if (from.y - to.y).abs() < 1e-6 && (from.x - to.x).abs() > 20.0 => {
                 Some(from.y)
             }
@@ -363,4 +363,24 @@ fn a_rig_is_assembled_at_half_its_size_or_larger() {
             assert_eq!(rows, super::parts_list::items(&built).len(), "{text}");
         }
     }
+}
+
+/// Length of a layer in the front view of the assembly, mm.
+fn drawn_mm(text: &str, layer: Layer) -> f64 {
+    let assembly = &sheets(&built(text).unwrap())[0];
+    let front = assembly.views.iter().position(|v| v.name == "FRONT");
+    let lines = assembly.entities.iter().filter(|e| e.view == front && e.layer == layer);
+    let length = |e: &Entity| e.shape.pieces().iter().map(|[a, b]| (*a - *b).length()).sum::<f64>();
+    lines.map(length).sum::<f64>() / assembly.scale
+}
+
+#[test]
+fn a_flange_is_hidden_under_the_switch() {
+    let (bare, flange) =
+        ("[layout]\npins = [5, 8, 11]\n", "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"flange\"\n");
+    // The outline of the flange and its four holes.
+    let visible = drawn_mm(flange, Layer::Visible) - drawn_mm(bare, Layer::Visible);
+    assert!(visible > 4.0 * 4.5 * 3.0 + 100.0, "{visible} mm");
+    let hidden = drawn_mm(flange, Layer::Hidden) - drawn_mm(bare, Layer::Hidden);
+    assert!(hidden > 0.0 && hidden < visible, "{hidden} mm");
 }

@@ -40,8 +40,7 @@ pub fn lettering(solid: &Solid) -> Vec<bool> {
 }
 
 /// Returns centre and radius of a contour that is a full circle.
-#[must_use]
-pub fn circle(contour: &Contour) -> Option<(Point2, f64)> {
+pub(crate) fn circle(contour: &Contour) -> Option<(Point2, f64)> {
     let mut arcs = contour.edges().iter().map(|e| if let Edge::Arc(a) = e { Some(a) } else { None });
     match (arcs.next()?, arcs.next()?, arcs.next()) {
         (Some(a), Some(b), None) if same_point(a.centre, b.centre) => Some((a.centre, a.radius_mm)),

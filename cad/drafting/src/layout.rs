@@ -62,7 +62,7 @@ pub struct Sizes {
     /// Height of a table on the title block.
     pub table_mm: f64,
     /// Width and height of a table at the upper right; 0 without one.
-    pub beside_mm: [f64; 2],
+    pub right_table_mm: [f64; 2],
 }
 
 /// Positions of the views of a sheet.
@@ -79,7 +79,7 @@ pub struct Layout {
     /// Centres of the details.
     pub details: Vec<Point>,
     /// Lower right corner of the table next to the views.
-    pub beside: Point,
+    pub right_table: Point,
 }
 
 impl Layout {
@@ -90,7 +90,7 @@ impl Layout {
         let floor = draft.sheet().title_block.high.y + 3.0 + sizes.table_mm;
         let (width, height) = (sizes.front.width(), sizes.front.height());
         let detail_column = if sizes.details == 0 { 0.0 } else { 2.0 * sizes.detail_mm + AROUND_DETAIL_MM.0 };
-        let [table_wide, table_high] = sizes.beside_mm;
+        let [table_wide, table_high] = sizes.right_table_mm;
         let table_column = if table_wide > 0.0 { table_wide + AROUND_TABLE_MM } else { 0.0 };
         let needed =
             LEFT_MM + width + BESIDE_MM + sizes.depth_mm + RIGHT_MM + detail_column.max(table_column);
@@ -127,7 +127,8 @@ impl Layout {
             Projection::First => (section_left, 1.0),
             Projection::Third => (section_left + sizes.depth_mm, -1.0),
         };
-        let beside = Point::new(frame.high.x - AROUND_TABLE_MM, frame.high.y - AROUND_TABLE_MM - table_high);
-        Some(Self { front, above_mm: above_top, section_mm, section_sense, details, beside })
+        let right_table =
+            Point::new(frame.high.x - AROUND_TABLE_MM, frame.high.y - AROUND_TABLE_MM - table_high);
+        Some(Self { front, above_mm: above_top, section_mm, section_sense, details, right_table })
     }
 }

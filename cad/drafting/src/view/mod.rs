@@ -14,7 +14,7 @@ mod strokes;
 pub use body::{Body, Side};
 pub use elevation::{Elevation, elevation};
 pub use face::Face;
-pub use plan::within;
+pub(crate) use plan::within;
 pub use plan::{Place, Trace, draw_plan, plan};
 pub use section_mark::{Letter, draw_section_mark};
 pub use stack::{Placed, stacked_plan};

@@ -131,7 +131,7 @@ pub fn draw_plan(draft: &mut Draft, lines: &[(Layer, Trace)], place: &Place, vie
 }
 
 /// The pieces of a trace within `radius_mm` of `centre`.
-pub fn within(trace: &Trace, centre: Point2, radius_mm: f64) -> Vec<Trace> {
+pub(crate) fn within(trace: &Trace, centre: Point2, radius_mm: f64) -> Vec<Trace> {
     match trace {
         Trace::Line(a, b) => {
             let (from, along) = (a - centre, b - a);

@@ -3,12 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::features::{lettering, same};
-use super::super::words::number;
 use super::{built, known};
 use crate::built::Built;
 use crate::parts::Part;
-use pinswitch_drafting::{Shape, Sheet};
+use pinswitch_drafting::{Shape, Sheet, hexagon, lettering, number, same};
 use pinswitch_solid::profile::{Contour, Edge, Point2};
 use std::f64::consts::PI;
 
@@ -143,7 +141,7 @@ fn is_circle(c: &Contour) -> Option<(Point2, f64)> {
     }
 }
 
-fn is_moved(a: &Contour, b: &Contour) -> bool {
+pub(super) fn is_moved(a: &Contour, b: &Contour) -> bool {
     let (a, b) = (a.corners(), b.corners());
     a.len() == b.len() && a.iter().zip(b).all(|(p, q)| (p - q - (a[0] - b[0])).norm() < 1e-6)
 }
@@ -199,7 +197,7 @@ fn open_questions(part: &Part, sheet: &Sheet, chamfer_mm: f64) -> Vec<String> {
         if let Some((centre, radius)) = is_circle(contour) {
             reader.need("diameter", &[2.0 * radius]);
             reader.place(centre, origin);
-        } else if let Some((centre, half)) = super::super::bore::hexagon(contour) {
+        } else if let Some((centre, half)) = hexagon(contour) {
             reader.need("width across flats", &[2.0 * half]);
             reader.place(centre, origin);
         } else {

@@ -2,10 +2,23 @@
 
 use std::collections::BTreeSet;
 
-use super::super::features::features;
 use super::built;
+use super::complete::is_moved;
 use crate::config::MouldKind;
-use pinswitch_drafting::{Layer, Point, Shape, Sheet};
+use pinswitch_drafting::{Layer, Point, Shape, Sheet, same};
+use pinswitch_solid::profile::{Contour, Vector2};
+use pinswitch_solid::solid::Solid;
+
+/// Number of the pockets of a mould, and the step from each to the next.
+fn pockets(solid: &Solid) -> (usize, Vector2) {
+    let pockets = solid.rings().map(|(contour, _)| contour);
+    let pockets: Vec<&Contour> = pockets.filter(|c| c.area_mm2() < 0.0 && c.edges().len() > 6).collect();
+    let equal = pockets.iter().filter(|p| is_moved(p, pockets[0]));
+    let mut steps: Vec<Vector2> = equal.map(|p| p.corners()[0] - pockets[0].corners()[0]).collect();
+    steps.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+    steps.dedup_by(|a, b| same((*a - *b).norm(), 0.0));
+    (steps.len(), steps[1])
+}
 
 /// Whether two straight lines cross within both.
 fn cross([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
@@ -74,9 +87,9 @@ fn dimensions_of_one_basin_cross_no_other() {
                 let sheets = super::sheets(&built);
                 let sheet = sheets.iter().find(|s| s.name == "mould-tray").unwrap();
                 let tray = built.printed().iter().find(|p| p.part().name == "mould-tray").unwrap();
-                let copies = features(&tray.part().solid, 0.0, d.half_span_rad()).copies.unwrap();
-                assert_eq!(copies.number, layers, "{text}");
-                let step = Point::new(copies.step.x, copies.step.y) * sheet.scale;
+                let (number, step) = pockets(&tray.part().solid);
+                assert_eq!(number, layers, "{text}");
+                let step = Point::new(step.x, step.y) * sheet.scale;
                 let basins = basins(sheet, step, layers);
                 assert!(basins.iter().all(|b| b.len() > 8), "{text}");
                 all.extend(crossing(sheet, &basins).into_iter().map(|c| format!("{text:?}: {c}")));

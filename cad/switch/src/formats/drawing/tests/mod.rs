@@ -13,12 +13,11 @@ use std::path::Path;
 use rand::{RngExt as _, SeedableRng as _};
 
 use super::sheets;
-use super::words::number;
 use crate::built::Built;
 use crate::config::{self, Configuration};
 use crate::design::Design;
 use crate::templates::TEMPLATES;
-use pinswitch_drafting::{Entity, Layer, Shape, Sheet, collisions};
+use pinswitch_drafting::{Entity, Layer, Shape, Sheet, collisions, number};
 
 /// The built set of a configuration, if it is a valid one.
 fn built(text: &str) -> Option<Built> {

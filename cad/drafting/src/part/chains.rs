@@ -1,18 +1,19 @@
-//! The walls of a solid, joined to chains where they stand on each other: what a hole, a peg or an outline is from below to
-//! above.
+//! Chains of walls that share rings: a hole, a peg or an outline from below to above.
 
-use super::bore::{Stage, hexagon};
-use super::features::{circle, lettering, same};
+use super::bore::{Flats, Stage};
+use crate::contour::{circle, hexagon, lettering, same};
 use pinswitch_solid::profile::{Contour, Point2, Vector2};
 use pinswitch_solid::solid::Solid;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 
-/// A run of walls over each other, each with its rings.
+/// A chain of walls, with the rings between them.
 pub(super) struct Chain<'a> {
+    /// Contours with their heights in mm, from below.
     pub(super) rings: Vec<(&'a Contour, f64)>,
-    /// Where it begins, its chamfer included.
+    /// Height of its lower end, with its chamfer, mm.
     pub(super) foot_mm: f64,
-    /// Whether it ends in the open below, and above, and not on a floor or a ceiling.
-    pub(super) opens: (bool, bool),
+    /// Whether it ends in the open below and above, and not on a floor or a ceiling.
+    opens: (bool, bool),
     pub(super) is_lettering: bool,
 }
 
@@ -21,31 +22,32 @@ impl Chain<'_> {
         self.rings[0].0.area_mm2() < 0.0
     }
 
-    /// Middle and stage of a bore, round or hexagonal; `None` of anything else.
+    /// Centre and stage of a round or hexagonal hole.
     pub(super) fn stage(&self) -> Option<(Point2, Stage)> {
-        let round = |c: &Contour| circle(c).map(|(centre, radius)| (centre, radius, false));
-        let across = |c: &Contour| round(c).or_else(|| hexagon(c).map(|(centre, half)| (centre, half, true)));
-        let (centre, _, is_hexagon) = across(self.rings[0].0).filter(|_| self.is_hole())?;
-        let width = |c: &Contour| across(c).map_or(0.0, |(_, half, _)| half);
+        let across = |c: &Contour| circle(c).or_else(|| hexagon(c));
+        let first = self.rings[0].0;
+        let (centre, _) = across(first).filter(|_| self.is_hole())?;
+        let flats = circle(first).is_none().then(|| flats(first, centre));
+        let width = |c: &Contour| across(c).map_or(0.0, |(_, half)| half);
         let mut levels: Vec<(f64, f64)> = self.rings.iter().map(|(c, z)| (*z, width(c))).collect();
         levels[0].0 = self.foot_mm;
         let (opens_down, opens_up) = self.opens;
-        Some((centre, Stage { levels, is_hexagon, opens_down, opens_up }))
+        Some((centre, Stage { levels, flats, opens_down, opens_up }))
     }
 
     pub(super) fn is_blind(&self) -> bool {
         self.opens != (true, true)
     }
 
-    /// By how far this is `other`, moved; `None` if it is anything else.
-    pub(super) fn moved_from(&self, other: &Self) -> Option<Vector2> {
+    /// The displacement from `other`, if both are equal.
+    pub(super) fn displacement(&self, other: &Self) -> Option<Vector2> {
         let first = |chain: &Self| chain.rings[0].0.corners().first().copied();
         let by = first(self)? - first(other)?;
         let is_moved = |(a, b): (&(&Contour, f64), &(&Contour, f64))| {
             let corners = (a.0.corners(), b.0.corners());
             same(a.1, b.1)
                 && corners.0.len() == corners.1.len()
-                && corners.0.iter().zip(corners.1).all(|(p, q)| (p - q - by).norm() < 1e-6)
+                && corners.0.iter().zip(corners.1).all(|(p, q)| same((p - q - by).norm(), 0.0))
         };
         let is_copy =
             self.rings.len() == other.rings.len() && self.rings.iter().zip(&other.rings).all(is_moved);
@@ -53,7 +55,26 @@ impl Chain<'_> {
     }
 }
 
-/// The walls of a solid, joined where they share a ring, without the chamfers at their feet.
+/// The direction of the flats of a regular hexagon.
+fn flats(hexagon: &Contour, centre: Point2) -> Flats {
+    let edge = |i: usize| {
+        let (from, to) = hexagon.ends(i);
+        (to - from).normalize()
+    };
+    let radius = centre.coords.norm();
+    let is_square = |i: usize| same(edge(i).dot(&centre.coords) / radius, 0.0);
+    if radius > 1e-6 && (0..3).any(is_square) {
+        return Flats::SquareToRadius;
+    }
+    if (0..3).any(|i| same(edge(i).y, 0.0)) {
+        return Flats::AlongX;
+    }
+    // Flats repeat every 60 degrees: the angle nearest to x.
+    let angle = libm::atan2(edge(0).y, edge(0).x).rem_euclid(FRAC_PI_3);
+    Flats::AtAngle(if angle > FRAC_PI_2 / 3.0 { angle - FRAC_PI_3 } else { angle }.to_degrees())
+}
+
+/// Returns the chains of a solid, without the bottom chamfers of `chamfer_mm`.
 pub(super) fn chains(solid: &Solid, chamfer_mm: f64) -> Vec<Chain<'_>> {
     let rings: Vec<(&Contour, f64)> = solid.rings().collect();
     let walls: Vec<(usize, usize)> = solid.walls().collect();

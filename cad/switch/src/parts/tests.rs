@@ -1,4 +1,4 @@
-//! Every part of the shipped variants is one valid body with its exact volume, in memory and after single precision.
+//! Every part of many variants is one valid body with its exact volume, in double and in single precision.
 
 use std::io::Cursor;
 
@@ -19,12 +19,12 @@ fn design(assignments: &[&str]) -> Design {
 fn assert_valid(part: &Part, design: &Design, variant: &[&str]) {
     let expected = part.expectation(design);
     let mesh = part.print_mesh(design).unwrap();
-    let found = examine(&mesh, &expected);
-    assert!(found.is_valid(), "{variant:?} {}: {:#?}", part.name, found.faults);
-    assert!(found.facts.low_mm[2].abs() < 1e-12);
+    let report = examine(&mesh, &expected);
+    assert!(report.is_valid(), "{variant:?} {}: {:#?}", part.name, report.faults);
+    assert!(report.facts.low_mm[2].abs() < 1e-12);
     let written = read_stl(&mut Cursor::new(stl_bytes(&mesh).unwrap())).unwrap().mesh;
-    let found = examine(&written, &expected);
-    assert!(found.is_valid(), "{variant:?} {} as STL: {:#?}", part.name, found.faults);
+    let report = examine(&written, &expected);
+    assert!(report.is_valid(), "{variant:?} {} as STL: {:#?}", part.name, report.faults);
     assert_eq!(written.triangles.len(), mesh.triangles.len());
 }
 
@@ -61,7 +61,7 @@ fn all_parts_of_the_variants_are_valid() {
     }
 }
 
-/// Truck builds the same solid from the same profile: closed, as large, and in the same place.
+/// Truck builds the same solid from the same profile: closed, with equal volume and bounds.
 #[test]
 fn truck_agrees_with_every_part() {
     let tolerance = pinswitch_solid::profile::ChordTolerance::new(0.01).unwrap();
@@ -78,7 +78,7 @@ fn truck_agrees_with_every_part() {
             assert!(truck.closed, "{}", part.name);
             let exact = part.solid.volume_mm3();
             for volume in truck.mesh.axis_volumes_mm3() {
-                // Truck's vertices lie on the curve: it may be off by the tolerance over the whole surface.
+                // The vertices of truck are on the curve, so its error is up to the tolerance over the surface.
                 let bound = tolerance.mm() * part.solid.surface_mm2();
                 assert!((volume - exact).abs() <= bound, "{}: {volume} for {exact}", part.name);
             }

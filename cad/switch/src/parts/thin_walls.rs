@@ -1,5 +1,5 @@
-//! Walls of printed parts that are thinner than two printed lines, and what makes them thicker: every value that a warning
-//! names was tried.
+//! Walls of printed parts that are thinner than two printed lines, and changes that make them thicker. Warnings name only
+//! values that were tested.
 
 use pinswitch_solid::solid::ThinPlace;
 
@@ -9,44 +9,44 @@ use crate::design::Design;
 use crate::design::rules::Change::{self, Ease, Lower, Raise};
 use crate::design::rules::{Effort, way_out, ways_out};
 
-/// Walls of exactly two lines are not thin for the rounding of their distance.
+/// Tolerance of the thickness of walls of exactly two lines, mm.
 const THIN_ROUNDING_MM: f64 = 1e-6;
-/// How near the thickness of a place comes to one that a rule has told of, if it is that one; and of places that are alike.
+/// Thicknesses that differ by less are equal, mm.
 const ALIKE_MM: f64 = 1e-3;
-/// Changes that are named together where no single one will do.
+/// Most changes that a warning names together.
 const TOGETHER: usize = 3;
 
 impl Part {
-    /// Places with less than two printed lines of material, the thinnest first; of what is printed.
+    /// Returns the places of a printed part with less than two printed lines of material, the thinnest first.
     pub fn thin_places(&self, design: &Design) -> Vec<ThinPlace> {
         if self.material() != Material::Abs {
             return Vec::new();
         }
         let limit_mm = 2.0 * design.configuration().print.line_mm - THIN_ROUNDING_MM;
-        let (under_mm, found) = self.thin.get_or_init(|| (limit_mm, self.solid.thin_places(limit_mm)));
-        if *under_mm == limit_mm { found.clone() } else { self.solid.thin_places(limit_mm) }
+        let (known_limit_mm, places) = self.thin.get_or_init(|| (limit_mm, self.solid.thin_places(limit_mm)));
+        if *known_limit_mm == limit_mm { places.clone() } else { self.solid.thin_places(limit_mm) }
     }
 
-    /// The same part with what is known of one whose solid is the same.
+    /// The same part with the known thin places of a part with an equal solid.
     #[must_use]
     pub(crate) fn known_by(mut self, twin: &Self) -> Self {
         self.thin = twin.thin.clone();
         self
     }
 
-    /// Those of which no rule of its own tells.
-    fn untold_thin_places(&self, design: &Design) -> Vec<ThinPlace> {
+    /// Thin places that no rule of the design reports.
+    fn unreported_thin_places(&self, design: &Design) -> Vec<ThinPlace> {
         let mut places = self.thin_places(design);
         if self.role == Role::Shell {
-            let told = [design.land_mm(), design.end_wall_mm()];
-            places.retain(|p| told.iter().all(|t| (p.thickness_mm - t).abs() > ALIKE_MM));
+            let reported = [design.land_mm(), design.end_wall_mm()];
+            places.retain(|p| reported.iter().all(|t| (p.thickness_mm - t).abs() > ALIKE_MM));
         }
         places
     }
 
-    /// The thinnest place, as a warning with what to change; `None` where every wall has two printed lines.
+    /// Returns a warning of the thinnest place, with the parameter to change; `None` if every wall has two printed lines.
     pub fn thin_warning(&self, design: &Design) -> Option<String> {
-        let places = self.untold_thin_places(design);
+        let places = self.unreported_thin_places(design);
         let thinnest = places.first()?;
         let (at, line_mm) = (thinnest.middle, design.configuration().print.line_mm);
         Some(format!(
@@ -72,7 +72,7 @@ impl Part {
     fn remedy_for_thin_places(&self, design: &Design, thinnest_mm: f64) -> String {
         let places = |c: &Configuration| -> Option<Vec<ThinPlace>> {
             let design = Design::new(c.clone()).ok()?;
-            Some(printed_part(&self.name, &design)?.untold_thin_places(&design))
+            Some(printed_part(&self.name, &design)?.unreported_thin_places(&design))
         };
         let is_mended = |c: &Configuration| places(c).is_some_and(|places| places.is_empty());
         // The first that does: each part is made many times for it. A layer three times as thick would mend the end walls of

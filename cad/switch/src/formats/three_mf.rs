@@ -1,5 +1,5 @@
-//! assembly.3mf: all printed parts on one plate, or assembly-1.3mf and so on where the bed takes fewer at once; with thumbnail,
-//! configuration and curve.
+//! assembly.3mf: all printed parts on a plate, with thumbnail, configuration and curve. Sets that need several plates have
+//! assembly-1.3mf and so on.
 
 use super::{Format, Inclusion, png};
 use crate::built::Built;
@@ -16,7 +16,7 @@ use pinswitch_solid::render::View;
 
 pub(super) const FORMAT: Format = Format {
     name: "3mf",
-    about: "assembly.3mf: all printed parts on a plate, for slicers; one file for each plate that they need",
+    about: "assembly.3mf: all printed parts on a plate, for slicers; one file for each plate",
     inclusion: Inclusion::Default,
     make,
 };
@@ -74,7 +74,7 @@ fn package_bytes(built: &Built, prediction: &Prediction, plate: &Plate<'_>) -> R
     three_mf(&objects, &package).map_err(SetError::encoding)
 }
 
-/// The materials of a plate, each once, in the order of its parts.
+/// Returns the materials of a plate, each once, in the order of its parts.
 fn materials(plate: &Plate<'_>) -> Vec<BaseMaterial> {
     plate.parts.iter().fold(Vec::new(), |mut known, (p, _)| {
         let own = material(p.part().role);
@@ -85,7 +85,7 @@ fn materials(plate: &Plate<'_>) -> Vec<BaseMaterial> {
     })
 }
 
-/// What parts of a role are printed from, in the colour of their pictures.
+/// Returns the material of a role, in the colour of its pictures.
 fn material(role: Role) -> BaseMaterial {
     let what = match role {
         Role::Shell => "shell",
@@ -94,7 +94,7 @@ fn material(role: Role) -> BaseMaterial {
         Role::Proxy => "proxy",
         Role::Mount => "mount",
         Role::Accessory => "accessory",
-        // Cast or bought: on no plate.
+        // Cast or bought, and not on a plate.
         Role::Layer | Role::Pin { .. } | Role::Tendon => "part",
     };
     BaseMaterial { name: format!("ABS ({what})"), colour: role.colour() }

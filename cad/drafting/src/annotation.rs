@@ -1,29 +1,30 @@
-//! Dimensions and notes: each knows many ways in which it could be written, and takes one that touches nothing.
+//! Dimensions, callouts, labels, titles and notes. Each has many candidate positions, and takes the cheapest one that
+//! touches nothing.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::draft::{Candidate, Draft};
-use super::font::text_width_mm;
-use super::geometry::Point;
+use super::font::{fit_text, text_width_mm};
+use super::geometry::{Extent, Point};
 use super::sheet::{ARROW_MM, Layer, Shape, Text};
 
-/// Height of dimensions, mm (ISO 3098).
+/// Height of the text of dimensions, mm (ISO 3098).
 pub(super) const TEXT_MM: f64 = 2.5;
-/// From one line of a note to the next, mm.
+/// Distance of the lines of a note, mm.
 const LINE_MM: f64 = 4.2;
-/// From an edge to its extension line, mm.
+/// Distance of an extension line from its edge, mm.
 const EXTENSION_GAP_MM: f64 = 0.8;
-/// How far an extension line goes beyond the dimension line, mm.
+/// Length of an extension line beyond the dimension line, mm.
 const EXTENSION_MM: f64 = 1.5;
-/// From a view to its first dimension line, mm.
+/// Distance of the first dimension line from its view, mm.
 const FIRST_TIER_MM: f64 = 7.0;
-/// From one dimension line to the next, mm.
+/// Distance of dimension lines, mm.
 const TIER_MM: f64 = 6.0;
-/// From one arc of an angle to the next, mm: level texts stick out of their arc.
+/// Distance of the arcs of angles, mm: horizontal text reaches beyond its arc.
 const ARC_TIER_MM: f64 = 8.0;
 /// Least radius of the arc of an angle, mm.
 const LEAST_ARC_MM: f64 = 5.0;
-/// How many dimension lines are tried.
+/// Number of dimension lines that are tried.
 const TIERS: u32 = 14;
 /// Least distance of a dimension line from another view.
 const VIEW_GAP_MM: f64 = 2.0;
@@ -40,12 +41,12 @@ fn arrow(tip: Point, direction: Point) -> (Layer, Shape) {
     (Layer::Dimension, Shape::Arrow { tip, direction })
 }
 
-/// The distance of two points, along x or along y.
+/// The distance of two points, along x or y.
 #[derive(Clone, Debug)]
 pub struct Linear {
-    /// What it is of.
+    /// What it measures.
     pub key: String,
-    /// What it says.
+    /// Its text.
     pub text: String,
     /// One end, on paper.
     pub from: Point,
@@ -53,24 +54,24 @@ pub struct Linear {
     pub to: Point,
     /// Whether it measures along y.
     pub upright: bool,
-    /// Where the first dimension line may lie: x of an upright one, else y.
+    /// Edge of the view from which dimension lines keep their distance: x of an upright one, else y.
     pub edge_mm: f64,
-    /// +1 if dimension lines move up or right from there, -1 down or left.
+    /// +1 if dimension lines are above or right of the edge, -1 below or left of it.
     pub outward: f64,
-    /// How far from there another view begins, mm: no dimension line comes as near as 2 mm to it.
+    /// Distance of another view from the edge, mm. Dimension lines keep 2 mm from it.
     pub room_mm: f64,
-    /// What a text beside its dimension line must stand clear of, along the line: where others have their extension lines.
+    /// Range along the dimension line, with extension lines of others, that a text next to the line keeps clear of.
     pub clear_of: [f64; 2],
 }
 
 impl Linear {
-    /// Draws it; whether there was room.
+    /// Draws it; returns whether there was space.
     pub fn place(&self, draft: &mut Draft) -> bool {
         draft.place(&self.key, self.candidates())
     }
 
     fn candidates(&self) -> Vec<Candidate> {
-        // Worked out as if horizontal: `along` and `level` swap for an upright dimension, whose text is read from the right.
+        // As if horizontal: `along` and `level` swap for an upright dimension, whose text reads from the right.
         let along = |p: Point| if self.upright { p.y } else { p.x };
         let level = |p: Point| if self.upright { p.x } else { p.y };
         let at = |along: f64, level: f64| {
@@ -80,7 +81,7 @@ impl Linear {
             if along(self.from) <= along(self.to) { (self.from, self.to) } else { (self.to, self.from) };
         let (a, b) = (along(first), along(last));
         let width = text_width_mm(&self.text, TEXT_MM);
-        // A text stands above its line: for an upright one that is to the left.
+        // Text is above its line, and left of an upright one.
         let above = if self.upright { -0.8 } else { 0.8 };
         let mut all = Vec::new();
         let has_room = |tier: &u32| FIRST_TIER_MM + TIER_MM * f64::from(*tier) + VIEW_GAP_MM <= self.room_mm;
@@ -111,7 +112,7 @@ impl Linear {
                     all.push((base + shift.abs(), shapes));
                 }
             }
-            // Beside the line, which then reaches under the text.
+            // Next to the arrows, on an extended line.
             for after in [true, false] {
                 let [low, high] = self.clear_of;
                 let start = if after { b.max(high) + 3.5 } else { a.min(low) - 3.5 - width };
@@ -129,26 +130,26 @@ impl Linear {
 /// An angle about a centre.
 #[derive(Clone, Debug)]
 pub struct Angular {
-    /// What it is of.
+    /// What it measures.
     pub key: String,
-    /// What it says.
+    /// Its text.
     pub text: String,
-    /// Centre of the angle, on paper.
+    /// Vertex of the angle, on paper.
     pub centre: Point,
     /// First side, radians counter-clockwise from +x.
     pub from_rad: f64,
     /// Last side, greater than the first.
     pub to_rad: f64,
-    /// From the centre to where the extension lines begin, mm on paper.
+    /// Distance of the feet of the extension lines from the vertex, mm on paper.
     pub begins_mm: f64,
-    /// From the centre to what the dimension line must pass, mm on paper.
+    /// Distance of the edge of the view from the vertex, mm on paper: arcs are beyond it.
     pub edge_mm: f64,
-    /// Whether it stands on the side of the centre, and not beyond what it measures.
+    /// Whether arcs are on the side of the vertex, and not beyond the edge.
     pub is_inside: bool,
 }
 
 impl Angular {
-    /// Draws it; whether there was room.
+    /// Draws it; returns whether there was space.
     pub fn place(&self, draft: &mut Draft) -> bool {
         draft.place(&self.key, self.candidates())
     }
@@ -173,7 +174,7 @@ impl Angular {
                     sweep_rad: sweep,
                 },
             )];
-            // The head is straight: it points along the chord of its own length.
+            // An arrow head points along the chord of its length.
             let turn = (ARROW_MM / 2.0 / radius).min(1.0);
             let inside = sweep * radius > 2.0 * ARROW_MM + 1.0;
             for (angle, sense) in [(self.from_rad, -1.0), (self.to_rad, 1.0)] {
@@ -186,7 +187,7 @@ impl Angular {
             }
             for share in [0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75, 0.15, 0.85] {
                 let angle = self.from_rad + sweep * share;
-                // The nearest place outside the arc where a level text does not touch it.
+                // The nearest position outside the arc in which a horizontal text does not touch it.
                 let towards = Point::towards(angle);
                 let clear = (0..60).map(|i| radius + 0.5 + 0.5 * f64::from(i)).find(|r| {
                     let middle = on(angle, *r);
@@ -212,21 +213,21 @@ impl Angular {
     }
 }
 
-/// Where a leader may end: on what, and from which side.
+/// A possible leader: its tip and its direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leader {
-    /// Its end, on paper.
+    /// Its tip, on paper.
     pub tip: Point,
-    /// Away from what it points at: a unit vector.
+    /// Unit vector from the tip along the leader.
     pub direction: Point,
-    /// How much worse it is than the best, mm.
+    /// Cost over the best leader, mm of leader length.
     pub cost_mm: f64,
 }
 
 impl Leader {
-    /// Leaders that point at a circle from all sides, from outside.
+    /// Leaders to a circle from outside, from all directions.
     #[must_use]
-    pub fn around(centre: Point, radius_mm: f64) -> Vec<Self> {
+    pub fn to_circle(centre: Point, radius_mm: f64) -> Vec<Self> {
         (0..24)
             .map(|i| {
                 let direction = Point::towards(TAU * (f64::from(i) + 0.5) / 24.0);
@@ -236,41 +237,41 @@ impl Leader {
     }
 }
 
-/// Some lines of text at the end of a leader.
+/// Lines of text, or the number of a balloon, at the end of a leader.
 #[derive(Clone, Debug)]
 pub struct Callout {
-    /// What it is of.
+    /// What it describes.
     pub key: String,
-    /// What it says, line by line.
+    /// Its lines of text.
     pub lines: Vec<String>,
-    /// Where its leader may end.
+    /// Possible leaders.
     pub leaders: Vec<Leader>,
     /// Whether the text is the number of a balloon, in a circle.
     pub is_balloon: bool,
-    /// Where it had better not be written.
-    pub avoid: Vec<super::Extent>,
-    /// Middle and radius of a circle around what it points at: the mark of a detail.
+    /// Areas to avoid if possible.
+    pub avoid: Vec<Extent>,
+    /// Centre and radius of a circle around the feature: the mark of a detail.
     pub around: Option<(Point, f64)>,
 }
 
-/// A name beside a round thing, without a leader.
+/// A name next to a round feature, without a leader.
 #[derive(Clone, Debug)]
 pub struct Label {
-    /// What it is of.
+    /// What it names.
     pub key: String,
-    /// What it says.
+    /// Its text.
     pub text: String,
-    /// Middle of what it names, on paper.
+    /// Centre of the feature, on paper.
     pub middle: Point,
-    /// How far that reaches around its middle, mm.
+    /// Radius of the feature, mm on paper.
     pub reach_mm: f64,
 }
 
-/// Farthest that a label stands from what it names, in steps of a millimetre.
+/// Number of distances of a label from its feature that are tried, in steps of 1 mm.
 const LABEL_STEPS: u32 = 5;
 
 impl Label {
-    /// Draws it; whether there was room.
+    /// Draws it; returns whether there was space.
     pub fn place(&self, draft: &mut Draft) -> bool {
         draft.place(&self.key, self.candidates())
     }
@@ -282,9 +283,9 @@ impl Label {
             for i in 0..16 {
                 let direction = Point::towards(TAU * (f64::from(i) + 0.5) / 16.0);
                 let away = self.reach_mm + 1.0 + f64::from(step);
-                // The box of the text stands clear of the circle, whatever its shape.
-                let beside = half.x * direction.x.abs() + half.y * direction.y.abs();
-                let at = self.middle + direction * (away + beside) - half;
+                // The box of the text is clear of the circle.
+                let half_width = half.x * direction.x.abs() + half.y * direction.y.abs();
+                let at = self.middle + direction * (away + half_width) - half;
                 all.push((f64::from(step), vec![(Layer::Text, text(at, &self.text, false))]));
             }
         }
@@ -292,7 +293,7 @@ impl Label {
     }
 }
 
-/// How much further a leader goes rather than end where it had better not, mm.
+/// Additional length of a leader rather than end in an area to avoid, mm.
 const AVOID_MM: f64 = 40.0;
 
 /// Radius of a balloon, mm.
@@ -304,7 +305,7 @@ const REACHES_MM: [f64; 20] = [
 ];
 
 impl Callout {
-    /// Draws it; whether there was room.
+    /// Draws it; returns whether there was space.
     pub fn place(&self, draft: &mut Draft) -> bool {
         draft.place(&self.key, self.candidates())
     }
@@ -314,14 +315,14 @@ impl Callout {
         for leader in &self.leaders {
             for reach in REACHES_MM {
                 let elbow = leader.tip + leader.direction * reach;
-                let around = super::Extent::between(elbow, elbow).grown(BALLOON_MM);
-                let is_bad = self.avoid.iter().any(|a| a.meets(around));
-                let cost = leader.cost_mm + reach + if is_bad { AVOID_MM } else { 0.0 };
+                let around = Extent::between(elbow, elbow).grown(BALLOON_MM);
+                let is_avoided = self.avoid.iter().any(|a| a.overlaps(around));
+                let cost = leader.cost_mm + reach + if is_avoided { AVOID_MM } else { 0.0 };
                 if self.is_balloon {
                     all.push((cost, self.balloon(leader, elbow)));
                     continue;
                 }
-                // The shelf goes on to the side to which the leader leans; an upright leader may choose.
+                // The shelf continues to the side to which the leader leans; an upright leader has both.
                 for side in [1.0, -1.0] {
                     if leader.direction.x * side >= -0.15 {
                         all.push((cost, self.note(leader, elbow, side)));
@@ -343,7 +344,7 @@ impl Callout {
         let x = if side > 0.0 { shelf.x + 0.8 } else { shelf.x - 0.8 - widest };
         for (content, y) in self.lines.iter().zip(baselines(shelf.y)) {
             let width = text_width_mm(content, TEXT_MM);
-            // Lines of a note to the left end at its shelf.
+            // Lines left of the shelf end at it.
             let x = if side > 0.0 { x } else { shelf.x - 0.8 - width };
             shapes.push((Layer::Text, text(Point::new(x, y), content, false)));
         }
@@ -363,20 +364,19 @@ impl Callout {
     }
 }
 
-/// Where the lines of a note stand whose first is level with `y`.
+/// Baselines of the lines of a note whose first line is centred on `y`.
 fn baselines(y: f64) -> impl Iterator<Item = f64> {
     (0..).map(move |i| y - TEXT_MM / 2.0 - LINE_MM * f64::from(i))
 }
 
 impl Draft {
-    /// Writes `content`, with capitals of `height_mm`, as near above or below `around` as there is room: the title of a
-    /// view. Whether there was room.
+    /// Draws the title of a view, with capitals of `height_mm`, above or below `around`; returns whether there was space.
     pub fn place_title(
         &mut self,
         key: &str,
         content: &str,
         height_mm: f64,
-        around: super::Extent,
+        around: Extent,
         is_above: bool,
     ) -> bool {
         let width = text_width_mm(content, height_mm);
@@ -397,13 +397,13 @@ impl Draft {
         self.place(key, all)
     }
 
-    /// Writes `lines` upward from the sheet's lower left corner, no wider than `width_mm`: general notes.
+    /// Draws general notes upward from the lower left corner of the sheet, at most `width_mm` wide.
     pub fn notes(&mut self, lines: &[String], width_mm: f64) {
         let frame = self.sheet().paper.frame();
         let group = self.group();
         let mut y = frame.low.y + 3.0;
         for content in lines.iter().rev() {
-            let (broken, height_mm) = super::fitted(content, TEXT_MM, 1.8, [width_mm, 6.0 * LINE_MM]);
+            let (broken, height_mm) = fit_text(content, TEXT_MM, 1.8, [width_mm, 6.0 * LINE_MM]);
             for content in broken.into_iter().rev() {
                 let at = Point::new(frame.low.x + 3.0, y);
                 self.put(

@@ -1,26 +1,26 @@
-//! A sheet in the making: what is written on it finds room where nothing else lies.
+//! A sheet under construction, on which annotations find free space.
 
-use super::frame::{TITLE_HEIGHT_MM, TITLE_WIDTH_MM};
-use super::geometry::{Extent, Point, lines_cover, lines_cross};
+use super::geometry::{Extent, Point, lines_cross, lines_overlap};
 use super::index::{Index, Piece};
 use super::sheet::{Annotation, Entity, Layer, Paper, Shape, Sheet, View};
 
-/// What a new text keeps from lines, and a new line from texts, mm.
+/// Width and height of the title block, mm (ISO 7200).
+pub(super) const TITLE_BLOCK_MM: [f64; 2] = [180.0, 28.5];
+/// Distance of a new text from lines, and of a new line from texts, mm.
 const LINE_GAP_MM: f64 = 0.6;
-/// What a new text keeps from other texts, mm.
+/// Distance of a new text from other texts, mm.
 const TEXT_GAP_MM: f64 = 0.9;
-/// How much further a leader goes rather than cross a line of another dimension, mm.
+/// Additional length of a leader rather than cross a line of another annotation, mm.
 const CROSSING_MM: f64 = 7.0;
-/// How much further rather than cross an edge, mm.
+/// The same rather than cross an edge, mm.
 const EDGE_CROSSING_MM: f64 = 2.5;
-
-/// How much further rather than lie on another line, mm.
+/// The same rather than run along another line, mm.
 const COVERING_MM: f64 = 30.0;
 
-/// A way to write an annotation: how far it is from the best, mm, and its shapes.
+/// A possible position of an annotation: its cost in mm of leader length, and its shapes.
 pub(super) type Candidate = (f64, Vec<(Layer, Shape)>);
 
-/// A sheet in the making.
+/// A sheet under construction.
 #[derive(Clone, Debug)]
 pub struct Draft {
     sheet: Sheet,
@@ -30,12 +30,12 @@ pub struct Draft {
 }
 
 impl Draft {
-    /// An empty sheet with its frame, and the place of its title block kept free.
+    /// An empty sheet with its frame, and the space of its title block kept free.
     #[must_use]
-    pub fn bare(paper: Paper) -> Self {
+    pub fn without_title(paper: Paper) -> Self {
         let frame = paper.frame();
         let corner = Point::new(frame.high.x, frame.low.y);
-        let title_block = Extent::between(corner, corner + Point::new(-TITLE_WIDTH_MM, TITLE_HEIGHT_MM));
+        let title_block = Extent::between(corner, corner + Point::new(-TITLE_BLOCK_MM[0], TITLE_BLOCK_MM[1]));
         let sheet = Sheet {
             name: String::new(),
             paper,
@@ -51,30 +51,30 @@ impl Draft {
         draft
     }
 
-    /// Begins a group of entities that belong together.
+    /// Starts a group of entities that belong together; returns its number.
     pub const fn group(&mut self) -> usize {
         self.groups += 1;
         self.groups - 1
     }
 
-    /// Ends frame and title block: whatever comes later must not touch them.
+    /// Ends frame and title block. What follows must not touch them.
     pub(super) fn begin_content(&mut self) {
         self.sheet.first_group = self.groups;
     }
 
-    /// Begins a view.
+    /// Adds a view; returns its number.
     pub fn view(&mut self, name: impl Into<String>, origin: Point, scale: f64) -> usize {
         self.sheet.views.push(View { name: name.into(), origin, scale });
         self.sheet.views.len() - 1
     }
 
-    /// Draws `shape`, wherever it lies.
+    /// Draws a shape, also over others.
     pub fn put(&mut self, layer: Layer, shape: Shape, view: Option<usize>, group: usize) {
         if let Shape::Text(text) = &shape {
             self.texts.insert(text.extent(), (text.extent(), group));
         }
         for ends in shape.pieces() {
-            // The planes of sections and engraved letters are read as dimensions are.
+            // Cutting planes and engraved letters are as important as dimensions.
             let is_annotation = match layer {
                 Layer::Thin => true,
                 Layer::Dimension | Layer::Frame => view.is_none(),
@@ -85,7 +85,7 @@ impl Draft {
         self.sheet.entities.push(Entity { layer, shape, view, group });
     }
 
-    /// Draws the four sides of `extent`.
+    /// Draws a rectangle.
     pub fn rectangle(&mut self, layer: Layer, extent: Extent, group: usize) {
         let (low, high) = (extent.low, extent.high);
         let corners = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];
@@ -94,37 +94,37 @@ impl Draft {
         }
     }
 
-    /// The sheet so far.
+    /// The sheet.
     #[must_use]
     pub const fn sheet(&self) -> &Sheet {
         &self.sheet
     }
 
-    /// The sheet, called `name`, whose main views have this scale.
+    /// The finished sheet with its name and the scale of its main views.
     #[must_use]
-    pub fn finished(mut self, name: impl Into<String>, scale: f64) -> Sheet {
+    pub fn into_sheet(mut self, name: impl Into<String>, scale: f64) -> Sheet {
         self.sheet.name = name.into();
         self.sheet.scale = scale;
         self.sheet
     }
 
-    /// Notes what a group of entities says.
+    /// Adds the content of a group of entities.
     pub(super) fn annotate(&mut self, annotation: Annotation) {
         self.sheet.annotations.push(annotation);
     }
 
-    /// Whether shapes could be put here without touching anything.
+    /// The cost of the lines that these shapes cross; `None` if they touch a text, the frame or the title block.
     pub(super) fn cost(&self, shapes: &[(Layer, Shape)]) -> Option<f64> {
         let room = self.sheet.paper.frame().grown(-1.0);
         for (_, shape) in shapes {
             if let Shape::Text(text) = shape {
                 let extent = text.extent();
                 let wide = extent.grown(LINE_GAP_MM);
-                let is_out = !room.holds(extent) || extent.grown(1.0).meets(self.sheet.title_block);
+                let is_out = !room.contains(extent) || extent.grown(1.0).overlaps(self.sheet.title_block);
                 if is_out
-                    || self
-                        .texts
-                        .any(extent.grown(TEXT_GAP_MM), |(other, _)| extent.grown(TEXT_GAP_MM).meets(*other))
+                    || self.texts.any(extent.grown(TEXT_GAP_MM), |(other, _)| {
+                        extent.grown(TEXT_GAP_MM).overlaps(*other)
+                    })
                     || self.pieces.any(wide, |p| wide.is_crossed_by(p.ends[0], p.ends[1]))
                 {
                     return None;
@@ -136,7 +136,7 @@ impl Draft {
             for [a, b] in shape.pieces() {
                 let extent = Extent::between(a, b);
                 let block = self.sheet.title_block.grown(1.0);
-                if !room.holds(extent)
+                if !room.contains(extent)
                     || block.is_crossed_by(a, b)
                     || self.texts.any(extent.grown(LINE_GAP_MM), |(other, _)| {
                         other.grown(LINE_GAP_MM).is_crossed_by(a, b)
@@ -144,14 +144,14 @@ impl Draft {
                 {
                     return None;
                 }
-                // A long line lies in several cells of the index, and counts once.
+                // A long line is in several cells of the index, and counts once.
                 let mut counted: Vec<[Point; 2]> = Vec::new();
                 self.pieces.any(extent, |p| {
                     if !counted.contains(&p.ends) {
                         if lines_cross(p.ends, [a, b]) {
                             counted.push(p.ends);
                             cost += if p.is_annotation { CROSSING_MM } else { EDGE_CROSSING_MM };
-                        } else if lines_cover([a, b], p.ends) {
+                        } else if lines_overlap([a, b], p.ends) {
                             counted.push(p.ends);
                             cost += COVERING_MM;
                         }
@@ -163,7 +163,7 @@ impl Draft {
         Some(cost)
     }
 
-    /// Draws the cheapest of `candidates` that touches nothing; whether there was one.
+    /// Draws the cheapest of `candidates` that touches nothing; returns whether there is one.
     pub(super) fn place(&mut self, key: &str, mut candidates: Vec<Candidate>) -> bool {
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut best: Option<Candidate> = None;

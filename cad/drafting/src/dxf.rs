@@ -1,18 +1,18 @@
-//! A drawing as DXF (R12), in millimetres of the part.
+//! DXF (R12), in millimetres of the part.
 //!
-//! Every view is a block at 1:1, so that what is measured in it is what the part has. In model space the sheets stand side
-//! by side, each enlarged or reduced so that its main views are 1:1 there, too; details are inserted larger, by as much as
-//! the scale in their title says. R12 has no unit and no time stamp, and every CAD program reads it.
+//! Every view is a block at 1:1, so that measurements in it are those of the part. In model space the sheets are side by
+//! side, each scaled so that its main views are 1:1; details are inserted at the scale in their title. R12 has no unit and no
+//! time stamp, and every CAD program reads it.
 
 use std::fmt::Write as _;
 
 use super::geometry::Point;
 use super::sheet::{Layer, Shape, Sheet, Text};
 
-/// Between two sheets, mm of paper.
+/// Distance of sheets, mm of paper.
 const GAP_MM: f64 = 20.0;
 
-/// All sheets as DXF.
+/// Writes all sheets as DXF.
 #[must_use]
 pub fn drawing_dxf(sheets: &[Sheet]) -> String {
     let mut text =
@@ -24,7 +24,8 @@ pub fn drawing_dxf(sheets: &[Sheet]) -> String {
             let name = block_name(sheet, i);
             let _ = write!(text, "0\nBLOCK\n8\n0\n2\n{name}\n70\n0\n10\n0\n20\n0\n30\n0\n3\n{name}\n");
             for entity in sheet.entities.iter().filter(|e| e.view == Some(i)) {
-                let true_size = Frame { shift: view.origin * (-1.0 / view.scale), factor: 1.0 / view.scale };
+                let true_size =
+                    Transform { shift: view.origin * (-1.0 / view.scale), factor: 1.0 / view.scale };
                 shape(&mut text, entity.layer, &entity.shape, true_size);
             }
             text += "0\nENDBLK\n8\n0\n";
@@ -33,7 +34,7 @@ pub fn drawing_dxf(sheets: &[Sheet]) -> String {
     text += "0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
     let mut left = 0.0;
     for sheet in sheets {
-        let frame = Frame { shift: Point::new(left, 0.0), factor: 1.0 / sheet.scale };
+        let frame = Transform { shift: Point::new(left, 0.0), factor: 1.0 / sheet.scale };
         left += (sheet.paper.size_mm().0 + GAP_MM) / sheet.scale;
         for (i, view) in sheet.views.iter().enumerate() {
             let (at, factor) = (frame.at(view.origin), n(view.scale * frame.factor));
@@ -52,20 +53,20 @@ pub fn drawing_dxf(sheets: &[Sheet]) -> String {
     text + "0\nENDSEC\n0\nEOF\n"
 }
 
-/// Where a sheet or a view lies in the file.
+/// The position of a sheet or a view in the file.
 #[derive(Clone, Copy)]
-struct Frame {
+struct Transform {
     shift: Point,
     factor: f64,
 }
 
-impl Frame {
+impl Transform {
     fn at(self, p: Point) -> Point {
         p * self.factor + self.shift
     }
 }
 
-/// Name of the block of view `i`: R12 allows letters, digits, `-`, `_` and `$`, 31 at most.
+/// The name of the block of view `i`. R12 allows 31 letters, digits, `-`, `_` and `$`.
 fn block_name(sheet: &Sheet, i: usize) -> String {
     let clean = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
     format!("{}_{}", sheet.name, sheet.views[i].name).chars().map(clean).collect()
@@ -97,7 +98,7 @@ fn tables(text: &mut String) {
     *text += "0\nLAYER\n2\n0\n70\n0\n62\n7\n6\nCONTINUOUS\n";
     for layer in Layer::ALL {
         let dashed = if layer.dashes_mm().is_empty() { "CONTINUOUS" } else { layer.name() };
-        // White or black for what is seen, colours for the rest, as plotters of R12 choose pens.
+        // White or black for visible lines, colours for the others: plotters choose pens by colour.
         let colour = match layer {
             Layer::Visible | Layer::Frame | Layer::Text => 7,
             Layer::Hidden => 3,
@@ -111,7 +112,7 @@ fn tables(text: &mut String) {
     *text += "0\nENDTAB\n0\nTABLE\n2\nSTYLE\n70\n1\n0\nSTYLE\n2\nSTANDARD\n70\n0\n40\n0\n41\n1\n50\n0\n71\n0\n42\n2.5\n3\narial.ttf\n4\n\n0\nENDTAB\n0\nENDSEC\n";
 }
 
-fn shape(text: &mut String, layer: Layer, shape: &Shape, frame: Frame) {
+fn shape(text: &mut String, layer: Layer, shape: &Shape, frame: Transform) {
     let layer = layer.name();
     let _ = match shape {
         Shape::Line { from, to } => {
@@ -149,7 +150,7 @@ fn shape(text: &mut String, layer: Layer, shape: &Shape, frame: Frame) {
         Shape::Arrow { tip, direction } => {
             let corners = Shape::arrow_corners(*tip, *direction).map(|p| frame.at(p));
             let mut solid = format!("0\nSOLID\n8\n{layer}\n");
-            // Three corners: the last is named twice.
+            // A triangle repeats its last corner.
             for (i, p) in corners.iter().chain(corners.last()).enumerate() {
                 let _ = write!(solid, "1{i}\n{}\n2{i}\n{}\n3{i}\n0\n", n(p.x), n(p.y));
             }
@@ -159,7 +160,7 @@ fn shape(text: &mut String, layer: Layer, shape: &Shape, frame: Frame) {
     };
 }
 
-fn letters(text: &Text, layer: &str, frame: Frame) -> String {
+fn letters(text: &Text, layer: &str, frame: Transform) -> String {
     let at = frame.at(text.at);
     let content: String = text
         .content
@@ -171,20 +172,20 @@ fn letters(text: &Text, layer: &str, frame: Frame) -> String {
             '\u{d7}' => "x".to_owned(),
             '%' => "%%%".to_owned(),
             ' '..='~' => c.to_string(),
-            // As newer readers write it: R12 has no code for other letters.
+            // The code of newer versions: R12 has none for other letters.
             _ => format!("\\U+{:04X}", u32::from(c)),
         })
         .collect();
-    let turn = if text.upright { 90 } else { 0 };
+    let rotation = if text.upright { 90 } else { 0 };
     format!(
-        "0\nTEXT\n8\n{layer}\n10\n{}\n20\n{}\n30\n0\n40\n{}\n1\n{content}\n50\n{turn}\n",
+        "0\nTEXT\n8\n{layer}\n10\n{}\n20\n{}\n30\n0\n40\n{}\n1\n{content}\n50\n{rotation}\n",
         n(at.x),
         n(at.y),
         n(text.height_mm * frame.factor)
     )
 }
 
-/// Up to nine digits behind the point: a part's coordinates as they are, without the dust of rounding.
+/// Formats a number with at most nine decimals, without rounding errors of coordinates.
 fn n(value: f64) -> String {
     let text = format!("{value:.9}");
     let short = text.trim_end_matches('0').trim_end_matches('.');

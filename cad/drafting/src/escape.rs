@@ -1,4 +1,4 @@
-//! Text in markup.
+//! Escaping of text in markup.
 
 /// Returns the text with the characters that SVG, XML and HTML interpret replaced by entities, for an element or a quoted
 /// attribute.

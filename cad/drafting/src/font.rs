@@ -1,8 +1,8 @@
-//! How wide a text is: Helvetica, whose widths every PDF reader knows, and which Arial and Liberation Sans share.
+//! Widths of text in Helvetica, which every PDF reader has. Arial and Liberation Sans have the same widths.
 
 /// Height of a capital letter over the size of the font: Helvetica's is 718 thousandths.
-pub const CAPITAL_PER_EM: f64 = 0.718;
-/// How far letters such as g reach below their line, over the size of the font.
+pub(super) const CAPITAL_PER_EM: f64 = 0.718;
+/// Descent of letters such as g below the baseline, over the size of the font.
 pub(super) const DESCENT_PER_EM: f64 = 0.207;
 
 /// Widths of the characters from space to tilde, thousandths of the size (Adobe's metrics of Helvetica).
@@ -26,7 +26,7 @@ const LATIN: [u16; 96] = [
     556, 556, 556, 556, 556, 556, 889, 500, 556, 556, 556, 556, 278, 278, 278, 278,
     556, 556, 556, 556, 556, 556, 556, 584, 611, 556, 556, 556, 556, 500, 556, 500,
 ];
-/// Width of any other character: no letter of any script is wider than its size.
+/// Width of any other character, an upper bound for every script.
 const OTHER: u16 = 1000;
 
 fn width_thousandths(character: char) -> u16 {
@@ -36,19 +36,17 @@ fn width_thousandths(character: char) -> u16 {
 }
 
 /// Width in mm of `text` whose capitals are `height_mm` high.
-#[must_use]
-pub fn text_width_mm(text: &str, height_mm: f64) -> f64 {
+pub(super) fn text_width_mm(text: &str, height_mm: f64) -> f64 {
     text.chars().map(|c| f64::from(width_thousandths(c))).sum::<f64>() / 1000.0 * height_mm / CAPITAL_PER_EM
 }
 
-/// From one line of a text to the next, over the height of its capitals.
+/// Distance of baselines over the height of capitals.
 pub(super) const LINE_PER_CAPITAL: f64 = 1.45;
 
-/// `text` in one or more lines that all fit in `width_mm`, and the height of their capitals: as near to `height_mm` as the
-/// room allows. Nothing is cut: a text that would be smaller than `least_mm` in one line goes on in the next, as long as
-/// all lines find room in `room_mm`; what is longer still becomes smaller.
-#[must_use]
-pub fn fitted(
+/// Breaks a text into lines that fit into a box of `width_mm` by `room_mm`; returns the lines and the height of their
+/// capitals, at most `height_mm`. A text that would be smaller than `least_mm` in one line gets more lines. Nothing is cut:
+/// longer texts become smaller.
+pub(super) fn fit_text(
     text: &str,
     height_mm: f64,
     least_mm: f64,
@@ -56,7 +54,7 @@ pub fn fitted(
 ) -> (Vec<String>, f64) {
     let mut best = (vec![text.to_owned()], 0.0);
     for lines in 1..=MOST_LINES {
-        // All lines are as high as the room allows; then the smallest that still holds the text decides.
+        // Lines start as high as the box allows, and shrink until the text fits.
         let of_room = room_mm / (1.0 + LINE_PER_CAPITAL * (lines - 1) as f64);
         let mut height = height_mm.min(of_room.max(if lines == 1 { height_mm } else { 0.0 }));
         let mut broken = broken(text, height, width_mm);
@@ -79,11 +77,11 @@ pub fn fitted(
 
 /// Most lines into which a text is broken.
 const MOST_LINES: usize = 6;
-/// By how much a text that does not fit becomes smaller, and how often at most.
+/// Factor by which a text shrinks until it fits, and the most steps.
 const SHRINKING: f64 = 0.97;
 const SHRINKINGS: u32 = 120;
 
-/// `text` in lines of at most `width_mm`, broken behind spaces and marks where there are any.
+/// Breaks a text into lines of at most `width_mm`, after a space or a mark where possible.
 fn broken(text: &str, height_mm: f64, width_mm: f64) -> Vec<String> {
     let mut lines = Vec::new();
     let mut rest = text;
@@ -114,13 +112,13 @@ mod tests {
     }
 
     #[test]
-    fn a_text_that_is_too_long_shrinks_and_then_goes_on_below() {
-        assert_eq!(fitted("abc", 5.0, 1.8, [100.0, 6.0]), (vec!["abc".to_owned()], 5.0));
-        let long = "a very long name of a switch, which nobody would write on a title block ".repeat(2);
+    fn long_texts_shrink_and_break() {
+        assert_eq!(fit_text("abc", 5.0, 1.8, [100.0, 6.0]), (vec!["abc".to_owned()], 5.0));
+        let long = "a very long name of a switch, too long for a single line of a title block ".repeat(2);
         for (text, width) in
             [(long.as_str(), 60.0), (&"W".repeat(160), 60.0), (&"\u{30b9}".repeat(120), 30.0)]
         {
-            let (lines, height) = fitted(text, 3.0, 1.4, [width, 6.0]);
+            let (lines, height) = fit_text(text, 3.0, 1.4, [width, 6.0]);
             let letters = |t: &str| t.chars().filter(|c| *c != ' ').collect::<String>();
             assert_eq!(letters(&lines.concat()), letters(text), "nothing is lost");
             assert!(lines.len() > 1 && height > 0.4, "{height}");

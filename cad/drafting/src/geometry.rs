@@ -1,4 +1,4 @@
-//! Points and boxes on paper.
+//! Points and rectangles on paper.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -12,7 +12,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// The point at `x`, `y`.
+    /// A point.
     #[must_use]
     pub const fn new(x: f64, y: f64) -> Self {
         Self { x, y }
@@ -24,7 +24,7 @@ impl Point {
         Self::new(libm::cos(angle_rad), libm::sin(angle_rad))
     }
 
-    /// Its length, mm.
+    /// The length of a displacement, mm.
     #[must_use]
     pub fn length(self) -> f64 {
         libm::hypot(self.x, self.y)
@@ -37,13 +37,13 @@ impl Point {
         if length > 0.0 { self * (1.0 / length) } else { self }
     }
 
-    /// Turned a quarter to the left.
+    /// Rotated by 90 degrees counter-clockwise.
     #[must_use]
     pub fn left(self) -> Self {
         Self::new(-self.y, self.x)
     }
 
-    /// Its angle, radians counter-clockwise from +x.
+    /// The angle of a displacement, radians counter-clockwise from +x.
     #[must_use]
     pub fn angle_rad(self) -> f64 {
         libm::atan2(self.y, self.x)
@@ -71,7 +71,7 @@ impl Mul<f64> for Point {
     }
 }
 
-/// A box with sides along the paper's, mm.
+/// A rectangle with sides parallel to those of the paper, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// Lower left corner.
@@ -81,64 +81,64 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// The box between two corners, in any order.
+    /// The rectangle between two corners, in any order.
     #[must_use]
     pub fn between(a: Point, b: Point) -> Self {
         Self { low: Point::new(a.x.min(b.x), a.y.min(b.y)), high: Point::new(a.x.max(b.x), a.y.max(b.y)) }
     }
 
-    /// The smallest box around both.
+    /// The smallest rectangle around both.
     #[must_use]
-    pub fn joined(self, other: Self) -> Self {
+    pub fn union(self, other: Self) -> Self {
         Self {
             low: Point::new(self.low.x.min(other.low.x), self.low.y.min(other.low.y)),
             high: Point::new(self.high.x.max(other.high.x), self.high.y.max(other.high.y)),
         }
     }
 
-    /// Wider by `by` on all sides.
+    /// Enlarged by `by` on all sides.
     #[must_use]
     pub fn grown(self, by: f64) -> Self {
         Self { low: self.low - Point::new(by, by), high: self.high + Point::new(by, by) }
     }
 
-    /// From left to right, mm.
+    /// Width, mm.
     #[must_use]
     pub fn width(self) -> f64 {
         self.high.x - self.low.x
     }
 
-    /// From bottom to top, mm.
+    /// Height, mm.
     #[must_use]
     pub fn height(self) -> f64 {
         self.high.y - self.low.y
     }
 
-    /// Its middle.
+    /// Its centre.
     #[must_use]
     pub fn middle(self) -> Point {
         (self.low + self.high) * 0.5
     }
 
-    /// Whether both share more than an edge.
+    /// Returns whether both share more than an edge.
     #[must_use]
-    pub fn meets(self, other: Self) -> bool {
+    pub fn overlaps(self, other: Self) -> bool {
         self.low.x < other.high.x
             && other.low.x < self.high.x
             && self.low.y < other.high.y
             && other.low.y < self.high.y
     }
 
-    /// Whether `other` lies inside.
+    /// Returns whether `other` is inside.
     #[must_use]
-    pub fn holds(self, other: Self) -> bool {
+    pub fn contains(self, other: Self) -> bool {
         self.low.x <= other.low.x
             && self.low.y <= other.low.y
             && self.high.x >= other.high.x
             && self.high.y >= other.high.y
     }
 
-    /// Whether the straight line from `a` to `b` passes through the inside.
+    /// Returns whether the line from `a` to `b` passes through the inside.
     #[must_use]
     pub fn is_crossed_by(self, a: Point, b: Point) -> bool {
         let (mut from, mut to) = (0.0f64, 1.0f64);
@@ -159,38 +159,38 @@ impl Extent {
     }
 }
 
-/// Whether two straight lines cross, ends that touch excepted.
+/// Returns whether two lines cross. Ends that touch do not.
 pub(super) fn lines_cross([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     let side = |p: Point, q: Point, r: Point| (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
     let apart = |x: f64, y: f64| (x > 1e-9 && y < -1e-9) || (x < -1e-9 && y > 1e-9);
     apart(side(a, b, c), side(a, b, d)) && apart(side(c, d, a), side(c, d, b))
 }
 
-/// Whether two straight lines lie on each other over more than a millimetre, so that one cannot be told from the other.
-pub(super) fn lines_cover([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
+/// Returns whether two lines coincide over more than 1 mm.
+pub(super) fn lines_overlap([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     let along = (b - a).unit();
     let off = |p: Point| ((p - a).x * along.y - (p - a).y * along.x).abs();
     let far = |p: Point| (p - a).x * along.x + (p - a).y * along.y;
     let shared = (b - a).length().min(far(c).max(far(d))) - far(c).min(far(d)).max(0.0);
-    off(c) < BESIDE_MM && off(d) < BESIDE_MM && shared > 1.0
+    off(c) < COINCIDENT_MM && off(d) < COINCIDENT_MM && shared > 1.0
 }
 
-/// Lines nearer than this look like one, mm.
-const BESIDE_MM: f64 = 0.8;
+/// Lines closer than this look like one, mm.
+const COINCIDENT_MM: f64 = 0.8;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn lines_cover_each_other_only_along_their_length() {
+    fn parallel_lines_overlap_and_others_cross() {
         let at = |x: f64, y: f64| Point::new(x, y);
         let line = [at(0.0, 0.0), at(10.0, 0.0)];
-        assert!(lines_cover(line, [at(20.0, 0.1), at(5.0, 0.0)]));
-        assert!(!lines_cover(line, [at(20.0, 0.0), at(9.5, 0.0)]));
+        assert!(lines_overlap(line, [at(20.0, 0.1), at(5.0, 0.0)]));
+        assert!(!lines_overlap(line, [at(20.0, 0.0), at(9.5, 0.0)]));
         assert!(
-            !lines_cover(line, [at(5.0, -3.0), at(5.0, 3.0)])
-                && !lines_cover(line, [at(0.0, 2.0), at(10.0, 2.0)])
+            !lines_overlap(line, [at(5.0, -3.0), at(5.0, 3.0)])
+                && !lines_overlap(line, [at(0.0, 2.0), at(10.0, 2.0)])
         );
         assert!(
             lines_cross(line, [at(5.0, -3.0), at(5.0, 3.0)])
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_crosses_a_box_only_through_its_inside() {
+    fn lines_cross_the_inside_of_rectangles() {
         let square = Extent::between(Point::new(0.0, 0.0), Point::new(2.0, 2.0));
         let crossed =
             |a: [f64; 2], b: [f64; 2]| square.is_crossed_by(Point::new(a[0], a[1]), Point::new(b[0], b[1]));

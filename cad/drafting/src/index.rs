@@ -1,13 +1,13 @@
-//! What lies near a box of a sheet, without looking at everything.
+//! A grid index of the items on a sheet.
 
 use super::geometry::{Extent, Point};
 
 /// Side of a cell, mm.
 const CELL_MM: f64 = 8.0;
-/// Cells along each side: a sheet of A3 and what reaches beyond it.
+/// Cells along each side: an A3 sheet with a margin.
 const CELLS: usize = 60;
 
-/// Items by the cells of the sheet that their boxes touch.
+/// Items by the cells that their boxes touch.
 #[derive(Clone, Debug)]
 pub(super) struct Index<T> {
     items: Vec<(Extent, T)>,
@@ -15,7 +15,7 @@ pub(super) struct Index<T> {
 }
 
 fn cell(mm: f64) -> usize {
-    // What lies outside the sheet falls into the cells of its edge.
+    // Positions outside of the sheet are in the cells of its edge.
     (mm / CELL_MM).clamp(0.0, (CELLS - 1) as f64) as usize
 }
 
@@ -38,21 +38,21 @@ impl<T> Index<T> {
         }
     }
 
-    /// Whether `is_hit` holds for an item whose box touches `extent`; an item may be asked more than once.
+    /// Returns whether `is_hit` is true for an item whose box touches `extent`. It may be called several times for an item.
     pub(super) fn any(&self, extent: Extent, mut is_hit: impl FnMut(&T) -> bool) -> bool {
         Self::cells_of(extent).flat_map(|c| &self.cells[c]).any(|n| {
             let (around, item) = &self.items[*n as usize];
-            around.grown(1e-9).meets(extent.grown(1e-9)) && is_hit(item)
+            around.grown(1e-9).overlaps(extent.grown(1e-9)) && is_hit(item)
         })
     }
 }
 
-/// A straight piece of a line, and the group it belongs to.
+/// A straight piece of a line, with its group.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     pub(super) ends: [Point; 2],
     pub(super) group: usize,
-    /// Whether a leader had better not cross it.
+    /// Whether it belongs to an annotation, which leaders avoid to cross.
     pub(super) is_annotation: bool,
 }
 
@@ -61,13 +61,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_touches_a_box_is_found_wherever_it_lies() {
+    fn items_are_found_inside_and_outside() {
         let mut index = Index::new();
         let at = |x: f64, y: f64| Extent::between(Point::new(x, y), Point::new(x + 1.0, y + 1.0));
         for (i, (x, y)) in [(5.0, 5.0), (100.0, 40.0), (-50.0, 900.0)].into_iter().enumerate() {
             index.insert(at(x, y), i);
         }
-        let found = |extent: Extent| {
+        let touched = |extent: Extent| {
             let mut all = Vec::new();
             index.any(extent, |i| {
                 all.push(*i);
@@ -76,8 +76,8 @@ mod tests {
             all.dedup();
             all
         };
-        assert_eq!(found(at(5.5, 5.5)), [0]);
-        assert_eq!(found(at(-50.5, 900.5)), [2]);
-        assert!(found(at(50.0, 50.0)).is_empty());
+        assert_eq!(touched(at(5.5, 5.5)), [0]);
+        assert_eq!(touched(at(-50.5, 900.5)), [2]);
+        assert!(touched(at(50.0, 50.0)).is_empty());
     }
 }

@@ -1,34 +1,98 @@
-//! Technical drawings on paper: sheets of lines, arcs and texts, dimensions that find free room, and three writers.
+//! Technical drawings of solids: views, sections and dimensions on sheets of paper, written as SVG, PDF and DXF.
 //!
-//! It knows paper, not parts: what a part shows is decided by whoever draws it. All lengths are millimetres on paper, with
-//! the origin in the sheet's lower left corner and y up; a [`View`] says how its lines follow from the millimetres of the
-//! part. One list of [`Sheet`]s becomes `drawing.svg`, `drawing.pdf` and `drawing.dxf`.
+//! [`PartDrawing`] draws the sheet of a part from its exact [`Solid`](pinswitch_solid::solid::Solid): a front view along its
+//! axis, a view from above, a section, enlarged details, and every dimension once. It chooses paper, scale and cutting plane.
+//! [`Fits`] adds tolerances and purposes, which a solid does not show.
+//!
+//! ```
+//! use pinswitch_drafting::{Fit, Paper, PartDrawing, RoundFit, TitleBlock, collisions, drawing_svg};
+//! use pinswitch_solid::profile::{Contour, Point2};
+//! use pinswitch_solid::solid::Solid;
+//!
+//! // A plate of 60 x 40 x 5 mm with a hole. Material is on the left of every contour, so the hole runs clockwise.
+//! let corners = [(0.0, 0.0), (60.0, 0.0), (60.0, 40.0), (0.0, 40.0)];
+//! let outline = Contour::polygon(corners.map(|(x, y)| Point2::new(x, y)).to_vec());
+//! let centre = Point2::new(20.0, 15.0);
+//! let hole = Contour::circle(centre, 4.5).reversed();
+//! let plate = Solid::prism(&outline, &[hole], 0.0, 5.0, 0.0)?;
+//!
+//! let mut drawing = PartDrawing::new("plate", &plate);
+//! let fit = Fit::new("H13", "for M8");
+//! drawing.fits.holes.push(RoundFit { centre: Some(centre), half_mm: 4.5, fit });
+//! drawing.notes.push("Deburred".to_owned());
+//! let title = TitleBlock {
+//!     product: ("Machine".to_owned(), "Press".to_owned()),
+//!     title: "Base plate".to_owned(),
+//!     material: "Steel".to_owned(),
+//!     general_tolerance: "ISO 2768-m".to_owned(),
+//!     ..TitleBlock::default()
+//! };
+//! let sheet = drawing.sheet(&title, Paper::A4).ok_or("the plate fits on no paper")?;
+//!
+//! // Every dimension found free space.
+//! assert!(collisions(&sheet).is_empty());
+//! let text = |key: &str| sheet.annotations.iter().find(|a| a.key == key).map(|a| a.text.as_str());
+//! assert_eq!(text("hole 1"), Some("\u{d8}9 H13 through, for M8"));
+//! assert_eq!(text("from the left side, 20"), Some("20"));
+//! assert_eq!((text("length"), text("width"), text("overall height")), (Some("60"), Some("40"), Some("5")));
+//!
+//! let svg = drawing_svg(&[sheet], "Base plate");
+//! assert!(svg.starts_with("<svg") && svg.contains("for M8"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Sheets
+//!
+//! A [`Draft`] is a sheet under construction: lines, arcs and texts on [`Layer`]s, in groups. [`Linear`], [`Angular`],
+//! [`Callout`] and [`Label`] are annotations. Each has many candidate positions and takes the cheapest one that touches
+//! nothing. [`collisions`] tests a finished [`Sheet`].
+//!
+//! All lengths are millimetres on paper, with the origin in the lower left corner of the sheet and y up. A [`View`] has the
+//! scale of its lines. One list of sheets becomes `drawing.svg`, `drawing.pdf` and `drawing.dxf`.
+//!
+//! # Views
+//!
+//! [`view`] has the views themselves, for sheets of other kinds, such as an assembly: front views of one body or of several,
+//! side views with hidden lines, cut faces with hatching, and the mark of a section.
+//!
+//! # Limits
+//!
+//! Solids are stacks of contours of lines and arcs. These features have dimensions: radii and angles about the axis (the
+//! origin), stepped, blind and hexagonal bores, round bosses, straight and curved slots, half-round grooves and ribs, rounded
+//! corners, ring segments, ends of sectors, patterns of pockets, corners of outlines, and heights. An outline of free curves
+//! has views, but no dimensions.
 
 #![warn(clippy::disallowed_methods)]
 
 mod annotation;
-mod clearance;
+mod collision;
+mod contour;
 mod draft;
 mod dxf;
 mod escape;
 mod font;
-mod frame;
 mod geometry;
 mod index;
+mod layout;
+mod part;
 mod pdf;
 mod sheet;
 mod svg;
 mod table;
+mod title_block;
+pub mod view;
 
 pub use annotation::{Angular, Callout, Label, Leader, Linear};
-pub use clearance::{Collision, collisions};
+pub use collision::{Collision, collisions};
+pub use contour::{hexagon, lettering, same};
 pub use draft::Draft;
 pub use dxf::drawing_dxf;
 pub use escape::escape;
-pub use font::{CAPITAL_PER_EM, fitted, text_width_mm};
-pub use frame::{Projection, TitleBlock};
 pub use geometry::{Extent, Point};
+pub use layout::{ABOVE_ASSEMBLY_MM, ABOVE_MM, Layout, Sizes, assembly_formats, part_formats};
+pub use part::{Fit, Fits, PartDrawing, RoundFit, Terms, number};
 pub use pdf::drawing_pdf;
 pub use sheet::{Annotation, Entity, Layer, Paper, Shape, Sheet, Text, View};
 pub use svg::drawing_svg;
 pub use table::Table;
+pub use title_block::{Projection, TitleBlock};

@@ -1,4 +1,4 @@
-//! A drawing as PDF: a page for every sheet, in the font that every reader has.
+//! PDF: a page for each sheet, in Helvetica, which every reader has.
 
 use pdf_writer::types::LineCapStyle;
 use pdf_writer::{Content, Finish as _, Name, Pdf, Rect, Ref, Str, TextStr};
@@ -11,7 +11,7 @@ use super::sheet::{Layer, Shape, Sheet, Text};
 const POINT_PER_MM: f64 = 72.0 / 25.4;
 const FONT: Name<'static> = Name(b"F");
 
-/// All sheets as PDF, called `title`: nothing in it depends on time or place.
+/// Writes all sheets as a PDF with a title. The file contains no date, and is the same on every machine.
 #[must_use]
 pub fn drawing_pdf(sheets: &[Sheet], title: &str) -> Vec<u8> {
     let number = |i: usize| Ref::new(i32::try_from(i).unwrap_or(i32::MAX));
@@ -37,7 +37,7 @@ pub fn drawing_pdf(sheets: &[Sheet], title: &str) -> Vec<u8> {
 
 #[allow(clippy::cast_possible_truncation)]
 fn points(mm: f64) -> f32 {
-    // Thousandths of a point are enough, and short.
+    // Thousandths of a point.
     ((mm * POINT_PER_MM * 1000.0).round() / 1000.0) as f32
 }
 
@@ -76,7 +76,7 @@ fn draw(content: &mut Content, shape: &Shape) {
     }
 }
 
-/// An arc as cubic curves of a quarter turn at most: they leave the circle by less than 0.03 % of its radius.
+/// Draws an arc as cubic curves of at most 90 degrees, within 0.03 % of the radius.
 fn arc(content: &mut Content, centre: Point, radius_mm: f64, start_rad: f64, sweep_rad: f64) {
     let number = (sweep_rad.abs() / std::f64::consts::FRAC_PI_2).ceil().max(1.0);
     let step = sweep_rad / number;
@@ -102,7 +102,7 @@ fn arc(content: &mut Content, centre: Point, radius_mm: f64, start_rad: f64, swe
 }
 
 fn write(content: &mut Content, text: &Text) {
-    // The font has the letters of western Europe; others are shown as question marks.
+    // WinAnsiEncoding has the letters of western Europe; others become question marks.
     let bytes: Vec<u8> = text
         .content
         .chars()
@@ -112,9 +112,9 @@ fn write(content: &mut Content, text: &Text) {
         })
         .collect();
     let (x, y) = (points(text.at.x), points(text.at.y));
-    let turned = if text.upright { [0.0, 1.0, -1.0, 0.0, x, y] } else { [1.0, 0.0, 0.0, 1.0, x, y] };
+    let matrix = if text.upright { [0.0, 1.0, -1.0, 0.0, x, y] } else { [1.0, 0.0, 0.0, 1.0, x, y] };
     content.begin_text();
     content.set_font(FONT, points(text.height_mm / CAPITAL_PER_EM));
-    content.set_text_matrix(turned).show(Str(&bytes));
+    content.set_text_matrix(matrix).show(Str(&bytes));
     content.end_text();
 }

@@ -1,10 +1,9 @@
-//! What lies on a sheet of paper.
+//! Sheets: paper, line types, shapes, views and annotations.
 
-use super::font::{CAPITAL_PER_EM, DESCENT_PER_EM};
+use super::font::{CAPITAL_PER_EM, DESCENT_PER_EM, text_width_mm};
 use super::geometry::{Extent, Point};
-use super::text_width_mm;
 
-/// A size of paper, on its side.
+/// A size of paper, in landscape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paper {
     /// 297 x 210 mm.
@@ -23,7 +22,7 @@ impl Paper {
         }
     }
 
-    /// Its name.
+    /// Name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -32,7 +31,7 @@ impl Paper {
         }
     }
 
-    /// What is inside the frame: 20 mm from the left edge, where the sheet is filed, 10 mm from the others (ISO 5457).
+    /// The area inside the frame: 20 mm from the left edge, for filing, and 10 mm from the others (ISO 5457).
     #[must_use]
     pub const fn frame(self) -> Extent {
         let (width, height) = self.size_mm();
@@ -40,26 +39,26 @@ impl Paper {
     }
 }
 
-/// What a line is for: decides width and dashes (ISO 128).
+/// The purpose of a line, with its width and dashes (ISO 128).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
-    /// Edges that are seen.
+    /// Visible edges.
     Visible,
-    /// Edges that are not.
+    /// Hidden edges.
     Hidden,
     /// Axes, planes of symmetry, pitch circles.
     Centre,
     /// Dimension lines, extension lines, leaders.
     Dimension,
-    /// Cut faces.
+    /// Hatching of cut faces.
     Hatch,
-    /// What is near the part and does not belong to it.
+    /// Adjacent parts.
     Phantom,
     /// Thin outlines: engraved letters, limits of details, tables.
     Thin,
-    /// The plane of a section, and the frame.
+    /// Cutting planes, and the frame.
     Frame,
-    /// Letters.
+    /// Text.
     Text,
 }
 
@@ -77,7 +76,7 @@ impl Layer {
         Self::Text,
     ];
 
-    /// Its name in files.
+    /// Name in files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -93,7 +92,7 @@ impl Layer {
         }
     }
 
-    /// Width of its lines, mm.
+    /// Width of lines, mm.
     #[must_use]
     pub const fn width_mm(self) -> f64 {
         match self {
@@ -103,7 +102,7 @@ impl Layer {
         }
     }
 
-    /// Lengths of dashes and gaps in turn, mm; empty for a continuous line.
+    /// Alternating lengths of dashes and gaps, mm; empty for a continuous line.
     #[must_use]
     pub const fn dashes_mm(self) -> &'static [f64] {
         match self {
@@ -118,24 +117,24 @@ impl Layer {
 /// A line of text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// Left end of the line that its letters stand on.
+    /// Left end of the baseline.
     pub at: Point,
     /// Height of its capitals, mm.
     pub height_mm: f64,
-    /// What it says.
+    /// The text.
     pub content: String,
-    /// Whether it runs upward, to be read from the right.
+    /// Whether it runs upward, to read from the right.
     pub upright: bool,
 }
 
 impl Text {
-    /// Width on paper, along its line, mm.
+    /// Length of the baseline, mm.
     #[must_use]
     pub fn width_mm(&self) -> f64 {
         text_width_mm(&self.content, self.height_mm)
     }
 
-    /// The box around its letters.
+    /// The bounding box.
     #[must_use]
     pub fn extent(&self) -> Extent {
         let (width, descent) = (self.width_mm(), self.height_mm / CAPITAL_PER_EM * DESCENT_PER_EM);
@@ -148,39 +147,39 @@ impl Text {
     }
 }
 
-/// What is drawn.
+/// The shape of an entity.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A straight line.
     Line {
-        /// Its first end.
+        /// First end.
         from: Point,
-        /// Its last end.
+        /// Last end.
         to: Point,
     },
     /// An arc, counter-clockwise where the sweep is positive.
     Arc {
-        /// Centre of its circle.
+        /// Centre.
         centre: Point,
         /// Radius, mm.
         radius_mm: f64,
-        /// Angle of its first end from +x.
+        /// Angle of the first end from +x.
         start_rad: f64,
-        /// Signed angle to its last end.
+        /// Signed angle to the last end.
         sweep_rad: f64,
     },
-    /// A whole circle.
+    /// A circle.
     Circle {
-        /// Its centre.
+        /// Centre.
         centre: Point,
         /// Radius, mm.
         radius_mm: f64,
     },
     /// A filled arrow head.
     Arrow {
-        /// Its point.
+        /// Tip.
         tip: Point,
-        /// Where it points: a unit vector.
+        /// Unit vector toward the tip.
         direction: Point,
     },
     /// A text.
@@ -193,7 +192,7 @@ pub(super) const ARROW_MM: f64 = 2.5;
 pub(super) const ARROW_HALF_MM: f64 = 0.42;
 
 impl Shape {
-    /// The curve as straight pieces that leave it by no more than some hundredths of a millimetre; none for texts.
+    /// Straight pieces within 0.03 mm of the curve; none for a text.
     #[must_use]
     pub fn pieces(&self) -> Vec<[Point; 2]> {
         match *self {
@@ -215,7 +214,7 @@ impl Shape {
 }
 
 fn chords(centre: Point, radius_mm: f64, start_rad: f64, sweep_rad: f64) -> Vec<[Point; 2]> {
-    // A chord of angle a leaves its arc by r a²/8.
+    // The sagitta of a chord of angle a is r a²/8.
     let step = (8.0 * 0.03 / radius_mm.max(1e-6)).sqrt().min(0.6);
     let number = ((sweep_rad.abs() / step).ceil().max(1.0)) as u32;
     let at = |i: u32| {
@@ -224,64 +223,64 @@ fn chords(centre: Point, radius_mm: f64, start_rad: f64, sweep_rad: f64) -> Vec<
     (0..number).map(|i| [at(i), at(i + 1)]).collect()
 }
 
-/// Something drawn, with what it belongs to.
+/// A shape with its line type, view and annotation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entity {
-    /// Its line style.
+    /// Line type.
     pub layer: Layer,
-    /// What is drawn.
+    /// Shape.
     pub shape: Shape,
-    /// The view whose geometry it is; `None` for what is written about it.
+    /// The number of the view to whose geometry it belongs; `None` for annotations.
     pub view: Option<usize>,
-    /// The annotation that it is part of: a text may touch the lines of its own.
+    /// The number of its group. A text may touch lines of its own group.
     pub group: usize,
 }
 
-/// One view of a part: where the part's origin lies on paper, and how much larger it is drawn.
+/// A view of a part: the position of its origin on paper, and its scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    /// Its name in files, unique on its sheet, such as `FRONT`.
+    /// Name in files, unique on the sheet, such as `FRONT`.
     pub name: String,
-    /// Where the part's own origin lies on paper.
+    /// Origin of the part, on paper.
     pub origin: Point,
     /// Millimetres on paper for a millimetre of the part.
     pub scale: f64,
 }
 
-/// A dimension or a note: what it is of, and what it says.
+/// The content of a dimension, callout, note or row of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Annotation {
-    /// Its entities.
+    /// Number of the group of its entities.
     pub group: usize,
-    /// What it dimensions, such as `groove pitch`.
+    /// What it describes, such as `groove pitch`.
     pub key: String,
-    /// Its lines of text, joined by line feeds.
+    /// Lines of text, joined by line feeds; cells of a row, joined by tabs.
     pub text: String,
 }
 
 /// One sheet of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// Name of what it shows: a part, or the assembly.
+    /// Name of the part, or of the assembly.
     pub name: String,
-    /// Its size.
+    /// Size.
     pub paper: Paper,
-    /// The scale of its main views.
+    /// Scale of the main views.
     pub scale: f64,
-    /// Its views.
+    /// Views.
     pub views: Vec<View>,
-    /// All that is drawn.
+    /// Everything on the sheet.
     pub entities: Vec<Entity>,
-    /// What is dimensioned and noted.
+    /// Content of dimensions, callouts, notes and tables.
     pub annotations: Vec<Annotation>,
-    /// Where nothing but the title block may lie.
+    /// The area of the title block.
     pub title_block: Extent,
-    /// The first group of entities that do not belong to frame and title block.
+    /// Number of the first group after those of frame and title block.
     pub first_group: usize,
 }
 
 impl Sheet {
-    /// A scale in the form of ISO 5455, such as `2:1`.
+    /// Formats a scale as `2:1` (ISO 5455).
     #[must_use]
     pub fn scale_text(scale: f64) -> String {
         if scale >= 1.0 { format!("{scale}:1") } else { format!("1:{}", (1.0 / scale * 10.0).round() / 10.0) }

@@ -1,15 +1,16 @@
-//! A drawing as one SVG: every sheet with its own box of coordinates, one under another.
+//! SVG: all sheets, one below another.
 
 use std::fmt::Write as _;
 
 use super::font::CAPITAL_PER_EM;
+use super::geometry::Point;
 use super::sheet::{Entity, Layer, Shape, Sheet, Text};
-use crate::escape;
+use crate::escape::escape;
 
-/// Between two sheets, mm.
+/// Distance of sheets, mm.
 const GAP_MM: f64 = 8.0;
 
-/// All sheets, one under another, in millimetres; with `#NAME` behind the address of the file a browser begins with that one.
+/// Writes all sheets, one below another, in millimetres. In a browser, `drawing.svg#NAME` shows the sheet of that name.
 #[must_use]
 pub fn drawing_svg(sheets: &[Sheet], title: &str) -> String {
     let width = sheets.iter().map(|s| s.paper.size_mm().0).fold(0.0, f64::max);
@@ -91,10 +92,10 @@ fn layer_group(sheet: &Sheet, layer: Layer, height: f64) -> String {
                 )
             }
             Shape::Arc { centre, radius_mm, start_rad, sweep_rad } => {
-                let at = |a: f64| *centre + super::Point::towards(a) * *radius_mm;
+                let at = |a: f64| *centre + Point::towards(a) * *radius_mm;
                 let (from, to) = (at(*start_rad), at(start_rad + sweep_rad));
                 let large = u8::from(sweep_rad.abs() > std::f64::consts::PI);
-                // The page's y axis points down: counter-clockwise on paper is flag 0.
+                // The y axis of SVG points down: counter-clockwise on paper is flag 0.
                 let flag = u8::from(*sweep_rad < 0.0);
                 write!(
                     body,
@@ -120,17 +121,17 @@ fn layer_group(sheet: &Sheet, layer: Layer, height: f64) -> String {
 
 fn text_element(text: &Text, height: f64) -> String {
     let (x, y) = (n(text.at.x), n(height - text.at.y));
-    let turn = if text.upright { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
-    // The length is pinned, so that a font of other widths keeps its place.
+    let rotation = if text.upright { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
+    // A fixed length, so that a font with other widths fits.
     format!(
-        "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\" textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"{turn}>{}</text>",
+        "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\" textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"{rotation}>{}</text>",
         n(text.height_mm / CAPITAL_PER_EM),
         n(text.width_mm()),
         escape(&text.content)
     )
 }
 
-/// Micrometres on paper are enough.
+/// Formats a length with micrometres.
 fn n(mm: f64) -> String {
     let text = format!("{mm:.3}");
     let short = text.trim_end_matches('0').trim_end_matches('.');

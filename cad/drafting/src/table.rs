@@ -1,4 +1,4 @@
-//! Tables, such as a bill of materials: they stand on the title block.
+//! Tables, such as a parts list or a hole table.
 
 use super::annotation::TEXT_MM;
 use super::draft::Draft;
@@ -8,13 +8,13 @@ use super::sheet::{Annotation, Layer};
 /// A table with a heading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// What it is.
+    /// What it lists.
     pub key: String,
     /// Heading and width in mm of each column.
     pub columns: Vec<(String, f64)>,
-    /// Its rows, from the first.
+    /// Rows.
     pub rows: Vec<Vec<String>>,
-    /// Whether its heading stands on top. Lists of parts grow upward from theirs (ISO 7573).
+    /// Whether the heading is at the top. Parts lists grow upward from theirs (ISO 7573).
     pub reads_down: bool,
 }
 
@@ -34,7 +34,7 @@ impl Table {
         [self.columns.iter().map(|c| c.1).sum(), self.height_mm()]
     }
 
-    /// Draws it with its lower right corner at `corner`, the first row next to the heading.
+    /// Draws it with its lower right corner at `corner`; returns its extent. The first row is next to the heading.
     pub fn draw(&self, draft: &mut Draft, corner: Point) -> Extent {
         let width: f64 = self.columns.iter().map(|c| c.1).sum();
         let headings: Vec<String> = self.columns.iter().map(|c| c.0.clone()).collect();
@@ -48,7 +48,7 @@ impl Table {
                     Extent::between(Point::new(left, low), Point::new(left + width_mm, low + Self::ROW_MM));
                 draft.rectangle(Layer::Thin, cell, lines);
                 let at = Point::new(left + 1.0, low + (Self::ROW_MM - TEXT_MM) / 2.0);
-                draft.lines_of_text(content, TEXT_MM, at, [width_mm - 2.0, TEXT_MM + 1.0]);
+                draft.put_text(content, TEXT_MM, at, [width_mm - 2.0, TEXT_MM + 1.0]);
                 left += width_mm;
             }
             let group = draft.group();

@@ -1,6 +1,6 @@
-//! A design with everything built once: each part's solid, its mesh, and what the mesh measures.
+//! Built designs: the solid of each part, its mesh, and the measured properties of the mesh.
 //!
-//! Every format takes a [`Built`]; none builds or tessellates a part again.
+//! Every format takes a [`Built`], so that each part is built and meshed once.
 
 use std::sync::OnceLock;
 
@@ -16,7 +16,7 @@ use pinswitch_solid::solid::CapCache;
 use pinswitch_solid::validity::{Expectation, MeshFacts, examine};
 use pinswitch_solid::verification::{Kernel, Verification, verify};
 
-/// A body with its mesh about the pulley's axis, standing on z = 0.
+/// A body with its mesh about the pulley's axis, with its lower end at z = 0.
 #[derive(Clone, Debug)]
 pub struct MeshedBody {
     /// The body.
@@ -38,24 +38,24 @@ impl MeshedBody {
 pub struct BuiltPart {
     /// The part with its mesh about the pulley's axis.
     pub body: MeshedBody,
-    /// The mesh as it is written: on the print bed.
+    /// The written mesh, on the print bed.
     pub print_mesh: Mesh,
-    /// What the written mesh measures.
+    /// Measured properties of the written mesh.
     pub facts: MeshFacts,
 }
 
 impl BuiltPart {
-    /// Meshes `part` and examines the mesh. The search for self-intersections, which vertical walls over checked caps
-    /// cannot have, is left to `pinswitch check` and the tests.
+    /// Meshes `part` and validates the mesh, without the search for self-intersections, which vertical walls over valid caps
+    /// do not have. `pinswitch check` and the tests include it.
     ///
     /// # Errors
-    /// [`BuildError`]; a mesh that the oracle refuses is never returned.
+    /// [`BuildError`] if there is no valid mesh.
     pub fn new(part: Part, design: &Design) -> Result<Self, BuildError> {
         Self::with_caps(part, design, &CapCache::new(usize::MAX))
     }
 
-    /// What was built of another part with the same solid, at the same tolerance.
-    fn as_built(&self, part: Part) -> Self {
+    /// The mesh of this part for another part with the same solid and tolerance.
+    fn reused_for(&self, part: Part) -> Self {
         let body = MeshedBody { part: part.known_by(self.part()), mesh: self.body.mesh.clone() };
         Self { body, print_mesh: self.print_mesh.clone(), facts: self.facts.clone() }
     }
@@ -118,13 +118,13 @@ pub fn verified(
     })
 }
 
-/// What the mesh measures, if it is valid.
+/// Returns the properties of a valid mesh.
 fn examined(part: &Part, print_mesh: &Mesh, design: &Design) -> Result<MeshFacts, BuildError> {
     let expected = Expectation { intersections: false, ..part.expectation(design) };
-    let found = examine(print_mesh, &expected);
-    match found.faults.into_iter().next() {
+    let report = examine(print_mesh, &expected);
+    match report.faults.into_iter().next() {
         Some(fault) => Err(BuildError::Invalid { part: part.name.clone(), fault }),
-        None => Ok(found.facts),
+        None => Ok(report.facts),
     }
 }
 
@@ -149,16 +149,16 @@ pub struct Built {
 }
 
 impl Built {
-    /// Builds, meshes and examines everything that `design` asks for.
+    /// Builds, meshes and validates all parts of a design.
     ///
     /// # Errors
-    /// [`BuildError`]; nothing is returned if one part cannot be built.
+    /// [`BuildError`] of the first part that cannot be built.
     pub fn new(design: Design) -> Result<Self, BuildError> {
         Self::following(design, None, &CapCache::new(usize::MAX))
     }
 
-    /// The same where one design follows another: parts that are as they were are taken from the one `before`, and caps that
-    /// others have left from `caps`, where its own are left, too.
+    /// The same for a series of designs: takes unchanged parts from the design `before`, and caps from `caps`, to which it adds
+    /// its own.
     ///
     /// # Errors
     /// As [`Built::new`].
@@ -171,7 +171,7 @@ impl Built {
             known?.printed.iter().find(is_twin)
         };
         let made = |part: Part| match twin(&part) {
-            Some(twin) => Ok(twin.as_built(part)),
+            Some(twin) => Ok(twin.reused_for(part)),
             None => BuiltPart::with_caps(part, &design, caps),
         };
         let printed = map_each(parts, made)
@@ -181,7 +181,7 @@ impl Built {
         let reference = reference_bodies(&design)?
             .into_iter()
             .map(|part| {
-                // The layer is often the same solid as its proxy: equal solids are meshed once.
+                // Equal solids, such as layer and proxy, are meshed once.
                 match printed.iter().find(|p| p.part().solid == part.solid) {
                     Some(twin) => Ok(MeshedBody { part, mesh: twin.body.mesh.clone() }),
                     None => MeshedBody::new(part, &design, caps),
@@ -191,12 +191,12 @@ impl Built {
         Ok(Self { design, printed, reference, exploded_png: OnceLock::new() })
     }
 
-    /// The design.
+    /// Returns the design.
     pub const fn design(&self) -> &Design {
         &self.design
     }
 
-    /// The printed parts, in the order of [`crate::parts::PRINTED_PARTS`].
+    /// Returns the printed parts, in the order of [`crate::parts::PRINTED_PARTS`].
     pub fn printed(&self) -> &[BuiltPart] {
         &self.printed
     }
@@ -212,18 +212,17 @@ impl Built {
             .collect()
     }
 
-    /// Layer and pins.
+    /// Returns layer, pins and tendon.
     pub fn reference(&self) -> &[MeshedBody] {
         &self.reference
     }
 
-    /// Where the picture of the exploded assembly is kept, once it is drawn.
-    pub(crate) const fn kept_picture(&self) -> &OnceLock<Vec<u8>> {
+    /// The cell of the picture of the exploded assembly.
+    pub(crate) const fn exploded_png(&self) -> &OnceLock<Vec<u8>> {
         &self.exploded_png
     }
 
-    /// Every body of the assembly with its place, printed ones first. The proxy stands in for the silicone only where
-    /// there is none.
+    /// Returns every body of the assembly, printed ones first. The proxy is included only without a silicone layer.
     pub fn assembly(&self) -> impl Iterator<Item = &MeshedBody> {
         let has_layer = self.reference.iter().any(|b| b.part.role == Role::Layer);
         self.printed

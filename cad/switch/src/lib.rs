@@ -1,9 +1,9 @@
-//! A friction switch from its configuration to its parts, built once, and every document made from them.
+//! A friction switch: its configuration, rules, parts, friction curve and files.
 //!
-//! It knows switches: configurations, their rules, their parts, curves and files. It does no input or output, reads no
-//! clock and no environment, and starts no thread of its own but with the feature `parallel`.
+//! The crate does no input or output, reads neither clock nor environment, and starts threads only with the feature
+//! `parallel`.
 //!
-//! Data flows one way: [`config`] → [`design`] → [`parts`] → [`built`] → [`set`], with the [`prediction`] beside.
+//! Data flows one way: [`config`] → [`design`] → [`parts`] → [`built`] → [`set`], and [`design`] → [`prediction`] → [`set`].
 //!
 //! ```
 //! use pinswitch_switch::{built::Built, config, design::Design, formats, prediction::Prediction, set::Set};

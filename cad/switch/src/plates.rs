@@ -1,4 +1,4 @@
-//! The plates that a set is printed on: which parts lie on each, where, and in which file.
+//! Print plates of a set: the parts of each plate with their positions, and its files.
 
 use crate::built::{Built, BuiltPart};
 use pinswitch_solid::files::{Placement, lay_out};
@@ -6,17 +6,16 @@ use pinswitch_solid::files::{Placement, lay_out};
 /// A plate with its parts, in the order of the set.
 #[derive(Clone, Debug)]
 pub struct Plate<'a> {
-    /// Its number, from 1.
+    /// Number, from 1.
     pub number: usize,
-    /// All plates of the set.
+    /// Number of plates of the set.
     pub of: usize,
-    /// Its parts with their places.
+    /// Parts with their positions.
     pub parts: Vec<(&'a BuiltPart, Placement)>,
 }
 
 impl Plate<'_> {
-    /// The name of a file that exists for each plate: `STEM.EXTENSION` if the plate is the only one, `STEM-NUMBER.EXTENSION`
-    /// if not.
+    /// Returns the name of a file of the plate: `STEM.EXTENSION` for a single plate, else `STEM-NUMBER.EXTENSION`.
     pub fn file(&self, stem: &str, extension: &str) -> String {
         match self.of {
             1 => format!("{stem}.{extension}"),
@@ -24,18 +23,18 @@ impl Plate<'_> {
         }
     }
 
-    /// The name of its 3MF.
+    /// Returns the name of its 3MF file.
     pub fn package(&self) -> String {
         self.file("assembly", "3mf")
     }
 
-    /// The name of its picture.
+    /// Returns the name of its picture.
     pub fn picture(&self) -> String {
         self.file("plate", "png")
     }
 }
 
-/// The plates of a set: every printed part lies on exactly one of them, within `print.bed_mm`.
+/// Returns the plates of a set. Every printed part is on exactly one plate, within `print.bed_mm`.
 pub fn plates(built: &Built) -> Vec<Plate<'_>> {
     let boxes: Vec<_> = built.printed().iter().map(|p| p.print_mesh.bounds().unwrap_or_default()).collect();
     let places = lay_out(&boxes, built.design().configuration().print.bed_mm);
@@ -57,11 +56,11 @@ mod tests {
     use pinswitch_solid::files::{BED_EDGE_MM, PART_GAP_MM};
     use pinswitch_solid::mesh::Point3;
 
-    /// Name, lower and upper corner of a part as it lies.
-    type Lying = (String, Point3, Point3);
+    /// Name, lower and upper corner of a part on its plate.
+    type PlacedPart = (String, Point3, Point3);
 
-    /// Every part as it lies, by plate.
-    fn lying(text: &str) -> (Built, BTreeMap<usize, Vec<Lying>>) {
+    /// Every part on its plate.
+    fn placed(text: &str) -> (Built, BTreeMap<usize, Vec<PlacedPart>>) {
         let built = Built::new(Design::new(read(text, "x.toml").unwrap().0).unwrap()).unwrap();
         let of = |plate: &Plate<'_>| {
             let corners = plate.parts.iter().map(|(part, place)| {
@@ -75,19 +74,19 @@ mod tests {
     }
 
     #[test]
-    fn every_part_lies_once_on_its_plate_whatever_the_bed() {
+    fn every_part_is_on_one_plate() {
         let rig = "[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 3.0\n";
         for (text, bed_mm, least) in
             [("", 250.0, 1), ("", 120.0, 1), ("", 62.0, 3), (rig, 250.0, 1), (rig, 165.0, 2)]
         {
             let text = format!("{text}[print]\nbed_mm = {bed_mm:?}\n");
-            let (built, plates) = lying(&text);
+            let (built, plates) = placed(&text);
             assert!(plates.len() >= least && plates.len() <= least + 4, "{text}: {} plates", plates.len());
             let mut names: Vec<&str> = plates.values().flatten().map(|(name, ..)| name.as_str()).collect();
-            let mut asked: Vec<&str> = built.printed().iter().map(|p| p.part().name.as_str()).collect();
+            let mut expected: Vec<&str> = built.printed().iter().map(|p| p.part().name.as_str()).collect();
             names.sort_unstable();
-            asked.sort_unstable();
-            assert_eq!(names, asked, "{text}");
+            expected.sort_unstable();
+            assert_eq!(names, expected, "{text}");
             for parts in plates.values() {
                 for (i, (name, low, high)) in parts.iter().enumerate() {
                     let edge = BED_EDGE_MM - 2e-3;

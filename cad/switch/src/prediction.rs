@@ -1,12 +1,12 @@
-//! The friction curve of a design, with what the other laws say beside it.
+//! Predicted friction curves of a design, by its law and by the other laws.
 
 use crate::design::Design;
 use pinswitch_friction::{FrictionCurve, Law, LawError, other_laws, predict, predict_by};
 
-/// Loads at which the other laws are compared with a curve: enough for a line in a plot.
+/// Number of loads of the curves of other laws, enough for a line in a plot.
 const COMPARISON_POINTS: usize = 26;
 
-/// A curve, and those of the other laws that apply to the same layout: beside it, never mixed into it.
+/// The predicted curve of a design, and those of the other laws that apply to its layout.
 ///
 /// ```
 /// use pinswitch_switch::{config::{Configuration, assign}, design::Design, prediction::Prediction};
@@ -22,17 +22,17 @@ const COMPARISON_POINTS: usize = 26;
 pub struct Prediction {
     /// The curve.
     pub curve: FrictionCurve,
-    /// The other laws' curves over the same range of loads.
+    /// Curves of the other laws over the same range of loads.
     pub others: Vec<FrictionCurve>,
 }
 
 impl Prediction {
-    /// The prediction of `design` by the default law.
+    /// Predicts the friction of a design by the default law.
     pub fn of(design: &Design) -> Self {
         Self::with_curve(design, predicted_curve(design))
     }
 
-    /// The prediction of `design` by `law`.
+    /// Predicts the friction of a design by `law`.
     ///
     /// # Errors
     /// [`LawError`] if the law does not apply to the layout.
@@ -40,19 +40,19 @@ impl Prediction {
         Ok(Self::with_curve(design, predict_by(law, design.contact(), &loads_n(design))?))
     }
 
-    /// A curve made elsewhere, such as by a calibrated model, with the laws beside it.
+    /// Adds the curves of the other laws to a curve, such as that of a calibrated model.
     pub fn with_curve(design: &Design, curve: FrictionCurve) -> Self {
         let others = other_laws(curve.law, design.contact(), &spaced_loads_n(design, COMPARISON_POINTS));
         Self { curve, others }
     }
 }
 
-/// The curve of `design` by the default law, without the others.
+/// Returns the curve of a design by the default law.
 pub fn predicted_curve(design: &Design) -> FrictionCurve {
     predict(design.contact(), &loads_n(design))
 }
 
-/// The loads of the curve of `design`, in newtons.
+/// Returns the loads of the curve of a design, N.
 pub fn loads_n(design: &Design) -> Vec<f64> {
     spaced_loads_n(design, design.configuration().friction.points)
 }
@@ -62,7 +62,7 @@ fn spaced_loads_n(design: &Design, points: usize) -> Vec<f64> {
     evenly((f.load_min_n, f.load_max_n), points)
 }
 
-/// So many loads from the lightest to the heaviest, evenly.
+/// Returns `points` evenly spaced loads from the lightest to the heaviest.
 pub(crate) fn evenly((from, to): (f64, f64), points: usize) -> Vec<f64> {
     let step = (to - from) / (points - 1) as f64;
     (0..points).map(|i| from + step * i as f64).collect()
@@ -73,9 +73,9 @@ mod tests {
     use super::*;
     use crate::config::{Configuration, assign};
 
-    /// Every number of a configuration that moves friction by 2 % changes trust or reasons: none is forgotten.
+    /// Every numeric parameter that changes friction by 2 % changes the status or its reasons.
     #[test]
-    fn what_moves_friction_is_seen_in_its_trust() {
+    fn changes_of_friction_change_the_status() {
         let base = || {
             let mut c = Configuration::default();
             assign(&mut c, "layout.pins=[5, 8, 11]").unwrap();
@@ -89,7 +89,7 @@ mod tests {
         let published = at_heaviest(base()).unwrap();
         assert_eq!(published.1, pinswitch_friction::PredictionStatus::Published);
         let mut moving = Vec::new();
-        // Where a curve ends is no change of the part.
+        // The end of the curve is not a property of the part.
         for parameter in Configuration::PARAMETERS.iter().filter(|p| p.path() != "friction.load_max_n") {
             let value = (parameter.get)(&base()).to_string();
             let Ok(number) = value.parse::<f64>() else { continue };

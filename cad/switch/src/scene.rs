@@ -1,4 +1,4 @@
-//! Bodies to draw: assembled, exploded, step by step, or side by side on a plate.
+//! Scenes to render: the assembly, its exploded view, its steps, and the print plates.
 
 mod rig_hardware;
 mod stage;
@@ -8,11 +8,13 @@ use crate::output::SetError;
 use crate::plates::{Plate, plates};
 use pinswitch_solid::files::Placement;
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
-use pinswitch_solid::render::{Body, View, render};
+use pinswitch_solid::render::{Body, render};
 
+use stage::grooves_up;
 pub use stage::{Stage, stage_scene, stage_view};
 
-/// The assembly; `explosion` from 0, in place, to 1, pulled apart.
+/// Returns the bodies of the assembly, exploded by `explosion`, from 0 to 1. The pulley's axis is horizontal and the grooves are
+/// up, so that engraved text is upright in the views of [`stage_view`].
 pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {
     built
         .assembly()
@@ -20,19 +22,19 @@ pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {
             let role = body.part.role;
             let placed = body.part.pose?.apply(body.mesh.clone());
             Some(Body {
-                mesh: placed.translated(role.explode_offset_mm() * explosion),
+                mesh: grooves_up(placed.translated(role.explode_offset_mm() * explosion)),
                 colour: role.colour(),
             })
         })
         .collect()
 }
 
-/// Space between beds that are shown side by side, mm.
+/// Distance of beds, mm.
 const BEDS_APART_MM: f64 = 20.0;
 /// Colour of a bed.
 const BED_COLOUR: [u8; 3] = [214, 216, 222];
 
-/// The parts of a plate as they are printed.
+/// Returns the parts of a plate in print orientation.
 pub fn plate(plate: &Plate<'_>) -> Vec<Body> {
     let body = |(part, place): &(&BuiltPart, _)| Body {
         mesh: Placement::apply(place, part.print_mesh.clone()),
@@ -41,7 +43,7 @@ pub fn plate(plate: &Plate<'_>) -> Vec<Body> {
     plate.parts.iter().map(body).collect()
 }
 
-/// All printed parts as they are printed; where one plate is not enough, each plate on its bed, side by side.
+/// Returns all printed parts in print orientation. Several plates are side by side, each on its bed.
 pub fn all_plates(built: &Built) -> Vec<Body> {
     let plates = plates(built);
     if let [only] = plates.as_slice() {
@@ -65,17 +67,17 @@ fn bed(side_mm: f64) -> Mesh {
 /// Pixels of the picture of the exploded assembly, across and up.
 const EXPLODED_PIXELS: (u32, u32) = (900, 675);
 
-/// The exploded assembly as PNG: drawn when a format first asks for it, and kept.
+/// Returns the exploded assembly as PNG. It is rendered once for each [`Built`].
 ///
 /// # Errors
 /// [`SetError::Encoding`] if the picture cannot be encoded.
 pub fn exploded_png(built: &Built) -> Result<&[u8], SetError> {
-    if let Some(known) = built.kept_picture().get() {
-        return Ok(known);
+    if let Some(png) = built.exploded_png().get() {
+        return Ok(png);
     }
-    // From the side of the grooves and of the tendon.
-    let view = View { turn_deg: 150.0, rise_deg: 40.0 };
+    // The tendon is the last step, and its view shows all bodies.
+    let view = stage_view(built.design(), Stage::Tendon);
     let (width, height) = EXPLODED_PIXELS;
     let png = render(&assembled(built, 1.0), view, width, height).png().map_err(SetError::encoding)?;
-    Ok(built.kept_picture().get_or_init(|| png))
+    Ok(built.exploded_png().get_or_init(|| png))
 }

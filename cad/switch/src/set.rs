@@ -1,4 +1,4 @@
-//! A whole set in memory: nothing is written before everything is known to be right.
+//! A complete set in memory, so that nothing is written unless all files can be made.
 
 use crate::built::Built;
 use crate::documents::{FileEntry, Manifest, PrintEntry, SourceEntry, plate_entries};
@@ -7,20 +7,20 @@ use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
 use pinswitch_solid::verification::Verification;
 
-/// Name of the file that lists a set; a folder without it holds no whole set.
+/// Name of the file that lists a set. A folder without it does not contain a complete set.
 pub const MANIFEST: &str = "manifest.json";
 
-/// A set of parts with its curve, ready to be written; the manifest is the last file.
+/// A set of parts with its documents.
 #[derive(Clone, Debug)]
 pub struct Set {
-    /// What the set holds.
+    /// The manifest.
     pub manifest: Manifest,
-    /// The files, the manifest last.
+    /// All files, the manifest last.
     pub files: Vec<OutputFile>,
 }
 
 impl Set {
-    /// The files of `built` in these formats, in the order given, and the manifest.
+    /// Makes the files of a built design in these formats, in the given order, and the manifest.
     ///
     /// ```
     /// use pinswitch_switch::{built::Built, config::Configuration, design::Design};
@@ -35,13 +35,13 @@ impl Set {
     /// ```
     ///
     /// # Errors
-    /// [`SetError`]; nothing is returned if one of them cannot be made.
+    /// [`SetError`] of the first file that cannot be made.
     pub fn new(built: &Built, prediction: &Prediction, formats: &[&Format]) -> Result<Self, SetError> {
         let mut files = Vec::new();
         let parts = built.printed().iter().map(|p| (p.part(), &p.facts));
         let mut manifest = Manifest::new(built.design(), parts, prediction);
         for format in formats {
-            // A format may list what was made before it: the manifest always lists the files so far.
+            // A format may list the files of the formats before it.
             let made = (format.make)(built, prediction, &manifest)?;
             manifest.files.extend(made.iter().map(FileEntry::of));
             if made.iter().any(|file| file.name.ends_with(".3mf")) {
@@ -53,7 +53,7 @@ impl Set {
         Ok(Self { manifest, files })
     }
 
-    /// The same set, whose manifest says what it was made from.
+    /// The same set with its configuration in the manifest.
     ///
     /// # Errors
     /// As [`Manifest::bytes`].
@@ -62,7 +62,7 @@ impl Set {
         self.with_manifest()
     }
 
-    /// The same set with what a slicer said of it, and the files that hold all of that.
+    /// The same set with print time, filament and files of a slicer.
     ///
     /// # Errors
     /// As [`Manifest::bytes`].
@@ -84,7 +84,7 @@ impl Set {
         self.with_manifest()
     }
 
-    /// The set with its manifest as it is now, as the last file.
+    /// Writes the manifest again, as the last file.
     fn with_manifest(mut self) -> Result<Self, SetError> {
         self.files.retain(|file| file.name != MANIFEST);
         self.files.push(OutputFile::new(MANIFEST, self.manifest.bytes()?));

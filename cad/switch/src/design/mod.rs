@@ -3,6 +3,8 @@
 mod clearance;
 mod dimensions;
 mod fastening;
+pub(crate) mod mould_keys;
+pub(crate) mod mould_tray;
 mod mounting;
 pub mod rules;
 mod tendon_ends;

@@ -1,4 +1,4 @@
-//! The bill of materials: what to buy, cut, weigh and pour.
+//! The bill of materials: pins, silicone, tendon, fasteners and hardware.
 
 use serde::Serialize;
 
@@ -7,25 +7,25 @@ use crate::design::{Design, STOP_SCREW, axle_recess, stop_recess};
 use crate::parts::{cavity_mm3, spacer_mm};
 use pinswitch_friction::Substrate;
 
-/// Lengths of hexagon bolts M8 that are threaded to their heads, mm (ISO 4017).
+/// Lengths of fully threaded hexagon bolts M8, mm (ISO 4017).
 const BOLT_LENGTHS_MM: [f64; 20] = [
     16.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 80.0, 90.0, 100.0, 110.0, 120.0,
     130.0, 140.0, 150.0,
 ];
 /// Bearing of the guide pulley.
 const BEARING: &str = "608";
-/// Screws of the sheath stop.
+/// Number of screws of the sheath stop.
 pub const STOP_SCREWS: usize = 2;
 /// Width of a 608 bearing (ISO 15), and height of an M8 nut (ISO 4032), mm.
 pub(crate) const BEARING_MM: f64 = 7.0;
 pub(crate) const AXLE_NUT_MM: f64 = 6.8;
 
-/// Pins to cut.
+/// Steel pins.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Pins {
-    /// In use.
+    /// Number in the switch.
     pub number: usize,
-    /// Beyond those.
+    /// Number of spares.
     pub spares: usize,
     /// Diameter, mm.
     pub diameter_mm: f64,
@@ -33,18 +33,18 @@ pub struct Pins {
     pub length_mm: f64,
 }
 
-/// Silicone to weigh and pour.
+/// Silicone to cast.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Silicone {
-    /// Layers that the mould casts at once.
+    /// Number of layers that the mould casts at once.
     pub layers: usize,
-    /// Volume of one of them, mm³ before shrinkage.
+    /// Volume of one layer before shrinkage, mm³.
     pub layer_mm3: f64,
-    /// What to pour into the mould, ml: all layers and their overfill.
+    /// Volume of the mould, ml: all layers and their overfill.
     pub pour_ml: f64,
-    /// Mass of that, g.
+    /// Mass of that volume, g.
     pub pour_g: f64,
-    /// What to mix, g: with waste, and no less than can be weighed.
+    /// Mass to mix, g, with waste, and at least the least mass that can be weighed.
     pub mix_g: f64,
     /// Base in the mix, g.
     pub base_g: f64,
@@ -52,7 +52,7 @@ pub struct Silicone {
     pub agent_g: f64,
 }
 
-/// Tendon to cut.
+/// The tendon.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tendon {
     /// Diameter of the bare rope, mm.
@@ -63,25 +63,25 @@ pub struct Tendon {
     pub length_mm: f64,
 }
 
-/// Screws, with what they hold in.
+/// Screws with their nuts or inserts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fasteners {
     /// Number of screws.
     pub number: usize,
-    /// Thread, the largest that the holes take.
+    /// Thread, the largest for the holes.
     pub thread: &'static str,
-    /// Length, mm: through all parts and the nut, or as far as the inserts.
+    /// Length, mm: through all parts and the nut, or to the inserts.
     pub length_mm: f64,
-    /// Length of those that enter from the right, mm, where it is another: a mounting plate lies on the left only.
+    /// Length of the screws from the right, mm, if it differs: a mounting plate is on the left only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub right_length_mm: Option<f64>,
-    /// Nuts; 0 with inserts.
+    /// Number of nuts; 0 with inserts.
     pub nuts: usize,
-    /// Heat-set inserts; 0 without.
+    /// Number of heat-set inserts.
     pub inserts: usize,
 }
 
-/// Steel dowels to cut.
+/// Steel dowels.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Dowels {
     /// Number.
@@ -92,20 +92,20 @@ pub struct Dowels {
     pub length_mm: f64,
 }
 
-/// What a mounting plate needs beside its printed parts.
+/// Hardware of a mounting plate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MountHardware {
-    /// Screws of the plate, or pins in the bores of a link.
+    /// Number of holes for screws of the plate, or for pins of a link.
     pub holes: usize,
     /// Diameter of these holes, mm.
     pub hole_diameter_mm: f64,
     /// Bearing of the guide pulley, on the rig.
     pub bearing: Option<&'static str>,
-    /// Bolt through it.
+    /// Bolt through the bearing.
     pub axle: Option<String>,
-    /// Screws and nuts of the sheath stop, in words.
+    /// Screws and nuts of the sheath stop.
     pub sheath_stop: Option<String>,
-    /// Thread and length of these screws, which are [`STOP_SCREWS`].
+    /// Thread and length of these [`STOP_SCREWS`] screws.
     #[serde(skip)]
     pub stop_screw: Option<String>,
     /// Length of the bolt under its head, mm.
@@ -121,28 +121,28 @@ pub struct MountHardware {
 pub struct Bill {
     /// Steel pins.
     pub pins: Pins,
-    /// Silicone; absent for a rigid proxy.
+    /// Silicone; absent with a rigid proxy.
     pub silicone: Option<Silicone>,
     /// Tendon.
     pub tendon: Tendon,
     /// Fasteners; absent without holes.
     pub fasteners: Option<Fasteners>,
-    /// Dowels; absent without.
+    /// Dowels, if there are any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dowels: Option<Dowels>,
-    /// Bearing of a guide pulley that stands by itself; that of the rig is among what its plate needs.
+    /// Bearing of a separate guide pulley. The bearing of the rig is in `mount`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pulley_bearing: Option<&'static str>,
-    /// What the mounting plate needs; absent without.
+    /// Hardware of the mounting plate, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mount: Option<MountHardware>,
 }
 
-/// What `design` needs beside its printed parts.
+/// Returns the bill of materials of a design.
 pub fn bill_of_materials(design: &Design) -> Bill {
     let c = design.configuration();
     let (layers_mm3, overfill_mm3) = cavity_mm3(design);
-    // A split mould casts one.
+    // A split mould casts one layer.
     let layers = if c.mould.kind == MouldKind::OnePiece { c.mould.layers } else { 1 };
     let silicone =
         (c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None).then(|| {
@@ -185,7 +185,7 @@ fn fasteners(design: &Design) -> Option<Fasteners> {
     let fastening = design.fastening();
     let thread = fastening.thread?.name;
     let number = c.fasteners.count;
-    // A design has screws that are sold, or none.
+    // The rules of a design exclude screws of unavailable lengths.
     let (length_mm, right_mm) = design.screw_lengths_mm()?;
     let fasteners = match right_mm {
         Some(right_mm) => {
@@ -206,7 +206,7 @@ fn dowels(design: &Design) -> Option<Dowels> {
 fn mount(design: &Design) -> Option<MountHardware> {
     let c = design.configuration();
     let mounting = design.mounting()?;
-    // Its head lies in the plate; then come spacer, bearing and nut.
+    // The head is in the plate; spacer, bearing and nut follow.
     let stack = c.mount.plate_mm - axle_recess().depth_mm + spacer_mm(design) + BEARING_MM + AXLE_NUT_MM;
     let axle_length_mm = mounting
         .axle
@@ -235,7 +235,7 @@ mod tests {
     use crate::config::Configuration;
 
     #[test]
-    fn the_default_bill_can_be_bought_and_weighed() {
+    fn the_default_bill_has_available_sizes() {
         let design = Design::new(Configuration::default()).unwrap();
         let bill = bill_of_materials(&design);
         let silicone = bill.silicone.unwrap();
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gang_is_poured_at_once_and_each_layer_is_as_large_as_one_alone() {
+    fn a_gang_casts_equal_layers() {
         let silicone = |layers: usize| {
             let mut c = Configuration::default();
             (c.mould.kind, c.mould.layers) = (MouldKind::OnePiece, layers);
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn screws_from_both_sides_do_not_meet_whatever_plate_lies_on_one() {
+    fn screws_from_both_sides_do_not_meet() {
         for (plate_mm, recess_mm, width_mm) in
             [(20.0, 0.0, 14.0), (10.0, 0.0, 14.0), (5.0, 1.5, 14.0), (5.0, 0.0, 14.0), (8.0, 0.0, 20.0)]
         {
@@ -274,7 +274,7 @@ mod tests {
             let fastening = design.fastening();
             let sunk = |recess: Option<crate::design::Recess>| recess.map_or(0.0, |r| r.depth_mm);
             let (on_plate, on_support) = (sunk(fastening.mount_counterbore), sunk(fastening.counterbore));
-            // On a flange every head lies within the plate.
+            // A flange contains every head.
             assert!(on_plate >= 3.0, "{on_plate}");
             let left = screws.length_mm - (c.support.plate_mm + c.mount.plate_mm - on_plate);
             let right =

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use pinswitch_friction::FrictionCurve;
 
-/// One row per load; forces in newtons, four decimals.
+/// Writes one row for each load, with forces in newtons and four decimals.
 pub fn friction_csv(curve: &FrictionCurve) -> String {
     let mut text =
         "load_N,eccentric_N,concentric_N,friction_N,band_low_N,band_high_N,silicone_share\n".to_owned();
@@ -19,7 +19,7 @@ pub fn friction_csv(curve: &FrictionCurve) -> String {
             curve.silicone_share[i],
         ];
         let cells: Vec<_> = row.iter().map(|v| format!("{v:.4}")).collect();
-        // Writing to a string cannot fail.
+        // Writing to a string does not fail.
         let _ = writeln!(text, "{}", cells.join(","));
     }
     text

@@ -1,4 +1,4 @@
-//! `manifest.json`: everything that a person or a program needs to know of a set, and to check it.
+//! `manifest.json`: settings, dimensions, parts, bill, prediction and files of a set, with hashes to verify them.
 
 use pinswitch_friction::{FrictionCurve, Law, PredictionStatus, Transition};
 use serde::{Deserialize, Serialize};
@@ -14,137 +14,137 @@ use crate::prediction::Prediction;
 use pinswitch_solid::validity::MeshFacts;
 use pinswitch_solid::verification::Verification;
 
-/// One value that the user may set.
+/// A parameter of the configuration.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Setting {
-    /// `section.key`.
+    /// Field, such as `shell.width_mm`.
     pub field: String,
-    /// The value.
+    /// Value.
     pub value: Value,
-    /// Its unit; empty for words and plain numbers.
+    /// Unit; empty for words and plain numbers.
     pub unit: &'static str,
-    /// `published`, `assumed` or `chosen` by us; `configured` where the configuration sets another value.
+    /// `published`, `assumed` or `chosen` for a default; `configured` for another value.
     pub origin: String,
-    /// What it is and why it has its default.
+    /// Meaning, and reason of the default.
     pub reason: &'static str,
 }
 
-/// One dimension that follows from the settings.
+/// A dimension that is derived from the settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DerivedDimension {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// Its value.
+    /// Value.
     pub value: f64,
-    /// Its unit.
+    /// Unit.
     pub unit: &'static str,
-    /// `published`, `assumed` or `chosen`: the least certain of what it follows from.
+    /// `published`, `assumed` or `chosen`: the least certain origin of its settings.
     pub origin: Origin,
-    /// How it follows.
+    /// Its derivation.
     pub from: &'static str,
 }
 
-/// One part.
+/// A printed part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartEntry {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its file.
+    /// STL file.
     pub file: String,
-    /// What it is printed from.
+    /// Material.
     pub material: Material,
-    /// Exact volume of the profile's solid, mm³.
+    /// Volume of the exact solid, mm³.
     pub volume_mm3: f64,
-    /// Exact surface, mm².
+    /// Surface of the exact solid, mm².
     pub surface_mm2: f64,
     /// Mass when printed solid, g.
     pub mass_g: f64,
-    /// Widest ceiling to be bridged when it is printed, mm.
+    /// Widest bridge in print orientation, mm.
     pub widest_bridge_mm: f64,
-    /// The mesh as written.
+    /// Properties of the written mesh.
     pub mesh: MeshFacts,
     /// Agreement of the mesh with that of a second kernel, where that was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<Verification>,
-    /// What was left out of it, and what makes room for it; among the warnings, too.
+    /// Features that are left out, with changes that make room; also among the warnings.
     pub notes: Vec<String>,
 }
 
-/// The bound that every mesh keeps.
+/// The accuracy of all meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeshBound {
-    /// Chord tolerance, mm: no point of a curve and of its flattening lie further apart.
+    /// Chord tolerance, mm: the largest distance of a curve from its mesh.
     pub chord_tolerance_mm: f64,
-    /// Largest relative difference between a mesh's volume and the exact one, over all parts.
+    /// Largest relative error of the volume of a mesh, over all parts.
     pub largest_volume_error: f64,
 }
 
-/// The model behind the curve, and how far to trust it.
+/// The prediction at the heaviest load, with its law and status.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrictionEntry {
-    /// The law.
+    /// Law.
     pub law: Law,
-    /// How far to trust it.
+    /// Prediction status.
     pub trust: PredictionStatus,
-    /// Why no further.
+    /// Reasons of the status.
     pub reasons: Vec<String>,
-    /// Where the law comes from.
+    /// Source of the law.
     pub source: &'static str,
     /// Heaviest load of the curve, N.
     pub load_n: f64,
-    /// Friction there, N.
+    /// Friction at that load, N.
     pub friction_n: f64,
-    /// Its band there, N.
+    /// 95 % prediction band at that load, N.
     pub band_n: [f64; 2],
-    /// Load from which the silicone makes half of the friction or more, N; absent if that lies outside the curve.
+    /// Threshold: the load at which silicone carries half of the friction, N; absent if it is outside of the curve.
     pub threshold_n: Option<f64>,
-    /// The whole curve.
+    /// File of the curve.
     pub curve_file: &'static str,
-    /// The other laws that apply, at the same load: beside the curve, never mixed into it.
+    /// Predictions of the other laws that apply, at the same load.
     pub other_laws: Vec<LawEntry>,
 }
 
-/// What another law says at the heaviest load.
+/// The prediction of another law at the heaviest load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawEntry {
-    /// The law.
+    /// Law.
     pub law: Law,
-    /// How far to trust it.
+    /// Prediction status.
     pub trust: PredictionStatus,
-    /// Why no further.
+    /// Reasons of the status.
     pub reasons: Vec<String>,
-    /// Where it comes from.
+    /// Source of the law.
     pub source: &'static str,
     /// Friction, N.
     pub friction_n: f64,
-    /// Its band, N.
+    /// 95 % prediction band, N.
     pub band_n: [f64; 2],
 }
 
 /// A file of the set.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FileEntry {
-    /// Its name in the folder.
+    /// Name in the folder of the set.
     pub file: String,
-    /// Its size.
+    /// Size, bytes.
     pub bytes: usize,
-    /// Its SHA-256, hexadecimal.
+    /// SHA-256, hexadecimal.
     pub sha256: String,
-    /// In a batch: the one file that all equal ones are links to, or stand for.
+    /// In a batch: the shared file with this content.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub content: Option<String>,
 }
 
-/// The configuration that a set was made from.
+/// The configuration of a set.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SourceEntry {
-    /// The template's name, or the file's path from the folder of the set, with `/` on every machine. No file has the
-    /// name of a template alone.
+    /// Name of the template, or path of the file from the folder of the set, with `/` on every machine. The path of a file is
+    /// never the name of a template.
     pub name: String,
 }
 
 impl SourceEntry {
-    /// The entry of a configuration of this name.
+    /// The entry of a configuration with this name.
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into() }
     }
@@ -154,58 +154,58 @@ fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// The batch that a set was made in.
+/// The batch that contains a set.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct BatchEntry {
     /// SHA-256 of the sweep.
     pub sweep_sha256: String,
-    /// Place in the sweep, from 0.
+    /// Number of the variant in the sweep, from 0.
     pub index: u64,
-    /// What is engraved.
+    /// Engraved label.
     pub label: String,
 }
 
 /// The manifest of a set.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Manifest {
-    /// Name and version of this file's schema.
+    /// Name and version of the schema.
     pub schema: &'static str,
     /// Name of the set.
     pub name: String,
-    /// Program and version that made it.
+    /// Program and version.
     pub generator: String,
-    /// The configuration that it was made from, where that is known.
+    /// Configuration, if it has a name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<SourceEntry>,
-    /// The batch that it is part of.
+    /// Batch, for a set of a batch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub batch: Option<BatchEntry>,
-    /// Every value that the user may set.
+    /// All parameters.
     pub settings: Vec<Setting>,
-    /// What follows from them.
+    /// Derived dimensions.
     pub derived: Vec<DerivedDimension>,
-    /// The parts.
+    /// Printed parts.
     pub parts: Vec<PartEntry>,
-    /// The plates that they are printed on, where the set has packages of them.
+    /// Plates, if the set has 3MF files.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<PlateEntry>,
-    /// What a slicer says of printing them, where one was asked.
+    /// Print time and filament, if the set is sliced.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub print: Option<PrintEntry>,
-    /// The bound on their meshes.
+    /// Accuracy of the meshes.
     pub mesh: MeshBound,
-    /// What to buy, cut and pour.
+    /// Bill of materials.
     pub bill_of_materials: Bill,
-    /// The predicted curve.
+    /// Prediction.
     pub friction: FrictionEntry,
-    /// What is not ideal, with the parameter to change.
+    /// Warnings, each with the parameter to change.
     pub warnings: Vec<String>,
     /// All other files of the set.
     pub files: Vec<FileEntry>,
 }
 
 impl Manifest {
-    /// The manifest of a design with its printed parts and their meshes' facts; no file is listed yet.
+    /// The manifest of a design with its printed parts and the properties of their meshes, without files.
     pub fn new<'a>(
         design: &Design,
         parts: impl IntoIterator<Item = (&'a Part, &'a MeshFacts)>,
@@ -257,15 +257,15 @@ impl Manifest {
         }
     }
 
-    /// Widest ceiling to be bridged over all parts, mm.
+    /// Returns the widest bridge of all parts, mm.
     pub fn widest_bridge_mm(&self) -> f64 {
         self.parts.iter().map(|p| p.widest_bridge_mm).fold(0.0, f64::max)
     }
 
-    /// The manifest as indented JSON.
+    /// Returns the manifest as indented JSON.
     ///
     /// # Errors
-    /// [`SetError::Encoding`] for a value that JSON cannot hold, which no valid design has.
+    /// [`SetError::Encoding`] for a number that JSON cannot represent, which a valid design does not have.
     pub fn bytes(&self) -> Result<Vec<u8>, SetError> {
         let mut bytes = serde_json::to_vec_pretty(self).map_err(SetError::encoding)?;
         bytes.push(b'\n');
@@ -305,7 +305,7 @@ fn part_entry(part: &Part, facts: &MeshFacts, design: &Design) -> PartEntry {
 }
 
 impl FileEntry {
-    /// The entry of a file with these bytes.
+    /// The entry of a file.
     pub fn of(file: &OutputFile) -> Self {
         let sha256 = hexadecimal(&Sha256::digest(&file.bytes));
         Self { file: file.name.clone(), bytes: file.bytes.len(), sha256, content: None }
@@ -318,20 +318,19 @@ fn settings(c: &Configuration) -> Vec<Setting> {
         .iter()
         .map(|p| {
             let value = (p.get)(c);
-            let as_default = value.to_string() == (p.get)(&defaults).to_string();
+            let is_default = value.to_string() == (p.get)(&defaults).to_string();
             Setting {
                 field: p.path(),
                 value: toml_to_json(&value),
                 unit: p.unit(),
-                // The published layouts are data of the paper, whichever of them a configuration names.
-                origin: if as_default { p.origin.to_string() } else { "configured".to_owned() },
+                origin: if is_default { p.origin.to_string() } else { "configured".to_owned() },
                 reason: p.reason,
             }
         })
         .collect()
 }
 
-/// A TOML value as JSON.
+/// Converts a TOML value to JSON.
 pub fn toml_to_json(value: &toml_edit::Value) -> Value {
     match value {
         toml_edit::Value::Integer(i) => json!(i.value()),
@@ -342,7 +341,7 @@ pub fn toml_to_json(value: &toml_edit::Value) -> Value {
     }
 }
 
-/// Every dimension of `design` that follows from its settings.
+/// Returns all derived dimensions of a design.
 pub fn derived(design: &Design) -> Vec<DerivedDimension> {
     let land = design.land_mm();
     let slot = design.slot();
@@ -368,7 +367,7 @@ pub fn derived(design: &Design) -> Vec<DerivedDimension> {
             Assumed,
             "shell.outer_radius_mm - shell.wall_mm",
         ),
-        entry("land_on_shell", land, "mm", Assumed, "chord between groove centres less a groove"),
+        entry("land_on_shell", land, "mm", Assumed, "chord between groove centres minus a groove"),
         entry(
             "end_wall",
             design.end_wall_mm(),
@@ -381,7 +380,7 @@ pub fn derived(design: &Design) -> Vec<DerivedDimension> {
             design.layer_width_mm(),
             "mm",
             Assumed,
-            "shell.width_mm less both side clearances",
+            "shell.width_mm minus both side clearances",
         ),
         entry("tendon_diameter", design.tendon_diameter_mm(), "mm", Published, "rope and twice its coating"),
         entry("slot_width", slot.width_mm, "mm", Chosen, "pins.diameter_mm + support.slot_clearance_mm"),
@@ -390,28 +389,28 @@ pub fn derived(design: &Design) -> Vec<DerivedDimension> {
             slot.outer_mm - slot.inner_mm,
             "mm",
             Chosen,
-            "from resting to flush, and support.travel_margin_mm",
+            "from the resting to the flush position, and support.travel_margin_mm",
         ),
         entry(
             "slot_depth",
             slot.depth_mm,
             "mm",
             Chosen,
-            "support.plate_mm less support.slot_floor_mm if blind",
+            "support.plate_mm, minus support.slot_floor_mm if blind",
         ),
         entry(
             "support_radius",
             design.support_radius_mm(),
             "mm",
             Chosen,
-            "resting pins' tops and support.rise_mm",
+            "tops of the resting pins and support.rise_mm",
         ),
         entry(
             "pin_length",
             design.pin_length_mm(),
             "mm",
             Chosen,
-            "width and both slots less pins.end_play_mm, rounded down to 0.5",
+            "width and both slots minus pins.end_play_mm, rounded down to 0.5",
         ),
         entry(
             "fastener_radius",
@@ -425,7 +424,7 @@ pub fn derived(design: &Design) -> Vec<DerivedDimension> {
             bare_deg,
             "deg",
             Assumed,
-            "where the unloaded, taut tendon lies on silicone or proxy, beside its pins",
+            "contact of the unloaded, taut tendon with silicone or proxy",
         ),
     ]
 }

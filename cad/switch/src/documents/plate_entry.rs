@@ -1,4 +1,4 @@
-//! What the manifest says of a plate: its file, and which part lies where.
+//! Plates in the manifest.
 
 use serde::Serialize;
 
@@ -8,28 +8,28 @@ use crate::plates::plates;
 /// A plate to print.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlateEntry {
-    /// Its 3MF.
+    /// 3MF file.
     pub file: String,
     /// Side of the square bed, mm.
     pub bed_mm: f64,
-    /// Its parts.
+    /// Parts.
     pub parts: Vec<PlacedPart>,
 }
 
 /// A part on a plate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlacedPart {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// The middle of its bounding box, from the bed's left edge, mm.
+    /// Distance of the middle of its bounding box from the left edge of the bed, mm.
     pub x_mm: f64,
-    /// The same from the bed's front edge, mm.
+    /// The same from the front edge, mm.
     pub y_mm: f64,
-    /// Whether it is turned by a quarter, counter-clockwise, against its STL.
+    /// Whether it is rotated by 90 degrees counter-clockwise from its STL.
     pub is_turned: bool,
 }
 
-/// The entries of all plates of a set.
+/// Returns the entries of all plates of a set.
 pub fn plate_entries(built: &Built) -> Vec<PlateEntry> {
     let bed_mm = built.design().configuration().print.bed_mm;
     plates(built)
@@ -37,7 +37,7 @@ pub fn plate_entries(built: &Built) -> Vec<PlateEntry> {
         .map(|plate| PlateEntry {
             file: plate.package(),
             bed_mm,
-            // The middle of a part as it is written lies over the origin: its displacement is its place.
+            // The middle of a written part is over the origin, so its displacement is its position.
             parts: plate
                 .parts
                 .iter()

@@ -1,15 +1,15 @@
-//! What a slicer said of a set, in the manifest: only where one was asked.
+//! Print time and filament in the manifest of a sliced set.
 
 use serde::Serialize;
 
-/// Time and filament to print a set.
+/// Time and filament to print a set, by a slicer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PrintEntry {
-    /// What was sliced: `plates`, all of them, or `parts`, each alone.
+    /// `plates` if all plates were sliced, `parts` if each part was sliced alone.
     pub of: &'static str,
-    /// The slicer and its version.
+    /// Slicer and version.
     pub slicer: String,
-    /// Time, minutes.
+    /// Print time, minutes.
     pub print_minutes: f64,
     /// Filament, g.
     pub filament_g: f64,

@@ -19,10 +19,10 @@ fn make(built: &Built, prediction: &Prediction, _: &Manifest) -> Result<Vec<Outp
     curve_files(built.design(), prediction, true)
 }
 
-/// The curve of a design as a table and, with `plot`, as a figure.
+/// Returns the curve of a design as a table and, with `plot`, as a figure.
 ///
 /// # Errors
-/// [`SetError::Plot`] if the drawing library refuses a coordinate.
+/// [`SetError::Plot`] if the plot cannot be drawn.
 pub fn curve_files(
     design: &Design,
     prediction: &Prediction,

@@ -16,7 +16,7 @@ pub(super) const FORMAT: Format = Format {
     make,
 };
 
-/// How much of what lies behind it silicone hides.
+/// Opacity of silicone.
 const SILICONE_OPACITY: f64 = 0.78;
 
 fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {

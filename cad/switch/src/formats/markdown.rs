@@ -1,6 +1,6 @@
-//! Text in a Markdown document that stays text.
+//! Escaping of text in Markdown.
 
-/// Text that a reader of Markdown shows as it is: no markup, no HTML, no end of its cell, in one line.
+/// Escapes a text so that a reader of Markdown shows it unchanged, on one line: without markup, HTML or an end of its cell.
 pub(super) fn escape(text: &str) -> String {
     let characters: Vec<char> = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let at = |i: usize| characters.get(i).copied().unwrap_or(' ');
@@ -8,9 +8,9 @@ pub(super) fn escape(text: &str) -> String {
     for (i, &c) in characters.iter().enumerate() {
         let marks = match c {
             '\\' | '`' | '*' | '<' | '>' | '|' | '&' | '~' => true,
-            // Within a word it marks nothing: names of fields stay readable.
+            // Not markup within a word, so that names of fields are readable.
             '_' => i == 0 || !at(i - 1).is_alphanumeric() || !at(i + 1).is_alphanumeric(),
-            // A list of numbers is no link.
+            // Not the end of a link, so that lists of numbers are readable.
             ']' => "([:".contains(at(i + 1)),
             '#' => i == 0 || i + 1 == characters.len(),
             _ => false,
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_is_no_markup() {
+    fn markup_is_escaped() {
         assert_eq!(escape("<script>a</script>"), "\\<script\\>a\\</script\\>");
         assert_eq!(
             escape("_x_ *y* `z` a|b &lt; [a](b)\nc"),
@@ -37,7 +37,7 @@ mod tests {
     }
 
     #[test]
-    fn fields_and_lists_stay_readable() {
+    fn fields_and_lists_are_readable() {
         let text = "layout.pins = [5, 8, 11]: support.slot_clearance_mm = 0.2 of three-double 3.1";
         assert_eq!(escape(text), text.replace("]:", "\\]:"));
     }

@@ -1,4 +1,4 @@
-//! The files of a set: one file per format, and one line of the list below.
+//! The file formats of a set. A format is a module and a line in the list below.
 
 mod markdown;
 
@@ -6,43 +6,44 @@ use crate::built::Built;
 use crate::documents::Manifest;
 use crate::output::{OutputFile, SetError};
 use crate::prediction::Prediction;
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_solid::render::{Body, View, render};
 
 pub use curve::curve_files;
 
-/// Makes the files of a format; the manifest lists the files made before it.
+/// Makes the files of a format. The manifest lists the files of the formats before it.
 pub type Make = fn(&Built, &Prediction, &Manifest) -> Result<Vec<OutputFile>, SetError>;
 
-/// When a format is made.
+/// The sets that include a format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inclusion {
-    /// In every set; it has no name on the command line.
+    /// Every set. The format has no name on the command line.
     Always,
-    /// Unless other formats are named.
+    /// Sets without named formats.
     Default,
-    /// Only when it is named.
+    /// Sets that name the format.
     Named,
 }
 
 /// A file format of a set.
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// What it is, for the help.
+    /// Description in the help.
     pub about: &'static str,
-    /// When it is made.
+    /// Sets that include it.
     pub inclusion: Inclusion,
-    /// Makes its files.
+    /// Makes the files.
     pub make: Make,
 }
 
-/// Declares the files of the formats and the registry of what they hold.
+/// Declares the modules of the formats, and the list of the formats.
 macro_rules! formats {
     ($($file:ident,)*) => {
         $(pub mod $file;)*
 
-        /// Every format, in the order in which a set is made and listed. The page comes last: it shows the list.
+        /// All formats, in the order of a set. The page is last, since it shows the list of files.
         pub const FORMATS: &[Format] = &[$($file::FORMAT),*];
     };
 }
@@ -59,27 +60,25 @@ formats! {
     page,
 }
 
-/// The name that stands for every format.
+/// The name of all formats together.
 pub const ALL: &str = "all";
 
-/// The formats called `names`, with those that are always made, in the order of [`FORMATS`].
+/// Returns the formats with these names and those of every set, in the order of [`FORMATS`].
 ///
 /// # Errors
-/// A message that lists the known names.
-pub fn named(names: &[&str]) -> Result<Vec<&'static Format>, String> {
+/// A [`Diagnostic`] that lists the known names.
+pub fn named(names: &[&str]) -> Result<Vec<&'static Format>, Diagnostic> {
     let known = || FORMATS.iter().filter(|f| f.inclusion != Inclusion::Always).map(|f| f.name);
     if let Some(unknown) = names.iter().find(|n| **n != ALL && !known().any(|k| k == **n)) {
-        return Err(format!(
-            "{unknown} is no known format; known are {}",
-            known().collect::<Vec<_>>().join(", ")
-        ));
+        return Err(Diagnostic::new(format!("unknown format {unknown}"))
+            .with_help(format!("use {}", known().collect::<Vec<_>>().join(", "))));
     }
-    let is_wanted =
+    let is_included =
         |f: &&Format| f.inclusion == Inclusion::Always || names.contains(&ALL) || names.contains(&f.name);
-    Ok(FORMATS.iter().filter(is_wanted).collect())
+    Ok(FORMATS.iter().filter(is_included).collect())
 }
 
-/// A picture as PNG.
+/// Renders a picture as PNG.
 fn png(bodies: &[Body], view: View, width: u32, height: u32) -> Result<Vec<u8>, SetError> {
     render(bodies, view, width, height).png().map_err(SetError::encoding)
 }
@@ -89,12 +88,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formats_come_in_their_order_with_the_curve() {
-        let names =
-            |wanted: &[&str]| -> Vec<&str> { named(wanted).unwrap().iter().map(|f| f.name).collect() };
+    fn formats_are_ordered_and_include_the_curve() {
+        let names = |names: &[&str]| -> Vec<&str> { named(names).unwrap().iter().map(|f| f.name).collect() };
         assert_eq!(names(&["page", "stl"]), ["stl", "curve", "page"]);
         assert_eq!(names(&[]), ["curve"]);
         assert_eq!(names(&[ALL]).len(), FORMATS.len());
-        assert!(named(&["curve"]).unwrap_err().starts_with("curve is no known format; known are stl, 3mf"));
+        let error = named(&["curve"]).unwrap_err();
+        assert_eq!(error.problem(), "unknown format curve");
+        assert!(error.help().is_some_and(|help| help.starts_with("use stl, 3mf")), "{error}");
     }
 }

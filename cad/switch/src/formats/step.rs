@@ -27,7 +27,7 @@ fn make(built: &Built, _: &Prediction, _: &Manifest) -> Result<Vec<OutputFile>, 
     let placed: Vec<_> = built.assembly().filter_map(|b| Some((body(&b.part), b.part.pose?))).collect();
     let assembly = step_assembly(&built.design().configuration().switch.name, &placed);
     files.push(OutputFile::new("assembly.step", assembly));
-    // What is put together without the switch: the parts of a split mould.
+    // The parts of a split mould, which are assembled without the switch.
     let tools: Vec<_> =
         built.printed().iter().filter_map(|p| Some((body(p.part()), p.part().tool_pose?))).collect();
     if !tools.is_empty() {

@@ -1,10 +1,10 @@
-//! assembly.3mf: all printed parts on one plate, or assembly-1.3mf and so on where the bed takes fewer at once; with thumbnail,
-//! configuration and curve.
+//! assembly.3mf: all printed parts on a plate, with thumbnail, configuration and curve. Sets that need several plates have
+//! assembly-1.3mf and so on.
 
 use super::{Format, Inclusion, png};
 use crate::built::Built;
 use crate::config::to_toml;
-use crate::documents::{Manifest, friction_csv};
+use crate::documents::{Manifest, friction_csv, layout_text};
 use crate::output::{OutputFile, SetError};
 use crate::parts::Role;
 use crate::plates::{Plate, plates};
@@ -16,7 +16,7 @@ use pinswitch_solid::render::View;
 
 pub(super) const FORMAT: Format = Format {
     name: "3mf",
-    about: "assembly.3mf: all printed parts on a plate, for slicers; one file for each plate that they need",
+    about: "assembly.3mf: all printed parts on a plate, for slicers; one file for each plate",
     inclusion: Inclusion::Default,
     make,
 };
@@ -54,15 +54,12 @@ fn package_bytes(built: &Built, prediction: &Prediction, plate: &Plate<'_>) -> R
     let above = View { turn_deg: 20.0, rise_deg: 50.0 };
     let law = prediction.curve.law;
     let chosen = (law != Law::DEFAULT).then(|| ("law", law.as_str().to_owned()));
-    let own = [("layout", built.design().label()), ("configuration", to_toml(c))];
+    let own = [("layout", layout_text(c)), ("configuration", to_toml(c))];
     let package = Package {
         metadata: vec![
             ("Title", format!("{name}: friction switch{on_plate}")),
             ("Designer", "pinswitch".to_owned()),
-            (
-                "Description",
-                format!("Printed parts of a friction switch, pins in grooves {:?}", c.layout.pins),
-            ),
+            ("Description", format!("Printed parts of a friction switch, layout {}", layout_text(c))),
             ("LicenseTerms", "The program is MIT licensed; what it makes is yours.".to_owned()),
             ("Application", concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned()),
         ],
@@ -74,7 +71,7 @@ fn package_bytes(built: &Built, prediction: &Prediction, plate: &Plate<'_>) -> R
     three_mf(&objects, &package).map_err(SetError::encoding)
 }
 
-/// The materials of a plate, each once, in the order of its parts.
+/// Returns the materials of a plate, each once, in the order of its parts.
 fn materials(plate: &Plate<'_>) -> Vec<BaseMaterial> {
     plate.parts.iter().fold(Vec::new(), |mut known, (p, _)| {
         let own = material(p.part().role);
@@ -85,7 +82,7 @@ fn materials(plate: &Plate<'_>) -> Vec<BaseMaterial> {
     })
 }
 
-/// What parts of a role are printed from, in the colour of their pictures.
+/// Returns the material of a role, in the colour of its pictures.
 fn material(role: Role) -> BaseMaterial {
     let what = match role {
         Role::Shell => "shell",
@@ -94,7 +91,7 @@ fn material(role: Role) -> BaseMaterial {
         Role::Proxy => "proxy",
         Role::Mount => "mount",
         Role::Accessory => "accessory",
-        // Cast or bought: on no plate.
+        // Cast or bought, and not on a plate.
         Role::Layer | Role::Pin { .. } | Role::Tendon => "part",
     };
     BaseMaterial { name: format!("ABS ({what})"), colour: role.colour() }

@@ -1,5 +1,5 @@
-//! The set as it is put together, measured on the exact sections of its bodies: screws and dowels pass, nothing overlaps,
-//! the layer cannot slide, casts come out, and every wall prints.
+//! The assembly, measured on exact sections of its bodies: screws and dowels pass, nothing overlaps, the layer cannot slide,
+//! casts can be removed, and every wall can be printed.
 
 use std::path::Path;
 
@@ -8,9 +8,9 @@ use crate::config::{Configuration, MountKind, assign, read};
 use crate::design::Design;
 use pinswitch_solid::profile::{ChordTolerance, Contour, Point2, polar};
 
-/// Chord tolerance of the polygons that tell what lies inside a section, mm.
+/// Chord tolerance of the polygons that decide whether a point is inside of a section, mm.
 const FINE_MM: f64 = 5e-3;
-/// Bodies that touch overlap by less than this, mm: what the pieces of an arc are off.
+/// Largest overlap of bodies that touch, mm: the error of the polygons.
 const TOUCHING_MM: f64 = 0.02;
 
 fn design(assignments: &[&str]) -> Design {
@@ -19,7 +19,7 @@ fn design(assignments: &[&str]) -> Design {
     Design::new(c).unwrap()
 }
 
-/// Every design of `tests/corpus` whose file is named for its hardware.
+/// Every design of `tests/corpus` whose file name starts with `hardware-`.
 fn corpus() -> Vec<(String, Design)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/corpus");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
@@ -43,7 +43,7 @@ struct Section {
 }
 
 impl Section {
-    fn holds(&self, p: Point2) -> bool {
+    fn contains(&self, p: Point2) -> bool {
         let crossings = self.polygons.iter().flat_map(|polygon| {
             let next = polygon.iter().cycle().skip(1);
             polygon.iter().zip(next).filter(|(a, b)| {
@@ -57,10 +57,10 @@ impl Section {
         self.exact.iter().map(|c| c.distance_mm(p)).fold(f64::INFINITY, f64::min)
     }
 
-    /// How deep the outline of `other` lies in this section, mm.
+    /// Depth of the outline of `other` inside of this section, mm, and its deepest point.
     fn depth_mm(&self, other: &Self) -> (f64, Point2) {
         let points = other.polygons.iter().flatten();
-        let inside = points.filter(|p| self.holds(**p)).map(|p| (self.distance_mm(*p), *p));
+        let inside = points.filter(|p| self.contains(**p)).map(|p| (self.distance_mm(*p), *p));
         inside.fold((0.0, Point2::origin()), |best, next| if next.0 > best.0 { next } else { best })
     }
 }
@@ -75,7 +75,7 @@ fn section(part: &Part, z_mm: f64) -> Section {
     Section { exact, polygons }
 }
 
-/// Heights in the assembly at which a ring of the part lies.
+/// Heights of the rings of a part in the assembly.
 fn heights_mm(part: &Part) -> Vec<f64> {
     let pose = part.pose.or(part.tool_pose).unwrap();
     let own = part.solid.heights_mm().into_iter();
@@ -95,7 +95,7 @@ fn assembled(design: &Design) -> Vec<Part> {
     all.into_iter().filter(|p| p.pose.is_some() && !(has_layer && p.role == Role::Proxy)).collect()
 }
 
-/// The deepest overlap of any two of the bodies.
+/// An overlap of two of the bodies.
 fn overlap(parts: &[Part]) -> Option<String> {
     for (i, a) in parts.iter().enumerate() {
         for b in &parts[i + 1..] {
@@ -124,7 +124,7 @@ fn no_two_bodies_of_an_assembly_overlap() {
         assert_eq!(overlap(&assembled(&design)), None, "{name}");
     }
     assert_eq!(overlap(&assembled(&design(&["layout.pins=[5, 8, 11]"]))), None);
-    // A test must be able to fail: a shell in its own place twice.
+    // The test can fail: a body inside of the shell.
     let twice = printed(&design(&[])).unwrap().remove(0);
     let mut lifted = twice.clone();
     lifted.name.push('2');
@@ -134,10 +134,9 @@ fn no_two_bodies_of_an_assembly_overlap() {
     assert!(overlap(&[twice, lifted]).is_some());
 }
 
-/// Wraps of more than half a turn bring the tendon's ends, the guide pulley and the sheath stop together: what is not refused
-/// keeps clear, and all of it can be made.
+/// With wraps of more than 180 degrees, the ends of the tendon, the guide pulley and the sheath stop approach each other.
 #[test]
-fn wide_wraps_are_refused_or_bring_nothing_together() {
+fn wide_wraps_are_refused_or_clear() {
     let (mut made, mut refused) = (0, 0);
     for wrap in [200, 215, 230, 250, 280, 300] {
         for more in [
@@ -167,8 +166,8 @@ fn wide_wraps_are_refused_or_bring_nothing_together() {
     assert!(made >= 10 && refused >= 5, "{made} {refused}");
 }
 
-/// Every screw has its clear hole through shell, supports and plate, on one axis; only the skin above a recess is in its
-/// way. Every dowel has its hole, closed outside.
+/// Every screw has a clear hole through shell, supports and plate, on one axis, except for the skin above a recess. Every
+/// dowel has a hole that is closed outside.
 #[test]
 fn screws_and_dowels_pass_on_one_axis() {
     for (name, design) in corpus() {
@@ -189,7 +188,7 @@ fn screws_and_dowels_pass_on_one_axis() {
                 heights.sort_by(f64::total_cmp);
                 for w in heights.windows(2).filter(|w| w[1] - w[0] > 1e-6) {
                     let here = section(part, f64::midpoint(w[0], w[1]));
-                    if here.holds(axis) {
+                    if here.contains(axis) {
                         closed_mm += w[1] - w[0];
                     } else {
                         let free = here.distance_mm(axis) - c.fasteners.hole_diameter_mm / 2.0;
@@ -211,26 +210,26 @@ fn screws_and_dowels_pass_on_one_axis() {
                 for part in &joined {
                     let here = section(part, middle + share * length);
                     let free = here.distance_mm(axis) - c.fasteners.dowel_diameter_mm / 2.0;
-                    assert!(!here.holds(axis) && free > 0.0, "{name}: {} at {share}", part.name);
+                    assert!(!here.contains(axis) && free > 0.0, "{name}: {} at {share}", part.name);
                 }
             }
             let outside = c.shell.width_mm + c.support.plate_mm - 0.01;
             let right = joined.iter().find(|p| p.name == "support-right").unwrap();
-            assert!(section(right, outside).holds(axis), "{name}");
+            assert!(section(right, outside).contains(axis), "{name}");
         }
     }
 }
 
-/// Nuts and heads go into their recesses and cannot turn; inserts have their hole at both ends of the shell.
+/// Nuts and heads fit into their recesses and cannot rotate; inserts have a hole at both ends of the shell.
 #[test]
-fn recesses_take_their_hardware() {
+fn hardware_fits_its_recesses() {
     let nut = design(&["layout.pins=[5, 8, 11]"]);
     let trap = nut.fastening().nut_trap.unwrap();
     // ISO 4032: M3 is 5.5 mm across flats, and 6.01 mm across corners at the least.
     assert!(2.0 * trap.radial_mm > 5.5 && 2.0 * trap.radial_mm < 6.01, "{trap:?}");
     let head = design(&["fasteners.head_recess_mm=1.5"]).fastening().counterbore.unwrap();
     assert!(2.0 * head.radial_mm > 5.68, "{head:?}");
-    // On a plate that lies on a table every head lies within it, asked for or not: M3 heads are 3 mm high, M4 heads 4 mm.
+    // A plate on a table contains every head by default: M3 heads are 3 mm high, M4 heads 4 mm.
     for (assignments, least) in [
         (&["mount.kind=flange", "fasteners.head_recess_mm=3.6"][..], 3.6),
         (&["mount.kind=flange"], 3.0),
@@ -249,11 +248,11 @@ fn recesses_take_their_hardware() {
         let depth = sunk.fastening().mount_counterbore.unwrap().depth_mm;
         assert!(depth >= least && depth < sunk.configuration().mount.plate_mm, "{assignments:?}: {depth}");
     }
-    // So do the head of the axle's bolt, 5.3 mm (ISO 4017), which cannot turn, and those of the sheath stop.
+    // It also contains the head of the bolt of the axle, 5.3 mm (ISO 4017), which cannot rotate, and those of the sheath stop.
     let rig = design(&["mount.kind=rig", "tendon.sheath_diameter_mm=3"]);
     let plate = printed(&rig).unwrap().into_iter().find(|p| p.name == "rig-plate").unwrap();
     let mounting = rig.mounting().unwrap();
-    // From the face that lies on the table.
+    // From the face on the table.
     let outer = plate.pose.unwrap().z_mm;
     let open = |z: f64, at: Point2| section(&plate, outer + z).distance_mm(at);
     for z in [0.01, 5.29] {
@@ -270,7 +269,7 @@ fn recesses_take_their_hardware() {
     for (z, radius) in [(0.5, 2.0), (5.6, 2.0), (7.0, 1.7), (8.4, 2.0), (13.5, 2.0)] {
         assert!((section(&shell, z).distance_mm(axis) - radius).abs() < 1e-9, "{z}");
     }
-    // What does not fit is left out, and says so.
+    // Features that do not fit are left out, with a note.
     let thin = design(&["shell.wall_mm=5.5"]);
     assert!(thin.fastening().nut_trap.is_none());
     let right = printed(&thin).unwrap().into_iter().find(|p| p.name == "support-right").unwrap();
@@ -278,9 +277,9 @@ fn recesses_take_their_hardware() {
     assert!(notes.iter().any(|n| n.contains("nut traps do not fit")), "{notes:?}");
 }
 
-/// Between the stops the layer has its clearance at both ends and no more, over its whole width.
+/// The layer has its clearance to the stops at both ends, over its full width.
 #[test]
-fn the_layer_cannot_slide_along_the_shell() {
+fn stops_hold_the_layer() {
     for (name, design) in corpus() {
         let c = design.configuration();
         let Some([_, height]) = design.stops_mm() else { continue };
@@ -293,7 +292,7 @@ fn the_layer_cannot_slide_along_the_shell() {
             let shift = c.segment.end_margin_mm + c.silicone.side_clearance_mm;
             let beyond =
                 |mm: f64| polar(radius, side * (design.half_span_rad() + libm::asin((shift + mm) / radius)));
-            assert!(!shell.holds(beyond(-0.01)) && shell.holds(beyond(0.01)), "{name}");
+            assert!(!shell.contains(beyond(-0.01)) && shell.contains(beyond(0.01)), "{name}");
             let gap = layer.distance_mm(beyond(0.0));
             assert!((gap - c.silicone.side_clearance_mm).abs() < 1e-6, "{name}: {gap}");
         }
@@ -301,9 +300,9 @@ fn the_layer_cannot_slide_along_the_shell() {
     }
 }
 
-/// Whatever is open at a height of a mould is open all the way up: the layer comes out along the axis.
+/// Openings of a mould stay open upward, so that the layer is removed along the axis.
 #[test]
-fn casts_come_out_without_undercut() {
+fn moulds_have_no_undercut() {
     let mut moulds = 0;
     for (name, design) in corpus() {
         for part in printed(&design).unwrap() {
@@ -325,9 +324,10 @@ fn casts_come_out_without_undercut() {
                     let over = section(&part, *above);
                     let outline: Vec<Point2> = over.polygons.iter().flatten().copied().collect();
                     for p in outline {
-                        // Keys of the core stand beside the cavity.
-                        let covers =
-                            over.distance_mm(p) < 1e-3 && !here.holds(p) && here.distance_mm(p) > TOUCHING_MM;
+                        // Keys of the core are outside of the cavity.
+                        let covers = over.distance_mm(p) < 1e-3
+                            && !here.contains(p)
+                            && here.distance_mm(p) > TOUCHING_MM;
                         assert!(!covers || part.name == "mould-core", "{name}: {p} at {above} covers {z}");
                     }
                 }
@@ -340,9 +340,9 @@ fn casts_come_out_without_undercut() {
     assert!(moulds >= 20, "{moulds}");
 }
 
-/// A gang has as many cavities as layers, each as large as the layer, with a wall between their basins.
+/// A gang mould has a cavity for each layer, with walls between their basins.
 #[test]
-fn a_gang_casts_as_many_layers_as_asked_for() {
+fn a_gang_mould_casts_every_layer() {
     for layers in [1, 2, 5] {
         let layers_set = format!("mould.layers={layers}");
         let design = design(&["mould.kind=one-piece", &layers_set]);
@@ -363,9 +363,9 @@ fn a_gang_casts_as_many_layers_as_asked_for() {
     }
 }
 
-/// The one rule for thin places: no part of the published layouts has one, whatever it is mounted by.
+/// No part of a published layout has a thin place, with any mount.
 #[test]
-fn no_part_of_the_defaults_has_a_thin_place() {
+fn published_layouts_have_no_thin_places() {
     for mount in ["none", "flange", "finger-link", "rig"] {
         for kind in ["screw", "nut-trap", "insert"] {
             for mould in ["split", "one-piece"] {
@@ -385,8 +385,8 @@ fn no_part_of_the_defaults_has_a_thin_place() {
 }
 
 #[test]
-fn thin_places_are_reported_with_part_place_and_remedy() {
-    // Without stops the proxy keeps the end walls of the published layer, 0.64 mm, and plates are thin beside their slots.
+fn thin_places_have_position_and_remedy() {
+    // Without stops, the proxy has the end walls of the published layer, 0.64 mm, and plates are thin at their slots.
     let bare = design(&["shell.stop_mm=0"]);
     let warning = |name: &str| {
         let part = printed(&bare).unwrap().into_iter().find(|p| p.name == name).unwrap();
@@ -396,36 +396,36 @@ fn thin_places_are_reported_with_part_place_and_remedy() {
     assert!(proxy.starts_with("proxy: a wall of 0.64 mm") && proxy.contains("at radius 22.0 mm"), "{proxy}");
     assert!(proxy.contains("and one more place: raise segment.end_margin_mm"), "{proxy}");
     assert!(warning("support-left").unwrap().contains("a wall of 0.54 mm"));
-    // The shell's end walls have a rule of their own, which says by how much to mend them: nothing is told twice.
+    // A rule reports the end walls of the shell, so that the part does not.
     assert_eq!(warning("shell"), None);
     assert!(bare.warnings().iter().any(|w| w.contains("end walls are 0.54 mm")), "{:?}", bare.warnings());
-    // The wall that was once left between funnel and key hole, 0.61 mm, is what the rule finds.
+    // The wall between funnel and key hole was once 0.61 mm.
     let lid = printed(&design(&[])).unwrap().into_iter().find(|p| p.name == "mould-lid").unwrap();
     let thinnest = lid.solid.thin_places(3.0)[0].thickness_mm;
     assert!(thinnest >= 0.9 - 1e-6, "{thinnest}");
 }
 
-/// The tendon's body is taut over pins and silicone, in the middle of the width, and is what the guide says it is.
+/// The tendon is taut over pins and silicone, in the middle of the width.
 #[test]
-fn the_tendon_lies_on_pins_and_beside_them_on_silicone() {
+fn the_tendon_touches_pins_and_silicone() {
     let design = design(&["layout.pins=[5, 8, 11]"]);
     let touching = touches(&design);
     let pins: Vec<_> = touching.iter().filter_map(|t| t.pin).collect();
     assert_eq!(pins, [0, 1, 2]);
-    let beside: Vec<_> = touching.iter().filter(|t| t.pin.is_none()).collect();
-    assert_eq!(beside.len(), 2);
-    assert!((beside[1].to_rad - design.half_wrap_rad()).abs() < 1e-9);
-    assert!((beside[0].from_rad + beside[1].to_rad).abs() < 1e-9);
-    // Tangents of the pins' discs and the layer's: by hand, from the law of cosines.
+    let on_silicone: Vec<_> = touching.iter().filter(|t| t.pin.is_none()).collect();
+    assert_eq!(on_silicone.len(), 2);
+    assert!((on_silicone[1].to_rad - design.half_wrap_rad()).abs() < 1e-9);
+    assert!((on_silicone[0].from_rad + on_silicone[1].to_rad).abs() < 1e-9);
+    // Tangents of the discs of pin and layer, from the law of cosines.
     let pin = design.pin_angles_rad()[2];
     let (far, near) = (22.0f64, 22.0 + 0.85);
     let turn = libm::acos((near - (0.47 + 0.85)) / far);
-    assert!((beside[1].from_rad - (pin + turn)).abs() < 1e-9, "{beside:?}");
+    assert!((on_silicone[1].from_rad - (pin + turn)).abs() < 1e-9, "{on_silicone:?}");
     let tendon = reference_bodies(&design).unwrap().pop().unwrap();
     assert_eq!(tendon.role, Role::Tendon);
     let (low, high) = tendon.solid.bounds().unwrap();
     assert!((low.z + high.z).abs() < 1e-9 && high.z < 0.85 && high.z > 0.8);
-    // A twelve-sided bar of its length.
+    // The section is a regular dodecagon.
     let area = 3.0 * 0.85f64.powi(2);
     let length = tendon.solid.volume_mm3() / area;
     assert!((60.0..70.0).contains(&length), "{length}");
@@ -433,9 +433,9 @@ fn the_tendon_lies_on_pins_and_beside_them_on_silicone() {
     assert_eq!(touches(&bare).len(), 1);
 }
 
-/// The rig's tendon runs on over the guide pulley: tangent to both, at one height.
+/// The tendon of the rig is tangent to the guide pulley, at the same height.
 #[test]
-fn the_guide_pulley_lies_where_the_tendon_runs() {
+fn the_guide_pulley_is_tangent_to_the_tendon() {
     let design = design(&["mount.kind=rig", "layout.pins=[5, 8, 11]"]);
     assert_eq!(design.configuration().mount.kind, MountKind::Rig);
     let parts = assembled(&design);
@@ -448,15 +448,15 @@ fn the_guide_pulley_lies_where_the_tendon_runs() {
     let axle = design.mounting().unwrap().axle.unwrap().centre;
     let (low, high) = outline.bounds();
     assert!((nalgebra::center(&low, &high) - axle).norm() < 1e-9);
-    // The straight part of the tendon's axis is as far from the axle as groove and half a tendon.
+    // The straight part of the axis of the tendon is half a tendon outside of the groove.
     let leaves = polar(1.0, -design.half_wrap_rad());
     let reach = axle.coords.dot(&leaves.coords);
     assert!((design.tendon_axis_radius_mm() - reach - (22.0 + 0.85)).abs() < 1e-9);
 }
 
-/// The sheath stop's channel has the tendon's axis in its middle, and its step the sheath's end.
+/// The channel of the sheath stop is centred on the axis of the tendon, with a step for the end of the sheath.
 #[test]
-fn the_sheath_ends_on_a_step_around_the_tendon() {
+fn the_sheath_stop_is_centred_on_the_tendon() {
     let design = design(&["mount.kind=flange", "tendon.sheath_diameter_mm=3", "layout.pins=[5, 8, 11]"]);
     let parts = assembled(&design);
     let part = parts.iter().find(|p| p.name == "sheath-stop").unwrap();
@@ -464,10 +464,10 @@ fn the_sheath_ends_on_a_step_around_the_tendon() {
     let middle = section(part, design.configuration().shell.width_mm / 2.0);
     for (along, free) in [(2.0, 0.85 + 0.2), (12.0, 1.5 + 0.2)] {
         let p = stop.start + stop.along * along;
-        assert!(!middle.holds(p));
+        assert!(!middle.contains(p));
         assert!((middle.distance_mm(p) - free).abs() < 1e-9, "{along}: {}", middle.distance_mm(p));
     }
-    // The sheath rests on the base.
+    // The sheath touches the base.
     let floor = design.sheath_floor_mm() - design.configuration().support.plate_mm;
     assert!((design.configuration().shell.width_mm / 2.0 - 1.5 - floor).abs() < 1e-9);
 }

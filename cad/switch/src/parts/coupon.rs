@@ -1,4 +1,4 @@
-//! The fit coupon: slots of 0.10 to 0.40 mm clearance and three grooves, to find what a printer needs.
+//! The fit coupon: slots with clearances of 0.10 to 0.40 mm and three grooves, to measure a printer.
 
 use super::label::{Zone, engrave_text};
 use super::{Part, Role, offset_error};
@@ -7,15 +7,15 @@ use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Pen, Point2};
 use pinswitch_solid::solid::{Facing, Solid};
 
-/// Diametral clearances of the slots, hundredths of a millimetre; each is engraved beside its slot.
+/// Diametral clearances of the slots, hundredths of a millimetre. Each is engraved at its slot.
 const CLEARANCES_HUNDREDTHS: [u32; 7] = [10, 15, 20, 25, 30, 35, 40];
-/// Length of a slot beyond its width, in pin diameters.
+/// Length of a slot over its width, in pin diameters.
 const SLOT_TRAVEL: f64 = 1.5;
-/// Height of the room for the figures beside each slot, mm.
+/// Height of the figures at each slot with their surroundings, mm.
 const FIGURE_MM: f64 = 5.0;
-/// Width of that room, mm.
+/// Width of the same, mm.
 const FIGURES_WIDE_MM: f64 = 7.5;
-/// Grooves in the upper edge.
+/// Number of grooves in the upper edge.
 const GROOVES: usize = 3;
 /// Wall around slots and grooves, mm.
 const WALL_MM: f64 = 2.0;

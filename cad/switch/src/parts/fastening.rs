@@ -5,7 +5,7 @@ use crate::design::{Design, Recess};
 use pinswitch_solid::profile::{Contour, OffsetError, Point2, Vector2, polar};
 use pinswitch_solid::solid::{Facing, RingId, Solid};
 
-/// Rings at the bottom and at the top of a part: holes in its caps.
+/// Rings at the bottom and at the top of a part, which are holes in its caps.
 pub(super) type Mouths = (Vec<RingId>, Vec<RingId>);
 
 /// Clearance holes for the screws, clockwise.
@@ -20,8 +20,8 @@ pub(super) fn dowel_holes(design: &Design) -> Vec<Contour> {
     holes_at(design.fastener_radius_mm(), &design.dowel_angles_rad(), radius)
 }
 
-/// The shell's holes: clearance holes, or at both ends those for inserts, with a narrower one between for the tips of
-/// the screws.
+/// Adds the holes of the shell: clearance holes, or holes for inserts at both ends with a narrower hole for the tips of the
+/// screws between them.
 pub(super) fn shell_holes(solid: &mut Solid, design: &Design) -> Result<Mouths, OffsetError> {
     let c = design.configuration();
     let (width, chamfer) = (c.shell.width_mm, c.print.elephant_foot_mm);
@@ -43,8 +43,8 @@ pub(super) fn shell_holes(solid: &mut Solid, design: &Design) -> Result<Mouths, 
     Ok(mouths)
 }
 
-/// The holes of a plate `plate_mm` thick, whose outer face lies on the bed: clearance holes, or blind ones above a recess.
-/// A membrane stays between the two, over which the printer bridges; the screw breaks through it.
+/// Adds the holes of a plate with its outer face on the bed: clearance holes, or blind holes above a recess. The membrane
+/// between both is printed as a bridge, and the screw breaks it.
 pub(super) fn plate_holes(
     solid: &mut Solid,
     design: &Design,
@@ -58,14 +58,14 @@ pub(super) fn plate_holes(
     };
     let mut mouths = Mouths::default();
     for (angle, hole) in design.fastener_angles_rad().into_iter().zip(&holes) {
-        // The right plate is printed as its mirror image, and its holes lie alike on both sides.
+        // The right plate is a mirror image. Its holes are symmetric.
         let outline = outline(&recess, polar(design.fastener_radius_mm(), angle), angle);
         add_seated(&mut mouths, solid, design, [&outline, hole], recess.depth_mm, plate_mm);
     }
     Ok(mouths)
 }
 
-/// A hole of a plate at `middle` over a recess in its outer face.
+/// Adds a hole of a plate at `middle` above a recess in its outer face.
 pub(super) fn seated_hole(
     mouths: &mut Mouths,
     solid: &mut Solid,
@@ -90,7 +90,7 @@ fn add_seated(
     mouths.1.push(solid.pocket(hole, &[], depth_mm + design.membrane_mm(), plate_mm));
 }
 
-/// A recess, clockwise; a hexagon has two sides square to the direction at `angle_rad`.
+/// The outline of a recess, clockwise. A hexagon has two flats square to the direction at `angle_rad`.
 fn outline(recess: &Recess, middle: Point2, angle_rad: f64) -> Contour {
     if !recess.is_hexagon {
         return Contour::circle(middle, recess.radial_mm).reversed();

@@ -8,10 +8,11 @@ use pinswitch_solid::solid::{Facing, Solid};
 
 /// Depth of the seat: the width of a 608 bearing (ISO 15).
 const SEAT_MM: f64 = 7.0;
-/// Ledge under the outer ring; the inner ring must turn freely.
+/// Radius of the bore under the seat: the ledge carries the outer ring, and the inner ring turns freely.
 const LEDGE_RADIUS_MM: f64 = 9.0;
-/// Rings from the bottom up: rim, slope of 45 degrees into the groove, flat bottom, slope out, rim. On the rig its bearing
-/// faces the plate, and it lies about its axle.
+
+/// The pulley. From below: rim, slope of 45 degrees into the groove, flat bottom, slope, rim. On the rig, its bearing faces the
+/// plate, and its axis is that of the axle.
 pub(super) fn guide_pulley(design: &Design) -> Result<Part, ConfigError> {
     let c = design.configuration();
     let tendon = design.tendon_diameter_mm();
@@ -22,7 +23,7 @@ pub(super) fn guide_pulley(design: &Design) -> Result<Part, ConfigError> {
     let rim = (width - 2.0 * depth - flat) / 2.0;
     let chamfer = c.print.elephant_foot_mm;
     let axle = design.mounting().and_then(|m| m.axle).map(|a| a.centre);
-    // Turned half round about y when it is put in its place.
+    // Its pose rotates it by 180 degrees about y.
     let middle = axle.map_or(Point2::origin(), |p| Point2::new(-p.x, p.y));
     let circle = |radius: f64| Contour::circle(middle, radius);
     let mut solid = Solid::new();

@@ -1,11 +1,11 @@
-//! Engraved labels: letters as pockets, laid along an arc or a line, where they do not matter.
+//! Engraved labels: letters as pockets along an arc or a line.
 
 use i_overlay::mesh::float::stroke::offset::StrokeOffset;
 use i_overlay::mesh::float::style::{LineCap, LineJoin, StrokeStyle};
 
 use pinswitch_friction::sort_by_number;
 
-use super::left_out::LeftOut;
+use super::omission::LeftOut;
 use super::stroke_font::{HEIGHT, WIDTH, strokes};
 use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Point2, Vector2, polar};
@@ -13,46 +13,47 @@ use pinswitch_solid::solid::{RingId, Solid};
 
 /// Angle between the points of a round stroke end, radians.
 const ROUND_RAD: f64 = 0.5;
-/// Letters smaller than this are not legible in a print, mm.
+/// Least height of letters that are legible in a print, mm.
 const MIN_HEIGHT_MM: f64 = 1.5;
-/// Steps in which smaller letters are tried, mm.
+/// Step between heights of letters that are tried, mm.
 const STEP_MM: f64 = 0.1;
 /// Wall between a letter and the edge of its zone, mm.
 pub(super) const EDGE_MM: f64 = 0.5;
 /// Width of a letter over its height.
 const ASPECT: f64 = 0.58;
-/// Heights closer than this are one, mm.
+/// Heights that differ by less are equal, mm.
 pub(super) const SAME_MM: f64 = 1e-9;
-/// Points of a letter's outline that are closer than this are one point, mm.
+/// Points of the outline of a letter that are closer are merged, mm.
 const MERGE_MM: f64 = 0.02;
 
-/// A flat place on a part where a label may go.
+/// A flat area for a label.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Zone {
     /// Between two radii and two angles about the axis.
     Arc { inner_mm: f64, outer_mm: f64, from_rad: f64, to_rad: f64 },
-    /// A rectangle about a middle.
+    /// A rectangle.
     Flat { middle: Point2, length_mm: f64, height_mm: f64 },
 }
 
-/// The result of an engraving: the rings at the top, which are holes in the cap there.
+/// The result of an engraving.
 pub(super) struct Engraving {
+    /// Rings at the top, which are holes in the cap.
     pub(super) rings: Vec<RingId>,
-    /// What found no room.
+    /// What does not fit.
     pub(super) left_out: Vec<LeftOut>,
-    /// What was engraved, line by line.
+    /// Engraved lines.
     pub(super) lines: Vec<String>,
 }
 
 impl Engraving {
-    /// Nothing, and what of it found no room.
+    /// Nothing engraved.
     pub(super) const fn none(left_out: Vec<LeftOut>) -> Self {
         Self { rings: Vec::new(), left_out, lines: Vec::new() }
     }
 }
 
-/// A text as it can be laid out: the height of its letters in mm, and its pieces with their zones.
-struct Laid {
+/// The layout of a text: the height of its letters in mm, and its pieces with their zones.
+struct TextLayout {
     size_mm: f64,
     pieces: Vec<(String, Zone)>,
 }
@@ -62,8 +63,8 @@ impl Zone {
         Self::Flat { middle, length_mm, height_mm }
     }
 
-    /// The stretches of a band between two radii into which no fastener that takes `fastener_mm`, and no dowel reaches; from
-    /// left to right.
+    /// Returns the zones of a band between two radii, from left to right, without the dowels, and the fasteners with a radius of
+    /// `fastener_mm`.
     pub(super) fn between_holes(
         design: &Design,
         fastener_mm: f64,
@@ -71,13 +72,13 @@ impl Zone {
         outer_mm: f64,
     ) -> Vec<Self> {
         let (middle, half) = (design.fastener_radius_mm(), design.half_span_rad());
-        // The widest that a round hole is within the band: where a line from the axis touches it, or at the band's edge.
+        // Greatest width of a hole within the band: at a tangent from the axis, or at the edge of the band.
         let taken = |angles: Vec<f64>, reach_mm: f64| {
             let at =
                 (middle.powi(2) - reach_mm.powi(2)).max(0.0).sqrt().clamp(inner_mm, outer_mm.max(inner_mm));
             let cosine = (at.powi(2) + middle.powi(2) - reach_mm.powi(2)) / (2.0 * at * middle);
-            let beside = libm::acos(cosine.clamp(-1.0, 1.0));
-            angles.into_iter().filter(move |_| cosine < 1.0).map(move |a| (a - beside, a + beside))
+            let half = libm::acos(cosine.clamp(-1.0, 1.0));
+            angles.into_iter().filter(move |_| cosine < 1.0).map(move |a| (a - half, a + half))
         };
         let dowel = design.dowel_hole_radius_mm().unwrap_or(0.0);
         let mut holes: Vec<(f64, f64)> = taken(design.fastener_angles_rad(), fastener_mm)
@@ -92,7 +93,7 @@ impl Zone {
             .collect()
     }
 
-    /// The widest of several zones; of equals the first, whatever the rounding.
+    /// Returns the widest zone; the first of equal ones, within rounding.
     pub(super) fn widest(zones: &[Self]) -> Option<Self> {
         let wide = |zone: &Self| match *zone {
             Self::Flat { length_mm, .. } => length_mm,
@@ -101,7 +102,7 @@ impl Zone {
         zones.iter().copied().reduce(|best, zone| if wide(&zone) > wide(&best) + 1e-9 { zone } else { best })
     }
 
-    /// The zone mirrored in the y axis.
+    /// The mirror image in the y axis.
     fn mirrored(&self) -> Self {
         match *self {
             Self::Flat { middle, length_mm, height_mm } => {
@@ -113,11 +114,11 @@ impl Zone {
         }
     }
 
-    /// Length along the feet of letters of `letter_mm`, and height across them, in mm.
+    /// Length at the feet of letters of `letter_mm`, and height of the zone, mm.
     fn size_mm(&self, letter_mm: f64) -> (f64, f64) {
         match *self {
             Self::Flat { length_mm, height_mm, .. } => (length_mm, height_mm),
-            // Letters lean apart: their inner edges are the closest.
+            // Letters fan out: their feet are closest.
             Self::Arc { inner_mm, outer_mm, from_rad, to_rad } => {
                 let foot =
                     f64::midpoint(inner_mm, outer_mm) - (letter_mm / 2.0).min((outer_mm - inner_mm) / 2.0);
@@ -126,7 +127,7 @@ impl Zone {
         }
     }
 
-    /// Radius of the letters' feet, mm: letters lean apart, so that there they are closest.
+    /// Radius of the feet of the letters, mm, where they are closest.
     fn foot_mm(&self, letter_mm: f64) -> f64 {
         match *self {
             Self::Flat { .. } => f64::INFINITY,
@@ -136,8 +137,8 @@ impl Zone {
         }
     }
 
-    /// Brings a point of a letter (`x` and `y` from its middle) onto the part; the letter's foot lies `along_mm` along
-    /// the line from its middle.
+    /// Maps a point of a letter, from its centre, to the part. The foot of the letter is `along_mm` along the line from its
+    /// middle.
     fn place(&self, along_mm: f64, letter_mm: f64, [x, y]: [f64; 2]) -> Point2 {
         match *self {
             Self::Flat { middle, .. } => middle + Vector2::new(along_mm + x, y),
@@ -152,43 +153,43 @@ impl Zone {
     }
 }
 
-/// Engraves the design's label into the face at `top_mm`, into the first of several choices of zones that holds it.
+/// Engraves the label of the design into the face at `top_mm`, in the first choice of zones into which it fits.
 pub(super) fn engrave(solid: &mut Solid, design: &Design, choices: &[Vec<Zone>], top_mm: f64) -> Engraving {
     if !design.configuration().label.engrave {
         return Engraving::none(Vec::new());
     }
     let text = design.label();
-    let Some(Laid { size_mm, pieces }) = laid(design, &text, choices, top_mm) else {
+    let Some(TextLayout { size_mm, pieces }) = layout(design, &text, choices, top_mm) else {
         return Engraving::none(vec![LeftOut::Label]);
     };
     let cut = |(piece, zone): &(String, Zone)| pockets(solid, design, piece, zone, size_mm, top_mm);
     Engraving { rings: pieces.iter().flat_map(cut).collect(), left_out: Vec::new(), lines: vec![text] }
 }
 
-/// Whether [`engrave`] leaves the label out.
+/// Returns whether [`engrave`] leaves the label out.
 pub(super) fn is_left_out(design: &Design, choices: &[Vec<Zone>], top_mm: f64) -> bool {
-    design.configuration().label.engrave && laid(design, &design.label(), choices, top_mm).is_none()
+    design.configuration().label.engrave && layout(design, &design.label(), choices, top_mm).is_none()
 }
 
-/// `text` in the widest zone of the first choice that holds it, or else broken from one zone to the next.
-fn laid(design: &Design, text: &str, choices: &[Vec<Zone>], top_mm: f64) -> Option<Laid> {
+/// Lays out a text in the widest zone of the first choice into which it fits, or else in several zones.
+fn layout(design: &Design, text: &str, choices: &[Vec<Zone>], top_mm: f64) -> Option<TextLayout> {
     let c = design.configuration();
-    // A floor that prints must stay under the letters.
+    // The floor under the letters must be printable.
     if top_mm - c.label.depth_mm < c.print.least_wall_mm {
         return None;
     }
     choices.iter().find_map(|zones| {
         let whole = Zone::widest(zones).and_then(|zone| {
             let size_mm = largest_mm(design, text, &zone)?;
-            Some(Laid { size_mm, pieces: vec![(text.to_owned(), zone)] })
+            Some(TextLayout { size_mm, pieces: vec![(text.to_owned(), zone)] })
         });
-        let parted = |size_mm| Some(Laid { size_mm, pieces: broken(design, text, zones, size_mm)? });
+        let parted = |size_mm| Some(TextLayout { size_mm, pieces: broken(design, text, zones, size_mm)? });
         whole.or_else(|| sizes_mm(design).find_map(parted))
     })
 }
 
-/// `text` broken between letters so that each piece fits its zone in letters of `size_mm`: it runs on behind a hole. The
-/// pieces in their order, as full as the zones allow.
+/// Breaks a text between letters into pieces that fit the zones in letters of `size_mm`, each as long as possible. A text
+/// continues on the other side of a hole.
 pub(super) fn broken(
     design: &Design,
     text: &str,
@@ -209,7 +210,7 @@ pub(super) fn broken(
     rest.is_empty().then_some(pieces)
 }
 
-/// Sizes of letters that are tried, the configured one first, the least that is legible last.
+/// Sizes of letters to try, from the configured one to the least legible one.
 pub(super) fn sizes_mm(design: &Design) -> impl Iterator<Item = f64> + use<> {
     let (height, least) = (design.configuration().label.height_mm, least_height_mm(design));
     let steps = ((height - least) / STEP_MM + SAME_MM).floor();
@@ -219,7 +220,7 @@ pub(super) fn sizes_mm(design: &Design) -> impl Iterator<Item = f64> + use<> {
         .chain((height >= least - SAME_MM).then_some(least))
 }
 
-/// Engraves `text` into one zone as large as configured, or smaller; the rings of nothing where it does not fit.
+/// Engraves a text into one zone, at most as large as configured; returns its rings, and none if it does not fit.
 pub(super) fn engrave_text(
     solid: &mut Solid,
     design: &Design,
@@ -230,12 +231,12 @@ pub(super) fn engrave_text(
     if !design.configuration().label.engrave {
         return Vec::new();
     }
-    laid(design, text, &[vec![*zone]], top_mm)
+    layout(design, text, &[vec![*zone]], top_mm)
         .map(|l| pockets(solid, design, text, zone, l.size_mm, top_mm))
         .unwrap_or_default()
 }
 
-/// The letters of `text` as pockets in the face at `top_mm`; their rings are holes in the cap there.
+/// Adds letters as pockets in the face at `top_mm`; returns their rings, which are holes in the cap.
 fn pockets(
     solid: &mut Solid,
     design: &Design,
@@ -251,8 +252,7 @@ fn pockets(
         .collect()
 }
 
-/// Engraves `text` in letters of `size_mm` into the face on the bed, to be read from below; its rings are holes in the
-/// cap there.
+/// Engraves a text into the face on the bed, to read from below; returns its rings, which are holes in the cap.
 pub(super) fn engrave_below(
     solid: &mut Solid,
     design: &Design,
@@ -270,26 +270,26 @@ pub(super) fn engrave_below(
         .collect()
 }
 
-/// Least height of letters whose strokes leave walls between them, mm.
+/// Least height of letters with printable walls between their strokes, mm.
 pub(super) fn least_height_mm(design: &Design) -> f64 {
     let c = design.configuration();
     ((c.label.stroke_mm + c.print.least_wall_mm) * HEIGHT / 2.0).max(MIN_HEIGHT_MM)
 }
 
-/// The largest letters, up to the configured height, in which `text` fits the zone; `None` if it does not.
+/// Returns the largest height of letters, up to the configured one, at which a text fits the zone.
 pub(super) fn largest_mm(design: &Design, text: &str, zone: &Zone) -> Option<f64> {
     let c = design.configuration();
     let stroke = c.label.stroke_mm;
     let (length, height) = zone.size_mm(c.label.height_mm + stroke);
     let letters = text.chars().count() as f64;
-    // Strokes of a letter are two grid units apart, letters four and a gap: both must leave a wall between strokes.
+    // Strokes of a letter are two grid units apart, letters four and a gap. Both leave a wall between strokes.
     let gap = stroke + c.print.least_wall_mm;
     let by_length = ((length - 2.0 * EDGE_MM + gap - stroke) / letters - gap) / ASPECT;
     let size = c.label.height_mm.min(height - 2.0 * EDGE_MM - stroke).min(by_length);
     (size >= least_height_mm(design) - SAME_MM).then_some(size)
 }
 
-/// The letters of `text` in a zone: outlines, clockwise, each with its islands, counter-clockwise.
+/// Outlines of letters in a zone, clockwise, each with its islands, counter-clockwise.
 fn shapes(design: &Design, text: &str, zone: &Zone, size_mm: f64) -> Vec<(Contour, Vec<Contour>)> {
     let c = design.configuration();
     let stroke = c.label.stroke_mm;
@@ -311,8 +311,7 @@ fn shapes(design: &Design, text: &str, zone: &Zone, size_mm: f64) -> Vec<(Contou
     all
 }
 
-/// The outlines of a letter's strokes, united: each shape is its outline, then its islands, in mm about the letter's
-/// middle.
+/// The union of the strokes of a letter, in mm about its centre. A shape is its outline, then its islands.
 fn letter_shapes(letter: char, height_mm: f64, stroke_mm: f64) -> Vec<Vec<Vec<[f64; 2]>>> {
     let (along, up) = (height_mm * ASPECT / WIDTH, height_mm / HEIGHT);
     let paths: Vec<Vec<[f64; 2]>> = strokes(letter)
@@ -335,13 +334,13 @@ enum Orientation {
     CounterClockwise,
 }
 
-/// The contour in the given orientation: a pocket is a hole in the part, its islands are outlines.
+/// The contour in an orientation: a pocket is a hole in the part, its islands are outlines.
 fn oriented(contour: Contour, sense: Orientation) -> Contour {
     let is = if contour.area_mm2() > 0.0 { Orientation::CounterClockwise } else { Orientation::Clockwise };
     if is == sense { contour } else { contour.reversed() }
 }
 
-/// Drops points that nearly coincide with their neighbour.
+/// Merges points that are close to their neighbour.
 fn without_near_duplicates(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let near = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]) < MERGE_MM;
     let mut kept: Vec<[f64; 2]> = Vec::with_capacity(points.len());
@@ -363,7 +362,7 @@ mod tests {
     use pinswitch_solid::validity::{Expectation, examine};
 
     #[test]
-    fn no_letter_has_a_part_inside_its_island() {
+    fn letters_have_no_nested_islands() {
         for letter in (' '..='~').filter(|l| strokes(*l).is_some()) {
             let shapes = letter_shapes(letter, 3.0, 0.5);
             let area = |points: &Vec<[f64; 2]>| {
@@ -372,12 +371,12 @@ mod tests {
             for shape in &shapes {
                 assert!(shape.iter().skip(1).all(|island| area(island) < area(&shape[0])), "{letter}");
             }
-            // Only the colon and the equals sign have two parts; an island with a part in it would make two.
+            // Only the colon and the equals sign have two shapes.
             assert!(shapes.len() <= 1 || ":=".contains(letter), "{letter}: {}", shapes.len());
         }
     }
     #[test]
-    fn a_text_is_broken_between_letters_in_the_order_of_its_zones() {
+    fn texts_break_between_letters() {
         let design = Design::new(Configuration::default()).unwrap();
         let c = design.configuration();
         let gap = c.label.stroke_mm + c.print.least_wall_mm;
@@ -397,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn every_letter_leaves_walls_that_print() {
+    fn letters_leave_printable_walls() {
         let design = Design::new(Configuration::default()).unwrap();
         let outline = Contour::polygon(
             [(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0)].map(|(x, y)| Point2::new(x, y)).to_vec(),
@@ -411,8 +410,8 @@ mod tests {
             assert!(!engraved.is_empty());
             solid.cap(Facing::Up, top, &engraved);
             let printable = Expectation { bodies: Some(1), min_wall_mm: 0.4, ..Expectation::default() };
-            let found = examine(&solid.mesh(design.tolerance()).unwrap(), &printable);
-            assert!(found.is_valid(), "{letter}: {:?}", found.faults);
+            let report = examine(&solid.mesh(design.tolerance()).unwrap(), &printable);
+            assert!(report.is_valid(), "{letter}: {:?}", report.faults);
         }
     }
 }

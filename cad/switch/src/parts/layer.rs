@@ -1,4 +1,4 @@
-//! The silicone layer and its rigid proxy: one shape (cad/doc/dimensions.md, "Silicone layer").
+//! The silicone layer and its rigid proxy, which have one shape (cad/doc/dimensions.md, "Silicone layer").
 
 use super::{Part, Pose, Role, Sector, offset_error};
 use crate::config::ConfigError;
@@ -6,10 +6,10 @@ use crate::design::Design;
 use pinswitch_solid::profile::Contour;
 use pinswitch_solid::solid::Solid;
 
-/// Least air between printed faces that must not touch, mm.
+/// Least gap between printed faces that must not touch, mm.
 const MIN_AIR_MM: f64 = 0.1;
 
-/// The sector that the layer fills, before its grooves are cut.
+/// The sector of the layer, without its grooves.
 pub(super) fn layer_sector(design: &Design) -> Sector {
     Sector {
         inner_mm: design.shell_radius_mm(),
@@ -19,7 +19,7 @@ pub(super) fn layer_sector(design: &Design) -> Sector {
     }
 }
 
-/// Smooth inside, half-round grooves outside, where the pins lie.
+/// The outline: smooth inside, with half-round grooves for the pins outside.
 fn outline(design: &Design) -> Contour {
     let groove = design.configuration().segment.groove_radius_mm;
     layer_sector(design).grooved(&design.groove_angles_rad(), groove)
@@ -39,8 +39,7 @@ pub fn silicone_layer(design: &Design) -> Result<Part, ConfigError> {
     Ok(Part::new("silicone-layer", Role::Layer, solid, pose(design)))
 }
 
-/// The proxy's outline: that of the layer, whose end walls are thin to print; where stops leave the room, its ends reach
-/// over them.
+/// The outline of the proxy. Its end walls would be thin to print, so its ends reach over the stops if there is space.
 fn proxy_outline(design: &Design) -> Contour {
     let c = design.configuration();
     let reach = design.stop_reach_mm();

@@ -2,32 +2,12 @@
 //! was tried and makes room.
 
 use super::mould::core_has_lost_label;
+use super::omission::LeftOut;
 use super::{Part, has_split_mould, mount, shell, support};
 use crate::config::{Configuration, MountKind};
 use crate::design::Design;
 use crate::design::rules::Change::{self, Ease, Lower, Raise, Set};
 use crate::design::rules::{Effort, way_out};
-
-/// What can be left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LeftOut {
-    /// The engraved label.
-    Label,
-    /// `L` or `R` on a support.
-    Side,
-    /// The arrow to groove 1 on a support, and its `1`.
-    Arrow,
-    /// The lip over the silicone's edge.
-    Lip,
-    /// The stops at the layer's ends.
-    Stops,
-    /// Traps for the nuts in the right support.
-    NutTraps,
-    /// Counterbores for the heads in a support.
-    Counterbores,
-    /// The same in the mounting plate.
-    PlateCounterbores,
-}
 
 /// Where no single value makes room.
 const NO_WAY: &str = "no single value makes room";

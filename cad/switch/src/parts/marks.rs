@@ -1,18 +1,18 @@
-//! Marks on the outer faces of the supports, which stay visible: which side it is, which layout, where groove 1 is and
-//! where the load pulls (cad/doc/dimensions.md, "Label").
+//! Marks on the outer faces of the supports: side, layout, and the direction of groove 1 and of the load
+//! (cad/doc/dimensions.md, "Label").
 
 use super::label::{EDGE_MM, Engraving, SAME_MM, Zone, engrave_below, largest_mm, sizes_mm};
-use super::left_out::LeftOut;
+use super::omission::LeftOut;
 use crate::design::Design;
 use pinswitch_solid::solid::Solid;
 
-/// The marks of a support as they can be laid out.
+/// The layout of the marks of a support.
 struct Marks {
-    /// What they say, row by row.
+    /// Texts of the rows.
     rows: Vec<String>,
     /// Height of all letters, mm.
     size_mm: f64,
-    /// What stands where.
+    /// Texts with their zones.
     placed: Vec<(String, Zone)>,
 }
 
@@ -21,14 +21,14 @@ pub(super) fn engrave_marks(solid: &mut Solid, design: &Design, is_right: bool) 
     if !design.configuration().label.engrave {
         return Engraving::none(Vec::new());
     }
-    let found = marks(design, is_right);
-    let left_out = missing(design, is_right, found.as_ref());
-    let Some(Marks { rows, size_mm, placed }) = found else { return Engraving::none(left_out) };
+    let marks = marks(design, is_right);
+    let left_out = missing(design, is_right, marks.as_ref());
+    let Some(Marks { rows, size_mm, placed }) = marks else { return Engraving::none(left_out) };
     let cut = |(text, zone): &(String, Zone)| engrave_below(solid, design, text, zone, size_mm);
     Engraving { rings: placed.iter().flat_map(cut).collect(), left_out, lines: rows }
 }
 
-/// What of the marks of a support finds no room on it.
+/// Returns the marks that do not fit on a support.
 pub(super) fn left_out(design: &Design, is_right: bool) -> Vec<LeftOut> {
     let is_wanted = design.configuration().label.engrave;
     if is_wanted { missing(design, is_right, marks(design, is_right).as_ref()) } else { Vec::new() }
@@ -47,7 +47,7 @@ fn missing(design: &Design, is_right: bool, marks: Option<&Marks>) -> Vec<LeftOu
     .collect()
 }
 
-/// Whether an engraved line says where groove 1 is and the load pulls.
+/// Returns whether an engraved line has the arrow to groove 1.
 fn has_arrow(line: &str) -> bool {
     line.contains("1<") || line.contains(">1")
 }
@@ -56,7 +56,7 @@ const fn side(is_right: bool) -> &'static str {
     if is_right { "R" } else { "L" }
 }
 
-/// The fullest set of rows that can be laid out: with the label if one can, and else with the arrow.
+/// Returns the most complete set of rows that fits: with the label if possible, and else with the arrow.
 fn marks(design: &Design, is_right: bool) -> Option<Marks> {
     let c = design.configuration();
     // A floor that prints must stay over the letters.
@@ -69,17 +69,17 @@ fn marks(design: &Design, is_right: bool) -> Option<Marks> {
     labelled
         .chain(&sets)
         .find_map(|rows| below_each_other(design, rows))
-        .or_else(|| parted_rows(side, is_right).iter().find_map(|read| on_both_sides_of_holes(design, read)))
+        .or_else(|| split_rows(side, is_right).iter().find_map(|read| on_both_sides_of_holes(design, read)))
         .or_else(|| below_each_other(design, &[side.to_owned()]))
 }
 
-/// `word` and the arrow away from it to groove 1, which is on the load's side: seen from outside that lies to the left on
-/// the right support, and to the right on the left one.
+/// A word with the arrow to groove 1, on the side of the load: from outside, this is left on the right support and right on the
+/// left one.
 fn towards_load(word: &str, is_right: bool) -> String {
     if is_right { format!("1<{word}") } else { format!("{word}>1") }
 }
 
-/// Rows from the outside inward, the fullest set first.
+/// Sets of rows, from the outside inward, the most complete set first.
 fn row_sets(side: &str, label: &str, is_right: bool) -> Vec<Vec<String>> {
     let mark = |word: &str| towards_load(word, is_right);
     let (load, force) = (mark("LOAD"), mark("F"));
@@ -98,21 +98,21 @@ fn row_sets(side: &str, label: &str, is_right: bool) -> Vec<Vec<String>> {
     ]
 }
 
-/// The largest letters in which all rows fit below each other, each between two holes.
+/// Lays out all rows below each other, each between two holes, in letters as large as possible.
 fn below_each_other(design: &Design, rows: &[String]) -> Option<Marks> {
     sizes_mm(design).find_map(|size_mm| {
-        let laid = |(i, row): (usize, &String)| {
+        let layout = |(i, row): (usize, &String)| {
             let zone = Zone::widest(&between_holes(design, i, size_mm)?)?;
             fits(design, row, &zone, size_mm).then(|| (row.clone(), zone))
         };
-        let placed: Option<Vec<_>> = rows.iter().enumerate().map(laid).collect();
+        let placed: Option<Vec<_>> = rows.iter().enumerate().map(layout).collect();
         Some(Marks { rows: rows.to_vec(), size_mm, placed: placed? })
     })
 }
 
-/// The ways to part the side and the arrow at holes, in the order in which they are read: the arrow with its `1`, and letter by
-/// letter. (No support of some 300 designs holds the label, too, only when its row is parted.)
-fn parted_rows(side: &str, is_right: bool) -> [Vec<String>; 2] {
+/// Ways to split side and arrow at holes, in reading order: the arrow with its `1`, and letter by letter. A label that needs
+/// such a split does not occur on the supports of some 300 designs.
+fn split_rows(side: &str, is_right: bool) -> [Vec<String>; 2] {
     let arrow = towards_load("", is_right);
     let letters: Vec<String> = arrow.chars().map(String::from).collect();
     [vec![arrow], letters].map(|mut read| {
@@ -121,10 +121,10 @@ fn parted_rows(side: &str, is_right: bool) -> [Vec<String>; 2] {
     })
 }
 
-/// The largest letters in which the pieces fit on one row with holes between them.
+/// Lays out the pieces of one row with holes between them, in letters as large as possible.
 fn on_both_sides_of_holes(design: &Design, read: &[String]) -> Option<Marks> {
     sizes_mm(design).find_map(|size_mm| {
-        // From outside a support is seen from below, and what lies on the right is read first.
+        // From outside a support is viewed from below: the zone on the right is read first.
         let mut zones = between_holes(design, 0, size_mm)?.into_iter().rev();
         let place = |text: &String| {
             zones.find(|zone| fits(design, text, zone, size_mm)).map(|zone| (text.clone(), zone))
@@ -134,8 +134,8 @@ fn on_both_sides_of_holes(design: &Design, read: &[String]) -> Option<Marks> {
     })
 }
 
-/// The stretches between holes of a row, counted from outside; rows share the wall between them. `None` where the row lies
-/// beyond the plate.
+/// Returns the zones between holes of a row, counted from outside. Rows share the wall between them. `None` for a row beyond
+/// the plate.
 fn between_holes(design: &Design, row: usize, size_mm: f64) -> Option<Vec<Zone>> {
     let pitch = size_mm + design.configuration().label.stroke_mm + EDGE_MM;
     let top = design.slot().inner_edge_mm() - row as f64 * pitch;
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn both_supports_say_side_layout_groove_and_load() {
+    fn supports_have_side_layout_and_arrow() {
         let pins = &["layout.pins=[5, 8, 11]"][..];
         assert_eq!(rows(pins, false), ["3x3/5", "L>1"]);
         assert_eq!(rows(pins, true), ["3x3/5", "1<R"]);
@@ -169,10 +169,10 @@ mod tests {
     }
 
     #[test]
-    fn small_supports_keep_the_side_and_the_arrow_before_the_layout() {
+    fn small_supports_omit_the_layout_first() {
         let small = ["shell.wall_mm=3.5", "fasteners.hole_diameter_mm=1.8", "shell.width_mm=7.5"];
         assert_eq!(rows(&small, false), ["L F>1"]);
-        // Between wide recesses there is room for two letters at most.
+        // Two letters fit at most between wide recesses.
         let crowded = [
             "fasteners.hole_diameter_mm=1.8",
             "fasteners.count=5",

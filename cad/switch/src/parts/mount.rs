@@ -1,7 +1,7 @@
-//! What the switch is mounted by: a plate beside the left support, the spacer of the rig's pulley, and the stop of a
-//! sheath (cad/doc/dimensions.md, "Mounting").
+//! Mounting parts: the plate next to the left support, the spacer of the pulley of the rig, and the sheath stop
+//! (cad/doc/dimensions.md, "Mounting").
 
-use super::left_out::LeftOut;
+use super::omission::LeftOut;
 use super::{Part, Pose, Role, fastening, offset_error};
 use crate::config::{ConfigError, Configuration, MountKind};
 use crate::design::{Design, Hole, SheathStop, axle_recess, pulley_width_mm, stop_recess};
@@ -12,17 +12,17 @@ use pinswitch_solid::solid::{Facing, Solid};
 const SPACER_RADIUS_MM: f64 = 6.0;
 /// Play around the sheath and around the tendon in the sheath stop, mm.
 const STOP_PLAY_MM: f64 = 0.2;
-/// Share of the sheath stop that the sheath reaches into.
+/// Share of the length of the sheath stop that contains the sheath.
 const SHEATH_SHARE: f64 = 0.6;
-/// How far its jaws stand back from the edge of its base, mm: two coincident walls would not be a solid.
-const STAND_BACK_MM: f64 = 0.5;
-/// From a screw's hole to the jaw beside it, with the wall beyond the hole, mm: the head of an M3 screw turns there.
+/// Distance of its jaws from the edge of its base, mm: coincident walls would not be a solid.
+const SETBACK_MM: f64 = 0.5;
+/// Distance of a jaw from a hole, with the wall beyond the hole, mm: space for the head of an M3 screw.
 const JAW_AIR_MM: f64 = 3.5;
 
-/// The spacer under the rig's pulley.
+/// Name of the spacer under the pulley of the rig.
 pub(crate) const SPACER: &str = "pulley-spacer";
 
-/// The name of the plate of a kind of mount.
+/// Returns the name of the plate of a kind of mount.
 fn name(kind: MountKind) -> &'static str {
     match kind {
         MountKind::FingerLink => "finger-link",
@@ -39,7 +39,7 @@ pub(super) fn has_sheath_stop(c: &Configuration) -> bool {
     c.mount.kind != MountKind::None && c.tendon.sheath_diameter_mm > 0.0
 }
 
-/// Height of the plate's inner face in the assembly, mm.
+/// Height of the inner face of the plate in the assembly, mm.
 fn face_mm(design: &Design) -> f64 {
     -design.configuration().support.plate_mm
 }
@@ -55,7 +55,7 @@ fn no_plate() -> ConfigError {
     }
 }
 
-/// The plate: the hull of discs around all its holes, printed on its outer face.
+/// The plate: the convex hull of discs around its holes, printed on its outer face.
 pub(super) fn plate(design: &Design) -> Result<Part, ConfigError> {
     let c = design.configuration();
     let (thickness, chamfer) = (c.mount.plate_mm, c.print.elephant_foot_mm);
@@ -88,20 +88,20 @@ pub(super) fn plate(design: &Design) -> Result<Part, ConfigError> {
     Ok(part)
 }
 
-/// What finds no room on the mounting plate.
+/// Returns the features that do not fit on the mounting plate.
 pub(super) fn left_out(design: &Design) -> Vec<LeftOut> {
     let f = &design.configuration().fasteners;
     let is_lost = f.count > 0 && f.head_recess_mm > 0.0 && design.fastening().mount_counterbore.is_none();
     is_lost.then_some(LeftOut::PlateCounterbores).into_iter().collect()
 }
 
-/// Length of the spacer between plate and bearing, mm: the pulley's groove lies where the tendon runs.
+/// Returns the length of the spacer between plate and bearing, mm, at which the groove of the pulley is level with the tendon.
 pub fn spacer_mm(design: &Design) -> f64 {
     let c = design.configuration();
     c.support.plate_mm + c.shell.width_mm / 2.0 - pulley_width_mm(design.tendon_diameter_mm()) / 2.0
 }
 
-/// The spacer under the rig's pulley.
+/// The spacer under the pulley of the rig.
 pub(super) fn spacer(design: &Design) -> Result<Part, ConfigError> {
     let mounting = design.mounting().ok_or_else(no_plate)?;
     let axle = mounting.axle.ok_or_else(no_plate)?;
@@ -123,8 +123,8 @@ fn at(stop: &SheathStop, along_mm: f64, outward_mm: f64) -> Point2 {
     stop.start + stop.along * along_mm + outwards * outward_mm
 }
 
-/// The stop in which a sheath ends: a base with two jaws that leave a channel for the tendon, and a wider one, as long as
-/// [`SHEATH_SHARE`], for the sheath, whose end rests on the step between them. Open above, so that the tendon is laid in.
+/// The sheath stop: a base with two jaws. The channel between them is narrow for the tendon, and wider for the sheath over
+/// [`SHEATH_SHARE`] of the length; the end of the sheath rests on the step. It is open above to insert the tendon.
 pub(super) fn sheath_stop(design: &Design) -> Result<Part, ConfigError> {
     let mounting = design.mounting().ok_or_else(no_plate)?;
     let stop = mounting.sheath.ok_or_else(no_plate)?;
@@ -138,7 +138,7 @@ fn stop_solid(design: &Design, stop: &SheathStop) -> Result<Solid, ConfigError> 
     let foot = offset_error("print.elephant_foot_mm");
     let (length, half, chamfer) = (stop.length_mm, stop.half_width_mm, c.print.elephant_foot_mm);
     let (tendon, sheath) = (design.tendon_diameter_mm() / 2.0, c.tendon.sheath_diameter_mm / 2.0);
-    // The tendon's axis lies in the middle of the switch's width.
+    // The axis of the tendon is in the middle of the width of the switch.
     let axis = c.support.plate_mm + c.shell.width_mm / 2.0;
     let floor = design.sheath_floor_mm();
     let top = axis + sheath;
@@ -155,12 +155,12 @@ fn stop_solid(design: &Design, stop: &SheathStop) -> Result<Solid, ConfigError> 
     for side in [-1.0, 1.0] {
         let jaw = |x: f64, y: f64| at(stop, x, side * y);
         let points = [
-            jaw(STAND_BACK_MM, tendon + STOP_PLAY_MM),
+            jaw(SETBACK_MM, tendon + STOP_PLAY_MM),
             jaw(step, tendon + STOP_PLAY_MM),
             jaw(step, sheath + STOP_PLAY_MM),
-            jaw(length - STAND_BACK_MM, sheath + STOP_PLAY_MM),
-            jaw(length - STAND_BACK_MM, jaw_half),
-            jaw(STAND_BACK_MM, jaw_half),
+            jaw(length - SETBACK_MM, sheath + STOP_PLAY_MM),
+            jaw(length - SETBACK_MM, jaw_half),
+            jaw(SETBACK_MM, jaw_half),
         ];
         let outline = Contour::polygon(points.to_vec());
         let outline = if outline.area_mm2() < 0.0 { outline.reversed() } else { outline };

@@ -1,10 +1,10 @@
-//! One body: its exact solid in print orientation, what it is for, and its place in the assembly.
+//! One body: its exact solid in print orientation, its role, and its pose in the assembly.
 
 use std::sync::OnceLock;
 
 use serde::Serialize;
 
-use super::LeftOut;
+use super::omission::LeftOut;
 use crate::design::Design;
 use pinswitch_solid::mesh::{Mesh, Vector3};
 use pinswitch_solid::pose::Pose;
@@ -12,7 +12,7 @@ use pinswitch_solid::profile::Contour;
 use pinswitch_solid::solid::{CapError, Facing, Solid, ThinPlace};
 use pinswitch_solid::validity::Expectation;
 
-/// What a part is made of.
+/// The material of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Material {
@@ -24,16 +24,16 @@ pub enum Material {
     Steel,
 }
 
-/// What a part is for: decides its material, its colour, and how it comes out of the assembly.
+/// The role of a part, with its material, its colour, and its displacement in the exploded view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Role {
     /// The rigid, grooved sector.
     Shell,
-    /// A piece of the casting mould.
+    /// A part of the casting mould.
     Mould,
     /// A side support.
     Support {
-        /// -1 at z = 0, +1 at the other end: the side of the switch on which it lies.
+        /// -1 for the support at z = 0, +1 for the one at the other end.
         outwards_z: f64,
     },
     /// The rigid copy of the silicone layer.
@@ -42,19 +42,19 @@ pub enum Role {
     Layer,
     /// A steel pin.
     Pin {
-        /// Its number, from 0, along increasing angle.
+        /// Number, from 0, by increasing angle.
         index: usize,
     },
     /// The tendon, taut over its bed.
     Tendon,
-    /// What the switch is mounted by.
+    /// A mounting part.
     Mount,
-    /// Anything beside the switch: coupon, guide pulley.
+    /// A separate part: coupon, guide pulley.
     Accessory,
 }
 
 impl Role {
-    /// What parts of this role are made of.
+    /// Returns the material of parts with this role.
     pub const fn material(self) -> Material {
         match self {
             Self::Layer => Material::Silicone,
@@ -63,7 +63,7 @@ impl Role {
         }
     }
 
-    /// The colour in pictures: red, green, blue.
+    /// Returns the colour in pictures: red, green, blue.
     pub const fn colour(self) -> [u8; 3] {
         match self {
             Self::Pin { .. } => [205, 210, 218],
@@ -77,7 +77,7 @@ impl Role {
         }
     }
 
-    /// How far the part moves in an exploded view, mm in the assembly's frame.
+    /// Returns the displacement in the exploded view, mm, in the frame of the assembly.
     pub fn explode_offset_mm(self) -> Vector3 {
         match self {
             Self::Support { outwards_z } => Vector3::new(0.0, 0.0, 12.0 * outwards_z),
@@ -90,28 +90,27 @@ impl Role {
     }
 }
 
-/// One body: an exact solid, standing on z = 0 in print orientation, the pulley's axis at the origin.
+/// One body. Its solid is in print orientation, with its lower end at z = 0 and the pulley's axis at the origin.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// Name, and stem of its file.
     pub name: String,
-    /// What it is for.
+    /// Role.
     pub role: Role,
-    /// The exact solid.
+    /// Exact solid.
     pub solid: Solid,
-    /// Where it sits in the assembly; `None` for tools such as the mould.
+    /// Pose in the assembly; `None` for tools such as the mould.
     pub pose: Option<Pose>,
-    /// Where it sits among the tools that are put together with it: the parts of a split mould.
+    /// Pose in the assembled mould, for the parts of a split mould.
     pub tool_pose: Option<Pose>,
-    /// What was asked for and found no room on it.
+    /// Features that do not fit.
     pub left_out: Vec<LeftOut>,
-    /// What is engraved in it, line by line.
+    /// Engraved lines.
     pub engraved: Vec<String>,
-    /// The solid as a workshop draws it, where that is not as it lies in the set: about its own axis, or with its sides
-    /// along the paper.
+    /// The solid in the orientation of its drawing, if that differs: about its own axis, or with its sides parallel to those of
+    /// the paper.
     pub drawn: Option<Solid>,
-    /// Its thin places, once they were looked for: those under so many millimetres. Private, so that nobody gives it another
-    /// solid and keeps them.
+    /// Limit in mm and thin places below it, once they are known. Private, since they belong to the solid.
     pub(super) thin: OnceLock<(f64, Vec<ThinPlace>)>,
 }
 
@@ -130,18 +129,18 @@ impl Part {
         }
     }
 
-    /// What it is made of.
+    /// Returns the material.
     pub const fn material(&self) -> Material {
         self.role.material()
     }
 
-    /// The same with another solid, as a drawing shows it: nothing is known of that yet.
+    /// The same part with another solid, for a drawing.
     #[must_use]
     pub(crate) fn with_solid(&self, solid: Solid) -> Self {
         Self { solid, drawn: None, thin: OnceLock::new(), ..self.clone() }
     }
 
-    /// What its mesh is compared with: one body, and the exact volume within what the chord tolerance allows.
+    /// Returns what a valid mesh of the part has: one body, and the exact volume within the bound of the chord tolerance.
     pub fn expectation(&self, design: &Design) -> Expectation {
         let bound = self.solid.volume_bound_mm3(design.tolerance());
         Expectation {
@@ -151,8 +150,8 @@ impl Part {
         }
     }
 
-    /// Widest ceiling to be bridged when it is printed, mm: over all faces that look down from above the bed, the shorter
-    /// side of their bounding box. 0 without any.
+    /// Returns the widest bridge in print orientation, mm: the largest shorter side of the bounding boxes of all downward faces
+    /// above the bed; 0 without one.
     pub fn widest_bridge_mm(&self) -> f64 {
         let rings: Vec<(&Contour, f64)> = self.solid.rings().collect();
         let bed = self.solid.bounds().map_or(0.0, |(low, _)| low.z);
@@ -168,7 +167,7 @@ impl Part {
             .fold(0.0, f64::max)
     }
 
-    /// The mesh about the pulley's axis, standing on z = 0.
+    /// Meshes the solid, about the pulley's axis.
     ///
     /// # Errors
     /// [`CapError`] if contours cross, which a valid design excludes.
@@ -176,8 +175,8 @@ impl Part {
         self.solid.mesh(design.tolerance())
     }
 
-    /// The displacement from the pulley's axis to the print bed, mm: the middle of the bounding box comes to lie on the z
-    /// axis, and the part to stand on z = 0.
+    /// Returns the displacement from the pulley's axis to the print bed, mm: the middle of the bounding box is on the z axis, and
+    /// the lower end at z = 0.
     pub fn print_shift_mm(&self) -> Vector3 {
         self.solid.bounds().map_or(Vector3::zeros(), |(low, high)| {
             let middle = nalgebra::center(&low, &high);
@@ -185,7 +184,7 @@ impl Part {
         })
     }
 
-    /// The mesh as it is written, on the print bed.
+    /// Meshes the solid on the print bed.
     ///
     /// # Errors
     /// [`CapError`] if contours cross, which a valid design excludes.

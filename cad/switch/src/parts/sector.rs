@@ -1,9 +1,9 @@
-//! Sectors of an annulus, smooth or grooved: the outline of shell, layer, mould and plates.
+//! Sectors of an annulus, smooth or grooved: the outlines of shell, layer, mould and plates.
 
 use pinswitch_solid::profile::{Contour, Pen, Point2, Vector2, polar};
 
-/// A sector of an annulus about the axis, its middle at angle zero. Its ends are parallel to the radial planes at
-/// plus and minus `half_span_rad` and lie `end_shift_mm` outside them, so that an end wall is equally thick all over.
+/// A sector of an annulus about the axis, with its middle at angle zero. Its ends are parallel to the radial planes at plus
+/// and minus `half_span_rad`, `end_shift_mm` outside of them, so that end walls have a constant thickness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sector {
     /// Inner radius, mm.
@@ -12,14 +12,14 @@ pub struct Sector {
     pub outer_mm: f64,
     /// Half of the angle between the radial planes.
     pub half_span_rad: f64,
-    /// How far the ends lie outside the radial planes, mm.
+    /// Distance of the ends from the radial planes, mm.
     pub end_shift_mm: f64,
 }
 
-/// Stops at both ends of a sector's face.
+/// Stops at both ends of the face of a sector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stops {
-    /// From the end of the sector to the stop, mm.
+    /// Gap between the end of the sector and the stop, mm.
     pub gap_mm: f64,
     /// Thickness along the arc, mm.
     pub thickness_mm: f64,
@@ -39,7 +39,7 @@ pub(super) enum End {
 }
 
 impl Sector {
-    /// The sector widened on all four sides.
+    /// The sector enlarged on all four sides.
     #[must_use]
     pub fn grown(self, inward_mm: f64, outward_mm: f64, at_ends_mm: f64) -> Self {
         Self {
@@ -89,7 +89,7 @@ impl Sector {
         .close()
     }
 
-    /// The grooved outline with a stop at each end: a wall beyond the layer's end that stands above the face.
+    /// The grooved outline with a stop at each end: a wall beyond the end of the layer, higher than the face.
     pub(super) fn stopped(&self, angles_rad: &[f64], groove_radius_mm: f64, stops: &Stops) -> Contour {
         let face = Self { end_shift_mm: self.end_shift_mm + stops.gap_mm, ..*self };
         let top = Self {
@@ -120,7 +120,7 @@ impl Sector {
             .close()
     }
 
-    /// The grooved outline whose ends reach `reach_mm` further from `from_mm` outward, over what stands below.
+    /// The grooved outline whose ends are `reach_mm` longer from radius `from_mm` outward, over the stops below.
     pub(super) fn eared(
         &self,
         angles_rad: &[f64],
@@ -181,8 +181,8 @@ struct Fillet {
     on_arc: Point2,
 }
 
-/// Draws the face of a grooved sector up to `last`: from positive to negative angles if `counter_clockwise`, else
-/// back. Either way the grooves bulge toward the axis; drawn clockwise they are the ribs that form them.
+/// Draws the face of a grooved sector up to `last`: from positive to negative angles if `counter_clockwise`, else in the
+/// other direction. Grooves bulge toward the axis; drawn clockwise, they are the ribs that form them.
 pub(super) fn grooved_face(
     mut pen: Pen,
     radius_mm: f64,
@@ -207,7 +207,7 @@ pub(super) fn grooved_face(
     pen.arc_to(Point2::origin(), last, counter_clockwise)
 }
 
-/// Half of the angle that a groove takes out of the circle it is centred on: `2 asin(g / 2R)`
+/// Half of the angle of a groove of radius g on its circle of radius R: `2 asin(g / 2R)`
 /// (cad/doc/dimensions.md, "Sections").
 pub(super) fn groove_half_angle_rad(groove_radius_mm: f64, radius_mm: f64) -> f64 {
     2.0 * libm::asin(groove_radius_mm / (2.0 * radius_mm))
@@ -217,7 +217,7 @@ pub(super) fn groove_half_angle_rad(groove_radius_mm: f64, radius_mm: f64) -> f6
 mod tests {
     use super::*;
 
-    /// Green's theorem over the lines and arcs of the reference shell, worked out with 15 digits.
+    /// Green's theorem over the lines and arcs of the reference shell, with 15 digits.
     #[test]
     fn the_reference_section_has_its_exact_area() {
         let half_span_rad = 89.45f64.to_radians() / 2.0;
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_takes_the_corners_only() {
+    fn rounding_removes_corners_only() {
         let sector = Sector { inner_mm: 14.0, outer_mm: 25.0, half_span_rad: 0.78, end_shift_mm: 0.3 };
         let (sharp, round) = (sector.outline().area_mm2(), sector.rounded(1.5).area_mm2());
         // A right corner loses (1 - pi/4) r²; these are nearly right.

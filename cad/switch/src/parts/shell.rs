@@ -1,7 +1,7 @@
 //! The rigid shell: a grooved sector of an annulus with fastener holes (cad/doc/dimensions.md, "Shell").
 
 use super::label::{EDGE_MM, Zone, engrave, is_left_out};
-use super::left_out::LeftOut;
+use super::omission::LeftOut;
 use super::sector::Stops;
 use super::{Part, Pose, Role, Sector, fastening, offset_error};
 use crate::config::ConfigError;
@@ -9,13 +9,12 @@ use crate::design::Design;
 use pinswitch_solid::profile::Contour;
 use pinswitch_solid::solid::{Facing, Solid};
 
-/// Largest fillet of a stop, as a share of its thickness and height: something of its top must stay.
+/// Largest fillet of a stop as a share of its thickness and height, so that its top is not empty.
 const FILLET_SHARE: f64 = 0.45;
-
 /// Least fillet of a stop on the bed, mm.
 const LEAST_FILLET_MM: f64 = 0.05;
 
-/// The shell's face between the layer's ends, without stops.
+/// The sector of the shell between the ends of the layer, without stops.
 fn face_sector(design: &Design) -> Sector {
     Sector {
         inner_mm: design.inner_radius_mm(),
@@ -25,17 +24,17 @@ fn face_sector(design: &Design) -> Sector {
     }
 }
 
-/// Shell and supports between the axis and the grooves, stops included.
+/// The sector of shell and supports, with stops.
 pub(super) fn wall_sector(design: &Design) -> Sector {
     Sector { end_shift_mm: design.shell_end_shift_mm(), ..face_sector(design) }
 }
 
-/// The stops that keep the layer from sliding; `None` without.
+/// The stops at the ends of the layer, if there are any.
 fn stops(design: &Design) -> Option<Stops> {
     let c = design.configuration();
     let [thickness_mm, height_mm] = design.stops_mm()?;
     let fillet_mm = c.tendon.entry_fillet_mm.min(FILLET_SHARE * thickness_mm.min(height_mm));
-    // A chamfer must leave something of it at the bed.
+    // The bottom chamfer must not remove it.
     let survives = fillet_mm > c.print.elephant_foot_mm + LEAST_FILLET_MM;
     Some(Stops {
         gap_mm: c.silicone.side_clearance_mm,
@@ -53,12 +52,12 @@ fn outline(design: &Design) -> Contour {
     }
 }
 
-/// Where the label may go: on one line between the holes, or on two, the upper one outside.
+/// Zones of the label: one line between the holes, or two lines, the outer one first.
 fn label_zones(design: &Design) -> [Vec<Zone>; 2] {
     let groove_mm = design.configuration().segment.groove_radius_mm;
     let (inner, outer) = (design.inner_radius_mm(), design.shell_radius_mm() - groove_mm);
     let band = |from, to| Zone::between_holes(design, design.shell_hole_mm(), from, to);
-    // Letters keep clear of the edges of their line, so that two lines share what is between them.
+    // Letters keep clear of the edges of their zone, so that two lines share the wall between them.
     let middle = f64::midpoint(inner, outer);
     let (above, below) = (middle - EDGE_MM / 2.0, middle + EDGE_MM / 2.0);
     [band(inner, outer), [band(above, outer), band(inner, below)].concat()]
@@ -86,7 +85,7 @@ pub(super) fn shell(design: &Design) -> Result<Part, ConfigError> {
     Ok(part)
 }
 
-/// What finds no room on the shell.
+/// Returns the features that do not fit on the shell.
 pub(super) fn left_out(design: &Design) -> Vec<LeftOut> {
     let label = is_left_out(design, &label_zones(design), design.configuration().shell.width_mm);
     let lost = [(label, LeftOut::Label), (has_lost_stops(design), LeftOut::Stops)];
@@ -104,9 +103,9 @@ mod tests {
     use crate::config::{Configuration, assign};
     use crate::parts::label::{broken, sizes_mm};
 
-    /// Wide holes leave no stretch of the wall for the whole label: it goes on two lines, whose letters leave walls.
+    /// Between wide holes, the label does not fit on one line.
     #[test]
-    fn a_label_goes_on_two_lines_where_one_does_not_hold_it() {
+    fn long_labels_have_two_lines() {
         let mut c = Configuration::default();
         let assignments = [
             "layout.pins=[5, 8, 11]",
@@ -119,9 +118,9 @@ mod tests {
         let design = Design::new(c).unwrap();
         let [one, two] = label_zones(&design);
         assert!(one.len() == 3 && two.len() >= 4, "{one:?}, {two:?}");
-        let laid = |zones: &[Zone]| sizes_mm(&design).find_map(|mm| broken(&design, "3x3/5", zones, mm));
-        assert!(laid(&one).is_none(), "no size of letters stands on one line");
-        assert!(laid(&two).is_some_and(|pieces| pieces.len() > 1));
+        let layout = |zones: &[Zone]| sizes_mm(&design).find_map(|mm| broken(&design, "3x3/5", zones, mm));
+        assert!(layout(&one).is_none(), "letters of some size fit on one line");
+        assert!(layout(&two).is_some_and(|pieces| pieces.len() > 1));
         let part = shell(&design).unwrap();
         assert_eq!(part.engraved, ["3x3/5"]);
         assert_eq!(part.left_out, []);

@@ -1,14 +1,14 @@
-//! A stroke font for engraving: capitals, figures and a few signs on a grid 4 wide and 6 high. Strokes meet at wide
-//! angles, so that no letter leaves a sliver of wall that a printer cannot lay down.
+//! A stroke font for engraving: capitals, figures and some signs on a grid 4 wide and 6 high. Strokes meet at wide angles, so
+//! that letters have no walls too thin to print.
 
 /// Width of a letter on the grid.
 pub(super) const WIDTH: f64 = 4.0;
 /// Height of a letter on the grid.
 pub(super) const HEIGHT: f64 = 6.0;
 
-/// The strokes of `letter` as polylines on the grid; none for a space, `None` for a letter that the font lacks.
+/// Returns the strokes of a letter as polylines on the grid; none for a space, `None` for a letter that is not in the font.
 pub(super) fn strokes(letter: char) -> Option<Vec<Vec<[f64; 2]>>> {
-    // Each stroke is a run of digit pairs: x, then y.
+    // A stroke is a sequence of digit pairs: x, then y.
     let code = match letter {
         'x' => "0044 0440",
         _ => match letter.to_ascii_uppercase() {
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_letter_stays_on_the_grid() {
+    fn letters_are_on_the_grid() {
         let letters = ('A'..='Z').chain('0'..='9').chain("-_/.:+=()<> x".chars());
         for letter in letters {
             for [x, y] in strokes(letter).unwrap().concat() {

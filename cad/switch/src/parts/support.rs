@@ -1,8 +1,8 @@
-//! The side supports: plates with radial slots, a lip over the silicone's edge and the shell's holes
+//! The side supports: plates with radial slots, a lip over the edge of the silicone, and the holes of the shell
 //! (cad/doc/dimensions.md, "Side supports").
 
-use super::left_out::LeftOut;
 use super::marks::{self, engrave_marks};
+use super::omission::LeftOut;
 use super::shell::wall_sector;
 use super::{Part, Pose, Role, fastening, offset_error};
 use crate::config::{ConfigError, FastenerKind, MountKind, SlotKind};
@@ -10,21 +10,21 @@ use crate::design::{Design, Recess};
 use pinswitch_solid::profile::{Contour, Pen, Point2, Vector2, polar};
 use pinswitch_solid::solid::{Facing, Solid};
 
-/// The lip ends this far inside the plate, mm: two coincident walls would not be a solid.
+/// Distance of the ends of the lip from the edge of the plate, mm: coincident walls would not be a solid.
 const LIP_END_MM: f64 = 0.5;
-/// Ledge between a slot and the lip beside it, mm: likewise.
+/// Ledge between a slot and the lip, mm, for the same reason.
 const LIP_LEDGE_MM: f64 = 0.1;
 /// Least height of a tooth of the lip, mm.
 const LEAST_TOOTH_MM: f64 = 0.05;
-/// Points closer than this are one, mm.
+/// Points that are closer are equal, mm.
 const LIP_SAME_MM: f64 = 1e-6;
 
-/// Which side of the switch a support is on.
+/// The side of a support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
-    /// At z = 0; printed as it stands.
+    /// At z = 0. It is printed in the orientation of the assembly.
     Left,
-    /// At the other end: printed turned half round, so its plan is mirrored.
+    /// At the other end. It is printed rotated by 180 degrees, so its plan is mirrored.
     Right,
 }
 
@@ -38,7 +38,7 @@ pub(super) fn right(design: &Design) -> Result<Part, ConfigError> {
     support(design, Side::Right)
 }
 
-/// A plate, printed on its outer face: slots and lip look up.
+/// A support, printed on its outer face, with slots and lip up.
 fn support(design: &Design, side: Side) -> Result<Part, ConfigError> {
     let c = design.configuration();
     let (plate, chamfer) = (c.support.plate_mm, c.print.elephant_foot_mm);
@@ -83,7 +83,7 @@ fn support(design: &Design, side: Side) -> Result<Part, ConfigError> {
     Ok(part)
 }
 
-/// The recess for heads or nuts in the outer face: heads are on the left, or on the mounting plate beside it.
+/// The recess for heads or nuts in the outer face. Heads are on the left, or in the mounting plate.
 fn recess(design: &Design, side: Side) -> Option<Recess> {
     let c = design.configuration();
     let fastening = design.fastening();
@@ -94,14 +94,14 @@ fn recess(design: &Design, side: Side) -> Option<Recess> {
     }
 }
 
-/// What finds no room on a support.
+/// Returns the features that do not fit on a support.
 pub(super) fn left_out(design: &Design, side: Side) -> Vec<LeftOut> {
     let mut lost = marks::left_out(design, side == Side::Right);
     lost.extend(lost_hardware(design, side));
     lost
 }
 
-/// The lip and the recesses that were asked for and are not there.
+/// The lip and the recesses that do not fit.
 fn lost_hardware(design: &Design, side: Side) -> Vec<LeftOut> {
     let c = design.configuration();
     let has_heads = match side {
@@ -119,8 +119,7 @@ fn lost_hardware(design: &Design, side: Side) -> Vec<LeftOut> {
     .collect()
 }
 
-/// A radial slot with round ends, clockwise: the places that a pin of the slot's width can take between its resting
-/// and its flush position.
+/// A radial slot with round ends, clockwise, between the resting and the flush position of a pin.
 fn slot(design: &Design, angle_rad: f64) -> Contour {
     let slot = design.slot();
     let (inner, outer) = (polar(slot.inner_mm, angle_rad), polar(slot.outer_mm, angle_rad));
@@ -135,8 +134,8 @@ fn slot(design: &Design, angle_rad: f64) -> Contour {
         .reversed()
 }
 
-/// The lip, counter-clockwise: a band over the silicone's edge, unbroken behind the pins' slots. Between the slots it
-/// reaches down to the silicone, wherever a tooth of two printed lines fits; `None` where there is no room for the band.
+/// The lip, counter-clockwise: a continuous band behind the slots of the pins, with teeth down to the silicone between the
+/// slots, if teeth of two printed lines fit. `None` without space for the band.
 fn lip(design: &Design) -> Option<Contour> {
     let c = design.configuration();
     if c.support.lip_depth_mm <= 0.0 {
@@ -144,13 +143,13 @@ fn lip(design: &Design) -> Option<Contour> {
     }
     let inner = design.contact_radius_mm() + c.support.lip_clearance_mm;
     let slot = design.slot();
-    // The band passes every slot, and a pin in it, with a ledge.
+    // The band clears every slot by a ledge.
     let behind_slots = slot.outer_mm + slot.width_mm / 2.0 + LIP_LEDGE_MM;
     let slots = design.slot_angles_rad();
     let back = if slots.is_empty() { inner } else { inner.max(behind_slots) };
     let outer = back + c.support.lip_height_mm;
     let edge = design.support_radius_mm() - c.print.elephant_foot_mm - c.print.least_wall_mm;
-    // Rounded plate corners leave no room under the ends of the lip.
+    // The ends of the lip must be on the plate, and not over its rounded corners.
     let rounded = c.support.corner_radius_mm.max(LIP_END_MM) + c.print.elephant_foot_mm;
     let end = design.half_span_rad() + (design.shell_end_shift_mm() - LIP_END_MM - rounded) / outer;
     if outer > edge || end <= 0.0 {
@@ -177,16 +176,16 @@ fn lip(design: &Design) -> Option<Contour> {
     Some(pen.close())
 }
 
-/// Angles between which the lip has teeth: beside slots, where two printed lines fit, and clear of the band's ends.
+/// First and last angle of each tooth: between slots, at least two printed lines wide, and clear of the ends of the band.
 fn teeth(design: &Design, inner_mm: f64, end_rad: f64) -> Vec<(f64, f64)> {
     let c = design.configuration();
-    // A slot and its ledge, as an angle at the inner radius, where they are widest.
-    let beside = (design.slot().width_mm / 2.0 + LIP_LEDGE_MM) / inner_mm;
+    // Half of a slot with its ledge, as an angle at the inner radius, where it is widest.
+    let half_slot = (design.slot().width_mm / 2.0 + LIP_LEDGE_MM) / inner_mm;
     let least = 2.0 * c.print.line_mm / inner_mm;
     let end = end_rad - LIP_LEDGE_MM / inner_mm;
     let slots = design.slot_angles_rad();
-    let starts = std::iter::once(-end).chain(slots.iter().map(|a| a + beside));
-    let ends = slots.iter().map(|a| a - beside).chain([end]);
+    let starts = std::iter::once(-end).chain(slots.iter().map(|a| a + half_slot));
+    let ends = slots.iter().map(|a| a - half_slot).chain([end]);
     let within = |(a, b): (f64, f64)| (a.clamp(-end, end), b.clamp(-end, end));
     starts.zip(ends).map(within).filter(|(a, b)| b - a >= least).collect()
 }

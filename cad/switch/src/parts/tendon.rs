@@ -1,7 +1,7 @@
 //! The tendon, taut over resting pins and silicone (cad/doc/dimensions.md, "Tendon").
 //!
-//! Its axis is a string around discs: that of the silicone and one for each pin, all larger by half of the tendon. So it is
-//! lines and arcs, and it is known where it lies on a pin and where on the silicone.
+//! Its axis is a string around discs: one of the silicone and one for each pin, with half of the tendon added to their radii.
+//! It consists of lines and arcs; each arc is a contact with a pin or with the silicone.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -10,38 +10,38 @@ use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Disc, HullArc, Pen, Point2, Vector2, hull_arcs, polar};
 use pinswitch_solid::solid::{Facing, Solid};
 
-/// Sides of the tendon's section: a polygon inside the circle, so that it overlaps nothing that the circle touches.
+/// Number of sides of the section: a polygon inside the circle, so that it does not overlap bodies that the circle touches.
 const SIDES: u32 = 12;
-/// Arcs shorter than this, in radians, are none.
+/// Shorter arcs are left out, radians.
 const SAME_RAD: f64 = 1e-9;
 
-/// Where the tendon lies on something.
+/// A contact of the tendon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// The pin's number, from 0 along increasing angle; `None` on the silicone, or the proxy.
+    /// Number of the pin, from 0 by increasing angle; `None` for silicone or proxy.
     pub pin: Option<usize>,
-    /// First angle, in the frame of the pulley.
+    /// First angle about the pulley's axis.
     pub from_rad: f64,
     /// Last angle.
     pub to_rad: f64,
 }
 
-/// The discs that the tendon's axis goes around, the silicone's first, with the numbers of their pins.
+/// The discs under the axis of the tendon, that of the silicone first, and the numbers of their pins.
 fn discs(design: &Design) -> (Vec<Disc>, Vec<usize>) {
     let half = design.tendon_diameter_mm() / 2.0;
     let mut discs = vec![Disc { centre: Point2::origin(), radius_mm: design.tendon_axis_radius_mm() }];
     let mut pins = Vec::new();
     let radius_mm = design.configuration().pins.diameter_mm / 2.0 + half;
     for (i, angle) in design.pin_angles_rad().into_iter().enumerate() {
-        // Also pins beyond the wrap: one that stands in the tendon's way lifts it.
+        // Pins beyond the wrap can lift the tendon, too.
         discs.push(Disc { centre: polar(design.contact_radius_mm(), angle), radius_mm });
         pins.push(i);
     }
     (discs, pins)
 }
 
-/// What the unloaded tendon lies on, along increasing angle: pins, and silicone where no pin carries it, foremost outside
-/// the outermost pins.
+/// Returns the contacts of the unloaded tendon with pins and silicone, by increasing angle. Contacts with silicone are mostly
+/// outside of the outermost pins.
 pub fn touches(design: &Design) -> Vec<Touch> {
     let (_, arcs, pins) = string(design);
     let mut all: Vec<Touch> = arcs
@@ -57,6 +57,7 @@ pub fn touches(design: &Design) -> Vec<Touch> {
     all
 }
 
+/// Discs, arcs of the string around them, and numbers of the pins.
 fn string(design: &Design) -> (Vec<Disc>, Vec<HullArc>, Vec<usize>) {
     let (discs, pins) = discs(design);
     let half = design.half_wrap_rad();
@@ -68,7 +69,7 @@ pub(super) fn tendon(design: &Design) -> Part {
     let radius = design.tendon_diameter_mm() / 2.0;
     let (discs, arcs, _) = string(design);
     let [load_side, other_side] = design.shown_ends_mm();
-    // The load's side is at the largest direction.
+    // The side of the load is at the largest angle.
     let leads = [other_side, load_side];
     let mut solid = Solid::new();
     let mut below = None;
@@ -89,7 +90,7 @@ pub(super) fn tendon(design: &Design) -> Part {
     Part::new("tendon", Role::Tendon, solid, Some(Pose::upright(middle)))
 }
 
-/// What the string covers if it is twice `half_mm` wide, counter-clockwise.
+/// The outline of a string of width `2 * half_mm`, counter-clockwise.
 fn strip(discs: &[Disc], arcs: &[HullArc], leads_mm: [f64; 2], half_mm: f64) -> Contour {
     let direction = |angle: f64| Vector2::new(libm::cos(angle), libm::sin(angle));
     let onward = |angle: f64| Vector2::new(-libm::sin(angle), libm::cos(angle));
@@ -99,9 +100,9 @@ fn strip(discs: &[Disc], arcs: &[HullArc], leads_mm: [f64; 2], half_mm: f64) -> 
     let (Some(first), Some(last)) = (arcs.first(), arcs.last()) else { return Contour::polygon(Vec::new()) };
     let start = |by: f64| at(first, first.from_rad, by) - onward(first.from_rad) * leads_mm[0];
     let end = |by: f64| at(last, last.to_rad, by) + onward(last.to_rad) * leads_mm[1];
-    let turns = |arc: &&HullArc| arc.to_rad - arc.from_rad > SAME_RAD;
+    let is_arc = |arc: &&HullArc| arc.to_rad - arc.from_rad > SAME_RAD;
     let mut pen = Pen::at(start(half_mm));
-    for arc in arcs.iter().filter(turns) {
+    for arc in arcs.iter().filter(is_arc) {
         pen = pen.line_to(at(arc, arc.from_rad, half_mm)).arc_to(
             discs[arc.disc].centre,
             at(arc, arc.to_rad, half_mm),
@@ -109,7 +110,7 @@ fn strip(discs: &[Disc], arcs: &[HullArc], leads_mm: [f64; 2], half_mm: f64) -> 
         );
     }
     pen = pen.line_to(end(half_mm)).line_to(end(-half_mm));
-    for arc in arcs.iter().rev().filter(turns) {
+    for arc in arcs.iter().rev().filter(is_arc) {
         pen = pen.line_to(at(arc, arc.to_rad, -half_mm)).arc_to(
             discs[arc.disc].centre,
             at(arc, arc.from_rad, -half_mm),

@@ -1,4 +1,4 @@
-//! Every part of the shipped variants is one valid body with its exact volume, in memory and after single precision.
+//! Every part of many variants is one valid body with its exact volume, in double and in single precision.
 
 use std::io::Cursor;
 
@@ -22,12 +22,12 @@ fn design(assignments: &[&str]) -> Design {
 fn assert_valid(part: &Part, design: &Design, variant: &[&str]) {
     let expected = part.expectation(design);
     let mesh = part.print_mesh(design).unwrap();
-    let found = examine(&mesh, &expected);
-    assert!(found.is_valid(), "{variant:?} {}: {:#?}", part.name, found.faults);
-    assert!(found.facts.low_mm[2].abs() < 1e-12);
+    let report = examine(&mesh, &expected);
+    assert!(report.is_valid(), "{variant:?} {}: {:#?}", part.name, report.faults);
+    assert!(report.facts.low_mm[2].abs() < 1e-12);
     let written = read_stl(&mut Cursor::new(stl_bytes(&mesh).unwrap())).unwrap().mesh;
-    let found = examine(&written, &expected);
-    assert!(found.is_valid(), "{variant:?} {} as STL: {:#?}", part.name, found.faults);
+    let report = examine(&written, &expected);
+    assert!(report.is_valid(), "{variant:?} {} as STL: {:#?}", part.name, report.faults);
     assert_eq!(written.triangles.len(), mesh.triangles.len());
 }
 
@@ -64,7 +64,7 @@ fn all_parts_of_the_variants_are_valid() {
     }
 }
 
-/// truck-modeling builds the same solid from the same contours, at every tolerance.
+/// Truck builds the same solid from the same profile: closed, with equal volume and bounds.
 #[test]
 fn the_second_kernel_confirms_every_part() {
     let kernel = second_kernel().unwrap();

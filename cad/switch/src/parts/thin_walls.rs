@@ -1,5 +1,5 @@
-//! Walls of printed parts that are thinner than two printed lines, and what makes them thicker: every value that a warning
-//! names was tried.
+//! Walls of printed parts that are thinner than two printed lines, and changes that make them thicker. Warnings name only
+//! values that were tested.
 
 use pinswitch_solid::solid::ThinPlace;
 
@@ -9,44 +9,44 @@ use crate::design::Design;
 use crate::design::rules::Change::{self, Ease, Lower, Raise};
 use crate::design::rules::{Effort, way_out, ways_out};
 
-/// Walls of exactly two lines are not thin for the rounding of their distance.
+/// Tolerance of the thickness of walls of exactly two lines, mm.
 const THIN_ROUNDING_MM: f64 = 1e-6;
-/// How near the thickness of a place comes to one that a rule has told of, if it is that one; and of places that are alike.
+/// Thicknesses that differ by less are equal, mm.
 const ALIKE_MM: f64 = 1e-3;
-/// Changes that are named together where no single one will do.
+/// Most changes that a warning names together.
 const TOGETHER: usize = 3;
 
 impl Part {
-    /// Places with less than two printed lines of material, the thinnest first; of what is printed.
+    /// Returns the places of a printed part with less than two printed lines of material, the thinnest first.
     pub fn thin_places(&self, design: &Design) -> Vec<ThinPlace> {
         if self.material() != Material::Abs {
             return Vec::new();
         }
         let limit_mm = 2.0 * design.configuration().print.line_mm - THIN_ROUNDING_MM;
-        let (under_mm, found) = self.thin.get_or_init(|| (limit_mm, self.solid.thin_places(limit_mm)));
-        if *under_mm == limit_mm { found.clone() } else { self.solid.thin_places(limit_mm) }
+        let (known_limit_mm, places) = self.thin.get_or_init(|| (limit_mm, self.solid.thin_places(limit_mm)));
+        if *known_limit_mm == limit_mm { places.clone() } else { self.solid.thin_places(limit_mm) }
     }
 
-    /// The same part with what is known of one whose solid is the same.
+    /// The same part with the known thin places of a part with an equal solid.
     #[must_use]
     pub(crate) fn known_by(mut self, twin: &Self) -> Self {
         self.thin = twin.thin.clone();
         self
     }
 
-    /// Those of which no rule of its own tells.
-    fn untold_thin_places(&self, design: &Design) -> Vec<ThinPlace> {
+    /// Thin places that no rule of the design reports.
+    fn unreported_thin_places(&self, design: &Design) -> Vec<ThinPlace> {
         let mut places = self.thin_places(design);
         if self.role == Role::Shell {
-            let told = [design.land_mm(), design.end_wall_mm()];
-            places.retain(|p| told.iter().all(|t| (p.thickness_mm - t).abs() > ALIKE_MM));
+            let reported = [design.land_mm(), design.end_wall_mm()];
+            places.retain(|p| reported.iter().all(|t| (p.thickness_mm - t).abs() > ALIKE_MM));
         }
         places
     }
 
-    /// The thinnest place, as a warning with what to change; `None` where every wall has two printed lines.
+    /// Returns a warning of the thinnest place, with the parameter to change; `None` if every wall has two printed lines.
     pub fn thin_warning(&self, design: &Design) -> Option<String> {
-        let places = self.untold_thin_places(design);
+        let places = self.unreported_thin_places(design);
         let thinnest = places.first()?;
         let (at, line_mm) = (thinnest.middle, design.configuration().print.line_mm);
         Some(format!(
@@ -68,20 +68,20 @@ impl Part {
         ))
     }
 
-    /// What leaves this part without a thin place: one value, or several together. Where none was found, finer lines.
+    /// Returns the changes after which the part has no thin place: one value, or several together; finer lines without any.
     fn remedy_for_thin_places(&self, design: &Design, thinnest_mm: f64) -> String {
         let places = |c: &Configuration| -> Option<Vec<ThinPlace>> {
             let design = Design::new(c.clone()).ok()?;
-            Some(printed_part(&self.name, &design)?.untold_thin_places(&design))
+            Some(printed_part(&self.name, &design)?.unreported_thin_places(&design))
         };
-        let is_mended = |c: &Configuration| places(c).is_some_and(|places| places.is_empty());
-        // The first that does: each part is made many times for it. A layer three times as thick would mend the end walls of
-        // its copy, and be another switch: it is named where nothing else helps.
+        let is_thick = |c: &Configuration| places(c).is_some_and(|places| places.is_empty());
+        // The first change that works, since every test builds the part. A layer of three times the thickness would also thicken
+        // the end walls of the proxy, but it would be another switch: it is the last resort.
         let c = design.configuration();
-        if let Some(way) = way_out(c, self.thickening(), &is_mended, Effort::QUICK) {
+        if let Some(way) = way_out(c, self.thickening(), &is_thick, Effort::QUICK) {
             return way.words;
         }
-        // The thinnest places first, then those that are left.
+        // The thinnest places first, then the remaining ones.
         let (mut c, mut left_mm, mut steps) = (c.clone(), thinnest_mm, Vec::new());
         while steps.len() < TOGETHER {
             let is_thicker = |c: &Configuration| {
@@ -103,10 +103,10 @@ impl Part {
             }
         }
         let line_mm = (50.0 * thinnest_mm).floor() / 100.0;
-        format!("print lines of at most {line_mm:.2} mm (print.line_mm), or leave it as it is")
+        format!("print lines of at most {line_mm:.2} mm (print.line_mm), or accept the thin wall")
     }
 
-    /// What may make a thin wall of this part thicker, the most natural first.
+    /// Returns the parameters that may thicken a wall of this part, the most natural first.
     fn thickening(&self) -> &'static [Change] {
         const MARGIN: Change = Raise("segment.end_margin_mm");
         match (self.role, self.name.as_str()) {
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn every_way_out_of_a_thin_wall_leads_out() {
+    fn remedies_of_thin_walls_work() {
         let mut followed = 0;
         for set in [
             &["shell.stop_mm=0"][..],
@@ -201,9 +201,9 @@ mod tests {
                     continue;
                 }
                 let way: Vec<String> = remedy.split(", and ").map(assignment).collect();
-                let mut mended = set.to_vec();
-                mended.extend(way.iter().map(String::as_str));
-                let left = warned(&mended);
+                let mut changed = set.to_vec();
+                changed.extend(way.iter().map(String::as_str));
+                let left = warned(&changed);
                 assert!(left.iter().all(|(p, _)| *p != part), "{set:?}, {way:?}: {left:?}");
                 followed += 1;
             }

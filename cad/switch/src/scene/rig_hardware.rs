@@ -1,5 +1,5 @@
-//! What is bought for a mounting plate, as it lies in the assembly: bolt, bearing, washer and nut of the guide pulley, screws
-//! and nuts of the sheath stop.
+//! Bought hardware of a mounting plate in the assembly: bolt, bearing, washer and nut of the guide pulley, screws and nuts of
+//! the sheath stop.
 
 use super::stage::{Item, METAL_GREY, STEEL};
 use crate::design::{AXLE_HEAD_MM, Design, Hole, STOP_SCREW, axle_recess, stop_recess};
@@ -9,16 +9,16 @@ use pinswitch_solid::mesh::Vector3;
 use pinswitch_solid::profile::{Contour, Point2, polar};
 use pinswitch_solid::solid::Solid;
 
-/// Bolt M8, its washer (ISO 7089) and the rings of a 608 bearing (ISO 15): radii, mm.
+/// Radii of the M8 bolt, its washer (ISO 7089) and the rings of a 608 bearing (ISO 15), mm.
 const AXLE_MM: f64 = 4.0;
 const WASHER_MM: [f64; 2] = [4.2, 8.0];
 const BEARING_RING_MM: [f64; 2] = [4.0, 11.0];
 /// Thickness of the washer, mm.
 const WASHER_HIGH_MM: f64 = 1.6;
-/// Radius of a shank of M3, mm.
+/// Radius of an M3 shank, mm.
 const STOP_SHANK_MM: f64 = 1.5;
 
-/// Heights of the mounting plate in the assembly: its outer and its inner face.
+/// Heights of the outer and the inner face of the mounting plate in the assembly.
 fn faces_mm(design: &Design) -> [f64; 2] {
     let c = design.configuration();
     [-(c.support.plate_mm + c.mount.plate_mm), -c.support.plate_mm]
@@ -30,7 +30,7 @@ fn hexagon(middle: Point2, flats_mm: f64) -> Contour {
     Contour::polygon((0..6).rev().map(corner).collect())
 }
 
-/// A body of steel between two heights, with a hole of this radius or none.
+/// A body of steel between two heights, with a bore or without.
 fn steel(
     design: &Design,
     outline: &Contour,
@@ -54,7 +54,7 @@ fn ring(
     steel(design, &Contour::circle(middle, outer), Some(bore), span, apart_mm)
 }
 
-/// What is put into the plate before it is laid on: the axle's bolt, and the screws of the sheath stop with their nuts.
+/// Returns the hardware in the plate: the bolt of the axle, and screws and nuts of the sheath stop.
 pub(super) fn in_the_plate(design: &Design, apart_mm: f64) -> Vec<Item> {
     let (Some(mounting), Some(bill)) = (design.mounting(), bill_of_materials(design).mount) else {
         return Vec::new();
@@ -85,7 +85,7 @@ fn stop_screw(design: &Design, hole: &Hole, bill: &MountHardware, apart_mm: f64)
     [head, shank, nut].into_iter().flatten().collect()
 }
 
-/// What comes onto the bolt with the pulley: the bearing in its seat, then washer and nut, each further from its place.
+/// Returns the hardware on the bolt: bearing, washer and nut, at their distances from their positions.
 pub(super) fn on_the_bolt(design: &Design, [bearing_apart_mm, nut_apart_mm]: [f64; 2]) -> Vec<Item> {
     let Some(axle) = design.mounting().and_then(|m| m.axle) else { return Vec::new() };
     let bearing = faces_mm(design)[1] + spacer_mm(design);

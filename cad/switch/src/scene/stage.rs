@@ -1,4 +1,4 @@
-//! Steps of the assembly as pictures: what is there already in grey, what the step adds apart from it and in colour.
+//! Pictures of the steps of the assembly: present bodies in grey, and added bodies in colour, at a distance.
 
 use super::rig_hardware::{in_the_plate, on_the_bolt};
 use crate::built::{Built, MeshedBody};
@@ -11,102 +11,103 @@ use pinswitch_solid::profile::{Contour, Point2, polar};
 use pinswitch_solid::render::{Body, View};
 use pinswitch_solid::solid::Solid;
 
-/// A step of the assembly, by what it adds.
+/// A step of the assembly, named after the bodies that it adds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Pins are cut: they lie alone.
+    /// The cut pins, alone.
     CutPins,
-    /// The layer, or the proxy, comes onto the shell.
+    /// The layer or the proxy, onto the shell.
     Bed,
-    /// Inserts go into the shell.
+    /// Inserts, into the shell.
     Inserts,
-    /// Dowels go into the shell.
+    /// Dowels, into the shell.
     Dowels,
     /// The left support.
     LeftSupport,
-    /// The pins come into grooves and slots.
+    /// The pins, into grooves and slots.
     Pins,
     /// The right support.
     RightSupport,
-    /// What the switch is mounted by.
+    /// The mounting plate.
     Mount,
     /// Screws and nuts.
     Fasteners,
-    /// The guide pulley, beside the switch.
+    /// The guide pulley, next to the switch.
     Pulley,
     /// The tendon.
     Tendon,
 }
 
-/// Turn of the switch, grooves up and left support on the left, so that the outer face of the left support is seen.
+/// Rotation of the switch, with grooves up, at which the outer face of the left support is visible.
 const TURN_DEG: f64 = 38.0;
-/// Height of the eye.
+/// Elevation of the camera.
 const RISE_DEG: f64 = 32.0;
 
-/// Colours of what is there already, from the shell to the pins: greys, so that neighbours can be told apart.
+/// Colours of present bodies, from the shell to the pins: neighbours have different greys.
 const SHELL_GREY: [u8; 3] = [224, 224, 222];
 const BED_GREY: [u8; 3] = [202, 204, 206];
 const PLATE_GREY: [u8; 3] = [214, 214, 212];
 pub(super) const METAL_GREY: [u8; 3] = [158, 160, 164];
-/// Colour of steel that a step adds: pins, screws, dowels.
+/// Colour of added steel: pins, screws, dowels.
 pub(super) const STEEL: [u8; 3] = [206, 72, 52];
-/// Colour of the tendon when it is added.
+/// Colour of the added tendon.
 const TENDON: [u8; 3] = [38, 128, 96];
-/// Colour of a mount when it is added.
+/// Colour of an added mount.
 const MOUNT: [u8; 3] = [146, 118, 190];
 
-/// How far parts are shown from their place, mm: a support, a layer, the tendon, a mounting plate, small hardware.
+/// Distances of added bodies from their positions, mm: support, layer, tendon and mounting plate.
 const SUPPORT_APART_MM: f64 = 12.0;
 const BED_APART_MM: f64 = 9.0;
 const TENDON_APART_MM: f64 = 14.0;
 const MOUNT_APART_MM: f64 = 24.0;
-/// The spacer of the rig's pulley, the pulley with its bearing, washer and nut: one after the other on the bolt.
+/// The same on the bolt of the rig: spacer, pulley with bearing, and washer with nut.
 const SPACER_APART_MM: f64 = 26.0;
 const PULLEY_APART_MM: f64 = 32.0;
 const NUT_APART_MM: f64 = 44.0;
-/// Pins to spare, beside the others.
+/// Distance of spare pins, mm.
 const SPARE_APART_MM: f64 = 5.0;
+/// Distance of small hardware from its position, mm.
 const SMALL_APART_MM: f64 = 6.0;
 
-/// A body of a step in its place.
+/// A body of a step in its position.
 pub(super) struct Item {
     pub(super) mesh: Mesh,
     pub(super) grey: [u8; 3],
     pub(super) colour: [u8; 3],
-    /// How far it is shown from its place while its step adds it, in the assembly's frame.
+    /// Displacement while its step adds it, in the frame of the assembly.
     pub(super) apart: Vector3,
 }
 
-/// Where the eye stands: on the side of the left support, but where a large plate in front of it would hide what a step shows.
+/// Returns the view of a step: from the side of the left support, unless a large plate would hide the added bodies.
 pub fn stage_view(design: &Design, stage: Stage) -> View {
     let is_hidden = matches!(design.configuration().mount.kind, MountKind::Rig | MountKind::Flange)
         && matches!(stage, Stage::Mount | Stage::Pulley | Stage::Tendon);
     View { turn_deg: if is_hidden { -TURN_DEG } else { TURN_DEG }, rise_deg: RISE_DEG }
 }
 
-/// The picture's bodies for the last of `stages`, with all of those before it done.
+/// Returns the bodies of the picture of the last of `stages`.
 pub fn stage_scene(built: &Built, stages: &[Stage]) -> Vec<Body> {
     let Some((now, before)) = stages.split_last() else { return Vec::new() };
     let done = before.iter().filter(|stage| **stage != Stage::CutPins).flat_map(|stage| items(built, *stage));
-    let there = done.map(|item| Body { mesh: lying(item.mesh), colour: item.grey });
+    let there = done.map(|item| Body { mesh: grooves_up(item.mesh), colour: item.grey });
     let added = items(built, *now).into_iter().map(|item| {
         let apart = if *now == Stage::CutPins { Vector3::zeros() } else { item.apart };
-        Body { mesh: lying(item.mesh.translated(apart)), colour: item.colour }
+        Body { mesh: grooves_up(item.mesh.translated(apart)), colour: item.colour }
     });
-    let shell =
-        bodies(built, |role| role == Role::Shell).map(|mesh| Body { mesh: lying(mesh), colour: SHELL_GREY });
-    // Cut pins lie alone; everything else is put on the shell.
+    let shell = bodies(built, |role| role == Role::Shell)
+        .map(|mesh| Body { mesh: grooves_up(mesh), colour: SHELL_GREY });
+    // Cut pins are shown without the shell.
     let shell: Vec<Body> = if *now == Stage::CutPins { Vec::new() } else { shell.collect() };
     shell.into_iter().chain(there).chain(added).collect()
 }
 
-/// Turned so that the pulley's axis runs from left to right, and the grooves look up.
-fn lying(mesh: Mesh) -> Mesh {
+/// Rotates a mesh of the assembly so that the pulley's axis is horizontal, from left to right, and the grooves are up.
+pub(super) fn grooves_up(mesh: Mesh) -> Mesh {
     let turned = mesh.positions.iter().map(|p| Point3::new(p.z, p.x, p.y)).collect();
     Mesh::new(turned, mesh.triangles)
 }
 
-/// Meshes of bodies of the assembly, in their places.
+/// Meshes of bodies in their positions in the assembly.
 fn bodies(built: &Built, is_wanted: impl Fn(Role) -> bool) -> impl Iterator<Item = Mesh> {
     placed(built, move |part| is_wanted(part.role))
 }
@@ -116,12 +117,12 @@ fn placed(built: &Built, is_wanted: impl Fn(&Part) -> bool) -> impl Iterator<Ite
     built.assembly().filter(move |body| is_wanted(&body.part)).filter_map(place)
 }
 
-/// Whether a part comes with the pulley, and not with the plate.
+/// Returns whether a part is added with the pulley, and not with the plate.
 fn is_spacer(part: &Part) -> bool {
     part.name == SPACER
 }
 
-/// What a step adds.
+/// Returns the bodies that a step adds.
 fn items(built: &Built, stage: Stage) -> Vec<Item> {
     let design = built.design();
     let z = |mm: f64| Vector3::new(0.0, 0.0, mm);
@@ -174,7 +175,7 @@ fn items(built: &Built, stage: Stage) -> Vec<Item> {
     }
 }
 
-/// Pins to spare, beside the one that lies outermost.
+/// Spare pins, next to the outermost pin.
 fn spares(design: &Design, pin: Option<&Mesh>) -> Vec<Item> {
     let number = design.configuration().pins.spares;
     let aside = |i: usize| Vector3::new(-SPARE_APART_MM * (i + 1) as f64, 0.0, 0.0);
@@ -187,7 +188,7 @@ fn spares(design: &Design, pin: Option<&Mesh>) -> Vec<Item> {
     pin.into_iter().flat_map(|pin| (0..number).map(move |i| spare(pin, i))).collect()
 }
 
-/// A prism of steel between two heights, for what is bought; nothing for an outline that has no area.
+/// A prism of steel between two heights; `None` for an outline without area.
 fn steel(design: &Design, outline: &Contour, [from_mm, to_mm]: [f64; 2], apart_mm: f64) -> Option<Item> {
     let mesh = Solid::prism(outline, &[], from_mm, to_mm, 0.0).ok()?.mesh(design.tolerance()).ok()?;
     Some(Item { mesh, grey: METAL_GREY, colour: STEEL, apart: Vector3::new(0.0, 0.0, apart_mm) })
@@ -197,7 +198,7 @@ fn on_fasteners(design: &Design) -> Vec<Point2> {
     design.fastener_angles_rad().into_iter().map(|angle| polar(design.fastener_radius_mm(), angle)).collect()
 }
 
-/// An insert at each end of each of the shell's holes.
+/// An insert at each end of each hole of the shell.
 fn inserts(design: &Design) -> Vec<Item> {
     let Some([bore_mm, length_mm]) = design.fastening().insert_mm else { return Vec::new() };
     let width = design.configuration().shell.width_mm;
@@ -221,7 +222,7 @@ fn dowels(design: &Design) -> Vec<Item> {
     design.dowel_angles_rad().into_iter().filter_map(one).collect()
 }
 
-/// Screws with their heads, and their nuts: where the bill's lengths put them.
+/// Screws with heads and nuts, with the lengths of the bill of materials.
 fn fasteners(design: &Design) -> Vec<Item> {
     let Some(bill) = bill_of_materials(design).fasteners else { return Vec::new() };
     let c = design.configuration();
@@ -286,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn every_step_adds_something_and_keeps_what_is_there() {
+    fn every_step_adds_bodies_and_keeps_others() {
         let full = built(
             "[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"insert\"\ndowel_diameter_mm = 2.0\n[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 3.0\n",
         );
@@ -298,16 +299,16 @@ mod tests {
             assert!(bodies.iter().any(|b| !is_grey(&b.colour)), "{:?} adds nothing", ALL[number - 1]);
             assert!(number == 1 || is_grey(&bodies[0].colour), "the shell is there");
         }
-        // What nobody asked for is not drawn.
+        // Bodies that the configuration does not have are not drawn.
         let plain = built("");
         for stage in [Stage::Inserts, Stage::Dowels, Stage::Mount, Stage::Pulley] {
             assert!(items(&plain, stage).is_empty(), "{stage:?}");
         }
     }
 
-    /// Screws start at the outer face and their tips come out beyond the nut, or end in the shell, within the inserts' screws.
+    /// Screws start at the outer face. Their tips are beyond the nut, or in the shell between the inserts.
     #[test]
-    fn screws_reach_as_far_as_the_bill_says() {
+    fn screws_have_the_length_of_the_bill() {
         for (text, tips_meet) in [("", false), ("[fasteners]\nkind = \"insert\"\n", true)] {
             let built = built(text);
             let c = built.design().configuration();

@@ -4,7 +4,7 @@ use super::Change::{self, Ease, Lower, Raise, Set};
 use super::shell::MIN_INNER_RADIUS_MM;
 use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
 use crate::config::MouldKind;
-use crate::parts::{keys, tray};
+use crate::design::{mould_keys as keys, mould_tray as tray};
 use pinswitch_friction::Substrate;
 
 /// Largest shift of a sector's ends, as a share of its inner radius: beyond it they miss the circle.

@@ -1,10 +1,9 @@
-//! What is bought, as simple outlines on the sheet of the assembly: screws, nuts, dowels, the bearing and its bolt.
+//! Outlines of bought hardware on the sheet of the assembly: screws, nuts, dowels, the bearing and its bolt.
 
-use super::elevation::Stroke;
-use super::plan::Trace;
 use crate::config::MountKind;
 use crate::design::{Design, Thread};
 use pinswitch_drafting::Layer;
+use pinswitch_drafting::view::{Stroke, Trace};
 use pinswitch_solid::profile::{Point2, Vector2, polar};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 
@@ -13,7 +12,7 @@ const BEARING_RADIUS_MM: f64 = 11.0;
 const AXLE_RADIUS_MM: f64 = 4.0;
 const STOP_SCREW_RADIUS_MM: f64 = 1.5;
 
-/// Where hardware of a kind lies, seen along the axis, with its radius in mm.
+/// Returns the positions of hardware of a kind in the front view, with its radius in mm.
 pub(super) fn places(design: &Design, kind: &str) -> Vec<(Point2, f64)> {
     let around = |angles: Vec<f64>, radius_mm: f64| -> Vec<(Point2, f64)> {
         angles.into_iter().map(|a| (polar(design.fastener_radius_mm(), a), radius_mm)).collect()
@@ -34,8 +33,8 @@ pub(super) fn places(design: &Design, kind: &str) -> Vec<(Point2, f64)> {
     }
 }
 
-/// All of it in the front view. Dowels end in the supports, the bearing looks towards the plate; nuts or heads, bolt and the
-/// screws of the sheath stop end on this side.
+/// Returns the lines of all hardware in the front view. Dowels are inside the supports and the bearing faces the plate, so
+/// they are hidden; nuts or heads, the bolt and the screws of the sheath stop end on the near side.
 pub(super) fn front(design: &Design) -> Vec<(Layer, Trace)> {
     let kinds = [
         ("screw", Layer::Visible),
@@ -50,19 +49,19 @@ pub(super) fn front(design: &Design) -> Vec<(Layer, Trace)> {
     circles.chain(nuts(design).into_iter().map(|trace| (Layer::Visible, trace))).collect()
 }
 
-/// Radius of what the front view shows of a screw: its head where inserts hold it, else its end in the nut.
+/// Radius of a screw in the front view, mm: of its head with inserts, else of its end in the nut.
 fn shown_mm(design: &Design) -> Option<f64> {
     let thread = design.fastening().thread?;
     let has_head = design.fastening().insert_mm.is_some();
     Some(if has_head { thread.head_mm[0] / 2.0 } else { radius_mm(&thread)? })
 }
 
-/// Radius of a thread: its name says the diameter.
+/// Radius of a thread, mm, from its name.
 fn radius_mm(thread: &Thread) -> Option<f64> {
     thread.name.strip_prefix('M')?.parse::<f64>().ok().map(|diameter| diameter / 2.0)
 }
 
-/// Nuts on the face of the right support. In a trap a nut is not told from its edge, and left out.
+/// Nuts on the face of the right support. A nut in a trap has the outline of the trap, and is left out.
 fn nuts(design: &Design) -> Vec<Trace> {
     let fastening = design.fastening();
     let Some(thread) =
@@ -80,8 +79,8 @@ fn nuts(design: &Design) -> Vec<Trace> {
     design.fastener_angles_rad().into_iter().flat_map(sides).collect()
 }
 
-/// What of a screw and its nut stands out of the switch: half of its width, from where and to where along the axis, mm.
-fn standing_out(design: &Design) -> Vec<[f64; 3]> {
+/// The parts of a screw and its nut outside of the switch: half of the width, and both ends along the axis, mm.
+fn protrusions(design: &Design) -> Vec<[f64; 3]> {
     let (c, fastening) = (design.configuration(), design.fastening());
     let (Some(thread), Some((length_mm, _))) = (fastening.thread, design.screw_lengths_mm()) else {
         return Vec::new();
@@ -108,14 +107,14 @@ fn standing_out(design: &Design) -> Vec<[f64; 3]> {
     all
 }
 
-/// Outlines of heads, nuts and ends of screws in a view from a side, about the lowest of the assembly: `across` says where a
-/// screw lies there, and nothing of one that was cut away.
-pub(super) fn beside(
+/// Returns the outlines of heads, nuts and ends of screws in a side view, over the lowest point of the assembly. `across`
+/// gives the position of a screw across the view, and `None` for one that is cut away.
+pub(super) fn side_view(
     design: &Design,
     lowest_mm: f64,
     across: impl Fn(Vector2) -> Option<f64>,
 ) -> Vec<Stroke> {
-    let blocks = standing_out(design);
+    let blocks = protrusions(design);
     let screws =
         design.fastener_angles_rad().into_iter().map(|a| polar(design.fastener_radius_mm(), a).coords);
     let at = screws.filter_map(across);
@@ -141,21 +140,21 @@ mod tests {
     }
 
     #[test]
-    fn heads_stand_out_on_the_left_and_nuts_with_their_screws_on_the_right() {
-        let plain = standing_out(&design(&["fasteners.kind=screw"]));
-        // M3 x 25 through 20 mm: a head of 3, a nut of 2.4, and what is left of the screw.
+    fn heads_and_nuts_protrude_from_the_switch() {
+        let plain = protrusions(&design(&["fasteners.kind=screw"]));
+        // M3 x 25 through 20 mm: a head of 3 mm, a nut of 2.4 mm, and the end of the screw.
         let expected = [[2.75, -6.0, -3.0], [2.75, 17.0, 19.4], [1.5, 19.4, 22.0]];
         assert!(
             plain.iter().flatten().zip(expected.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-9),
             "{plain:?}"
         );
-        // In a trap of 1.5 mm the nut stands out by the rest.
-        assert!((standing_out(&design(&[]))[1][2] - 17.9).abs() < 1e-9);
+        // A trap of 1.5 mm leaves 0.9 mm of the nut outside.
+        assert!((protrusions(&design(&[]))[1][2] - 17.9).abs() < 1e-9);
         assert_eq!(nuts(&design(&[])).len(), 0);
         assert_eq!(nuts(&design(&["fasteners.kind=screw"])).len(), 12);
-        let insert = standing_out(&design(&["fasteners.kind=insert"]));
+        let insert = protrusions(&design(&["fasteners.kind=insert"]));
         assert_eq!(insert.iter().map(|b| b[0]).collect::<Vec<_>>(), [2.75, 2.75]);
-        // All heads lie within a flange.
-        assert!(standing_out(&design(&["mount.kind=flange"])).iter().all(|b| b[1] >= 17.0));
+        // A flange contains all heads.
+        assert!(protrusions(&design(&["mount.kind=flange"])).iter().all(|b| b[1] >= 17.0));
     }
 }

@@ -1,30 +1,27 @@
-//! The sheet of the assembly: assembled, from above, cut open, with balloons and the list of its parts.
+//! The sheet of the assembly: front view, view from above and section, with balloons and the parts list.
 
-use super::assembly_front::front_lines;
 use super::assembly_hardware;
-use super::body::{Body, Side};
-use super::elevation::{Elevation, elevation, joined, legible};
-use super::features::lettering;
-use super::layout::{ABOVE_ASSEMBLY_MM, ABOVE_MM, Layout, Sizes, choices_of_assembly};
-use super::part_sheet::{CROWDED_MM, HATCH_MM, Letter, put_strokes, section_mark};
 use super::parts_list::{Item, items};
-use super::plan::{Place, Trace, draw};
-use super::section::Face;
 use super::words;
 use crate::built::Built;
 use crate::design::Design;
 use crate::parts::{Part, Role};
+use pinswitch_drafting::view::{
+    Body, CROWDED_MM, Elevation, Face, HATCH_MM, Letter, Place, Placed, Side, Trace, draw_plan,
+    draw_section_mark, draw_strokes, elevation, joined, legible, stacked_plan,
+};
 use pinswitch_drafting::{
-    Callout, Draft, Extent, Layer, Leader, Linear, Paper, Point, Projection, Shape, Sheet, Table, TitleBlock,
+    ABOVE_ASSEMBLY_MM, ABOVE_MM, Callout, Draft, Extent, Layer, Layout, Leader, Linear, Paper, Point,
+    Projection, Shape, Sheet, Sizes, Table, TitleBlock, assembly_formats, lettering, number,
 };
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Arc, Contour, Point2, polar};
 use std::f64::consts::FRAC_PI_2;
 
-/// Height of what is written under the views, mm: that of dimensions.
+/// Height of the legend under the views, mm.
 const LEGEND_MM: f64 = 2.5;
 
-/// The assembly, ready to be drawn.
+/// The assembly with its views.
 struct Assembly<'a> {
     design: &'a Design,
     bodies: Vec<(&'a Part, Pose)>,
@@ -33,14 +30,14 @@ struct Assembly<'a> {
     /// Lowest and highest z.
     z_mm: (f64, f64),
     above: Elevation,
-    /// Where the section is cut, the face of each body there, and what is seen behind it.
+    /// The x of the cutting plane, the cut face of each body, and the view behind the cut.
     cut_x: f64,
     faces: Vec<Face>,
     behind: Elevation,
 }
 
-/// The sheet of the assembly.
-pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, asked: Paper) -> Option<Sheet> {
+/// Returns the sheet of the assembly, on `paper` or a larger one; `None` if it is too large for any paper.
+pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, paper: Paper) -> Option<Sheet> {
     let bodies: Vec<(&Part, Pose)> = built.assembly().filter_map(|b| Some((&b.part, b.part.pose?))).collect();
     let ends = bodies.iter().filter_map(|(part, pose)| {
         let (low, high) = part.solid.bounds()?;
@@ -58,28 +55,28 @@ pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, asked: Paper) -> 
         items: items(built),
         above: elevation(&seen(&bodies, z_mm.0, Side::Above), None),
         cut_x,
-        faces: from_side.iter().map(|body| Face::of(body, cut)).collect(),
+        faces: from_side.iter().map(|body| Face::new(body, cut)).collect(),
         behind: elevation(&from_side, Some(cut)),
         bodies,
         title,
         z_mm,
     };
-    choices_of_assembly(asked)
+    assembly_formats(paper)
         .into_iter()
         .find_map(|(paper, scale, columns)| assembly.attempt(paper, scale, columns))
 }
 
-/// Through the pin that lies nearest to the middle.
+/// The x of the pin nearest to the middle.
 fn cut_x(design: &Design) -> f64 {
     let radius = design.contact_radius_mm();
     let xs = design.pin_angles_rad().into_iter().map(|a| polar(radius, a).x);
     xs.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
 }
 
-/// The bodies from a side, the lowest at z = 0.
+/// The bodies viewed from a side, the lowest at z = 0.
 fn seen(bodies: &[(&Part, Pose)], lowest_mm: f64, side: Side) -> Vec<Body> {
     let place = |pose: &Pose| Pose { z_mm: pose.z_mm - lowest_mm, ..*pose };
-    bodies.iter().map(|(part, pose)| Body::seen(&part.solid, place(pose), side)).collect()
+    bodies.iter().map(|(part, pose)| Body::new(&part.solid, place(pose), side)).collect()
 }
 
 impl Assembly<'_> {
@@ -89,7 +86,7 @@ impl Assembly<'_> {
         let mut draft = Draft::new(paper, &title);
         let (block, frame) = (draft.sheet().title_block, paper.frame());
         let lists = self.lists(columns, block.height());
-        // The first list stands on the title block, the other beside both.
+        // The first list is on the title block, the second one left of both.
         let list_mm = lists.iter().enumerate().fold(0.0f64, |most, (i, list)| {
             most.max(list.height_mm() - if i == 0 { 0.0 } else { block.height() })
         });
@@ -100,9 +97,9 @@ impl Assembly<'_> {
             details: 0,
             above_mm: if columns == 1 { ABOVE_MM } else { ABOVE_ASSEMBLY_MM },
             table_mm: list_mm + 3.0,
-            beside_mm: [0.0, 0.0],
+            right_table_mm: [0.0, 0.0],
         };
-        let layout = Layout::on(&draft, &sizes, projection)?;
+        let layout = Layout::new(&draft, &sizes, projection)?;
         for (i, list) in lists.iter().enumerate() {
             let corner = if i == 0 {
                 Point::new(block.high.x, block.high.y)
@@ -113,9 +110,9 @@ impl Assembly<'_> {
         }
         let cut_x = self.cut_x;
         let place = Place::straight(layout.front, scale);
-        self.front(&mut draft, &place);
-        self.view_from_above(&mut draft, &layout, scale);
-        let (section, inside) = self.section(&mut draft, &layout, scale);
+        self.draw_front(&mut draft, &place);
+        self.draw_view_from_above(&mut draft, &layout, scale);
+        let (section, inside) = self.draw_section(&mut draft, &layout, scale);
         let front = Extent { low: sizes.front.low + layout.front, high: sizes.front.high + layout.front };
         let above = Extent {
             low: Point::new(front.low.x, layout.above_mm - sizes.depth_mm),
@@ -123,7 +120,7 @@ impl Assembly<'_> {
         };
         let lowest = if above.low.y < front.low.y { above } else { front };
         let mark = [front.low.y - 2.0, front.high.y + 2.0];
-        section_mark(
+        draw_section_mark(
             &mut draft,
             place.at(Point2::new(cut_x, 0.0)).x,
             mark,
@@ -133,13 +130,13 @@ impl Assembly<'_> {
         if !draft.place_title("section title", "A-A", 3.5, section, true) {
             return None;
         }
-        let is_placed = self.overall(&mut draft, section)
+        let is_placed = self.draw_overall(&mut draft, section)
             && self
                 .items
                 .iter()
-                .all(|item| self.balloon(&mut draft, item, &place, &inside, &[front, section]))
-            && self.legend(&mut draft, lowest);
-        is_placed.then(|| draft.finished("assembly", scale))
+                .all(|item| self.draw_balloon(&mut draft, item, &place, &inside, &[front, section]))
+            && self.draw_legend(&mut draft, lowest);
+        is_placed.then(|| draft.into_sheet("assembly", scale))
     }
 
     fn front_extent(&self, scale: f64) -> Extent {
@@ -150,21 +147,28 @@ impl Assembly<'_> {
             let Some((low, high)) = part.solid.bounds() else { continue };
             let (left, right) = if pose.flipped { (-high.x, -low.x) } else { (low.x, high.x) };
             extent = extent
-                .joined(Extent::between(Point::new(left, low.y) * scale, Point::new(right, high.y) * scale));
+                .union(Extent::between(Point::new(left, low.y) * scale, Point::new(right, high.y) * scale));
         }
         if extent.low.y > 0.0 && extent.low.y < 26.0 {
-            extent.joined(Extent::between(axis, axis))
+            extent.union(Extent::between(axis, axis))
         } else {
             extent
         }
     }
 
-    /// What lies on top, what is seen of everything else but the other support and what is hidden of it, and the tendon.
-    fn front(&self, draft: &mut Draft, place: &Place) {
+    /// Draws the front view, with hardware and tendon.
+    fn draw_front(&self, draft: &mut Draft, place: &Place) {
         let chamfer_mm = self.design.configuration().print.elephant_foot_mm;
-        let lines = front_lines(&self.bodies, self.z_mm.0, chamfer_mm);
+        // The support on the far side is behind its equal.
+        let placed = self.bodies.iter().map(|(part, pose)| Placed {
+            solid: &part.solid,
+            pose: *pose,
+            is_drawn: !matches!(part.role, Role::Support { .. }),
+        });
+        let bodies: Vec<Placed<'_>> = placed.collect();
+        let lines = stacked_plan(&bodies, self.z_mm.0, chamfer_mm);
         let view = draft.view("FRONT", place.origin, place.scale);
-        draw(draft, &lines, place, view);
+        draw_plan(draft, &lines, place, view);
         let group = draft.group();
         for (layer, trace) in assembly_hardware::front(self.design) {
             draft.put(layer, place.shape(&trace), None, group);
@@ -180,7 +184,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// The tendon over the pins: its middle line over the wrap.
+    /// The axis of the tendon over the wrap.
     fn tendon(&self) -> Vec<Trace> {
         let c = self.design.configuration();
         let radius_mm = self.design.contact_radius_mm()
@@ -195,19 +199,19 @@ impl Assembly<'_> {
         })]
     }
 
-    fn view_from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
+    fn draw_view_from_above(&self, draft: &mut Draft, layout: &Layout, scale: f64) {
         let origin = Point::new(layout.front.x, layout.above_mm);
         let view = draft.view("ABOVE", origin, scale);
         let visible = legible(&self.above.visible, &[], CROWDED_MM / scale);
         let at = |p: [f64; 2]| origin + Point::new(p[0], -p[1]) * scale;
         let group = draft.group();
-        put_strokes(draft, Layer::Visible, &visible, at, Some(view), group);
-        let screws = assembly_hardware::beside(self.design, self.z_mm.0, |p| Some(p.x));
-        put_strokes(draft, Layer::Visible, &screws, at, None, group);
+        draw_strokes(draft, Layer::Visible, &visible, at, Some(view), group);
+        let screws = assembly_hardware::side_view(self.design, self.z_mm.0, |p| Some(p.x));
+        draw_strokes(draft, Layer::Visible, &screws, at, None, group);
     }
 
-    /// The section: each body hatched its own way, pins not at all. Returns what it covers, and a place in each body.
-    fn section(&self, draft: &mut Draft, layout: &Layout, scale: f64) -> (Extent, Vec<(String, Point)>) {
+    /// Draws the section, with a hatching for each body but the pins. Returns its extent, and a point in each body.
+    fn draw_section(&self, draft: &mut Draft, layout: &Layout, scale: f64) -> (Extent, Vec<(String, Point)>) {
         let origin = Point::new(layout.section_mm, layout.front.y);
         let view = draft.view("SECTION_A", origin, scale);
         let at = |p: [f64; 2]| origin + Point::new(layout.section_sense * p[1], p[0]) * scale;
@@ -224,19 +228,20 @@ impl Assembly<'_> {
                 continue;
             }
             let apart = HATCH_MM / scale * if part.role == Role::Layer { 0.55 } else { 1.0 };
-            put_strokes(draft, Layer::Hatch, &face.hatch(apart, i % 2 == 0), at, Some(view), group);
+            draw_strokes(draft, Layer::Hatch, &face.hatch(apart, i % 2 == 0), at, Some(view), group);
         }
         let outlines = joined(&outlines, &[]);
-        put_strokes(draft, Layer::Visible, &outlines, at, Some(view), group);
-        let is_behind = |x: f64| (x - self.cut_x) * if self.is_seen_from_left() { 1.0 } else { -1.0 } > 0.0;
-        let screws = assembly_hardware::beside(self.design, self.z_mm.0, |p| is_behind(p.x).then_some(p.y));
-        put_strokes(draft, Layer::Visible, &screws, at, None, group);
+        draw_strokes(draft, Layer::Visible, &outlines, at, Some(view), group);
+        let is_behind = |x: f64| (x - self.cut_x) * if self.is_viewed_from_left() { 1.0 } else { -1.0 } > 0.0;
+        let screws =
+            assembly_hardware::side_view(self.design, self.z_mm.0, |p| is_behind(p.x).then_some(p.y));
+        draw_strokes(draft, Layer::Visible, &screws, at, None, group);
         let corners = outlines.iter().flatten().map(|p| Extent::between(at(*p), at(*p)));
-        (corners.reduce(Extent::joined).unwrap_or(Extent::between(origin, origin)), inside)
+        (corners.reduce(Extent::union).unwrap_or(Extent::between(origin, origin)), inside)
     }
 
-    /// What the label and the marks on the supports stand for; whether there was room.
-    fn legend(&self, draft: &mut Draft, lowest_view: Extent) -> bool {
+    /// Draws the meaning of the label and the marks on the supports; returns whether there is space.
+    fn draw_legend(&self, draft: &mut Draft, lowest_view: Extent) -> bool {
         let is_right = |part: &Part| matches!(part.role, Role::Support { outwards_z } if outwards_z > 0.0);
         let right = self.bodies.iter().find(|(part, _)| is_right(part));
         let marks = right.and_then(|(part, _)| words::marks(&part.engraved));
@@ -246,17 +251,17 @@ impl Assembly<'_> {
             .all(|(key, words)| draft.place_title(key, &words, LEGEND_MM, lowest_view, false))
     }
 
-    /// Whether the section is seen from the left.
-    fn is_seen_from_left(&self) -> bool {
+    /// Returns whether the section is viewed from the left.
+    fn is_viewed_from_left(&self) -> bool {
         self.title.projection == Projection::First
     }
 
-    /// Width over both supports.
-    fn overall(&self, draft: &mut Draft, section: Extent) -> bool {
+    /// Draws the width over both supports; returns whether there is space.
+    fn draw_overall(&self, draft: &mut Draft, section: Extent) -> bool {
         let corner = Point::new(section.high.x, section.low.y);
         let linear = Linear {
             key: "overall width".to_owned(),
-            text: words::number(self.z_mm.1 - self.z_mm.0),
+            text: number(self.z_mm.1 - self.z_mm.0),
             from: section.low,
             to: corner,
             upright: false,
@@ -268,7 +273,7 @@ impl Assembly<'_> {
         linear.place(draft)
     }
 
-    /// The list of parts, in columns that end at the same height: the first stands on a title block `block_mm` high.
+    /// The parts list in one or two columns of equal height; the first is on a title block `block_mm` high.
     fn lists(&self, columns: usize, block_mm: f64) -> Vec<Table> {
         let whole = self.list(&self.items);
         let on_block = (whole.rows.len() as f64 - block_mm / Table::ROW_MM) / 2.0;
@@ -295,8 +300,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// The balloon of an item that can be seen; whether there was room.
-    fn balloon(
+    /// Draws the balloon of an item; returns whether there is space. Items that are not visible have none.
+    fn draw_balloon(
         &self,
         draft: &mut Draft,
         item: &Item,
@@ -304,7 +309,7 @@ impl Assembly<'_> {
         inside: &[(String, Point)],
         views: &[Extent],
     ) -> bool {
-        let fan = |tip: Point| {
+        let all_directions = |tip: Point| {
             (0..24).map(move |i| Leader {
                 tip,
                 direction: Point::towards(std::f64::consts::TAU * (f64::from(i) + 0.5) / 24.0),
@@ -327,12 +332,12 @@ impl Assembly<'_> {
             kind if !assembly_hardware::places(self.design, kind).is_empty() => {
                 assembly_hardware::places(self.design, kind)
                     .into_iter()
-                    .flat_map(|(at, radius_mm)| Leader::around(place.at(at), radius_mm * place.scale))
+                    .flat_map(|(at, radius_mm)| Leader::to_circle(place.at(at), radius_mm * place.scale))
                     .collect()
             }
             name => match inside.iter().find(|(n, _)| n == name) {
-                Some((_, tip)) => fan(*tip).collect(),
-                None => self.on_front(name, place).into_iter().flat_map(fan).collect(),
+                Some((_, tip)) => all_directions(*tip).collect(),
+                None => self.on_front(name, place).into_iter().flat_map(all_directions).collect(),
             },
         };
         let balloon = Callout {
@@ -346,7 +351,7 @@ impl Assembly<'_> {
         balloon.place(draft)
     }
 
-    /// Corners of a body that the section does not cut, in the front view.
+    /// Corners of a body in the front view, for one that the section does not cut.
     fn on_front(&self, name: &str, place: &Place) -> Vec<Point> {
         let of_name = self.bodies.iter().filter(|(part, _)| part.name == name);
         of_name

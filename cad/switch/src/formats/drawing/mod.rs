@@ -1,30 +1,19 @@
-//! The drawing: one sheet of the assembly and one per part, as SVG, PDF and DXF (cad/doc/drawing.md).
+//! The drawing: one sheet of the assembly and one for each part, as SVG, PDF and DXF (cad/doc/drawing.md).
+//!
+//! `pinswitch_drafting` draws parts and knows paper. This module knows a switch: its parts with their names, fits and notes,
+//! its bought hardware, and its assembly.
 
-mod angles;
-mod assembly_front;
 mod assembly_hardware;
 mod assembly_sheet;
-mod body;
-mod bore;
-mod chains;
-mod cut;
-mod dimensions;
-mod elevation;
-mod features;
 mod fits;
-mod hole_table;
-mod layout;
 mod part_sheet;
 mod parts_list;
-mod plan;
-mod section;
-mod sides;
 mod words;
 
 use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::config::{self, Configuration};
-use crate::documents::Manifest;
+use crate::documents::{Manifest, layout_text};
 use crate::output::{OutputFile, SetError};
 use crate::parts::{Part, Role};
 use crate::prediction::Prediction;
@@ -51,7 +40,7 @@ fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<Output
     ])
 }
 
-/// All sheets of a set: the assembly, the printed parts, then layer and pin.
+/// Returns all sheets of a set: the assembly, the printed parts, the layer and a pin.
 ///
 /// ```
 /// use pinswitch_switch::{built::Built, config::Configuration, design::Design, formats::drawing::sheets};
@@ -64,7 +53,7 @@ fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<Output
 #[must_use]
 pub fn sheets(built: &Built) -> Vec<Sheet> {
     let c = built.design().configuration();
-    let asked = match c.drawing.paper {
+    let paper = match c.drawing.paper {
         config::Paper::A4 => Paper::A4,
         config::Paper::A3 => Paper::A3,
     };
@@ -72,18 +61,18 @@ pub fn sheets(built: &Built) -> Vec<Sheet> {
     let printed = built.printed().iter().map(|p| p.part());
     let layer = built.reference().iter().map(|b| &b.part).filter(|p| p.role == Role::Layer);
     let parts: Vec<&Part> = printed.chain(layer).chain(&pin).collect();
-    let of = parts.len() + 1;
-    let mut all = Vec::with_capacity(of);
+    let number_of_sheets = parts.len() + 1;
+    let mut all = Vec::with_capacity(number_of_sheets);
     let title = |number: usize, name: &str, material: String, tolerance: &str| {
-        title_block(built, c, (number, of), name, material, tolerance)
+        title_block(built, c, (number, number_of_sheets), name, material, tolerance)
     };
-    let first = title(1, "assembly", "see list".to_owned(), "see parts");
-    all.extend(assembly_sheet::assembly_sheet(built, first, asked));
+    let first = title(1, "assembly", "see parts list".to_owned(), "see parts");
+    all.extend(assembly_sheet::assembly_sheet(built, first, paper));
     for (i, part) in parts.iter().enumerate() {
         let material = part.material();
-        let words = words::material(built.design(), material);
-        let block = title(i + 2, &part.name, words, words::general_tolerance(material));
-        all.extend(part_sheet(built.design(), part, block, asked));
+        let name = words::material(built.design(), material);
+        let block = title(i + 2, &part.name, name, words::general_tolerance(material));
+        all.extend(part_sheet(built.design(), part, &block, paper));
     }
     all
 }
@@ -97,8 +86,8 @@ fn title_block(
     tolerance: &str,
 ) -> TitleBlock {
     TitleBlock {
-        name: c.switch.name.to_string(),
-        layout: built.design().label(),
+        product: ("Switch".to_owned(), c.switch.name.to_string()),
+        variant: ("Layout".to_owned(), layout_text(c)),
         title: designation(name),
         part_number: part_number(built, name),
         material,
@@ -114,16 +103,16 @@ fn title_block(
     }
 }
 
-/// One pin by itself, about its own axis: all are alike.
+/// A pin about its own axis. All pins are equal.
 fn single_pin(built: &Built) -> Option<Part> {
     let pin = &built.reference().iter().find(|b| matches!(b.part.role, Role::Pin { .. }))?.part;
     let radius_mm = built.design().configuration().pins.diameter_mm / 2.0;
     let outline = Contour::circle(Point2::origin(), radius_mm);
     let solid = Solid::prism(&outline, &[], 0.0, built.design().pin_length_mm(), 0.0).ok()?;
-    let mut alone = pin.with_solid(solid);
-    alone.name = "pin".to_owned();
-    alone.pose = None;
-    Some(alone)
+    let mut single = pin.with_solid(solid);
+    single.name = "pin".to_owned();
+    single.pose = None;
+    Some(single)
 }
 
 #[cfg(test)]

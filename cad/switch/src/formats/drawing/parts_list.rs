@@ -1,11 +1,12 @@
-//! The list of parts: what the assembly is made of, what is bought, and the tools that are printed with it.
+//! The parts list: assembled parts, bought parts, and the tools that are printed with them.
 
-use super::words::{self, number};
+use super::words;
 use crate::built::Built;
 use crate::documents::{STOP_SCREWS, bill_of_materials};
 use crate::parts::{Part, Role};
+use pinswitch_drafting::number;
 
-/// A row of the list.
+/// A row of the parts list.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Item {
     pub(super) number: usize,
@@ -13,16 +14,16 @@ pub(super) struct Item {
     pub(super) designation: String,
     pub(super) part_number: String,
     pub(super) material: String,
-    /// The body that its balloon points at, `tendon`, or a kind of hardware; empty without a balloon.
+    /// The body at its balloon, `tendon`, or a kind of hardware; empty without a balloon.
     pub(super) shown: String,
 }
 
-/// Number of a part, as in the 3MF package.
+/// Returns the number of a part, as in the 3MF package.
 pub(super) fn part_number(built: &Built, part: &str) -> String {
     format!("{}/{part}", built.design().configuration().switch.name)
 }
 
-/// All rows: assembled parts, pins, bought parts, then what stands beside the assembly.
+/// Returns all rows: assembled parts, pins, bought parts, then parts that are not in the assembly.
 pub(super) fn items(built: &Built) -> Vec<Item> {
     let design = built.design();
     let bill = bill_of_materials(design);
@@ -39,14 +40,14 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
         });
     };
     let material = |part: &Part| words::material(design, part.material());
-    // Pins and tendon are bought, and listed as such.
+    // Pins and tendon are among the bought parts.
     for part in assembled.iter().filter(|p| !matches!(p.role, Role::Pin { .. } | Role::Tendon)) {
         let name = &part.name;
         add("1".to_owned(), designation(name), part_number(built, name), material(part), name);
     }
     if let Some(pin) = assembled.iter().find(|p| matches!(p.role, Role::Pin { .. })) {
         let spares =
-            if bill.pins.spares > 0 { format!(", and {} spare", bill.pins.spares) } else { String::new() };
+            if bill.pins.spares > 0 { format!(", plus {} spare", bill.pins.spares) } else { String::new() };
         let words = format!(
             "Pin \u{d8}{} \u{b1}{} \u{d7} {}{spares}",
             number(bill.pins.diameter_mm),
@@ -58,7 +59,7 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
         add(bill.pins.number.to_string(), words, part_number(built, "pin"), material(pin), &shown);
     }
     let mut bought = |quantity: usize, words: String, shown: &str| {
-        // Inserts that are pressed into prints are made of brass.
+        // Heat-set inserts are made of brass.
         let material = if words.starts_with("Heat-set") { "Brass" } else { "Steel" };
         add(quantity.to_string(), words, "bought".to_owned(), material.to_owned(), shown);
     };
@@ -102,7 +103,7 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
     all
 }
 
-/// The pin nearest to the middle, which the section cuts.
+/// The pin nearest to the middle, through which the section is cut.
 fn nearest_pin<'a>(assembled: &[&'a Part]) -> Option<&'a Part> {
     let off = |part: &Part| {
         part.solid.bounds().map_or(f64::INFINITY, |(low, high)| f64::midpoint(low.x, high.x).abs())
@@ -111,7 +112,7 @@ fn nearest_pin<'a>(assembled: &[&'a Part]) -> Option<&'a Part> {
     pins.min_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// The name of a part as words: `support-left` is `Support left`.
+/// Returns the name of a part as a title: `support-left` becomes `Support left`.
 pub(super) fn designation(name: &str) -> String {
     let words = name.replace('-', " ");
     let mut letters = words.chars();
@@ -125,7 +126,7 @@ mod tests {
     use crate::design::Design;
 
     #[test]
-    fn a_row_counts_what_it_names() {
+    fn screws_and_nuts_are_counted_together() {
         let mut c = Configuration::default();
         for a in ["layout.pins=[5, 8, 11]", "mount.kind=rig", "tendon.sheath_diameter_mm=4"] {
             assign(&mut c, a).unwrap();

@@ -1,4 +1,4 @@
-//! The split mould's lid: it sets the layer's width, with a pouring funnel and vents at both ends.
+//! The lid of the split mould. It sets the width of the layer, and has a pouring funnel and vents at both ends.
 
 use super::super::{Part, Pose, Role, offset_error};
 use super::split::plate_sector;
@@ -8,21 +8,20 @@ use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Pen, Point2, polar};
 use pinswitch_solid::solid::{Facing, Solid};
 
-/// Share of the free cavity under the ribs that pouring slot and vents take.
+/// Width of pouring slot and vents as a share of the free cavity under the ribs.
 const OPENING: f64 = 0.8;
-/// Half of the pouring slot, as a share of half the span.
+/// Half of the length of the pouring slot as a share of half the span.
 const SLOT_SHARE: f64 = 0.15;
-/// Where the vents lie, as a share of half the span.
+/// Position of the vents as a share of half the span.
 const VENT_SHARE: f64 = 0.9;
-
-/// A smaller chamfer does not print, mm (cad/doc/print-limits.md, "First layer").
+/// Least chamfer that can be printed, mm (cad/doc/print-limits.md, "First layer").
 const LEAST_CHAMFER_MM: f64 = 0.02;
 
-/// The lid's openings, clockwise.
+/// The openings of the lid, clockwise.
 struct Openings {
     keys: Vec<Contour>,
     vents: Vec<Contour>,
-    /// Foot and mouth of the pouring funnel.
+    /// Lower and upper end of the pouring funnel.
     spout: Contour,
     mouth: Contour,
 }
@@ -42,18 +41,18 @@ fn openings(design: &Design, plate: &Contour) -> Result<Openings, ConfigError> {
         .to_vec();
     let width = OPENING * free;
     let spout = arc_slot(middle, width / 2.0, SLOT_SHARE * design.half_span_rad());
-    // The funnel widens upward, into the plate, as far as its neighbours leave a wall.
+    // The funnel widens upward, up to a wall to its neighbours.
     let neighbours = keys.iter().chain(&vents).chain([plate]);
     let room = neighbours.map(|other| gap_mm(&spout, other)).fold(f64::INFINITY, f64::min);
     let wanted = (c.mould.pour_width_mm - width) / 2.0;
-    // Two printed lines stay, as everywhere else.
+    // At least two printed lines.
     let wall = c.print.least_wall_mm.max(2.0 * c.print.line_mm);
     let widening = wanted.min(room - wall).clamp(0.0, c.mould.floor_mm);
     let mouth = spout.offset(widening).map_err(offset_error("mould.pour_width_mm"))?;
     Ok(Openings { keys, vents, spout, mouth })
 }
 
-/// Volume of funnel and vents, mm³; nothing if they cannot be built, which [`lid`] reports.
+/// Volume of funnel and vents, mm³; 0 if they cannot be built, which [`lid`] reports.
 pub(super) fn openings_mm3(design: &Design) -> f64 {
     let plate = plate_sector(design, &Cavity::of(design)).outline();
     openings(design, &plate).map_or(0.0, |o| {
@@ -89,22 +88,22 @@ pub(in crate::parts) fn lid(design: &Design) -> Result<Part, ConfigError> {
     Ok(part)
 }
 
-/// The chamfer of the lid's holes, mm: that of all parts, as far as a wall stays on the bed between them, and between them and
-/// the funnel and the edge, which has its chamfer.
+/// The chamfer of the holes of the lid, mm: that of all parts, or less to keep walls on the bed between the holes, the funnel
+/// and the chamfered edge.
 fn hole_chamfer_mm(design: &Design, plate: &Contour, spout: &Contour, holes: &[Contour]) -> f64 {
     let print = &design.configuration().print;
     let wall = print.least_wall_mm;
     let room = |i: usize, hole: &Contour| {
         let apart = holes.iter().skip(i + 1).map(|other| (gap_mm(hole, other) - wall) / 2.0);
-        let beside = [gap_mm(hole, spout) - wall, gap_mm(hole, plate) - wall - print.elephant_foot_mm];
-        apart.chain(beside).fold(f64::INFINITY, f64::min)
+        let neighbours = [gap_mm(hole, spout) - wall, gap_mm(hole, plate) - wall - print.elephant_foot_mm];
+        apart.chain(neighbours).fold(f64::INFINITY, f64::min)
     };
     let room = holes.iter().enumerate().map(|(i, hole)| room(i, hole)).fold(f64::INFINITY, f64::min);
     let chamfer = print.elephant_foot_mm.min(room);
     if chamfer < LEAST_CHAMFER_MM { 0.0 } else { chamfer }
 }
 
-/// Least distance in mm from `slot`, at eight points of every edge, to the curve of `other`.
+/// Least distance of eight points on each edge of `slot` from the curve of `other`, mm.
 pub(super) fn gap_mm(slot: &Contour, other: &Contour) -> f64 {
     let points = slot.flattened(&vec![8; slot.edges().len()]);
     points.iter().map(|p| other.distance_mm(*p)).fold(f64::INFINITY, f64::min)

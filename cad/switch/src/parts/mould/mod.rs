@@ -1,8 +1,8 @@
-//! The casting mould, axis upright, open on top (cad/doc/dimensions.md, "Mould").
+//! The casting mould, with its axis vertical and open at the top (cad/doc/dimensions.md, "Mould").
 
 pub(crate) mod keys;
 mod lid;
-pub(crate) mod one_piece;
+mod one_piece;
 mod split;
 
 use super::Sector;
@@ -16,8 +16,8 @@ pub use one_piece::gang_mm;
 pub(super) use one_piece::one_piece;
 pub(super) use split::{core, core_has_lost_label, ring};
 
-/// Volume in mm³ of the mould's cavity, which is the layer (or as many as a gang casts), and of what lies above it: the basin of the one-piece mould,
-/// or the split mould's funnel and vents.
+/// Returns the volume in mm³ of the cavity for all layers, and of the space above it: the basin of the one-piece mould, or
+/// funnel and vents of the split mould.
 pub fn cavity_mm3(design: &Design) -> (f64, f64) {
     let cavity = Cavity::of(design);
     let layer = cavity.section().area_mm2() * cavity.depth_mm;
@@ -34,7 +34,7 @@ pub fn cavity_mm3(design: &Design) -> (f64, f64) {
     (layers * layer, layers * above)
 }
 
-/// The cavity before its ribs: the layer, enlarged by what the silicone shrinks.
+/// The cavity without its ribs: the layer, enlarged by the shrinkage of silicone.
 struct Cavity {
     sector: Sector,
     groove_radius_mm: f64,
@@ -54,7 +54,7 @@ impl Cavity {
         }
     }
 
-    /// What every section of the layer is, counter-clockwise: the sector with the grooves that the ribs form.
+    /// The section of the layer, counter-clockwise: the sector with the grooves that the ribs form.
     fn section(&self) -> Contour {
         self.sector.grooved(&self.groove_angles_rad, self.groove_radius_mm)
     }

@@ -1,33 +1,18 @@
-//! The mould in one piece: a tray with a basin above the cavity.
+//! The one-piece mould: a tray with a basin above the cavity.
 
 use super::super::{Part, Role, offset_error};
 use super::Cavity;
 use super::lid::gap_mm;
-use crate::config::{ConfigError, MouldTable};
+use crate::config::ConfigError;
 use crate::design::Design;
+use crate::design::mould_tray::{LEDGE_MM, around_mm, lean_mm};
 use pinswitch_solid::profile::{Contour, Point2, Vector2};
 use pinswitch_solid::solid::{Facing, Solid};
 
-/// How far the basin reaches beyond the cavity: its ledge guides the blade that cuts the layer to width.
-const LEDGE_MM: f64 = 1.0;
+/// Bisection steps to the least distance of the cavities of a gang mould.
+const BISECTIONS: usize = 40;
 
-/// Halvings of the way between a step at which cavities of a gang meet and one at which they do not.
-const HALVINGS: usize = 40;
-
-/// How far the basin's walls lean outward at the brim, mm.
-///
-/// Floor, inner wall, ribs and end walls shape the layer, which must lie on the shell over its whole width: they stay
-/// upright, and silicone peels from them. What the basin holds is cut off: only its walls may lean.
-fn lean_mm(m: &MouldTable) -> f64 {
-    m.overfill_mm * libm::tan(m.draft_deg.to_radians())
-}
-
-/// How far the tray reaches beyond the cavity, mm.
-pub(crate) fn around_mm(m: &MouldTable) -> f64 {
-    m.wall_mm + LEDGE_MM + lean_mm(m)
-}
-
-/// The hollow of the tray, counter-clockwise: the cavity, and the basin at its ledge and at its brim.
+/// The hollow of the tray: the cavity, and the outlines of layer, ledge and brim, counter-clockwise.
 struct TrayCavity {
     cavity: Cavity,
     layer: Contour,
@@ -46,7 +31,7 @@ fn tray_cavity(design: &Design) -> TrayCavity {
     }
 }
 
-/// What the basin holds when it is full to the brim, mm³.
+/// Volume of the basin, mm³.
 pub(super) fn basin_mm3(design: &Design) -> f64 {
     let TrayCavity { ledge, brim, .. } = tray_cavity(design);
     let mut solid = Solid::new();
@@ -55,8 +40,8 @@ pub(super) fn basin_mm3(design: &Design) -> f64 {
     solid.volume_mm3()
 }
 
-/// From one cavity of a gang to the next: a step that leaves a wall between their basins. Bowed layers nest in each other
-/// where they are less than half a turn; others lie side by side.
+/// The step from one cavity of a gang mould to the next, with a wall between their basins. Layers of less than 180 degrees
+/// nest in each other; others are side by side.
 fn step(design: &Design, brim: &Contour) -> Vector2 {
     let wall = design.configuration().mould.wall_mm;
     let (low, high) = brim.bounds();
@@ -65,14 +50,14 @@ fn step(design: &Design, brim: &Contour) -> Vector2 {
     }
     let fits = |mm: f64| gap_mm(brim, &brim.translated(Vector2::new(0.0, mm))) >= wall;
     let (mut far, mut near) = (high.y - low.y + wall, 0.0);
-    for _ in 0..HALVINGS {
+    for _ in 0..BISECTIONS {
         let middle = f64::midpoint(far, near);
         if fits(middle) { far = middle } else { near = middle }
     }
     Vector2::new(0.0, far)
 }
 
-/// Sides of the block of a gang mould, mm: along the middle of the wrap's tangent, and across it.
+/// Sides of the block of a gang mould, mm: along the tangent in the middle of the wrap, and across it.
 pub fn gang_mm(design: &Design) -> [f64; 2] {
     let (low, high) = gang(design).bounds();
     [high.x - low.x, high.y - low.y]

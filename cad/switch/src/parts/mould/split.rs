@@ -1,4 +1,4 @@
-//! The split mould's core (base and inner wall) and ring (ribbed outer wall and end walls).
+//! Core (base and inner wall) and ring (ribbed outer wall and end walls) of the split mould.
 
 use super::super::label::{Zone, engrave, is_left_out};
 use super::super::sector::{End, grooved_face};
@@ -9,18 +9,18 @@ use crate::design::Design;
 use pinswitch_solid::profile::{Contour, Pen, Point2};
 use pinswitch_solid::solid::{Facing, Solid};
 
-/// The base reaches this far beyond what stands on it, mm.
+/// Width of the base beyond the parts on it, mm.
 const BASE_MARGIN_MM: f64 = 1.0;
-/// Largest shift of the ends of the base, as a share of its inner radius: beyond it the inner corners become edges of less
-/// than 45 degrees, which break off and are no wall.
+/// Largest shift of the ends of the base as a share of its inner radius. With more, the inner corners are sharper than
+/// 45 degrees and break off.
 const BLUNT_SHARE: f64 = 0.65;
-/// Largest chamfer of the ring, as a share of the radius of its ribs: it leaves them a foot of nine tenths of that radius. At
-/// a half of it nothing is left of a rib on the bed.
+/// Largest chamfer of the ring as a share of the radius of its ribs. It leaves a foot of 0.9 radii; a chamfer of half the
+/// radius would leave nothing of a rib on the bed.
 const RIB_SHARE: f64 = 0.4;
-/// What stays of the block at least where its inner radius grows, or the mould's wall if that is thinner, mm.
+/// Least thickness of the block, or that of the wall of the mould if it is thinner, mm.
 const LEAST_BLOCK_MM: f64 = 3.0;
 
-/// Inner radius of the core, mm: that of the shell, or more where the corners of the base would be sharp.
+/// Inner radius of the core, mm: that of the shell, or more if the corners of the base would be sharp.
 fn core_inner_mm(design: &Design, cavity: &Cavity) -> f64 {
     let wall_mm = design.configuration().mould.wall_mm;
     let shift = cavity.sector.end_shift_mm + wall_mm + BASE_MARGIN_MM;
@@ -29,12 +29,12 @@ fn core_inner_mm(design: &Design, cavity: &Cavity) -> f64 {
     design.inner_radius_mm().max(blunt.min(cavity.sector.inner_mm - block_mm))
 }
 
-/// The ring's chamfer, mm: that of all parts, as far as its ribs bear it.
+/// The chamfer of the ring, mm: that of all parts, or less for thin ribs.
 fn ring_chamfer_mm(design: &Design, cavity: &Cavity) -> f64 {
     design.configuration().print.elephant_foot_mm.min(RIB_SHARE * cavity.groove_radius_mm)
 }
 
-/// The block that shapes the layer's smooth inner face; the ring's end walls rest on its face beyond the cavity.
+/// The block that shapes the smooth inner face of the layer. The end walls of the ring touch its face beyond the cavity.
 fn core_sector(design: &Design, cavity: &Cavity) -> Sector {
     Sector {
         inner_mm: core_inner_mm(design, cavity),
@@ -76,7 +76,7 @@ pub(in crate::parts) fn core(design: &Design) -> Result<Part, ConfigError> {
     Ok(part)
 }
 
-/// Where the label goes on the core.
+/// The zone of the label on the core.
 fn label_zone(design: &Design, cavity: &Cavity) -> Zone {
     Zone::Arc {
         inner_mm: core_inner_mm(design, cavity),
@@ -86,7 +86,7 @@ fn label_zone(design: &Design, cavity: &Cavity) -> Zone {
     }
 }
 
-/// Whether the label finds no room on the core.
+/// Returns whether the label does not fit on the core.
 pub(in crate::parts) fn core_has_lost_label(design: &Design) -> bool {
     let cavity = Cavity::of(design);
     let top = design.configuration().mould.floor_mm + cavity.depth_mm;
@@ -111,8 +111,8 @@ pub(in crate::parts) fn ring(design: &Design) -> Result<Part, ConfigError> {
     Ok(part)
 }
 
-/// The ring seen from above, counter-clockwise: outside round, along the left end wall, over the ribs, and back
-/// along the right end wall. The end walls stop short of the core by the print clearance.
+/// The outline of the ring, counter-clockwise: outer face, left end wall, ribs, right end wall. The end walls have the print
+/// clearance to the core.
 fn ring_outline(design: &Design, cavity: &Cavity) -> Contour {
     let outside = plate_sector(design, cavity);
     let inside = cavity.sector;
@@ -130,7 +130,7 @@ fn ring_outline(design: &Design, cavity: &Cavity) -> Contour {
         .close()
 }
 
-/// The face with the ribs that form the layer's grooves, from negative to positive angles.
+/// The face with the ribs that form the grooves of the layer, from negative to positive angles.
 fn ribbed_face(pen: Pen, cavity: &Cavity) -> Pen {
     let (radius, last) =
         (cavity.sector.outer_mm, cavity.sector.corner(cavity.sector.outer_mm, End::Positive));

@@ -1,4 +1,4 @@
-//! What is cast in the mould, measured on the mould's mesh: the layer as designed, whatever the draft and the basin.
+//! The layer that the mould casts, measured on the mesh of the mould.
 
 use proptest::prelude::*;
 
@@ -11,7 +11,7 @@ use pinswitch_solid::mesh::{Mesh, Point3};
 use pinswitch_solid::profile::{ChordTolerance, polar};
 use pinswitch_solid::validity::{Expectation, examine};
 
-/// Sections and rays miss vertices, which lie at round numbers, by these shares.
+/// Positions of sections and rays, which avoid vertices at round numbers.
 const SHARES: [f64; 5] = [0.0137, 0.2641, 0.5173, 0.7429, 0.9871];
 
 fn moulds() -> impl Strategy<Value = Configuration> {
@@ -36,7 +36,7 @@ fn moulds() -> impl Strategy<Value = Configuration> {
         c.print.elephant_foot_mm = if chamfered { 0.2 } else { 0.0 };
         c.print.bed_mm = 400.0;
         c.tendon.rope_diameter_mm = 0.6;
-        // Letters are pockets in the core's head, which rays would meet.
+        // Rays would hit engraved letters.
         c.label.engrave = false;
         c
     })
@@ -46,28 +46,28 @@ fn part<'a>(parts: &'a [Part], name: &str) -> &'a Part {
     parts.iter().find(|p| p.name == name).unwrap()
 }
 
-/// Distances from the axis at which a ray at `angle_rad` and `z_mm` meets the mesh, ascending.
+/// Distances from the axis at which a ray hits the mesh, ascending.
 fn crossings_mm(mesh: &Mesh, angle_rad: f64, z_mm: f64) -> Vec<f64> {
     let origin = Point3::new(0.0, 0.0, z_mm);
     let along = polar(1.0, angle_rad).coords.push(0.0);
-    let mut found: Vec<f64> = mesh
+    let mut crossings: Vec<f64> = mesh
         .triangles
         .iter()
         .filter_map(|t| {
             let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
             let (u, v) = (b - a, c - a);
             let across = along.cross(&v);
-            let turned = (origin - a).cross(&u);
+            let normal = (origin - a).cross(&u);
             let share = 1.0 / u.dot(&across);
-            let (p, q) = ((origin - a).dot(&across) * share, along.dot(&turned) * share);
-            let distance = v.dot(&turned) * share;
+            let (p, q) = ((origin - a).dot(&across) * share, along.dot(&normal) * share);
+            let distance = v.dot(&normal) * share;
             (p >= 0.0 && q >= 0.0 && p + q <= 1.0 && distance > 0.0).then_some(distance)
         })
         .collect();
-    found.sort_by(f64::total_cmp);
-    // A ray through an edge meets both of its facets.
-    found.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    found
+    crossings.sort_by(f64::total_cmp);
+    // A ray through an edge hits both of its facets.
+    crossings.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    crossings
 }
 
 /// Signed area of the section of the mesh at `z_mm`, mm².
@@ -82,13 +82,13 @@ fn section_mm2(mesh: &Mesh, z_mm: f64) -> f64 {
                 crosses.then(|| cut(from, to).xy().coords)
             })
         };
-        // Seen from outside, a facet enters the half space above and leaves it to the right.
+        // Viewed from outside, a facet enters the upper half space and leaves it on the right.
         Some(crossing(false)?.perp(&crossing(true)?) / 2.0)
     };
     mesh.triangles.iter().filter_map(swept).sum::<f64>()
 }
 
-/// The tray's or the core's mesh, the height of its floor, and which crossing of a ray is the mating face.
+/// Mesh of the tray or the core, and the height of its floor.
 fn mating(design: &Design, parts: &[Part]) -> (Mesh, f64) {
     let name =
         if design.configuration().mould.kind == MouldKind::OnePiece { "mould-tray" } else { "mould-core" };
@@ -96,7 +96,7 @@ fn mating(design: &Design, parts: &[Part]) -> (Mesh, f64) {
 }
 
 #[test]
-fn draft_leans_the_basin_and_nothing_that_friction_knows() {
+fn draft_changes_the_basin_only() {
     let with = |assignments: &[&str]| {
         let mut c = Configuration::default();
         c.mould.kind = MouldKind::OnePiece;
@@ -108,7 +108,7 @@ fn draft_leans_the_basin_and_nothing_that_friction_knows() {
     assert!(cavity_mm3(&upright).1 < cavity_mm3(&leaning).1);
     assert_eq!(predicted_curve(&upright), predicted_curve(&leaning));
     assert_eq!(upright.warnings(), leaning.warnings());
-    // Without a basin there is nothing to lean, and that is said.
+    // Without a basin, draft has no effect, and a warning says so.
     let flush = with(&["mould.draft_deg=3", "mould.overfill_mm=0"]);
     assert!(
         flush.warnings().iter().any(|w| w.contains("mould.draft_deg = 3 leans no wall")),
@@ -119,7 +119,7 @@ fn draft_leans_the_basin_and_nothing_that_friction_knows() {
     assert_eq!(one_piece(&flat).unwrap().solid, flush.solid);
 }
 
-/// Every wall that draft or a chamfer twists: a hundredth of the tolerance, a hundredth of the error and less.
+/// Also walls that draft or a chamfer twists: the error is at most proportional to the tolerance.
 #[test]
 fn meshes_of_the_mould_converge_to_its_volume() {
     for (kind, draft) in [("one-piece", 3.0), ("one-piece", 5.0), ("split", 0.0)] {
@@ -144,9 +144,9 @@ fn meshes_of_the_mould_converge_to_its_volume() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// The face that lies on the shell has one radius over its width, and the layer is as thick as designed.
+    /// The inner face of the layer has one radius over its width, and the layer has its thickness.
     #[test]
-    fn the_cast_layer_lies_on_the_shell(configuration in moulds()) {
+    fn the_cast_layer_fits_the_shell(configuration in moulds()) {
         let Ok(design) = Design::new(configuration) else { return Err(TestCaseError::reject("no such design")) };
         let c = design.configuration();
         let scale = 1.0 / (1.0 - c.mould.shrinkage_pct / 100.0);
@@ -177,9 +177,9 @@ proptest! {
         }
     }
 
-    /// What the guide and the bill of materials call the layer is what the tray's mesh leaves open.
+    /// The cavity of the mesh has the volume of the layer in the bill of materials.
     #[test]
-    fn the_layer_has_the_volume_that_the_bill_says(configuration in moulds()) {
+    fn the_cavity_has_the_volume_of_the_bill(configuration in moulds()) {
         let configuration = Configuration {
             mould: crate::config::MouldTable { kind: MouldKind::OnePiece, ..configuration.mould },
             ..configuration
@@ -195,7 +195,7 @@ proptest! {
         let (depth_mm, body_mm2) = (design.layer_width_mm() * scale, section_mm2(&mesh, 0.5 * floor_mm));
         for share in SHARES {
             let open_mm2 = body_mm2 - section_mm2(&mesh, floor_mm + share * depth_mm);
-            // Arcs too flat to be cut are the only ones that do not keep their area.
+            // Only arcs that are too flat to be split lose area.
             prop_assert!((open_mm2 * depth_mm / layer_mm3 - 1.0).abs() < 3e-4, "{open_mm2}");
         }
         // Simpson's rule over the basin: its section is quadratic in height.
@@ -207,7 +207,7 @@ proptest! {
         }
     }
 
-    /// The manifest's volume of every part of the mould is what its mesh encloses, within what the tolerance allows.
+    /// The volume of the mesh of every part of the mould is within the bound of the tolerance.
     #[test]
     fn meshes_of_the_mould_keep_its_volume(configuration in moulds()) {
         let Ok(design) = Design::new(configuration) else { return Err(TestCaseError::reject("no such design")) };
@@ -224,7 +224,7 @@ proptest! {
 }
 
 #[test]
-fn a_base_with_thick_end_walls_has_no_sharp_corners() {
+fn thick_end_walls_have_no_sharp_corners() {
     for set in
         [&["mould.wall_mm=8"][..], &["mould.wall_mm=5", "shell.wall_mm=11"], &["segment.end_margin_mm=5"]]
     {
@@ -234,8 +234,8 @@ fn a_base_with_thick_end_walls_has_no_sharp_corners() {
         for part in [super::split::core(&design), super::split::ring(&design), super::lid::lid(&design)] {
             let part = part.unwrap();
             let mesh = part.solid.mesh(design.tolerance()).unwrap();
-            let found = examine(&mesh, &Expectation { min_wall_mm: 0.4, ..Expectation::default() });
-            assert!(found.is_valid(), "{set:?}, {}: {:?}", part.name, found.faults);
+            let report = examine(&mesh, &Expectation { min_wall_mm: 0.4, ..Expectation::default() });
+            assert!(report.is_valid(), "{set:?}, {}: {:?}", part.name, report.faults);
         }
     }
 }

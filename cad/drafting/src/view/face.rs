@@ -1,12 +1,12 @@
-//! The face of a cut: its outline, and the lines that hatch it.
+//! Cut faces: their outline and their hatching.
 
 use super::body::Body;
-use super::elevation::{Stroke, joined};
+use super::strokes::{Stroke, joined};
 
-/// Inside a level, mm.
+/// Distance of a section from the level above or below it, mm.
 const INSIDE_MM: f64 = 1e-6;
 
-/// Part of a cut face between two heights: left and right at the lower and at the upper one.
+/// Part of a cut face between two heights: its left and right end at the lower and at the upper one.
 #[derive(Clone, Copy, Debug)]
 struct Quad {
     low: [f64; 2],
@@ -16,18 +16,19 @@ struct Quad {
 
 /// The cut face of one body.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Face {
+pub struct Face {
     quads: Vec<Quad>,
 }
 
 impl Face {
-    /// Where the plane `w = cut_mm` cuts `body`.
-    pub(super) fn of(body: &Body, cut_mm: f64) -> Self {
+    /// The face of `body` in the plane `w = cut_mm`.
+    #[must_use]
+    pub fn new(body: &Body, cut_mm: f64) -> Self {
         let across = |z: f64| {
-            let mut found = Vec::new();
-            body.crossings(1, cut_mm, z, &mut found);
-            found.sort_by(f64::total_cmp);
-            found
+            let mut ends = Vec::new();
+            body.crossings(1, cut_mm, z, &mut ends);
+            ends.sort_by(f64::total_cmp);
+            ends
         };
         let mut quads = Vec::new();
         for pair in body.levels_mm.windows(2) {
@@ -44,27 +45,30 @@ impl Face {
         Self { quads }
     }
 
-    /// Whether nothing is cut.
-    pub(super) fn is_empty(&self) -> bool {
+    /// Whether the plane misses the body.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
         self.quads.is_empty()
     }
 
-    /// A point inside the widest part of the face.
-    pub(super) fn inside(&self) -> Option<[f64; 2]> {
+    /// A point `[u, z]` inside the widest part of the face; `None` for an empty one.
+    #[must_use]
+    pub fn inside(&self) -> Option<[f64; 2]> {
         let size = |q: &&Quad| (q.low[1] - q.low[0]).min(q.z[1] - q.z[0]);
         let widest = self.quads.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
         Some([f64::midpoint(widest.low[0], widest.low[1]), f64::midpoint(widest.z[0], widest.z[1])])
     }
 
-    /// Its outline.
-    pub(super) fn outline(&self) -> Vec<Stroke> {
+    /// The outline.
+    #[must_use]
+    pub fn outline(&self) -> Vec<Stroke> {
         let mut strokes = Vec::new();
         for quad in &self.quads {
             for side in 0..2 {
                 strokes.push([[quad.low[side], quad.z[0]], [quad.high[side], quad.z[1]]]);
             }
         }
-        // A level is an edge where there is material on one side of it only.
+        // A level is an edge where material is on one side of it only.
         let mut levels: Vec<f64> = self.quads.iter().flat_map(|q| q.z).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
@@ -85,10 +89,11 @@ impl Face {
         joined(&strokes, &[])
     }
 
-    /// Lines `apart_mm` from each other at 45 degrees, rising or falling along `u`.
-    pub(super) fn hatch(&self, apart_mm: f64, rises: bool) -> Vec<Stroke> {
+    /// Hatching lines at 45 degrees, `apart_mm` from each other, rising or falling along `u`.
+    #[must_use]
+    pub fn hatch(&self, apart_mm: f64, rises: bool) -> Vec<Stroke> {
         let slope = if rises { 1.0 } else { -1.0 };
-        // Lines of equal z - slope u, a number each.
+        // A line has constant z - slope u, a multiple of the step.
         let step = apart_mm * std::f64::consts::SQRT_2;
         let mut strokes = Vec::new();
         for quad in &self.quads {
@@ -133,14 +138,14 @@ mod tests {
     use pinswitch_solid::solid::Solid;
 
     #[test]
-    fn the_face_of_a_cut_washer_is_two_rectangles() {
+    fn a_cut_washer_has_two_faces() {
         let disc = Contour::circle(Point2::origin(), 5.0);
         let hole = Contour::circle(Point2::origin(), 2.0).reversed();
         let washer = Solid::prism(&disc, &[hole], 0.0, 4.0, 0.0).unwrap();
-        let face = Face::of(&Body::seen(&washer, Pose::upright(0.0), Side::Left), 0.0);
+        let face = Face::new(&Body::new(&washer, Pose::upright(0.0), Side::Left), 0.0);
         let length = |s: &[Stroke]| s.iter().map(|[a, b]| libm::hypot(a[0] - b[0], a[1] - b[1])).sum::<f64>();
         assert!((length(&face.outline()) - 2.0 * 14.0).abs() < 1e-4, "{:?}", face.outline());
-        // Hatching of an area at a distance is as long as the area over the distance.
+        // The length of a hatching is the area over the distance of its lines.
         let hatched = length(&face.hatch(0.01, true));
         assert!((hatched * 0.01 / 24.0 - 1.0).abs() < 0.01, "{hatched}");
     }

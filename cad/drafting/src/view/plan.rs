@@ -1,47 +1,53 @@
-//! The front view: a part seen along the pulley's axis, as lines and arcs, whole or within the circle of a detail.
+//! Front views: a solid viewed along its axis, as lines and arcs, whole or within the circle of a detail.
 
 use std::f64::consts::TAU;
 
-use super::features::{circle, lettering, same};
-use pinswitch_drafting::{Draft, Layer, Point, Shape};
+use crate::contour::{circle, lettering, same};
+use crate::{Draft, Layer, Point, Shape};
 use pinswitch_solid::profile::{Arc, Contour, Edge, Point2, Vector2};
 use pinswitch_solid::solid::{Facing, Solid};
 
-/// A line or an arc of the part, in its own millimetres.
+/// A line of a front view, in millimetres of the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Trace {
+pub enum Trace {
+    /// A straight line between two points.
     Line(Point2, Point2),
+    /// An arc.
     Arc(Arc),
+    /// A circle: centre and radius.
     Circle(Point2, f64),
 }
 
-/// Where the part lies on paper.
+/// The position of a front view on paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
-    /// Where the origin of the view lies.
-    pub(super) origin: Point,
-    /// Millimetres on paper for one of the part.
-    pub(super) scale: f64,
-    /// The point of the part that lies on the view's origin.
-    pub(super) about: Point2,
-    /// By how much the part is turned counter-clockwise.
-    pub(super) turn_rad: f64,
+pub struct Place {
+    /// Origin of the view on paper.
+    pub origin: Point,
+    /// Millimetres on paper for a millimetre of the solid.
+    pub scale: f64,
+    /// The point of the solid at the origin of the view.
+    pub about: Point2,
+    /// Counter-clockwise rotation of the solid.
+    pub turn_rad: f64,
 }
 
 impl Place {
-    /// A place without a turn.
-    pub(super) fn straight(origin: Point, scale: f64) -> Self {
+    /// A view without rotation, with the origin of the solid at `origin`.
+    #[must_use]
+    pub fn straight(origin: Point, scale: f64) -> Self {
         Self { origin, scale, about: Point2::origin(), turn_rad: 0.0 }
     }
 
-    /// A point of the part on paper.
-    pub(super) fn at(&self, p: Point2) -> Point {
+    /// A point of the solid on paper.
+    #[must_use]
+    pub fn at(&self, p: Point2) -> Point {
         let (d, (sin, cos)) = (p - self.about, libm::sincos(self.turn_rad));
         self.origin + Point::new(d.x * cos - d.y * sin, d.x * sin + d.y * cos) * self.scale
     }
 
     /// A trace on paper.
-    pub(super) fn shape(&self, trace: &Trace) -> Shape {
+    #[must_use]
+    pub fn shape(&self, trace: &Trace) -> Shape {
         match trace {
             Trace::Line(a, b) => Shape::Line { from: self.at(*a), to: self.at(*b) },
             Trace::Circle(centre, radius) => {
@@ -57,13 +63,15 @@ impl Place {
     }
 }
 
-/// The lines of a part seen along the axis, from the side of +z, or of -z if `from_below`: mirrored there, as one sees it.
-pub(super) fn plan(solid: &Solid, from_below: bool, chamfer_mm: f64) -> Vec<(Layer, Trace)> {
+/// Returns the lines of a solid viewed from +z, or from -z (and mirrored) if `from_below`. The feet of bottom chamfers of
+/// `chamfer_mm` are left out where they are hidden.
+#[must_use]
+pub fn plan(solid: &Solid, from_below: bool, chamfer_mm: f64) -> Vec<(Layer, Trace)> {
     let eye = if from_below { Facing::Down } else { Facing::Up };
     let rings: Vec<(&Contour, f64)> = solid.rings().collect();
-    let towards: Vec<usize> =
+    let facing: Vec<usize> =
         solid.caps().filter(|(facing, _)| *facing == eye).flat_map(|(_, members)| members).collect();
-    // The foot of a chamfer is left out where it is hidden: a line beside a line tells nobody anything.
+    // A hidden line next to a visible one adds nothing.
     let feet: Vec<usize> = solid
         .walls()
         .filter(|(low, high)| {
@@ -75,18 +83,18 @@ pub(super) fn plan(solid: &Solid, from_below: bool, chamfer_mm: f64) -> Vec<(Lay
         .collect();
     let letters = lettering(solid);
     let mut lines = Vec::new();
-    let mut drawn: Vec<&Contour> = Vec::new();
-    for is_seen in [true, false] {
+    let mut known: Vec<&Contour> = Vec::new();
+    for is_visible in [true, false] {
         for (i, (contour, _)) in rings.iter().enumerate() {
             let is_lettering = letters[i];
-            let skips = is_seen != towards.contains(&i)
-                || drawn.contains(contour)
-                || (!is_seen && (feet.contains(&i) || is_lettering));
-            if skips {
+            let is_skipped = is_visible != facing.contains(&i)
+                || known.contains(contour)
+                || (!is_visible && (feet.contains(&i) || is_lettering));
+            if is_skipped {
                 continue;
             }
-            drawn.push(contour);
-            let layer = match (is_seen, is_lettering) {
+            known.push(contour);
+            let layer = match (is_visible, is_lettering) {
                 (true, true) => Layer::Thin,
                 (true, false) => Layer::Visible,
                 (false, _) => Layer::Hidden,
@@ -99,7 +107,7 @@ pub(super) fn plan(solid: &Solid, from_below: bool, chamfer_mm: f64) -> Vec<(Lay
 }
 
 /// The edges of a contour.
-pub(super) fn traces(contour: &Contour) -> Vec<Trace> {
+pub(crate) fn traces(contour: &Contour) -> Vec<Trace> {
     if let Some((centre, radius)) = circle(contour) {
         return vec![Trace::Circle(centre, radius)];
     }
@@ -114,16 +122,16 @@ pub(super) fn traces(contour: &Contour) -> Vec<Trace> {
         .collect()
 }
 
-/// Draws lines in a place.
-pub(super) fn draw(draft: &mut Draft, lines: &[(Layer, Trace)], place: &Place, view: usize) {
+/// Draws the lines of a front view.
+pub fn draw_plan(draft: &mut Draft, lines: &[(Layer, Trace)], place: &Place, view: usize) {
     let group = draft.group();
     for (layer, trace) in lines {
         draft.put(*layer, place.shape(trace), Some(view), group);
     }
 }
 
-/// What of a trace lies within `radius_mm` of `centre`.
-pub(super) fn within(trace: &Trace, centre: Point2, radius_mm: f64) -> Vec<Trace> {
+/// The pieces of a trace within `radius_mm` of `centre`.
+pub(crate) fn within(trace: &Trace, centre: Point2, radius_mm: f64) -> Vec<Trace> {
     match trace {
         Trace::Line(a, b) => {
             let (from, along) = (a - centre, b - a);
@@ -137,16 +145,17 @@ pub(super) fn within(trace: &Trace, centre: Point2, radius_mm: f64) -> Vec<Trace
         }
         Trace::Circle(middle, r) => {
             let whole = Arc { centre: *middle, radius_mm: *r, start_rad: 0.0, sweep_rad: TAU };
-            let kept = arc_within(&whole, centre, radius_mm);
-            match kept[..] {
+            let pieces = arc_within(&whole, centre, radius_mm);
+            match pieces[..] {
                 [arc] if (arc.sweep_rad - TAU).abs() < 1e-9 => vec![*trace],
-                _ => kept.into_iter().map(Trace::Arc).collect(),
+                _ => pieces.into_iter().map(Trace::Arc).collect(),
             }
         }
         Trace::Arc(arc) => arc_within(arc, centre, radius_mm).into_iter().map(Trace::Arc).collect(),
     }
 }
 
+/// The pieces of an arc within `radius_mm` of `centre`.
 fn arc_within(arc: &Arc, centre: Point2, radius_mm: f64) -> Vec<Arc> {
     let to: Vector2 = centre - arc.centre;
     let distance = to.norm();
@@ -181,7 +190,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_detail_keeps_what_lies_in_its_circle() {
+    fn traces_are_clipped_by_a_circle() {
         let line = Trace::Line(Point2::new(-5.0, 3.0), Point2::new(9.0, 3.0));
         assert_eq!(
             within(&line, Point2::origin(), 5.0),
@@ -190,7 +199,7 @@ mod tests {
         assert!(within(&line, Point2::origin(), 2.0).is_empty());
         let circle = Trace::Circle(Point2::new(1.0, 0.0), 1.0);
         assert_eq!(within(&circle, Point2::origin(), 3.0), [circle]);
-        // Of a circle through the middle of the detail, what lies within a radius of it: two times 60 degrees.
+        // 120 degrees of a circle through the centre of an equal one are inside it.
         let length: f64 = within(&circle, Point2::origin(), 1.0)
             .iter()
             .map(|t| if let Trace::Arc(a) = t { a.length_mm() } else { 0.0 })

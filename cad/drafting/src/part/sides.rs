@@ -1,30 +1,31 @@
-//! Lengths along the two sides of the paper: of parts without an axis, and of blocks around one.
+//! Lengths along the sides of the paper: of parts without an axis, and of blocks around an axis.
 
-use pinswitch_friction::sort_by_number;
-
-use super::dimensions::Wanted;
-use super::features::{Features, same};
-use super::plan::Place;
-use super::words::number;
-use pinswitch_drafting::{Extent, Linear};
+use super::dimension::Dimension;
+use super::features::{Features, Slot};
+use super::text::number;
+use crate::contour::same;
+use crate::view::Place;
+use crate::{Extent, Linear};
+use pinswitch_solid::mesh::Point3;
 use pinswitch_solid::profile::Point2;
 
-/// With more dimensions below the front view its length goes above: another view may lie below.
+/// Most dimensions below the front view before its length goes above it, since another view may be below.
 const MOST_BELOW: usize = 1;
 
-/// Where dimensions of a front view are put.
+/// The position of a front view, and the dimensions along its sides.
 struct Frame<'a> {
     place: &'a Place,
     front: Extent,
     low: Point2,
     high: Point2,
-    /// What is free below and above it, up to another view, mm.
+    /// Space below and above the view, mm.
     room_mm: [f64; 2],
-    all: Vec<Wanted>,
+    all: Vec<Dimension>,
 }
 
 impl Frame<'_> {
-    /// The distance of two points along x, or along y if `upright`; below or to the left, unless `is_far`.
+    /// Adds the distance of two points along x, or along y if `upright`. It is below or left of the view, or on the other
+    /// side if `is_far`.
     fn linear(
         &mut self,
         key: impl Into<String>,
@@ -34,10 +35,10 @@ impl Frame<'_> {
         is_far: bool,
     ) {
         let linear = self.measured(key.into(), text, ends, upright, is_far);
-        self.all.push(Wanted::linear(linear));
+        self.all.push(Dimension::linear(linear));
     }
 
-    /// The same where there is room: at the ends near to the side on which `is_far` says that it stands, else on the other.
+    /// Adds the same on the side where there is space, first the one that `is_far` names. `ends` gives the ends for a side.
     fn linear_on_a_side(
         &mut self,
         key: String,
@@ -47,8 +48,8 @@ impl Frame<'_> {
         is_far: bool,
     ) {
         let on = |is_far| self.measured(key.clone(), text.clone(), ends(is_far), upright, is_far);
-        let wanted = Wanted::linear(on(is_far)).or(on(!is_far));
-        self.all.push(wanted);
+        let dimension = Dimension::linear(on(is_far)).or(on(!is_far));
+        self.all.push(dimension);
     }
 
     fn measured(&self, key: String, text: String, ends: [Point2; 2], upright: bool, is_far: bool) -> Linear {
@@ -66,47 +67,50 @@ impl Frame<'_> {
         Linear { key, text, from, to, upright, edge_mm, outward, room_mm, clear_of }
     }
 
-    /// Length and width over all; in parentheses where other dimensions make them.
-    fn overall(&mut self, follows: bool) {
+    /// Adds overall length and width, in parentheses if they are auxiliary.
+    fn overall(&mut self, is_auxiliary: bool) {
         let (low, high) = (self.low, self.high);
-        let said = |mm: f64| if follows { format!("({})", number(mm)) } else { number(mm) };
-        let is_far = self.all.iter().filter(|w| w.is_below(self.front)).count() > MOST_BELOW;
+        let text = |mm: f64| if is_auxiliary { format!("({})", number(mm)) } else { number(mm) };
+        let is_far = self.all.iter().filter(|d| d.is_below(self.front)).count() > MOST_BELOW;
         let ends = |is_far: bool| {
             let y = if is_far { high.y } else { low.y };
             [Point2::new(low.x, y), Point2::new(high.x, y)]
         };
-        self.linear_on_a_side("length".to_owned(), said(high.x - low.x), ends, false, is_far);
-        self.linear("width", said(high.y - low.y), [Point2::new(high.x, low.y), high], true, true);
+        self.linear_on_a_side("length".to_owned(), text(high.x - low.x), ends, false, is_far);
+        self.linear("width", text(high.y - low.y), [Point2::new(high.x, low.y), high], true, true);
     }
 }
 
-/// What of a part is measured along the paper; nothing for a part whose radii and angles say it all.
-pub(super) fn of_part(
+/// Returns the lengths of a part along the paper. A part with an axis is described by radii and angles. `pocket` is the name of
+/// a pocket of a pattern.
+pub(super) fn lengths(
     f: &Features,
+    pocket: &str,
     place: &Place,
     front: Extent,
     room_mm: [f64; 2],
-    (low, high): (nalgebra::Point3<f64>, nalgebra::Point3<f64>),
-) -> Vec<Wanted> {
+    (low, high): (Point3, Point3),
+) -> Vec<Dimension> {
     let (low, high) = (Point2::new(low.x, low.y), Point2::new(high.x, high.y));
     let mut frame = Frame { place, front, low, high, room_mm, all: Vec::new() };
-    match (f.axis_arcs.is_empty(), f.block) {
-        (true, Some(_)) => block(f, &mut frame),
-        (false, Some(_)) => block_about_axis(&mut frame),
-        (false, None) => {}
-        (true, None) if f.is_round_body() => {}
-        (true, None) if f.bores.is_empty() => {
-            rows(f, &mut frame);
-            frame.overall(false);
+    if f.is_axial() {
+        if f.block.is_some() {
+            block_about_axis(&mut frame);
         }
-        // The arcs of the outline and the places of the holes make the lengths of a plate.
-        (true, None) => frame.overall(true),
+    } else if f.is_block() {
+        block(f, &mut frame);
+    } else if f.has_hole_table() {
+        // The arcs of the outline and the places of the holes give the lengths of a plate.
+        frame.overall(true);
+    } else if !f.is_round_body() {
+        rows(f, &mut frame);
+        frame.overall(false);
     }
-    copies(f, &mut frame);
+    pattern(f, pocket, &mut frame);
     frame.all
 }
 
-/// Everything on a rectangular block: from its left side, and across its middle line where things lie alike on both sides.
+/// Everything on a block: from its left side, and across its middle line where both sides are equal.
 fn block(f: &Features, frame: &mut Frame<'_>) {
     let corners = f.straight.iter().flat_map(|(a, b)| [*a, *b]);
     let points: Vec<Point2> = corners.chain(f.bores.iter().flat_map(|b| b.centres.clone())).collect();
@@ -114,7 +118,7 @@ fn block(f: &Features, frame: &mut Frame<'_>) {
     let mut xs: Vec<f64> = points.iter().map(|p| p.x).filter(|x| !same(*x, low.x)).collect();
     xs.sort_by(f64::total_cmp);
     xs.dedup_by(|a, b| same(*a, *b));
-    // In turn below and above, so that all find room.
+    // Below and above in turn, so that all find space.
     for (i, x) in xs.iter().filter(|x| !same(**x, high.x)).enumerate() {
         let ends = |is_far: bool| {
             let ys = points.iter().filter(|p| same(p.x, *x)).map(|p| p.y);
@@ -128,14 +132,13 @@ fn block(f: &Features, frame: &mut Frame<'_>) {
     let middle = f64::midpoint(low.y, high.y);
     let is_paired = |p: &Point2| points.iter().any(|q| same(p.x, q.x) && same(q.y - middle, middle - p.y));
     let mut above: Vec<Point2> = points.iter().copied().filter(|p| p.y > middle || !is_paired(p)).collect();
-    // Of those at one height the nearest to the side on which it is written.
-    sort_by_number(&mut above, |p| -p.x);
-    sort_by_number(&mut above, |p| p.y);
+    // Of points at one height, the nearest to the side of the dimension.
+    above.sort_by(|a, b| b.x.total_cmp(&a.x));
+    above.sort_by(|a, b| a.y.total_cmp(&b.y));
     above.dedup_by(|a, b| same(a.y, b.y));
-    for (i, p) in above.iter().filter(|p| !same(p.y, high.y)).enumerate() {
+    for (i, p) in above.iter().filter(|p| !same(p.y, high.y) && !same(p.y, low.y)).enumerate() {
         if is_paired(p) {
             let text = number(2.0 * (p.y - middle));
-            // To the side on which it is written, where the same height is met nearest to it.
             let ends = |is_far: bool| {
                 let at_height = points.iter().filter(|q| same(q.y, p.y)).map(|q| q.x);
                 let x = if is_far {
@@ -155,7 +158,7 @@ fn block(f: &Features, frame: &mut Frame<'_>) {
     frame.overall(false);
 }
 
-/// A block that holds something about the pulley's axis: its lower side is measured from the axis.
+/// A block that contains something about the axis: its sides are measured from the axis.
 fn block_about_axis(frame: &mut Frame<'_>) {
     let (low, high) = (frame.low, frame.high);
     frame.overall(false);
@@ -167,16 +170,16 @@ fn block_about_axis(frame: &mut Frame<'_>) {
     }
 }
 
-/// From one basin of a gang to the next.
-fn copies(f: &Features, frame: &mut Frame<'_>) {
-    let Some(copies) = f.copies else { return };
-    let steps = copies.number - 1;
-    // Nested ones are measured at their outermost corners, from which nothing lies between them and the dimension.
+/// The steps of a pattern of pockets.
+fn pattern(f: &Features, pocket: &str, frame: &mut Frame<'_>) {
+    let Some(pattern) = f.pattern else { return };
+    let steps = pattern.number - 1;
+    // An upright pattern is measured at the outermost corners: nothing is between them and the dimension.
     let corners = f.ends.iter().flat_map(|e| e.lines.iter().flat_map(|(a, b)| [*a, *b]));
     let outermost = corners.max_by(|a, b| a.x.total_cmp(&b.x));
-    let first = outermost.filter(|_| copies.are_nested()).unwrap_or_else(Point2::origin);
-    let last = first + copies.reach();
-    for (upright, step, word) in [(false, copies.step.x, "along"), (true, copies.step.y, "across")] {
+    let first = outermost.filter(|_| pattern.is_upright()).unwrap_or_else(Point2::origin);
+    let last = first + pattern.extent();
+    for (upright, step, word) in [(false, pattern.step.x, "along"), (true, pattern.step.y, "across")] {
         if !same(step, 0.0) {
             let (step, steps) = (step.abs(), steps as f64);
             let text = if steps > 1.0 {
@@ -184,23 +187,23 @@ fn copies(f: &Features, frame: &mut Frame<'_>) {
             } else {
                 number(step)
             };
-            // The axis is measured from on the left.
-            frame.linear(format!("pitch of the basins {word}"), text, [first, last], upright, upright);
+            // Dimensions from the axis are on the left.
+            frame.linear(format!("{pocket} pitch {word}"), text, [first, last], upright, upright);
         }
     }
 }
 
-/// Rows of slots and grooves: the first from the corner, the others from it.
+/// Rows of slots and grooves: the first from the corner, the others from the first.
 fn rows(f: &Features, frame: &mut Frame<'_>) {
     let (corner, high) = (frame.low, frame.high);
     let middle = |s: &(Point2, Point2)| nalgebra::center(&s.0, &s.1);
-    let slots: Vec<Point2> = f.slots.iter().flat_map(|s| s.places.iter().map(middle)).collect();
+    let slots: Vec<Point2> = f.slots.iter().flat_map(|s: &Slot| s.places.iter().map(middle)).collect();
     let half_rounds = f.roundings.iter().filter(|r| r.is_half_round);
     let grooves = half_rounds.flat_map(|r| r.arcs.iter().map(|a| a.centre)).collect();
     for (word, mut points) in [("slots", slots), ("grooves", grooves)] {
-        sort_by_number(&mut points, |p| p.x);
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
         let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { continue };
-        // Above: no extension line runs through what is engraved below the slots.
+        // Above: below the slots, extension lines would cross engravings.
         let from = |p: Point2| [Point2::new(corner.x, p.y), p];
         frame.linear(format!("first of the {word}"), number(first.x - corner.x), from(first), false, true);
         let steps = points.len() - 1;

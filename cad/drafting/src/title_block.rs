@@ -1,68 +1,86 @@
-//! The title block, and the sign of the projection.
+//! The title block (ISO 7200) with the symbol of the projection (ISO 5456-2).
 
-use super::draft::Draft;
-use super::font::{LINE_PER_CAPITAL, fitted};
+use super::draft::{Draft, TITLE_BLOCK_MM};
+use super::font::{LINE_PER_CAPITAL, fit_text};
 use super::geometry::{Extent, Point};
 use super::sheet::{Layer, Paper, Shape, Text};
 
-/// Width of the title block, mm (ISO 7200).
-pub(super) const TITLE_WIDTH_MM: f64 = 180.0;
-/// Height of a row of it, mm.
-const ROW_MM: f64 = 9.5;
-/// Height of the words that say what a cell holds, mm.
+/// Height of a row, mm.
+const ROW_MM: f64 = TITLE_BLOCK_MM[1] / 3.0;
+/// Height of the label of a cell, mm.
 const LABEL_MM: f64 = 1.6;
-/// What is smaller in one line goes on in the next, mm.
+/// Height of the value of a cell, mm.
+const VALUE_MM: f64 = 3.0;
+/// Least height of a text on one line, before it is broken into several, mm.
 const LEAST_MM: f64 = 1.8;
-/// Its height, mm.
-pub(super) const TITLE_HEIGHT_MM: f64 = 3.0 * ROW_MM;
 
-/// How views are arranged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The arrangement of views.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Projection {
-    /// What is seen from above lies below, what is seen from the left lies to the right: usual in Europe and Asia.
+    /// First angle, usual in Europe and Asia: the view from above is below, the view from the left is on the right.
+    #[default]
     First,
-    /// What is seen from above lies above, what is seen from the right lies to the right: usual in North America.
+    /// Third angle, usual in North America: the view from above is above, the view from the right is on the right.
     Third,
 }
 
-/// What the title block says.
+/// The content of a title block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TitleBlock {
-    /// Name of the whole.
-    pub name: String,
-    /// Which variant of it.
-    pub layout: String,
-    /// What the sheet shows.
+    /// Label and name of the product, such as `Switch` and `three-double`.
+    pub product: (String, String),
+    /// Label and name of the variant of the product.
+    pub variant: (String, String),
+    /// Title of the sheet.
     pub title: String,
-    /// Number of the part.
+    /// Part number.
     pub part_number: String,
-    /// What it is made of.
+    /// Material.
     pub material: String,
-    /// Tolerance of what has none of its own.
+    /// Tolerance of dimensions without one.
     pub general_tolerance: String,
     /// Scale of the main views.
     pub scale: String,
-    /// How views are arranged.
+    /// Arrangement of the views.
     pub projection: Projection,
-    /// Date, if one was asked for.
+    /// Date; without one, there is no cell for it.
     pub date: Option<String>,
-    /// Number of this sheet, and of all.
+    /// Number of the sheet, and of all sheets.
     pub sheet: (usize, usize),
-    /// Program that drew it.
+    /// Author, or the program that drew the sheet.
     pub generator: String,
 }
 
+impl Default for TitleBlock {
+    /// The title block of a single sheet in first-angle projection, without texts.
+    fn default() -> Self {
+        Self {
+            product: ("Product".to_owned(), String::new()),
+            variant: ("Variant".to_owned(), String::new()),
+            title: String::new(),
+            part_number: String::new(),
+            material: String::new(),
+            general_tolerance: String::new(),
+            scale: String::new(),
+            projection: Projection::First,
+            date: None,
+            sheet: (1, 1),
+            generator: String::new(),
+        }
+    }
+}
+
 impl Draft {
-    /// A sheet with its frame and a title block.
+    /// A sheet with its frame and its title block.
     #[must_use]
     pub fn new(paper: Paper, title: &TitleBlock) -> Self {
-        let mut draft = Self::bare(paper);
-        draft.title_block(title, paper);
+        let mut draft = Self::without_title(paper);
+        draft.put_title_block(title, paper);
         draft.begin_content();
         draft
     }
 
-    fn title_block(&mut self, title: &TitleBlock, paper: Paper) {
+    fn put_title_block(&mut self, title: &TitleBlock, paper: Paper) {
         let block = self.sheet().title_block;
         let sheet = format!("{} / {}", title.sheet.0, title.sheet.1);
         let mut last = vec![
@@ -81,8 +99,8 @@ impl Draft {
         }
         let rows = [
             vec![
-                (66.0, "Switch", title.name.clone()),
-                (46.0, "Layout", title.layout.clone()),
+                (66.0, title.product.0.as_str(), title.product.1.clone()),
+                (46.0, title.variant.0.as_str(), title.variant.1.clone()),
                 (68.0, "Part number", title.part_number.clone()),
             ],
             vec![
@@ -97,29 +115,30 @@ impl Draft {
             let mut left = block.low.x;
             for (width, label, value) in row {
                 let cell = Extent::between(Point::new(left, top), Point::new(left + width, top - ROW_MM));
-                self.cell(cell, label, &value);
+                self.put_cell(cell, label, &value);
                 left += width;
             }
         }
         self.rectangle(Layer::Frame, block, 0);
         let middle = Point::new(block.low.x + 12.0, block.low.y + ROW_MM / 2.0);
-        self.projection_symbol(title.projection, middle);
+        self.put_projection_symbol(title.projection, middle);
     }
 
-    fn cell(&mut self, cell: Extent, label: &str, value: &str) {
+    fn put_cell(&mut self, cell: Extent, label: &str, value: &str) {
         self.rectangle(Layer::Thin, cell, 0);
         if label.is_empty() {
             return;
         }
         let at = Point::new(cell.low.x + 1.2, cell.high.y - LABEL_MM - 1.1);
-        self.lines_of_text(label, LABEL_MM, at, [cell.width() - 2.4, LABEL_MM]);
+        self.put_text(label, LABEL_MM, at, [cell.width() - 2.4, LABEL_MM]);
         let at = Point::new(cell.low.x + 1.2, cell.low.y + 1.7);
-        self.lines_of_text(value, 3.0, at, [cell.width() - 2.4, ROW_MM - LABEL_MM - 3.3]);
+        self.put_text(value, VALUE_MM, at, [cell.width() - 2.4, ROW_MM - LABEL_MM - 3.3]);
     }
 
-    /// Writes `content` whole into a room whose lower left corner is `low`, in as many lines as that takes.
-    pub(super) fn lines_of_text(&mut self, content: &str, wanted_mm: f64, low: Point, room: [f64; 2]) {
-        let (lines, height_mm) = fitted(content, wanted_mm, LEAST_MM, room);
+    /// Draws a text into a box with its lower left corner at `low`, with capitals of at most `most_mm`, in as many lines as
+    /// needed.
+    pub(super) fn put_text(&mut self, content: &str, most_mm: f64, low: Point, size_mm: [f64; 2]) {
+        let (lines, height_mm) = fit_text(content, most_mm, LEAST_MM, size_mm);
         let pitch = LINE_PER_CAPITAL * height_mm;
         let group = self.group();
         for (i, content) in lines.into_iter().rev().enumerate() {
@@ -128,13 +147,13 @@ impl Draft {
         }
     }
 
-    /// A cone cut short, from the side and from its narrow end (ISO 5456-2).
-    fn projection_symbol(&mut self, projection: Projection, middle: Point) {
-        let beside = match projection {
+    /// Draws a truncated cone, from the side and from its narrow end.
+    fn put_projection_symbol(&mut self, projection: Projection, middle: Point) {
+        let shift = match projection {
             Projection::First => 5.0,
             Projection::Third => -5.0,
         };
-        let (cone, rings) = (middle - Point::new(beside, 0.0), middle + Point::new(beside, 0.0));
+        let (cone, rings) = (middle - Point::new(shift, 0.0), middle + Point::new(shift, 0.0));
         let at = |x: f64, y: f64| cone + Point::new(x, y);
         let corners = [at(-3.5, -1.4), at(3.5, -2.8), at(3.5, 2.8), at(-3.5, 1.4)];
         for i in 0..4 {
@@ -153,11 +172,11 @@ impl Draft {
 
 #[cfg(test)]
 mod tests {
-    use super::super::collisions;
+    use super::super::{Sheet, collisions};
     use super::*;
 
-    /// The words of a sheet in the order in which they are read, cell by cell.
-    fn texts(sheet: &super::super::Sheet) -> String {
+    /// The texts of a sheet, cell by cell and line by line.
+    fn texts(sheet: &Sheet) -> String {
         let all = sheet.entities.iter();
         let mut lines: Vec<(usize, f64, &str)> = all
             .filter_map(|e| match &e.shape {
@@ -170,12 +189,12 @@ mod tests {
     }
 
     #[test]
-    fn a_title_block_holds_whatever_it_is_told() {
+    fn title_blocks_hold_texts_of_any_length() {
         for name in ["three-double".to_owned(), "W".repeat(80), "スイッチ".repeat(20)] {
             for date in [None, Some("2026-01-31 afternoon".to_owned())] {
                 let title = TitleBlock {
-                    name: name.clone(),
-                    layout: name.clone(),
+                    product: ("Product".to_owned(), name.clone()),
+                    variant: ("Variant".to_owned(), name.clone()),
                     title: name.clone(),
                     part_number: format!("{name}/{name}"),
                     material: name.clone(),
@@ -190,10 +209,10 @@ mod tests {
                     let draft = Draft::new(paper, &title);
                     assert_eq!(collisions(draft.sheet()), [], "{name}");
                     let block = draft.sheet().title_block;
-                    assert!(paper.frame().holds(block));
-                    // Nothing is cut: whoever reads a number may trust it.
-                    let said: String = texts(draft.sheet());
-                    assert!(said.contains(&title.part_number), "{said}");
+                    assert!(paper.frame().contains(block));
+                    // Nothing is cut.
+                    let text = texts(draft.sheet());
+                    assert!(text.contains(&title.part_number), "{text}");
                 }
             }
         }

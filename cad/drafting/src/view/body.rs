@@ -1,33 +1,30 @@
-//! A solid seen from a side: its walls as curves in the coordinates of a view.
-//!
-//! In a view from a side, `u` runs across the paper, `z` is the height along the pulley's axis, and `w` points at whoever
-//! looks.
+//! A solid in the coordinates of a side view: `u` across the paper, `z` the height, `w` toward the observer.
 
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Contour, Edge};
 use pinswitch_solid::solid::Solid;
 use std::f64::consts::{PI, TAU};
 
-use super::features::lettering;
+use crate::contour::lettering;
 
-/// Ends of curves are rounded to this, mm: neighbours meet in one number, so that what passes their corner crosses one of
-/// them, and not none or both.
+/// Ends of curves are rounded to this, mm, so that neighbours share one number and a line through their corner crosses
+/// exactly one of them.
 const GRID_MM: f64 = 1e-9;
 
-/// From where a part is looked at.
+/// The side from which a solid is viewed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
-    /// From +y, x to the right.
+pub enum Side {
+    /// From +y; `u` is x.
     Above,
-    /// From -x, y to the right of the paper's left edge: `u` is y.
+    /// From -x; `u` is y.
     Left,
-    /// From +x, `u` is y.
+    /// From +x; `u` is y.
     Right,
 }
 
 impl Side {
     /// `u` and `w` of a point of the plan.
-    pub(super) const fn seen(self, x: f64, y: f64) -> [f64; 2] {
+    pub(crate) const fn seen(self, x: f64, y: f64) -> [f64; 2] {
         match self {
             Self::Above => [x, y],
             Self::Left => [y, -x],
@@ -39,14 +36,14 @@ impl Side {
 /// A line or an arc in the plane of `u` and `w`.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Curve {
-    /// From its first end to its last.
+    /// First and last end.
     Line([f64; 2], [f64; 2]),
     /// Centre, radius, first angle and sweep.
     Arc([f64; 2], f64, f64, f64),
 }
 
 impl Curve {
-    /// The point at a share of the way.
+    /// The point at a share of the length.
     pub(super) fn at(&self, share: f64) -> [f64; 2] {
         match *self {
             Self::Line(a, b) => [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share],
@@ -57,7 +54,7 @@ impl Curve {
         }
     }
 
-    /// Unit tangent at a share of the way.
+    /// The unit tangent at a share of the length.
     pub(super) fn tangent(&self, share: f64) -> [f64; 2] {
         match *self {
             Self::Line(a, b) => {
@@ -72,7 +69,7 @@ impl Curve {
         }
     }
 
-    /// Shares of the way, in order, at which the curve turns back in direction `axis` (0: u, 1: w), ends excepted.
+    /// Shares of the length, ascending, at which the curve reverses along `axis` (0: u, 1: w), without its ends.
     pub(super) fn turns(&self, axis: usize) -> Vec<f64> {
         let Self::Arc(_, _, start, sweep) = *self else { return Vec::new() };
         let quarter = if axis == 0 { 0.0 } else { PI / 2.0 };
@@ -84,7 +81,7 @@ impl Curve {
         all
     }
 
-    /// The curve between this one and `other`, which has the same form.
+    /// The curve at a share of the way to `other`, which is of the same kind.
     fn between(&self, other: &Self, share: f64) -> Self {
         let mix = |a: f64, b: f64| a + (b - a) * share;
         let mixed = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
@@ -98,18 +95,19 @@ impl Curve {
     }
 }
 
-/// A piece of a curve that does not turn back along an axis: where it begins and ends, and how it gets there.
+/// A piece of a curve that is monotonic along an axis.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     low: f64,
     high: f64,
-    /// Of a line: the other coordinate at `low`, and its slope. Of an arc: centre, radius and side.
     path: Path,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Path {
+    /// The other coordinate at the lower end, and its slope.
     Line(f64, f64),
+    /// Centre, radius and side.
     Arc([f64; 2], f64, f64),
 }
 
@@ -142,7 +140,7 @@ impl Run {
         runs
     }
 
-    /// The other coordinate where the run passes `value`, its lower end excepted: a corner counts once.
+    /// The other coordinate at `value`, which is not the lower end, so that a corner counts once.
     fn crossing(&self, value: f64) -> Option<f64> {
         (self.low < value && value <= self.high).then(|| match self.path {
             Path::Line(at, slope) => at + slope * (value - self.low),
@@ -153,10 +151,10 @@ impl Run {
     }
 }
 
-/// A wall between two closed runs of curves.
+/// A wall between two closed curves.
 #[derive(Clone, Debug)]
 pub(super) struct Wall {
-    /// What an upright wall is at every height, along both axes; nothing for a slanted one.
+    /// The monotonic pieces along both axes of a vertical wall; `None` for a sloped one.
     runs: Option<[Vec<Run>; 2]>,
     pub(super) lower: Vec<Curve>,
     pub(super) upper: Vec<Curve>,
@@ -165,24 +163,25 @@ pub(super) struct Wall {
 }
 
 impl Wall {
-    /// The curves at height `z`, which lies within the wall.
-    pub(super) fn curves_at(&self, z: f64) -> impl Iterator<Item = Curve> {
+    /// The curves at height `z`, within the wall.
+    fn curves_at(&self, z: f64) -> impl Iterator<Item = Curve> {
         let share = (z - self.from_mm) / (self.to_mm - self.from_mm);
         self.lower.iter().zip(&self.upper).map(move |(a, b)| a.between(b, share))
     }
 }
 
-/// A body as it is seen from one side.
+/// A solid in a side view.
 #[derive(Clone, Debug)]
-pub(super) struct Body {
+pub struct Body {
     pub(super) walls: Vec<Wall>,
-    /// Heights at which something begins or ends, ascending.
+    /// Heights of the ends of walls, ascending.
     pub(super) levels_mm: Vec<f64>,
 }
 
 impl Body {
-    /// `solid` in its place, seen from `side`. Engraved letters are left out: they are no shape of the part.
-    pub(super) fn seen(solid: &Solid, pose: Pose, side: Side) -> Self {
+    /// A solid in its pose, viewed from `side`, without engraved letters.
+    #[must_use]
+    pub fn new(solid: &Solid, pose: Pose, side: Side) -> Self {
         let rings: Vec<(&Contour, f64)> = solid.rings().collect();
         let letters = lettering(solid);
         let height = |z: f64| if pose.flipped { pose.z_mm - z } else { pose.z_mm + z };
@@ -210,20 +209,22 @@ impl Body {
         Self { walls, levels_mm }
     }
 
-    /// Where the body begins and ends along `w`, over the line at `u` and `z`: ascending, in pairs.
-    pub(super) fn crossings(&self, axis: usize, value: f64, z: f64, found: &mut Vec<f64>) {
+    /// Adds to `ends` where a line at height `z` enters and leaves the body, unordered. The line is at `u = value` and runs
+    /// along `w` for `axis` 0, and the other way round for 1.
+    pub(super) fn crossings(&self, axis: usize, value: f64, z: f64, ends: &mut Vec<f64>) {
         for wall in self.walls.iter().filter(|w| w.from_mm < z && z < w.to_mm) {
             match &wall.runs {
-                Some(runs) => found.extend(runs[axis].iter().filter_map(|r| r.crossing(value))),
+                Some(runs) => ends.extend(runs[axis].iter().filter_map(|r| r.crossing(value))),
                 None => {
                     let curves: Vec<Curve> = wall.curves_at(z).collect();
-                    found.extend(Run::all(&curves, axis).iter().filter_map(|r| r.crossing(value)));
+                    ends.extend(Run::all(&curves, axis).iter().filter_map(|r| r.crossing(value)));
                 }
             }
         }
     }
 }
 
+/// The edges of a contour in the coordinates of a view.
 fn seen_contour(contour: &Contour, flipped: bool, side: Side) -> Vec<Curve> {
     let turn = |x: f64, y: f64| side.seen(if flipped { -x } else { x }, y);
     contour
@@ -238,7 +239,7 @@ fn seen_contour(contour: &Contour, flipped: bool, side: Side) -> Vec<Curve> {
                     let centre = turn(arc.centre.x, arc.centre.y);
                     let start = turn(from.x, from.y);
                     let angle = libm::atan2(start[1] - centre[1], start[0] - centre[0]);
-                    // A view keeps the sense of arcs unless it mirrors the plan.
+                    // Arcs keep their sense unless the view mirrors the plan.
                     let mirrors = flipped != (side == Side::Right);
                     let sweep = if mirrors { -arc.sweep_rad } else { arc.sweep_rad };
                     Curve::Arc(centre, arc.radius_mm, angle, sweep)
@@ -254,16 +255,16 @@ mod tests {
     use pinswitch_solid::profile::Point2;
 
     #[test]
-    fn a_body_is_crossed_where_it_begins_and_ends_from_every_side() {
+    fn crossings_are_the_ends_of_material() {
         let disc = Contour::circle(Point2::new(3.0, 1.0), 2.0);
         let hole = Contour::circle(Point2::new(3.0, 1.0), 1.0).reversed();
         let washer = Solid::prism(&disc, &[hole], 0.0, 5.0, 0.0).unwrap();
         let across = |side: Side, flipped: bool, u: f64| {
-            let body = Body::seen(&washer, Pose { flipped, z_mm: if flipped { 5.0 } else { 0.0 } }, side);
-            let mut found = Vec::new();
-            body.crossings(0, u, 2.5, &mut found);
-            found.sort_by(f64::total_cmp);
-            found.into_iter().map(|w| (w * 1e6).round() / 1e6).collect::<Vec<_>>()
+            let body = Body::new(&washer, Pose { flipped, z_mm: if flipped { 5.0 } else { 0.0 } }, side);
+            let mut ends = Vec::new();
+            body.crossings(0, u, 2.5, &mut ends);
+            ends.sort_by(f64::total_cmp);
+            ends.into_iter().map(|w| (w * 1e6).round() / 1e6).collect::<Vec<_>>()
         };
         assert_eq!(across(Side::Above, false, 3.0), [-1.0, 0.0, 2.0, 3.0]);
         assert_eq!(across(Side::Left, false, 1.0), [-5.0, -4.0, -2.0, -1.0]);

@@ -26,7 +26,7 @@ pub(super) struct Arguments {
     /// What to draw.
     #[arg(long, value_enum, default_value_t = Scene::Exploded)]
     scene: Scene,
-    /// Turn about the vertical axis, in degrees [default: 150, so that grooves and tendon are seen; 30 of a plate].
+    /// Rotation about the vertical axis, in degrees [default: 38 for an assembly, 30 for a plate].
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     turn: Option<f64>,
     /// Height of the eye above the horizon, in degrees.
@@ -50,7 +50,7 @@ enum Scene {
 impl Arguments {
     fn turn_deg(&self) -> f64 {
         self.turn.unwrap_or(match self.scene {
-            Scene::Assembled | Scene::Exploded => 150.0,
+            Scene::Assembled | Scene::Exploded => 38.0,
             Scene::Plate => 30.0,
         })
     }

@@ -8,11 +8,13 @@ use crate::output::SetError;
 use crate::plates::{Plate, plates};
 use pinswitch_solid::files::Placement;
 use pinswitch_solid::mesh::{Mesh, Point3, Vector3};
-use pinswitch_solid::render::{Body, View, render};
+use pinswitch_solid::render::{Body, render};
 
+use stage::grooves_up;
 pub use stage::{Stage, stage_scene, stage_view};
 
-/// Returns the bodies of the assembly, exploded by `explosion`, from 0 to 1.
+/// Returns the bodies of the assembly, exploded by `explosion`, from 0 to 1. The pulley's axis is horizontal and the grooves are
+/// up, so that engraved text is upright in the views of [`stage_view`].
 pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {
     built
         .assembly()
@@ -20,7 +22,7 @@ pub fn assembled(built: &Built, explosion: f64) -> Vec<Body> {
             let role = body.part.role;
             let placed = body.part.pose?.apply(body.mesh.clone());
             Some(Body {
-                mesh: placed.translated(role.explode_offset_mm() * explosion),
+                mesh: grooves_up(placed.translated(role.explode_offset_mm() * explosion)),
                 colour: role.colour(),
             })
         })
@@ -73,8 +75,8 @@ pub fn exploded_png(built: &Built) -> Result<&[u8], SetError> {
     if let Some(png) = built.exploded_png().get() {
         return Ok(png);
     }
-    // From the side of the grooves and of the tendon.
-    let view = View { turn_deg: 150.0, rise_deg: 40.0 };
+    // The tendon is the last step, and its view shows all bodies.
+    let view = stage_view(built.design(), Stage::Tendon);
     let (width, height) = EXPLODED_PIXELS;
     let png = render(&assembled(built, 1.0), view, width, height).png().map_err(SetError::encoding)?;
     Ok(built.exploded_png().get_or_init(|| png))

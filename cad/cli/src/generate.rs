@@ -130,7 +130,7 @@ fn report(arguments: &Arguments, set: &Set, folder: &Path, prediction: &Predicti
         log::warn!("{warning}");
     }
     for part in &set.manifest.parts {
-        log::debug!("{}: {:.3} mm3, {} triangles", part.file, part.volume_mm3, part.mesh.triangles);
+        log::debug!("{}: {:.3} mm3", part.file, part.volume_mm3);
     }
     let friction = &set.manifest.friction;
     log::info!(

@@ -161,7 +161,7 @@ fn segments(f: &Features, place: &Place, all: &mut Vec<Dimension>) {
 /// Callouts of ends of a sector that are not in a plane through the axis.
 fn ends(subject: &Subject<'_>, place: &Place, all: &mut Vec<Dimension>) {
     let f = subject.features;
-    // The copies of a pattern beside each other are on the right.
+    // The copies of a horizontal pattern are on the right.
     let is_free = |(a, _): &&(Point2, Point2)| f.pattern.is_none_or(|p| p.is_upright() || a.x < 0.0);
     for ends in f.ends.iter().filter(|e| !same(e.shift_mm, 0.0)) {
         let leaders = ends.lines.iter().filter(is_free).flat_map(|(a, b)| {
@@ -293,7 +293,7 @@ fn slot_row(f: &Features) -> Option<(Vec<String>, Vec<Point2>)> {
     let lines = vec![
         format!("{} \u{d7} slot, widths from the left", slots.len()),
         widths.join(", "),
-        format!("each {} between the centres of its ends", text::number(first.travel_mm())),
+        format!("each {} between end centres", text::number(first.travel_mm())),
     ];
     let upper = |s: &Slot| {
         let (a, b) = s.places[0];

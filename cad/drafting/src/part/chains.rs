@@ -22,14 +22,23 @@ impl Chain<'_> {
         self.rings[0].0.area_mm2() < 0.0
     }
 
+    /// Height and radius in mm at each ring, if all rings are of one kind.
+    fn levels(&self, kind: fn(&Contour) -> Option<(Point2, f64)>) -> Option<Vec<(f64, f64)>> {
+        self.rings.iter().map(|(contour, z)| Some((*z, kind(contour)?.1))).collect()
+    }
+
+    /// Centre and levels of a round boss.
+    pub(super) fn boss(&self) -> Option<(Point2, Vec<(f64, f64)>)> {
+        let (centre, _) = circle(self.rings[0].0).filter(|_| !self.is_hole())?;
+        Some((centre, self.levels(circle)?))
+    }
+
     /// Centre and stage of a round or hexagonal hole.
     pub(super) fn stage(&self) -> Option<(Point2, Stage)> {
-        let across = |c: &Contour| circle(c).or_else(|| hexagon(c));
         let first = self.rings[0].0;
-        let (centre, _) = across(first).filter(|_| self.is_hole())?;
+        let (centre, _) = circle(first).or_else(|| hexagon(first)).filter(|_| self.is_hole())?;
+        let mut levels = self.levels(circle).or_else(|| self.levels(hexagon))?;
         let flats = circle(first).is_none().then(|| flats(first, centre));
-        let width = |c: &Contour| across(c).map_or(0.0, |(_, half)| half);
-        let mut levels: Vec<(f64, f64)> = self.rings.iter().map(|(c, z)| (*z, width(c))).collect();
         levels[0].0 = self.foot_mm;
         let (opens_down, opens_up) = self.opens;
         Some((centre, Stage { levels, flats, opens_down, opens_up }))
@@ -85,6 +94,10 @@ pub(super) fn chains(solid: &Solid, chamfer_mm: f64) -> Vec<Chain<'_>> {
         .map(|(low, high)| {
             let mut numbers = vec![*low, *high];
             while let Some((_, next)) = walls.iter().find(|(low, _)| low == &numbers[numbers.len() - 1]) {
+                // A closed chain is not a solid, but must not be an endless loop.
+                if numbers.contains(next) {
+                    break;
+                }
                 numbers.push(*next);
             }
             let foot_mm = rings[*low].1;

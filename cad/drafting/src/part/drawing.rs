@@ -73,7 +73,7 @@ impl<'a> PartDrawing<'a> {
     /// Draws the sheet, on `paper` or, where the part needs it, on a larger one. The scale of `title` is ignored.
     ///
     /// Dimensions that find no space near their features become notes. `None` for a solid without extent, and for one that
-    /// no paper holds at any scale.
+    /// is too large for any paper and scale.
     #[must_use]
     pub fn sheet(&self, title: &TitleBlock, paper: Paper) -> Option<Sheet> {
         let (low, high) = self.solid.bounds()?;
@@ -241,7 +241,14 @@ impl Views<'_> {
             all.push(Dimension::mark_of_detail(places.last.at(detail.middle), radius, letter));
         }
         let bounds = (self.low, self.high);
-        all.extend(sides::lengths(f, &drawn.place, drawn.front, self.room_mm(drawn), bounds));
+        all.extend(sides::lengths(
+            f,
+            &self.part.terms.pocket,
+            &drawn.place,
+            drawn.front,
+            self.room_mm(drawn),
+            bounds,
+        ));
         let details: Vec<Detail> = drawn.details.iter().map(|d| d.0).collect();
         all.extend(callouts(&subject, &places, &details));
         all.extend(hole_table::names(f, &drawn.place));

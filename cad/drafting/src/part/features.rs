@@ -4,9 +4,7 @@
 
 use super::bore::{Bore, add_stage, joined};
 use super::chains::{Chain, chains};
-use crate::contour::{
-    arc_slot, circle, is_about_axis, is_smooth, rectangle, ring_segment, same, same_point, slot,
-};
+use crate::contour::{arc_slot, is_about_axis, is_smooth, rectangle, ring_segment, same, same_point, slot};
 use pinswitch_solid::profile::{Arc, Contour, Edge, Point2, Vector2};
 use pinswitch_solid::solid::Solid;
 
@@ -45,7 +43,7 @@ impl Pattern {
         self.step * (self.number - 1) as f64
     }
 
-    /// Whether each is above the one before it, and not beside it.
+    /// Whether it runs along y.
     pub(crate) fn is_upright(&self) -> bool {
         same(self.step.x, 0.0)
     }
@@ -138,9 +136,7 @@ impl Features {
             let is_hole = chain.is_hole();
             if let Some((centre, stage)) = chain.stage() {
                 add_stage(&mut axes, centre, stage);
-            } else if let Some((centre, _)) = circle(first.0) {
-                let radius = |c: &Contour| circle(c).map_or(0.0, |(_, r)| r);
-                let levels: Vec<(f64, f64)> = chain.rings.iter().map(|(c, z)| (*z, radius(c))).collect();
+            } else if let Some((centre, levels)) = chain.boss() {
                 if same(chain.foot_mm, bottom) {
                     heights.extend(levels.iter().skip(1).map(|l| l.0));
                 }

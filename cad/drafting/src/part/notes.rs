@@ -36,22 +36,23 @@ pub(super) fn first_notes(f: &Features, chamfer_mm: f64) -> Vec<String> {
 pub(super) fn reading_notes(f: &Features, terms: &Terms) -> Vec<String> {
     let mut notes = Vec::new();
     if f.bores.iter().any(|b| !b.is_plain()) {
-        notes.push("Near face: the one shown in the front view".to_owned());
+        notes.push("Near face: the face in the front view".to_owned());
     }
     if let Some(pattern) = f.pattern {
         notes.push(format!(
-            "{} {}s, all alike: what is said of one is so of each",
-            pattern.number, terms.pocket
+            "{} equal {pocket}s: dimensions of one {pocket} apply to all",
+            pattern.number,
+            pocket = terms.pocket
         ));
     }
     if f.has_hole_table() {
-        notes.push("Outline: straight lines that touch both arcs".to_owned());
+        notes.push("Outline: lines tangent to the arcs".to_owned());
     }
     if f.is_axial() {
         let of_pocket = format!("the axis of the {}", terms.pocket);
         let axis = if f.pattern.is_some() { &of_pocket } else { &terms.axis };
         notes.push(format!("R without a centre mark: about {axis}"));
-        notes.push("Angles from the middle plane, + to the right".to_owned());
+        notes.push("Angles from the middle plane, positive to the right".to_owned());
     }
     notes
 }

@@ -81,9 +81,11 @@ impl Frame<'_> {
     }
 }
 
-/// Returns the lengths of a part along the paper. A part with an axis is described by radii and angles.
+/// Returns the lengths of a part along the paper. A part with an axis is described by radii and angles. `pocket` is the name of
+/// a pocket of a pattern.
 pub(super) fn lengths(
     f: &Features,
+    pocket: &str,
     place: &Place,
     front: Extent,
     room_mm: [f64; 2],
@@ -104,7 +106,7 @@ pub(super) fn lengths(
         rows(f, &mut frame);
         frame.overall(false);
     }
-    pattern(f, &mut frame);
+    pattern(f, pocket, &mut frame);
     frame.all
 }
 
@@ -169,7 +171,7 @@ fn block_about_axis(frame: &mut Frame<'_>) {
 }
 
 /// The steps of a pattern of pockets.
-fn pattern(f: &Features, frame: &mut Frame<'_>) {
+fn pattern(f: &Features, pocket: &str, frame: &mut Frame<'_>) {
     let Some(pattern) = f.pattern else { return };
     let steps = pattern.number - 1;
     // An upright pattern is measured at the outermost corners: nothing is between them and the dimension.
@@ -186,7 +188,7 @@ fn pattern(f: &Features, frame: &mut Frame<'_>) {
                 number(step)
             };
             // Dimensions from the axis are on the left.
-            frame.linear(format!("pitch of the basins {word}"), text, [first, last], upright, upright);
+            frame.linear(format!("{pocket} pitch {word}"), text, [first, last], upright, upright);
         }
     }
 }

@@ -178,12 +178,12 @@ pub(super) fn rounding(fits: &Fits, rounding: &Rounding, f: &Features) -> Vec<St
     lines
 }
 
-/// The callout of the segments of a ring, beside slots at these angles.
+/// The callout of the segments of a ring, between slots at these angles.
 pub(super) fn segments(segments: &Segments, slots_rad: &[f64]) -> Vec<String> {
     let height = number(segments.heights_mm.1 - segments.heights_mm.0);
     let mut lines = vec![
         format!("lip R{} to R{}", number(segments.inner_mm), number(segments.outer_mm)),
-        format!("{height} high, in {} pieces", segments.spans_rad.len()),
+        format!("{height} high, in {} segments", segments.spans_rad.len()),
     ];
     let mut gaps: Vec<f64> = Vec::new();
     for (from, to) in &segments.spans_rad {
@@ -197,7 +197,7 @@ pub(super) fn segments(segments: &Segments, slots_rad: &[f64]) -> Vec<String> {
     let outermost = segments.spans_rad.iter().map(|s| s.1).fold(f64::NEG_INFINITY, f64::max);
     gaps.sort_by(f64::total_cmp);
     if let Some(gap) = gaps.first() {
-        lines.push(format!("edges {} beside slot centres", degrees(*gap)));
+        lines.push(format!("edges {} from slot centres", degrees(*gap)));
     }
     lines.push(format!("outermost edges at \u{b1}{}", degrees(outermost)));
     lines

@@ -9,7 +9,7 @@ pub type Stroke = [[f64; 2]; 2];
 const SAME_MM: f64 = 1e-3;
 /// Strokes on one line are joined across a gap of this, and shorter ones are dropped, mm.
 const JOIN_MM: f64 = 1e-4;
-/// Share of a stroke's length beside a neighbour from which it is crowded.
+/// A stroke is crowded if a neighbour runs along more than this share of it.
 const CROWDED_SHARE: f64 = 0.8;
 
 /// An infinite line with the strokes on it.

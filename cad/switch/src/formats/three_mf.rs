@@ -4,7 +4,7 @@
 use super::{Format, Inclusion, png};
 use crate::built::Built;
 use crate::config::to_toml;
-use crate::documents::{Manifest, friction_csv};
+use crate::documents::{Manifest, friction_csv, layout_text};
 use crate::output::{OutputFile, SetError};
 use crate::parts::Role;
 use crate::plates::{Plate, plates};
@@ -54,15 +54,12 @@ fn package_bytes(built: &Built, prediction: &Prediction, plate: &Plate<'_>) -> R
     let above = View { turn_deg: 20.0, rise_deg: 50.0 };
     let law = prediction.curve.law;
     let chosen = (law != Law::DEFAULT).then(|| ("law", law.as_str().to_owned()));
-    let own = [("layout", built.design().label()), ("configuration", to_toml(c))];
+    let own = [("layout", layout_text(c)), ("configuration", to_toml(c))];
     let package = Package {
         metadata: vec![
             ("Title", format!("{name}: friction switch{on_plate}")),
             ("Designer", "pinswitch".to_owned()),
-            (
-                "Description",
-                format!("Printed parts of a friction switch, pins in grooves {:?}", c.layout.pins),
-            ),
+            ("Description", format!("Printed parts of a friction switch, layout {}", layout_text(c))),
             ("LicenseTerms", "The program is MIT licensed; what it makes is yours.".to_owned()),
             ("Application", concat!("pinswitch ", env!("CARGO_PKG_VERSION")).to_owned()),
         ],

@@ -36,7 +36,7 @@ struct Assembly<'a> {
     behind: Elevation,
 }
 
-/// Returns the sheet of the assembly, on `paper` or a larger one; `None` if no paper holds it.
+/// Returns the sheet of the assembly, on `paper` or a larger one; `None` if it is too large for any paper.
 pub(super) fn assembly_sheet(built: &Built, title: TitleBlock, paper: Paper) -> Option<Sheet> {
     let bodies: Vec<(&Part, Pose)> = built.assembly().filter_map(|b| Some((&b.part, b.part.pose?))).collect();
     let ends = bodies.iter().filter_map(|(part, pose)| {

@@ -13,7 +13,7 @@ mod words;
 use super::{Format, Inclusion};
 use crate::built::Built;
 use crate::config::{self, Configuration};
-use crate::documents::Manifest;
+use crate::documents::{Manifest, layout_text};
 use crate::output::{OutputFile, SetError};
 use crate::parts::{Part, Role};
 use crate::prediction::Prediction;
@@ -66,7 +66,7 @@ pub fn sheets(built: &Built) -> Vec<Sheet> {
     let title = |number: usize, name: &str, material: String, tolerance: &str| {
         title_block(built, c, (number, number_of_sheets), name, material, tolerance)
     };
-    let first = title(1, "assembly", "see list".to_owned(), "see parts");
+    let first = title(1, "assembly", "see parts list".to_owned(), "see parts");
     all.extend(assembly_sheet::assembly_sheet(built, first, paper));
     for (i, part) in parts.iter().enumerate() {
         let material = part.material();
@@ -87,7 +87,7 @@ fn title_block(
 ) -> TitleBlock {
     TitleBlock {
         product: ("Switch".to_owned(), c.switch.name.to_string()),
-        variant: ("Layout".to_owned(), built.design().label()),
+        variant: ("Layout".to_owned(), layout_text(c)),
         title: designation(name),
         part_number: part_number(built, name),
         material,

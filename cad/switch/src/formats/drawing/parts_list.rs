@@ -47,7 +47,7 @@ pub(super) fn items(built: &Built) -> Vec<Item> {
     }
     if let Some(pin) = assembled.iter().find(|p| matches!(p.role, Role::Pin { .. })) {
         let spares =
-            if bill.pins.spares > 0 { format!(", and {} spare", bill.pins.spares) } else { String::new() };
+            if bill.pins.spares > 0 { format!(", plus {} spare", bill.pins.spares) } else { String::new() };
         let words = format!(
             "Pin \u{d8}{} \u{b1}{} \u{d7} {}{spares}",
             number(bill.pins.diameter_mm),

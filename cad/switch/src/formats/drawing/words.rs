@@ -2,6 +2,7 @@
 
 use super::fits::is_coupon;
 use crate::design::Design;
+use crate::documents::layout_text;
 use crate::parts::{Material, Part, Role};
 use pinswitch_drafting::{lettering, number};
 
@@ -44,8 +45,8 @@ pub(super) fn notes(design: &Design, part: &Part) -> Vec<String> {
         notes.push(format!("Walls of the basin: draft {}\u{b0}", number(m.draft_deg)));
     }
     if is_coupon(part) {
-        notes.push("Widths of slots and radii of grooves: without tolerance,".to_owned());
-        notes.push("as the machine makes them; the coupon measures the machine".to_owned());
+        notes.push("Slot widths and groove radii: no tolerance,".to_owned());
+        notes.push("the coupon measures the machine".to_owned());
     }
     notes
 }
@@ -61,41 +62,17 @@ pub(super) fn legend(design: &Design, part: &Part) -> Vec<String> {
     notes
 }
 
-/// The meaning of the label of a layout: which grooves hold pins.
+/// The meaning of the label of a layout: the grooves with pins.
 pub(super) fn layout(design: &Design) -> String {
-    let mut pins = design.configuration().layout.pins.clone();
-    pins.sort_unstable();
-    let holds = match pins[..] {
-        [] => "no pins".to_owned(),
-        [only] => format!("pin in groove {only}"),
-        _ => format!("pins in grooves {}", runs(&pins)),
-    };
-    format!("{}: {holds}", design.label())
-}
-
-/// Joins ascending numbers, with three or more consecutive ones as `4 to 7`.
-fn runs(numbers: &[usize]) -> String {
-    let mut all: Vec<(usize, usize)> = Vec::new();
-    for number in numbers {
-        match all.last_mut() {
-            Some((_, last)) if *last + 1 == *number => *last = *number,
-            _ => all.push((*number, *number)),
-        }
-    }
-    let word = |(first, last): &(usize, usize)| match last - first {
-        0 => first.to_string(),
-        1 => format!("{first}, {last}"),
-        _ => format!("{first} to {last}"),
-    };
-    all.iter().map(word).collect::<Vec<_>>().join(", ")
+    format!("Layout {}", layout_text(design.configuration()))
 }
 
 /// The meaning of the arrow on a support.
 pub(super) fn marks(engraved: &[String]) -> Option<String> {
     let arrow = ["1<", ">1"].into_iter().find(|arrow| engraved.iter().any(|line| line.contains(arrow)))?;
     let is_named = |name: &&str| engraved.iter().any(|line| line.contains(name));
-    let pull = ["LOAD", "F"].into_iter().find(is_named).map_or_else(String::new, |name| format!(" ({name})"));
-    Some(format!("{arrow}: to groove 1, where the load{pull} pulls"))
+    let name = ["LOAD", "F"].into_iter().find(is_named).map_or_else(String::new, |name| format!(" ({name})"));
+    Some(format!("{arrow}: direction of groove 1 and of the load{name}"))
 }
 
 #[cfg(test)]
@@ -103,19 +80,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_layout_is_written_in_grooves() {
-        let text = |pins: &str| {
-            let mut c = crate::config::Configuration::default();
-            crate::config::assign(&mut c, &format!("layout.pins={pins}")).unwrap();
-            layout(&Design::new(c).unwrap())
-        };
-        assert_eq!(text("[4, 5, 11]"), "418: pins in grooves 4, 5, 11");
-        assert_eq!(text("[11, 5, 8]"), "3x3/5: pins in grooves 5, 8, 11");
-        assert_eq!(text("[1, 2, 3, 7]"), "47: pins in grooves 1 to 3, 7");
-        assert_eq!(text("[8]"), "1/8: pin in groove 8");
-        assert_eq!(text("[]"), "BARE: no pins");
+    fn the_arrow_is_explained() {
         let engraved = |lines: &[&str]| marks(&lines.iter().map(|l| (*l).to_owned()).collect::<Vec<_>>());
-        assert_eq!(engraved(&["1<F R"]).unwrap(), "1<: to groove 1, where the load (F) pulls");
+        assert_eq!(engraved(&["1<F R"]).unwrap(), "1<: direction of groove 1 and of the load (F)");
         assert_eq!(engraved(&["418"]), None);
     }
 }

@@ -1,5 +1,5 @@
-//! A sheet says all that it takes to make its part, and nothing twice. What must be said is read from the contours of the
-//! exact solid, and not from the features that the sheet was drawn from.
+//! A sheet has every dimension of its part, and none twice. The required dimensions are read from the contours of the exact
+//! solid, independently of the features of `pinswitch_drafting`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use pinswitch_drafting::{Shape, Sheet, hexagon, lettering, number, same};
 use pinswitch_solid::profile::{Contour, Edge, Point2};
 use std::f64::consts::PI;
 
-/// All that is written on a sheet, its title block left out.
+/// All texts on a sheet without its title block.
 pub(super) fn texts(sheet: &Sheet) -> Vec<String> {
     let content = sheet.entities.iter().filter(|e| e.group >= sheet.first_group);
     content
@@ -18,7 +18,7 @@ pub(super) fn texts(sheet: &Sheet) -> Vec<String> {
         .collect()
 }
 
-/// All numbers of a sheet, without signs, as they are written.
+/// All numbers on a sheet, without signs, as written.
 fn numbers(sheet: &Sheet) -> BTreeSet<String> {
     let is_part = |c: char| c.is_ascii_digit() || c == '.';
     texts(sheet)
@@ -28,9 +28,9 @@ fn numbers(sheet: &Sheet) -> BTreeSet<String> {
         .collect()
 }
 
-/// What a sheet leaves open of one contour, in words.
+/// Looks for the dimensions of contours on a sheet.
 struct Reader<'a> {
-    said: BTreeSet<String>,
+    numbers: BTreeSet<String>,
     table: Vec<Vec<String>>,
     bounds: (Point2, Point2),
     levels: Vec<f64>,
@@ -41,30 +41,30 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn says(&self, value: f64) -> bool {
-        // What lies between two roundings may be shown as either.
-        let shown = |by: f64| self.said.contains(&number(value.abs() + by));
+    fn has(&self, value: f64) -> bool {
+        // A value between two roundings may be written as either.
+        let shown = |by: f64| self.numbers.contains(&number(value.abs() + by));
         same(value, 0.0) || [0.0, 1e-9, -1e-9].into_iter().any(shown)
     }
 
-    fn need(&mut self, what: &str, ways: &[f64]) {
-        if !ways.iter().any(|w| self.says(*w)) {
+    fn require(&mut self, what: &str, ways: &[f64]) {
+        if !ways.iter().any(|w| self.has(*w)) {
             let ways: Vec<String> = ways.iter().map(|w| number(*w)).collect();
             self.missing.push(format!("{}: {what} {}", self.sheet.name, ways.join(" or ")));
         }
     }
 
-    /// A place of a plate: in the table, from the first hole.
+    /// Requires the position of a hole: in the hole table, from the first hole, on a plate.
     fn place(&mut self, at: Point2, origin: Option<Point2>) {
         if self.is_round {
             return;
         }
         if self.is_axial {
-            self.need("radius of a place", &[at.coords.norm()]);
+            self.require("radius of a place", &[at.coords.norm()]);
             let angle = libm::atan2(at.x, at.y).to_degrees();
             let is_stepped = texts(self.sheet).iter().any(|t| t.contains(" \u{d7} ") && t.contains('\u{b0}'));
             if !is_stepped {
-                self.need("angle of a place", &[angle]);
+                self.require("angle of a place", &[angle]);
             }
         } else if let Some(origin) = origin {
             let row = [number(at.x - origin.x), number(at.y - origin.y)];
@@ -74,14 +74,14 @@ impl Reader<'_> {
         } else {
             let (low, high) = self.bounds;
             let middle = nalgebra::center(&low, &high);
-            self.need("place along", &[at.x - low.x, 2.0 * (at.x - middle.x)]);
-            self.need("place across", &[at.y - low.y, 2.0 * (at.y - middle.y)]);
+            self.require("place along", &[at.x - low.x, 2.0 * (at.x - middle.x)]);
+            self.require("place across", &[at.y - low.y, 2.0 * (at.y - middle.y)]);
         }
     }
 
     fn height(&mut self, z: f64) {
         let ways: Vec<f64> = self.levels.iter().map(|other| z - other).filter(|d| !same(*d, 0.0)).collect();
-        self.need("height", &ways);
+        self.require("height", &ways);
     }
 
     fn outline(&mut self, contour: &Contour) {
@@ -91,17 +91,17 @@ impl Reader<'_> {
             .filter_map(|e| if let Edge::Arc(a) = e { Some(a) } else { None })
             .collect();
         match (contour.edges().len(), &arcs[..]) {
-            // A slot with round ends: its width, and where its ends are.
+            // A slot with round ends.
             (4, [a, b]) if (a.sweep_rad.abs() - PI).abs() < 1e-6 && (b.sweep_rad.abs() - PI).abs() < 1e-6 => {
-                self.need("width", &[2.0 * a.radius_mm]);
-                self.need("travel", &[(a.centre - b.centre).norm()]);
+                self.require("width", &[2.0 * a.radius_mm]);
+                self.require("travel", &[(a.centre - b.centre).norm()]);
             }
-            // A slot along an arc: its width and its middle.
+            // A slot along an arc.
             (4, [_, _, _, _]) => {
                 let mut radii: Vec<f64> = arcs.iter().map(|a| a.radius_mm).collect();
                 radii.sort_by(f64::total_cmp);
-                self.need("width", &[radii[3] - radii[2]]);
-                self.need("radius", &[f64::midpoint(radii[3], radii[2])]);
+                self.require("width", &[radii[3] - radii[2]]);
+                self.require("radius", &[f64::midpoint(radii[3], radii[2])]);
             }
             _ => self.edges(contour),
         }
@@ -112,16 +112,16 @@ impl Reader<'_> {
             let (from, to) = contour.ends(i);
             match edge {
                 Edge::Arc(arc) => {
-                    self.need("radius", &[arc.radius_mm, 2.0 * arc.radius_mm]);
+                    self.require("radius", &[arc.radius_mm, 2.0 * arc.radius_mm]);
                 }
                 Edge::Line if !self.is_axial && !self.is_round => {
                     let (low, high) = self.bounds;
                     let middle = nalgebra::center(&low, &high);
                     if same(from.x, to.x) {
-                        self.need("x", &[from.x - low.x, high.x - from.x, 2.0 * (from.x - middle.x)]);
+                        self.require("x", &[from.x - low.x, high.x - from.x, 2.0 * (from.x - middle.x)]);
                     }
                     if same(from.y, to.y) {
-                        self.need("y", &[from.y - low.y, high.y - from.y, 2.0 * (from.y - middle.y)]);
+                        self.require("y", &[from.y - low.y, high.y - from.y, 2.0 * (from.y - middle.y)]);
                     }
                 }
                 Edge::Line => {}
@@ -146,8 +146,8 @@ pub(super) fn is_moved(a: &Contour, b: &Contour) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(p, q)| (p - q - (a[0] - b[0])).norm() < 1e-6)
 }
 
-/// What the sheet of a part does not say.
-fn open_questions(part: &Part, sheet: &Sheet, chamfer_mm: f64) -> Vec<String> {
+/// Returns the dimensions that the sheet of a part does not have.
+fn missing_dimensions(part: &Part, sheet: &Sheet, chamfer_mm: f64) -> Vec<String> {
     let solid = part.drawn.as_ref().unwrap_or(&part.solid);
     let (low, high) = solid.bounds().unwrap();
     let rings: Vec<(&Contour, f64)> = solid.rings().collect();
@@ -157,9 +157,9 @@ fn open_questions(part: &Part, sheet: &Sheet, chamfer_mm: f64) -> Vec<String> {
         .filter(|(a, b)| rings[*a].0 != rings[*b].0 && same(rings[*b].1 - rings[*a].1, chamfer_mm))
         .map(|(a, _)| a)
         .collect();
-    let kept: Vec<(&Contour, f64)> =
+    let shown: Vec<(&Contour, f64)> =
         (0..rings.len()).filter(|i| !letters[*i] && !feet.contains(i)).map(|i| rings[i]).collect();
-    let outer = kept.iter().max_by(|a, b| a.0.area_mm2().total_cmp(&b.0.area_mm2())).unwrap();
+    let outer = shown.iter().max_by(|a, b| a.0.area_mm2().total_cmp(&b.0.area_mm2())).unwrap();
     let about_axis =
         |c: &Contour| c.edges().iter().any(|e| matches!(e, Edge::Arc(a) if a.centre.coords.norm() < 1e-6));
     let is_round = is_circle(outer.0).is_some();
@@ -167,26 +167,26 @@ fn open_questions(part: &Part, sheet: &Sheet, chamfer_mm: f64) -> Vec<String> {
     let table: Vec<Vec<String>> =
         rows.map(|a| a.text.split('\t').map(str::to_owned).collect()).skip(1).collect();
     let mut reader = Reader {
-        said: numbers(sheet),
+        numbers: numbers(sheet),
         bounds: (Point2::new(low.x, low.y), Point2::new(high.x, high.y)),
         levels: rings.iter().map(|r| r.1).collect(),
-        is_axial: !is_round && kept.iter().any(|r| about_axis(r.0)),
+        is_axial: !is_round && shown.iter().any(|r| about_axis(r.0)),
         is_round,
         missing: Vec::new(),
         table,
         sheet,
     };
-    // The hole from which the others are measured: the one whose row says so.
-    let centres: Vec<Point2> = kept.iter().filter_map(|r| is_circle(r.0)).map(|c| c.0).collect();
+    // The hole from which the others are measured.
+    let centres: Vec<Point2> = shown.iter().filter_map(|r| is_circle(r.0)).map(|c| c.0).collect();
     let origin = centres.iter().copied().find(|o| {
         let rows: Vec<[String; 2]> = centres.iter().map(|p| [number(p.x - o.x), number(p.y - o.y)]).collect();
         !reader.table.is_empty() && rows.iter().all(|r| reader.table.iter().any(|t| t[1..] == *r))
     });
     if !reader.table.is_empty() && origin.is_none() {
-        reader.missing.push(format!("{}: the table does not hold all holes", sheet.name));
+        reader.missing.push(format!("{}: the table does not have all holes", sheet.name));
     }
     let mut seen: Vec<&Contour> = Vec::new();
-    for (contour, z) in kept {
+    for (contour, z) in shown {
         if !same(z, low.z) && !same(z, low.z + chamfer_mm) {
             reader.height(z);
         }
@@ -195,10 +195,10 @@ fn open_questions(part: &Part, sheet: &Sheet, chamfer_mm: f64) -> Vec<String> {
         }
         seen.push(contour);
         if let Some((centre, radius)) = is_circle(contour) {
-            reader.need("diameter", &[2.0 * radius]);
+            reader.require("diameter", &[2.0 * radius]);
             reader.place(centre, origin);
         } else if let Some((centre, half)) = hexagon(contour) {
-            reader.need("width across flats", &[2.0 * half]);
+            reader.require("width across flats", &[2.0 * half]);
             reader.place(centre, origin);
         } else {
             reader.outline(contour);
@@ -209,7 +209,7 @@ fn open_questions(part: &Part, sheet: &Sheet, chamfer_mm: f64) -> Vec<String> {
     reader.missing
 }
 
-/// Dimensions that stand on a sheet twice.
+/// Dimensions that occur twice on a sheet.
 fn repeated(sheet: &Sheet) -> Vec<String> {
     let mut times: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     let is_name =
@@ -218,7 +218,7 @@ fn repeated(sheet: &Sheet) -> Vec<String> {
         times.entry(&a.text).or_default().push(&a.key);
     }
     times.retain(|_, keys| keys.len() > 1);
-    times.into_iter().map(|(text, keys)| format!("{}: {text:?} is said of {keys:?}", sheet.name)).collect()
+    times.into_iter().map(|(text, keys)| format!("{}: {text:?} has the keys {keys:?}", sheet.name)).collect()
 }
 
 fn faults(name: &str, built: &Built) -> Vec<String> {
@@ -227,14 +227,14 @@ fn faults(name: &str, built: &Built) -> Vec<String> {
     let mut all = Vec::new();
     for part in built.printed().iter().map(|p| p.part()) {
         let Some(sheet) = sheets.iter().find(|s| s.name == part.name) else { continue };
-        all.extend(open_questions(part, sheet, chamfer_mm));
+        all.extend(missing_dimensions(part, sheet, chamfer_mm));
         all.extend(repeated(sheet));
     }
     all.into_iter().map(|f| format!("{name}, {f}")).collect()
 }
 
 #[test]
-fn every_contour_of_a_part_is_dimensioned_and_nothing_twice() {
+fn every_contour_is_dimensioned_once() {
     let mut drawn = 0;
     let mut all = Vec::new();
     for (name, text) in known() {
@@ -246,23 +246,23 @@ fn every_contour_of_a_part_is_dimensioned_and_nothing_twice() {
     assert!(all.is_empty(), "{}", all.join("\n"));
 }
 
-/// A hole is called through if one sees through it, and only then.
+/// A hole is `through` if it is open from face to face.
 #[test]
-fn holes_are_called_through_that_are() {
-    let told = |text: &str, part: &str| {
+fn through_holes_are_open() {
+    let text_of_hole = |text: &str, part: &str| {
         let built = built(text).unwrap();
         let all = super::sheets(&built);
         let sheet = all.iter().find(|s| s.name == part).unwrap();
         super::text_of(sheet, "hole 1")
     };
-    let trap = told("[layout]\npins = [5, 8, 11]\n", "support-right");
+    let trap = text_of_hole("[layout]\npins = [5, 8, 11]\n", "support-right");
     for words in ["hexagon AF 5.7", "far face", "closed skin 0.4", "near face, for M3"] {
         assert!(trap.contains(words), "{words} is not in {trap:?}");
     }
     assert!(!trap.contains("through"), "{trap}");
-    let screw = told("[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"screw\"\n", "support-right");
+    let screw = text_of_hole("[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"screw\"\n", "support-right");
     assert!(screw.contains("H13 through, for M3"), "{screw}");
-    let insert = told("[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"insert\"\n", "shell");
+    let insert = text_of_hole("[layout]\npins = [5, 8, 11]\n[fasteners]\nkind = \"insert\"\n", "shell");
     assert!(
         insert.contains("2 \u{d7} \u{d8}4 +0.1/0, 5.7 deep, both faces\nfor heat-set insert M3"),
         "{insert}"
@@ -270,9 +270,9 @@ fn holes_are_called_through_that_are() {
     assert_eq!(insert.matches("33.635").count(), 1, "{insert}");
 }
 
-/// What is engraved is what the note says, in words that the part has.
+/// A label that is left out is not in the note about engravings.
 #[test]
-fn nothing_is_called_engraved_that_was_left_out() {
+fn omitted_labels_are_not_engraved() {
     let mut left_out = 0;
     for (name, text) in known() {
         let Some(built) = built(&text) else { continue };
@@ -286,12 +286,12 @@ fn nothing_is_called_engraved_that_was_left_out() {
             }
         }
     }
-    assert!(left_out > 0, "some label should have found no room");
+    assert!(left_out > 0, "no label was left out");
 }
 
-/// A workshop does not know the parameters of the program, and a sheet gives no advice about them.
+/// A workshop does not know the parameters of the program.
 #[test]
-fn no_sheet_speaks_of_parameters() {
+fn sheets_do_not_mention_parameters() {
     let mut noted = 0;
     for (name, text) in known() {
         let Some(built) = built(&text) else { continue };
@@ -306,17 +306,17 @@ fn no_sheet_speaks_of_parameters() {
             }
         }
     }
-    assert!(noted > 0, "something should have been left out");
+    assert!(noted > 0, "nothing was left out");
 }
 
-/// The overall lengths of a coupon are dimensions, and not notes.
+/// The lengths of a coupon are dimensions, and not notes.
 #[test]
-fn a_coupon_is_dimensioned_in_its_views() {
+fn coupons_are_dimensioned_in_their_views() {
     let built = built("").unwrap();
     let all = super::sheets(&built);
     let coupon = all.iter().find(|s| s.name == "coupon").unwrap();
-    for (key, said) in [("length", "54.5"), ("width", "13.25"), ("overall height", "3")] {
-        assert_eq!(super::text_of(coupon, key), said);
+    for (key, text) in [("length", "54.5"), ("width", "13.25"), ("overall height", "3")] {
+        assert_eq!(super::text_of(coupon, key), text);
     }
     for row in ["slots", "grooves"] {
         for key in [format!("first of the {row}"), format!("pitch of the {row}")] {
@@ -327,13 +327,13 @@ fn a_coupon_is_dimensioned_in_its_views() {
     assert!(slots.starts_with("7 \u{d7} slot, widths from the left\n1.04, 1.09, 1.14"), "{slots}");
 }
 
-/// The layout's label is decoded where it is to be read.
+/// Sheets of the assembly, and of parts with a label, have the grooves with pins.
 #[test]
-fn sheets_say_which_grooves_hold_pins() {
+fn sheets_list_grooves_with_pins() {
     let built = built("[layout]\npins = [4, 5, 11]\n").unwrap();
     let all = super::sheets(&built);
     for name in ["assembly", "shell", "support-right"] {
         let words = texts(all.iter().find(|s| s.name == name).unwrap()).join("|");
-        assert!(words.contains("418: pins in grooves 4, 5, 11"), "{name}: {words}");
+        assert!(words.contains("Layout 3 of 15: 4 5 11"), "{name}: {words}");
     }
 }

@@ -1,4 +1,4 @@
-//! Of a mould of several layers one basin is dimensioned, and no line of a dimension runs through another.
+//! One basin of a gang mould is dimensioned, and no line of a dimension crosses another basin.
 
 use std::collections::BTreeSet;
 
@@ -20,13 +20,13 @@ fn pockets(solid: &Solid) -> (usize, Vector2) {
     (steps.len(), steps[1])
 }
 
-/// Whether two straight lines cross within both.
+/// Returns whether two lines cross.
 fn cross([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     let side = |p: Point, q: Point, r: Point| (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
     side(a, b, c) * side(a, b, d) < -1e-6 && side(c, d, a) * side(c, d, b) < -1e-6
 }
 
-/// The edges of each basin on paper, by its number.
+/// The edges of each basin on paper.
 fn basins(sheet: &Sheet, step: Point, number: usize) -> Vec<Vec<[Point; 2]>> {
     let front = sheet.views.iter().position(|v| v.name == "FRONT").unwrap();
     let curves = sheet.entities.iter().filter(|e| e.view == Some(front) && e.layer == Layer::Visible);
@@ -36,7 +36,7 @@ fn basins(sheet: &Sheet, step: Point, number: usize) -> Vec<Vec<[Point; 2]>> {
         let (p, q) = (a.pieces(), b.pieces());
         p.len() == q.len() && p.iter().zip(&q).all(|(p, q)| near(p[0], q[0]) && near(p[1], q[1]))
     };
-    // What is there once more, a step farther in both directions as often as there are basins, is an edge of a basin.
+    // An edge that occurs once for each basin, a step apart, is an edge of a basin.
     let mut all = vec![Vec::new(); number];
     for first in &curves {
         let copies: Vec<&&Shape> =
@@ -52,7 +52,7 @@ fn basins(sheet: &Sheet, step: Point, number: usize) -> Vec<Vec<[Point; 2]>> {
 
 /// Dimensions whose lines cross the edges of two basins.
 fn crossing(sheet: &Sheet, basins: &[Vec<[Point; 2]>]) -> Vec<String> {
-    let mut found = Vec::new();
+    let mut all = Vec::new();
     for a in &sheet.annotations {
         let lines = sheet.entities.iter().filter(|e| e.group == a.group && e.layer == Layer::Dimension);
         let pieces: Vec<[Point; 2]> = lines.flat_map(|e| e.shape.pieces()).collect();
@@ -60,14 +60,14 @@ fn crossing(sheet: &Sheet, basins: &[Vec<[Point; 2]>]) -> Vec<String> {
         let crossed: BTreeSet<usize> =
             (0..basins.len()).filter(|i| basins.get(*i).is_some_and(meets)).collect();
         if crossed.len() > 1 || crossed.iter().any(|i| *i > 0 && *i + 1 < basins.len()) {
-            found.push(format!("{} ({:?}) crosses {crossed:?}", a.key, a.text));
+            all.push(format!("{} ({:?}) crosses {crossed:?}", a.key, a.text));
         }
     }
-    found
+    all
 }
 
 #[test]
-fn dimensions_of_one_basin_cross_no_other() {
+fn dimensions_cross_a_single_basin() {
     let mut drawn = 0;
     let mut all = Vec::new();
     for layers in [2, 3, 6, 12] {

@@ -1,14 +1,14 @@
-//! Every hole and every peg that meets another body has a tolerance and says what it is for.
+//! Every hole and every peg that meets another body has a tolerance and a purpose.
 
 use super::{built, text_of};
 use pinswitch_drafting::Sheet;
 
-/// What makes a tolerance of its own.
+/// All tolerances.
 const TOLERANCES: [&str; 6] = ["+0.1/0", "+0.2/0", "0/-0.2", "H12", "H13", "H14"];
-/// Holes into which nothing comes: the way of the bearing's inner ring, and the vents of the lid.
+/// Holes without a mating part: the bore for the inner ring of the bearing, and the vents of the lid.
 const FREE: [(&str, &str); 2] = [("guide-pulley", "\u{d8}18 through"), ("mould-lid", "\u{d8}")];
 
-/// Each kind of hardware, on every mount, and sizes that are not those of the defaults.
+/// Every kind of hardware on every mount, with other sizes than the defaults.
 fn sets() -> Vec<String> {
     let fasteners = [
         "",
@@ -44,9 +44,9 @@ fn has_tolerance(line: &str) -> bool {
     TOLERANCES.iter().any(|t| line.contains(t))
 }
 
-/// Lines of callouts of holes, pegs, grooves and slots that lack a tolerance.
-fn open_fits(sheet: &Sheet) -> Vec<String> {
-    let mut open = Vec::new();
+/// Lines of callouts of holes, pegs and grooves without a tolerance or a purpose.
+fn missing_fits(sheet: &Sheet) -> Vec<String> {
+    let mut missing = Vec::new();
     for a in &sheet.annotations {
         let is_hole = a.key.starts_with("hole ");
         let is_free = |line: &str| FREE.iter().any(|(part, w)| sheet.name == *part && line.contains(w));
@@ -57,30 +57,30 @@ fn open_fits(sheet: &Sheet) -> Vec<String> {
             _ => false,
         };
         let of_lines = a.text.lines().filter(|l| meets(l) && !has_tolerance(l) && !is_free(l));
-        open.extend(of_lines.map(|l| format!("{}, {}: {l:?}", sheet.name, a.key)));
+        missing.extend(of_lines.map(|l| format!("{}, {}: {l:?}", sheet.name, a.key)));
         let is_fitted = is_hole && has_tolerance(&a.text);
         if is_fitted && !a.text.contains("for ") {
-            open.push(format!("{}, {}: for what? {:?}", sheet.name, a.key, a.text));
+            missing.push(format!("{}, {}: no purpose in {:?}", sheet.name, a.key, a.text));
         }
     }
-    open
+    missing
 }
 
 #[test]
-fn whatever_meets_another_body_has_a_tolerance() {
-    let (mut drawn, mut open) = (0, Vec::new());
+fn mating_features_have_a_tolerance() {
+    let (mut drawn, mut missing) = (0, Vec::new());
     for text in sets() {
         let Some(built) = built(&text) else { continue };
         drawn += 1;
         let sheets = super::sheets(&built);
-        open.extend(sheets.iter().flat_map(open_fits).map(|o| format!("{text:?}: {o}")));
+        missing.extend(sheets.iter().flat_map(missing_fits).map(|o| format!("{text:?}: {o}")));
     }
     assert!(drawn >= 20, "only {drawn} sets were drawn");
-    assert!(open.is_empty(), "{}", open.join("\n"));
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
 
-/// All that is said of holes, pegs, grooves and slots of a part.
-fn said(text: &str, part: &str) -> String {
+/// All texts of a part.
+fn texts_of(text: &str, part: &str) -> String {
     let built = built(text).unwrap();
     let all = super::sheets(&built);
     let sheet = all.iter().find(|s| s.name == part).unwrap();
@@ -88,15 +88,15 @@ fn said(text: &str, part: &str) -> String {
 }
 
 #[test]
-fn fits_are_those_of_what_comes_into_them() {
+fn fits_match_the_mating_parts() {
     let rig = "[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 4.0\n";
-    let plate = said(rig, "rig-plate");
+    let plate = texts_of(rig, "rig-plate");
     for words in [
         "\u{d8}4.5 H13 through, for M4",
         "hexagon AF 13.2 +0.2/0",
         "\u{d8}8.4 H12",
         "for M8",
-        // Those of the shell and those of the sheath stop are alike, and told together.
+        // The holes of the shell and those of the sheath stop are equal, and have one callout.
         "4 \u{d7} \u{d8}6 +0.2/0",
         "\u{d8}3.4 H13",
         "for M3",
@@ -127,14 +127,14 @@ fn fits_are_those_of_what_comes_into_them() {
         ("", "mould-lid", "\u{d8}3.4 +0.2/0 through, for key \u{d8}3"),
     ];
     for (text, part, words) in of {
-        let said = said(text, part);
-        assert!(said.contains(words), "{part}: {words:?} is not in {said:?}");
+        let texts = texts_of(text, part);
+        assert!(texts.contains(words), "{part}: {words:?} is not in {texts:?}");
     }
 }
 
-/// The coupon tells what a machine makes of a width: a tolerance as wide as its steps would leave nothing to measure.
+/// The coupon measures the machine in steps that a tolerance would hide.
 #[test]
-fn the_coupon_leaves_its_widths_to_the_machine() {
+fn the_coupon_has_no_tolerances() {
     let built = built("").unwrap();
     let all = super::sheets(&built);
     let coupon = all.iter().find(|s| s.name == "coupon").unwrap();

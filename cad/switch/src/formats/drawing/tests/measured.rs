@@ -1,4 +1,4 @@
-//! The drawing is read back from its DXF and measured, as someone with a CAD program would, and compared with the manifest.
+//! The drawing is read back from its DXF, measured, and compared with the manifest.
 
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ impl Entity {
         (self.number(10), self.number(20))
     }
 
-    /// Angle that an arc covers, degrees.
+    /// Angle of an arc, degrees.
     fn sweep(&self) -> f64 {
         (self.number(51) - self.number(50)).rem_euclid(360.0)
     }
@@ -66,7 +66,7 @@ fn read(text: &str) -> BTreeMap<String, Vec<Entity>> {
     blocks
 }
 
-/// A value of the manifest: a derived dimension, or what was set.
+/// A value of the manifest: a derived dimension or a setting.
 fn listed(manifest: &Value, name: &str) -> f64 {
     let of = |list: &str, key: &str| {
         manifest[list]
@@ -79,11 +79,11 @@ fn listed(manifest: &Value, name: &str) -> f64 {
     of("derived", "name").or_else(|| of("settings", "field")).unwrap()
 }
 
-fn near(measured: f64, wanted: f64, what: &str) {
-    assert!((measured - wanted).abs() < 1e-6, "{what}: measured {measured}, the manifest says {wanted}");
+fn near(measured: f64, expected: f64, what: &str) {
+    assert!((measured - expected).abs() < 1e-6, "{what}: measured {measured}, the manifest has {expected}");
 }
 
-/// Angles about the axis of points, ascending, degrees from +y toward +x.
+/// Angles of points about the axis, ascending, degrees from +y toward +x.
 fn angles(points: &[(f64, f64)]) -> Vec<f64> {
     let mut all: Vec<f64> = points.iter().map(|(x, y)| libm::atan2(*x, *y).to_degrees()).collect();
     all.sort_by(f64::total_cmp);
@@ -94,7 +94,7 @@ fn mean_step(sorted: &[f64]) -> f64 {
     (sorted[sorted.len() - 1] - sorted[0]) / (sorted.len() - 1) as f64
 }
 
-/// Where lines of a view lie along x, each value once.
+/// The x of the vertical lines of a view.
 fn levels(view: &[Entity]) -> Vec<f64> {
     let upright =
         view.iter().filter(|e| e.is("LINE", "VISIBLE") && (e.number(10) - e.number(11)).abs() < 1e-6);
@@ -104,8 +104,8 @@ fn levels(view: &[Entity]) -> Vec<f64> {
     all
 }
 
-fn contains(levels: &[f64], wanted: f64, what: &str) {
-    assert!(levels.iter().any(|l| (l - wanted).abs() < 1e-6), "{what}: {wanted} is none of {levels:?}");
+fn contains(levels: &[f64], expected: f64, what: &str) {
+    assert!(levels.iter().any(|l| (l - expected).abs() < 1e-6), "{what}: {expected} is not in {levels:?}");
 }
 
 fn shell(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value) {
@@ -125,10 +125,10 @@ fn shell(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value) {
         );
     }
     let radii: Vec<f64> = arcs.iter().filter(about_axis).map(|e| e.number(40)).collect();
-    // The lands between grooves: the stops at both ends stand higher.
-    let alike = |r: &f64| radii.iter().filter(|other| (*other - r).abs() < 1e-6).count();
-    let lands = radii.iter().copied().max_by_key(alike).unwrap();
-    assert!(alike(&lands) >= 10, "{radii:?}");
+    // The lands between grooves, and not the higher stops at both ends.
+    let equal = |r: &f64| radii.iter().filter(|other| (*other - r).abs() < 1e-6).count();
+    let lands = radii.iter().copied().max_by_key(equal).unwrap();
+    assert!(equal(&lands) >= 10, "{radii:?}");
     near(lands, listed(manifest, "shell.outer_radius_mm"), "outer radius");
     near(
         radii.iter().copied().fold(f64::INFINITY, f64::min),
@@ -152,7 +152,7 @@ fn shell(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value) {
 fn support(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value, name: &str) {
     let front = &blocks[&format!("{name}_FRONT")];
     let half = listed(manifest, "slot_width") / 2.0;
-    // Round ends of slots: half circles.
+    // Round ends of slots are half circles.
     let ends: Vec<&Entity> =
         front.iter().filter(|e| e.is("ARC", "VISIBLE") && (e.sweep() - 180.0).abs() < 1e-6).collect();
     assert!(!ends.is_empty() && ends.len().is_multiple_of(2));
@@ -178,7 +178,7 @@ fn support(blocks: &BTreeMap<String, Vec<Entity>>, manifest: &Value, name: &str)
 }
 
 #[test]
-fn what_is_measured_in_the_drawing_is_what_the_manifest_says() {
+fn the_drawing_has_the_dimensions_of_the_manifest() {
     for text in [
         "[layout]\npins = [5, 8, 11]\n",
         "[drawing]\nprojection = \"third\"\npaper = \"a3\"\n[shell]\nouter_radius_mm = 33.3\nwidth_mm = 21.0\n[segment]\n\
@@ -195,7 +195,7 @@ fn what_is_measured_in_the_drawing_is_what_the_manifest_says() {
         shell(&blocks, &manifest);
         support(&blocks, &manifest, "SUPPORT_LEFT");
         support(&blocks, &manifest, "SUPPORT_RIGHT");
-        // In model space the main views are as large as the part, too.
+        // In model space, main views are at 1:1.
         let inserts: Vec<&Entity> = blocks[""].iter().filter(|e| e.kind == "INSERT").collect();
         for insert in &inserts {
             assert!(blocks.contains_key(&insert.groups[&2]), "{insert:?}");

@@ -1,5 +1,5 @@
-//! What every sheet must keep: nothing overlaps, each dimension stands once, views lie where the projection wants them, and
-//! what is measured in the DXF is what the manifest says.
+//! Properties of every sheet: nothing overlaps, every dimension is there once, views are where the projection puts them, and
+//! the DXF has the dimensions of the manifest.
 
 mod complete;
 mod copies;
@@ -19,13 +19,13 @@ use crate::design::Design;
 use crate::templates::TEMPLATES;
 use pinswitch_drafting::{Entity, Layer, Shape, Sheet, collisions, number};
 
-/// The built set of a configuration, if it is a valid one.
+/// Builds a configuration; `None` if it is invalid.
 fn built(text: &str) -> Option<Built> {
     let (configuration, _) = config::read(text, "test.toml").ok()?;
     Built::new(Design::new(configuration).ok()?).ok()
 }
 
-/// Configurations of this repository that build: templates, those that are pinned, and those that once broke.
+/// Configurations of this repository: templates, golden ones, and the corpus.
 fn known() -> Vec<(String, String)> {
     let mut all: Vec<(String, String)> =
         TEMPLATES.iter().map(|t| (t.name.to_owned(), t.text.to_owned())).collect();
@@ -44,7 +44,7 @@ fn known() -> Vec<(String, String)> {
     all
 }
 
-/// A configuration drawn at random; many are refused.
+/// A random configuration; many are invalid.
 fn random(seed: u64) -> String {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| low + (high - low) * rng.random::<f64>();
@@ -65,14 +65,14 @@ fn random(seed: u64) -> String {
     )
 }
 
-/// What is wrong with the sheets of a set.
+/// Faults of the sheets of a set.
 fn faults(name: &str, built: &Built) -> Vec<String> {
     let sheets = sheets(built);
     let mut faults = Vec::new();
-    let mut fault = |sheet: &str, words: String| faults.push(format!("{name}, {sheet}: {words}"));
-    let mut wanted: Vec<String> = vec!["assembly".to_owned()];
-    wanted.extend(built.printed().iter().map(|p| p.part().name.clone()));
-    for part in wanted {
+    let mut fault = |sheet: &str, text: String| faults.push(format!("{name}, {sheet}: {text}"));
+    let mut expected: Vec<String> = vec!["assembly".to_owned()];
+    expected.extend(built.printed().iter().map(|p| p.part().name.clone()));
+    for part in expected {
         if !sheets.iter().any(|s| s.name == part) {
             fault(&part, "no sheet".to_owned());
         }
@@ -85,17 +85,17 @@ fn faults(name: &str, built: &Built) -> Vec<String> {
         for a in &sheet.annotations {
             *keys.entry(&a.key).or_default() += 1;
         }
-        for (key, text) in promised(built, &sheet.name) {
+        for (key, text) in required(built, &sheet.name) {
             match keys.get(key.as_str()) {
                 Some(1) if text_of(sheet, &key).contains(&text) => {}
                 Some(1) => fault(&sheet.name, format!("{key} is {:?}, not {text}", text_of(sheet, &key))),
-                other => fault(&sheet.name, format!("{key} stands {} times", other.unwrap_or(&0))),
+                other => fault(&sheet.name, format!("{key} occurs {} times", other.unwrap_or(&0))),
             }
         }
         for (key, times) in keys {
             // Each row of a table has the key of its table.
             if times > 1 && !["bill of materials", "places of the holes"].contains(&key) {
-                fault(&sheet.name, format!("{key} stands {times} times"));
+                fault(&sheet.name, format!("{key} occurs {times} times"));
             }
         }
     }
@@ -106,8 +106,8 @@ fn text_of(sheet: &Sheet, key: &str) -> String {
     sheet.annotations.iter().find(|a| a.key == key).map_or_else(String::new, |a| a.text.clone())
 }
 
-/// Dimensions without which a part cannot be made, from its design and not from its solid: key, and what must be said.
-fn promised(built: &Built, part: &str) -> Vec<(String, String)> {
+/// Dimensions that a part needs, from its design and not from its solid: key and text.
+fn required(built: &Built, part: &str) -> Vec<(String, String)> {
     let d = built.design();
     let c = d.configuration();
     let mut all: Vec<(String, String)> = Vec::new();
@@ -120,8 +120,8 @@ fn promised(built: &Built, part: &str) -> Vec<(String, String)> {
     }
     if c.fasteners.count > 0 && (part == "shell" || is_support) {
         add("hole 1".to_owned(), format!("on R{}", number(d.fastener_radius_mm())));
-        for words in promised_of_holes(d, part) {
-            add("hole 1".to_owned(), words);
+        for text in required_of_holes(d, part) {
+            add("hole 1".to_owned(), text);
         }
     }
     if is_grooved {
@@ -163,8 +163,8 @@ fn promised(built: &Built, part: &str) -> Vec<(String, String)> {
     all
 }
 
-/// What is said of the holes for screws in shell and supports.
-fn promised_of_holes(d: &Design, part: &str) -> Vec<String> {
+/// Texts of the holes for screws in shell and supports.
+fn required_of_holes(d: &Design, part: &str) -> Vec<String> {
     let c = d.configuration();
     let n = if c.fasteners.count == 1 { String::new() } else { format!("{} \u{d7} ", c.fasteners.count) };
     let thread = crate::documents::bill_of_materials(d).fasteners.unwrap().thread;
@@ -194,7 +194,7 @@ fn promised_of_holes(d: &Design, part: &str) -> Vec<String> {
 }
 
 #[test]
-fn nothing_overlaps_and_each_dimension_stands_once() {
+fn dimensions_are_unique_and_do_not_overlap() {
     let mut drawn = 0;
     let mut all = Vec::new();
     for (name, text) in known() {
@@ -207,7 +207,7 @@ fn nothing_overlaps_and_each_dimension_stands_once() {
 }
 
 #[test]
-fn random_configurations_are_drawn_without_overlaps() {
+fn random_sheets_do_not_overlap() {
     let mut drawn = 0;
     let mut all = Vec::new();
     for seed in 0..60 {
@@ -240,10 +240,10 @@ fn ends(points: &[[f64; 2]], axis: usize) -> (f64, f64) {
     points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[axis]), h.max(p[axis])))
 }
 
-/// In first angle the part is tipped over: what is seen from the left stands to the right, and the side that was nearest to
-/// the eye ends up farthest from the front view. In third angle it is the other way round.
+/// In first angle, the view from the left is on the right, with its near side away from the front view. In third angle, it is the
+/// other way round.
 #[test]
-fn views_lie_where_the_projection_wants_them() {
+fn the_projection_arranges_the_views() {
     for (word, is_first) in [("first", true), ("third", false)] {
         let text = format!("[layout]\npins = [5, 8, 11]\n[drawing]\nprojection = {word:?}\n");
         let all = sheets(&built(&text).unwrap());
@@ -251,18 +251,18 @@ fn views_lie_where_the_projection_wants_them() {
         let [front, above, section] = ["FRONT", "ABOVE", "SECTION_A"].map(|view| points(sheet, view));
         let (front_x, front_y) = (ends(&front, 0), ends(&front, 1));
         let (above_y, section_x) = (ends(&above, 1), ends(&section, 0));
-        assert!(section_x.0 > front_x.1, "the view from the side stands to the right");
-        assert_eq!(above_y.1 < front_y.0, is_first, "the view from above lies below in first angle only");
-        // Round corners are judged by their chords.
-        assert!((ends(&above, 0).0 - front_x.0).abs() < 0.1, "views lie over each other");
-        assert!((ends(&section, 1).0 - front_y.0).abs() < 1.0, "views lie beside each other");
-        // The lip stands on the face that the front view shows: there the section is wider than at its foot.
+        assert!(section_x.0 > front_x.1, "the side view is on the right");
+        assert_eq!(above_y.1 < front_y.0, is_first, "the view from above is below in first angle only");
+        // Round corners are chords here.
+        assert!((ends(&above, 0).0 - front_x.0).abs() < 0.1, "the view from above is aligned");
+        assert!((ends(&section, 1).0 - front_y.0).abs() < 1.0, "the side view is aligned");
+        // The lip is on the face in the front view: there the section is wider than at its foot.
         let foot: Vec<[f64; 2]> = section.iter().copied().filter(|p| p[1] < front_y.0 + 4.0).collect();
         let (plate, whole) = (ends(&foot, 0), section_x);
         let reaches = (plate.0 - whole.0, whole.1 - plate.1);
         let lip_is_far = reaches.1 > reaches.0 + 1.0;
         assert_eq!(lip_is_far, is_first, "{reaches:?}");
-        // The same of the view from above: its lip is shorter than the plate.
+        // In the view from above, the lip is shorter than the plate.
         let wide = |y: f64| {
             let at: Vec<[f64; 2]> = above.iter().copied().filter(|p| (p[1] - y).abs() < 0.01).collect();
             let (low, high) = ends(&at, 0);
@@ -273,9 +273,9 @@ fn views_lie_where_the_projection_wants_them() {
     }
 }
 
-/// Lines that crowd are thinned out alike on both supports, whatever the scale.
+/// Crowded lines are thinned equally on both supports, at any scale.
 #[test]
-fn both_supports_are_seen_alike_from_above() {
+fn supports_are_symmetric_from_above() {
     let wide = "[segment]\nspan_deg = 160.0\n[layout]\npins = [8]\nwrap_angle_deg = 140.0\n[shell]\nouter_radius_mm = 30.0\n";
     for text in ["[layout]\npins = [8]\n", wide] {
         let all = sheets(&built(text).unwrap());
@@ -291,7 +291,7 @@ fn both_supports_are_seen_alike_from_above() {
         let ends = levels.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(*y), h.max(*y)));
         let has = |y: f64| levels.iter().any(|other| (other - y).abs() < 1e-3);
         assert!(levels.len() >= 6, "{text}: {levels:?}");
-        // Between them lies the tendon, which is no mirror image of itself.
+        // The tendon between them is not symmetric.
         let middle = f64::midpoint(ends.0, ends.1);
         let mut of_supports = levels.iter().filter(|y| (*y - middle).abs() > 2.0 * all[0].scale);
         assert!(of_supports.all(|y| has(2.0 * middle - y)), "{text}: {levels:?}");
@@ -299,7 +299,7 @@ fn both_supports_are_seen_alike_from_above() {
 }
 
 #[test]
-fn a_date_is_written_only_when_it_is_asked_for() {
+fn a_date_is_optional() {
     let dated = |date: &str| {
         let text = format!("[drawing]\ndate = {date:?}\n");
         let all = sheets(&built(&text).unwrap());
@@ -310,13 +310,13 @@ fn a_date_is_written_only_when_it_is_asked_for() {
             .count()
     };
     assert_eq!(dated(""), 0);
-    // Both words on each of nine sheets of parts, one of the assembly, and one of the layer.
+    // Label and value on every sheet.
     let sheets_of = sheets(&Built::new(Design::new(Configuration::default()).unwrap()).unwrap()).len();
     assert_eq!(dated("2026-01-31"), 2 * sheets_of);
 }
 
 #[test]
-fn paper_grows_only_where_a_part_asks_for_it() {
+fn large_parts_have_larger_paper() {
     let paper = |text: &str, part: &str| {
         let all = sheets(&built(text).unwrap());
         all.iter().find(|s| s.name == part).map(|s| (s.paper.name(), s.scale)).unwrap()
@@ -327,7 +327,7 @@ fn paper_grows_only_where_a_part_asks_for_it() {
 }
 
 #[test]
-fn every_dimension_of_a_sheath_stop_is_drawn_and_round_parts_have_no_straight_lines() {
+fn sheath_stops_have_no_dimensions_in_notes() {
     let built = built("[mount]\nkind = \"rig\"\n[tendon]\nsheath_diameter_mm = 4.0\n").unwrap();
     let sheets = sheets(&built);
     let words = |name: &str| {
@@ -339,15 +339,14 @@ fn every_dimension_of_a_sheath_stop_is_drawn_and_round_parts_have_no_straight_li
         texts.collect::<Vec<_>>().join("|")
     };
     assert!(!words("sheath-stop").contains("from the left side"), "{}", words("sheath-stop"));
-    assert!(words("rig-plate").contains("straight lines"));
-    assert!(
-        !words("pulley-spacer").contains("straight lines")
-            && !words("guide-pulley").contains("straight lines")
-    );
+    // Only outlines of lines and arcs have the note about them.
+    let note = "Outline: lines tangent to the arcs";
+    assert!(words("rig-plate").contains(note));
+    assert!(!words("pulley-spacer").contains(note) && !words("guide-pulley").contains(note));
 }
 
 #[test]
-fn a_rig_is_assembled_at_half_its_size_or_larger() {
+fn rigs_are_drawn_at_half_scale() {
     for more in ["", "pulley_distance_mm = 100.0\n", "[tendon]\nsheath_diameter_mm = 4.0\n"] {
         for projection in ["first", "third"] {
             let text = format!(
@@ -356,7 +355,7 @@ fn a_rig_is_assembled_at_half_its_size_or_larger() {
             let built = built(&text).unwrap();
             let assembly = &sheets(&built)[0];
             assert!(assembly.scale >= 0.5, "{text}: {}", assembly.scale);
-            // The list is whole, in one column or two.
+            // The parts list is complete, in one column or two.
             let listed = assembly.annotations.iter().filter(|a| a.key == "bill of materials");
             let rows = listed.filter(|a| !a.text.starts_with("Item")).count();
             assert_eq!(rows, super::parts_list::items(&built).len(), "{text}");

@@ -200,10 +200,10 @@ fn half_a_save_is_not_shown() {
     drop(writer);
     let state = preview.state(1);
     assert_eq!(state["version"], 2);
-    assert!(state["data"]["layout"].as_str().unwrap().contains("[6, 8, 10]"), "{}", state["trouble"]);
+    assert!(state["data"]["layout"].as_str().unwrap().contains("3 of 15: 6 8 10"), "{}", state["trouble"]);
     // A save that never comes to its end.
     std::fs::write(&file, "").unwrap();
     let state = preview.state(2);
     assert!(state["trouble"].as_str().unwrap().contains("empty"), "{}", state["trouble"]);
-    assert!(preview.ask("GET /", &preview.host()).contains("[6, 8, 10]"));
+    assert!(preview.ask("GET /", &preview.host()).contains("3 of 15: 6 8 10"));
 }

@@ -133,18 +133,18 @@ fn the_preview_follows_its_file_and_keeps_the_last_good_state() {
     let state = preview.state(1);
     println!("a changed parameter is shown after {:?}", begun.elapsed());
     assert_eq!(state["version"], 2);
-    assert!(state["data"]["layout"].as_str().unwrap().contains("[6, 8, 10]"));
+    assert!(state["data"]["layout"].as_str().unwrap().contains("3 of 15: 6 8 10"));
 
     std::fs::write(&file, good.replace("[5, 8, 11]", "[5, 99]")).unwrap();
     let state = preview.state(2);
     assert!(state["trouble"].as_str().unwrap().contains("layout.pins"), "{}", state["trouble"]);
     assert!(state["data"].is_null());
     // The page itself still shows the last good state.
-    assert!(preview.get("/").contains("[6, 8, 10]"));
+    assert!(preview.get("/").contains("3 of 15: 6 8 10"));
 
     std::fs::write(&file, &good).unwrap();
     let state = preview.state(3);
-    assert!(state["trouble"].is_null() && state["data"]["layout"].as_str().unwrap().contains("[5, 8, 11]"));
+    assert!(state["trouble"].is_null() && state["data"]["layout"].as_str().unwrap().contains("3 of 15: 5 8 11"));
 }
 
 #[test]

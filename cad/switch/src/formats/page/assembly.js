@@ -1,7 +1,7 @@
-// The assembly in three dimensions, with cut faces that are filled: of report.html, which shows one, and of the configurator
-// (cad/app/page), which shows hundreds. Needs three.js as THREE; the data is that of `PageData`.
+// 3D view of an assembly, with filled cut faces. report.html shows one assembly; the configurator (cad/app/page) shows hundreds.
+// Needs three.js as THREE. The data is `PageData`.
 
-// Bytes of a text in base64.
+// Decodes base64.
 function bytesOf(base64) {
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);
@@ -12,7 +12,7 @@ function bytesOf(base64) {
 const isDark = () => matchMedia('(prefers-color-scheme: dark)').matches;
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 
-// A column's value at `x`, linear between its points.
+// Interpolates a column linearly.
 function at(xs, ys, x) {
   let i = xs.findIndex((v) => v >= x);
   if (i < 0) i = xs.length - 1;
@@ -20,25 +20,26 @@ function at(xs, ys, x) {
   return ys[i - 1] + (ys[i] - ys[i - 1]) * (x - xs[i - 1]) / (xs[i] - xs[i - 1]);
 }
 
-// All pins are shown or hidden together.
+// Pins are shown and hidden together.
 const groupOf = (name) => (/^pin-\d+$/.test(name) ? 'pins' : name);
-// Constants of three.js that its build for this page leaves out.
+// Constants of three.js that are not in its build for this page.
 const FRONT = 0, BACK = 1, ALWAYS = 519, NOT_EQUAL = 517, INCREMENT = 34055, DECREMENT = 34056;
-// Room around what is shown, as a share of it.
+// Margin around the bodies, as a factor.
 const ROOM = 1.1;
-// So many points of a body are enough to see how far it reaches.
+// Points of a body that are enough to find its extent.
 const SAMPLES = 600;
-// Of the tendon's points one in so many.
+// Step between the points of the tendon for its extent.
 const TENDON_STEP = 11;
-// Without a graphics card the processor fills every pixel: few while something moves, and all once it has stood still so long.
+// Without a graphics card, the processor renders all pixels: at a low resolution while something moves, and at full resolution
+// after this time without changes.
 const QUICK_RATIO = 0.5, STILL_MS = 700;
-// Facets of round edges turn by less as a rule, in coarse designs too; edges of the parts by more. None of those with pins in 4, 8
-// and 12 turns by 30 to 40 degrees.
+// Angle between sharp and smooth edges. Facets of round edges have smaller angles even in coarse designs. With pins in 4, 8 and
+// 12, no edge is between 30 and 40 degrees.
 const SHARP_DEG = 35;
 const SHARP = Math.cos(SHARP_DEG * Math.PI / 180);
 
-// What counts, where a body is cut, the faces seen from inside less those from outside: what is left over is cut material.
-// Nothing is seen of it, so that it needs no light: that of lines will do.
+// Material that counts, in the stencil buffer, inner faces minus outer faces of a cut body: the rest is cut material. It is not
+// visible, so a material without lighting is enough.
 function counting(side, operation, plane) {
   return new THREE.LineBasicMaterial({ side, clippingPlanes: [plane], depthWrite: false, depthTest: false, colorWrite: false,
     stencilWrite: true, stencilFunc: ALWAYS, stencilFail: operation, stencilZFail: operation, stencilZPass: operation });
@@ -53,15 +54,15 @@ function square() {
   return geometry;
 }
 
-// The cut face: drawn where material was counted, before the next body is.
+// The cut face, drawn where material was counted, before the next body.
 function cap(geometry, material) {
   const mesh = new THREE.Mesh(geometry, material);
   mesh.onAfterRender = (renderer) => renderer.clearStencil();
   return mesh;
 }
 
-// Edges whose two triangles turn by more than `SHARP_DEG`. Meshes of a set share their vertices, so that an edge is a pair
-// of indices; EdgesGeometry, which compares places as text, takes most of the time of a design.
+// Edges with an angle above `SHARP_DEG`. Meshes of a set share their vertices, so an edge is a pair of indices. EdgesGeometry
+// compares positions as text, and would take most of the time of a design.
 function sharpEdges(geometry) {
   const places = geometry.getAttribute('position').array;
   const index = geometry.index.array;
@@ -91,7 +92,7 @@ function sharpEdges(geometry) {
   return lines;
 }
 
-// Whether the processor does what a graphics card would.
+// Returns whether the processor renders, without a graphics card.
 function isWithoutCard() {
   const gl = document.createElement('canvas').getContext('webgl2');
   const named = gl?.getExtension('WEBGL_debug_renderer_info');
@@ -117,14 +118,14 @@ class Assembly {
     this.camera = new THREE.PerspectiveCamera(28, 1, 1, 2000);
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => this.draw());
-    // Whoever turned it by hand finds it so after the next change.
+    // A manual rotation is kept after changes.
     this.controls.addEventListener('end', () => {
       this.towards = this.camera.position.clone().sub(this.controls.target).normalize();
       this.turned?.(Math.atan2(this.towards.x, this.towards.z), Math.asin(clamp(this.towards.y, -1, 1)));
     });
     this.plane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 0);
-    // Materials by what they are of. They outlive what is shown: a graphics card compiles a program for each kind, and forgets
-    // it with the last material of that kind.
+    // Materials by kind. They are kept, since a graphics card compiles a program for each kind and deletes it with the last
+    // material of that kind.
     this.materials = new Map();
     this.shapes = [];
     this.square = square();
@@ -145,7 +146,7 @@ class Assembly {
       const { material, cut } = this.coat(body);
       const mesh = new THREE.Mesh(geometry, material);
       const edges = new THREE.LineSegments(lines, this.ink());
-      // Two bodies are not counted together: each is counted, covered and forgotten before the next.
+      // Each body is counted, covered and cleared before the next.
       const counted = this.counted.map((count) => new THREE.Mesh(geometry, count));
       counted.forEach((count) => { count.renderOrder = 2 * order + 1; });
       const cover = cap(this.square, cut);
@@ -167,12 +168,11 @@ class Assembly {
     this.low = box.min.z;
     this.high = box.max.z;
     this.edges();
-    // A part of much the same size is looked at from where one was.
+    // The camera is kept for a part of nearly the same size.
     if (!before || Math.abs(this.reach / before - 1) > 0.08) this.apart = undefined;
   }
 
-  // Meshes with their edges, by number. What is as it was in the design before is taken from there: its edges are known, and
-  // the graphics card has it.
+  // Meshes with their edges, by number. Unchanged meshes are reused: their edges are known, and they are on the graphics card.
   shaped(data) {
     const before = this.shapes;
     const shapes = new Map();
@@ -203,7 +203,7 @@ class Assembly {
     const [isSteel, isSilicone] = [of === 'steel', of === 'silicone'];
     const shade = () => new THREE.Color(...colour.map((c) => c / 255)).convertSRGBToLinear();
     return {
-      // Bodies are closed, and filled where they are cut: nobody sees them from inside.
+      // Bodies are closed, and filled where they are cut: inner faces are never visible.
       material: this.kept(`${of} ${colour}`, () => new THREE.MeshStandardMaterial({
         color: shade(), side: FRONT, flatShading: true, metalness: isSteel ? 0.55 : 0.0, roughness: isSteel ? 0.35 : 0.75, transparent: isSilicone, opacity: isSilicone ? 0.78 : 1,
       })),
@@ -216,7 +216,7 @@ class Assembly {
   // The material of edges.
   ink() { return this.kept('ink', () => new THREE.LineBasicMaterial({ transparent: true, opacity: 0.45 })); }
 
-  // Lets what is shown go, with its memory on the graphics card.
+  // Removes all bodies, and frees their memory on the graphics card.
   forget() {
     this.tendon?.geometry.dispose();
     this.group.clear();
@@ -224,7 +224,7 @@ class Assembly {
     this.tendon = undefined;
   }
 
-  // Edges are dark on a light page and light on a dark one.
+  // Sets the colour of edges for a light or dark page.
   edges() {
     this.ink().color.set(isDark() ? 0x0a0e13 : 0x1a2530);
   }
@@ -235,8 +235,7 @@ class Assembly {
     this.frame();
   }
 
-  // Points of the bodies that are shown, and of the tendon, in the assembly; of large meshes not all, since neighbours say
-  // the same.
+  // Points of visible bodies and of the tendon, in the assembly; a sample of large meshes.
   *points() {
     if (this.tendon) {
       const { array } = this.tendon.geometry.getAttribute('position');
@@ -251,7 +250,7 @@ class Assembly {
     }
   }
 
-  // Moves the camera along its way so that all that is shown fills the picture.
+  // Moves the camera along its direction so that the bodies fill the view.
   frame() {
     if (!this.bodies || !this.towards) return;
     const right = new THREE.Vector3(0, 1, 0).cross(this.towards).normalize();
@@ -276,7 +275,7 @@ class Assembly {
     this.draw();
   }
 
-  // Pins sink and the tendon follows; everything moves along its way out by `apart`.
+  // Moves pins and tendon to their positions at a load, and explodes the bodies by `apart`.
   pose(load, apart) {
     const moved = this.apart !== apart;
     this.apart = apart;
@@ -294,12 +293,12 @@ class Assembly {
     this.lay(load, apart);
     this.group.updateMatrixWorld(true);
     if (moved) this.frame();
-    // With the tendon, everything is there that has to be compiled for.
+    // All materials exist now, and can be compiled.
     this.compiling ??= this.compile();
     this.draw();
   }
 
-  // The tendon over the pins; away while the parts are.
+  // Adds the tendon over the pins, unless the view is exploded.
   lay(load, apart) {
     const contact = this.data.contact;
     if (this.tendon) { this.group.remove(this.tendon); this.tendon.geometry.dispose(); this.tendon = undefined; }
@@ -311,7 +310,7 @@ class Assembly {
     const straight = (end, side, by) => end.clone().add(
       new THREE.Vector3(side * Math.cos(contact.half_wrap_rad), -Math.sin(contact.half_wrap_rad), 0).multiplyScalar(by));
     const [first, last] = [points[0], points[points.length - 1]];
-    // A point close by keeps the long ends straight.
+    // A close point keeps the long ends straight.
     points.unshift(straight(first, -1, contact.lead_mm[0]), straight(first, -1, 2));
     points.push(straight(last, 1, 2), straight(last, 1, contact.lead_mm[1]));
     const tube = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), 120, contact.tendon_radius_mm, 8);
@@ -322,7 +321,7 @@ class Assembly {
   }
 
   cut(on, share) {
-    // A hair beside the faces that lie at a share: a face in the plane would flicker.
+    // A small offset from faces at the same height: a face in the plane would flicker.
     const z = this.low + (this.high - this.low) * share + 1.3e-3;
     this.plane.constant = z;
     const planes = on ? [this.plane] : [];
@@ -358,21 +357,21 @@ class Assembly {
     this.camera.aspect = clientWidth / Math.max(clientHeight, 1);
     this.camera.updateProjectionMatrix();
     this.frame();
-    // At once: a canvas of another size is empty.
+    // Immediately: a resized canvas is empty.
     if (this.isCompiled) this.renderer.render(this.scene, this.camera);
   }
 
-  // Lets the programs of the graphics card be compiled beside the page, where it can; draws from then on.
+  // Compiles the programs of the graphics card, asynchronously where possible, and starts to render.
   async compile() {
     if (this.renderer.extensions.has('KHR_parallel_shader_compile')) await this.renderer.compileAsync(this.scene, this.camera);
     this.isCompiled = true;
     this.draw();
   }
 
-  // Draws once before the next frame is shown, however many changes asked for it.
+  // Renders once for the next frame, also after several changes.
   draw() {
     if (this.drawing || !this.isCompiled) return;
-    // Told for those who compare pictures: what is drawn roughly is drawn once more.
+    // For tests of pictures: a rough rendering is followed by a fine one.
     this.host.dataset.drawn = 'roughly';
     this.drawing = requestAnimationFrame(() => {
       this.drawing = 0;
@@ -382,7 +381,7 @@ class Assembly {
     });
   }
 
-  // Draws with few pixels now, and with all when nothing has moved for a while.
+  // Renders at a low resolution, and at full resolution after some time without changes.
   refine() {
     clearTimeout(this.refining);
     if (this.renderer.getPixelRatio() !== QUICK_RATIO) this.renderer.setPixelRatio(QUICK_RATIO);

@@ -1,4 +1,4 @@
-//! What the page shows, as data: meshes, places, the tendon over its loads, curves and tables.
+//! The data of the page: meshes, positions, the tendon at several loads, curves and tables.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::built::{Built, MeshedBody};
 use crate::design::Design;
 use crate::design::rules::{Check, checklist};
-use crate::documents::{Manifest, friction_csv};
+use crate::documents::{Manifest, friction_csv, layout_text};
 use crate::output::SetError;
 use crate::parts::{Material, Role};
 use crate::prediction::Prediction;
@@ -17,13 +17,13 @@ use pinswitch_solid::mesh::{Mesh, Vector3};
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::polar;
 
-/// Loads at which pins and tendon are shown.
+/// Number of loads of pins and tendon.
 const STATES: usize = 25;
 
-/// The lightest load that is shown, as a share of the heaviest: an unloaded tendon has no shape.
+/// The lightest load as a share of the heaviest: an unloaded tendon has no shape.
 const MIN_SHARE: f64 = 1e-3;
 
-/// Everything on the page.
+/// The data of the page.
 #[derive(Debug, Serialize)]
 pub struct PageData {
     live: Option<u64>,
@@ -39,7 +39,7 @@ pub struct PageData {
     manifest: Manifest,
 }
 
-/// A mesh in single precision, little-endian and base64; `file` is its STL, if it is printed.
+/// A mesh in single precision, little-endian and base64. `file` is the STL of a printed part.
 #[derive(Debug, Serialize)]
 struct MeshData {
     file: Option<String>,
@@ -54,20 +54,20 @@ struct Body {
     material: Material,
     colour: [u8; 3],
     mesh: usize,
-    /// From its mesh into the assembly, column by column.
+    /// From the mesh to the assembly, column by column.
     matrix: [f64; 16],
     explode_offset: [f64; 3],
     sink: Option<Sink>,
 }
 
-/// How a pin sinks: where to, and how deep at each load.
+/// Direction in which a pin sinks, and its depth at each load.
 #[derive(Debug, Serialize)]
 struct Sink {
     towards: [f64; 2],
     depth_mm: Vec<f64>,
 }
 
-/// The tendon over its bed at several loads; empty without pins on silicone.
+/// The tendon at several loads; empty without pins on silicone.
 #[derive(Debug, Default, Serialize)]
 struct ContactStates {
     load_n: Vec<f64>,
@@ -76,7 +76,7 @@ struct ContactStates {
     axis_radius_mm: f64,
     tendon_radius_mm: f64,
     half_wrap_rad: f64,
-    /// Beyond the wrap, on the load's side and on the other.
+    /// Lengths beyond the wrap: on the side of the load, and on the other.
     lead_mm: [f64; 2],
     z_mm: f64,
     #[serde(skip)]
@@ -84,12 +84,12 @@ struct ContactStates {
 }
 
 impl PageData {
-    /// Whether a server follows the configuration for this page.
+    /// Returns whether the page is a live preview.
     pub(super) fn is_live(&self) -> bool {
         self.live.is_some()
     }
 
-    /// The data of a page; `live` is the version of a live preview that follows its configuration.
+    /// The data of a page. `live` is the version of the state of a live preview.
     pub fn new(built: &Built, prediction: &Prediction, manifest: &Manifest, live: Option<u64>) -> Self {
         let design = built.design();
         let contact = contact_states(design);
@@ -99,12 +99,12 @@ impl PageData {
         let mut bodies = Vec::new();
         for body in built.assembly() {
             let Some(pose) = body.part.pose else { continue };
-            // Where the physics gives the tendon's shape at every load, the page draws it itself.
+            // The page draws the tendon from its shape at each load, if the physics has a solution.
             if body.part.role == Role::Tendon && !contact.load_n.is_empty() {
                 continue;
             }
-            let own = built.printed().iter().position(|p| std::ptr::eq(&p.body, body));
-            let (mesh, matrix) = match own {
+            let printed = built.printed().iter().position(|p| std::ptr::eq(&p.body, body));
+            let (mesh, matrix) = match printed {
                 Some(mesh) => (mesh, into_assembly(body, pose)),
                 None => {
                     meshes.push(encoded(&pose.apply(body.mesh.clone()), None));
@@ -121,10 +121,9 @@ impl PageData {
                 sink: sink(body.part.role, design, &contact),
             });
         }
-        let c = design.configuration();
         Self {
             live,
-            layout: format!("pins in grooves {:?} of {}", c.layout.pins, c.segment.grooves),
+            layout: layout_text(design.configuration()),
             meshes,
             bodies,
             contact,
@@ -140,21 +139,21 @@ impl PageData {
         }
     }
 
-    /// The name of the set.
+    /// Returns the name of the set.
     pub(super) fn title(&self) -> &str {
         &self.manifest.name
     }
 
-    /// The data as JSON.
+    /// Returns the data as JSON.
     ///
     /// # Errors
-    /// [`SetError::Encoding`] for a value that JSON cannot hold, which no valid design has.
+    /// [`SetError::Encoding`] for a number that JSON cannot represent, which a valid design does not have.
     pub fn json(&self) -> Result<String, SetError> {
         serde_json::to_string(self).map_err(SetError::encoding)
     }
 }
 
-/// How a pin sinks; nothing for other bodies, or where the physics has no solution.
+/// The sinking of a pin; `None` for other bodies, and without a solution of the physics.
 fn sink(role: Role, design: &Design, contact: &ContactStates) -> Option<Sink> {
     let Role::Pin { index } = role else { return None };
     let depth_mm: Vec<f64> =
@@ -163,7 +162,7 @@ fn sink(role: Role, design: &Design, contact: &ContactStates) -> Option<Sink> {
     (!depth_mm.is_empty()).then_some(Sink { towards: [-outwards.x, -outwards.y], depth_mm })
 }
 
-/// From the print mesh, whose bounding box stands on the middle of the bed, into the assembly.
+/// Transformation from the print mesh, centred on the bed, to the assembly.
 fn into_assembly(body: &MeshedBody, pose: Pose) -> nalgebra::Matrix4<f64> {
     let back = body.part.solid.bounds().map_or(Vector3::zeros(), |(low, high)| {
         let middle = nalgebra::center(&low, &high);
@@ -182,7 +181,7 @@ fn encoded(mesh: &Mesh, file: Option<String>) -> MeshData {
     MeshData { file, positions: STANDARD.encode(positions), triangles: STANDARD.encode(triangles) }
 }
 
-/// Shapes of the tendon by the physics; nothing where it has no solution.
+/// Shapes of the tendon by the physics; empty without a solution.
 fn contact_states(design: &Design) -> ContactStates {
     let contact = design.contact();
     if contact.substrate() == Substrate::Abs || contact.pins().count() == 0 {
@@ -196,7 +195,7 @@ fn contact_states(design: &Design) -> ContactStates {
         return ContactStates::default();
     };
     let bed = contact.bed();
-    // Only pins that the tendon touches sink; numbers in the configuration count all of them.
+    // Only pins that the tendon touches sink.
     let touched: Vec<f64> = contact.pins().angles_rad().to_vec();
     let pin_depth_mm = profiles
         .iter()

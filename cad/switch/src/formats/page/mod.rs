@@ -1,4 +1,5 @@
-//! `report.html`: one self-contained page of a set, offline: the assembly in 3D, the curve, the bill, the checks, downloads.
+//! `report.html`: a self-contained offline page of a set, with the assembly in 3D, curve, bill of materials, checks and
+//! downloads.
 
 mod data;
 
@@ -29,24 +30,24 @@ fn make(built: &Built, prediction: &Prediction, manifest: &Manifest) -> Result<V
 }
 
 const HTML: &str = include_str!("page.html");
-const CONFIGURATOR: &str = "\n  <p><a href=\"/configure\">Change it in the configurator</a></p>";
+const CONFIGURATOR: &str = "\n  <p><a href=\"/configure\">Edit in the configurator</a></p>";
 const CSS: &str = include_str!("page.css");
 const JS: &str = concat!("'use strict';\n", include_str!("assembly.js"), include_str!("page.js"));
-/// The assembly in three dimensions: scripts that the configurator has, too.
+/// The script of the 3D view, which the configurator also uses.
 pub const ASSEMBLY: &str = include_str!("assembly.js");
 // Vendored builds, see vendor.md.
-/// three.js, as vendored.
+/// Vendored three.js.
 pub const THREE: &str = include_str!("three.min.js");
-/// uPlot, as vendored.
+/// Vendored uPlot.
 pub const UPLOT: &str = include_str!("uplot.min.js");
 /// The style of uPlot.
 pub const UPLOT_CSS: &str = include_str!("uplot.min.css");
 
-/// The page that shows `data`, with the data URL of a picture for browsers without WebGL. A live page needs none: it is
-/// rebuilt while somebody waits, in a browser that has shown it already.
+/// Returns the page of `data`. `still` is the data URL of a picture for browsers without WebGL; a live preview does without
+/// it.
 ///
 /// # Errors
-/// [`SetError::Encoding`] for data that JSON cannot hold.
+/// As [`PageData::json`].
 pub fn page_html(data: &PageData, still: &str) -> Result<String, SetError> {
     let json = data.json()?;
     let (title, policy) = (escape(data.title()), page_policy());
@@ -58,16 +59,15 @@ pub fn page_html(data: &PageData, still: &str) -> Result<String, SetError> {
         "UPLOT" => Some(UPLOT.into()),
         "JS" => Some(JS.into()),
         "STILL" => Some(still.into()),
-        // Only a server has the configurator, at this address.
-        "BESIDE" => Some(if data.is_live() { CONFIGURATOR } else { "" }.into()),
+        // Only a server has the configurator.
+        "CONFIGURATOR" => Some(if data.is_live() { CONFIGURATOR } else { "" }.into()),
         "DATA" => Some(json_in_script(&json).into()),
         "POLICY" => Some(policy.as_str().into()),
         _ => None,
     }))
 }
 
-/// The Content-Security-Policy of the page, the same where it is saved and where it is served: its three scripts run, and
-/// nothing else does.
+/// Returns the Content-Security-Policy of the page, saved or served: only its three scripts run.
 #[must_use]
 pub fn page_policy() -> String {
     policy(&[THREE, UPLOT, JS])
@@ -81,13 +81,13 @@ mod tests {
     use crate::formats::named;
     use crate::set::Set;
 
-    /// What stands between `start` and the next `end`, and what follows.
+    /// The text between `start` and the next `end`, and the rest.
     fn between<'a>(text: &'a str, start: &str, end: &str) -> (&'a str, &'a str) {
         text.split_once(start).and_then(|(_, rest)| rest.split_once(end)).unwrap()
     }
 
     #[test]
-    fn no_text_of_a_configuration_is_markup_or_a_place() {
+    fn text_of_a_configuration_is_escaped() {
         let text = "[label]\ntext = \"<!--<script>\"\n[switch]\nname = \"x_y\"";
         let (configuration, _) = read(text, "x.toml").unwrap();
         let built = Built::new(Design::new(configuration).unwrap()).unwrap();
@@ -99,9 +99,9 @@ mod tests {
         let (json, rest) = between(&page, "id=\"data\">", "</script>");
         assert!(!json.contains('<') && json.contains("{{JS}}{{DATA}}"));
         let read: serde_json::Value = serde_json::from_str(json).unwrap();
-        let said = read["manifest"]["warnings"].as_array().unwrap().last().unwrap();
-        assert_eq!(said, "<!--<script>{{JS}}{{DATA}}</script>");
-        // The scripts are those that the policy names, whole.
+        let warning = read["manifest"]["warnings"].as_array().unwrap().last().unwrap();
+        assert_eq!(warning, "<!--<script>{{JS}}{{DATA}}</script>");
+        // The scripts of the page are those of the policy.
         assert!(page.contains(&page_policy()));
         for script in [THREE, UPLOT, JS] {
             assert!(rest.contains(&format!("<script>{script}</script>")));

@@ -1,4 +1,4 @@
-// The page of one set: what is shown comes from the JSON in #data; a live preview replaces it through `update`. `assembly.js` stands before it.
+// The page of one set. Its data is the JSON in #data; a live preview replaces it through `update`. Needs `assembly.js`.
 
 const byId = (id) => document.getElementById(id);
 const errors = [];
@@ -15,7 +15,7 @@ const make = (tag, text, attributes = {}) => {
 // ---- the curve ----------------------------------------------------------------------------------------------------
 
 const COLOURS = { main: '#0072c6', band: 'rgba(0, 114, 198, 0.16)', measured: '#d9822b' };
-// Lines of other laws, in their order, again from the first.
+// Colours of other laws, in their order, repeated.
 const OTHER_COLOURS = ['#00866a', '#a24bb0', '#d0284b'];
 let chart;
 let shownLoad = 0;
@@ -24,7 +24,7 @@ function drawChart(data) {
   const { curve, other_laws: others, published } = data;
   const ink = isDark() ? '#e8ecf1' : '#1c2430';
   const grid = isDark() ? '#333c47' : '#e3e6ea';
-  // uPlot wants one axis of loads: those of the curve; other laws and measured points are put on it.
+  // uPlot needs one column of loads. Other laws are interpolated at the loads of curve and measurements.
   const loads = [...new Set([...curve.load_n, ...published.map((p) => p.load_n)])].sort((a, b) => a - b);
   const inside = (xs, ys) => loads.map((x) => (x < xs[0] - 1e-9 || x > xs[xs.length - 1] + 1e-9 ? null : at(xs, ys, x)));
   const series = [
@@ -58,7 +58,7 @@ function drawChart(data) {
       u.ctx.stroke();
     }] },
   }, columns, byId('chart'));
-  // The lower edge of the band needs no name of its own.
+  // The band has one row in the legend.
   [...chart.root.querySelectorAll('.u-series')].find((row) => row.textContent.includes('band, low'))?.remove();
 }
 
@@ -66,7 +66,7 @@ function drawChart(data) {
 
 function table(head, rows) {
   const element = make('table');
-  // What a row is of stands on the left, whatever it begins with.
+  // The first column is text, also if it begins with a digit.
   const numeric = (cell, i) => i > 0 && (typeof cell === 'number' || /^[-+\d.]/.test(String(cell)));
   const line = (cells, tag) => {
     const row = make('tr');
@@ -79,7 +79,7 @@ function table(head, rows) {
   return element;
 }
 
-// Binary STL of a mesh: the same bytes that `generate` writes, but for the header.
+// Binary STL of a mesh, equal to the file of `generate` but for the header.
 function stl(mesh) {
   const p = new Float32Array(bytesOf(mesh.positions).buffer);
   const t = new Uint32Array(bytesOf(mesh.triangles).buffer);
@@ -125,18 +125,18 @@ function fillTables(data) {
     rows.push([words, Number(number), 'for the sheath stop']);
   }
   byId('bill').replaceChildren(table(['item', 'quantity', 'size'], rows));
-  byId('parts').replaceChildren(table(['part', 'mass (g)', 'volume (mm³)', 'triangles'],
-    manifest.parts.map((p) => [p.name, p.mass_g.toFixed(2), p.volume_mm3.toFixed(2), p.mesh.triangles])));
+  byId('parts').replaceChildren(table(['part', 'mass (g)', 'volume (mm³)'],
+    manifest.parts.map((p) => [p.name, p.mass_g.toFixed(2), p.volume_mm3.toFixed(2)])));
   byId('table').replaceChildren(table(['load (N)', 'eccentric', 'concentric', 'friction', 'low', 'high'],
     curve.load_n.map((_, i) => [curve.load_n, curve.eccentric_n, curve.concentric_n, curve.friction_n, curve.band_low_n, curve.band_high_n].map((c) => c[i].toFixed(3)))));
-  byId('checks').replaceChildren(...data.checks.map((c) => make('li', c.fine ? `ok: ${c.words}` : `look: ${c.words}; ${c.remedy}`, { class: c.fine ? '' : 'bad' })),
+  byId('checks').replaceChildren(...data.checks.map((c) => make('li', c.fine ? `ok: ${c.words}` : `attention: ${c.words}; ${c.remedy}`, { class: c.fine ? '' : 'bad' })),
     ...manifest.warnings.map((w) => make('li', `warning: ${w}`, { class: 'bad' })));
-  byId('law').textContent = `Law: ${curve.law}, ${curve.trust}. ${manifest.friction.source}.`;
+  byId('law').textContent = `Law: ${curve.law} (${curve.trust}). ${manifest.friction.source}.`;
   byId('reasons').replaceChildren(...curve.reasons.map((r) => make('li', r)));
   const files = data.meshes.filter((m) => m.file).map((m) => [m.file, () => download(m.file, stl(m), 'model/stl')]);
   files.push(['manifest.json', () => download('manifest.json', JSON.stringify(manifest, null, 2), 'application/json')]);
   files.push(['friction.csv', () => download('friction.csv', data.friction_csv, 'text/csv')]);
-  const held = new Set(files.map(([name]) => name));
+  const saved = new Set(files.map(([name]) => name));
   const saves = files.map(([name, save]) => {
     const item = make('li');
     const button = make('button', `Save ${name}`, { type: 'button' });
@@ -144,20 +144,20 @@ function fillTables(data) {
     item.append(button);
     return item;
   });
-  // What is not in this page lies beside it; a live preview has written nothing yet.
-  const beside = data.live ? [] : manifest.files.map((f) => f.file).filter((name) => !held.has(name) && name !== 'report.html');
-  const links = beside.map((name) => {
+  // Links to the files in the folder of the page. A live preview has no folder.
+  const others = data.live ? [] : manifest.files.map((f) => f.file).filter((name) => !saved.has(name) && name !== 'report.html');
+  const links = others.map((name) => {
     const item = make('li');
     item.append(make('a', name, { href: encodeURI(name), download: name }));
     const plate = (manifest.plates ?? []).find((p) => p.file === name);
-    if (plate) item.append(` a plate: ${plate.parts.map((p) => p.name).join(', ')}`);
+    if (plate) item.append(`, plate with ${plate.parts.map((p) => p.name).join(', ')}`);
     return item;
   });
   byId('files').replaceChildren(...saves, ...links);
-  byId('beside').hidden = !links.length;
+  byId('other-files').hidden = !links.length;
 }
 
-// ---- the whole ----------------------------------------------------------------------------------------------------
+// ---- the page -----------------------------------------------------------------------------------------------------
 
 let assembly;
 let current;
@@ -183,17 +183,17 @@ function moveLoad() {
   const { curve } = current;
   const [lightest, heaviest] = [curve.load_n[0], curve.load_n[curve.load_n.length - 1]];
   shownLoad = lightest + (heaviest - lightest) * Number(byId('load').value);
-  byId('load-value').textContent = `${shownLoad.toFixed(1)} N: ${at(curve.load_n, curve.friction_n, shownLoad).toFixed(2)} N of friction`;
+  byId('load-value').textContent = `${shownLoad.toFixed(1)} N: friction ${at(curve.load_n, curve.friction_n, shownLoad).toFixed(2)} N`;
   assembly?.pose(shownLoad, Number(byId('explode').value));
   chart?.redraw(false);
 }
 
-// Shows another state of the set: the first, or what the live preview sends.
+// Shows the first state of the set, or one from the live preview.
 function update(data) {
   current = data;
   byId('name').textContent = data.manifest.name;
   const f = data.manifest.friction;
-  byId('summary').textContent = `${data.layout}; ${f.friction_n.toFixed(2)} N of friction at ${f.load_n.toFixed(2)} N of load (${f.band_n[0].toFixed(2)} to ${f.band_n[1].toFixed(2)} N, ${f.trust})`;
+  byId('summary').textContent = `Layout ${data.layout}. Friction ${f.friction_n.toFixed(2)} N (${f.band_n[0].toFixed(2)} to ${f.band_n[1].toFixed(2)} N, ${f.trust}) at a load of ${f.load_n.toFixed(2)} N.`;
   byId('maker').textContent = `Made by ${data.manifest.generator}.`;
   fillBodies(data);
   fillTables(data);
@@ -209,7 +209,7 @@ function start() {
   try {
     assembly = new Assembly(byId('view'));
   } catch (problem) {
-    // No WebGL: the still picture stays.
+    // Without WebGL, the still picture is shown.
     document.body.dataset.still = 'true';
   }
   for (const id of ['load', 'explode']) byId(id).addEventListener('input', moveLoad);
@@ -224,7 +224,7 @@ function start() {
   if (data.live) follow(data.live);
 }
 
-// Live preview: asks for the next state; the answer comes when the configuration has changed.
+// Live preview: requests the next state. The server answers when the configuration has changed.
 async function follow(version) {
   for (;;) {
     try {
@@ -235,7 +235,7 @@ async function follow(version) {
       if (answer.data) update(answer.data);
     } catch {
       byId('trouble').hidden = false;
-      byId('trouble').textContent = 'The preview has ended; the last state stays.';
+      byId('trouble').textContent = 'The preview has stopped. The last state is shown.';
       await new Promise((later) => setTimeout(later, 1000));
     }
   }

@@ -90,7 +90,7 @@ fn every_step_of_the_guide_has_its_picture() {
         let files = generate(folder.path(), &[source, &["--format", "guide"]].concat());
         let guide = std::str::from_utf8(&files["PRINTING.md"]).unwrap();
         let (_, assembly) = guide.split_once(". Assemble\n").unwrap();
-        let (assembly, _) = assembly.split_once("## What to expect").unwrap();
+        let (assembly, _) = assembly.split_once("## Predicted friction").unwrap();
         let is_step = |line: &&str| line.split_once(". ").is_some_and(|(n, _)| n.parse::<usize>().is_ok());
         let steps = assembly.lines().filter(is_step).count();
         assert!(steps >= least, "{source:?}: {steps} steps");

@@ -1,4 +1,4 @@
-//! PRINTING.md: how to print, cast and assemble this very set, in its own numbers.
+//! PRINTING.md: instructions to print, cast and assemble a set, with its dimensions.
 
 use std::fmt::Write as _;
 
@@ -27,9 +27,9 @@ use pinswitch_solid::render::View;
 pub(super) const FORMAT: Format =
     Format { name: "guide", about: "PRINTING.md with pictures", inclusion: Inclusion::Default, make };
 
-/// Pixels of the picture of the plate, across and up.
+/// Width and height of the picture of a plate, pixels.
 const PLATE_PIXELS: (u32, u32) = (900, 675);
-/// Pixels of the picture of a step, across and up.
+/// Width and height of the picture of a step, pixels.
 const STEP_PIXELS: (u32, u32) = (512, 384);
 
 fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<OutputFile>, SetError> {
@@ -45,12 +45,12 @@ fn make(built: &Built, _: &Prediction, manifest: &Manifest) -> Result<Vec<Output
     Ok(files)
 }
 
-/// The name of the picture of a step, from 1.
+/// The name of the picture of a step, numbered from 1.
 fn step_picture(number: usize) -> String {
     format!("step-{number}.png")
 }
 
-/// A picture for each step of the assembly.
+/// Renders a picture for each step of the assembly.
 fn step_pictures(built: &Built, stages: &[Stage]) -> Result<Vec<OutputFile>, SetError> {
     let (width, height) = STEP_PIXELS;
     map_each((1..=stages.len()).collect(), |number| {
@@ -62,7 +62,7 @@ fn step_pictures(built: &Built, stages: &[Stage]) -> Result<Vec<OutputFile>, Set
     .collect()
 }
 
-/// The text of the guide, and what each step of the assembly adds; the pictures of both lie beside it.
+/// The text of the guide, and the bodies that each step of the assembly adds.
 fn printing_guide(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) -> (String, Vec<Stage>) {
     let design = built.design();
     let c = design.configuration();
@@ -70,7 +70,7 @@ fn printing_guide(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) -> (
     let picture = |text: &mut String, alt: &str, file: &str| {
         let _ = writeln!(text, "![{alt}]({file})\n");
     };
-    picture(&mut text, "The parts, pulled apart", "assembly.png");
+    picture(&mut text, "Exploded view of the assembly", "assembly.png");
     print_section(&mut text, built, manifest);
     text.push_str(&plates_section(design, manifest, plates));
     let casts = c.layout.substrate == Substrate::Silicone && c.mould.kind != MouldKind::None;
@@ -81,12 +81,12 @@ fn printing_guide(built: &Built, manifest: &Manifest, plates: &[Plate<'_>]) -> (
     let f = &manifest.friction;
     let _ = write!(
         text,
-        "## What to expect\n\n{:.2} N of friction at {:.2} N of load ({:.2} to {:.2} N), {}. The whole curve is in friction.csv and \
-         friction.svg.\n",
+        "## Predicted friction\n\nFriction is {:.2} N ({:.2} to {:.2} N) at a load of {:.2} N ({}). `friction.csv` and \
+         `friction.svg` contain the curve.\n",
         f.friction_n,
-        f.load_n,
         f.band_n[0],
         f.band_n[1],
+        f.load_n,
         format!("{:?}", f.trust).to_lowercase()
     );
     (text, stages)
@@ -99,8 +99,8 @@ fn print_section(text: &mut String, built: &Built, manifest: &Manifest) {
     let infill = if has_mould { "100 % infill for the mould, " } else { "" };
     let _ = write!(
         text,
-        "## 1. Print\n\nMaterial ABS. Layer {} mm, line {} mm, nozzle {} mm, four walls, {infill}no supports: every file lies in \
-         print orientation. Shrinkage: set it in the slicer (0.7 % for ABS is usual), not here.\n\n| part | file | mass | widest ceiling to bridge |\n|---|---|---|---|\n",
+        "## 1. Print\n\nMaterial: ABS. Layer {} mm, line {} mm, nozzle {} mm, four walls, {infill}no supports. Every file is in print \
+         orientation. Compensate the shrinkage of ABS in the slicer (0.7 % is usual).\n\n| part | file | mass | widest bridge |\n|---|---|---|---|\n",
         c.print.layer_mm, c.print.line_mm, c.print.nozzle_mm
     );
     for part in &manifest.parts {
@@ -118,18 +118,18 @@ fn print_section(text: &mut String, built: &Built, manifest: &Manifest) {
     }
     let foot = if c.print.elephant_foot_mm > 0.0 {
         format!(
-            "Bottom edges carry a chamfer of {} mm: switch the slicer's elephant-foot compensation off.",
+            "Bottom edges have a chamfer of {} mm. Disable the elephant-foot compensation of the slicer.",
             c.print.elephant_foot_mm
         )
     } else {
-        "Leave the slicer's elephant-foot compensation on (0.2 mm): the parts carry no chamfer.".to_owned()
+        "Enable the elephant-foot compensation of the slicer (0.2 mm). The parts have no chamfer.".to_owned()
     };
     let _ = write!(text, "\n{foot}\n");
     if c.parts.coupon && !c.layout.pins.is_empty() {
         let _ = write!(
             text,
-            "\nPrint `coupon.stl` first and push a pin into each slot. Take the smallest clearance in which it slides, set it as \
-             `support.slot_clearance_mm` (now {}), and generate again.\n",
+            "\nPrint `coupon.stl` first and push a pin into each slot. Set `support.slot_clearance_mm` (now {}) to the smallest \
+             clearance in which the pin slides, and generate the set again.\n",
             c.support.slot_clearance_mm
         );
     }
@@ -138,7 +138,7 @@ fn print_section(text: &mut String, built: &Built, manifest: &Manifest) {
         let _ = if check.is_kept {
             writeln!(text, "- ok: {}", escape(&check.statement))
         } else {
-            writeln!(text, "- **look**: {}; {}", escape(&check.statement), escape(&check.remedy))
+            writeln!(text, "- **attention**: {}; {}", escape(&check.statement), escape(&check.remedy))
         };
     }
     for warning in &manifest.warnings {
@@ -156,48 +156,47 @@ fn cast_section(text: &mut String, design: &Design, manifest: &Manifest) {
     let Some(s) = &manifest.bill_of_materials.silicone else { return };
     let close = match c.mould.kind {
         MouldKind::Split => {
-            "Stand the ring on the core's base, keys into holes, lid on top, and clamp all three with a rubber band. Tape the parting line."
+            "Put the ring on the base of the core, with the keys in the holes, and the lid on the ring. Clamp all three with a rubber band. Tape the parting line."
         }
-        _ => "Stand the tray level, its open side up.",
+        _ => "Level the tray, with its open side up.",
     };
     let pour = match c.mould.kind {
         MouldKind::Split => "Pour slowly through the funnel until silicone rises in both vents.",
         _ if c.mould.overfill_mm > 0.0 && s.layers > 1 => {
-            "Pour slowly at one end of each until the basins above the layers are full."
+            "Pour slowly at one end of each cavity until the basins above the layers are full."
         }
         _ if c.mould.overfill_mm > 0.0 => "Pour slowly at one end until the basin above the layer is full.",
         _ if s.layers > 1 => {
-            "Pour slowly at one end of each until all are full, and strike them off level with the brim."
+            "Pour slowly at one end of each cavity until all are full, and level the silicone with the brim."
         }
-        _ => "Pour slowly at one end until the tray is full, and strike it off level with the brim.",
+        _ => "Pour slowly at one end until the tray is full, and level the silicone with the brim.",
     };
     let release = match c.mould.kind {
         MouldKind::Split => {
-            "Lift the lid, slide the ring off along the axis, and peel the layer from the core."
+            "Remove the lid, slide the ring off along the axis, and peel the layer from the core."
         }
         _ if c.mould.overfill_mm > 0.0 && c.mould.draft_deg > 0.0 => {
-            "Cut along the ledge of the basin, and peel the layer out from one end: above the ledge the walls lean, those \
-             of the layer are upright."
+            "Cut along the ledge of the basin, and peel the layer out from one end. Only the walls above the ledge have a draft."
         }
         _ if c.mould.overfill_mm > 0.0 => {
             "Cut along the ledge of the basin, and peel the layer out from one end."
         }
         _ => "Peel the layer out from one end.",
     };
-    let why = if s.mix_g > s.pour_g * c.silicone.waste_factor {
-        "and less cannot be weighed well"
+    let reason = if s.mix_g > s.pour_g * c.silicone.waste_factor {
+        "smaller amounts are difficult to weigh"
     } else {
-        "and some stays in the cup"
+        "some remains in the cup"
     };
     let _ = write!(
         text,
         "## 2. Cast the silicone\n\n\
-         1. Weigh {:.1} g of base and {:.1} g of curing agent ({:.0}:1), {:.1} g in all: the mould takes {:.2} ml ({:.2} g), {why}.\n\
-         2. Mix for three minutes, scraping the walls; degas until it lies flat.\n\
-         3. {close} Use no release agent on ABS; a sulphur clay or latex gloves would stop the cure.\n\
+         1. Weigh {:.1} g of base and {:.1} g of curing agent ({:.0}:1), {:.1} g in total. The mould holds {:.2} ml ({:.2} g); {reason}.\n\
+         2. Mix for three minutes and scrape the walls of the cup. Degas until the surface is flat.\n\
+         3. {close} Do not use a release agent on ABS. Sulphur clay and latex gloves inhibit the cure.\n\
          4. {pour}\n\
-         5. Cure 48 h at 25 C, or 4 h at 60 C. Hotter than 70 C softens the mould. The mould is made for {} % of shrinkage (0 at 25 C, about 1 at 60 C: `mould.shrinkage_pct`).\n\
-         6. {release} Trim flash with a blade. {} {:.1} mm wide and {:.1} mm thick.\n\n",
+         5. Cure for 48 h at 25 \u{b0}C, or for 4 h at 60 \u{b0}C. Above 70 \u{b0}C the mould softens. The mould compensates a shrinkage of {} % (0 at 25 \u{b0}C, about 1 at 60 \u{b0}C: `mould.shrinkage_pct`).\n\
+         6. {release} Trim the flash with a blade. {} {:.1} mm wide and {:.1} mm thick.\n\n",
         s.base_g,
         s.agent_g,
         c.silicone.mix_ratio,
@@ -226,93 +225,91 @@ mod tests {
         String::from_utf8(bytes).unwrap()
     }
 
-    /// Without screws something else joins, without room for an arrow none is spoken of, and without a lip none.
+    /// Joints without screws, supports without an arrow, and supports without a lip.
     #[test]
-    fn steps_name_what_holds_and_marks_the_supports() {
+    fn steps_describe_joints_and_marks() {
         let glued = guide("[layout]\npins = [5, 8, 11]\n[fasteners]\ncount = 0\n");
-        assert!(glued.contains("glue the plates of both supports to the ends of the shell"), "{glued}");
+        assert!(glued.contains("Glue the plates of both supports to the ends of the shell"), "{glued}");
         let placed = guide("[layout]\npins = [5]\n[fasteners]\ncount = 0\ndowel_diameter_mm = 2.0\n");
-        assert!(placed.contains("the dowels place the supports; glue these"), "{placed}");
-        assert!(!guide("[layout]\npins = [5]\n").contains("glue"));
+        assert!(placed.contains("The dowels locate the supports. Glue the supports"), "{placed}");
+        assert!(!guide("[layout]\npins = [5]\n").to_lowercase().contains("glue"));
         let crowded = "[layout]\npins = [3, 8, 13]\n[fasteners]\nkind = \"screw\"\ncount = 5\n";
         let text = guide(crowded);
         let warned = "**warning**: support-left: the arrow to groove 1 does not fit and is left out: ";
         assert!(text.contains(warned), "{text}");
         assert!(
-            text.contains("no room for an arrow") && text.contains("counted from the load's side"),
+            text.contains("The arrow does not fit on the supports")
+                && text.contains("counted from the side of the load"),
             "{text}"
         );
-        assert!(!text.contains("the arrow outside") && !text.contains("same marks"), "{text}");
+        assert!(!text.contains("The arrow on its outer face") && !text.contains("same marks"), "{text}");
         let flat = guide("[layout]\npins = [5, 8, 11]\n[support]\nlip_depth_mm = 0.0\n");
-        assert!(!flat.contains("its lip over"), "{flat}");
+        assert!(!flat.contains("with its lip over"), "{flat}");
     }
 
-    /// The layer is smooth inside: its grooves, and nothing like ribs, are outside.
+    /// The layer has grooves outside, and no ribs.
     #[test]
-    fn a_layer_that_was_cast_before_is_told_as_it_is() {
+    fn an_existing_layer_is_described() {
         let text = guide("[layout]\npins = [5, 8, 11]\n[mould]\nkind = \"none\"\n");
-        assert!(
-            text.contains("smooth inside, where it lies on the shell, with 15 grooves outside"),
-            "{text}"
-        );
+        assert!(text.contains("smooth inside, and has 15 grooves outside"), "{text}");
         assert!(!text.contains("ribs"), "{text}");
     }
 
-    /// Pins that the tendon does not reach are warned about, and nothing is laid over them.
+    /// Pins outside of the wrap have a warning, and the tendon is not over them.
     #[test]
-    fn a_tendon_is_laid_over_pins_that_it_reaches() {
+    fn the_tendon_is_over_pins_within_the_wrap() {
         let text = guide("[layout]\npins = [1, 2, 15]\n");
         assert!(text.contains("**warning**: 3 pins lie outside the wrap of 63.89 deg"), "{text}");
-        assert!(text.contains("over the silicone layer; it touches"), "{text}");
-        assert!(!text.contains("over the pins") && !text.contains("on its pins only"), "{text}");
+        assert!(text.contains("over the silicone layer. It touches"), "{text}");
+        assert!(!text.contains("over the pins") && !text.contains("touches only its pins"), "{text}");
         assert!(text.contains("raise layout.wrap_angle_deg to 83.5"), "{text}");
         let one = guide("[layout]\npins = [8, 15]\n");
         assert!(one.contains("1 pin lies outside the wrap") && one.contains("over the pins"), "{one}");
         assert!(!guide("[layout]\npins = [5, 8, 11]\n").contains("outside the wrap"));
     }
 
-    /// Nobody reads a hexadecimal number as grooves unless it is told.
+    /// The guide has grooves, and not the code of the label.
     #[test]
-    fn the_mark_of_a_layout_is_told() {
-        let uneven = guide("[layout]\npins = [4, 9, 14]\n");
-        assert!(
-            uneven.contains("`2108`, the layout: one bit for each of grooves 4, 9 and 14")
-                || uneven.contains("5/4"),
-            "{uneven}"
-        );
-        let odd = guide("[layout]\npins = [4, 5, 14]\n");
-        assert!(odd.contains("`2018`, the layout: one bit for each of grooves 4, 5 and 14"), "{odd}");
+    fn steps_list_grooves_with_pins() {
+        let uneven = guide("[layout]\npins = [4, 5, 14]\n");
+        assert!(uneven.contains("the label of the layout (3 of 15: 4 5 14)"), "{uneven}");
+        assert!(!uneven.contains("2018"), "{uneven}");
         let even = guide("[layout]\npins = [5, 8, 11]\n");
-        assert!(even.contains("`3x3/5`, the layout: number of pins, step, and first groove"), "{even}");
         assert!(even.contains("Put the pins into grooves 5, 8 and 11,"), "{even}");
     }
 
     #[test]
-    fn tall_and_thin_parts_want_a_brim() {
+    fn slender_parts_need_a_brim() {
         let rigid = guide("[layout]\npins = [5, 8, 11]\n[parts]\nproxy = true\n");
-        assert!(rigid.contains("Tall and thin: give `proxy` (13.6 mm high on a foot"), "{rigid}");
+        assert!(
+            rigid.contains("Slender parts: add a brim of 5 mm to `proxy` (13.6 mm high on a foot"),
+            "{rigid}"
+        );
         assert!(!guide("[layout]\npins = [5, 8, 11]\n[parts]\nproxy = false\n").contains("brim of"));
     }
 
-    /// What a set does not have is in none of its steps.
+    /// Steps do not mention parts that are not in the set.
     #[test]
-    fn steps_name_what_the_set_has() {
+    fn steps_mention_parts_of_the_set() {
         let bare = guide("[layout]\npins = []\n");
         assert!(
-            bare.contains("over the silicone layer; it touches")
-                && bare.contains("on the silicone all the way")
+            bare.contains("over the silicone layer. It touches")
+                && bare.contains("touches the silicone over the full wrap")
         );
-        assert!(!bare.contains("over the pins") && !bare.contains("Beside the pins"), "{bare}");
+        assert!(!bare.contains("over the pins") && !bare.contains("A limp tendon"), "{bare}");
         let rigid = guide("[layout]\npins = [5, 8, 11]\nsubstrate = \"abs\"\n");
-        assert!(rigid.contains("over the proxy's edge") && !rigid.contains("layer's edge"), "{rigid}");
+        assert!(
+            rigid.contains("over the edge of the proxy") && !rigid.contains("edge of the layer"),
+            "{rigid}"
+        );
         let both = guide("[layout]\npins = [5, 8, 11]\n");
         assert!(
-            both.contains("over the layer's edge") && both.contains("over the pins; it touches"),
+            both.contains("over the edge of the layer") && both.contains("over the pins. It touches"),
             "{both}"
         );
     }
 
-    /// Numbers of sections and of steps follow each other, whatever is in the set.
+    /// Sections are numbered without gaps.
     fn assert_numbered(text: &str) {
         let sections = text.lines().filter_map(|l| l.strip_prefix("## ")?.split_once(". "));
         let numbers: Vec<&str> = sections.map(|s| s.0).collect();
@@ -321,16 +318,16 @@ mod tests {
     }
 
     #[test]
-    fn a_guide_speaks_of_what_is_in_the_set() {
+    fn sections_match_the_set() {
         let usual = guide("[layout]\npins = [5, 8, 11]\n");
         assert_numbered(&usual);
         assert!(usual.contains("100 % infill for the mould") && usual.contains("push a pin into each slot"));
-        assert!(!usual.contains("cast before") && !usual.contains("608"));
+        assert!(!usual.contains("existing silicone layer") && !usual.contains("608"));
 
         let without_mould = guide("[layout]\npins = [5, 8, 11]\n[mould]\nkind = \"none\"\n");
         assert_numbered(&without_mould);
         assert!(!without_mould.contains("infill for the mould"), "{without_mould}");
-        assert!(without_mould.contains("Take a silicone layer that was cast before"), "{without_mould}");
+        assert!(without_mould.contains("Use an existing silicone layer"), "{without_mould}");
 
         let rigid = guide("[layout]\npins = [5, 8, 11]\nsubstrate = \"abs\"\n");
         assert_numbered(&rigid);
@@ -341,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn one_is_one() {
+    fn singular_is_used_for_one() {
         let single = guide("[layout]\npins = [8]\n[fasteners]\ncount = 1\n[pins]\nspares = 0\n");
         assert!(single.contains("Fasten with 1 screw M3 x ") && single.contains("Cut 1 pin of"), "{single}");
         let words = ["pins", "screws", "dowels", "layers", "grooves", "holes", "nuts"];
@@ -349,20 +346,20 @@ mod tests {
     }
 
     #[test]
-    fn the_widest_bridge_of_a_rig_is_told_with_its_place() {
+    fn the_widest_bridge_has_its_place() {
         let rig = guide("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"rig\"\n");
         assert!(rig.contains("the pocket for the axle's bolt in rig-plate"), "{rig}");
         assert!(!rig.contains("lower pins.diameter_mm"), "{rig}");
     }
 
     #[test]
-    fn marks_under_a_mounting_plate_are_told() {
-        let words = "The mounting plate covers them later";
+    fn covered_marks_are_noted() {
+        let words = "The mounting plate covers the marks";
         let on = |kind: &str| guide(&format!("[layout]\npins = [5, 8, 11]\n[mount]\nkind = \"{kind}\"\n"));
         assert!(["flange", "finger-link", "rig"].iter().all(|kind| on(kind).contains(words)));
         assert!(!on("none").contains(words));
         let unmarked = guide("[mount]\nkind = \"flange\"\n[label]\nengrave = false\n");
-        assert!(!unmarked.contains(words) && !unmarked.contains("the `1` stands there"), "{unmarked}");
+        assert!(!unmarked.contains(words) && !unmarked.contains("The arrow points"), "{unmarked}");
         assert!(unmarked.contains("The supports have no marks (`label.engrave = false`)"), "{unmarked}");
     }
 

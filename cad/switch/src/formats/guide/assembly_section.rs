@@ -1,16 +1,16 @@
-//! How the switch is put together, step by step, and what each step adds to its picture.
+//! The section of the assembly: its steps, and the bodies that each step adds to its picture.
 
 use std::fmt::Write as _;
 
 use super::step_picture;
 use crate::config::{FastenerKind, MouldKind, MountKind};
 use crate::design::Design;
-use crate::documents::Manifest;
+use crate::documents::{Manifest, layout_text};
 use crate::parts::{LeftOut, printed, touches};
 use crate::scene::Stage;
 use pinswitch_friction::{Substrate, counted};
 
-/// Writes the section; returns what each of its steps adds.
+/// Writes the section; returns the bodies that each step adds.
 pub(super) fn assembly_section(
     text: &mut String,
     design: &Design,
@@ -23,7 +23,7 @@ pub(super) fn assembly_section(
     if bill.pins.number > 0 {
         stages.push(Stage::CutPins);
         steps.push(format!(
-            "Cut {} of {} mm and {:.1} mm long ({} to spare); break their edges, polish them.",
+            "Cut {} of {} mm, {:.1} mm long ({} spare). Deburr and polish them.",
             counted(bill.pins.number + bill.pins.spares, "pin"),
             bill.pins.diameter_mm,
             bill.pins.length_mm,
@@ -32,19 +32,18 @@ pub(super) fn assembly_section(
     }
     let is_silicone = c.layout.substrate == Substrate::Silicone;
     let bed = if is_silicone { "silicone layer" } else { "proxy" };
-    // Before the silicone is near: inserts are pressed in hot.
+    // Before the silicone, since inserts are hot.
     if bill.fasteners.as_ref().is_some_and(|f| f.inserts > 0) {
         stages.push(Stage::Inserts);
         steps.push(
-            "Press the inserts into both ends of the shell's holes with a soldering iron, flush; let the shell cool.".to_owned(),
+            "Press the inserts flush into both ends of the holes of the shell with a soldering iron. Let the shell cool.".to_owned(),
         );
     }
     stages.push(Stage::Bed);
-    let from_where = if is_silicone && c.mould.kind == MouldKind::None {
+    let source = if is_silicone && c.mould.kind == MouldKind::None {
         format!(
-            "Take a silicone layer that was cast before: this set has no mould (`mould.kind = \"none\"`). It is {:.1} mm wide and {} mm \
-             thick, smooth inside, where it lies on the shell, with {} outside; the sheet `silicone-layer` of the drawing has all its \
-             dimensions. ",
+            "Use an existing silicone layer: this set has no mould (`mould.kind = \"none\"`). The layer is {:.1} mm wide and {} mm \
+             thick, smooth inside, and has {} outside. The sheet `silicone-layer` of the drawing has all dimensions. ",
             design.layer_width_mm(),
             c.silicone.thickness_mm,
             counted(c.segment.grooves, "groove")
@@ -52,7 +51,7 @@ pub(super) fn assembly_section(
     } else {
         String::new()
     };
-    steps.push(format!("{from_where}Lay the {bed} on the shell, grooves outwards."));
+    steps.push(format!("{source}Put the {bed} on the shell, with its grooves outward."));
     let keeps = if design.stops_mm().is_some() { ", between the stops at its ends" } else { "" };
     if let Some(last) = steps.last_mut() {
         last.insert_str(last.len() - 1, keeps);
@@ -60,44 +59,51 @@ pub(super) fn assembly_section(
     if let Some(d) = &bill.dowels {
         stages.push(Stage::Dowels);
         steps.push(format!(
-            "Cut {} dowels of {} mm and {} mm long, and put them into the shell.",
+            "Cut {} dowels of {} mm, {} mm long, and put them into the shell.",
             d.number, d.diameter_mm, d.length_mm
         ));
     }
     let printed = printed(design).unwrap_or_default();
     let supports: Vec<_> = printed.iter().filter(|p| p.name.starts_with("support")).collect();
-    // What found no room is left out: there may be no arrow to go by, and no label.
+    // Arrow and label may be left out.
     let has_lost = |what: LeftOut| supports.iter().any(|p| p.left_out.contains(&what));
     let is_marked = c.label.engrave && !has_lost(LeftOut::Arrow);
-    let arrow = "the arrow points there, and the `1` stands there.";
     let marks = match (is_marked, has_lost(LeftOut::Label)) {
         (true, false) => {
-            format!("Outside it says {}. The load pulls on the side of groove 1: {arrow}", layout_mark(design))
+            let label = &c.label.text;
+            let label = if label.is_empty() {
+                format!("the label of the layout ({})", layout_text(c))
+            } else {
+                format!("the label `{label}`")
+            };
+            format!(
+                "Its outer face has {label} and an arrow. The arrow points to groove 1, on the side of the load; the `1` is on that side."
+            )
         }
         (true, true) => {
-            "The load pulls on the side of groove 1: the arrow outside points there, and the `1` stands there.".to_owned()
+            "The arrow on its outer face points to groove 1, on the side of the load; the `1` is on that side.".to_owned()
         }
         (false, _) if !c.label.engrave => {
-            "The supports have no marks (`label.engrave = false`): the load pulls on the side of groove 1, which seen from outside the left support is on the right.".to_owned()
+            "The supports have no marks (`label.engrave = false`). Groove 1 is on the side of the load, which is on the right when you look at the outer face of the left support.".to_owned()
         }
         (false, _) => {
-            "There is no room for an arrow on the supports: the load pulls on the side of groove 1, which seen from outside the left support is on the right.".to_owned()
+            "The arrow does not fit on the supports. Groove 1 is on the side of the load, which is on the right when you look at the outer face of the left support.".to_owned()
         }
     };
-    let says_f = |line: &String| line.contains("F>1") || line.contains("1<F");
-    let force = if supports.iter().flat_map(|s| &s.engraved).any(says_f) { " `F` is the load." } else { "" };
+    let has_f = |line: &String| line.contains("F>1") || line.contains("1<F");
+    let force = if supports.iter().flat_map(|s| &s.engraved).any(has_f) { " `F` is the load." } else { "" };
     let covered = if is_marked && c.mount.kind != MountKind::None {
-        " The mounting plate covers them later: the same marks on the right support stay visible."
+        " The mounting plate covers the marks; the same marks on the right support stay visible."
     } else {
         ""
     };
     stages.push(Stage::LeftSupport);
-    let edge = if is_silicone { "layer's" } else { "proxy's" };
+    let edge = if is_silicone { "layer" } else { "proxy" };
     let has_lip = c.support.lip_depth_mm > 0.0 && !has_lost(LeftOut::Lip);
-    let lip = if has_lip { format!(", its lip over the {edge} edge") } else { String::new() };
-    steps.push(format!("Put the left support (L) on{lip}. {marks}{force}{covered}"));
+    let lip = if has_lip { format!(", with its lip over the edge of the {edge}") } else { String::new() };
+    steps.push(format!("Put the left support (L) on the shell{lip}. {marks}{force}{covered}"));
     if bill.pins.number > 0 {
-        let from = if is_marked { "counted from the `1`" } else { "counted from the load's side" };
+        let from = if is_marked { "counted from the `1`" } else { "counted from the side of the load" };
         stages.push(Stage::Pins);
         steps.push(format!(
             "Put the {} into {}, {from}, and into the slots of the support.",
@@ -111,15 +117,15 @@ pub(super) fn assembly_section(
     let joined = match (&bill.fasteners, &bill.dowels) {
         (Some(_), _) => "",
         (None, None) => {
-            " No screws hold this set (`fasteners.count = 0`): glue the plates of both supports to the ends of the shell, with ABS cement \
-             or epoxy, and keep it out of slots and grooves."
+            " This set has no screws (`fasteners.count = 0`). Glue the plates of both supports to the ends of the shell with ABS cement \
+             or epoxy. Keep slots and grooves free of it."
         }
         (None, Some(_)) => {
-            " No screws hold this set (`fasteners.count = 0`): the dowels place the supports; glue these to the ends of the shell, with \
-             ABS cement or epoxy, and keep it out of slots and grooves."
+            " This set has no screws (`fasteners.count = 0`). The dowels locate the supports. Glue the supports to the ends of the shell \
+             with ABS cement or epoxy. Keep slots and grooves free of it."
         }
     };
-    steps.push(format!("Put the right support (R) on.{slides}{joined}"));
+    steps.push(format!("Put the right support (R) on the shell.{slides}{joined}"));
     if let Some(step) = mounting_step(design, manifest) {
         stages.push(Stage::Mount);
         steps.push(step);
@@ -128,30 +134,30 @@ pub(super) fn assembly_section(
         stages.push(Stage::Fasteners);
         steps.push(step);
     }
-    // A pulley on somebody else's axle is on no picture of the switch.
-    let mut beside = pulley_step(design, manifest);
+    // A separate pulley is not in the pictures.
+    let mut pulley = pulley_step(design, manifest);
     if bill.mount.as_ref().is_some_and(|mount| mount.bearing.is_some())
-        && let Some(step) = beside.take()
+        && let Some(step) = pulley.take()
     {
         stages.push(Stage::Pulley);
         steps.push(step);
     }
     stages.push(Stage::Tendon);
     steps.push(format!(
-        "Lay {} mm of tendon ({} mm over its coating) over the {}; it touches {:.2} deg.{}",
+        "Put {} mm of tendon ({} mm with its coating) over the {}. It touches {:.2} deg.{}",
         bill.tendon.length_mm,
         bill.tendon.outer_diameter_mm,
         carried_by(design, bed),
         c.layout.wrap_angle_deg,
-        where_it_lies(design)
+        bed_contact(design)
     ));
-    if let (Some(beside), Some(last)) = (beside, steps.last_mut()) {
-        last.insert_str(0, &format!("{beside} "));
+    if let (Some(pulley), Some(last)) = (pulley, steps.last_mut()) {
+        last.insert_str(0, &format!("{pulley} "));
     }
     let _ = write!(
         text,
-        "## {section}. Assemble\n\nThe pictures show the left support on the left. What a step adds is in colour and apart from its \
-         place; what is there already is grey.\n\n"
+        "## {section}. Assemble\n\nThe left support is on the left in the pictures. Added parts are in colour, at a distance from their \
+         positions; other parts are grey.\n\n"
     );
     for (number, step) in (1..).zip(&steps) {
         let _ = writeln!(text, "{number}. {step}\n\n   ![Step {number}]({})\n", step_picture(number));
@@ -159,24 +165,22 @@ pub(super) fn assembly_section(
     stages
 }
 
-/// How plates and shell are joined.
+/// The step that fastens the plates to the shell.
 fn fastening_step(design: &Design, manifest: &Manifest) -> Option<String> {
     let c = design.configuration();
     let f = manifest.bill_of_materials.fasteners.as_ref()?;
     let fastening = design.fastening();
     let into = match (f.inserts > 0, fastening.nut_trap) {
         (true, _) => "into the inserts, from both sides",
-        (false, Some(_)) if f.nuts == 1 => {
-            "from the left, into a nut that lies in the trap of the right support"
-        }
-        (false, Some(_)) => "from the left, into nuts that lie in the traps of the right support",
+        (false, Some(_)) if f.nuts == 1 => "from the left, into a nut in the trap of the right support",
+        (false, Some(_)) => "from the left, into nuts in the traps of the right support",
         (false, None) if f.nuts == 1 => "and a nut",
         (false, None) => "and nuts",
     };
     let recesses = [fastening.nut_trap, fastening.counterbore, fastening.mount_counterbore];
     let pierced = if recesses.iter().any(Option::is_some) {
         format!(
-            " A skin of {} mm closes the holes above every recess, so that no support is needed: break it with the screw.",
+            " A skin of {} mm closes the hole above every recess, so that it prints without support. Break it with the screw.",
             design.membrane_mm()
         )
     } else {
@@ -185,7 +189,7 @@ fn fastening_step(design: &Design, manifest: &Manifest) -> Option<String> {
     let tight = if c.fasteners.kind == FastenerKind::Insert || c.layout.substrate != Substrate::Silicone {
         ""
     } else {
-        ", finger tight: the layer must bulge freely"
+        ", finger tight, so that the layer can bulge"
     };
     let screws = match f.right_length_mm {
         Some(right_mm) => format!(
@@ -201,57 +205,57 @@ fn fastening_step(design: &Design, manifest: &Manifest) -> Option<String> {
     Some(format!("Fasten with {screws} {into}{tight}.{pierced}"))
 }
 
-/// What the switch is mounted by.
+/// The step of the mounting plate.
 fn mounting_step(design: &Design, manifest: &Manifest) -> Option<String> {
     let c = design.configuration();
     let m = manifest.bill_of_materials.mount.as_ref()?;
     let mut step = match c.mount.kind {
         MountKind::None => return None,
         MountKind::Flange => format!(
-            "Lay `base-flange` outside the left support: the same screws hold it, and {} holes of {} mm take the switch to its place.",
+            "Put `base-flange` on the outer face of the left support. The same screws fasten it. It has {} mounting holes of {} mm.",
             m.holes, m.hole_diameter_mm
         ),
         MountKind::FingerLink => format!(
-            "Lay `finger-link` outside the left support: the same screws hold it; its two bores of {} mm are {} mm apart.",
+            "Put `finger-link` on the outer face of the left support. The same screws fasten it. Its two bores of {} mm are {} mm apart.",
             m.hole_diameter_mm, c.mount.bore_distance_mm
         ),
         MountKind::Rig => format!(
-            "Put the axle's bolt through `rig-plate` from below, its head in the pocket, and lay the plate outside the left support: the \
-             same screws hold it, and {} holes of {} mm take it to the table. No head stands out below it.",
+            "Put the bolt of the axle through `rig-plate` from below, with its head in the pocket, and put the plate on the outer face of \
+             the left support. The same screws fasten it. It has {} mounting holes of {} mm for the table. No head protrudes below it.",
             m.holes, m.hole_diameter_mm
         ),
     };
     if let Some(hardware) = &m.sheath_stop {
         let _ = write!(
             step,
-            " Screw `sheath-stop` on it ({hardware}): the sheath's end rests on the step of its channel."
+            " Screw `sheath-stop` to it ({hardware}). The end of the sheath rests on the step of its channel."
         );
     }
     Some(step)
 }
 
-/// The guide pulley on its axle, on the rig or by itself.
+/// The step of the guide pulley, on the rig or separate.
 fn pulley_step(design: &Design, manifest: &Manifest) -> Option<String> {
     let bill = &manifest.bill_of_materials;
     let mount = bill.mount.as_ref();
     if let (Some(bearing), Some(axle)) = (mount.and_then(|m| m.bearing), mount.and_then(|m| m.axle.as_ref()))
     {
         return Some(format!(
-            "Press the {bearing} bearing into `guide-pulley`. Put `pulley-spacer` on the bolt ({axle}), then the pulley, its bearing \
-             towards the plate, washer and nut: it turns freely on the load's side, {} mm from the switch along the tendon, which runs on \
-             over it to the load.",
+            "Press the {bearing} bearing into `guide-pulley`. Put `pulley-spacer` on the bolt ({axle}), then the pulley with its bearing \
+             toward the plate, washer and nut. The pulley rotates freely on the side of the load, {} mm from the switch along the tendon, \
+             and leads the tendon to the load.",
             design.configuration().mount.pulley_distance_mm
         ));
     }
     let bearing = bill.pulley_bearing?;
     Some(format!(
-        "Press a {bearing} bearing into `guide-pulley`, and put it on an axle of 8 mm beside the switch, on the load's side: the tendon \
-         runs on over it to the load."
+        "Press a {bearing} bearing into `guide-pulley`, and mount it on an axle of 8 mm on the side of the load. The pulley leads the \
+         tendon to the load."
     ))
 }
 
-/// Where the unloaded tendon lies on the bed beside its pins.
-fn where_it_lies(design: &Design) -> String {
+/// The contact of the unloaded tendon with silicone or proxy.
+fn bed_contact(design: &Design) -> String {
     let c = design.configuration();
     let bed = if c.layout.substrate == Substrate::Silicone { "silicone" } else { "proxy" };
     let places: Vec<String> = touches(design)
@@ -260,27 +264,25 @@ fn where_it_lies(design: &Design) -> String {
         .map(|t| format!("{:.1} to {:.1} deg", t.from_rad.to_degrees(), t.to_rad.to_degrees()))
         .collect();
     if places.is_empty() && design.contact().pins().count() > 0 {
-        return format!(
-            " As a limp string it lies on its pins only; load brings it down to the {bed} between them."
-        );
+        return format!(" A limp tendon touches only its pins; load presses it onto the {bed} between them.");
     }
     let radius = design.tendon_axis_radius_mm() - design.tendon_diameter_mm() / 2.0;
     if design.contact().pins().count() == 0 {
         return format!(
-            " It lies on the {bed} all the way, {:.1} mm.",
+            " It touches the {bed} over the full wrap, {:.1} mm.",
             2.0 * design.half_wrap_rad() * radius
         );
     }
     let length: f64 =
         touches(design).iter().filter(|t| t.pin.is_none()).map(|t| (t.to_rad - t.from_rad) * radius).sum();
     format!(
-        " Beside the pins it comes down to the {bed}, and rubs there: as a limp string at {}, {length:.1} mm in all; its stiffness \
-         keeps it off at light loads, and load brings more of it down.",
+        " A limp tendon also touches the {bed} at {}, {length:.1} mm in total. Its bending stiffness lifts it at light loads; higher \
+         loads increase the contact.",
         places.join(" and ")
     )
 }
 
-/// What the tendon lies on: the pins, where there is one within the wrap.
+/// The support of the tendon: the pins, if there is one within the wrap.
 fn carried_by<'a>(design: &Design, bed: &'a str) -> &'a str {
     if design.contact().pins().count() > 0 { "pins" } else { bed }
 }
@@ -293,26 +295,5 @@ fn groove_list(grooves: &[usize]) -> String {
             format!("grooves {} and {last}", words[..words.len() - 1].join(", "))
         }
         _ => format!("groove {}", words.join("")),
-    }
-}
-
-/// What the mark of the layout says.
-fn layout_mark(design: &Design) -> String {
-    let c = design.configuration();
-    let label = design.label();
-    if !c.label.text.is_empty() {
-        return format!("`{label}`");
-    }
-    let is_code = !label.contains(['/', 'x']) && !c.layout.pins.is_empty();
-    if is_code {
-        let grooves = groove_list(&c.layout.pins);
-        return format!(
-            "`{label}`, the layout: one bit for each of {grooves} as a hexadecimal number, groove 1 the lowest"
-        );
-    }
-    match c.layout.pins.len() {
-        0 => format!("`{label}`, the layout: no pins"),
-        1 => format!("`{label}`, the layout: one pin, in {}", groove_list(&c.layout.pins)),
-        _ => format!("`{label}`, the layout: number of pins, step, and first groove"),
     }
 }

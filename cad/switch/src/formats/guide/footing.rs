@@ -1,16 +1,16 @@
-//! Tall parts on narrow feet, which want a brim.
+//! Slender parts, which need a brim.
 
 use crate::built::BuiltPart;
 use pinswitch_solid::mesh::Mesh;
 
-/// Height over mean width of its foot from which a part wants a brim (cad/doc/print-limits.md, "First layer").
+/// Ratio of height to mean width of the foot above which a part needs a brim (cad/doc/print-limits.md, "First layer").
 const SLENDER: f64 = 6.0;
 /// Width of the brim, mm.
 const BRIM_MM: f64 = 5.0;
-/// What is nearer to the bed than this lies on it, mm.
+/// Points closer to the bed are on it, mm.
 const ON_BED_MM: f64 = 1e-6;
 
-/// What stands on the bed of a part: how high it is, and how wide its foot is in the mean.
+/// Height of a part, and mean width of its face on the bed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Footing {
     height_mm: f64,
@@ -18,12 +18,12 @@ struct Footing {
 }
 
 impl Footing {
-    /// Of a mesh as it is printed: twice the area of its foot over the length of the foot's edge. `None` for a mesh that
-    /// lies on nothing.
-    fn of(mesh: &Mesh) -> Option<Self> {
+    /// Measures a mesh in print orientation. The mean width is twice the area of the foot over the length of its edge. `None`
+    /// for a mesh without a foot.
+    fn new(mesh: &Mesh) -> Option<Self> {
         let height_mm = mesh.bounds()?.1.z;
-        let lies = |i: u32| mesh.positions[i as usize].z.abs() < ON_BED_MM;
-        let foot = mesh.triangles.iter().filter(|t| t.iter().all(|i| lies(*i)));
+        let is_on_bed = |i: u32| mesh.positions[i as usize].z.abs() < ON_BED_MM;
+        let foot = mesh.triangles.iter().filter(|t| t.iter().all(|i| is_on_bed(*i)));
         let (mut area, mut edges) = (0.0, std::collections::BTreeMap::new());
         for triangle in foot {
             let [a, b, c] = triangle.map(|i| mesh.positions[i as usize]);
@@ -43,19 +43,19 @@ impl Footing {
     }
 }
 
-/// Which parts want a brim, and why; `None` where all stand by themselves.
+/// Returns the instruction to add brims; `None` if no part needs one.
 pub(super) fn brim(printed: &[BuiltPart]) -> Option<String> {
-    let slender = printed.iter().filter_map(|part| Some((part, Footing::of(&part.print_mesh)?)));
-    let told: Vec<String> = slender
+    let slender = printed.iter().filter_map(|part| Some((part, Footing::new(&part.print_mesh)?)));
+    let parts: Vec<String> = slender
         .filter(|(_, footing)| footing.is_slender())
         .map(|(part, f)| {
             format!("`{}` ({:.1} mm high on a foot {:.1} mm wide)", part.part().name, f.height_mm, f.width_mm)
         })
         .collect();
-    let (last, before) = told.split_last()?;
+    let (last, before) = parts.split_last()?;
     let names = if before.is_empty() { last.clone() } else { format!("{} and {last}", before.join(", ")) };
     Some(format!(
-        "Tall and thin: give {names} a brim of {BRIM_MM} mm in the slicer, and trim it off before assembly."
+        "Slender parts: add a brim of {BRIM_MM} mm to {names} in the slicer, and remove it before assembly."
     ))
 }
 
@@ -69,11 +69,11 @@ mod tests {
         let corners = [(0.0, 0.0), (100.0, 0.0), (100.0, width_mm), (0.0, width_mm)];
         let outline = Contour::polygon(corners.map(|(x, y)| Point2::new(x, y)).to_vec());
         let solid = Solid::prism(&outline, &[], 0.0, height_mm, 0.0).unwrap();
-        Footing::of(&solid.mesh(ChordTolerance::new(0.01).unwrap()).unwrap()).unwrap()
+        Footing::new(&solid.mesh(ChordTolerance::new(0.01).unwrap()).unwrap()).unwrap()
     }
 
     #[test]
-    fn a_long_wall_is_as_wide_as_it_is() {
+    fn the_width_of_a_wall_is_its_thickness() {
         let wall = footing(2.0, 14.0);
         assert!((wall.width_mm - 2.0 / 1.02).abs() < 1e-9 && wall.height_mm == 14.0, "{wall:?}");
         assert!(wall.is_slender() && !footing(3.0, 14.0).is_slender());

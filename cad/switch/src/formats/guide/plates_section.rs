@@ -1,4 +1,4 @@
-//! The plates of a set: which file holds which parts, with a picture of each.
+//! The section of the plates, with files, parts and pictures.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use crate::documents::Manifest;
 use crate::formats::markdown::escape;
 use crate::plates::Plate;
 
-/// The section on the plates; files of plates are named only where the set has them.
+/// Returns the section of the plates. Files are listed only if the set has them.
 pub(super) fn plates_section(design: &Design, manifest: &Manifest, plates: &[Plate<'_>]) -> String {
     let bed_mm = design.configuration().print.bed_mm;
     let mut text = "### Plates\n\n".to_owned();
@@ -15,13 +15,13 @@ pub(super) fn plates_section(design: &Design, manifest: &Manifest, plates: &[Pla
     if let ([only], true) = (plates, has_files) {
         let _ = writeln!(
             text,
-            "`{}` holds all parts on one plate, in the middle of a bed of {bed_mm} x {bed_mm} mm (`print.bed_mm`): slice it as it is.\n",
+            "`{}` contains all parts on one plate, centred on a bed of {bed_mm} x {bed_mm} mm (`print.bed_mm`). Slice it unchanged.\n",
             only.package()
         );
     } else if has_files {
         let _ = writeln!(
             text,
-            "The parts need {} plates of {bed_mm} x {bed_mm} mm (`print.bed_mm`), each a file: slice them as they are.\n\n\
+            "The parts need {} plates of {bed_mm} x {bed_mm} mm (`print.bed_mm`), with a file each. Slice the files unchanged.\n\n\
              | plate | file | parts |\n|---|---|---|",
             plates.len()
         );

@@ -114,7 +114,7 @@ fn shards_in_a_store_merge_to_one_run() {
 fn a_variant_that_fails_costs_no_other() {
     let (variants, source) = plan();
     for (mesh_maker, reason) in [
-        (fails as MeshMaker, "cannot put a file together: no paper left"),
+        (fails as MeshMaker, "cannot encode a file: no paper left"),
         (panics as MeshMaker, "a fault of the program; please report the configuration"),
     ] {
         let fresh = Fresh::new();

@@ -1,21 +1,22 @@
-//! What is handed from one step to the next on the way to a set: a file in memory, or why there is none.
+//! Files in memory, and the errors of building and of encoding.
 
 use crate::config::ConfigError;
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_report::PlotError;
 use pinswitch_solid::solid::CapError;
 use pinswitch_solid::validity::Fault;
 
-/// A file to be written.
+/// A file in memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputFile {
-    /// Its name in the folder.
+    /// Name in the folder of the set.
     pub name: String,
-    /// Its content.
+    /// Content.
     pub bytes: Vec<u8>,
 }
 
 impl OutputFile {
-    /// A file of these bytes.
+    /// A file with a name and its content.
     pub fn new(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
         Self { name: name.into(), bytes: bytes.into() }
     }
@@ -56,14 +57,24 @@ pub enum SetError {
     /// The plot cannot be drawn.
     #[error(transparent)]
     Plot(#[from] PlotError),
-    /// A file cannot be put together.
-    #[error("cannot put a file together: {0}")]
+    /// A file cannot be encoded.
+    #[error("cannot encode a file: {0}")]
     Encoding(String),
 }
 
 impl SetError {
-    /// A file that cannot be put together, for this reason.
+    /// A file that cannot be encoded, with the reason.
     pub fn encoding(error: impl std::fmt::Display) -> Self {
         Self::Encoding(error.to_string())
+    }
+}
+
+impl From<SetError> for Diagnostic {
+    fn from(error: SetError) -> Self {
+        match error {
+            SetError::Build(error) => Self::from_error(error),
+            SetError::Plot(error) => Self::new("cannot draw the plot of the curve").with_source(error),
+            SetError::Encoding(reason) => Self::new(format!("cannot encode a file: {reason}")),
+        }
     }
 }

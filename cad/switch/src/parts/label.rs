@@ -153,7 +153,7 @@ impl Zone {
     }
 }
 
-/// Engraves the label of the design into the face at `top_mm`, in the first choice of zones that holds it.
+/// Engraves the label of the design into the face at `top_mm`, in the first choice of zones into which it fits.
 pub(super) fn engrave(solid: &mut Solid, design: &Design, choices: &[Vec<Zone>], top_mm: f64) -> Engraving {
     if !design.configuration().label.engrave {
         return Engraving::none(Vec::new());
@@ -171,7 +171,7 @@ pub(super) fn is_left_out(design: &Design, choices: &[Vec<Zone>], top_mm: f64) -
     design.configuration().label.engrave && layout(design, &design.label(), choices, top_mm).is_none()
 }
 
-/// Lays out a text in the widest zone of the first choice that holds it, or else in several zones.
+/// Lays out a text in the widest zone of the first choice into which it fits, or else in several zones.
 fn layout(design: &Design, text: &str, choices: &[Vec<Zone>], top_mm: f64) -> Option<TextLayout> {
     let c = design.configuration();
     // The floor under the letters must be printable.

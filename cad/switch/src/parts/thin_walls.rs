@@ -68,20 +68,20 @@ impl Part {
         ))
     }
 
-    /// What leaves this part without a thin place: one value, or several together. Where none was found, finer lines.
+    /// Returns the changes after which the part has no thin place: one value, or several together; finer lines without any.
     fn remedy_for_thin_places(&self, design: &Design, thinnest_mm: f64) -> String {
         let places = |c: &Configuration| -> Option<Vec<ThinPlace>> {
             let design = Design::new(c.clone()).ok()?;
             Some(printed_part(&self.name, &design)?.unreported_thin_places(&design))
         };
-        let is_mended = |c: &Configuration| places(c).is_some_and(|places| places.is_empty());
-        // The first that does: each part is made many times for it. A layer three times as thick would mend the end walls of
-        // its copy, and be another switch: it is named where nothing else helps.
+        let is_thick = |c: &Configuration| places(c).is_some_and(|places| places.is_empty());
+        // The first change that works, since every test builds the part. A layer of three times the thickness would also thicken
+        // the end walls of the proxy, but it would be another switch: it is the last resort.
         let c = design.configuration();
-        if let Some(way) = way_out(c, self.thickening(), &is_mended, Effort::QUICK) {
+        if let Some(way) = way_out(c, self.thickening(), &is_thick, Effort::QUICK) {
             return way.words;
         }
-        // The thinnest places first, then those that are left.
+        // The thinnest places first, then the remaining ones.
         let (mut c, mut left_mm, mut steps) = (c.clone(), thinnest_mm, Vec::new());
         while steps.len() < TOGETHER {
             let is_thicker = |c: &Configuration| {
@@ -103,10 +103,10 @@ impl Part {
             }
         }
         let line_mm = (50.0 * thinnest_mm).floor() / 100.0;
-        format!("print lines of at most {line_mm:.2} mm (print.line_mm), or leave it as it is")
+        format!("print lines of at most {line_mm:.2} mm (print.line_mm), or accept the thin wall")
     }
 
-    /// What may make a thin wall of this part thicker, the most natural first.
+    /// Returns the parameters that may thicken a wall of this part, the most natural first.
     fn thickening(&self) -> &'static [Change] {
         const MARGIN: Change = Raise("segment.end_margin_mm");
         match (self.role, self.name.as_str()) {
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn every_way_out_of_a_thin_wall_leads_out() {
+    fn remedies_of_thin_walls_work() {
         let mut followed = 0;
         for set in [
             &["shell.stop_mm=0"][..],
@@ -201,9 +201,9 @@ mod tests {
                     continue;
                 }
                 let way: Vec<String> = remedy.split(", and ").map(assignment).collect();
-                let mut mended = set.to_vec();
-                mended.extend(way.iter().map(String::as_str));
-                let left = warned(&mended);
+                let mut changed = set.to_vec();
+                changed.extend(way.iter().map(String::as_str));
+                let left = warned(&changed);
                 assert!(left.iter().all(|(p, _)| *p != part), "{set:?}, {way:?}: {left:?}");
                 followed += 1;
             }

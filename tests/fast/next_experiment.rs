@@ -76,7 +76,7 @@ fn proposed_runs_resolve_a_confounded_effect() {
     );
     assert!(said.contains("second/plateaus.csv answers "), "{said}");
     let page = std::fs::read_to_string(path.join("joined/report.html")).unwrap();
-    assert!(page.contains("rate_dependence or none at a size of 0.100 (&gt;99 %; by the paper&#39;s protocol repeated &lt;1 %): <b>found</b>"));
+    assert!(page.contains("rate_dependence or none at a size of 0.100 (&gt;99 %; with the paper&#39;s protocol repeated &lt;1 %): <b>found</b>"));
     // The report lists the runs; a heavier load precedes descending ones in their mount.
     assert!(page.contains("proposed runs:<ul><li>") && page.contains("with loads descending"));
     let runs = std::fs::read_to_string(path.join("next/next-runs.csv")).unwrap();

@@ -7,7 +7,7 @@ use clap::Args;
 use pinswitch_app::server::read_request;
 use pinswitch_app::{Answer, Engine};
 
-use super::{Failure, print};
+use super::{Failure, print_data};
 
 /// Answer one request of the configurator from standard input; `view` starts this for long
 /// requests.
@@ -25,7 +25,7 @@ pub(super) fn run(_: &Arguments) -> Result<(), Failure> {
         std::process::exit(1);
     });
     match Engine::default().answer(&request) {
-        Answer::Json(text) => print(text.as_bytes()),
-        Answer::Bytes(bytes) => print(&bytes),
+        Answer::Json(text) => print_data(text.as_bytes()),
+        Answer::Bytes(bytes) => print_data(&bytes),
     }
 }

@@ -16,7 +16,7 @@ use super::input::{read_file, read_text_file};
 use super::law::LawChoice;
 use super::source::Source;
 use super::write::write_back;
-use super::{Failure, print};
+use super::{Failure, print_text};
 
 /// Show a configuration in the browser, and change it there.
 ///
@@ -51,7 +51,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ServerError::Configuration(diagnostic) => Failure::bad_input(diagnostic),
     })?;
     let address = server.address();
-    print(format!("http://{address}\nhttp://{address}/configure\n").as_bytes())?;
+    print_text(&format!("http://{address}\nhttp://{address}/configure\n"))?;
     if let Some(file) = source.file() {
         log::info!("following {}; end with Ctrl-C", file.display());
     }
@@ -86,7 +86,7 @@ impl ConfigurationSource for ViewSource {
     }
 
     fn is_explicit(&self) -> bool {
-        self.source.is_said()
+        self.source.has_arguments()
     }
 
     fn overrides(&self) -> Vec<FieldOverride> {
@@ -133,5 +133,5 @@ impl ConfigurationSource for ViewSource {
 
 /// Returns the diagnostic of a failure.
 fn diagnostic(failure: &Failure) -> Diagnostic {
-    Diagnostic::new(failure.message())
+    failure.diagnostics().first().cloned().unwrap_or_else(|| Diagnostic::new(failure.to_string()))
 }

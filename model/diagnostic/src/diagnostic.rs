@@ -42,9 +42,14 @@ impl Diagnostic {
         Self { problem: problem.into(), ..Self::default() }
     }
 
-    /// The message of an error of another library, which stays its source.
+    /// The message of an error of another library, which stays its source. A diagnostic is returned unchanged.
     pub fn from_error(error: impl Error + Send + Sync + 'static) -> Self {
-        let source: Arc<dyn Error + Send + Sync> = Arc::new(error);
+        let error: Box<dyn Error + Send + Sync> = Box::new(error);
+        let error = match error.downcast::<Self>() {
+            Ok(diagnostic) => return *diagnostic,
+            Err(error) => error,
+        };
+        let source: Arc<dyn Error + Send + Sync> = Arc::from(error);
         let problem = source.to_string();
         // The error itself is the problem; what caused it follows.
         Self { problem, source: Some(source), ..Self::default() }
@@ -236,6 +241,8 @@ mod tests {
         assert_eq!(diagnostic.render("error"), "error: cannot write shell.stl\n  cause: disk full");
         let same = Diagnostic::from_error(std::io::Error::other("disk full"));
         assert_eq!(same.render("error"), "error: disk full");
+        let located = Diagnostic::new("is wrong").with_location(Location::file("a")).with_help("drop it");
+        assert_eq!(Diagnostic::from_error(located.clone()), located);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use rayon::prelude::*;
 
-use super::{Failure, print, print_json};
+use super::{Failure, print_json, print_text};
 use pinswitch_solid::validity::Expectation;
 use verdict::Verdict;
 
@@ -59,24 +59,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     if arguments.json {
-        print_json(&verdicts)?;
+        // Without a verdict, the failure is the only JSON document.
+        if !verdicts.is_empty() {
+            print_json(&verdicts)?;
+        }
     } else {
-        print(verdicts.iter().map(Verdict::describe).collect::<String>().as_bytes())?;
+        print_text(&verdicts.iter().map(Verdict::describe).collect::<String>())?;
     }
-    if !unexamined.is_empty() {
-        return Err(bad_inputs(&unexamined));
+    let invalid = verdicts.iter().filter(|v| !v.valid).count();
+    if let Some(failure) = Failure::bad_inputs(unexamined) {
+        return Err(failure);
     }
-    match verdicts.iter().filter(|v| !v.valid).count() {
+    match invalid {
         0 => Ok(()),
         invalid => Err(Failure::failed(Diagnostic::new(format!(
             "{invalid} of {} files are not valid",
             verdicts.len()
         )))),
     }
-}
-
-/// The failure that reports several diagnostics.
-fn bad_inputs(diagnostics: &[Diagnostic]) -> Failure {
-    let lines: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
-    Failure::bad_input(lines.join("\nerror: "))
 }

@@ -7,7 +7,7 @@
 
 use std::time::Instant;
 
-use pinswitch::switch::ask::Ask;
+use pinswitch::switch::request::Request;
 use pinswitch::switch::config::Configuration;
 use pinswitch::switch::design::Design;
 use pinswitch::switch::design_search::{Found, Options, PublishedPhysics, Silent, search, simulated};
@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("| | request | proposal | predicted | stated | simulated | s |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     for (i, (text, is_possible)) in ASKS.iter().enumerate().filter(|(i, _)| only.is_none_or(|n| n == i + 1)) {
-        let ask = Ask::read(text, &format!("ask {}", i + 1))?;
+        let ask = Request::read(text, &format!("ask {}", i + 1))?;
         let start = Instant::now();
         let found = search(&base, &ask, &PublishedPhysics::default(), Options::default(), &Silent);
         let seconds = start.elapsed().as_secs_f64();
@@ -81,7 +81,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Prints the row of a request; returns the number of proposals with a wrong probability.
-fn row(number: usize, ask: &Ask, found: &Found, seconds: f64) -> Result<usize, Box<dyn std::error::Error>> {
+fn row(number: usize, ask: &Request, found: &Found, seconds: f64) -> Result<usize, Box<dyn std::error::Error>> {
     let targets: Vec<String> = ask.targets.iter().map(ToString::to_string).collect();
     let targets = targets.join("; ");
     let Some(best) = found.proposals.first() else {

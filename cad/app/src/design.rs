@@ -3,8 +3,8 @@
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_switch::built::Built;
 use pinswitch_switch::config::{Configuration, to_toml};
-use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::plate_entries;
+use pinswitch_switch::feasibility;
 use pinswitch_switch::formats::page::PageData;
 use pinswitch_switch::output::{BuildError, SetError};
 use pinswitch_switch::prediction::Prediction;
@@ -12,7 +12,7 @@ use pinswitch_switch::set::Set;
 use serde::Serialize;
 
 use crate::cache::Cache;
-use crate::refusal::{Refusal, diagnostic};
+use crate::refusal::Refusal;
 use crate::request::{DesignRequest, Quality};
 use crate::values::configuration;
 
@@ -68,17 +68,17 @@ pub(crate) fn build(
     configuration: Configuration,
     model: Option<&str>,
 ) -> Result<(Built, Prediction), Refusal> {
-    let design = Design::new(configuration)?;
+    let design = feasibility::design(configuration)?;
     let prediction = cache.predictions.predict(&design, model)?;
     let built =
-        Built::following(design, cache.built.as_ref(), &cache.caps).map_err(|e| set_refusal(e.into()))?;
+        feasibility::build_following(design, cache.built.as_ref(), &cache.caps).map_err(|e| set_refusal(e.into()))?;
     Ok((built, prediction))
 }
 
 /// Returns why a set is refused, at its field if it has one.
 pub(crate) fn set_refusal(error: SetError) -> Refusal {
     match error {
-        SetError::Build(BuildError::Configuration(error)) => diagnostic(error).into(),
+        SetError::Build(BuildError::Configuration(error)) => error.into(),
         other => Diagnostic::from_error(other).into(),
     }
 }

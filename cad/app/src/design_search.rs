@@ -4,11 +4,12 @@ use pinswitch_calibration::ModelFile;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::FrictionCurve;
 use pinswitch_friction::published::GROOVES;
-use pinswitch_switch::ask::{Ask, DEFAULT_WITHIN, Quantity, Target, Vary, Wish};
+use pinswitch_switch::request::{DEFAULT_WITHIN, Quantity, Request, Requirement, Target, Vary};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::design_search::{
     Belief, Options, Proposal, PublishedPhysics, Silent, TargetResult, load_range_n, search,
 };
+use pinswitch_switch::feasibility;
 use pinswitch_switch::prediction::predicted_curve;
 use serde::Serialize;
 
@@ -68,7 +69,7 @@ pub(crate) fn answer(request: &SearchRequest) -> Answer {
 }
 
 fn result(request: &SearchRequest) -> Result<SearchResult, Refusal> {
-    let base = Design::new(configuration(&request.values)?)?;
+    let base = feasibility::design(configuration(&request.values)?)?;
     let ask = ask(request);
     ask.check().map_err(Diagnostic::from_error)?;
     ask.check_loads(load_range_n(base.configuration(), &ask)).map_err(Diagnostic::from_error)?;
@@ -96,15 +97,15 @@ fn result(request: &SearchRequest) -> Result<SearchResult, Refusal> {
 
 /// Returns the targets of a request. Only the layout varies: dimensions have sliders, and would
 /// make the search many times as long.
-fn ask(request: &SearchRequest) -> Ask {
-    let about = |value| Wish::About { value, within: DEFAULT_WITHIN };
-    let threshold = request.threshold_n.map(|n| Target { quantity: Quantity::Threshold, wish: about(n) });
+fn ask(request: &SearchRequest) -> Request {
+    let about = |value| Requirement::About { value, within: DEFAULT_WITHIN };
+    let threshold = request.threshold_n.map(|n| Target { quantity: Quantity::Threshold, requirement: about(n) });
     let friction = request
         .friction
         .iter()
-        .map(|at| Target { quantity: Quantity::Friction { load_n: at.load_n }, wish: about(at.friction_n) });
+        .map(|at| Target { quantity: Quantity::Friction { load_n: at.load_n }, requirement: about(at.friction_n) });
     let vary = Vary { pattern: true, parameters: Vec::new() };
-    Ask { targets: threshold.into_iter().chain(friction).collect(), vary, ..Ask::default() }
+    Request { targets: threshold.into_iter().chain(friction).collect(), vary, ..Request::default() }
 }
 
 fn design(proposal: &Proposal, model: Option<&ModelFile>) -> Option<ProposedDesign> {
@@ -125,7 +126,7 @@ fn design(proposal: &Proposal, model: Option<&ModelFile>) -> Option<ProposedDesi
 }
 
 fn target_value(result: &TargetResult, proposal: &Proposal) -> Option<TargetValue> {
-    let Wish::About { value: target_n, .. } = result.target.wish else { return None };
+    let Requirement::About { value: target_n, .. } = result.target.requirement else { return None };
     let (load_n, value_n) = match result.target.quantity {
         Quantity::Threshold => (None, proposal.threshold_n),
         Quantity::Friction { load_n } => (Some(load_n), Some(result.value)),

@@ -1,8 +1,7 @@
 //! Why a design is refused, in the form in which the page shows it: at the control of the field,
 //! with a button that applies a remedy.
 
-use pinswitch_diagnostic::{Change, Diagnostic, Location};
-use pinswitch_switch::config::ConfigError;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use serde::Serialize;
 
 /// The JSON of `trouble` in an answer.
@@ -49,24 +48,10 @@ impl From<Diagnostic> for Refusal {
     }
 }
 
-impl From<ConfigError> for Refusal {
-    fn from(error: ConfigError) -> Self {
-        diagnostic(error).into()
-    }
-}
-
-/// Returns the diagnostic of a field, without the place in a file: the page shows the field itself.
-pub(crate) fn diagnostic(error: ConfigError) -> Diagnostic {
-    let location = Location { field: Some(error.field), value: error.value, ..Location::default() };
-    let changes = error.changes.into_iter().map(|(field, value)| Change { field, value });
-    Diagnostic::new(error.problem)
-        .with_location(location)
-        .with_help(error.remedy)
-        .with_changes(changes.collect())
-}
-
 #[cfg(test)]
 mod tests {
+    use pinswitch_diagnostic::Change;
+
     use super::*;
     use serde_json::json;
 

@@ -2,7 +2,7 @@
 
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::config::parameter::Parameter;
-use pinswitch_switch::config::{ConfigError, Configuration, Name, assign, read};
+use pinswitch_switch::config::{Configuration, Name, assign, read};
 use pinswitch_switch::documents::toml_to_json;
 use serde::Serialize;
 
@@ -15,15 +15,12 @@ const MAX_CONFIGURATION_BYTES: usize = 1 << 20;
 /// Returns the default configuration with these values.
 ///
 /// # Errors
-/// [`ConfigError`] for an unknown field or a value out of its range.
-pub fn configuration(values: &Values) -> Result<Configuration, ConfigError> {
+/// A [`Diagnostic`] for a field that is unknown or a value out of its range.
+pub fn configuration(values: &Values) -> Result<Configuration, Diagnostic> {
     let mut configuration = Configuration::default();
     for (path, value) in values {
-        // A number, a list of numbers, a boolean or printable text is the same in JSON and in TOML.
-        assign(&mut configuration, &format!("{path}={value}")).map_err(|mut error| {
-            error.place = None;
-            error
-        })?;
+        // JSON of a number, a list of them, a truth value or a text of printable characters is TOML.
+        assign(&mut configuration, &format!("{path}={value}"))?;
     }
     Ok(configuration)
 }
@@ -62,9 +59,9 @@ fn read_values(text: &str, file: &str) -> Result<Values, Refusal> {
             .with_help("drop a TOML file that pinswitch wrote");
         return Err(diagnostic.into());
     }
-    let (mut configuration, places) = read(text, file)?;
-    if !places.sets("switch.name") {
-        configuration.switch.name = Name::lent_by(file);
+    let (mut configuration, locations) = read(text, file)?;
+    if !locations.contains("switch.name") {
+        configuration.switch.name = Name::from_file_stem(file);
     }
     Ok(changed_values(&configuration))
 }
@@ -89,7 +86,8 @@ mod tests {
     fn invalid_values_are_refused_by_field() {
         let values: Values = serde_json::from_str(r#"{"shell.wall_mm": 1e9}"#).unwrap();
         let error = configuration(&values).unwrap_err();
-        assert_eq!((error.field.as_str(), error.place.is_none()), ("shell.wall_mm", true));
+        let location = error.location().unwrap();
+        assert_eq!((location.field.as_deref(), &location.file), (Some("shell.wall_mm"), &None));
         for (path, value) in [("shell.wal_mm", "3"), ("x", "3"), ("layout.pins", "\"a\\nb\"")] {
             let values: Values = serde_json::from_str(&format!(r#"{{"{path}": {value}}}"#)).unwrap();
             assert!(configuration(&values).is_err(), "{path}");

@@ -5,7 +5,6 @@ use std::fmt;
 use std::process::ExitCode;
 
 use pinswitch_diagnostic::Diagnostic;
-use pinswitch_switch::config::ConfigError;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
@@ -84,21 +83,6 @@ impl Serialize for Failure {
 /// source.
 pub(crate) fn unconverted(error: impl Error + Send + Sync + 'static) -> Diagnostic {
     Diagnostic::from_error(error)
-}
-
-/// Returns the diagnostic of a configuration error, with location, problem, help and changes apart.
-pub(crate) fn of_config(error: ConfigError) -> Diagnostic {
-    use pinswitch_diagnostic::{Change, Location};
-
-    let place = error
-        .place
-        .map_or_else(Location::default, |place| Location { line: place.line, ..Location::file(place.file) });
-    let location = Location { field: Some(error.field), value: error.value, ..place };
-    let changes = error.changes.into_iter().map(|(field, value)| Change { field, value });
-    Diagnostic::new(error.problem)
-        .with_location(location)
-        .with_help(error.remedy)
-        .with_changes(changes.collect())
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ use super::source::{LoadedDesign, Source};
 use super::terminal::warn;
 use super::{Failure, print_data, print_text};
 use crate::write::{PublishError, SetFolder};
-use pinswitch_switch::built::Built;
+use pinswitch_switch::feasibility;
 use pinswitch_switch::formats::{ALL, FORMATS, Inclusion, named};
 use pinswitch_switch::output::BuildError;
 use pinswitch_switch::prediction::Prediction;
@@ -105,7 +105,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.force {
         place.check_source(&origin).map_err(refused)?;
     }
-    let built = Built::new(design).map_err(|e| match e {
+    let built = feasibility::build(design).map_err(|e| match e {
         BuildError::Configuration(e) => arguments.source.refusal(&e),
         other => Failure::failed(unconverted(other)),
     })?;

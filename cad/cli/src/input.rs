@@ -10,7 +10,6 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::config::text;
 
 use super::Failure;
-use super::failure::of_config;
 
 /// Longest configuration, plan, model or report, in bytes: some hundred times the longest in practice.
 const MAX_TEXT: u64 = 16 << 20;
@@ -25,7 +24,7 @@ const MAX_TABLE: u64 = 1 << 30;
 /// [`Failure::bad_input`] if the file cannot be read, is too long, or is not UTF-8; the last with the line.
 pub(super) fn read_text_file(path: &Path) -> Result<String, Failure> {
     let bytes = read_at_most(path, MAX_TEXT)?;
-    text(bytes, &path.display().to_string()).map_err(|e| Failure::bad_input(of_config(e)))
+    text(bytes, &path.display().to_string()).map_err(Failure::bad_input)
 }
 
 /// Reads the bytes of a configuration: a text, or the 3MF of a set.

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_solid::render::{View, render};
-use pinswitch_switch::built::Built;
+use pinswitch_switch::feasibility;
 use pinswitch_switch::output::BuildError;
 use pinswitch_switch::scene::{all_plates, assembled};
 
@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let design = arguments.source.design()?;
-    let built = Built::new(design).map_err(|e| match e {
+    let built = feasibility::build(design).map_err(|e| match e {
         BuildError::Configuration(e) => arguments.source.refusal(&e),
         other => Failure::failed(unconverted(other)),
     })?;

@@ -14,7 +14,7 @@ use pinswitch_batch::{
 };
 use pinswitch_diagnostic::{Diagnostic, Location};
 
-use super::failure::{of_config, unconverted};
+use super::failure::unconverted;
 use super::second_kernel::requested_kernel;
 use super::terminal::print_line;
 use super::{Failure, print_json, print_text, slicing};
@@ -83,16 +83,15 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let kernel = requested_kernel(arguments.verify)?;
-    let invalid = |e| Failure::bad_input(of_config(e));
     let failed = |e| Failure::failed(unconverted(e));
     let reach = if arguments.read_outside { Reach::Anywhere } else { Reach::Beside };
-    let mut source = SweepSource::read_within(&arguments.sweep, reach).map_err(invalid)?;
+    let mut source = SweepSource::read_within(&arguments.sweep, reach).map_err(Failure::bad_input)?;
     source.slice = arguments.slice;
     source.verify = arguments.verify;
-    let counted = CountedSweep::new(&source).map_err(invalid)?;
+    let counted = CountedSweep::new(&source).map_err(Failure::bad_input)?;
     let count = count(arguments, &counted)?;
     let range = arguments.shard.range(count);
-    let variants = Variants::new(counted.checked().map_err(invalid)?, &source);
+    let variants = Variants::new(counted.checked().map_err(Failure::bad_input)?, &source);
     let out = arguments.out.as_deref().unwrap_or_default();
     let open = || {
         Destination::open(out, &partial_folder(arguments.shard))

@@ -5,13 +5,16 @@ use std::path::{Component, Path, PathBuf};
 use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_solid::files::read_three_mf;
-use pinswitch_switch::config::{ConfigError, Configuration, Name, Places, assign, read, read_over, text};
+use pinswitch_switch::config::{
+    Configuration, FieldLocations, Name, assign, read, read_over, text,
+};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::SourceEntry;
+use pinswitch_switch::feasibility;
 use pinswitch_switch::templates;
 
 use super::Failure;
-use super::failure::{of_config, unconverted};
+use super::failure::unconverted;
 use crate::write::source_of_set_with;
 
 /// Template of a command that was given no configuration.
@@ -102,18 +105,17 @@ impl Source {
     }
 
     /// Returns the failure of a configuration error, located at the option that set the field, or else in the file.
-    pub(super) fn refusal(&self, error: &ConfigError) -> Failure {
-        Failure::bad_input(self.located(error.clone(), &Places::default(), self.config()))
+    pub(super) fn refusal(&self, error: &Diagnostic) -> Failure {
+        Failure::bad_input(self.located(error.clone(), &FieldLocations::default(), self.config()))
     }
 
     /// Locates an error at the option that set its field, at the field's line, or else in the file.
-    fn located(&self, error: ConfigError, places: &Places, file: &str) -> Diagnostic {
+    fn located(&self, error: Diagnostic, locations: &FieldLocations, file: &str) -> Diagnostic {
+        let field = error.location().and_then(|location| location.field.clone()).unwrap_or_default();
         // Options override the file, and the last option the others.
-        let option = self.options().filter(|(_, field)| *field == error.field).last();
-        match (option, places.of(&error.field)) {
-            (Some((option, _)), _) => of_config(error).or_in_file(option),
-            (None, Some(place)) => of_config(error.at(place.clone())),
-            (None, None) => of_config(error).or_in_file(file),
+        match self.options().filter(|(_, given)| *given == field).last() {
+            Some((option, _)) => error.or_in_file(option),
+            None => error.or_at(locations.get(&field).unwrap_or(&Location::file(file))),
         }
     }
 
@@ -135,31 +137,33 @@ impl Source {
     }
 
     fn design_of_text(&self, text: &str, file: &str) -> Result<Design, Failure> {
-        let (configuration, places) = self.configuration_of_text(text, file)?;
-        Design::new(configuration).map_err(|e| Failure::bad_input(self.located(e, &places, file)))
+        let (configuration, locations) = self.configuration_of_text(text, file)?;
+        let placed = |e| Failure::bad_input(self.located(e, &locations, file));
+        feasibility::design(configuration).map_err(placed)
     }
 
-    fn configuration_of_text(&self, text: &str, file: &str) -> Result<(Configuration, Places), Failure> {
-        let bad_input = |e| Failure::bad_input(of_config(e));
+    fn configuration_of_text(
+        &self,
+        text: &str,
+        file: &str,
+    ) -> Result<(Configuration, FieldLocations), Failure> {
         let base = self.preset.as_ref().map_or(Ok(Configuration::default()), |preset| {
             let (text, file) = read_text(preset)?;
-            read(&text, &file).map(|(base, _)| base).map_err(bad_input)
+            read(&text, &file).map(|(base, _)| base).map_err(Failure::bad_input)
         })?;
-        let (mut configuration, places) = read_over(base, text, file).map_err(bad_input)?;
-        if !places.sets("switch.name") {
-            configuration.switch.name = Name::lent_by(file);
+        let (mut configuration, locations) = read_over(base, text, file).map_err(Failure::bad_input)?;
+        if !locations.contains("switch.name") {
+            configuration.switch.name = Name::from_file_stem(file);
         }
         for assignment in &self.assignments {
-            assign(&mut configuration, assignment).map_err(bad_input)?;
+            assign(&mut configuration, assignment)
+                .map_err(|e| Failure::bad_input(e.or_in_file("--set")))?;
         }
         if let Some(mm) = self.tolerance {
-            let value = format!("{mm:?}");
-            assign(&mut configuration, &format!("{TOLERANCE}={value}")).map_err(|e| {
-                let location = Location::file("--tolerance").with_field(TOLERANCE, value);
-                Failure::bad_input(of_config(e).with_location(location))
-            })?;
+            assign(&mut configuration, &format!("{TOLERANCE}={mm:?}"))
+                .map_err(|e| Failure::bad_input(e.or_in_file("--tolerance")))?;
         }
-        Ok((configuration, places))
+        Ok((configuration, locations))
     }
 }
 
@@ -208,7 +212,7 @@ fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Fail
     if !bytes.starts_with(b"PK") {
         return text(bytes, file)
             .map(|text| (text, Kind::Text))
-            .map_err(|e| Failure::bad_input(of_config(e)));
+            .map_err(Failure::bad_input);
     }
     let package = read_three_mf(&bytes).map_err(|e| Failure::bad_input(unconverted(e).or_in_file(file)))?;
     let source = source_of_set_with(Path::new(file), &bytes);

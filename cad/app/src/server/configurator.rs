@@ -12,7 +12,6 @@ use serde::Deserialize;
 use super::ConfigurationSource;
 use super::state::stamp;
 use super::worker::Worker;
-use crate::refusal::diagnostic;
 use crate::{Answer, Engine, Values, changed_values, configuration};
 
 /// The engines, each for one request at a time, and the configuration that the server shows.
@@ -150,7 +149,7 @@ impl Configurator {
         })?;
         let name = file.display().to_string();
         let request: SaveRequest = serde_json::from_slice(request).map_err(Diagnostic::from_error)?;
-        let wanted = configuration(&request.values).map_err(diagnostic)?;
+        let wanted = configuration(&request.values)?;
         let is_missing = !file.exists() && !file.is_symlink();
         if is_missing && !request.create {
             return Err(SaveError::Missing);

@@ -12,7 +12,7 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::layout_search::LayoutCandidate;
 use pinswitch_friction::published::GROOVES;
 use pinswitch_report::{TargetRegion, pareto_svg};
-use pinswitch_switch::ask::{Ask, Parameter, Quantity};
+use pinswitch_switch::request::{Request, Parameter, Quantity};
 use pinswitch_switch::config::{Configuration, Name, to_toml};
 use pinswitch_switch::design_search::{
     Belief, Blocked, Found, Options, Proposal, PublishedPhysics, load_range_n, search,
@@ -77,7 +77,7 @@ pub(super) struct Arguments {
 /// Content of `--json` and design.json.
 #[derive(Serialize)]
 struct Report<'a> {
-    ask: &'a Ask,
+    ask: &'a Request,
     load_range_n: (f64, f64),
     draws: usize,
     seed: u64,
@@ -91,14 +91,14 @@ struct Report<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let ask = arguments.request.request()?;
-    let base = arguments.source.with_preset(ask.limits.preset.as_deref()).design()?;
+    let request = arguments.request.request()?;
+    let base = arguments.source.with_preset(request.limits.preset.as_deref()).design()?;
     let options = options(arguments)?;
-    check_pins(&ask, base.configuration())?;
-    ask.check_loads(load_range_n(base.configuration(), &ask))
+    check_pins(&request, base.configuration())?;
+    request.check_loads(load_range_n(base.configuration(), &request))
         .map_err(|e| Failure::bad_input(unconverted(e)))?;
     if arguments.model.is_some() {
-        check_model_scope(&ask, base.configuration())?;
+        check_model_scope(&request, base.configuration())?;
     }
     let calibrated = match &arguments.model {
         Some(path) => {
@@ -113,7 +113,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => &published,
     };
     let bar = Bar::new();
-    let found = search(&base, &ask, belief, options, &bar);
+    let found = search(&base, &request, belief, options, &bar);
     bar.finish();
     log::info!(
         "{} distinct patterns (mirror images count once); {} curves computed",
@@ -121,7 +121,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         found.tried
     );
     let report = Report {
-        ask: &ask,
+        ask: &request,
         load_range_n: found.range_n,
         draws: options.draws,
         seed: options.seed,
@@ -132,7 +132,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         blocked: found.blocked.as_ref(),
     };
     if let Some(folder) = &arguments.out {
-        let files = files(&found, &report, &ask)?;
+        let files = files(&found, &report, &request)?;
         write_set(folder, &files)?;
         let names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
         log::info!("{}: {}", folder.display(), names.join(", "));
@@ -140,7 +140,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json {
         print_json(&report)?;
     } else {
-        print_text(&text::table(&found, &ask))?;
+        print_text(&text::table(&found, &request))?;
     }
     match &found.blocked {
         Some(blocked) => Err(Failure::failed(text::refusal(blocked))),
@@ -153,8 +153,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Checks that a calibrated model covers everything that the request varies.
-fn check_model_scope(ask: &Ask, base: &Configuration) -> Result<(), Failure> {
-    if ask.vary.parameters.iter().any(|v| v.parameter == Parameter::WrapDeg) {
+fn check_model_scope(request: &Request, base: &Configuration) -> Result<(), Failure> {
+    if request.vary.parameters.iter().any(|v| v.parameter == Parameter::WrapDeg) {
         return Err(Failure::bad_input(
             Diagnostic::new("a calibrated model covers the wrap angle of its rig only")
                 .with_location(Location::field("--vary", "wrap_deg"))
@@ -188,9 +188,9 @@ fn options(arguments: &Arguments) -> Result<Options, Failure> {
     Ok(Options { best, draws, seed, starts: starts.max(best) })
 }
 
-fn check_pins(ask: &Ask, base: &Configuration) -> Result<(), Failure> {
+fn check_pins(request: &Request, base: &Configuration) -> Result<(), Failure> {
     let grooves = base.segment.grooves;
-    match ask.limits.pins {
+    match request.limits.pins {
         Some((fewest, most)) if most > grooves => Err(Failure::bad_input(
             Diagnostic::new(format!("a layout of this configuration has 1 to {grooves} pins"))
                 .with_location(Location::field("--pins", format!("{fewest}..{most}")))
@@ -200,7 +200,7 @@ fn check_pins(ask: &Ask, base: &Configuration) -> Result<(), Failure> {
     }
 }
 
-fn files(found: &Found, report: &Report<'_>, ask: &Ask) -> Result<Vec<OutputFile>, Failure> {
+fn files(found: &Found, report: &Report<'_>, request: &Request) -> Result<Vec<OutputFile>, Failure> {
     let named = |i: usize| if report.possible { format!("design-{}", i + 1) } else { "nearest".to_owned() };
     let mut files: Vec<OutputFile> = found
         .proposals
@@ -221,7 +221,7 @@ fn files(found: &Found, report: &Report<'_>, ask: &Ask) -> Result<Vec<OutputFile
             friction_n: p.friction_n,
         })
         .collect();
-    let svg = pareto_svg(&found.candidates, &chosen, target_region(ask, found.range_n))
+    let svg = pareto_svg(&found.candidates, &chosen, target_region(request, found.range_n))
         .map_err(|e| Failure::failed(unconverted(e)))?;
     files.push(OutputFile { name: "pareto.svg".to_owned(), bytes: svg.into_bytes() });
     files.push(OutputFile { name: "design.json".to_owned(), bytes: to_json(report)? });
@@ -230,9 +230,9 @@ fn files(found: &Found, report: &Report<'_>, ask: &Ask) -> Result<Vec<OutputFile
 
 /// Returns the intervals of threshold and of friction at the heaviest load that meet the targets; `None` without a target
 /// for either.
-fn target_region(ask: &Ask, range_n: (f64, f64)) -> Option<TargetRegion> {
+fn target_region(request: &Request, range_n: (f64, f64)) -> Option<TargetRegion> {
     let interval = |is_meant: &dyn Fn(Quantity) -> bool| {
-        let intervals = ask.targets.iter().filter(|t| is_meant(t.quantity)).map(|t| t.wish.interval());
+        let intervals = request.targets.iter().filter(|t| is_meant(t.quantity)).map(|t| t.requirement.interval());
         intervals.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1)))
     };
     let threshold = interval(&|q| q == Quantity::Threshold);

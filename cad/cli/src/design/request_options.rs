@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
-use pinswitch_switch::ask::{
-    Ask, DEFAULT_WITHIN, FORMS, Parameter, Quantity, Target, Varied, Wish, parse_wish, share_of,
+use pinswitch_switch::request::{
+    Request, DEFAULT_WITHIN, FORMS, Parameter, Quantity, Target, Varied, Requirement, parse_requirement, parse_share,
 };
 
 use crate::Failure;
@@ -70,14 +70,14 @@ impl RequestOptions {
     ///
     /// # Errors
     /// [`Failure::bad_input`] with option or field, value, bound and help.
-    pub(super) fn request(&self) -> Result<Ask, Failure> {
+    pub(super) fn request(&self) -> Result<Request, Failure> {
         let mut request = match &self.ask {
             Some(path) => {
                 let name = path.display().to_string();
                 let text = crate::input::read_text_file(path)?;
-                Ask::read(&text, &name).map_err(|e| Failure::bad_input(unconverted(e)))?
+                Request::read(&text, &name).map_err(|e| Failure::bad_input(unconverted(e)))?
             }
-            None => Ask::default(),
+            None => Request::default(),
         };
         self.add_targets(&mut request)?;
         if let Some(range) = self.load_range {
@@ -104,14 +104,14 @@ impl RequestOptions {
                 "give --threshold, --max-friction, --friction, --low-friction, --stiffness or --ask FILE",
             )));
         }
-        request.check().map_err(|e| Failure::bad_input(self.located(unconverted(e))))?;
+        request.check().map_err(|e| Failure::bad_input(self.located(e)))?;
         Ok(request)
     }
 
     /// Locates an error at the option that set its field, if one did.
     fn located(&self, error: Diagnostic) -> Diagnostic {
         let options = [
-            ("load range", "--load-range", self.load_range.is_some()),
+            ("ask.load_range_n", "--load-range", self.load_range.is_some()),
             ("limits.pins", "--pins", self.pins.is_some()),
             ("limits.outer_radius_mm", "--outer-radius", self.outer_radius.is_some()),
             ("limits.outer_width_mm", "--outer-width", self.outer_width.is_some()),
@@ -127,16 +127,16 @@ impl RequestOptions {
         }
     }
 
-    fn add_targets(&self, request: &mut Ask) -> Result<(), Failure> {
+    fn add_targets(&self, request: &mut Request) -> Result<(), Failure> {
         let within = match &self.within {
-            Some(text) => share_of(text).map_err(|e| refused("--within", text, e))?,
+            Some(text) => parse_share(text).map_err(|e| refused("--within", text, e))?,
             None => DEFAULT_WITHIN,
         };
         // The target of a bare number, from value and share.
-        type Bare = fn(f64, f64) -> Wish;
-        let about: Bare = |value, within| Wish::About { value, within };
-        let at_most: Bare = |value, _| Wish::AtMost(value);
-        let at_least: Bare = |value, _| Wish::AtLeast(value);
+        type Bare = fn(f64, f64) -> Requirement;
+        let about: Bare = |value, within| Requirement::About { value, within };
+        let at_most: Bare = |value, _| Requirement::AtMost(value);
+        let at_least: Bare = |value, _| Requirement::AtLeast(value);
         let single = [
             ("--threshold", &self.threshold, Quantity::Threshold, about),
             ("--max-friction", &self.max_friction, Quantity::MaxFriction, at_most),
@@ -145,7 +145,7 @@ impl RequestOptions {
         ];
         for (option, text, quantity, bare) in single {
             let Some(text) = text else { continue };
-            let parsed = parse_wish(text, within).map_err(|e| refused(option, text, e))?;
+            let parsed = parse_requirement(text, within).map_err(|e| refused(option, text, e))?;
             let wish = match (parsed, text.trim().parse::<f64>()) {
                 ((_, None), Ok(number)) => bare(number, within),
                 ((wish, None), Err(_)) => wish,
@@ -155,12 +155,12 @@ impl RequestOptions {
                     return Err(refused(option, text, problem.with_help("leave it out, or use --friction")));
                 }
             };
-            request.targets.push(Target { quantity, wish });
+            request.targets.push(Target { quantity, requirement: wish });
         }
         for text in &self.friction {
-            match parse_wish(text, within).map_err(|e| refused("--friction", text, e))? {
+            match parse_requirement(text, within).map_err(|e| refused("--friction", text, e))? {
                 (wish, Some(load_n)) => {
-                    request.targets.push(Target { quantity: Quantity::Friction { load_n }, wish });
+                    request.targets.push(Target { quantity: Quantity::Friction { load_n }, requirement: wish });
                 }
                 (_, None) => {
                     let problem = Diagnostic::new("the load is missing")
@@ -181,7 +181,7 @@ fn refused(option: &str, value: &str, problem: impl Into<Diagnostic>) -> Failure
 /// Parses `layer_mm` or `layer_mm=1.5..3`.
 fn varied(text: &str) -> Result<Varied, Failure> {
     let (name, range) = text.split_once('=').map_or((text, None), |(name, range)| (name, Some(range)));
-    let parameter = Parameter::named(name.trim()).ok_or_else(|| {
+    let parameter = Parameter::from_name(name.trim()).ok_or_else(|| {
         let known: Vec<_> = Parameter::ALL.iter().map(|p| p.name()).collect();
         let problem = Diagnostic::new("unknown parameter");
         refused("--vary", name, problem.with_help(format!("give some of {}, or none", known.join(", "))))

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use pinswitch_diagnostic::Diagnostic;
-use pinswitch_switch::ask::{Ask, Parameter};
+use pinswitch_switch::request::{Parameter, Request};
 use pinswitch_switch::design_search::{Blocked, Found, Missed, Move, Proposal};
 
 /// Most sources of uncertainty that are listed.
@@ -14,14 +14,14 @@ const MIN_SHARE: f64 = 0.005;
 const MAX_MOVES: usize = 3;
 
 /// Formats the targets, and every proposal with its values, its sources of uncertainty and its sensitivities.
-pub(super) fn table(found: &Found, ask: &Ask) -> String {
+pub(super) fn table(found: &Found, ask: &Request) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = write_table(&mut text, found, ask);
     text
 }
 
-fn write_table(text: &mut String, found: &Found, ask: &Ask) -> std::fmt::Result {
+fn write_table(text: &mut String, found: &Found, ask: &Request) -> std::fmt::Result {
     let targets: Vec<String> = ask.targets.iter().map(ToString::to_string).collect();
     writeln!(text, "targets: {}", targets.join("; "))?;
     for (i, proposal) in found.proposals.iter().enumerate() {
@@ -35,7 +35,7 @@ fn write_proposal(
     text: &mut String,
     name: &str,
     p: &Proposal,
-    ask: &Ask,
+    ask: &Request,
     range_n: (f64, f64),
 ) -> std::fmt::Result {
     let trust = format!("{:?}", p.trust).to_lowercase();
@@ -88,7 +88,7 @@ fn write_proposal(
 }
 
 /// Lists the parameters that were varied or chosen, with their values.
-fn parameters(p: &Proposal, ask: &Ask) -> String {
+fn parameters(p: &Proposal, ask: &Request) -> String {
     let is_chosen = |parameter: Parameter| {
         ask.vary.parameters.iter().any(|v| v.parameter == parameter)
             || (parameter == Parameter::PinDiameterMm && !ask.materials.pin_diameter_mm.is_empty())

@@ -1,6 +1,6 @@
 //! When two answers differ in kind, and not only in the last digit.
 
-use crate::ask::Parameter;
+use crate::request::Parameter;
 use crate::config::Configuration;
 
 /// Ratio of a parameter from which on another material or another mould is meant.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::candidate::Trial;
-use crate::ask::{Parameter, Quantity};
+use crate::request::{Parameter, Quantity};
 use crate::config::Configuration;
 
 /// Relative step: beyond the mesh of the physics, within its bends.

@@ -7,10 +7,10 @@
 
 use std::time::Instant;
 
-use pinswitch::switch::request::Request;
 use pinswitch::switch::config::Configuration;
 use pinswitch::switch::design::Design;
 use pinswitch::switch::design_search::{Found, Options, PublishedPhysics, Silent, search, simulated};
+use pinswitch::switch::request::Request;
 
 /// Number of simulated prints.
 const PRINTS: usize = 2000;
@@ -81,7 +81,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Prints the row of a request; returns the number of proposals with a wrong probability.
-fn row(number: usize, ask: &Request, found: &Found, seconds: f64) -> Result<usize, Box<dyn std::error::Error>> {
+fn row(
+    number: usize,
+    ask: &Request,
+    found: &Found,
+    seconds: f64,
+) -> Result<usize, Box<dyn std::error::Error>> {
     let targets: Vec<String> = ask.targets.iter().map(ToString::to_string).collect();
     let targets = targets.join("; ");
     let Some(best) = found.proposals.first() else {

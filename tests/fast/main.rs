@@ -35,7 +35,7 @@ mod several_sessions;
 mod slicing;
 mod solid_files;
 mod table_columns;
-mod verification;
 mod terminal;
+mod verification;
 mod view;
 mod writing;

@@ -21,9 +21,9 @@ use pinswitch_friction::Substrate;
 use pinswitch_simulation::{Plan, simulate};
 use pinswitch_solid::files::{read_stl, read_three_mf, stl_bytes};
 use pinswitch_solid::validity::{Expectation, examine};
-use pinswitch_switch::request::Request;
 use pinswitch_switch::config::{Configuration, read, read_over, to_toml};
 use pinswitch_switch::feasibility;
+use pinswitch_switch::request::Request;
 use sha2::{Digest, Sha256};
 
 /// Most characters of an error.

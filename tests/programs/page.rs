@@ -144,7 +144,9 @@ fn the_preview_follows_its_file_and_keeps_the_last_good_state() {
 
     std::fs::write(&file, &good).unwrap();
     let state = preview.state(3);
-    assert!(state["trouble"].is_null() && state["data"]["layout"].as_str().unwrap().contains("3 of 15: 5 8 11"));
+    assert!(
+        state["trouble"].is_null() && state["data"]["layout"].as_str().unwrap().contains("3 of 15: 5 8 11")
+    );
 }
 
 #[test]

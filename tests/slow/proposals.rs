@@ -24,8 +24,13 @@ const CHOICES: [(f64, &[&str]); 9] = [
     (0.1, &["parts.guide_pulley=true", "layout.substrate=abs"]),
     (0.2, &["fasteners.head_recess_mm=1", "mould.layers=3"]),
 ];
-const PINS: [&str; 5] =
-    ["layout.pins=[5, 8, 11]", "layout.pins=[4]", "layout.pins=[1, 2, 4]", "layout.pins=[3, 5, 7, 9, 11, 13]", "layout.pins=[8, 15]"];
+const PINS: [&str; 5] = [
+    "layout.pins=[5, 8, 11]",
+    "layout.pins=[4]",
+    "layout.pins=[1, 2, 4]",
+    "layout.pins=[3, 5, 7, 9, 11, 13]",
+    "layout.pins=[8, 15]",
+];
 /// What changes no part, or only how finely it is meshed, which takes minutes at the lower end.
 const LEFT_ALONE: [&str; 2] = ["mesh.chord_tolerance_mm", "friction.points"];
 
@@ -206,7 +211,9 @@ fn followed_proposals_build() {
     let quantile = |q: f64| tally.times.get(((tally.times.len() as f64 - 1.0) * q) as usize);
     println!("{cases} cases, {} refused, {} without a proposal", tally.refused, tally.without);
     for (from, [followed, built, another, same]) in &tally.counts {
-        println!("{from}: followed {followed}, built {built}, another refusal {another}, same refusal {same}");
+        println!(
+            "{from}: followed {followed}, built {built}, another refusal {another}, same refusal {same}"
+        );
     }
     println!("a refusal takes {:?} in the median, {:?} at 95 %", quantile(0.5), quantile(0.95));
     println!("{}", tally.faults.join("\n"));
@@ -217,9 +224,17 @@ fn timing() {
     for seed in 0..200u64 {
         let set = case(seed);
         let c = configuration(&set);
-        if pinswitch_switch::design::Design::new(c.clone()).is_ok() { continue; }
+        if pinswitch_switch::design::Design::new(c.clone()).is_ok() {
+            continue;
+        }
         let start = Instant::now();
         let error = feasibility::design(c.clone()).unwrap_err();
-        println!("{seed} {:?} {} {} {}", start.elapsed(), set.len(), alternatives(&error).len(), error.changes().len());
+        println!(
+            "{seed} {:?} {} {} {}",
+            start.elapsed(),
+            set.len(),
+            alternatives(&error).len(),
+            error.changes().len()
+        );
     }
 }

@@ -70,8 +70,8 @@ pub(crate) fn build(
 ) -> Result<(Built, Prediction), Refusal> {
     let design = feasibility::design(configuration)?;
     let prediction = cache.predictions.predict(&design, model)?;
-    let built =
-        feasibility::build_following(design, cache.built.as_ref(), &cache.caps).map_err(|e| set_refusal(e.into()))?;
+    let built = feasibility::build_following(design, cache.built.as_ref(), &cache.caps)
+        .map_err(|e| set_refusal(e.into()))?;
     Ok((built, prediction))
 }
 

@@ -4,13 +4,13 @@ use pinswitch_calibration::ModelFile;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::FrictionCurve;
 use pinswitch_friction::published::GROOVES;
-use pinswitch_switch::request::{DEFAULT_WITHIN, Quantity, Request, Requirement, Target, Vary};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::design_search::{
     Belief, Options, Proposal, PublishedPhysics, Silent, TargetResult, load_range_n, search,
 };
 use pinswitch_switch::feasibility;
 use pinswitch_switch::prediction::predicted_curve;
+use pinswitch_switch::request::{DEFAULT_WITHIN, Quantity, Request, Requirement, Target, Vary};
 use serde::Serialize;
 
 use crate::Answer;
@@ -99,11 +99,12 @@ fn result(request: &SearchRequest) -> Result<SearchResult, Refusal> {
 /// make the search many times as long.
 fn ask(request: &SearchRequest) -> Request {
     let about = |value| Requirement::About { value, within: DEFAULT_WITHIN };
-    let threshold = request.threshold_n.map(|n| Target { quantity: Quantity::Threshold, requirement: about(n) });
-    let friction = request
-        .friction
-        .iter()
-        .map(|at| Target { quantity: Quantity::Friction { load_n: at.load_n }, requirement: about(at.friction_n) });
+    let threshold =
+        request.threshold_n.map(|n| Target { quantity: Quantity::Threshold, requirement: about(n) });
+    let friction = request.friction.iter().map(|at| Target {
+        quantity: Quantity::Friction { load_n: at.load_n },
+        requirement: about(at.friction_n),
+    });
     let vary = Vary { pattern: true, parameters: Vec::new() };
     Request { targets: threshold.into_iter().chain(friction).collect(), vary, ..Request::default() }
 }

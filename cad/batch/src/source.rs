@@ -10,7 +10,9 @@ use sha2::{Digest, Sha256};
 use toml_edit::Document;
 
 use super::hexadecimal;
-use pinswitch_switch::config::{ConfigError, Configuration, Location, Name, read, syntax_error, text, to_toml};
+use pinswitch_switch::config::{
+    ConfigError, Configuration, Location, Name, read, syntax_error, text, to_toml,
+};
 use pinswitch_switch::templates;
 
 /// Longest sweep: every value of its lists is held in memory, at a hundred times its length.
@@ -172,8 +174,7 @@ fn with_preset(
     let Some((text, name)) = preset else { return Ok(over) };
     let (mut all, _) = read(text, name)?;
     for parameter in Configuration::PARAMETERS.iter().filter(|p| given.contains(&p.path())) {
-        (parameter.set)(&mut all, &(parameter.get)(&over))
-            .map_err(|e| e.in_field(parameter.path(), ""))?;
+        (parameter.set)(&mut all, &(parameter.get)(&over)).map_err(|e| e.in_field(parameter.path(), ""))?;
     }
     Ok(all)
 }

@@ -123,9 +123,8 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Conf
         let place = source.place(item.span());
         let Some((_, keys)) = tables().find(|(table, _)| *table == name) else {
             let known = tables().map(|(table, _)| table).collect::<Vec<_>>().join(", ");
-            return Err(
-                config_error(name, None, "is no table of a sweep", &format!("known are {known}")).or_at(&place)
-            );
+            return Err(config_error(name, None, "is no table of a sweep", &format!("known are {known}"))
+                .or_at(&place));
         };
         let tables: Vec<&dyn TableLike> = match item.as_array_of_tables() {
             Some(tables) => tables.iter().map(|t| t as &dyn TableLike).collect(),
@@ -138,7 +137,9 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Conf
             if !keys.contains(&key) {
                 let place = source.place(item.span());
                 let known = format!("known are {}", keys.join(", "));
-                return Err(config_error(&format!("{name}.{key}"), None, "is no known key", &known).or_at(&place));
+                return Err(
+                    config_error(&format!("{name}.{key}"), None, "is no known key", &known).or_at(&place)
+                );
             }
         }
     }

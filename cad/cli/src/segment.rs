@@ -69,8 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             files.push(OutputFile { name, bytes: svg.into_bytes() });
         }
     }
-    let SegmentedRun { rows, report } =
-        run.finish(&name).map_err(Failure::bad_input)?;
+    let SegmentedRun { rows, report } = run.finish(&name).map_err(Failure::bad_input)?;
     // As a value, whose keys are sorted: readers of the file rely on its bytes.
     let value = serde_json::to_value(&report).map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
     files.push(OutputFile { name: format!("{stem}.json"), bytes: to_json(&value)? });

@@ -5,9 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_solid::files::read_three_mf;
-use pinswitch_switch::config::{
-    Configuration, FieldLocations, Name, assign, read, read_over, text,
-};
+use pinswitch_switch::config::{Configuration, FieldLocations, Name, assign, read, read_over, text};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::feasibility;
@@ -156,8 +154,7 @@ impl Source {
             configuration.switch.name = Name::from_file_stem(file);
         }
         for assignment in &self.assignments {
-            assign(&mut configuration, assignment)
-                .map_err(|e| Failure::bad_input(e.or_in_file("--set")))?;
+            assign(&mut configuration, assignment).map_err(|e| Failure::bad_input(e.or_in_file("--set")))?;
         }
         if let Some(mm) = self.tolerance {
             assign(&mut configuration, &format!("{TOLERANCE}={mm:?}"))
@@ -210,9 +207,7 @@ fn read_configuration_text(name: &str) -> Result<(String, String, Kind), Failure
 /// Returns the text of a configuration: the file itself, or the configuration in a 3MF that pinswitch wrote.
 fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Failure> {
     if !bytes.starts_with(b"PK") {
-        return text(bytes, file)
-            .map(|text| (text, Kind::Text))
-            .map_err(Failure::bad_input);
+        return text(bytes, file).map(|text| (text, Kind::Text)).map_err(Failure::bad_input);
     }
     let package = read_three_mf(&bytes).map_err(|e| Failure::bad_input(unconverted(e).or_in_file(file)))?;
     let source = source_of_set_with(Path::new(file), &bytes);

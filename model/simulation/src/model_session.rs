@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_calibration::ModelFile;
+use pinswitch_calibration::table::{Frame, PlateauRow};
 use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::Direction;
 use rand::SeedableRng;

@@ -60,7 +60,9 @@ impl Rows {
             fields.iter().enumerate().find(|(i, f)| fields[..*i].iter().any(|g| g.path() == f.path()));
         if let Some((_, field)) = twice {
             let remedy = "name it in one column, and take the other out";
-            return Err(config_error(&field.path(), None, "is named by two columns", remedy).or_at(&at_header()));
+            return Err(
+                config_error(&field.path(), None, "is named by two columns", remedy).or_at(&at_header())
+            );
         }
         let (mut record, mut starts) = (csv::ByteRecord::new(), Vec::new());
         loop {

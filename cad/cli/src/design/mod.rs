@@ -12,12 +12,12 @@ use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_friction::layout_search::LayoutCandidate;
 use pinswitch_friction::published::GROOVES;
 use pinswitch_report::{TargetRegion, pareto_svg};
-use pinswitch_switch::request::{Request, Parameter, Quantity};
 use pinswitch_switch::config::{Configuration, Name, to_toml};
 use pinswitch_switch::design_search::{
     Belief, Blocked, Found, Options, Proposal, PublishedPhysics, load_range_n, search,
 };
 use pinswitch_switch::output::OutputFile;
+use pinswitch_switch::request::{Parameter, Quantity, Request};
 use serde::Serialize;
 
 use super::calibrated_curve::read_model;
@@ -95,7 +95,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let base = arguments.source.with_preset(request.limits.preset.as_deref()).design()?;
     let options = options(arguments)?;
     check_pins(&request, base.configuration())?;
-    request.check_loads(load_range_n(base.configuration(), &request))
+    request
+        .check_loads(load_range_n(base.configuration(), &request))
         .map_err(|e| Failure::bad_input(unconverted(e)))?;
     if arguments.model.is_some() {
         check_model_scope(&request, base.configuration())?;
@@ -232,7 +233,8 @@ fn files(found: &Found, report: &Report<'_>, request: &Request) -> Result<Vec<Ou
 /// for either.
 fn target_region(request: &Request, range_n: (f64, f64)) -> Option<TargetRegion> {
     let interval = |is_meant: &dyn Fn(Quantity) -> bool| {
-        let intervals = request.targets.iter().filter(|t| is_meant(t.quantity)).map(|t| t.requirement.interval());
+        let intervals =
+            request.targets.iter().filter(|t| is_meant(t.quantity)).map(|t| t.requirement.interval());
         intervals.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1)))
     };
     let threshold = interval(&|q| q == Quantity::Threshold);

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::request::{
-    Request, DEFAULT_WITHIN, FORMS, Parameter, Quantity, Target, Varied, Requirement, parse_requirement, parse_share,
+    DEFAULT_WITHIN, FORMS, Parameter, Quantity, Request, Requirement, Target, Varied, parse_requirement,
+    parse_share,
 };
 
 use crate::Failure;
@@ -160,7 +161,9 @@ impl RequestOptions {
         for text in &self.friction {
             match parse_requirement(text, within).map_err(|e| refused("--friction", text, e))? {
                 (wish, Some(load_n)) => {
-                    request.targets.push(Target { quantity: Quantity::Friction { load_n }, requirement: wish });
+                    request
+                        .targets
+                        .push(Target { quantity: Quantity::Friction { load_n }, requirement: wish });
                 }
                 (_, None) => {
                     let problem = Diagnostic::new("the load is missing")

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use pinswitch_diagnostic::Diagnostic;
-use pinswitch_switch::request::{Parameter, Request};
 use pinswitch_switch::design_search::{Blocked, Found, Missed, Move, Proposal};
+use pinswitch_switch::request::{Parameter, Request};
 
 /// Most sources of uncertainty that are listed.
 const MAX_SOURCES: usize = 3;

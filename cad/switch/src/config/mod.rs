@@ -17,8 +17,8 @@ pub use parameters::{
     Configuration, FastenerKind, MouldKind, MouldTable, MountKind, Paper, Projection, SlotKind, Slots,
 };
 pub use pinswitch_diagnostic::{Change, Diagnostic, Location};
-pub use read::{ClampedReading, FieldLocations, assign, read, read_clamped, read_over};
 pub(crate) use read::shown;
+pub use read::{ClampedReading, FieldLocations, assign, read, read_clamped, read_over};
 pub use reference::{reference_toml, to_toml};
 pub use rewrite::rewritten;
 pub use text::text;

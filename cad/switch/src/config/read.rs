@@ -53,8 +53,11 @@ pub struct ClampedReading {
 /// # Errors
 /// As [`read`], apart from numbers out of range.
 pub fn read_clamped(base: Configuration, text: &str, file: &str) -> Result<ClampedReading, Diagnostic> {
-    let mut reading =
-        ClampedReading { configuration: base, locations: FieldLocations::default(), out_of_range: Vec::new() };
+    let mut reading = ClampedReading {
+        configuration: base,
+        locations: FieldLocations::default(),
+        out_of_range: Vec::new(),
+    };
     match read_into(&mut reading, text, file) {
         // The first error of the text comes first, whatever its kind.
         Err(error) => Err(reading.out_of_range.into_iter().next().unwrap_or(error)),
@@ -166,11 +169,7 @@ impl FieldLocations {
     }
 }
 
-fn set(
-    c: &mut Configuration,
-    parameter: &Parameter<Configuration>,
-    value: &Value,
-) -> Result<(), Diagnostic> {
+fn set(c: &mut Configuration, parameter: &Parameter<Configuration>, value: &Value) -> Result<(), Diagnostic> {
     (parameter.set)(c, value).map_err(|error| {
         error
             .in_field(parameter.path(), value.clone().decorated("", "").to_string())

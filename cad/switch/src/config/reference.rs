@@ -87,10 +87,7 @@ mod tests {
                 "[shell]\nwidth_mm = -3\n",
                 "a.toml:2:12: shell.width_mm = -3: outside 2 to 100; give a number from 2 to 100",
             ),
-            (
-                "[shell]\nwith_mm = 3\n",
-                "a.toml:2:1: shell.with_mm: unknown key; did you mean \"width_mm\"?",
-            ),
+            ("[shell]\nwith_mm = 3\n", "a.toml:2:1: shell.with_mm: unknown key; did you mean \"width_mm\"?"),
             ("\n\n[shel]\nwidth_mm = 3\n", "a.toml:3:2: shel: unknown table; did you mean \"shell\"?"),
             ("[shell]\nwidth_mm = 3\n[noise]\n", "a.toml:3:2: noise: unknown table"),
             (

@@ -6,8 +6,8 @@ use super::candidate::Trial;
 use super::refine::{Aim, Place, refined};
 use super::relaxed::usual;
 use super::space::{Space, is_predictable};
-use crate::request::{Request, Limits, Materials, Parameter, Target, Vary};
 use crate::config::Configuration;
+use crate::request::{Limits, Materials, Parameter, Request, Target, Vary};
 use pinswitch_friction::{pluralise, sort_by_number};
 
 /// Steps of the search over all parameters together.
@@ -211,7 +211,9 @@ fn best_move(
         tried.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| change(a.0).total_cmp(&change(b.0))))?;
     let forbidden_by = forbidden(trial.request, space, parameter, from, to)
         .or_else(|| trial.broken_limit(&moved))
-        .unwrap_or_else(|| "the search, which stopped near to it: request again with more --starts".to_owned());
+        .unwrap_or_else(|| {
+            "the search, which stopped near to it: request again with more --starts".to_owned()
+        });
     let missed = all_missed(trial, &moved);
     Some(Move { parameter, from, to, meets: miss == 0.0, missed, miss, forbidden_by })
 }

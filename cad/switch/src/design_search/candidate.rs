@@ -4,10 +4,10 @@ use pinswitch_friction::{Substrate, Transition};
 
 use super::belief::{Belief, Believed, ModelError, Part};
 use super::curve::Curve;
-use crate::request::{Request, Quantity, SOURCES, Target};
 use crate::config::Configuration;
 use crate::design::{Design, Dimensions, contact_of, is_accepted};
 use crate::prediction::evenly;
+use crate::request::{Quantity, Request, SOURCES, Target};
 
 /// Loads between the ends, evenly in their logarithm.
 const LOADS: usize = 22;
@@ -42,7 +42,12 @@ pub(super) struct Draw {
 }
 
 impl<'a> Trial<'a> {
-    pub(super) fn new(request: &'a Request, belief: &'a dyn Belief, range_n: (f64, f64), points: usize) -> Self {
+    pub(super) fn new(
+        request: &'a Request,
+        belief: &'a dyn Belief,
+        range_n: (f64, f64),
+        points: usize,
+    ) -> Self {
         let (low, high) = ((range_n.0 / REACH).max(0.2), range_n.1 * REACH);
         let mut loads_n: Vec<f64> =
             (0..LOADS).map(|i| low * libm::pow(high / low, i as f64 / (LOADS - 1) as f64)).collect();
@@ -53,7 +58,14 @@ impl<'a> Trial<'a> {
         }));
         loads_n.sort_by(f64::total_cmp);
         loads_n.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * b.abs());
-        Self { request, belief, range_n, loads_n, predicted_n: evenly(range_n, points), has_soft_sizes: false }
+        Self {
+            request,
+            belief,
+            range_n,
+            loads_n,
+            predicted_n: evenly(range_n, points),
+            has_soft_sizes: false,
+        }
     }
 
     /// The same loads for another request.
@@ -251,8 +263,8 @@ pub(super) fn outer_width_mm(c: &Configuration) -> f64 {
 mod tests {
     use super::super::PublishedPhysics;
     use super::*;
-    use crate::request::{Target, Requirement};
     use crate::prediction::predicted_curve;
+    use crate::request::{Requirement, Target};
 
     #[test]
     fn a_threshold_is_the_one_that_is_predicted() {

@@ -7,8 +7,8 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use pinswitch_friction::sort_by_number;
 
 use super::candidate::Trial;
-use crate::request::{Quantity, SOURCES, Target, Tolerances};
 use crate::config::Configuration;
+use crate::request::{Quantity, SOURCES, Target, Tolerances};
 
 /// Standard deviation that stands in before anything is known of a candidate.
 pub(super) const GUESSED_SD: f64 = 0.12;

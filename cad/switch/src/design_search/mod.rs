@@ -17,10 +17,10 @@ mod space;
 use pinswitch_friction::layout_search::LayoutCandidate;
 use pinswitch_friction::sort_by_number;
 
-use crate::request::{Request, Quantity, Requirement};
 use crate::config::Configuration;
 use crate::design::Design;
 use crate::parallel::map_each;
+use crate::request::{Quantity, Request, Requirement};
 use candidate::Trial;
 use linear::guessed_cost;
 use refine::{Aim, Place, cost, refined};

@@ -8,9 +8,9 @@ use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::candidate::{Draw, Trial};
-use crate::request::SOURCES;
 use crate::config::Configuration;
 use crate::parallel::map_each;
+use crate::request::SOURCES;
 
 /// How often the draws met the request.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -87,7 +87,9 @@ pub(super) fn probability(
         })
         .collect();
     let all = share(
-        made.iter().filter(|values| targets.iter().zip(*values).all(|(t, v)| t.requirement.is_met(*v))).count(),
+        made.iter()
+            .filter(|values| targets.iter().zip(*values).all(|(t, v)| t.requirement.is_met(*v)))
+            .count(),
     );
     Some(Probability { all, each, band, draws: count })
 }
@@ -96,7 +98,7 @@ pub(super) fn probability(
 mod tests {
     use super::super::{Belief, PublishedPhysics};
     use super::*;
-    use crate::request::{Request, Quantity, Target, Tolerances, Requirement};
+    use crate::request::{Quantity, Request, Requirement, Target, Tolerances};
 
     #[test]
     fn bands_of_parts_without_tolerances_are_those_of_the_law() {

@@ -11,10 +11,10 @@ use super::curve::Curve;
 use super::linear::{Linear, VarianceShare};
 use super::probability::{Probability, probability};
 use super::sensitivity::{Sensitivity, sensitivities};
-use crate::request::{Parameter, Quantity, Target};
 use crate::config::Configuration;
 use crate::design::Design;
 use crate::parts::can_be_printed;
+use crate::request::{Parameter, Quantity, Target};
 
 /// One target and what the proposal has.
 #[derive(Clone, Debug, PartialEq, Serialize)]

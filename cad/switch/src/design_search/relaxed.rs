@@ -6,9 +6,9 @@ use super::candidate::Trial;
 use super::refine::{Aim, cost, refined};
 use super::space::Space;
 use super::{GUESSED_STEPS, Silent, enumerate, starts};
-use crate::request::{Request, Parameter, Varied};
 use crate::config::Configuration;
 use crate::parallel::map_each;
+use crate::request::{Parameter, Request, Varied};
 
 /// Patterns whose parameters are searched.
 const STARTS: usize = 4;

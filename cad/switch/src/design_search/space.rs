@@ -2,9 +2,9 @@
 
 use pinswitch_friction::layout_search::{MAX_GROOVES, patterns};
 
-use crate::request::{Request, Parameter, Varied};
 use crate::config::Configuration;
 use crate::design::contact_of;
+use crate::request::{Parameter, Request, Varied};
 
 /// A base configuration and what may change on it.
 pub(super) struct Space {
@@ -152,7 +152,7 @@ pub(super) fn is_predictable(configuration: &Configuration) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::request::{Quantity, Target, Requirement};
+    use crate::request::{Quantity, Requirement, Target};
 
     #[test]
     fn materials_are_combined_and_places_are_within_their_ranges() {

@@ -8,7 +8,8 @@ fn base() -> Design {
 }
 
 fn request(targets: Vec<(Quantity, Requirement)>) -> Request {
-    let targets = targets.into_iter().map(|(quantity, requirement)| Target { quantity, requirement }).collect();
+    let targets =
+        targets.into_iter().map(|(quantity, requirement)| Target { quantity, requirement }).collect();
     Request { targets, ..Request::default() }
 }
 

@@ -51,7 +51,8 @@ pub(crate) fn nearest_step<T>(
     mut value_at: impl FnMut(i64) -> Option<T>,
 ) -> Option<(i64, T)> {
     let sign = (to - from).signum();
-    let mut steps: Vec<i64> = effort.steps((to - from).abs()).chain(extra.map(|e| (e - from) * sign)).collect();
+    let mut steps: Vec<i64> =
+        effort.steps((to - from).abs()).chain(extra.map(|e| (e - from) * sign)).collect();
     steps.retain(|step| (1..=(to - from).abs()).contains(step));
     steps.sort_unstable();
     steps.dedup();
@@ -268,10 +269,16 @@ mod tests {
     fn a_line_ends_at_the_range() {
         let c = Configuration::default();
         let widest = Line::along(Direction::Raise("shell.width_mm"), &c).unwrap();
-        assert_eq!(widest.nearest(&c, &|c| c.shell.width_mm >= 17.2341, Effort::THOROUGH).unwrap().shell.width_mm, 17.235);
+        assert_eq!(
+            widest.nearest(&c, &|c| c.shell.width_mm >= 17.2341, Effort::THOROUGH).unwrap().shell.width_mm,
+            17.235
+        );
         assert_eq!(widest.nearest(&c, &|c| c.shell.width_mm > 100.0, Effort::THOROUGH), None);
         let fewest = Line::along(Direction::Lower("segment.grooves"), &c).unwrap();
-        assert_eq!(fewest.nearest(&c, &|c| c.segment.grooves <= 4, Effort::QUICK).unwrap().segment.grooves, 4);
+        assert_eq!(
+            fewest.nearest(&c, &|c| c.segment.grooves <= 4, Effort::QUICK).unwrap().segment.grooves,
+            4
+        );
         assert!(Line::along(Direction::Lower("print.elephant_foot_mm"), &c).is_none());
     }
 

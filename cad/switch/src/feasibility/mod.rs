@@ -69,11 +69,7 @@ pub fn build(design: Design) -> Result<Built, BuildError> {
 ///
 /// # Errors
 /// As [`build`].
-pub fn build_following(
-    design: Design,
-    before: Option<&Built>,
-    caps: &CapCache,
-) -> Result<Built, BuildError> {
+pub fn build_following(design: Design, before: Option<&Built>, caps: &CapCache) -> Result<Built, BuildError> {
     let configuration = design.configuration().clone();
     Built::following(design, before, caps).map_err(|error| explained(error, &configuration))
 }
@@ -131,7 +127,9 @@ fn explained(error: BuildError, configuration: &Configuration) -> BuildError {
     let Some(first) = found.first() else { return error };
     // A part that does not build for a reason that no rule knows: the first change names the field.
     let subject = match problem.subject.as_str() {
-        "" => proposal::changes(configuration, first, "").first().map(|c| c.field.clone()).unwrap_or_default(),
+        "" => {
+            proposal::changes(configuration, first, "").first().map(|c| c.field.clone()).unwrap_or_default()
+        }
         subject => subject.to_owned(),
     };
     let help = found.iter().map(|c| proposal::instruction(configuration, c, &subject)).collect();

@@ -39,10 +39,7 @@ pub struct Proposal {
 
 /// The changes from `start` to `c`, with that of `subject` first.
 pub(super) fn changes(start: &Configuration, c: &Configuration, subject: &str) -> Vec<Change> {
-    let change = |p: &Parameter<Configuration>| Change {
-        field: p.path(),
-        value: shown(&(p.get)(c)),
-    };
+    let change = |p: &Parameter<Configuration>| Change { field: p.path(), value: shown(&(p.get)(c)) };
     let mut changes: Vec<Change> = differing(start, c).map(change).collect();
     changes.sort_by_key(|change| change.field != subject);
     changes

@@ -36,7 +36,12 @@ pub(super) fn proposals(problem: &Problem<'_>) -> Vec<Configuration> {
 fn lines_of(problem: &Problem<'_>, parameter: &'static Parameter<Configuration>) -> Vec<Line> {
     let c = problem.start;
     let both = [Line::below(parameter, c), Line::above(parameter, c)];
-    problem.back(parameter).into_iter().chain(both.into_iter().flatten()).chain([Line::choices(parameter, c)]).collect()
+    problem
+        .back(parameter)
+        .into_iter()
+        .chain(both.into_iter().flatten())
+        .chain([Line::choices(parameter, c)])
+        .collect()
 }
 
 /// The nearest verified configurations on the first lines that have one.
@@ -98,9 +103,7 @@ fn combined(problem: &Problem<'_>) -> Option<Configuration> {
     let pair = paired(problem, restored.as_ref());
     let nearer = |c: &Configuration| Distance::new(problem.start, c);
     match (restored, pair) {
-        (Some(restored), Some(pair)) => {
-            Some(if nearer(&pair) < nearer(&restored) { pair } else { restored })
-        }
+        (Some(restored), Some(pair)) => Some(if nearer(&pair) < nearer(&restored) { pair } else { restored }),
         (restored, pair) => restored.or(pair),
     }
 }
@@ -179,13 +182,10 @@ fn paired(problem: &Problem<'_>, restored: Option<&Configuration>) -> Option<Con
 
 /// Whether all changed numbers are within a factor of two, and no screw is lost that the assembly needs.
 pub(crate) fn is_small_change(start: &Configuration, c: &Configuration) -> bool {
-    let is_small = |p: &'static Parameter<Configuration>| {
-        match (number(&(p.get)(start)), number(&(p.get)(c))) {
-            (Some(from), Some(to)) if from != 0.0 => {
-                (1.0 / SMALL_RATIO..=SMALL_RATIO).contains(&(to / from))
-            }
-            _ => true,
-        }
+    let is_small = |p: &'static Parameter<Configuration>| match (number(&(p.get)(start)), number(&(p.get)(c)))
+    {
+        (Some(from), Some(to)) if from != 0.0 => (1.0 / SMALL_RATIO..=SMALL_RATIO).contains(&(to / from)),
+        _ => true,
     };
     let loses_screws = c.fasteners.count < LEAST_SCREWS && c.fasteners.count < start.fasteners.count;
     !loses_screws && differing(start, c).all(is_small)

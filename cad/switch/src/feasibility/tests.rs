@@ -91,7 +91,12 @@ fn proposals_for_extreme_values_are_feasible() {
         }
     }
     assert!(errors > 300, "{errors}");
-    assert!(faults.is_empty(), "{} of {errors}:\n{}", faults.len(), faults[..faults.len().min(25)].join("\n"));
+    assert!(
+        faults.is_empty(),
+        "{} of {errors}:\n{}",
+        faults.len(),
+        faults[..faults.len().min(25)].join("\n")
+    );
 }
 
 #[test]

@@ -87,7 +87,8 @@ impl Part {
             let is_thicker = |c: &Configuration| {
                 places(c).is_some_and(|p| p.first().is_none_or(|p| p.thickness_mm > left_mm + ALIKE_MM))
             };
-            let found = self.thickening().iter().find_map(|d| advice(&c, std::slice::from_ref(d), &is_thicker));
+            let found =
+                self.thickening().iter().find_map(|d| advice(&c, std::slice::from_ref(d), &is_thicker));
             let Some(step) = found else { break };
             c = step.configuration;
             steps.push(step.instruction);

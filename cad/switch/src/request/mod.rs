@@ -129,7 +129,8 @@ fn invalid(field: impl Into<String>, value: impl Into<String>, problem: &str, he
 
 /// The error of targets that exclude each other.
 fn contradiction(a: &Target, b: &Target, reason: &str) -> Diagnostic {
-    Diagnostic::new(format!("'{a}' and '{b}' contradict each other{reason}")).with_help("drop one, or widen it")
+    Diagnostic::new(format!("'{a}' and '{b}' contradict each other{reason}"))
+        .with_help("drop one, or widen it")
 }
 
 impl Request {
@@ -276,8 +277,11 @@ impl Request {
         }
         for tendon in &self.materials.tendon {
             if !((0.1..=6.0).contains(&tendon.rope_diameter_mm) && (0.0..=2.0).contains(&tendon.coating_mm)) {
-                let value =
-                    format!("{} mm with {} mm of coating", short(tendon.rope_diameter_mm), short(tendon.coating_mm));
+                let value = format!(
+                    "{} mm with {} mm of coating",
+                    short(tendon.rope_diameter_mm),
+                    short(tendon.coating_mm)
+                );
                 let help = "give 0.1 to 6 mm of rope and 0 to 2 mm of coating";
                 return Err(invalid("materials.tendon", value, "not a tendon that a switch can have", help));
             }
@@ -306,8 +310,7 @@ mod tests {
 
     #[test]
     fn contradictions_name_both_sides() {
-        let friction =
-            |requirement| Target { quantity: Quantity::Friction { load_n: 50.0 }, requirement };
+        let friction = |requirement| Target { quantity: Quantity::Friction { load_n: 50.0 }, requirement };
         let error = request(vec![friction(Requirement::AtMost(3.0)), friction(Requirement::AtLeast(5.0))])
             .check()
             .unwrap_err()

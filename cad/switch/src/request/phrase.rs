@@ -71,7 +71,10 @@ pub(super) fn is_share(value: f64) -> bool {
 }
 
 pub(super) fn not_a_share(value: &str) -> ValueError {
-    ValueError::new(format!("{value} is not a share"), "give a number above 0 and below 1, such as 0.1 or 10%")
+    ValueError::new(
+        format!("{value} is not a share"),
+        "give a number above 0 and below 1, such as 0.1 or 10%",
+    )
 }
 
 /// A number as messages show it: 1e300 would take hundreds of digits.

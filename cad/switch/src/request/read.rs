@@ -131,7 +131,8 @@ impl Targets {
         }
         for (i, entry) in self.friction.iter().enumerate() {
             let load = entry.load_n.to_string();
-            let load_n = positive(entry.load_n).map_err(|e| e.in_field(format!("ask.friction[{i}].load_n"), load))?;
+            let load_n =
+                positive(entry.load_n).map_err(|e| e.in_field(format!("ask.friction[{i}].load_n"), load))?;
             let bounds = [entry.at_most_n, entry.at_least_n, entry.about_n, entry.within];
             let requirement = requirement(bounds, within)
                 .map_err(|e| e.in_field(format!("ask.friction[{i}]"), format!("load_n {}", entry.load_n)))?;
@@ -158,7 +159,8 @@ fn requirement_of(value: &Value, within: f64) -> Result<Requirement, ValueError>
                 return Err(ValueError::new(format!("unknown key {key}"), help));
             }
             let number = |key: &str| {
-                let error = |v: &Value| ValueError::new(format!("{key} = {v} is not a number"), "give a number");
+                let error =
+                    |v: &Value| ValueError::new(format!("{key} = {v} is not a number"), "give a number");
                 table.get(key).map(|v| float(v).ok_or_else(|| error(v))).transpose()
             };
             let [at_most, at_least, about, own_within] = KEYS.map(number);
@@ -195,9 +197,7 @@ fn requirement(
             Ok(Requirement::About { value: positive(value)?, within })
         }
         (None, None, None) => Err(ValueError::new("no requirement", "give at most, at least or about")),
-        _ => {
-            Err(ValueError::new("about excludes at most and at least", "give about, or the other two"))
-        }
+        _ => Err(ValueError::new("about excludes at most and at least", "give about, or the other two")),
     }
 }
 

@@ -185,7 +185,9 @@ impl Target {
             return Err(invalid("load ", load_n, LOADS_N));
         }
         let values = match self.requirement {
-            Requirement::AtMost(value) | Requirement::AtLeast(value) | Requirement::About { value, .. } => [value; 2],
+            Requirement::AtMost(value) | Requirement::AtLeast(value) | Requirement::About { value, .. } => {
+                [value; 2]
+            }
             Requirement::Between(low, high) => [low, high],
         };
         let range = self.quantity.range();
@@ -220,8 +222,7 @@ mod tests {
 
     #[test]
     fn contradictions_concern_one_quantity() {
-        let friction =
-            |load_n, requirement| Target { quantity: Quantity::Friction { load_n }, requirement };
+        let friction = |load_n, requirement| Target { quantity: Quantity::Friction { load_n }, requirement };
         let (a, b) = (friction(50.0, Requirement::AtMost(3.0)), friction(50.0, Requirement::AtLeast(5.0)));
         assert!(a.contradicts(&b) && b.contradicts(&a));
         assert!(!a.contradicts(&friction(40.0, Requirement::AtLeast(5.0))));

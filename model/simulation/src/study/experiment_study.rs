@@ -7,7 +7,7 @@ use pinswitch_calibration::experiment::{
 };
 use pinswitch_calibration::inference::{FoundEffect, Levels};
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
-use pinswitch_calibration::{Answer, SessionPlan, PlanQuestion, Calibration, ModelFile, Verdict, calibrate};
+use pinswitch_calibration::{Answer, Calibration, ModelFile, PlanQuestion, SessionPlan, Verdict, calibrate};
 
 use super::answer_forecasts::{AnswerForecast, table_of};
 use super::case::{Case, Group, Truth};

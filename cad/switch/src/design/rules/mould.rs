@@ -85,7 +85,8 @@ impl Ends {
         let half_rad = half_span_rad + libm::asin(self.shift_mm / self.inner_mm);
         let most_rad = std::f64::consts::PI - libm::asin((MIN_GAP_MM / 2.0 / self.inner_mm).min(1.0));
         require(half_rad <= most_rad, || {
-            let problem = format!("{} meet behind the axis (at least {MIN_GAP_MM} mm apart needed)", self.name);
+            let problem =
+                format!("{} meet behind the axis (at least {MIN_GAP_MM} mm apart needed)", self.name);
             (problem, directions)
         })
     }
@@ -210,7 +211,10 @@ fn keys_apart(i: &Inspection<'_>) -> Assessment {
     let diameter = i.configuration().mould.key_diameter_mm;
     require(keys_fit(i, diameter), || {
         (
-            format!("wall between the keys of the mould or at its ends too thin (at least {:.3} mm needed)", least_wall_mm(i.configuration(), 1.0)),
+            format!(
+                "wall between the keys of the mould or at its ends too thin (at least {:.3} mm needed)",
+                least_wall_mm(i.configuration(), 1.0)
+            ),
             &[
                 Lower("mould.key_diameter_mm"),
                 Raise("segment.span_deg"),

@@ -88,8 +88,9 @@ fn holes_clear_each_other(i: &Inspection<'_>) -> Assessment {
     let apart = |a: &Hole, b: &Hole| (a.centre - b.centre).norm() >= a.radius_mm + b.radius_mm + HOLE_WALL_MM;
     let pairs = all.iter().enumerate().all(|(k, a)| all[k + 1..].iter().all(|b| apart(a, b)));
     let own = mounting.holes.iter().chain(&mounting.axle);
-    let clear =
-        mounting.sheath.is_none_or(|stop| own.into_iter().all(|h| distance_to_stop_mm(h, &stop) >= HOLE_WALL_MM));
+    let clear = mounting
+        .sheath
+        .is_none_or(|stop| own.into_iter().all(|h| distance_to_stop_mm(h, &stop) >= HOLE_WALL_MM));
     require(pairs && clear, || {
         (
             format!(

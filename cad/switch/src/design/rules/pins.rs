@@ -47,12 +47,7 @@ fn pins_in_grooves(i: &Inspection<'_>) -> Assessment {
 fn one_pin_per_groove(i: &Inspection<'_>) -> Assessment {
     let pins = &i.configuration().layout.pins;
     let twice = pins.iter().find(|p| pins.iter().filter(|q| q == p).count() > 1);
-    require(twice.is_none(), || {
-        (
-            format!("two pins in groove {}", twice.copied().unwrap_or_default()),
-            &[],
-        )
-    })
+    require(twice.is_none(), || (format!("two pins in groove {}", twice.copied().unwrap_or_default()), &[]))
 }
 
 fn pin_fits_groove(i: &Inspection<'_>) -> Assessment {
@@ -101,7 +96,10 @@ fn wrap_within_segment(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     require(c.layout.wrap_angle_deg <= c.segment.span_deg, || {
         (
-            format!("wrap exceeds the segment ({} deg, at most {} deg)", c.layout.wrap_angle_deg, c.segment.span_deg),
+            format!(
+                "wrap exceeds the segment ({} deg, at most {} deg)",
+                c.layout.wrap_angle_deg, c.segment.span_deg
+            ),
             &[Lower("layout.wrap_angle_deg"), Raise("segment.span_deg")],
         )
     })
@@ -110,8 +108,13 @@ fn wrap_within_segment(i: &Inspection<'_>) -> Assessment {
 fn ends_keep_clear(i: &Inspection<'_>) -> Assessment {
     require(i.ends_keep_clear(), || {
         (
-            "an end of the tendon meets the other end or the guide pulley where it leaves the wrap".to_owned(),
-            &[Lower("layout.wrap_angle_deg"), Raise("mount.pulley_distance_mm"), Raise("shell.outer_radius_mm")],
+            "an end of the tendon meets the other end or the guide pulley where it leaves the wrap"
+                .to_owned(),
+            &[
+                Lower("layout.wrap_angle_deg"),
+                Raise("mount.pulley_distance_mm"),
+                Raise("shell.outer_radius_mm"),
+            ],
         )
     })
 }
@@ -155,7 +158,9 @@ fn tendon_reaches(i: &Inspection<'_>) -> Assessment {
     let (length, least) = (i.configuration().tendon.length_mm, i.least_tendon_mm());
     advise(length >= least, || {
         (
-            format!("tendon of {length} mm too short for the wrap, the ends and the pulleys ({least:.0} mm needed)"),
+            format!(
+                "tendon of {length} mm too short for the wrap, the ends and the pulleys ({least:.0} mm needed)"
+            ),
             format!("raise tendon.length_mm to {least:.0}"),
         )
     })

@@ -33,7 +33,9 @@ fn wall_under_grooves(i: &Inspection<'_>) -> Assessment {
     let least = c.segment.groove_radius_mm + 2.0 * c.print.least_wall_mm;
     require(c.shell.wall_mm >= least, || {
         (
-            format!("wall under the grooves too thin (at least {least:.3} mm needed, two walls and a groove)"),
+            format!(
+                "wall under the grooves too thin (at least {least:.3} mm needed, two walls and a groove)"
+            ),
             &[Raise("shell.wall_mm"), Lower("segment.groove_radius_mm"), Restore("print.least_wall_mm")],
         )
     })
@@ -70,7 +72,9 @@ fn end_walls(i: &Inspection<'_>) -> Assessment {
     let least = least_wall_mm(c, 0.5);
     require(left >= least, || {
         (
-            format!("wall beyond the outermost groove too thin ({left:.3} mm, at least {least:.3} mm needed)"),
+            format!(
+                "wall beyond the outermost groove too thin ({left:.3} mm, at least {least:.3} mm needed)"
+            ),
             &[
                 Raise("segment.end_margin_mm"),
                 Lower("segment.groove_radius_mm"),

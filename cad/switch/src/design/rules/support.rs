@@ -354,7 +354,10 @@ fn screws_are_sold(i: &Inspection<'_>) -> Assessment {
     let hole = c.fasteners.hole_diameter_mm;
     let Some(thread) = i.fastening().thread else {
         return require(false, || {
-            (format!("holes of {hole} mm too small for a screw (at least 1.7 mm needed, for M1.6)"), DIRECTIONS)
+            (
+                format!("holes of {hole} mm too small for a screw (at least 1.7 mm needed, for M1.6)"),
+                DIRECTIONS,
+            )
         });
     };
     let [low, high] = thread.lengths_mm;

@@ -67,14 +67,11 @@ fn inconclusive(report: &Report) -> String {
     let open: Vec<&str> = report.limits.iter().filter(|l| !l.excluded).map(|l| l.id.as_str()).collect();
     let is_confirmed = |t: &&TrialReport| t.outcome == TrialOutcome::Confirmed;
     let confirmed: Vec<&str> = report.trials.iter().filter(is_confirmed).map(|t| t.id.as_str()).collect();
-    let mut text = if confirmed.is_empty() {
-        "inconclusive: no effect detected".to_owned()
-    } else {
-        format!(
-            "inconclusive: no effect detected in the search; tested alone, {} is confirmed",
-            listed(&confirmed)
-        )
-    };
+    let changed = if report.changes.is_empty() { "" } else { "changed constants, but " };
+    let mut text = format!("inconclusive: {changed}no effect detected");
+    if !confirmed.is_empty() {
+        text.push_str(&format!(" in the search; tested alone, {} is confirmed", listed(&confirmed)));
+    }
     if !open.is_empty() {
         text.push_str(&format!("; cannot rule out {}", listed(&open)));
     } else if confirmed.is_empty() {

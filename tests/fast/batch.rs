@@ -14,7 +14,7 @@ fn a_batch_leaves_parts_table_plots_and_page() {
     let said = done(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
     assert!(said.contains("b: 12 variants made, 12 refused, 0 failed"), "{said}");
     // Two pin layouts by two tendon lengths by three widths: a label on shell and support, one coupon, a ring a width.
-    assert!(said.contains("48 part files, 28 of them different"), "{said}");
+    assert!(said.contains("48 part files, 28 of them distinct"), "{said}");
     let b = folder.path().join("b");
     let rows = table(&b);
     assert_eq!(rows.len(), VARIANTS);
@@ -199,7 +199,7 @@ fn shards_meet_behind_a_file_url() {
     // A shard's own notes stand beside what one run makes.
     assert!(differing.iter().all(|name| name.starts_with("shards/")), "{differing:?}");
     let again = done(path, &["batch", "sweep.toml", "--out", &url, "--shard", "1/2"]);
-    assert!(again.contains("; 12 were there before"), "{again}");
+    assert!(again.contains("; 12 existed before"), "{again}");
 }
 
 #[test]

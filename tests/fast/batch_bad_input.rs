@@ -5,12 +5,14 @@ use std::process::Command;
 
 use crate::harness::{SWEEP, differences, done, ended, hashes, with_sweep};
 
-/// The one line of an error, and its exit code.
+/// Returns the exit code, and the only error with its help in one line.
 fn refused(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
-    let (code, said) = ended(folder, arguments);
-    let errors: Vec<_> = said.lines().filter(|l| l.starts_with("error: ")).collect();
-    assert_eq!(errors.len(), 1, "{said}");
-    (code, errors[0].to_owned())
+    let (code, output) = ended(folder, arguments);
+    let part =
+        |start: &str| output.lines().filter(|l| l.starts_with(start)).map(str::trim).collect::<Vec<_>>();
+    let (errors, help) = (part("error: "), part("  help: "));
+    assert!(errors.len() == 1 && help.len() <= 1, "{output}");
+    (code, [errors, help].concat().join("; "))
 }
 
 #[test]
@@ -19,50 +21,53 @@ fn sweeps_that_make_no_sense_are_refused() {
     for (sweep, expected) in [
         (
             axes("\"shell.with_mm\" = [1]"),
-            "sweep.toml:2: shell.with_mm is no known field; did you mean \"shell.width_mm\"?",
+            "sweep.toml:2: shell.with_mm: is no known field; help: did you mean \"shell.width_mm\"?",
         ),
         (
             axes("\"support.slots\" = { from = 1, to = 3, step = 1 }"),
-            "sweep.toml:2: support.slots takes no numbers, so no range; give a list of values",
+            "sweep.toml:2: support.slots: takes no numbers, so no range; help: give a list of values",
         ),
         (
             axes("\"shell.width_mm\" = [\"wide\"]"),
-            "sweep.toml:2: shell.width_mm = \"wide\" is not accepted; give a number within 2 to 100",
+            "sweep.toml:2: shell.width_mm = \"wide\": is not accepted; help: give a number within 2 to 100",
         ),
-        (axes("\"shell.width_mm\" = []"), "sweep.toml:2: shell.width_mm = [] is an empty axis"),
-        (axes(""), "sweep.toml:1: sweep is empty"),
-        (String::new(), "sweep.toml:1: sweep is empty"),
+        (axes("\"shell.width_mm\" = []"), "sweep.toml:2: shell.width_mm = []: is an empty axis"),
+        (axes(""), "sweep.toml:1: sweep: is empty"),
+        (String::new(), "sweep.toml:1: sweep: is empty"),
         (
             axes("\"shell.width_mm\" = { from = 16, to = 12, step = 1 }"),
-            "sweep.toml:2: shell.width_mm = 16 to 12 runs backwards; write from = 12, to = 16",
+            "sweep.toml:2: shell.width_mm = 16 to 12: runs backwards; help: write from = 12, to = 16",
         ),
-        (axes("\"shell.width_mm\" = [12, 500]"), "sweep.toml:2: shell.width_mm = 500 is not accepted"),
-        ("[axis]\n".to_owned(), "sweep.toml:1: axis is no table of a sweep; known are sweep, set, axes"),
-        ("[sweep]\nbasis = 1\n".to_owned(), "sweep.toml:2: sweep.basis is no known key"),
+        (axes("\"shell.width_mm\" = [12, 500]"), "sweep.toml:2: shell.width_mm = 500: is not accepted"),
+        (
+            "[axis]\n".to_owned(),
+            "sweep.toml:1: axis: is no table of a sweep; help: known are sweep, set, axes",
+        ),
+        ("[sweep]\nbasis = 1\n".to_owned(), "sweep.toml:2: sweep.basis: is no known key"),
         (
             "[sweep]\nbase = \"four-double\"\n".to_owned(),
-            "sweep.toml:2: sweep.base = \"four-double\" is neither a file",
+            "sweep.toml:2: sweep.base = \"four-double\": is neither a file",
         ),
         (
             "[sweep]\nparts = [\"shel\"]\n[axes]\n\"shell.width_mm\" = [12]\n".to_owned(),
-            "sweep.toml:2: sweep.parts = \"shel\" is no part",
+            "sweep.toml:2: sweep.parts = \"shel\": is no part",
         ),
-        ("[rows]\nfile = \"no.csv\"\n".to_owned(), "sweep.toml:2: rows.file = \"no.csv\" cannot be read"),
-        ("[sample]\ncount = 5\n".to_owned(), "sweep.toml:1: sample is empty"),
+        ("[rows]\nfile = \"no.csv\"\n".to_owned(), "sweep.toml:2: rows.file = \"no.csv\": cannot be read"),
+        ("[sample]\ncount = 5\n".to_owned(), "sweep.toml:1: sample: is empty"),
         (
             "[sample]\nmethod = \"sobol\"\ncount = 5\n".to_owned(),
-            "sweep.toml:1: sample.method = \"sobol\" is no method",
+            "sweep.toml:1: sample.method = \"sobol\": is no method",
         ),
         (
             format!(
                 "{}[sample]\ncount = 2\n[sample.axes]\n\"shell.width_mm\" = [12]\n",
                 axes("\"shell.width_mm\" = [12]")
             ),
-            "sweep.toml:1: shell.width_mm varies twice",
+            "sweep.toml:1: shell.width_mm: varies twice",
         ),
         (
             format!("{}[[constraints]]\nrequire = \"shell.width > 3\"\n", axes("\"shell.width_mm\" = [12]")),
-            "sweep.toml:3: constraints.require = \"shell.width > 3\" has the unknown name \"shell.width\"",
+            "sweep.toml:3: constraints.require = \"shell.width > 3\": has the unknown name \"shell.width\"",
         ),
         ("[axes\n".to_owned(), "sweep.toml:1: syntax"),
     ] {
@@ -81,7 +86,7 @@ fn too_many_variants_want_a_yes() {
     assert_eq!(code, Some(2));
     assert_eq!(
         error,
-        "error: sweep.toml: 20001 variants are more than 10000; give --yes if you mean it, or --shard"
+        "error: sweep.toml: 20001 variants are more than 10000; help: allow them with --yes, or make a part of them with --shard"
     );
     assert!(!folder.path().join("b").exists());
 }
@@ -92,7 +97,10 @@ fn shards_that_are_none_are_refused() {
     let (code, said) = ended(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "4/3"]);
     assert!(code == Some(2) && said.contains("\"4/3\" is no shard; give K/N"), "{said}");
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "1/99"]);
-    assert!(code == Some(2) && error.contains("--shard 1/99 has no variant: the sweep has 24"), "{error}");
+    assert!(
+        code == Some(2) && error.contains("--shard = 1/99: no variant is in this shard: the sweep has 24"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -166,7 +174,10 @@ fn a_dry_run_says_what_single_variants_would_fail_at() {
     std::fs::remove_file(made.join("manifest.json")).unwrap();
     std::fs::create_dir(made.join("manifest.json")).unwrap();
     let (code, said) = dry();
-    assert!(code == Some(1) && said.contains("manifest.json is in the way"), "{said}");
+    assert!(
+        code == Some(1) && said.contains("manifest.json: blocks the output: its variant would fail"),
+        "{said}"
+    );
     assert_eq!(ended(path, &["batch", "sweep.toml", "--out", "b"]).0, Some(1));
     std::fs::remove_dir_all(&made).unwrap();
     std::fs::write(&made, "a file where a folder must be").unwrap();
@@ -181,11 +192,14 @@ fn too_many_rows_are_counted_and_not_read() {
     let rows = format!("shell.width_mm\n{}", "wide\n".repeat(200_000));
     std::fs::write(folder.path().join("rows.csv"), rows).unwrap();
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
-    assert!(code == Some(2) && error.contains("200000 variants are more than 10000; give --yes"), "{error}");
+    assert!(
+        code == Some(2) && error.contains("200000 variants are more than 10000; help: allow them with --yes"),
+        "{error}"
+    );
     std::fs::write(folder.path().join("rows.csv"), "shell.width_mm\n12\nwide\n").unwrap();
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b"]);
     assert!(
-        code == Some(2) && error.contains("rows.csv:3: shell.width_mm = \"wide\" is not accepted"),
+        code == Some(2) && error.contains("rows.csv:3: shell.width_mm = \"wide\": is not accepted"),
         "{error}"
     );
     let many = format!("[axes]\n\"shell.width_mm\" = [{}]\n", "12.5, ".repeat(200_000));

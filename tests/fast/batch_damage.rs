@@ -191,7 +191,7 @@ fn a_sweep_that_is_too_large_is_refused_before_it_is_expanded() {
             let output = run.output().unwrap();
             let said = String::from_utf8_lossy(&output.stderr);
             assert_eq!(output.status.code(), Some(2), "{said}");
-            assert!(said.contains(" variants are more than 10000; give --yes"), "{said}");
+            assert!(said.contains(" variants are more than 10000\n  help: allow them with --yes"), "{said}");
         }
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }

@@ -1,12 +1,12 @@
-//! The real binary, end to end: what README shows, what the files hold, and that every run writes the same bytes.
+//! The binary end to end: the commands of README, the content of the files, and the same bytes from every run.
 
 use crate::harness::{done, ended, files, json, pinswitch, printed, repository, sha256};
 use serde_json::Value;
 
 #[test]
-fn readme_s_first_command_makes_a_complete_checked_set() {
+fn the_first_command_makes_a_valid_set() {
     let folder = tempfile::tempdir().unwrap();
-    // As from a clone: the template is a file there.
+    // As in a clone, where the template is a file.
     let template = repository("templates/three-double.toml");
     done(folder.path(), &["generate", template.to_str().unwrap()]);
     let set = folder.path().join("out/three-double");
@@ -65,7 +65,8 @@ fn every_run_writes_the_same_bytes() {
     assert_eq!(files(&folder.path().join("a")), files(&folder.path().join("b")));
 }
 
-/// The seven measured conditions, with the paper's model and what was measured, in newtons (model/doc/friction-laws.md).
+/// The seven measured conditions, with the friction of the paper's model and the measured friction, in newtons
+/// (model/doc/friction-laws.md).
 const CONDITIONS: [(&str, &str, f64); 7] = [
     ("six-single", "4.07", 5.097),
     ("three-double", "10.01", 9.667),
@@ -81,7 +82,7 @@ fn column(curve: &serde_json::Value, key: &str) -> Vec<f64> {
 }
 
 #[test]
-fn the_paper_s_law_predicts_what_the_paper_s_model_says() {
+fn the_paper_law_equals_the_paper() {
     let folder = tempfile::tempdir().unwrap();
     for (name, friction, _) in CONDITIONS {
         let curve = json(folder.path(), &["predict", name, "--law", "paper", "--json"]);
@@ -93,7 +94,7 @@ fn the_paper_s_law_predicts_what_the_paper_s_model_says() {
 }
 
 #[test]
-fn the_default_law_is_one_and_its_bands_hold_what_was_measured() {
+fn default_bands_contain_the_measurements() {
     let folder = tempfile::tempdir().unwrap();
     for (name, _, measured) in CONDITIONS {
         let curve = json(folder.path(), &["predict", name, "--json"]);
@@ -111,16 +112,15 @@ fn the_default_law_is_one_and_its_bands_hold_what_was_measured() {
         let last = load.len() - 1;
         assert!(
             low[last] * 1.02 < measured && measured < high[last] / 1.02,
-            "{name}: not inside, but at the edge"
+            "{name}: not well inside the band"
         );
-        // The paper's own law stands beside it.
-        let beside = curve["other_laws"].as_array().unwrap();
-        assert!(beside.iter().any(|law| law["law"] == "paper"), "{name}");
+        let others = curve["other_laws"].as_array().unwrap();
+        assert!(others.iter().any(|law| law["law"] == "paper"), "{name}");
     }
 }
 
 #[test]
-fn other_layouts_say_how_far_to_trust_them() {
+fn unpublished_layouts_report_their_status() {
     let folder = tempfile::tempdir().unwrap();
     let trust = |set: &str| {
         let curve = json(folder.path(), &["predict", "three-double", "--set", set, "--json"]);
@@ -150,7 +150,7 @@ fn other_layouts_say_how_far_to_trust_them() {
 }
 
 #[test]
-fn presets_and_values_lie_over_each_other() {
+fn values_override_presets() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = [
         "generate",
@@ -185,7 +185,7 @@ fn a_template_written_out_generates_the_same_parts() {
     done(folder.path(), &["init", "three-single", "--out", "mine.toml"]);
     done(folder.path(), &["generate", "mine.toml", "--out", "a"]);
     done(folder.path(), &["generate", "three-single", "--out", "b"]);
-    // Manifests say what they were made from, and differ in that alone.
+    // The manifests differ only in the source.
     let set = |name: &str| {
         let mut all = files(&folder.path().join(name));
         let manifest = String::from_utf8(all.remove("manifest.json").unwrap()).unwrap();
@@ -197,7 +197,7 @@ fn a_template_written_out_generates_the_same_parts() {
 }
 
 #[test]
-fn help_layouts_and_completions_teach() {
+fn help_and_listings_are_complete() {
     let folder = tempfile::tempdir().unwrap();
     let help = printed(folder.path(), &["--help"]);
     for command in
@@ -233,7 +233,7 @@ fn pictures_are_drawn() {
 }
 
 #[test]
-fn views_from_nowhere_are_refused() {
+fn infinite_angles_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for view in ["--turn=nan", "--rise=inf"] {
         let output = pinswitch(folder.path(), &["render", "three-double", view, "--out", "p.png"]);
@@ -243,11 +243,11 @@ fn views_from_nowhere_are_refused() {
 }
 
 #[test]
-fn check_names_what_is_wrong() {
+fn check_reports_faults() {
     let folder = tempfile::tempdir().unwrap();
     done(folder.path(), &["generate", "three-double", "--out", "set"]);
     let shell = std::fs::read(folder.path().join("set/shell.stl")).unwrap();
-    // One facet less: a hole.
+    // Without one facet the mesh has a hole.
     let mut holed = shell.clone();
     holed.truncate(shell.len() - 50);
     let count = u32::from_le_bytes(shell[80..84].try_into().unwrap()) - 1;
@@ -273,29 +273,29 @@ fn check_names_what_is_wrong() {
 }
 
 #[test]
-fn a_study_of_nothing_is_refused_with_what_there_is() {
+fn empty_studies_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, words) in [
         (
             &["--study", "1", "--forms", "--only", "singles"][..],
-            "--only singles: no kind of rig of this chapter has this in its name; its groups are outside",
+            "--only = singles: no kind of rig in this study has this group or name\n  help: give one of the groups outside,",
         ),
         (
             &["--study", "1", "--only", "no-such-rig"],
-            "its groups are confounded, masks, nulls, outside, pairs, scattered, singles",
+            "one of the groups confounded, masks, nulls, outside, pairs, scattered, singles,",
         ),
         (&["--study", "0"], "0 is not in 1..=400"),
         (&["--study", "1", "--first-seed", "18446744073709551615"], "18446744073709551615 is not in"),
     ] {
-        let (code, said) = ended(folder.path(), &[&["simulate"], arguments].concat());
-        assert_eq!(code, Some(2), "{said}");
-        assert!(said.contains(words), "{said}");
+        let (code, output) = ended(folder.path(), &[&["simulate"], arguments].concat());
+        assert_eq!(code, Some(2), "{output}");
+        assert!(output.contains(words), "{output}");
     }
 }
 
-/// An option that does nothing is a misunderstanding.
+/// Options without effect are errors.
 #[test]
-fn options_of_simulate_that_would_be_ignored_are_refused() {
+fn ignored_options_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, option) in [
         ("--only nulls --out x", "--only"),
@@ -313,15 +313,15 @@ fn options_of_simulate_that_would_be_ignored_are_refused() {
         ("--effects mine.toml --study 1", "--effects"),
     ] {
         let arguments: Vec<&str> = ["simulate"].into_iter().chain(arguments.split(' ')).collect();
-        let (code, said) = ended(folder.path(), &arguments);
-        assert!(code == Some(2) && said.contains(option), "{arguments:?}: {said}");
-        assert!(said.contains("cannot be used with"), "{arguments:?}: {said}");
+        let (code, output) = ended(folder.path(), &arguments);
+        assert!(code == Some(2) && output.contains(option), "{arguments:?}: {output}");
+        assert!(output.contains("cannot be used with"), "{arguments:?}: {output}");
         assert!(!folder.path().join("x").exists(), "{arguments:?}");
     }
 }
 
 #[test]
-fn a_rig_has_the_noise_of_a_calibration() {
+fn noise_comes_from_a_calibration() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     std::fs::write(path.join("noisy.toml"), "[noise]\nrepetition_N = 0.3\nseries_scale = 0.04\n").unwrap();
@@ -335,10 +335,10 @@ fn a_rig_has_the_noise_of_a_calibration() {
     };
     assert!((noise("repetition_N") - 0.3).abs() < 0.03, "{plan}");
     assert!((noise("series_scale") - 0.04).abs() < 0.015, "{plan}");
-    // What such noise hides is not promised.
+    // The noise hides effects that a quiet rig shows.
     std::fs::write(path.join("plan.toml"), "layouts = []\nrepetitions = [4, 4]\nrepetitions_spread = 0\n")
         .unwrap();
-    let told = |more: &[&str]| -> u64 {
+    let attributed = |more: &[&str]| -> u64 {
         let json: Value = serde_json::from_str(&printed(
             path,
             &[&["power", "plan.toml", "--runs", "1", "--json"], more].concat(),
@@ -346,8 +346,8 @@ fn a_rig_has_the_noise_of_a_calibration() {
         .unwrap();
         json.as_array().unwrap().iter().map(|p| p["named"].as_u64().unwrap()).sum()
     };
-    let (quiet, loud) = (told(&[]), told(&["--noise", "calibration/model.toml"]));
-    assert!(loud < quiet, "{loud} of {quiet}");
-    let (code, said) = ended(path, &["power", "plan.toml", "--noise", "plan.toml"]);
-    assert!(code == Some(2) && said.contains("plan.toml"), "{said}");
+    let (quiet, noisy) = (attributed(&[]), attributed(&["--noise", "calibration/model.toml"]));
+    assert!(noisy < quiet, "{noisy} of {quiet}");
+    let (code, output) = ended(path, &["power", "plan.toml", "--noise", "plan.toml"]);
+    assert!(code == Some(2) && output.contains("plan.toml"), "{output}");
 }

@@ -1,46 +1,46 @@
-//! What the code and the documents cite is there: every path to a document resolves, every effect has its section.
+//! Citations and links: every path to a document resolves, every effect has its section, and README lists every command.
 
 use std::path::{Path, PathBuf};
 
 use crate::harness::{binary, repository};
 
-/// Texts of this repository that may cite a document; generated and foreign ones are left out.
-fn texts(folder: &Path, found: &mut Vec<PathBuf>) {
+/// Collects the texts of this repository that may cite a document, without generated and foreign ones.
+fn texts(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         if path.is_dir() {
             if !["target", "out", ".git", "node_modules"].contains(&name.as_str()) {
-                texts(&path, found);
+                texts(&path, files);
             }
         } else if [".rs", ".md", ".toml", ".html", ".js", ".py", ".cff"].iter().any(|e| name.ends_with(e))
             && !name.contains(".min.")
         {
-            found.push(path);
+            files.push(path);
         }
     }
 }
 
-/// Words of a text that end in `.md`, without what surrounds them.
+/// Returns the words of a text that end in `.md`, without punctuation.
 fn cited(text: &str) -> impl Iterator<Item = &str> {
     let is_path = |c: char| c.is_ascii_alphanumeric() || "._-/".contains(c);
     text.split(move |c| !is_path(c)).filter(|word| word.len() > 3 && word.ends_with(".md"))
 }
 
 #[test]
-fn every_cited_document_is_there() {
-    // What runs write, and the name of a variable in a pattern.
-    const WRITTEN: [&str; 1] = ["PRINTING.md"];
+fn cited_documents_exist() {
+    // Files that runs write.
+    const OUTPUTS: [&str; 1] = ["PRINTING.md"];
     let mut files = Vec::new();
     texts(&repository(""), &mut files);
     let mut citations = 0;
     for file in &files {
         let Ok(text) = std::fs::read_to_string(file) else { continue };
-        for path in cited(&text).filter(|path| !WRITTEN.contains(path) && !path.starts_with('.')) {
-            let beside = file.parent().unwrap().join(path);
+        for path in cited(&text).filter(|path| !OUTPUTS.contains(path) && !path.starts_with('.')) {
+            let sibling = file.parent().unwrap().join(path);
             assert!(
-                beside.exists() || repository(path).exists(),
-                "{} cites {path}, which is not there",
+                sibling.exists() || repository(path).exists(),
+                "{} cites {path}, which does not exist",
                 file.display()
             );
             citations += 1;
@@ -49,8 +49,8 @@ fn every_cited_document_is_there() {
     assert!(citations > 50, "only {citations} citations were found");
 }
 
-/// The anchors of a document's headings, as those who show Markdown make them: small letters, spaces as hyphens, and nothing
-/// of punctuation but these and underscores.
+/// Returns the anchors of the headings of a document as renderers of Markdown make them: lower case, spaces as hyphens, and
+/// no other punctuation than hyphens and underscores.
 fn anchors(text: &str) -> Vec<String> {
     let anchor = |heading: &str| -> String {
         let kept = heading.to_lowercase().replace(' ', "-");
@@ -61,7 +61,7 @@ fn anchors(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn every_link_between_documents_resolves() {
+fn links_between_documents_resolve() {
     let mut files = Vec::new();
     texts(&repository(""), &mut files);
     let (mut links, mut places) = (0, 0);
@@ -98,7 +98,7 @@ fn readme_lists_every_command() {
     let help = String::from_utf8(binary().arg("--help").output().unwrap().stdout).unwrap();
     let commands = help.lines().skip_while(|l| *l != "Commands:").skip(1).take_while(|l| !l.is_empty());
     let readme = std::fs::read_to_string(repository("README.md")).unwrap();
-    // Lines indented further go on with the one before.
+    // Lines with more indent continue the previous one.
     let commands = commands.filter(|l| !l.starts_with("   "));
     for command in commands.filter_map(|l| l.split_whitespace().next()).filter(|c| *c != "help") {
         assert!(

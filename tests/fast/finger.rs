@@ -105,7 +105,7 @@ fn fingers_that_cannot_be_are_refused_by_name() {
         (&["--joint=-5..20"], "= -5 is outside"),
         (&["--wrap-per-flexion", "3"], "wrap per flexion = 3 is outside 0 to 2"),
         (&["--wrap-at-straight", "NaN"], "wrap at the straight finger (deg) = NaN"),
-        (&["--load", "0"], "--load = 0.0 is outside"),
+        (&["--load", "0"], "--load = 0.0: the load is outside"),
     ] {
         let output = pinswitch(folder.path(), &[&["finger"], arguments, &["--out", "x"]].concat());
         let message = String::from_utf8(output.stderr).unwrap();

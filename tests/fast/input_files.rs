@@ -1,10 +1,10 @@
-//! Files that are not what they are given as: each is one short error with a remedy, exit code 2.
+//! Files of the wrong kind or with invalid content: each gives one short error with help, and exit code 2.
 
 use crate::harness::{done, ended, files, repository, with_sweep};
 use crate::readers::{LONGEST, RIG};
 
 #[test]
-fn an_edited_model_is_refused() {
+fn edited_models_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     done(
         folder.path(),
@@ -17,7 +17,7 @@ fn an_edited_model_is_refused() {
         ended(folder.path(), &["predict", "--model", "edited.toml", "--rows", "rig/plateaus.csv"])
     };
     assert_eq!(predict(&model).0, Some(0));
-    // The value of one line after `key = `, edited.
+    // The model with another value of one key.
     let edited = |key: &str, value: &str| {
         let line = model.lines().find(|l| l.starts_with(&format!("{key} = "))).unwrap().to_owned();
         model.replacen(&line, &format!("{key} = {value}"), 1)
@@ -38,13 +38,13 @@ fn an_edited_model_is_refused() {
     ] {
         let (code, said) = predict(&edited(key, value));
         assert_eq!(code, Some(2), "{key} = {value}: {said:.600}");
-        assert!(said.contains("edited.toml:") && said.contains(';'), "{key} = {value}: {said}");
+        assert!(said.contains("edited.toml:"), "{key} = {value}: {said}");
         assert!(said.chars().count() <= LONGEST + 20, "{key} = {value}: {said}");
     }
 }
 
 #[test]
-fn what_is_no_text_is_named_with_its_line() {
+fn binary_files_have_their_line() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("bad.toml"), b"[shell]\nwidth_mm = \"\xff\"\n").unwrap();
     std::fs::create_dir(folder.path().join("folder")).unwrap();
@@ -66,7 +66,7 @@ fn what_is_no_text_is_named_with_its_line() {
     ] {
         let (code, said) = ended(folder.path(), arguments);
         assert!(
-            code == Some(2) && said.contains("bad.toml:2: byte 0xff is no UTF-8"),
+            code == Some(2) && said.contains("bad.toml:2: byte 0xff") && said.contains("UTF-8"),
             "{arguments:?}: {said}"
         );
     }
@@ -78,14 +78,14 @@ fn what_is_no_text_is_named_with_its_line() {
     ] {
         let (code, said) = ended(folder.path(), arguments);
         assert!(
-            code == Some(2) && said.contains("folder: is a folder; give a file"),
+            code == Some(2) && said.contains("folder: is a folder\n  help: give a file"),
             "{arguments:?}: {said}"
         );
     }
 }
 
 #[test]
-fn a_value_of_any_length_makes_a_short_error() {
+fn long_values_give_short_errors() {
     let folder = tempfile::tempdir().unwrap();
     let list = format!("[layout]\npins = [{}]\n", "5, ".repeat(100_000));
     let text = format!("[label]\ntext = \"{}\"\n", "x".repeat(300_000));
@@ -99,7 +99,7 @@ fn a_value_of_any_length_makes_a_short_error() {
 }
 
 #[test]
-fn another_kind_of_file_is_recognised_before_it_is_read() {
+fn other_mesh_formats_are_recognised() {
     let folder = tempfile::tempdir().unwrap();
     done(folder.path(), &["-q", "generate", "three-double", "--out", "set"]);
     std::fs::write(folder.path().join("a.stl"), b"\x1f\x8b\x08\0\0\0\0\0\0\0").unwrap();
@@ -122,11 +122,13 @@ fn another_kind_of_file_is_recognised_before_it_is_read() {
 }
 
 #[test]
-fn a_file_for_another_command_is_told_as_such() {
+fn files_of_other_commands_are_recognised() {
     let folder = tempfile::tempdir().unwrap();
-    let asks = repository("templates/asks");
-    let mut given: Vec<_> =
-        files(&asks).into_keys().map(|ask| (asks.join(ask).display().to_string(), "design --ask")).collect();
+    let requests = repository("templates/asks");
+    let mut given: Vec<_> = files(&requests)
+        .into_keys()
+        .map(|name| (requests.join(name).display().to_string(), "design --ask"))
+        .collect();
     for (kind, command) in [
         ("sweep", "batch"),
         ("plan", "simulate"),
@@ -149,7 +151,7 @@ fn a_file_for_another_command_is_told_as_such() {
 }
 
 #[test]
-fn a_sweep_reads_beside_itself_or_below() {
+fn sweeps_read_within_their_folder() {
     let sweep = "[sweep]\nbase = \"BASE\"\n[axes]\n\"shell.width_mm\" = [14, 15]\n";
     let folder = with_sweep("");
     let below = folder.path().join("below");

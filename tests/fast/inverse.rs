@@ -78,7 +78,7 @@ fn an_impossible_ask_says_why_and_ends_with_1() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{message}");
     for word in
-        ["nothing within the ask meets it", "blocked by", "raise wrap_deg", "friction at the heaviest load"]
+        ["no design meets the request", "blocked by", "raise wrap_deg", "friction at the heaviest load"]
     {
         assert!(message.contains(word), "{word}: {message}");
     }
@@ -168,7 +168,7 @@ fn wishes_that_cannot_be_read_are_refused() {
         (&["design", "--threshold=-1"][..], "--threshold = -1"),
         (&["design", "--max-friction", "NaN"], "--max-friction = NaN"),
         (&["design", "--threshold", "roughly 20"], "at most 8"),
-        (&["design", "--friction", "at most 8"], "at which load"),
+        (&["design", "--friction", "at most 8"], "the load is missing"),
         (
             &["design", "--friction", "at most 3 at 50", "--friction", "at least 5 at 50"],
             "'friction at 50 N at most 3 N' and 'friction at 50 N at least 5 N'",
@@ -199,7 +199,7 @@ fn wishes_that_cannot_be_read_are_refused() {
             "segment.grooves = 13",
         ),
         (&["predict", "three-double", "--model", "odd.toml", "--law", "paper"], "cannot be used with"),
-        (&["design"], "nothing is asked"),
+        (&["design"], "the request has no target"),
         (
             &["predict", "three-double", "--set", "layout.pins=[2,3,9]", "--law", "paper"],
             "six-single, three-double",

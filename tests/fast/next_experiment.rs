@@ -169,12 +169,21 @@ fn a_table_that_was_not_recorded_by_a_plan_is_told() {
     assert!(!said("whole").contains("runs of plan"), "{}", said("whole"));
     let runs = Path::new("plan/next-runs.csv").display();
     for (name, words) in [
-        ("part", format!("part/plateaus.csv: 1 of the 4 runs of {runs} are not in it")),
-        ("half", format!("half/plateaus.csv: 2 of the 4 runs of {runs} are not in it")),
-        ("before", format!("before/plateaus.csv: none of the 4 runs of {runs} is in it; give the table")),
-        ("fast", format!("fast/plateaus.csv: none of the 4 runs of {runs} is in it; give the table")),
-        ("twice", format!("twice/plateaus.csv: only 1 of the 4 runs of {runs} are in it; give the table")),
-        ("turned", format!("turned/plateaus.csv: its series stand in another order than the runs of {runs}")),
+        ("part", format!("part/plateaus.csv: lacks 1 of the 4 runs of {runs}")),
+        ("half", format!("half/plateaus.csv: lacks 2 of the 4 runs of {runs}")),
+        (
+            "before",
+            format!("before/plateaus.csv: contains none of the 4 runs of {runs}\n  help: give the table"),
+        ),
+        ("fast", format!("fast/plateaus.csv: contains none of the 4 runs of {runs}\n  help: give the table")),
+        (
+            "twice",
+            format!("twice/plateaus.csv: contains only 1 of the 4 runs of {runs}\n  help: give the table"),
+        ),
+        (
+            "turned",
+            format!("turned/plateaus.csv: the order of the series differs from that of the runs of {runs}"),
+        ),
     ] {
         assert!(said(name).contains(&words), "{name}: {}", said(name));
     }
@@ -190,7 +199,7 @@ fn a_table_that_was_not_recorded_by_a_plan_is_told() {
     std::fs::write(path.join("plan/experiment.json"), asks("0.7", "0.7")).unwrap();
     std::fs::remove_file(path.join("plan/next-runs.csv")).unwrap();
     let said = said("whole");
-    assert!(said.contains(&format!("{runs}: is not there")) && !path.join("x").exists(), "{said}");
+    assert!(said.contains(&format!("{runs}: file not found")) && !path.join("x").exists(), "{said}");
 }
 
 /// A plan of the randomised protocol with something that no effect is.
@@ -209,7 +218,7 @@ fn a_form_drawn_from_one_session_is_confirmed_by_another_and_refuted_by_one_with
     std::fs::write(path.join("step.toml"), rig(step)).unwrap();
     done(path, &["-q", "simulate", "step.toml", "--next", "--out", "step"]);
     let said = printed(path, &["-q", "calibrate", "step/plateaus.csv", "--out", "first"]);
-    assert!(said.contains("looks like a step on friction"), "{said}");
+    assert!(said.contains("resembles a step on friction"), "{said}");
     let form = json(&path.join("first/report.json"))["effects"][0]["form"].clone();
     assert_eq!((&form["shape"], &form["acts_on"]), (&"step".into(), &"friction".into()), "{form}");
     let id = form["id"].as_str().unwrap();
@@ -233,7 +242,10 @@ fn a_form_drawn_from_one_session_is_confirmed_by_another_and_refuted_by_one_with
     // What it was drawn from names nothing, and is not taken away from under the calibration that reads it.
     let own = ["-q", "calibrate", "step/plateaus.csv", "--effects", "first/discovered.toml", "--out"];
     let said = printed(path, &[&own[..], &["own"]].concat());
-    assert!(said.starts_with("verdict: unattributed") && said.contains("on trial: drawn"), "{said}");
+    assert!(
+        said.starts_with("verdict: unattributed") && said.contains(&format!("test of {id}: drawn")),
+        "{said}"
+    );
     let (code, said) = ended(path, &[&own[..], &["first"]].concat());
     assert!(code == Some(2) && path.join("first/discovered.toml").exists(), "{said}");
     // The step came after three hours: an hour cannot show it, and says so.

@@ -158,7 +158,7 @@ impl Bucket {
         child.wait().unwrap();
         self.done(&format!("-q batch sweep.toml --out {url}/killed"));
         let again = self.done(&format!("batch sweep.toml --out {url}/killed"));
-        assert!(again.contains("; 12 were there before"), "{again}");
+        assert!(again.contains("; 12 existed before"), "{again}");
     }
 
     /// A server that is slow, and one that goes away: 16 uploads at once, one clear error, and the rest later.

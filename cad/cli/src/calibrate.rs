@@ -1,9 +1,9 @@
 //! `pinswitch calibrate TABLE --out DIR`.
 
+mod plan_match;
 mod plans;
-mod recorded;
+mod spinner;
 mod summary;
-mod waiting;
 
 use std::path::{Path, PathBuf};
 
@@ -14,84 +14,93 @@ use pinswitch_calibration::table::PlateauTable;
 use pinswitch_calibration::{
     Asked, Calibration, ModelFile, SessionReport, calibrate_among, calibrate_below, explain_published,
 };
-
-use super::own_effects::OwnEffects;
-use super::{Failure, print};
-use crate::input::was_read;
-use crate::write::write_set;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_report::{UNEXPLAINED, page, plots, published_page, published_plot};
 use pinswitch_switch::output::OutputFile;
-use plans::{plans, with_forms};
-use summary::summary;
-use waiting::Waiting;
 
-/// Refit the paper's model to a plateau table, trace what it misses to an effect, and report the error before and after.
+use super::failure::unconverted;
+use super::terminal::to_json;
+use super::user_effects::UserEffects;
+use super::{Failure, print_text};
+use crate::input::was_read;
+use crate::write::write_set;
+use plans::{plans, with_forms};
+use spinner::Spinner;
+use summary::summary;
+
+/// Refit the paper's model to a plateau table and attribute its residuals to effects.
 ///
-/// The verdict is none, inconclusive, attributed, ambiguous or unattributed; the best model is written for `predict` and `generate`.
+/// Reports the error of the refitted model, with and without the effects. The verdict is none, inconclusive, attributed, ambiguous or unattributed. Writes the best model for `predict` and
+/// `generate`.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch calibrate plateaus.csv --out calibration
   pinswitch calibrate plateaus.csv --effects mine.toml --out calibration
   pinswitch calibrate first.csv second.csv --plan next --out joined")]
 pub(super) struct Arguments {
-    /// The plateau table (CSV, one row per repetition); several are sessions of one rig, each with offsets, drift and
-    /// mounts of its own.
+    /// Plateau table (CSV, one row per repetition). Several tables are sessions of one rig, each with its own offsets,
+    /// drift and mounts.
     #[arg(required_unless_present = "published", value_name = "TABLE")]
     tables: Vec<PathBuf>,
     /// Folder for report.json, report.html, residuals.csv, baseline.toml, model.toml and the plots.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Calibrate on the seven maxima printed in the paper instead of a table.
-    #[arg(long, conflicts_with_all = ["tables", "fit_below", "own_effects"])]
+    /// Calibrate on the seven maxima of the paper instead of a table.
+    #[arg(long, conflicts_with_all = ["tables", "fit_below", "user_effects"])]
     published: bool,
-    /// Fit only loads up to this percentage of the highest one and judge both models on the rest.
+    /// Fit the loads up to this percentage of the highest one, and test both models on the others.
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(10..100))]
     fit_below: Option<u8>,
-    /// The folder that `experiment` wrote, by whose runs the second table was recorded: its questions are told with what came of
-    /// them. Give another for the third table, and so on.
+    /// Folder of the plan, written by `experiment`, by which the second table was recorded; the report then answers the
+    /// questions of the plan. Repeat it for the third table, and so on.
     #[arg(long, value_name = "DIR", conflicts_with = "published")]
     plan: Vec<PathBuf>,
     #[command(flatten)]
-    own: OwnEffects,
+    effects: UserEffects,
 }
 
-/// What stands above an effect that was drawn.
-const DISCOVERED: &str =
-    "# Drawn by `pinswitch calibrate`, not confirmed: give it a name, and let other data decide on it:
+/// File of a form that was fitted to unattributed structure.
+pub(super) const FORM_FILE: &str = "discovered.toml";
+/// Begin of that file, by which a later run recognises it.
+const FORM_HEADER: &str =
+    "# Fitted by `pinswitch calibrate`, not confirmed: give it a name, and test it on other data:
 #   pinswitch calibrate next.csv --effects discovered.toml --out DIR
 ";
 
-/// Its file.
-pub(super) const FORM: &str = "discovered.toml";
-
-/// Removes the form of an earlier run from the folder: it is none of this one. A file of one's own stays.
-pub(super) fn forget_form(folder: &Path) -> Result<(), Failure> {
-    let path = folder.join(FORM);
+/// Refuses a folder whose form was read as input: a later step would remove it.
+pub(super) fn check_stale_form(folder: &Path) -> Result<(), Failure> {
+    let path = folder.join(FORM_FILE);
     if was_read(&path) {
-        return Err(Failure::bad_input(format!(
-            "{}: it was read, and --out would take it away; give --out a folder of its own",
-            path.display()
-        )));
-    }
-    if std::fs::read_to_string(&path).is_ok_and(|text| text.starts_with(DISCOVERED)) {
-        // What cannot be removed is told of by its first line.
-        let _ = std::fs::remove_file(path);
+        return Err(Failure::bad_input(
+            Diagnostic::new("the file is an input, and --out would remove it")
+                .with_location(Location::file(path.display().to_string()))
+                .with_help("give another folder with --out"),
+        ));
     }
     Ok(())
+}
+
+/// Removes the form of an earlier run from the folder. A file that a user has edited at its begin stays.
+pub(super) fn remove_stale_form(folder: &Path) {
+    let path = folder.join(FORM_FILE);
+    if std::fs::read_to_string(&path).is_ok_and(|text| text.starts_with(FORM_HEADER)) {
+        // A form that stays is harmless: its first line identifies it, and no report refers to it.
+        let _ = std::fs::remove_file(path);
+    }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.published {
         return published(&arguments.out);
     }
-    let vocabulary = with_forms(arguments.own.vocabulary()?, &arguments.plan)?;
+    let vocabulary = with_forms(arguments.effects.vocabulary()?, &arguments.plan)?;
     let plans = plans(&arguments.plan, &arguments.tables, &vocabulary)?;
     let (mut table, name) = joined(&arguments.tables)?;
     let sessions = match arguments.tables.split_last() {
-        Some((_, before)) if !before.is_empty() => before_the_last(before, &plans, &vocabulary)?,
+        Some((_, earlier)) if !earlier.is_empty() => earlier_sessions(earlier, &plans, &vocabulary)?,
         _ => Vec::new(),
     };
-    let waiting = Waiting::new(table.rows.len());
+    let spinner = Spinner::new(table.rows.len());
     let calibration = match arguments.fit_below {
         None => calibrate_among(&table.rows, &vocabulary, Levels::default()),
         Some(percent) => {
@@ -102,45 +111,52 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             calibration
         }
     };
-    waiting.end();
-    let mut calibration = calibration.map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
+    spinner.end();
+    let mut calibration = calibration.map_err(|e| Failure::bad_input(unconverted(e).or_in_file(&name)))?;
     calibration.report.ignored_columns = table.ignored_columns();
     if !sessions.is_empty() {
-        let last = so_far(&arguments.tables, &plans, &table, &calibration);
+        let last = session_report(&arguments.tables, &plans, &table, &calibration);
         calibration.report.sessions = sessions.into_iter().chain([last]).collect();
     }
     let mut files = files(&table, &calibration, &name)?;
-    if let Some(form) = &calibration.form {
-        let text = format!("{DISCOVERED}{}", own_effects_text([&form.definition]));
-        files.insert(0, OutputFile { name: FORM.to_owned(), bytes: text.into_bytes() });
-    } else {
-        forget_form(&arguments.out)?;
+    match &calibration.form {
+        Some(form) => {
+            let text = format!("{FORM_HEADER}{}", own_effects_text([&form.definition]));
+            files.insert(0, OutputFile { name: FORM_FILE.to_owned(), bytes: text.into_bytes() });
+            write_set(&arguments.out, &files)?;
+        }
+        None => {
+            check_stale_form(&arguments.out)?;
+            write_set(&arguments.out, &files)?;
+            // Only now: if the disk is full, the earlier result stays complete.
+            remove_stale_form(&arguments.out);
+        }
     }
-    write_set(&arguments.out, &files)?;
-    print(summary(&calibration.report).as_bytes())
+    print_text(&summary(&calibration.report))
 }
 
-/// The tables as one, and their names for errors.
+/// Reads and joins the tables; also returns their names for errors.
 fn joined(paths: &[PathBuf]) -> Result<(PlateauTable, String), Failure> {
+    let bad_input = |e| Failure::bad_input(unconverted(e));
     let mut tables = Vec::new();
     for path in paths {
         let name = path.display().to_string();
         let bytes = crate::input::read_file(path)?;
-        let table = PlateauTable::read(bytes.as_slice(), &name).map_err(Failure::bad_input)?;
+        let table = PlateauTable::read(bytes.as_slice(), &name).map_err(bad_input)?;
         tables.push((table, name));
     }
     let names: Vec<&str> = tables.iter().map(|(_, name)| name.as_str()).collect();
     let name = names.join(" + ");
     let table = match tables.len() {
         1 => tables.remove(0).0,
-        _ => PlateauTable::joined(tables).map_err(Failure::bad_input)?,
+        _ => PlateauTable::joined(tables).map_err(bad_input)?,
     };
-    table.require_baseline(&name).map_err(Failure::bad_input)?;
+    table.require_baseline(&name).map_err(bad_input)?;
     Ok((table, name))
 }
 
-/// What was known after each table but the last.
-fn before_the_last(
+/// Calibrates the first table, the first two, and so on, and reports each result.
+fn earlier_sessions(
     paths: &[PathBuf],
     plans: &[Option<Asked>],
     vocabulary: &Vocabulary,
@@ -148,15 +164,15 @@ fn before_the_last(
     let until = |count: usize| {
         let paths = &paths[..count];
         let (table, name) = joined(paths)?;
-        let found = calibrate_among(&table.rows, vocabulary, Levels::default())
-            .map_err(|e| Failure::bad_input(format!("{name}: {e}")))?;
-        Ok(so_far(paths, plans, &table, &found))
+        let calibration = calibrate_among(&table.rows, vocabulary, Levels::default())
+            .map_err(|e| Failure::bad_input(unconverted(e).or_in_file(&name)))?;
+        Ok(session_report(paths, plans, &table, &calibration))
     };
     (1..=paths.len()).map(until).collect()
 }
 
-/// What a calibration says after these tables, the last of them recorded by a plan.
-fn so_far(
+/// Returns the result after these tables, with the answers to the plan of the last one.
+fn session_report(
     paths: &[PathBuf],
     plans: &[Option<Asked>],
     table: &PlateauTable,
@@ -166,57 +182,58 @@ fn so_far(
     let highest_n = table.rows.iter().map(|row| row.load_n).fold(0.0, f64::max);
     let plan = paths.len().checked_sub(2).and_then(|nth| plans.get(nth)).cloned().flatten();
     SessionReport {
-        asked: plan.map(|asked| asked.answered(&calibration.report, highest_n)),
+        asked: plan.map(|plan| plan.answered(&calibration.report, highest_n)),
         ..SessionReport::after(last, &calibration.report)
     }
 }
 
-/// The loop on the paper's own numbers.
+/// Calibrates on the maxima of the paper.
 fn published(out: &Path) -> Result<(), Failure> {
     let all = explain_published();
-    let mut text = "explanation          RMS error   layout left out   constants\n".to_owned();
+    let mut text = format!(
+        "{:<20} {:>14}   {:>25}   constants\n",
+        "explanation", "in-sample RMSE", "leave-one-layout-out RMSE"
+    );
     for e in &all {
         let constants: Vec<String> = e.constants.iter().map(|(n, v)| format!("{n} = {v:.4}")).collect();
         text.push_str(&format!(
-            "{:<20} {:>7.1} %   {:>15}   {}\n",
+            "{:<20} {:>12.1} %   {:>25}   {}\n",
             e.id,
             e.rms_pct,
             e.left_out_rms_pct.map_or("-".to_owned(), |pct| format!("{pct:.1} %")),
             constants.join(", ")
         ));
     }
-    let mut json = serde_json::to_vec_pretty(&all).map_err(Failure::failed)?;
-    json.push(b'\n');
-    let plot = published_plot(&all).map_err(Failure::failed)?;
+    let plot = published_plot(&all).map_err(|e| Failure::failed(unconverted(e)))?;
     let html = published_page(&all, &plot);
     let file = |name: &str, bytes: Vec<u8>| OutputFile { name: name.to_owned(), bytes };
     let files = [
         file("report.html", html.into_bytes()),
         file("maxima.svg", plot.svg.into_bytes()),
-        file("published.json", json),
+        file("published.json", to_json(&all)?),
     ];
     text.push_str("unexplained, see report.html:\n");
     UNEXPLAINED.iter().for_each(|open| text.push_str(&format!("  {open}.\n")));
     write_set(out, &files)?;
-    print(text.as_bytes())
+    print_text(&text)
 }
 
-/// Everything that is written, complete in memory before the first file is.
+/// Makes every file in memory, before the first one is written.
 fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<Vec<OutputFile>, Failure> {
     let (selection, data) = (&calibration.selection, &calibration.data);
-    let toml = |fitted| ModelFile::new(fitted, data, selection.noise).to_text().map_err(Failure::failed);
-    let mut json = serde_json::to_vec_pretty(&calibration.report).map_err(Failure::failed)?;
-    json.push(b'\n');
-    let plots = plots(calibration).map_err(Failure::failed)?;
+    let toml = |fitted| {
+        ModelFile::new(fitted, data, selection.noise).to_text().map_err(|e| Failure::failed(unconverted(e)))
+    };
+    let plots = plots(calibration).map_err(|e| Failure::failed(unconverted(e)))?;
     let title =
         std::path::Path::new(name).file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let html = page(&title, calibration, &plots);
-    let before: Vec<f64> = selection.baseline.residual_n.clone();
-    let after: Vec<f64> = selection.augmented.residual_n.clone();
+    let baseline: Vec<f64> = selection.baseline.residual_n.clone();
+    let model: Vec<f64> = selection.augmented.residual_n.clone();
     let predicted = |r: &[f64]| data.force_n.iter().zip(r).map(|(y, r)| y - r).collect::<Vec<f64>>();
     let residuals = table.with_columns(
         &["baseline_N", "residual_baseline_N", "model_N", "residual_model_N", "weight"],
-        &[predicted(&before), before, predicted(&after), after, data.weights.clone()],
+        &[predicted(&baseline), baseline, predicted(&model), model, data.weights.clone()],
         5,
     );
     let mut files = vec![
@@ -226,6 +243,6 @@ fn files(table: &PlateauTable, calibration: &Calibration, name: &str) -> Result<
         OutputFile { name: "model.toml".to_owned(), bytes: toml(&selection.augmented)?.into_bytes() },
     ];
     files.extend(plots.into_iter().map(|p| OutputFile { name: p.file, bytes: p.svg.into_bytes() }));
-    files.push(OutputFile { name: "report.json".to_owned(), bytes: json });
+    files.push(OutputFile { name: "report.json".to_owned(), bytes: to_json(&calibration.report)? });
     Ok(files)
 }

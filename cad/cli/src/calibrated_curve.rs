@@ -1,4 +1,4 @@
-//! The curve of a design by the file of a calibrated model.
+//! Curves of calibrated models.
 
 use std::path::Path;
 
@@ -7,14 +7,26 @@ use pinswitch_friction::FrictionCurve;
 use pinswitch_switch::design::Design;
 
 use super::Failure;
+use super::failure::unconverted;
+use super::input::read_text_file;
 
-/// The curve of `design` by the model of that file.
+/// Reads a model.toml or baseline.toml that `calibrate` wrote; also returns its name for errors.
 ///
 /// # Errors
-/// [`Failure::BadInput`] names the file and its fault, or what of the design the rig does not have.
+/// [`Failure::bad_input`] with the file and its first error.
+pub(super) fn read_model(path: &Path) -> Result<(ModelFile, String), Failure> {
+    let name = path.display().to_string();
+    let text = read_text_file(path)?;
+    let model = ModelFile::parse(&text, &name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+    Ok((model, name))
+}
+
+/// Predicts the curve of `design` with the model of a file.
+///
+/// # Errors
+/// [`Failure::bad_input`] if the file cannot be used, or if the design differs from the rig in a way that the model does
+/// not cover.
 pub(super) fn calibrated_curve(design: &Design, model: &Path) -> Result<FrictionCurve, Failure> {
-    let name = model.display().to_string();
-    let text = crate::input::read_text_file(model)?;
-    let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
-    pinswitch_app::calibrated_curve(design, &file, &name).map_err(Failure::bad_input)
+    let (model, name) = read_model(model)?;
+    pinswitch_app::calibrated_curve(design, &model, &name).map_err(Failure::bad_input)
 }

@@ -3,10 +3,12 @@
 use clap::Args;
 use pinswitch_calibration::effects::{EffectDefinition, Vocabulary, formula_variables, own_effects_text};
 
-use super::own_effects::OwnEffects;
-use super::{Failure, print};
+use super::user_effects::UserEffects;
+use super::{Failure, print_data, print_text};
 
-/// List the effects that a calibration tries: id, side, covariate and formula.
+/// List the effects that a calibration tests.
+///
+/// Each has an id, a side (switch or rig), a covariate and a formula.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch effects
@@ -14,31 +16,31 @@ use super::{Failure, print};
   pinswitch effects --effects mine.toml")]
 pub(super) struct Arguments {
     #[command(flatten)]
-    own: OwnEffects,
-    /// Write them as a file of effects of one's own, as far as formulas can say them; give those you keep ids of your own.
+    effects: UserEffects,
+    /// Print a file of user-defined effects instead, with every effect that a formula can express; the built-in ids are
+    /// reserved, so rename those you keep.
     #[arg(long, conflicts_with = "variables")]
     toml: bool,
-    /// List what formulas may read instead.
+    /// List the variables and functions of formulas instead.
     #[arg(long)]
     variables: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let vocabulary = arguments.own.vocabulary()?;
-    let text = match (arguments.toml, arguments.variables) {
-        (true, _) => toml(&vocabulary),
-        (false, true) => variables(),
-        (false, false) => listing(&vocabulary),
-    };
-    print(text.as_bytes())
+    let vocabulary = arguments.effects.vocabulary()?;
+    match (arguments.toml, arguments.variables) {
+        (true, _) => print_data(toml(&vocabulary).as_bytes()),
+        (false, true) => print_text(&variables()),
+        (false, false) => print_text(&listing(&vocabulary)),
+    }
 }
 
 fn listing(vocabulary: &Vocabulary) -> String {
     let mut text = format!("{:<24} {:<7} {:<11} formula\n", "effect", "side", "covariate");
     for effect in vocabulary.effects() {
-        let told = effect.description();
-        let (side, covariate) = (told.side.as_str(), told.covariate.as_str());
-        text.push_str(&format!("{:<24} {side:<7} {covariate:<11} {}\n", told.id, told.formula));
+        let description = effect.description();
+        let (side, covariate) = (description.side.as_str(), description.covariate.as_str());
+        text.push_str(&format!("{:<24} {side:<7} {covariate:<11} {}\n", description.id, description.formula));
     }
     text
 }
@@ -49,27 +51,30 @@ fn variables() -> String {
         text.push_str(&format!("{name:<20} {unit:<5} {meaning}\n"));
     }
     text.push_str(
-        "functions: + - * / ^ exp ln sqrt abs sin cos tanh min max, and < <= > >= == != as 0 or 1\n",
+        "functions: + - * / ^ exp ln sqrt abs sin cos tanh min max; comparisons < <= > >= == != give 0 or 1\n",
     );
     text
 }
 
+/// Returns the effects as a TOML file; comments list the built-in effects that no formula of one row can express.
 fn toml(vocabulary: &Vocabulary) -> String {
-    let (mut said, mut unsaid) = (Vec::new(), String::new());
+    let (mut definitions, mut inexpressible) = (Vec::new(), String::new());
     for effect in Vocabulary::built_in().effects() {
         match EffectDefinition::of(effect) {
-            Ok(definition) => said.push(definition),
-            Err(why) => unsaid.push_str(&format!("#   {}: {why}\n", effect.id())),
+            Ok(definition) => definitions.push(definition),
+            Err(why) => inexpressible.push_str(&format!("#   {}: {why}\n", effect.id())),
         }
     }
-    let built_in = said.len();
-    said.extend(vocabulary.own().map(|own| own.definition().clone()));
-    let mut text = "# The built-in effects as formulas. Their ids are taken: give those that you keep ids of your own.\n".to_owned();
-    if said.len() > built_in {
-        text.push_str("# Those of your own stand after them, under their ids.\n");
+    let built_in = definitions.len();
+    definitions.extend(vocabulary.own().map(|effect| effect.definition().clone()));
+    let mut text =
+        "# The built-in effects as formulas. Their ids are reserved: rename those that you keep.\n"
+            .to_owned();
+    if definitions.len() > built_in {
+        text.push_str("# User-defined effects follow them, with their ids.\n");
     }
-    text.push_str("# No formula of one row can say these:\n");
-    text.push_str(&unsaid);
-    text.push_str(&own_effects_text(&said));
+    text.push_str("# A formula of one row cannot express these:\n");
+    text.push_str(&inexpressible);
+    text.push_str(&own_effects_text(&definitions));
     text
 }

@@ -1,97 +1,104 @@
-//! How a command ends when it cannot do what was asked.
+//! Why a command stopped: its exit code and its diagnostics.
 
-use std::fmt::Display;
-use std::io::Write;
+use std::error::Error;
+use std::fmt;
 use std::process::ExitCode;
 
-use clap::error::{ContextKind, ContextValue, ErrorKind};
-use pinswitch_diagnostic::excerpt;
+use pinswitch_diagnostic::Diagnostic;
+use pinswitch_switch::config::ConfigError;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 
-/// What stands between several errors of one command.
-const BETWEEN: &str = "\nerror: ";
-/// Most characters of one error.
-const MAX_CHARACTERS: usize = 590;
-/// Errors, each short enough to be read: a value of any length that the input holds may stand in one.
-fn bounded(message: &str) -> String {
-    message.split(BETWEEN).map(|one| excerpt(one, MAX_CHARACTERS)).collect::<Vec<_>>().join(BETWEEN)
-}
+/// Exit code of work that could not be done: a full disk, an invalid mesh.
+const FAILED: u8 = 1;
+/// Exit code of input that cannot be used.
+const BAD_INPUT: u8 = 2;
 
-/// Why a command stopped, and with which exit code.
-#[derive(Debug)]
-pub enum Failure {
-    /// The work could not be done (exit code 1): a full disk, an invalid mesh.
-    Failed(String),
-    /// The input cannot be used (exit code 2): it names what to change.
-    BadInput(String),
+/// Why a command stopped: an exit code and at least one diagnostic.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    exit_code: u8,
+    diagnostics: Vec<Diagnostic>,
 }
 
 impl Failure {
-    /// Exit code 1 with this message.
-    pub fn failed(message: impl Display) -> Self {
-        Self::Failed(bounded(&message.to_string()))
+    /// Creates a failure with exit code 1: the work could not be done.
+    pub fn failed(diagnostic: impl Into<Diagnostic>) -> Self {
+        Self { exit_code: FAILED, diagnostics: vec![diagnostic.into()] }
     }
 
-    /// Exit code 2 with this message.
-    pub fn bad_input(message: impl Display) -> Self {
-        Self::BadInput(bounded(&message.to_string()))
+    /// Creates a failure with exit code 2: the input cannot be used.
+    pub fn bad_input(diagnostic: impl Into<Diagnostic>) -> Self {
+        Self { exit_code: BAD_INPUT, diagnostics: vec![diagnostic.into()] }
     }
 
-    /// What went wrong.
-    pub(super) fn message(&self) -> &str {
-        match self {
-            Self::Failed(message) | Self::BadInput(message) => message,
+    /// Creates a failure with exit code 2 from several diagnostics; `None` if there are none.
+    pub fn bad_inputs(diagnostics: impl IntoIterator<Item = Diagnostic>) -> Option<Self> {
+        let diagnostics: Vec<_> = diagnostics.into_iter().collect();
+        (!diagnostics.is_empty()).then_some(Self { exit_code: BAD_INPUT, diagnostics })
+    }
+
+    /// Exit code of the program: 1 failed, 2 bad input.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(self.exit_code)
+    }
+
+    /// Every problem, in the order in which it was met.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
+    /// Returns the text for a person: each problem with its location, its causes and its help.
+    pub(super) fn render(&self) -> String {
+        self.diagnostics.iter().map(|one| one.render("error")).collect::<Vec<_>>().join("\n")
+    }
+}
+
+impl fmt::Display for Failure {
+    /// Writes one line per problem.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, diagnostic) in self.diagnostics.iter().enumerate() {
+            write!(f, "{}{diagnostic}", if i == 0 { "" } else { "\n" })?;
         }
-    }
-
-    /// Prints the message on standard error and returns the exit code.
-    pub(super) fn report(&self) -> ExitCode {
-        let (message, code) = match self {
-            Self::Failed(message) => (message, 1),
-            Self::BadInput(message) => (message, 2),
-        };
-        say(format_args!("error: {message}"));
-        ExitCode::from(code)
+        Ok(())
     }
 }
 
-/// Writes a line on standard error. Where nobody listens or the disk is full there is no one to tell, and the exit code says
-/// enough: `eprintln!` would panic.
-pub(super) fn say(line: impl Display) {
-    let _ = writeln!(std::io::stderr(), "{line}");
-}
-
-/// Files that a command cannot do without, and the kind of each that `init` writes.
-const KINDS: [(&str, &str); 3] = [("<PLAN>", "plan"), ("<RUN>", "run"), ("<SWEEP>", "sweep")];
-
-/// The error with where a file comes from that was not given.
-fn with_kind_of_file(mut error: clap::Error) -> clap::Error {
-    let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else { return error };
-    let kind = KINDS.iter().find(|(name, _)| missing.iter().any(|argument| argument == name));
-    if let Some((_, kind)) = kind.filter(|_| error.kind() == ErrorKind::MissingRequiredArgument) {
-        let tip = format!("`pinswitch init {kind} --out {kind}.toml` writes one to start from");
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+impl Error for Failure {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.diagnostics.first().and_then(Error::source)
     }
-    error
 }
 
-/// Prints what is wrong with the arguments, or the help that they ask for, and returns the exit code.
-pub(super) fn report_usage(error: clap::Error) -> ExitCode {
-    let error = with_kind_of_file(error);
-    let text = error.render().to_string();
-    if error.use_stderr() && text.chars().count() > MAX_CHARACTERS {
-        // An argument of any length may stand in it.
-        say(bounded_lines(text.trim_end()));
-    } else {
-        // Nobody may listen any more, as after `head`.
-        let _ = error.print();
+impl Serialize for Failure {
+    /// Writes an object with the keys `exit_code` and `diagnostics`.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Failure", 2)?;
+        object.serialize_field("exit_code", &self.exit_code)?;
+        object.serialize_field("diagnostics", &self.diagnostics)?;
+        object.end()
     }
-    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }
 
-/// A text of several lines, none of which is long, and all of which are short enough to be read.
-fn bounded_lines(text: &str) -> String {
-    let lines: Vec<_> = text.lines().map(|line| excerpt(line, MAX_CHARACTERS / 2)).collect();
-    excerpt(&lines.join("\n"), MAX_CHARACTERS)
+/// Returns the diagnostic of an error whose crate does not convert it: its message is the problem, and it stays the
+/// source.
+pub(crate) fn unconverted(error: impl Error + Send + Sync + 'static) -> Diagnostic {
+    Diagnostic::from_error(error)
+}
+
+/// Returns the diagnostic of a configuration error, with location, problem, help and changes apart.
+pub(crate) fn of_config(error: ConfigError) -> Diagnostic {
+    use pinswitch_diagnostic::{Change, Location};
+
+    let place = error
+        .place
+        .map_or_else(Location::default, |place| Location { line: place.line, ..Location::file(place.file) });
+    let location = Location { field: Some(error.field), value: error.value, ..place };
+    let changes = error.changes.into_iter().map(|(field, value)| Change { field, value });
+    Diagnostic::new(error.problem)
+        .with_location(location)
+        .with_help(error.remedy)
+        .with_changes(changes.collect())
 }
 
 #[cfg(test)]
@@ -99,27 +106,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_wrong_with_an_argument_is_short_however_long_it_is() {
-        let text =
-            format!("error: invalid value '{}' for '--law'\n\nFor more, try '--help'.", "x".repeat(100_000));
-        let short = bounded_lines(&text);
-        assert!(short.chars().count() <= 590, "{short}");
-        assert!(short.starts_with("error: invalid value") && short.ends_with("try '--help'."), "{short}");
+    fn every_diagnostic_is_rendered() {
+        let both = Failure::bad_inputs(["a is wrong", "b is wrong"].map(Diagnostic::from)).unwrap();
+        assert_eq!(both.render(), "error: a is wrong\nerror: b is wrong");
+        assert_eq!(both.to_string(), "a is wrong\nb is wrong");
+        assert!(Failure::bad_inputs([]).is_none());
     }
 
     #[test]
-    fn an_error_is_short_and_keeps_its_beginning_and_its_remedy() {
-        let long = format!("my.toml:2: layout.pins = [{}]; give fewer", "5, ".repeat(100_000));
-        let failure = Failure::bad_input(&long);
-        let message = failure.message();
-        assert!(message.chars().count() <= 590, "{message}");
-        assert!(
-            message.starts_with("my.toml:2: layout.pins") && message.ends_with("; give fewer"),
-            "{message}"
+    fn a_failure_is_json() {
+        let failure = Failure::bad_input(Diagnostic::new("a is wrong").with_help("drop it"));
+        assert_eq!(
+            serde_json::to_value(&failure).unwrap(),
+            serde_json::json!({
+                "exit_code": 2,
+                "diagnostics": [{"problem": "a is wrong", "help": "drop it"}],
+            })
         );
-        // Several errors are bounded one by one.
-        let two = Failure::bad_input(format!("a{BETWEEN}{long}"));
-        assert_eq!(two.message(), format!("a{BETWEEN}{message}"));
-        assert_eq!(Failure::failed("short").message(), "short");
+    }
+
+    #[test]
+    fn sources_are_kept() {
+        let source = std::io::Error::other("disk full");
+        let failure = Failure::failed(Diagnostic::new("cannot write a.stl").with_source(source));
+        assert_eq!(failure.source().unwrap().to_string(), "disk full");
+        assert_eq!(failure.render(), "error: cannot write a.stl\n  cause: disk full");
+        assert_eq!(failure.exit_code(), ExitCode::from(1));
     }
 }

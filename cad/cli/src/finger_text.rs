@@ -1,4 +1,4 @@
-//! The gains of fingers as text: the table on the terminal and finger.csv.
+//! The gains of fingers as text: the tables for the terminal and finger.csv.
 
 use std::fmt::Write;
 
@@ -7,21 +7,22 @@ use pinswitch_friction::published::{HUMAN_FORCE_DIFFERENCE, HUMAN_PEAK_DIFFERENC
 
 use super::finger::{Layout, Report};
 
-/// Loads of the table: light, middle, heavy, as shares of the heaviest.
+/// Loads of the table, as shares of the heaviest load.
 const ROWS: [f64; 3] = [0.1, 0.5, 1.0];
-/// Flexions of the table in degrees, as far as they were asked for; the last but one is the human finger's largest.
+/// Flexions of the table in degrees; those outside the requested range are left out. At the third, the human finger has
+/// its largest force difference, and the last is the end of the range.
 const FLEXIONS_DEG: [f64; 4] = [30.0, 60.0, HUMAN_PEAK_JOINT_DEG, 180.0];
 
 fn percent(share: f64) -> f64 {
     100.0 * share
 }
 
-/// `40.3 % (37.4 to 43.4)`.
-fn banded(gain: Gain) -> String {
+/// Formats a gain with its band: `40.3 % (37.4 to 43.4)`.
+fn with_band(gain: Gain) -> String {
     format!("{:.1} % ({:.1} to {:.1})", percent(gain.value), percent(gain.low), percent(gain.high))
 }
 
-/// The three tables and what they are compared with.
+/// Formats the three tables, the human finger for comparison, the assumptions and the notes.
 pub(super) fn table(report: &Report) -> String {
     let mut text = String::new();
     over_load(&mut text, &report.layouts);
@@ -33,8 +34,8 @@ pub(super) fn table(report: &Report) -> String {
     // Writing to a string cannot fail, here and below.
     let _ = writeln!(
         text,
-        "\nhuman finger: {:.0} to {:.0} % force difference at high load, at most {:.0} % in the mean near {:.0} deg of \
-         flexion;\n  as extra holding that would be {:.1} to {:.1} %",
+        "\nhuman finger: {:.0} to {:.0} % force difference at high load (largest mean {:.0} %, near {:.0} deg of \
+         flexion),\n  which equals {:.1} to {:.1} % extra holding",
         percent(low),
         percent(high),
         percent(HUMAN_PEAK_DIFFERENCE),
@@ -51,12 +52,12 @@ pub(super) fn table(report: &Report) -> String {
     text
 }
 
-/// Why the curves over the joint are trusted no further: once for all layouts that share a reason.
+/// Lists why curves over the joint are not published ones; layouts with the same reason share a note.
 fn notes(layouts: &[Layout]) -> Vec<String> {
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
     for layout in layouts {
         for reason in layout.over_joint.last().into_iter().flat_map(|joint| &joint.reasons) {
-            match reasons.iter_mut().find(|(said, _)| said == reason) {
+            match reasons.iter_mut().find(|(known, _)| known == reason) {
                 Some((_, names)) => names.push(&layout.name),
                 None => reasons.push((reason, vec![&layout.name])),
             }
@@ -76,7 +77,7 @@ fn over_load(text: &mut String, layouts: &[Layout]) {
     let _ = writeln!(
         text,
         "{:<16} {:>8}  {:>24} {:>10}  {:>24} {:>10}",
-        "over load", "load", "force difference", "measured", "extra holding", "pull costs"
+        "over load", "load", "force difference", "measured", "extra holding", "extra pull"
     );
     for layout in layouts {
         let heaviest = layout.points.last().map_or(0.0, |p| p.load_n);
@@ -91,8 +92,8 @@ fn over_load(text: &mut String, layouts: &[Layout]) {
                 "{:<16} {:>6.1} N  {:>24} {measured:>10}  {:>24} {:>8.1} %",
                 layout.name,
                 p.load_n,
-                banded(p.force_difference),
-                banded(p.extra_holding),
+                with_band(p.force_difference),
+                with_band(p.extra_holding),
                 percent(p.concentric_penalty.value)
             );
         }
@@ -120,8 +121,8 @@ fn over_joint(text: &mut String, layouts: &[Layout]) {
                 p.joint_deg,
                 p.gains.load_n,
                 p.pins,
-                banded(p.gains.force_difference),
-                banded(p.gains.extra_holding)
+                with_band(p.gains.force_difference),
+                with_band(p.gains.extra_holding)
             );
         }
     }
@@ -131,7 +132,7 @@ fn motors(text: &mut String, layouts: &[Layout]) {
     let _ = writeln!(
         text,
         "{:<16} {:>8} {:>8}  {:>24} {:>16}",
-        "motor", "holds", "with", "mass saved", "can still pull"
+        "motor", "holds", "tension", "mass saved", "pulls at most"
     );
     for layout in layouts {
         let Some(motor) = layout.motor else { continue };
@@ -141,13 +142,13 @@ fn motors(text: &mut String, layouts: &[Layout]) {
             layout.name,
             motor.holds_n,
             motor.tension_n,
-            banded(motor.mass_saved),
+            with_band(motor.mass_saved),
             motor.pulls_n
         );
     }
 }
 
-/// Every load and every flexion of each layout; shares are fractions.
+/// Formats every load and every flexion of each layout as CSV; gains are fractions.
 pub(super) fn csv(report: &Report) -> String {
     let mut text = "layout,over,joint_deg,wrap_deg,load_N,holding_N,pulling_N".to_owned();
     for share in ["force_difference", "extra_holding", "motor_mass_saved", "concentric_penalty"] {
@@ -167,7 +168,7 @@ pub(super) fn csv(report: &Report) -> String {
     text
 }
 
-/// The word of a value in JSON.
+/// Returns the word that stands for a value in JSON.
 fn word(value: &impl serde::Serialize) -> String {
     serde_json::to_value(value).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
@@ -180,7 +181,7 @@ fn row(text: &mut String, place: [&str; 4], point: &FingerPoint, trust: &str) {
         .map(|force| format!("{force:.4}"))
         .chain(gains.iter().flat_map(|g| [g.value, g.low, g.high]).map(|share| format!("{share:.6}")))
         .collect();
-    // A name may hold what separates cells.
+    // A name may contain the characters that separate cells.
     let name = if place[0].contains([',', '"', '\n']) {
         format!("\"{}\"", place[0].replace('"', "\"\""))
     } else {

@@ -4,12 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
+use pinswitch_diagnostic::{Diagnostic, Location};
 
 use super::calibrated_curve::calibrated_curve;
+use super::failure::unconverted;
 use super::law::LawChoice;
 use super::slicing;
-use super::source::{Made, Source};
-use super::{Failure, print};
+use super::source::{LoadedDesign, Source};
+use super::terminal::warn;
+use super::{Failure, print_data, print_text};
 use crate::write::{PublishError, SetFolder};
 use pinswitch_switch::built::Built;
 use pinswitch_switch::formats::{ALL, FORMATS, Inclusion, named};
@@ -80,7 +83,7 @@ fn refused(error: PublishError) -> Failure {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let slicer = if arguments.slice { slicing::installed()? } else { None };
-    let Made { design, origin, law } = arguments.source.made()?;
+    let LoadedDesign { design, origin, law } = arguments.source.load()?;
     let prediction = match &arguments.model {
         Some(model) => Prediction::with_curve(&design, calibrated_curve(&design, model)?),
         None => arguments.law.or_of_set(law.as_deref()).prediction(&design)?,
@@ -96,30 +99,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         place.check_source(&origin).map_err(refused)?;
     }
     let built = Built::new(design).map_err(|e| match e {
-        BuildError::Configuration(e) => arguments.source.placed(&e),
-        other => Failure::failed(other),
+        BuildError::Configuration(e) => arguments.source.refusal(&e),
+        other => Failure::failed(unconverted(other)),
     })?;
     let names: Vec<&str> = arguments.format.iter().map(String::as_str).collect();
     let formats = named(&names).map_err(Failure::bad_input)?;
-    let mut set = Set::new(&built, &prediction, &formats).map_err(Failure::failed)?;
+    let mut set = Set::new(&built, &prediction, &formats).map_err(|e| Failure::failed(unconverted(e)))?;
     // What the slicer refuses is said at the end: the parts are made all the same.
     let sliced = slicer.map(|slicer| slicing::slicing(slicer, &built, &prediction)).transpose();
     if let Ok(Some((slicing, files))) = &sliced {
-        set = set.sliced(slicing.entry(), files.clone()).map_err(Failure::failed)?;
+        set = set.sliced(slicing.entry(), files.clone()).map_err(|e| Failure::failed(unconverted(e)))?;
     }
-    let set = set.made_from(origin.clone()).map_err(Failure::failed)?;
+    let set = set.made_from(origin.clone()).map_err(|e| Failure::failed(unconverted(e)))?;
     for changed in place.publish(&set.files, &origin, arguments.force).map_err(refused)? {
-        log::warn!(
-            "{}: changed since it was made, and left beside the new set",
-            folder.join(changed).display()
-        );
+        let location = Location::file(folder.join(changed).display().to_string());
+        warn(Diagnostic::new("was changed since it was written, and stays").with_location(location));
     }
     report(arguments, &set, &folder, &prediction);
     if let (Some((slicing, _)), false) = (sliced?, arguments.json) {
-        print(slicing.table().as_bytes())?;
+        print_text(&slicing.table())?;
     }
     if arguments.json {
-        print(&set.manifest.bytes().map_err(Failure::failed)?)?;
+        print_data(&set.manifest.bytes().map_err(|e| Failure::failed(unconverted(e)))?)?;
     }
     Ok(())
 }
@@ -127,7 +128,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Says what was made, with all that is not ideal of it.
 fn report(arguments: &Arguments, set: &Set, folder: &Path, prediction: &Prediction) {
     for warning in &set.manifest.warnings {
-        log::warn!("{warning}");
+        warn(warning.to_string());
     }
     for part in &set.manifest.parts {
         log::debug!("{}: {:.3} mm3, {} triangles", part.file, part.volume_mm3, part.mesh.triangles);

@@ -3,24 +3,25 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-
-use super::source::read_text;
-use super::{Failure, print};
-use crate::write::write_file;
-use pinswitch_diagnostic::excerpt;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::templates::{STARTERS, names};
 
-/// Write a template out, to start a configuration of your own.
+use super::source::read_text;
+use super::{Failure, print_data};
+use crate::write::write_file;
+
+/// Write a template to a file, to start a configuration from.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch init three-double --out my-switch.toml
   pinswitch init effects --out mine.toml
   pinswitch init reference")]
 pub(super) struct Arguments {
-    /// Name of a template; `reference` shows every parameter with its unit, range, default and reason. `sweep` starts a
-    /// batch, `effects` effects of your own, `plan` a simulated rig, `run` the description of raw logs, `rig` what a rig can do.
+    /// Name of a template. `reference` lists every parameter with its unit, range, default and reason. Starting files
+    /// of other kinds: `sweep` for a batch, `effects` for user-defined effects, `plan` for a simulated rig, `run` for
+    /// raw logs, `rig` for the limits of a rig.
     name: String,
-    /// File to write; without it the template goes to standard output.
+    /// File to write [default: standard output].
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite the file if it exists.
@@ -28,28 +29,29 @@ pub(super) struct Arguments {
     force: bool,
 }
 
-/// Commands by whose names a file may be looked for, and the kind of file that each of them needs.
+/// Commands whose names may be given by mistake, and the kind of file that each needs.
 const NEEDS: [(&str, &str); 5] =
     [("batch", "sweep"), ("simulate", "plan"), ("power", "plan"), ("segment", "run"), ("experiment", "rig")];
 
-/// What to write instead of a name that nothing has.
+/// Returns the failure of a name that no template has, with the most similar one.
 fn unknown(name: &str) -> Failure {
     let lower = name.to_lowercase();
     let kinds: Vec<&str> = STARTERS.iter().map(|starter| starter.0).collect();
-    let meant = match NEEDS.iter().find(|(command, _)| *command == lower) {
+    let suggestion = match NEEDS.iter().find(|(command, _)| *command == lower) {
         Some((command, kind)) => format!("`{command}` needs `pinswitch init {kind}`"),
         None => {
-            let likeness = |known: &&str| strsim::jaro_winkler(&lower, known);
-            let near = kinds.iter().copied().chain(names());
-            let near = near.max_by(|a, b| likeness(a).total_cmp(&likeness(b))).unwrap_or_default();
-            format!("the nearest is `pinswitch init {near}`")
+            let similarity = |known: &&str| strsim::jaro_winkler(&lower, known);
+            let nearest = kinds.iter().copied().chain(names());
+            let nearest = nearest.max_by(|a, b| similarity(a).total_cmp(&similarity(b))).unwrap_or_default();
+            format!("the nearest is `pinswitch init {nearest}`")
         }
     };
-    Failure::bad_input(format!(
-        "{}: no such template or kind of file; {meant}; the kinds are {}, and `pinswitch layouts` lists the templates",
-        excerpt(name, 80),
+    let help = format!(
+        "{suggestion}; the kinds are {}, and `pinswitch layouts` lists the templates",
         kinds.join(", ")
-    ))
+    );
+    let problem = "no such template or kind of file";
+    Failure::bad_input(Diagnostic::new(problem).with_location(Location::file(name)).with_help(help))
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -62,17 +64,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             Err(failure) => return Err(failure),
         },
     };
-    let Some(path) = &arguments.out else { return print(text.as_bytes()) };
+    let Some(path) = &arguments.out else { return print_data(text.as_bytes()) };
+    let refused = |problem: &str, help: String| {
+        let location = Location::file(path.display().to_string());
+        Err(Failure::bad_input(Diagnostic::new(problem).with_location(location).with_help(help)))
+    };
     if path.is_dir() {
         let file = path.join(format!("{}.toml", arguments.name));
-        return Err(Failure::bad_input(format!(
-            "{}: is a folder; give the name of a file, such as {}",
-            path.display(),
-            file.display()
-        )));
+        return refused("is a folder", format!("give the name of a file, such as {}", file.display()));
     }
     if path.exists() && !arguments.force {
-        return Err(Failure::bad_input(format!("{}: exists; give --force to overwrite it", path.display())));
+        return refused("exists already", "give --force to overwrite it".to_owned());
     }
     write_file(path, text.as_bytes()).map_err(Failure::from)
 }
@@ -82,8 +84,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_kind_of_file_is_found_by_a_name_that_is_near_or_by_its_command() {
-        for (name, meant) in [
+    fn a_similar_name_is_suggested() {
+        for (name, suggestion) in [
             ("rigs", "the nearest is `pinswitch init rig`"),
             ("effect", "the nearest is `pinswitch init effects`"),
             ("Plan", "the nearest is `pinswitch init plan`"),
@@ -92,9 +94,12 @@ mod tests {
             ("power", "`power` needs `pinswitch init plan`"),
             ("Segment", "`segment` needs `pinswitch init run`"),
         ] {
-            let said = unknown(name).message().to_owned();
-            assert!(said.starts_with(name) && said.contains(meant), "{said}");
-            assert!(said.contains("the kinds are sweep, effects, plan, run, rig"), "{said}");
+            let failure = unknown(name);
+            let [diagnostic] = failure.diagnostics() else { panic!("{failure}") };
+            assert_eq!(diagnostic.location(), Some(&Location::file(name)));
+            let help = diagnostic.help().unwrap();
+            assert!(help.starts_with(suggestion), "{help}");
+            assert!(help.contains("the kinds are sweep, effects, plan, run, rig"), "{help}");
         }
     }
 }

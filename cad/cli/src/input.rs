@@ -1,4 +1,4 @@
-//! Reading a file that the user names, and knowing afterwards which ones were read: no command writes over its own input.
+//! Reads the files that the user names, and records which were read: no command overwrites its own input.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -6,28 +6,32 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use super::Failure;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::config::text;
 
-/// Longest configuration, plan, model or report: some hundred times the longest that anybody writes.
+use super::Failure;
+use super::failure::of_config;
+
+/// Longest configuration, plan, model or report, in bytes: some hundred times the longest in practice.
 const MAX_TEXT: u64 = 16 << 20;
-/// Longest configuration, if a 3MF holds it.
+/// Longest 3MF that contains a configuration, in bytes.
 const MAX_PACKAGE: u64 = 256 << 20;
-/// Longest table or log: some million rows.
+/// Longest table or log, in bytes: some million rows.
 const MAX_TABLE: u64 = 1 << 30;
 
-/// The text of the file at `path`: of a configuration, a plan, a model.
+/// Reads a text file, such as a configuration, a plan or a model.
 ///
 /// # Errors
-/// [`Failure::BadInput`] names the file, where it is no text, and what to do.
+/// [`Failure::bad_input`] if the file cannot be read, is too long, or is not UTF-8; the last with the line.
 pub(super) fn read_text_file(path: &Path) -> Result<String, Failure> {
-    text(read_at_most(path, MAX_TEXT)?, &path.display().to_string()).map_err(Failure::bad_input)
+    let bytes = read_at_most(path, MAX_TEXT)?;
+    text(bytes, &path.display().to_string()).map_err(|e| Failure::bad_input(of_config(e)))
 }
 
-/// The bytes of the configuration at `path`: a text, or the 3MF of a set.
+/// Reads the bytes of a configuration: a text, or the 3MF of a set.
 ///
 /// # Errors
-/// [`Failure::BadInput`] names the file and what to do.
+/// [`Failure::bad_input`] if the file cannot be read or is too long.
 pub(super) fn read_configuration(path: &Path) -> Result<Vec<u8>, Failure> {
     let mut begin = [0; 2];
     let is_package = path.is_file()
@@ -36,37 +40,41 @@ pub(super) fn read_configuration(path: &Path) -> Result<Vec<u8>, Failure> {
     read_at_most(path, if is_package { MAX_PACKAGE } else { MAX_TEXT })
 }
 
-/// Every file that was read, without links and dots.
+/// Every file that was read, as a canonical path.
 static READ: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// Whether this run of the program has read the file at `path`, under whatever name.
+/// Whether this process has read the file at `path`, through this path or another one.
 pub(super) fn was_read(path: &Path) -> bool {
     let Ok(real) = path.canonicalize() else { return false };
     READ.lock().unwrap_or_else(PoisonError::into_inner).contains(&real)
 }
 
-/// The bytes of the table or log at `path`.
+/// Reads the bytes of a table or log.
 ///
 /// # Errors
-/// [`Failure::BadInput`] names the file and what to do.
+/// [`Failure::bad_input`] if the file cannot be read or is too long.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, Failure> {
     read_at_most(path, MAX_TABLE)
 }
 
-/// The bytes of the file at `path`, which is input from now on. A file without an end is no more than any other that is
-/// too long.
+/// Reads a file of at most `most` bytes and records it as input. A file without an end, such as `/dev/zero`, is too
+/// long.
 fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, Failure> {
-    let name = path.display();
+    let refused = |problem: &str, help: &str| {
+        Diagnostic::new(problem).with_location(Location::file(path.display().to_string())).with_help(help)
+    };
     if path.is_dir() {
-        return Err(Failure::bad_input(format!("{name}: is a folder; give a file")));
+        return Err(Failure::bad_input(refused("is a folder", "give a file")));
     }
-    let bytes = pinswitch_batch::read_at_most(path, most).map_err(|e| match e.kind() {
-        std::io::ErrorKind::FileTooLarge => {
-            Failure::bad_input(format!("{name}: {e}; give a file of what is asked for"))
-        }
-        _ => Failure::bad_input(format!("{name}: cannot read: {e}; give a file that exists and can be read")),
+    let bytes = pinswitch_batch::read_at_most(path, most).map_err(|e| {
+        Failure::bad_input(match e.kind() {
+            std::io::ErrorKind::FileTooLarge => {
+                refused(&format!("is longer than {most} bytes"), "check that this is the right file")
+            }
+            _ => refused("cannot read", "give a file that exists and can be read").with_source(e),
+        })
     })?;
-    // A pipe has no content that could be written over.
+    // A pipe has no content that could be overwritten.
     if path.is_file()
         && let Ok(real) = path.canonicalize()
     {
@@ -80,28 +88,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_too_long_is_not_read() {
+    fn a_file_too_long_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.toml");
-        // It takes no room on the disk.
+        // A sparse file: it takes no room on the disk.
         std::fs::File::create(&file).unwrap().set_len(MAX_TEXT + 1).unwrap();
         for path in [file.as_path(), Path::new("/dev/zero")] {
-            let error = read_text_file(path).unwrap_err();
-            assert!(error.message().contains("more than 16777216 bytes"), "{}", error.message());
+            let error = read_text_file(path).unwrap_err().to_string();
+            assert!(error.contains("longer than 16777216 bytes"), "{error}");
         }
     }
 
     #[test]
-    fn what_is_no_text_is_named_with_its_line() {
+    fn a_byte_outside_utf8_has_its_line() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.toml");
         std::fs::write(&file, b"a = 1\nb = \"\xff\"\n").unwrap();
         let error = read_text_file(&file).unwrap_err();
-        assert!(
-            error
-                .message()
-                .ends_with("a.toml:2: byte 0xff is no UTF-8 text; give a text file, saved as UTF-8")
-        );
-        assert!(read_text_file(folder.path()).unwrap_err().message().contains("is a folder; give a file"));
+        let [diagnostic] = error.diagnostics() else { panic!("{error}") };
+        let location = diagnostic.location().unwrap();
+        assert_eq!((location.file.as_deref(), location.line), (Some(&*file.to_string_lossy()), Some(2)));
+        assert!(error.to_string().contains("byte 0xff"), "{error}");
+        assert_eq!(diagnostic.help(), Some("give a text file, saved as UTF-8"));
+    }
+
+    #[test]
+    fn a_folder_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = read_text_file(folder.path()).unwrap_err().to_string();
+        assert!(error.ends_with(": is a folder; give a file"), "{error}");
     }
 }

@@ -3,10 +3,10 @@
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, print, print_json};
+use pinswitch_friction::published::{self, PublishedLayout};
 use pinswitch_switch::templates::{TEMPLATES, TemplateKind};
 
-use pinswitch_friction::published::{self, PublishedLayout};
+use super::{Failure, print_json, print_text};
 
 /// List the published layouts and the templates that ship with the program.
 #[derive(Args, Debug)]
@@ -16,7 +16,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// A published layout as printed.
+/// A published layout, with friction in N at the heaviest load.
 #[derive(Serialize)]
 struct Layout {
     name: &'static str,
@@ -27,7 +27,7 @@ struct Layout {
     pins_max_n: f64,
 }
 
-/// A template as printed.
+/// A template and its first line.
 #[derive(Serialize)]
 struct Entry {
     name: &'static str,
@@ -59,15 +59,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         );
     }
     for (title, entries) in
-        [("Templates", &listing.conditions), ("Printers, for --preset", &listing.printers)]
+        [("Templates", &listing.conditions), ("Printer presets, for --preset", &listing.printers)]
     {
         text += &format!("\n{title}:\n");
         for entry in entries {
             text += &format!("  {:<24} {}\n", entry.name, entry.about);
         }
     }
-    text += "\nreference shows every parameter: pinswitch init reference\n";
-    print(text.as_bytes())
+    text += "\n`pinswitch init reference` lists every parameter\n";
+    print_text(&text)
 }
 
 fn listing() -> Listing {

@@ -1,10 +1,13 @@
-//! The command line of pinswitch: one file per subcommand, with input and output at its edges. The work is done by the
-//! crates that `pinswitch` re-exports.
+//! The command line of pinswitch: one file per subcommand, with input and output at its edges.
+//!
+//! The crates that `pinswitch` re-exports do the work. Each command returns a [`Failure`] or has printed its result;
+//! `terminal` is the only place that writes to the terminal, and `write` the only one that writes files.
 
-use std::io::Write;
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_verbosity_flag::{InfoLevel, Verbosity};
 
 mod calibrated_curve;
@@ -12,18 +15,31 @@ mod failure;
 mod finger_text;
 mod input;
 mod law;
-mod own_effects;
 mod predict_rows;
 mod range;
 mod slicing;
 mod source;
+mod terminal;
+mod usage;
+mod user_effects;
 pub mod write;
 
 pub use failure::Failure;
+use terminal::{print_data, print_json, print_text};
 
 /// Parametric CAD generator for a printable friction switch, with the predicted friction curve of its layout.
 #[derive(Debug, Parser)]
 #[command(name = "pinswitch", version, max_term_width = 100, propagate_version = true)]
+#[command(after_help = "Commands by task:
+  make parts        generate, init, layouts, view, render
+  make many         batch, merge
+  predict           predict, physics, finger
+  design            design
+  check meshes      check
+  use measurements  segment, calibrate, experiment, effects, simulate, power
+  set up a shell    completions
+
+`pinswitch help COMMAND` explains a command, with examples.")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -31,7 +47,7 @@ struct Cli {
     verbosity: Verbosity<InfoLevel>,
 }
 
-/// Declares the subcommands: the file of each, its place in the help, and how it is run.
+/// Declares the subcommands: the file of each, its place in the help, and its function.
 macro_rules! commands {
     ($($Command:ident: $file:ident,)*) => {
         $(mod $file;)*
@@ -76,34 +92,29 @@ commands! {
 
 /// Runs the command that the arguments name. Exit codes: 0 done, 1 failed, 2 bad input.
 pub fn run() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
-        Err(e) => return failure::report_usage(e),
+    let (cli, is_json) = match parse() {
+        Ok(parsed) => parsed,
+        Err(e) => return usage::report(e),
     };
-    env_logger::Builder::new()
-        .filter_level(cli.verbosity.log_level_filter())
-        .format_timestamp(None)
-        .format_target(false)
-        .init();
+    terminal::start_log(cli.verbosity.log_level_filter());
     match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
-    }
-}
-
-/// Prints on standard output. A reader that stops early, as `head` does, is no failure.
-fn print(bytes: &[u8]) -> Result<(), Failure> {
-    match std::io::stdout().lock().write_all(bytes) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::failed(format!("standard output: {e}")))
+        Err(failure) => {
+            terminal::report_failure(&failure, is_json);
+            failure.exit_code()
         }
-        _ => Ok(()),
     }
 }
 
-/// Prints `value` as indented JSON.
-fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
-    let mut bytes = serde_json::to_vec_pretty(value).map_err(Failure::failed)?;
-    bytes.push(b'\n');
-    print(&bytes)
+/// Parses the arguments of the process; also returns whether the command was given `--json`.
+fn parse() -> Result<(Cli, bool), clap::Error> {
+    let matches = Cli::command().try_get_matches()?;
+    let cli = Cli::from_arg_matches(&matches).map_err(|e| e.format(&mut Cli::command()))?;
+    let is_json = matches.subcommand().is_some_and(|(_, command)| is_set(command, "json"));
+    Ok((cli, is_json))
+}
+
+/// Whether a command has this flag and was given it.
+fn is_set(command: &ArgMatches, flag: &str) -> bool {
+    command.try_get_one::<bool>(flag).is_ok_and(|value| value.copied().unwrap_or(false))
 }

@@ -1,31 +1,35 @@
-//! `pinswitch physics`: the physics behind the curves, made again and shown.
+//! `pinswitch physics`: refits the physics of the curves and compares it with the published facts.
 
 use std::path::PathBuf;
 
 use clap::Args;
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::evidence::{LawEvidence, evidence};
 use pinswitch_friction::physics::hypotheses::{HypothesisFinding, hypotheses, weights};
 use pinswitch_friction::physics::{
     Bed, FitError, LayoutLeftOut, MaximaFit, contact_profile, fit_maxima, leave_one_layout_out,
 };
 use pinswitch_friction::{Direction, Law, Substrate};
-use serde::Serialize;
-
-use super::source::Source;
-use super::{Failure, print, print_json};
-use crate::write::write_set;
 use pinswitch_report::contact_svg;
 use pinswitch_switch::output::OutputFile;
+use serde::Serialize;
 
-/// Squared standard deviations from which a fact tells against a hypothesis.
-const AGAINST: f64 = 1.0;
-/// Loads of the profile, as shares of the heaviest.
+use super::failure::unconverted;
+use super::source::Source;
+use super::terminal::to_json;
+use super::{Failure, print_json, print_text};
+use crate::write::write_set;
+
+/// Chi-squared above which a published fact counts against a hypothesis.
+const MIN_CHI_SQUARED: f64 = 1.0;
+/// Loads of the profiles, as shares of the heaviest load.
 const PROFILE_LOADS: [f64; 4] = [0.1, 0.3, 0.6, 1.0];
 
-/// Show the physics: its constants, what it says of layouts left out, and what the tendon does outside the pins.
+/// Show the physics: its constants, the errors of the laws, and the path of the tendon.
 ///
-/// Fits the three constants to the seven published maxima again, leaves each layout out in turn, compares the laws, and
-/// weighs the hypotheses about the tendon's path by all published facts. With --out, draws the tendon over the pins of a configuration.
+/// Refits the three constants to the seven published maxima, predicts each layout from the others, compares the
+/// friction laws, and weighs hypotheses about the tendon's path by all published facts. With --out, draws the tendon
+/// over the pins of a configuration.
 #[derive(Args, Debug)]
 #[command(mut_arg("config", |a| a.required(false).default_value("three-double")))]
 pub(super) struct Arguments {
@@ -39,7 +43,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// Everything that is shown.
+/// Everything that is printed.
 #[derive(Serialize)]
 struct Report {
     bed: Bed,
@@ -51,12 +55,15 @@ struct Report {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let design = arguments.source.design()?;
-    let report = report().map_err(Failure::failed)?;
+    let report = report().map_err(|e| Failure::failed(unconverted(e)))?;
     if let Some(folder) = &arguments.out {
         let contact = design.contact();
         if contact.substrate() == Substrate::Abs || contact.pins().count() == 0 {
             return Err(Failure::bad_input(
-                "--out draws a tendon over pins on silicone; give a configuration with pins and layout.substrate = \"silicone\"",
+                Diagnostic::new(
+                    "--out draws a tendon over pins on silicone, and this configuration has none",
+                )
+                .with_help("give a configuration with pins and layout.substrate = \"silicone\""),
             ));
         }
         let heaviest = design.configuration().friction.load_max_n;
@@ -67,17 +74,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 contact_profile(contact, load, Direction::Eccentric).map(|profile| (load, profile))
             })
             .collect::<Result<Vec<_>, _>>()
-            .map_err(Failure::failed)?;
+            .map_err(|e| Failure::failed(unconverted(e)))?;
         let title = format!("{}: the tendon over its pins", design.configuration().switch.name);
-        let svg = contact_svg(&title, &profiles).map_err(Failure::failed)?;
-        let mut json = serde_json::to_vec_pretty(&report).map_err(Failure::failed)?;
-        json.push(b'\n');
-        let files = [("contact.svg", svg.into_bytes()), ("physics.json", json)]
+        let svg = contact_svg(&title, &profiles).map_err(|e| Failure::failed(unconverted(e)))?;
+        let files = [("contact.svg", svg.into_bytes()), ("physics.json", to_json(&report)?)]
             .map(|(name, bytes)| OutputFile { name: name.to_owned(), bytes });
         write_set(folder, &files)?;
         log::info!("{}: contact.svg, physics.json", folder.display());
     }
-    if arguments.json { print_json(&report) } else { print(text(&report).as_bytes()) }
+    if arguments.json { print_json(&report) } else { print_text(&text(&report)) }
 }
 
 fn report() -> Result<Report, FitError> {
@@ -98,7 +103,7 @@ fn text(report: &Report) -> String {
         "Constants, fitted to the seven published maxima (RMS error {:.1} %):\n\
          \x20 kappa  {:.4} N^-0.5  +- {:.1} %   ploughing of the coating by a pin, mu = kappa sqrt(N)\n\
          \x20 mu_s   {:.4}         +- {:.1} %   coated tendon on silicone\n\
-         \x20 N0     {:.2} N         +- {:.1} %   force that sinks a pin flush\n\n",
+         \x20 N0     {:.2} N         +- {:.1} %   force that sinks a pin flush with the silicone\n\n",
         100.0 * fit.rms,
         fit.constants.kappa_per_sqrt_n,
         sd(0),
@@ -107,7 +112,7 @@ fn text(report: &Report) -> String {
         fit.constants.flush_force_n,
         sd(2)
     );
-    text += "Error of each law on the seven maxima: as it is / with nothing given of the layout that is predicted\n";
+    text += "Error of each law on the seven maxima: in-sample / leave-one-layout-out\n";
     text += &format!("{:<26}", "");
     for law in &report.evidence {
         let default = if law.law == Law::DEFAULT { ", the default" } else { "" };
@@ -132,14 +137,18 @@ fn text(report: &Report) -> String {
         text += &format!("{:<22}", pair(law.rms_in_sample, law.rms_left_out).replace('+', ""));
     }
     text = text.trim_end().to_owned() + "\n";
-    text += "\nWhat does the tendon do outside the pins? Each hypothesis with its own best constants; its share of the\n\
-             likelihood of all, and the facts that tell against it, in standard deviations:\n";
+    text += "\nPath of the tendon outside the pins: relative likelihood of each hypothesis at its best constants, and the\n\
+             published facts against it, in standard deviations:\n";
     for (finding, weight) in report.hypotheses.iter().zip(weights(&report.hypotheses)) {
         text += &format!("{:>4.0} %  {}\n", 100.0 * weight, finding.hypothesis.name);
-        for c in finding.compared.iter().filter(|c| c.chi_squared > AGAINST && c.fact != "the seven maxima") {
-            text += &format!("          {:.1} off {}: {}\n", c.chi_squared.sqrt(), c.fact, c.here);
+        for c in finding
+            .compared
+            .iter()
+            .filter(|c| c.chi_squared > MIN_CHI_SQUARED && c.fact != "the seven maxima")
+        {
+            text += &format!("          {:.1} sd from {}: {}\n", c.chi_squared.sqrt(), c.fact, c.here);
         }
     }
-    text += "No hypothesis explains why three-double ends 14 % above three-single.\n";
+    text += "No hypothesis explains the friction of three-double, 14 % above three-single at the heaviest load.\n";
     text
 }

@@ -1,19 +1,20 @@
 //! `pinswitch predict CONFIG`.
 
 use clap::Args;
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_friction::FrictionCurve;
+use pinswitch_switch::documents::friction_csv;
+use pinswitch_switch::prediction::Prediction;
 use serde::Serialize;
 
 use super::calibrated_curve::calibrated_curve;
-use super::law::{LawChoice, side_by_side};
+use super::law::{LawChoice, compare_laws};
 use super::predict_rows::{Rows, SourceUnlessRows};
-use super::{Failure, print, print_json};
-use pinswitch_switch::documents::friction_csv;
-use pinswitch_switch::prediction::Prediction;
+use super::{Failure, print_data, print_json};
 
 /// Predict the friction curve of a configuration, without making parts.
 ///
-/// The curve carries its law, its band, and one word on how far to trust it: published, interpolated or extrapolated.
+/// The curve has a law, a 95 % band and a status: published, interpolated or extrapolated.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch predict three-double
@@ -26,12 +27,12 @@ pub(super) struct Arguments {
     rows: Rows,
     #[command(flatten)]
     law: LawChoice,
-    /// Print JSON instead of CSV; the other laws' curves stand beside it under other_laws.
+    /// Print JSON instead of CSV, with the curves of the other laws under other_laws.
     #[arg(long)]
     json: bool,
 }
 
-/// The curve, and those of other laws for comparison.
+/// The curve, and the curves of the other laws for comparison.
 #[derive(Serialize)]
 struct Output {
     #[serde(flatten)]
@@ -45,7 +46,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let source = arguments.source.0.as_ref().ok_or_else(|| {
         Failure::bad_input(
-            "predict needs a configuration, or --model and --rows; see pinswitch predict --help",
+            Diagnostic::new("no configuration and no rows")
+                .with_help("give a configuration, or --model and --rows; see `pinswitch predict --help`"),
         )
     })?;
     let design = source.design()?;
@@ -53,13 +55,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(model) => Prediction::with_curve(&design, calibrated_curve(&design, model)?),
         None => arguments.law.prediction(&design)?,
     };
-    log::info!("{}", side_by_side(&curve, &others));
+    log::info!("{}", compare_laws(&curve, &others));
     for reason in &curve.reasons {
         log::info!("{reason}");
     }
     if arguments.json {
         print_json(&Output { curve, other_laws: others })
     } else {
-        print(friction_csv(&curve).as_bytes())
+        print_data(friction_csv(&curve).as_bytes())
     }
 }

@@ -1,30 +1,31 @@
-//! `pinswitch predict --model MODEL --rows TABLE --out FILE`: readings from a calibrated model.
+//! `pinswitch predict --model MODEL --rows TABLE --out FILE`: predicted readings of a calibrated model.
 
 use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
-use pinswitch_calibration::ModelFile;
 use pinswitch_calibration::table::PlateauTable;
 
+use super::calibrated_curve::read_model;
+use super::failure::unconverted;
 use super::source::Source;
-use super::{Failure, print};
+use super::{Failure, print_data};
 use crate::write::write_file;
 
 /// Rows of a plateau table, predicted by a calibrated model.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Rows {
-    /// A model.toml or baseline.toml written by `calibrate`: predicts the rows, or the curve of the configuration.
+    /// model.toml or baseline.toml of a calibration; predicts the rows, or the curve of the configuration.
     #[arg(long, value_name = "TOML", conflicts_with = "law")]
     pub(super) model: Option<PathBuf>,
-    /// A plateau table whose rows are predicted; its force_N is not used.
+    /// Plateau table whose rows are predicted; its force_N is not used.
     #[arg(long, value_name = "CSV", requires = "model")]
     rows: Option<PathBuf>,
-    /// Where the table with predicted_N and sd_N goes; standard output if absent.
+    /// File for the table with predicted_N and sd_N [default: standard output].
     #[arg(long, value_name = "CSV", requires = "rows")]
     out: Option<PathBuf>,
 }
 
-/// A configuration, which is needed only when no rows are given.
+/// A configuration, which is required unless rows are given.
 #[derive(Clone, Debug)]
 pub(super) struct SourceUnlessRows(pub(super) Option<Source>);
 
@@ -52,24 +53,23 @@ impl Args for SourceUnlessRows {
 }
 
 impl Rows {
-    /// Predicts the rows if rows are asked for; `None` if the command is about a configuration.
+    /// Predicts the rows; `None` if none are given.
     pub(super) fn run(&self) -> Option<Result<(), Failure>> {
         let (model, rows) = self.model.as_ref().zip(self.rows.as_ref())?;
         Some(self.predict(model, rows))
     }
 
     fn predict(&self, model: &Path, rows: &Path) -> Result<(), Failure> {
-        let (model_name, rows_name) = (model.display().to_string(), rows.display().to_string());
-        let text = crate::input::read_text_file(model)?;
-        let model = ModelFile::parse(&text, &model_name).map_err(Failure::bad_input)?;
+        let (model, model_name) = read_model(model)?;
         let bytes = crate::input::read_file(rows)?;
-        let table =
-            PlateauTable::read_conditions(bytes.as_slice(), &rows_name).map_err(Failure::bad_input)?;
-        let (predicted, sd) = model.predict(&table.rows, &model_name).map_err(Failure::bad_input)?;
+        let table = PlateauTable::read_conditions(bytes.as_slice(), &rows.display().to_string())
+            .map_err(|e| Failure::bad_input(unconverted(e)))?;
+        let (predicted, sd) =
+            model.predict(&table.rows, &model_name).map_err(|e| Failure::bad_input(unconverted(e)))?;
         let csv = table.with_columns(&["predicted_N", "sd_N"], &[predicted, sd], 5);
         match &self.out {
             Some(path) => write_file(path, csv.as_bytes()).map_err(Failure::from),
-            None => print(csv.as_bytes()),
+            None => print_data(csv.as_bytes()),
         }
     }
 }

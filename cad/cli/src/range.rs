@@ -3,34 +3,37 @@
 use std::fmt::Display;
 use std::str::FromStr;
 
-use pinswitch_diagnostic::excerpt;
+use pinswitch_diagnostic::{Diagnostic, excerpt};
 
-/// A range with both ends, the first no greater than the second.
+/// A range that includes both ends, with `from <= to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range<T> {
-    /// The first.
+    /// Lower end.
     pub(super) from: T,
-    /// The last, included.
+    /// Upper end.
     pub(super) to: T,
 }
 
 impl<T: FromStr + PartialOrd + Display + Copy> FromStr for Range<T> {
-    type Err = String;
+    type Err = Diagnostic;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    /// Parses `A..B`, or `A` for a range of one value.
+    fn from_str(text: &str) -> Result<Self, Diagnostic> {
         let (from, to) = text.split_once("..").unwrap_or((text, text));
         let number = |part: &str| {
             let number = part.trim().parse::<T>().ok();
-            // NaN and infinity are numbers to the parser, and ends of no range.
-            number
-                .filter(|number| !number.to_string().contains(['N', 'i']))
-                .ok_or_else(|| format!("{:?} is no number; give A..B, such as 3..6", excerpt(part, 40)))
+            // Rust parses "NaN" and "inf" as numbers, but they cannot end a range.
+            number.filter(|number| !number.to_string().contains(['N', 'i'])).ok_or_else(|| {
+                Diagnostic::new(format!("{:?} is not a number", excerpt(part, 40)))
+                    .with_help("give A..B, such as 3..6")
+            })
         };
         let (low, high) = (number(from)?, number(to)?);
         if low <= high {
             Ok(Self { from: low, to: high })
         } else {
-            Err(format!("{} runs backwards; give the smaller number first", excerpt(text, 80)))
+            Err(Diagnostic::new(format!("{} runs backwards", excerpt(text, 80)))
+                .with_help("give the smaller number first"))
         }
     }
 }
@@ -40,21 +43,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_read_both_ends() {
+    fn a_range_has_both_ends() {
         assert_eq!("3..6".parse(), Ok(Range { from: 3, to: 6 }));
         assert_eq!("4".parse(), Ok(Range { from: 4, to: 4 }));
         assert_eq!("3.5..80".parse(), Ok(Range { from: 3.5, to: 80.0 }));
-        for (bad, said) in [
+    }
+
+    #[test]
+    fn invalid_ranges_are_refused() {
+        for (text, problem) in [
             ("6..3", "6..3 runs backwards"),
             ("1e300..3", "1e300..3 runs backwards"),
-            ("a..b", "\"a\" is no number"),
-            ("..", "\"\" is no number"),
-            ("1..NaN", "\"NaN\" is no number"),
-            ("nan..inf", "\"nan\" is no number"),
-            ("1..1e999", "\"1e999\" is no number"),
+            ("a..b", "\"a\" is not a number"),
+            ("..", "\"\" is not a number"),
+            ("1..NaN", "\"NaN\" is not a number"),
+            ("nan..inf", "\"nan\" is not a number"),
+            ("1..1e999", "\"1e999\" is not a number"),
         ] {
-            let error = bad.parse::<Range<f64>>().unwrap_err();
-            assert!(error.starts_with(said), "{error}");
+            assert_eq!(text.parse::<Range<f64>>().unwrap_err().problem(), problem);
         }
     }
 }

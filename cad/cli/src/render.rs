@@ -4,15 +4,18 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::Failure;
-use super::source::Source;
-use crate::write::write_file;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_solid::render::{View, render};
 use pinswitch_switch::built::Built;
 use pinswitch_switch::output::BuildError;
 use pinswitch_switch::scene::{all_plates, assembled};
 
-/// Draw a picture of the parts as PNG: assembled, pulled apart, or laid out as printed.
+use super::Failure;
+use super::failure::unconverted;
+use super::source::Source;
+use crate::write::write_file;
+
+/// Draw the parts as PNG: assembled, exploded, or laid out as printed.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch render three-double --out assembly.png
@@ -20,30 +23,30 @@ use pinswitch_switch::scene::{all_plates, assembled};
 pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
-    /// File to write.
+    /// PNG file to write.
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
-    /// What to draw.
+    /// Arrangement of the parts.
     #[arg(long, value_enum, default_value_t = Scene::Exploded)]
     scene: Scene,
-    /// Turn about the vertical axis, in degrees [default: 150, so that grooves and tendon are seen; 30 of a plate].
+    /// Rotation about the vertical axis in degrees [default: 150, which shows grooves and tendon; 30 for a plate].
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     turn: Option<f64>,
-    /// Height of the eye above the horizon, in degrees.
+    /// Elevation of the camera in degrees.
     #[arg(long, value_name = "DEG", default_value_t = 40.0, allow_negative_numbers = true)]
     rise: f64,
-    /// Width of the picture in pixels; the height is three quarters of it.
+    /// Width of the picture in pixels; the height is three quarters of the width.
     #[arg(long, value_name = "PIXELS", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(64..=8000))]
     width: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Scene {
-    /// Everything in its place.
+    /// The assembled switch.
     Assembled,
-    /// Supports and layer pulled away from the shell.
+    /// Supports and layer at a distance from the shell.
     Exploded,
-    /// All printed parts side by side, in print orientation; where they need several plates, each on its bed.
+    /// All printed parts in print orientation; if they need several plates, each on its bed.
     Plate,
 }
 
@@ -59,13 +62,17 @@ impl Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for (flag, degrees) in [("--turn", arguments.turn_deg()), ("--rise", arguments.rise)] {
         if !degrees.is_finite() {
-            return Err(Failure::bad_input(format!("{flag} = {degrees}: give an angle in degrees")));
+            return Err(Failure::bad_input(
+                Diagnostic::new("the angle is not finite")
+                    .with_location(Location::field(flag, degrees.to_string()))
+                    .with_help("give an angle in degrees"),
+            ));
         }
     }
     let design = arguments.source.design()?;
     let built = Built::new(design).map_err(|e| match e {
-        BuildError::Configuration(e) => arguments.source.placed(&e),
-        other => Failure::failed(other),
+        BuildError::Configuration(e) => arguments.source.refusal(&e),
+        other => Failure::failed(unconverted(other)),
     })?;
     let bodies = match arguments.scene {
         Scene::Assembled => assembled(&built, 0.0),
@@ -74,6 +81,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let view = View { turn_deg: arguments.turn_deg(), rise_deg: arguments.rise };
     let picture = render(&bodies, view, arguments.width, arguments.width * 3 / 4);
-    let bytes = picture.png().map_err(Failure::failed)?;
+    let bytes = picture.png().map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
     write_file(&arguments.out, &bytes).map_err(Failure::from)
 }

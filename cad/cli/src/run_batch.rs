@@ -7,27 +7,29 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
-
-use super::failure::say;
-use super::{Failure, print, print_json, slicing};
 use pinswitch_batch::{
     CountedSweep, Destination, Estimate, Observer, Options, Reach, RunError, Shard, SweepSource, Tally,
     VariantOutcome, Variants, admit, estimate, mesh_file, partial_folder, run as run_batch, would_fail,
 };
+use pinswitch_diagnostic::{Diagnostic, Location};
 
-/// More variants than this want --yes.
+use super::failure::{of_config, unconverted};
+use super::terminal::print_line;
+use super::{Failure, print_json, print_text, slicing};
+
+/// Most variants without `--yes`.
 const MAX_WITHOUT_YES: u64 = 10_000;
-/// Most threads: more processors than a machine has, and less than a system refuses, or spends its memory on.
+/// Most threads: more than the processors of a machine, and fewer than exhaust its memory or the system's limit.
 const MAX_THREADS: i64 = 256;
-/// Interval of progress lines where there is no terminal.
+/// Interval of progress lines without a terminal.
 const PROGRESS_INTERVAL: Duration = Duration::from_secs(10);
 
-/// Make every variant of a sweep: parts, curves, one table of all, plots, and a page to look through them.
+/// Make every variant of a sweep, with one table, plots and a page to browse.
 ///
-/// A sweep is a base configuration with axes (lists, ranges), a seeded sample (Latin hypercube or random) or a CSV of
-/// rows over it, and constraints. DIR gets variants/ID/ with the parts, curve and manifest of each, variants.csv and
-/// variants.parquet, curves.svg, threshold.svg and index.html. Equal parts are made once and linked. A run that was
-/// stopped, or killed, is taken up by the same command and ends with the same files.
+/// A sweep varies a base configuration by axes (lists, ranges), by a seeded sample (Latin hypercube or random) or by the
+/// rows of a CSV, within constraints. The output has variants/ID/ with the parts, the curve and the manifest of each
+/// variant, variants.csv and variants.parquet, curves.svg, threshold.svg and index.html. Equal parts are made once and
+/// linked. The same command resumes a run that was stopped or killed, and ends with the same files.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch batch sweep.toml --out out/sweep --dry-run
@@ -35,24 +37,24 @@ const PROGRESS_INTERVAL: Duration = Duration::from_secs(10);
   pinswitch batch sweep.toml --out s3://bucket/sweep --shard 2/8   (then: pinswitch merge s3://bucket/sweep)
   pinswitch init sweep --out sweep.toml")]
 pub(super) struct Arguments {
-    /// The sweep's TOML file; `pinswitch init sweep` writes one to start from.
+    /// TOML file of the sweep; `pinswitch init sweep` writes one to start from.
     sweep: PathBuf,
-    /// Folder or object store to write to; the same one takes up a run that was stopped.
+    /// Folder or object store for the output; give the same one to resume a run.
     #[arg(long, short, value_name = "DIR|URL", required_unless_present = "dry_run")]
     out: Option<String>,
-    /// Let the sweep name files outside its own folder as base, preset or rows.
+    /// Allow base, preset and rows outside the folder of the sweep.
     #[arg(long)]
     read_outside: bool,
-    /// Say how many variants, how long, how large, and what would be refused and why; write nothing.
+    /// Estimate variants, time and size, and list the refused variants with reasons; write nothing.
     #[arg(long)]
     dry_run: bool,
     /// Print the estimate of --dry-run, or the tally at the end, as JSON.
     #[arg(long)]
     json: bool,
-    /// Make only block K of N; `pinswitch merge` joins them.
+    /// Make only block K of N; `pinswitch merge` joins the blocks.
     #[arg(long, value_name = "K/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
-    /// Threads, up to 256 [default: one per processor; 16 for a bucket, which upload at once].
+    /// Threads, up to 256 [default: one per processor; for a bucket 16, which upload in parallel].
     #[arg(
         long,
         value_name = "N",
@@ -61,66 +63,61 @@ pub(super) struct Arguments {
         value_parser = clap::value_parser!(u16).range(0..=MAX_THREADS)
     )]
     threads: u16,
-    /// Ask an installed PrusaSlicer (`prusa-slicer` on PATH, or PINSWITCH_SLICER) of every variant: columns print_minutes,
-    /// filament_g and filament_m, the sums over its parts.
+    /// Slice every variant with an installed PrusaSlicer (`prusa-slicer` on PATH, or PINSWITCH_SLICER); adds the columns
+    /// print_minutes, filament_g and filament_m, summed over the parts.
     #[arg(long)]
     slice: bool,
     /// Stop at the first variant that fails.
     #[arg(long)]
     fail_fast: bool,
-    /// Make more than 10000 variants.
+    /// Allow more than 10000 variants.
     #[arg(long)]
     yes: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let invalid = |e| Failure::bad_input(of_config(e));
+    let failed = |e| Failure::failed(unconverted(e));
     let reach = if arguments.read_outside { Reach::Anywhere } else { Reach::Beside };
-    let mut source = SweepSource::read_within(&arguments.sweep, reach).map_err(Failure::bad_input)?;
+    let mut source = SweepSource::read_within(&arguments.sweep, reach).map_err(invalid)?;
     source.slice = arguments.slice;
-    let counted = CountedSweep::new(&source).map_err(Failure::bad_input)?;
-    let count = counted.count().ok_or_else(|| {
-        Failure::bad_input(format!(
-            "{}: more variants than can be counted ({}); raise a step, or lower a count",
-            arguments.sweep.display(),
-            u64::MAX
-        ))
-    })?;
-    let own = arguments.shard.range(count);
-    if own.end - own.start > MAX_WITHOUT_YES && !arguments.yes {
-        return Err(Failure::bad_input(format!(
-            "{}: {} variants are more than {MAX_WITHOUT_YES}; give --yes if you mean it, or --shard",
-            arguments.sweep.display(),
-            own.end - own.start,
-        )));
-    }
-    if arguments.shard.range(count).is_empty() {
-        return Err(Failure::bad_input(format!(
-            "--shard {} has no variant: the sweep has {count}; give fewer shards",
-            arguments.shard
-        )));
-    }
-    let variants = Variants::new(counted.checked().map_err(Failure::bad_input)?, &source);
+    let counted = CountedSweep::new(&source).map_err(invalid)?;
+    let count = count(arguments, &counted)?;
+    let range = arguments.shard.range(count);
+    let variants = Variants::new(counted.checked().map_err(invalid)?, &source);
     let out = arguments.out.as_deref().unwrap_or_default();
-    let open = || Destination::open(out, &partial_folder(arguments.shard)).map_err(Failure::bad_input);
+    let open = || {
+        Destination::open(out, &partial_folder(arguments.shard))
+            .map_err(|e| Failure::bad_input(unconverted(e)))
+    };
     if arguments.dry_run {
         let mut failing = Vec::new();
         if arguments.out.is_some() {
             let destination = open()?;
             admit(&variants, &source, &destination, arguments.shard).map_err(refused)?;
-            failing = would_fail(&destination, &variants, arguments.shard).map_err(Failure::failed)?;
+            failing = would_fail(&destination, &variants, arguments.shard).map_err(failed)?;
         }
         dry_run(arguments, &variants)?;
         return match failing.first() {
             None => Ok(()),
-            Some(first) => Err(Failure::failed(format!(
-                "{out}/{first} is in the way, and {} more; variants that need it would fail: move it away, or give another --out",
-                failing.len() - 1
-            ))),
+            Some(first) => {
+                let problem = match failing.len() - 1 {
+                    0 => "blocks the output: its variant would fail".to_owned(),
+                    more => {
+                        format!("blocks the output, and {more} other paths do: their variants would fail")
+                    }
+                };
+                Err(Failure::failed(
+                    Diagnostic::new(problem)
+                        .with_location(Location::file(format!("{out}/{first}")))
+                        .with_help("move it away, or give another --out"),
+                ))
+            }
         };
     }
     let slicer = if arguments.slice { slicing::installed()? } else { None };
     let destination = open()?;
-    let progress = Progress::new(own.end - own.start)?;
+    let progress = Progress::new(range.end - range.start)?;
     let options = Options {
         shard: arguments.shard,
         threads: usize::from(arguments.threads),
@@ -134,10 +131,42 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     report(arguments, out, &tally, &progress)
 }
 
+/// Counts the variants of a sweep.
+///
+/// # Errors
+/// [`Failure::bad_input`] if there are too many, or none in the requested shard.
+fn count(arguments: &Arguments, sweep: &CountedSweep) -> Result<u64, Failure> {
+    let file = || Location::file(arguments.sweep.display().to_string());
+    let count = sweep.count().ok_or_else(|| {
+        Failure::bad_input(
+            Diagnostic::new(format!("more than {} variants", u64::MAX))
+                .with_location(file())
+                .with_help("raise a step, or lower a count"),
+        )
+    })?;
+    let range = arguments.shard.range(count);
+    let variants = range.end - range.start;
+    if variants > MAX_WITHOUT_YES && !arguments.yes {
+        return Err(Failure::bad_input(
+            Diagnostic::new(format!("{variants} variants are more than {MAX_WITHOUT_YES}"))
+                .with_location(file())
+                .with_help("allow them with --yes, or make a part of them with --shard"),
+        ));
+    }
+    if range.is_empty() {
+        return Err(Failure::bad_input(
+            Diagnostic::new(format!("no variant is in this shard: the sweep has {count}"))
+                .with_location(Location::field("--shard", arguments.shard.to_string()))
+                .with_help("give fewer shards"),
+        ));
+    }
+    Ok(count)
+}
+
 fn refused(error: RunError) -> Failure {
     match error {
-        RunError::Stamp(_) | RunError::Unusable(_) => Failure::bad_input(error),
-        other => Failure::failed(other),
+        RunError::Stamp(_) | RunError::Unusable(_) => Failure::bad_input(unconverted(error)),
+        other => Failure::failed(unconverted(other)),
     }
 }
 
@@ -147,7 +176,7 @@ fn report(arguments: &Arguments, out: &str, tally: &Tally, progress: &Progress) 
     }
     log::info!("{out}: {} variants made, {} refused, {} failed", tally.made, tally.refused, tally.failed);
     log::info!(
-        "{} part files, {} of them different: {} kept in {}",
+        "{} part files, {} of them distinct: {} stored in {}",
         tally.parts,
         tally.distinct_parts,
         size(tally.part_bytes as f64),
@@ -155,31 +184,33 @@ fn report(arguments: &Arguments, out: &str, tally: &Tally, progress: &Progress) 
     );
     let (seconds, before) = (progress.start.elapsed().as_secs_f64(), progress.before.load(Ordering::Relaxed));
     let new = progress.bar.position() - before;
-    log::info!("{new} in {seconds:.1} s, {:.0} a second; {before} were there before", new as f64 / seconds);
+    let rate = new as f64 / seconds;
+    log::info!("{new} variants in {seconds:.1} s, {rate:.0} per second; {before} existed before");
     if tally.failed > 0 {
-        return Err(Failure::failed(format!(
-            "{} variants failed; column reason of variants.csv says why, the same command tries them again",
-            tally.failed
-        )));
+        return Err(Failure::failed(
+            Diagnostic::new(format!("{} variants failed", tally.failed))
+                .with_help("see column reason of variants.csv; run the same command to try them again"),
+        ));
     }
     Ok(())
 }
 
-/// Progress as a bar on a terminal or as lines in a pipe, and Ctrl-C.
+/// Progress, as a bar on a terminal or as lines in a pipe, and the handler of Ctrl-C.
 struct Progress {
     bar: ProgressBar,
     start: Instant,
     before: AtomicU64,
     stop: Arc<AtomicBool>,
-    /// Seconds after the start at which the next line is due, where there is no terminal.
+    /// Seconds after the start at which the next line is due, without a terminal.
     due_s: AtomicU64,
 }
 
 impl Progress {
     fn new(count: u64) -> Result<Self, Failure> {
         let bar = ProgressBar::new(count);
-        let form = "{bar:30} {pos} of {len} variants, {per_sec}, {eta} left {msg}";
-        bar.set_style(ProgressStyle::with_template(form).map_err(Failure::failed)?);
+        let template = "{bar:30} {pos} of {len} variants, {per_sec}, {eta} left {msg}";
+        let style = ProgressStyle::with_template(template);
+        bar.set_style(style.map_err(|e| Failure::failed(Diagnostic::from_error(e)))?);
         if log::max_level() < log::LevelFilter::Info {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
@@ -188,12 +219,12 @@ impl Progress {
         let flag = Arc::clone(&stop);
         ctrlc::set_handler(move || {
             if flag.swap(true, Ordering::Relaxed) {
-                // Asked twice: every file on disk is whole at any moment.
+                // The second time: every file on disk is whole at any moment.
                 std::process::exit(1);
             }
-            say("finishing what is begun; once more stops at once");
+            print_line("finishing the variants in progress; press Ctrl-C again to stop now");
         })
-        .map_err(Failure::failed)?;
+        .map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
         Ok(Self {
             bar,
             start: Instant::now(),
@@ -217,7 +248,7 @@ impl Observer for Progress {
             let (done, of) = (self.bar.position(), self.bar.length().unwrap_or(0));
             let rate = done as f64 / elapsed.as_secs_f64();
             let left = Duration::from_secs_f64((of.saturating_sub(done)) as f64 / rate.max(1e-9));
-            log::info!("{done} of {of} variants, {rate:.0} a second, {} left", HumanDuration(left));
+            log::info!("{done} of {of} variants, {rate:.0} per second, {} left", HumanDuration(left));
         }
     }
 
@@ -228,16 +259,16 @@ impl Observer for Progress {
 
 fn dry_run(arguments: &Arguments, variants: &Variants) -> Result<(), Failure> {
     let threads = usize::from(arguments.threads);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::failed)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
     let threads = pool.current_num_threads();
-    let estimate =
-        pool.install(|| estimate(variants, arguments.shard, threads, mesh_file)).map_err(Failure::failed)?;
+    let estimate = pool
+        .install(|| estimate(variants, arguments.shard, threads, mesh_file))
+        .map_err(|e| Failure::failed(unconverted(e)))?;
     if arguments.slice {
-        log::info!(
-            "--slice takes seconds more for each part that is like no other, which this does not count"
-        );
+        log::info!("--slice takes some seconds more per distinct part, which the time does not include");
     }
-    if arguments.json { print_json(&estimate) } else { print(describe(variants, &estimate).as_bytes()) }
+    if arguments.json { print_json(&estimate) } else { print_text(&describe(variants, &estimate)) }
 }
 
 fn describe(variants: &Variants, estimate: &Estimate) -> String {
@@ -246,7 +277,7 @@ fn describe(variants: &Variants, estimate: &Estimate) -> String {
     let mut text = format!("{}: {} variants over {}\n", sweep.name, estimate.variants, fields.join(", "));
     let refused: u64 = estimate.refused.iter().map(|r| r.count).sum();
     if estimate.checked < estimate.variants {
-        text += &format!("checked are {} of them, evenly taken\n", estimate.checked);
+        text += &format!("checked: {} of them, evenly spaced\n", estimate.checked);
     }
     text += &format!("refused: {refused}\n");
     for kind in &estimate.refused {
@@ -256,14 +287,14 @@ fn describe(variants: &Variants, estimate: &Estimate) -> String {
     text += &format!("made: {}\n", estimate.made);
     if let Some(measured) = &estimate.measured {
         text += &format!(
-            "time: about {} on {} threads; {:.1} ms a variant, measured on {}\n",
+            "time: about {} on {} threads; {:.1} ms per variant, measured on {}\n",
             time(estimate.seconds),
             estimate.threads,
             measured.seconds_per_variant * 1e3,
             measured.variants
         );
         text += &format!(
-            "size: about {}; {} a variant, of {} before equal parts are linked\n",
+            "size: about {}; {} per variant, {} before equal parts are linked\n",
             size(estimate.bytes),
             size(measured.bytes_per_variant),
             size(measured.bytes_unshared)
@@ -301,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn threads_are_as_many_as_a_machine_can_have() {
+    fn threads_are_bounded() {
         let threads = |count: &str| {
             let line = ["batch", "sweep.toml", "--dry-run", "--threads", count];
             Program::try_parse_from(line).map(|p| p.arguments.threads).map_err(|e| e.to_string())

@@ -7,28 +7,31 @@ use clap::Args;
 use flate2::read::MultiGzDecoder;
 use pinswitch_calibration::segmentation::{RunPlan, RunSegmentation, SegmentedRun};
 use pinswitch_calibration::table::PlateauTable;
-
-use super::{Failure, print};
-use crate::write::write_set;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_report::log_svg;
 use pinswitch_switch::config::Name;
 use pinswitch_switch::output::OutputFile;
 
-/// Turn raw 200 Hz logs into a plateau table, and list what is wrong with each log.
+use super::failure::unconverted;
+use super::terminal::to_json;
+use super::{Failure, print_text};
+use crate::write::write_set;
+
+/// Convert raw 200 Hz logs to a plateau table.
 ///
-/// Beside the table: a JSON file with the findings, and one SVG per log with its plateaus marked.
+/// Prints the faults of each log. Also writes a JSON file with the faults, and one SVG per log with its plateaus marked, next to the table.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: pinswitch segment run.toml --out plateaus.csv")]
 pub(super) struct Arguments {
-    /// The description of the run; its logs lie beside it.
+    /// Description of the run, in the folder of its logs.
     run: PathBuf,
-    /// Where the plateau table goes.
+    /// File for the plateau table.
     #[arg(long, value_name = "CSV")]
     out: PathBuf,
-    /// Let the description name logs outside its own folder.
+    /// Allow logs outside the folder of the description.
     #[arg(long)]
     read_outside: bool,
-    /// Leave out the SVG of each log.
+    /// Write no SVG files.
     #[arg(long)]
     no_plots: bool,
 }
@@ -36,27 +39,29 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.run.display().to_string();
     let text = crate::input::read_text_file(&arguments.run)?;
-    let plan = RunPlan::parse(&text, &name).map_err(Failure::bad_input)?;
+    let plan = RunPlan::parse(&text, &name).map_err(|e| Failure::bad_input(unconverted(e)))?;
     let folder = arguments.run.parent().unwrap_or_else(|| Path::new("."));
     let stem =
         arguments.out.file_stem().map_or_else(|| "plateaus".into(), |s| s.to_string_lossy().into_owned());
     let (mut run, mut files) = (RunSegmentation::new(&plan), Vec::new());
     for series in &plan.series {
         let path = folder.join(&series.file);
-        if !arguments.read_outside && lies_outside(&path, folder) {
-            return Err(Failure::bad_input(format!(
-                "{name}: series.file = {:?} lies outside the folder of the description; copy it beside, or allow it with \
-                 --read-outside",
-                series.file
-            )));
+        if !arguments.read_outside && is_outside(&path, folder) {
+            let location = Location::file(&name).with_field("series.file", format!("{:?}", series.file));
+            return Err(Failure::bad_input(
+                Diagnostic::new("the log is outside the folder of the description")
+                    .with_location(location)
+                    .with_help("copy it into the folder, or allow it with --read-outside"),
+            ));
         }
-        let (log, found) =
-            run.add(series, &read_log(&path)?, &path.display().to_string()).map_err(Failure::bad_input)?;
+        let (log, segmented) = run
+            .add(series, &read_log(&path)?, &path.display().to_string())
+            .map_err(|e| Failure::bad_input(unconverted(e)))?;
         if !arguments.no_plots {
-            let svg = log_svg(&series.file, &log, &found).map_err(Failure::failed)?;
+            let svg = log_svg(&series.file, &log, &segmented).map_err(|e| Failure::failed(unconverted(e)))?;
             let log_stem =
                 series.file.trim_end_matches(".gz").trim_end_matches(".csv").replace(['/', '\\'], "-");
-            // A log is named by a path; its figure is a file beside the table.
+            // The name of a log may be a path; its figure is a file next to the table.
             let mut name = format!("{}.svg", Name::cleaned(&format!("{stem}-{log_stem}")));
             if files.iter().any(|file: &OutputFile| file.name == name) {
                 name = format!("{}.svg", Name::cleaned(&format!("{}-{stem}-{log_stem}", files.len() + 1)));
@@ -65,44 +70,49 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let SegmentedRun { rows, report } =
-        run.finish::<std::convert::Infallible>(&name).map_err(Failure::bad_input)?;
-    // Through a value, whose keys are sorted: the bytes of the report before it had a type.
-    let value = serde_json::to_value(&report).map_err(Failure::failed)?;
-    let mut json = serde_json::to_vec_pretty(&value).map_err(Failure::failed)?;
-    json.push(b'\n');
-    files.push(OutputFile { name: format!("{stem}.json"), bytes: json });
+        run.finish::<std::convert::Infallible>(&name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+    // As a value, whose keys are sorted: readers of the file rely on its bytes.
+    let value = serde_json::to_value(&report).map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+    files.push(OutputFile { name: format!("{stem}.json"), bytes: to_json(&value)? });
     let table =
         arguments.out.file_name().map_or_else(|| "plateaus.csv".into(), |n| n.to_string_lossy().into_owned());
     files.push(OutputFile { name: table, bytes: PlateauTable::write(&rows).into_bytes() });
     let out = arguments.out.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     write_set(out, &files)?;
     let summary: String = report.series.iter().map(|series| format!("{series}\n")).collect();
-    print(summary.as_bytes())
+    print_text(&summary)
 }
 
-/// Whether the existing file `path` is neither in `folder` nor below, once links are followed.
-fn lies_outside(path: &Path, folder: &Path) -> bool {
+/// Whether the existing file `path` is outside of `folder`, once links are followed.
+fn is_outside(path: &Path, folder: &Path) -> bool {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let both = path.canonicalize().ok().zip(folder.canonicalize().ok());
     both.is_some_and(|(path, folder)| !path.starts_with(folder))
 }
 
-/// Most bytes of a log, unpacked: a day at 200 Hz and 25 bytes a line is 430 MB.
+/// Longest log in bytes, unpacked: a day at 200 Hz and 25 bytes a line is 430 MB.
 const MAX_LOG: u64 = 1 << 29;
 
-/// The bytes of a log, unpacked if its name ends in `.gz`.
+/// Reads a log, and unpacks it if its name ends in `.gz`.
+///
+/// # Errors
+/// [`Failure::bad_input`] if it cannot be read or unpacked, or is too long.
 fn read_log(path: &Path) -> Result<Vec<u8>, Failure> {
     let raw = crate::input::read_file(path)?;
     if path.extension().is_none_or(|e| e != "gz") {
         return Ok(raw);
     }
+    let refused = |problem: String, help: &str| {
+        Diagnostic::new(problem).with_location(Location::file(path.display().to_string())).with_help(help)
+    };
     let mut text = Vec::new();
-    let unpacked = MultiGzDecoder::new(raw.as_slice()).take(MAX_LOG + 1).read_to_end(&mut text);
-    let name = path.display();
-    unpacked.map_err(|e| Failure::bad_input(format!("{name}: {e}; give a whole file, packed by gzip")))?;
+    MultiGzDecoder::new(raw.as_slice()).take(MAX_LOG + 1).read_to_end(&mut text).map_err(|e| {
+        let problem = refused("cannot unpack".to_owned(), "give a complete gzip file");
+        Failure::bad_input(problem.with_source(e))
+    })?;
     if text.len() as u64 > MAX_LOG {
-        let remedy = "give a log of one session";
-        return Err(Failure::bad_input(format!("{name}: unpacks to more than {MAX_LOG} bytes; {remedy}")));
+        let problem = format!("unpacks to more than {MAX_LOG} bytes");
+        return Err(Failure::bad_input(refused(problem, "give a log of one session")));
     }
     Ok(text)
 }

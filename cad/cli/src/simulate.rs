@@ -6,26 +6,29 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use pinswitch_calibration::ModelFile;
 use pinswitch_calibration::experiment::{RigLimits, read_runs, rows_of};
 use pinswitch_calibration::inference::Levels;
 use pinswitch_calibration::table::{PlateauRow, PlateauTable};
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_simulation::{
     Case, ExperimentStudy, FormStudy, Group, Plan, RawRun, Study, experiment_cases, next_session, rehearse,
     run_case, run_experiment_case, run_form_case, simulate, simulate_rows, study_cases,
 };
+use pinswitch_switch::output::OutputFile;
 use rayon::prelude::*;
 
-use super::own_effects::OwnEffects;
+use super::calibrated_curve::read_model;
+use super::failure::unconverted;
 use super::power::noise_of;
-use super::{Failure, print};
+use super::terminal::to_json;
+use super::user_effects::UserEffects;
+use super::{Failure, print_text};
 use crate::input::read_text_file;
 use crate::write::write_set;
-use pinswitch_switch::output::OutputFile;
 
-/// Simulate a friction rig with known effects and noise, or study the calibrator on many of them.
+/// Simulate a friction rig with known effects and noise.
 ///
-/// Writes plateaus.csv, plateaus-fresh.csv (rows without noise, to judge predictions by) and plan.toml.
+/// --study tests the calibrator on many simulated rigs. Otherwise writes plateaus.csv, plateaus-fresh.csv (rows without noise, to check predictions against) and plan.toml.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch simulate --effect coating_ploughing=0.02 --out rig
@@ -35,17 +38,17 @@ use pinswitch_switch::output::OutputFile;
   pinswitch simulate --runs next/next-runs.csv --model calibration/model.toml --out rehearsal
   pinswitch simulate --study 20
   pinswitch simulate --study 20 --only nulls --only 'worn spot'")]
-// clap does not ask for an argument that is required if another one that is given conflicts with it: those that need --study conflict
-// with --out themselves, and those that need --runs with what --runs conflicts with.
+// clap does not require an argument if a given argument conflicts with it. Arguments that require --study therefore
+// conflict with --out themselves, and those that require --runs with everything that conflicts with --runs.
 pub(super) struct Arguments {
-    /// The plan: layouts, loads, sweeps, speeds, dwells, effects with their sizes, noise, seed. Without one, the paper's rig.
+    /// Plan: layouts, loads, sweeps, speeds, dwells, effects with their sizes, noise, seed [default: the paper's rig].
     plan: Option<PathBuf>,
-    /// Put an effect into the rig, beside those of the plan: ID or ID=VALUE,VALUE, sizes before shapes.
-    /// Of an effect of your own, what is left out is at its start value.
+    /// Add an effect to those of the plan: ID or ID=VALUE,VALUE, sizes before shapes. Values of a user-defined effect
+    /// that are left out have their start values.
     #[arg(long = "effect", value_name = "ID=VALUES", conflicts_with = "study")]
     effects: Vec<String>,
     #[command(flatten)]
-    own: OwnEffects,
+    vocabulary: UserEffects,
     /// Without a plan: loads up and down, several speeds and dwells, instead of the paper's protocol.
     #[arg(long, conflicts_with_all = ["plan", "study", "runs"])]
     randomised: bool,
@@ -55,66 +58,70 @@ pub(super) struct Arguments {
     /// Also write raw 200 Hz logs with spikes, lost samples and bad moves: run.toml for `segment`, truth.csv, faults.json.
     #[arg(long, conflicts_with = "study")]
     raw: bool,
-    /// Also write plateaus-next.csv: a later session of the same rig, with noise and order of its own.
+    /// Also write plateaus-next.csv: a later session of the same rig, with its own noise and order.
     #[arg(long, conflicts_with = "study")]
     next: bool,
-    /// Make the runs of this next-runs.csv, as `experiment` writes it, on the rig of the plan, or of --model.
+    /// Simulate the runs of this next-runs.csv, written by `experiment`, on the rig of the plan or of --model.
     #[arg(long, value_name = "CSV", conflicts_with_all = ["study", "raw", "next"])]
     runs: Option<PathBuf>,
-    /// With --runs: a model.toml is the rig, with its constants, effects and noise.
+    /// With --runs: model.toml whose constants, effects and noise make the rig.
     #[arg(long, value_name = "TOML", requires = "runs")]
-    #[arg(conflicts_with_all = ["plan", "effects", "own_effects", "randomised", "study", "raw", "next"])]
+    #[arg(conflicts_with_all = ["plan", "effects", "user_effects", "randomised", "study", "raw", "next"])]
     model: Option<PathBuf>,
-    /// The model.toml of a calibration whose noise the rig has, instead of the plan's.
+    /// model.toml of a calibration; its noise replaces the plan's.
     #[arg(long, value_name = "TOML", conflicts_with_all = ["model", "study"])]
     noise: Option<PathBuf>,
-    /// With --runs: the rig that they were planned for, if it is not the paper's.
+    /// With --runs: limits of the rig for which the runs were planned [default: the paper's rig].
     #[arg(long, value_name = "TOML", requires = "runs", conflicts_with_all = ["study", "raw", "next"])]
     rig: Option<PathBuf>,
     /// Seed of the noise [default: 1, or that of the plan].
     #[arg(long, value_name = "SEED", conflicts_with = "study", value_parser = clap::value_parser!(u64).range(..=MAX_SEED))]
     seed: Option<u64>,
-    /// Calibrate this many rigs of every kind and print what was said of them.
-    #[arg(long, value_name = "SEEDS", value_parser = clap::value_parser!(u64).range(1..=MOST_SEEDS))]
-    #[arg(conflicts_with_all = ["plan", "out", "own_effects"])]
+    /// Calibrate this many simulated rigs of every kind and print the verdicts.
+    #[arg(long, value_name = "SEEDS", value_parser = clap::value_parser!(u64).range(1..=MAX_SEEDS))]
+    #[arg(conflicts_with_all = ["plan", "out", "user_effects"])]
     study: Option<u64>,
-    /// In a study, the first seed; others than those a level was tuned on give a fair figure.
+    /// With --study: first seed. Seeds that were not used to tune the levels give an unbiased result.
     #[arg(long, value_name = "SEED", default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=MAX_FIRST_SEED))]
     #[arg(requires = "study", conflicts_with = "out")]
     first_seed: u64,
-    /// In a study, give every rig all noise at once: scatter of mounts and seatings, walking offsets, chains, heavy tails, a cell with
-    /// steps, missing rows.
+    /// With --study: give every rig all noise at once: variation between mounts and tendon seatings, drifting offsets,
+    /// correlated readings, heavy tails, a load cell with steps, missing rows.
     #[arg(long, requires = "study", conflicts_with_all = ["out", "experiments"])]
     every_noise: bool,
-    /// In a study, ask for the error promised for a new session, too: five times the time.
+    /// With --study: also check the expected error of a new session; takes five times as long.
     #[arg(long, requires = "study", conflicts_with = "out")]
     promises: bool,
-    /// In a study, draw the forms of what has no name, and let other sessions confirm or refute them.
+    /// With --study: fit forms to unnamed structure, and confirm or refute them on other sessions.
     #[arg(long, requires = "study", conflicts_with_all = ["out", "promises"])]
     forms: bool,
-    /// In a study, propose a session where the paper's protocol leaves something open, make it, and calibrate both; a number makes
-    /// the effects so many times as large.
-    #[arg(long, value_name = "TIMES", num_args = 0..=1, default_missing_value = "1", value_parser = times)]
+    /// With --study: where the paper's protocol leaves a question open, plan a session, simulate it, and calibrate both
+    /// together. A number scales the effects.
+    #[arg(long, value_name = "TIMES", num_args = 0..=1, default_missing_value = "1", value_parser = scale)]
     #[arg(requires = "study", conflicts_with_all = ["out", "promises", "forms"])]
     experiments: Option<f64>,
-    /// In a study, only these kinds of rig: a group (nulls, singles, scattered, pairs, masks, confounded, outside) or a part of a name.
+    /// With --study: only these kinds of rig, by group (nulls, singles, scattered, pairs, masks, confounded, outside) or
+    /// by a part of the name.
     #[arg(long, value_name = "GROUP|NAME", requires = "study", conflicts_with = "out")]
     only: Vec<String>,
 }
 
-/// How many times as large effects are put in.
-fn times(text: &str) -> Result<f64, String> {
-    let times = text.parse::<f64>().map_err(|_| "a number such as 2".to_owned())?;
-    (0.1..=10.0).contains(&times).then_some(times).ok_or_else(|| "0.1 to 10".to_owned())
+/// Parses the factor by which effects are scaled.
+fn scale(text: &str) -> Result<f64, Diagnostic> {
+    let factor = text.parse::<f64>().map_err(|e| Diagnostic::new("not a number").with_source(e))?;
+    if (0.1..=10.0).contains(&factor) {
+        return Ok(factor);
+    }
+    Err(Diagnostic::new("the factor is outside 0.1 to 10"))
 }
 
-/// Largest seed that a plan can hold: TOML has integers with a sign.
+/// Largest seed that a plan can contain: integers of TOML are signed.
 const MAX_SEED: u64 = i64::MAX as u64;
-/// Seeds from one kind of rig of a study to the next.
+/// Distance between the first seeds of two kinds of rig in a study.
 const SEEDS_PER_CASE: u64 = 1000;
-/// Most seeds of a kind: the oldest kinds without effect take two and a half rigs for each, all from their own thousand.
-const MOST_SEEDS: u64 = 400;
-/// Largest first seed; the seeds of all kinds follow it.
+/// Most seeds of a kind. Some kinds simulate two and a half rigs per seed, all within [`SEEDS_PER_CASE`].
+const MAX_SEEDS: u64 = 400;
+/// Largest first seed, which leaves room for the seeds of all kinds.
 const MAX_FIRST_SEED: u64 = MAX_SEED - 1_000_000;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -122,15 +129,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return study(arguments, seeds);
     }
     let Some(out) = &arguments.out else {
-        return Err(Failure::bad_input("simulate needs --out, or --study"));
+        return Err(Failure::bad_input(
+            Diagnostic::new("--out is missing").with_help("give --out DIR, or --study"),
+        ));
     };
     if let Some(runs) = &arguments.runs {
-        return rehearsed(arguments, runs, out);
+        return rehearsal(arguments, runs, out);
     }
     let (plan, name) = plan(arguments)?;
-    let text = plan.to_text().map_err(Failure::failed)?;
+    let text = plan.to_text().map_err(|e| Failure::failed(unconverted(e)))?;
     let simulated = simulate(&plan);
-    simulated.check(&name).map_err(Failure::bad_input)?;
+    simulated.check(&name).map_err(|e| Failure::bad_input(unconverted(e)))?;
     let file = |name: &str, text: String| OutputFile { name: name.to_owned(), bytes: text.into_bytes() };
     let mut files = if arguments.raw { raw_files(&plan, &simulated.rows, &name)? } else { Vec::new() };
     files.extend([
@@ -144,21 +153,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     write_set(out, &files).map_err(Failure::from)
 }
 
-/// The table that planned runs would give, on the rig of a model or of a plan.
-fn rehearsed(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failure> {
+/// Simulates planned runs on the rig of a model or of a plan, and writes their table.
+fn rehearsal(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failure> {
     let name = runs.display().to_string();
-    let runs = read_runs(&read_text_file(runs)?, &name).map_err(Failure::bad_input)?;
+    let runs = read_runs(&read_text_file(runs)?, &name).map_err(|e| Failure::bad_input(unconverted(e)))?;
     let rig = match &arguments.rig {
         None => RigLimits::default(),
         Some(path) => RigLimits::parse(&read_text_file(path)?, &path.display().to_string())
-            .map_err(Failure::bad_input)?,
+            .map_err(|e| Failure::bad_input(unconverted(e)))?,
     };
     let rows = match &arguments.model {
         Some(path) => {
-            let name = path.display().to_string();
-            let model = ModelFile::parse(&read_text_file(path)?, &name).map_err(Failure::bad_input)?;
+            let (model, name) = read_model(path)?;
             let rows = rows_of(&runs, &rig.wrapped_by(model.usual_wrap_deg()), "");
-            rehearse(&model, &name, rows, arguments.seed.unwrap_or(1)).map_err(Failure::bad_input)?
+            rehearse(&model, &name, rows, arguments.seed.unwrap_or(1))
+                .map_err(|e| Failure::bad_input(unconverted(e)))?
         }
         None => {
             let (mut plan, name) = plan(arguments)?;
@@ -166,7 +175,7 @@ fn rehearsed(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failu
             plan.wrap_angle_deg = rig.wrap_angle_deg.unwrap_or(plan.wrap_angle_deg);
             let rows = rows_of(&runs, &rig, "");
             let simulated = simulate_rows(&plan, rows);
-            simulated.check(&name).map_err(Failure::bad_input)?;
+            simulated.check(&name).map_err(|e| Failure::bad_input(unconverted(e)))?;
             simulated.rows
         }
     };
@@ -174,14 +183,15 @@ fn rehearsed(arguments: &Arguments, runs: &Path, out: &Path) -> Result<(), Failu
     write_set(out, &[OutputFile { name: "plateaus.csv".to_owned(), bytes: table }]).map_err(Failure::from)
 }
 
-/// The plan with the effects asked for, and its name in errors.
+/// Returns the plan with the effects of the command line, and its name for errors.
 fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
-    let vocabulary = arguments.own.vocabulary()?;
+    let vocabulary = arguments.vocabulary.vocabulary()?;
+    let bad_input = |e| Failure::bad_input(unconverted(e));
     let (mut plan, name) = match &arguments.plan {
         Some(path) => {
             let name = path.display().to_string();
             let text = crate::input::read_text_file(path)?;
-            (Plan::parse_among(&text, &name, &vocabulary).map_err(Failure::bad_input)?, name)
+            (Plan::parse_among(&text, &name, &vocabulary).map_err(bad_input)?, name)
         }
         None if arguments.randomised => (Plan::randomised(), "the plan of --randomised".to_owned()),
         None => (Plan::default(), "the plan of the paper's rig".to_owned()),
@@ -191,24 +201,30 @@ fn plan(arguments: &Arguments) -> Result<(Plan, String), Failure> {
     if let Some(model) = &arguments.noise {
         plan.noise = noise_of(model)?;
     }
-    plan.check(&name).map_err(Failure::bad_input)?;
+    plan.check(&name).map_err(bad_input)?;
     for effect in &arguments.effects {
         let (id, values) = effect.split_once('=').unwrap_or((effect, ""));
         let values: Result<Vec<f64>, _> =
             values.split(',').filter(|v| !v.is_empty()).map(|v| v.trim().parse()).collect();
-        let values = values.map_err(|_| {
-            Failure::bad_input(format!("--effect {effect}: values are numbers, like coating_ploughing=0.02"))
+        let values = values.map_err(|e| {
+            Failure::bad_input(
+                Diagnostic::new("a value is not a number")
+                    .with_location(Location::file(format!("--effect {effect}")))
+                    .with_help("give ID=VALUE,VALUE, such as coating_ploughing=0.02")
+                    .with_source(e),
+            )
         })?;
         plan.add_effect(id, values);
-        // The plan alone is sound: what is wrong now came by the flag.
-        plan.check(&format!("--effect {effect}")).map_err(Failure::bad_input)?;
+        // The plan was valid before, so the option is at fault.
+        plan.check(&format!("--effect {effect}")).map_err(bad_input)?;
     }
     Ok((plan, name))
 }
 
-/// The run's description, its logs, their true plateaus, and what was put wrong into them.
+/// Returns the description of a raw run, its logs, their true plateaus, and the faults that were added.
 fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputFile>, Failure> {
-    let run = RawRun::new(plan, rows, name).map_err(Failure::bad_input)?;
+    let run = RawRun::new(plan, rows, name).map_err(|e| Failure::bad_input(unconverted(e)))?;
+    let failed_io = |e: std::io::Error| Failure::failed(Diagnostic::from_error(e));
     let mut files = Vec::new();
     let mut truth = "file,direction,repetition,force_N\n".to_owned();
     let mut faults = serde_json::Map::new();
@@ -218,27 +234,26 @@ fn raw_files(plan: &Plan, rows: &[PlateauRow], name: &str) -> Result<Vec<OutputF
             let word = if direction.sign() > 0.0 { "concentric" } else { "eccentric" };
             truth.push_str(&format!("{file},{word},{repetition},{force_n:.4}\n"));
         }
-        faults.insert(file.clone(), serde_json::to_value(&log.faults).map_err(Failure::failed)?);
+        let log_faults = serde_json::to_value(&log.faults);
+        faults.insert(file.clone(), log_faults.map_err(|e| Failure::failed(Diagnostic::from_error(e)))?);
         let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
-        packed.write_all(log.text.as_bytes()).map_err(Failure::failed)?;
-        files.push(OutputFile { name: file, bytes: packed.finish().map_err(Failure::failed)? });
+        packed.write_all(log.text.as_bytes()).map_err(failed_io)?;
+        files.push(OutputFile { name: file, bytes: packed.finish().map_err(failed_io)? });
     }
-    let mut json = serde_json::to_vec_pretty(&faults).map_err(Failure::failed)?;
-    json.push(b'\n');
-    files.push(OutputFile { name: "faults.json".to_owned(), bytes: json });
+    files.push(OutputFile { name: "faults.json".to_owned(), bytes: to_json(&faults)? });
     files.push(OutputFile { name: "truth.csv".to_owned(), bytes: truth.into_bytes() });
     files.push(OutputFile { name: "run.toml".to_owned(), bytes: run.description(".gz").into_bytes() });
     Ok(files)
 }
 
-/// The confusion matrix over the kinds of rig asked for, and a row for each group of them; or another chapter's table.
+/// Prints the confusion matrix of the requested kinds of rig with a row per group, or the table of another study.
 fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
     if let Some(factor) = arguments.experiments {
         let mut study = ExperimentStudy::default();
         let run = |case: &Case, seed| run_experiment_case(case, seed, factor, Levels::default());
         let cases = (0..).zip(experiment_cases()).collect();
         each_case(arguments, seeds, cases, run, |case, outcomes| study.add(case, outcomes))?;
-        return print(study.table().as_bytes());
+        return print_text(&study.table());
     }
     let every_noise = arguments.every_noise;
     let numbered = (0..).zip(study_cases().into_iter().map(|case| Case { every_noise, ..case }));
@@ -247,15 +262,16 @@ fn study(arguments: &Arguments, seeds: u64) -> Result<(), Failure> {
         let cases = numbered.filter(|(_, case)| case.group == Group::Outside).collect();
         let run = |case: &Case, seed| run_form_case(case, seed, Levels::default());
         each_case(arguments, seeds, cases, run, |case, outcomes| study.add(case, outcomes))?;
-        return print(study.table().as_bytes());
+        return print_text(&study.table());
     }
     let mut study = Study::default();
     let run = |case: &Case, seed| run_case(case, seed, Levels::default(), arguments.promises);
     each_case(arguments, seeds, numbered.collect(), run, |case, outcomes| study.add(case, outcomes))?;
-    print(format!("{}\n{}\n{}", study.table(), study.groups(), study.summary()).as_bytes())
+    print_text(&format!("{}\n{}\n{}", study.table(), study.groups(), study.summary()))
 }
 
-/// Runs the rigs of the chapter's kinds that are asked for, each with its place among all, and hands on what became of them.
+/// Runs the rigs of the requested kinds and passes the outcomes of each kind to `add`. The number of a kind is its place
+/// among all kinds.
 fn each_case<T: Send>(
     arguments: &Arguments,
     seeds: u64,
@@ -268,19 +284,20 @@ fn each_case<T: Send>(
             let mut groups: Vec<&str> = cases.iter().map(|(_, case)| case.group.as_str()).collect();
             groups.sort_unstable();
             groups.dedup();
-            return Err(Failure::bad_input(format!(
-                "--only {word}: no kind of rig of this chapter has this in its name; its groups are {}",
-                groups.join(", ")
-            )));
+            return Err(Failure::bad_input(
+                Diagnostic::new("no kind of rig in this study has this group or name")
+                    .with_location(Location::field("--only", word))
+                    .with_help(format!("give one of the groups {}, or a part of a name", groups.join(", "))),
+            ));
         }
     }
-    let is_asked_for =
+    let is_requested =
         |case: &Case| arguments.only.is_empty() || arguments.only.iter().any(|word| case.is_meant_by(word));
-    for (place, case) in cases.into_iter().filter(|(_, case)| is_asked_for(case)) {
-        // One draw of noise must not decide of every kind of rig: each has seeds of its own.
-        let own = arguments.first_seed + SEEDS_PER_CASE * place;
+    for (place, case) in cases.into_iter().filter(|(_, case)| is_requested(case)) {
+        // Each kind has its own seeds, so that no single draw of noise affects all of them.
+        let first = arguments.first_seed + SEEDS_PER_CASE * place;
         let outcomes: Vec<T> =
-            (own..own + case.rigs(seeds)).into_par_iter().filter_map(|seed| run(&case, seed)).collect();
+            (first..first + case.rigs(seeds)).into_par_iter().filter_map(|seed| run(&case, seed)).collect();
         log::info!("{:?} {}: {} rigs", case.protocol, case.name, outcomes.len());
         add(case, outcomes);
     }

@@ -1,6 +1,6 @@
-//! `--slice`: which slicer there is, and what it says of a set.
+//! `--slice`: print times and filament of a set, from an installed slicer.
 
-use super::Failure;
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_slicer::{
     PROGRAM_VARIABLE, PrintSettings, SETTINGS_FILE, SLICING_FILE, Slicer, SlicerError, Slicing, find,
 };
@@ -10,42 +10,56 @@ use pinswitch_switch::output::OutputFile;
 use pinswitch_switch::prediction::Prediction;
 use pinswitch_switch::set::Set;
 
-/// The slicer of this machine. Where there is none, a warning says what to install, and the work goes on without.
+use super::Failure;
+use super::failure::unconverted;
+use super::terminal::{to_json, warn};
+
+/// Finds the slicer of this machine. Without one, warns with what to install and returns `None`.
+///
+/// # Errors
+/// [`Failure`] if the slicer that the environment names cannot be used.
 pub(super) fn installed() -> Result<Option<Slicer>, Failure> {
     let variable = |name: &str| std::env::var_os(name);
-    let found = find(variable(PROGRAM_VARIABLE).as_deref(), variable("PATH").as_deref());
-    let found = found.map_err(failure)?;
-    if found.is_none() {
-        log::warn!(
-            "no slicer is installed, so nothing says how long it prints: install PrusaSlicer (Debian, Ubuntu: apt-get install \
-             prusa-slicer; others: https://www.prusa3d.com/prusaslicer) so that `prusa-slicer` is on PATH, or set \
-             {PROGRAM_VARIABLE} to its program; everything else is made"
+    let slicer = find(variable(PROGRAM_VARIABLE).as_deref(), variable("PATH").as_deref()).map_err(failure)?;
+    if slicer.is_none() {
+        warn(
+            Diagnostic::new("no slicer is installed: print times are left out, everything else is made").with_help(
+                format!(
+                    "install PrusaSlicer (Debian, Ubuntu: apt-get install prusa-slicer; others: \
+                     https://www.prusa3d.com/prusaslicer) so that `prusa-slicer` is on PATH, or set {PROGRAM_VARIABLE} \
+                     to its program"
+                ),
+            ),
         );
     }
-    Ok(found)
+    Ok(slicer)
 }
 
+/// Returns the failure of a slicer's error, with its exit code.
 pub(super) fn failure(error: SlicerError) -> Failure {
-    if error.is_bad_input() { Failure::bad_input(error) } else { Failure::failed(error) }
+    let is_bad_input = error.is_bad_input();
+    let diagnostic = unconverted(error);
+    if is_bad_input { Failure::bad_input(diagnostic) } else { Failure::failed(diagnostic) }
 }
 
-/// What a slicer says of a set, and the files to keep of it.
+/// Slices every part and plate of a set; returns the results and the files to add to the set.
+///
+/// # Errors
+/// [`Failure`] if the set cannot be made, or the slicer fails.
 pub(super) fn slicing(
     slicer: Slicer,
     built: &Built,
     prediction: &Prediction,
 ) -> Result<(Slicing, Vec<OutputFile>), Failure> {
-    // Parts and plates are sliced whichever formats are kept.
+    // Parts and plates are sliced, whichever formats are written.
     let printable = named(&["stl", "3mf"]).map_err(Failure::failed)?;
-    let printable = Set::new(built, prediction, &printable).map_err(Failure::failed)?;
+    let printable = Set::new(built, prediction, &printable).map_err(|e| Failure::failed(unconverted(e)))?;
     let settings = PrintSettings::of(built.design().configuration());
     let slicer = slicer.prepared(&settings).map_err(failure)?;
-    let begun = |file: &str| log::info!("slicing {file}");
-    let slicing = Slicing::new(&slicer, settings, &printable.files, begun).map_err(failure)?;
-    let mut json = serde_json::to_vec_pretty(&slicing).map_err(Failure::failed)?;
-    json.push(b'\n');
+    let log_file = |file: &str| log::info!("slicing {file}");
+    let slicing = Slicing::new(&slicer, settings, &printable.files, log_file).map_err(failure)?;
     let files = vec![
-        OutputFile::new(SLICING_FILE, json),
+        OutputFile::new(SLICING_FILE, to_json(&slicing)?),
         OutputFile::new(SETTINGS_FILE, slicer.settings_text().as_bytes()),
     ];
     Ok((slicing, files))

@@ -1,61 +1,61 @@
-//! Where a configuration comes from: a file or a template, a preset under it, single values over it.
+//! The configuration of a command: a file or a template, over a preset, under single values of the command line.
 
 use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
-
-use super::Failure;
-use crate::write::source_of_set_with;
-use pinswitch_diagnostic::excerpt;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_solid::files::read_three_mf;
-use pinswitch_switch::config::{
-    ConfigError, Configuration, Name, Place, Places, assign, read, read_over, text,
-};
+use pinswitch_switch::config::{ConfigError, Configuration, Name, Places, assign, read, read_over, text};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::templates;
 
-/// What a command shows that need not be told a configuration.
-const UNNAMED: &str = "three-double";
+use super::Failure;
+use super::failure::{of_config, unconverted};
+use crate::write::source_of_set_with;
 
-/// The field that `--tolerance` gives.
+/// Template of a command that was given no configuration.
+const DEFAULT_TEMPLATE: &str = "three-double";
+
+/// Field that `--tolerance` sets.
 const TOLERANCE: &str = "mesh.chord_tolerance_mm";
 
-/// A configuration and what is laid over it.
+/// A configuration with its preset and the values that override it.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Source {
-    /// A TOML file, the assembly.3mf of a set, which holds its configuration, or the name of a template (see `pinswitch
+    /// TOML file, assembly.3mf of a set (it contains its configuration), or name of a template (see `pinswitch
     /// layouts`).
     #[arg(required = true)]
     config: Option<String>,
-    /// A template or file whose values lie under the configuration, such as printer-fff-0.4.
+    /// Template or file whose values the configuration overrides, such as printer-fff-0.4.
     #[arg(long, value_name = "NAME|FILE")]
     preset: Option<String>,
     /// Set one value, as in --set shell.width_mm=12; may be repeated.
     #[arg(long = "set", value_name = "TABLE.KEY=VALUE")]
     assignments: Vec<String>,
-    /// Chord tolerance of the meshes in mm: how far they may lie from the true curves.
+    /// Chord tolerance of the meshes in mm: largest distance from the true curves.
     #[arg(long, value_name = "MM")]
     tolerance: Option<f64>,
 }
 
 impl Source {
-    /// The configuration of this name alone, with nothing laid over it.
-    pub(super) fn named(config: &str) -> Self {
+    /// Creates the source of this configuration alone, without preset and options.
+    pub(super) fn new(config: &str) -> Self {
         Self { config: Some(config.to_owned()), preset: None, assignments: Vec::new(), tolerance: None }
     }
 
     fn config(&self) -> &str {
-        self.config.as_deref().unwrap_or(UNNAMED)
+        self.config.as_deref().unwrap_or(DEFAULT_TEMPLATE)
     }
 
-    /// Whether the command line says what to make: a configuration, or anything under or over it.
-    pub(super) fn is_said(&self) -> bool {
+    /// Whether the command line gives a configuration, or anything that changes it.
+    pub(super) fn has_arguments(&self) -> bool {
         let Self { config, preset, assignments, tolerance } = self;
         config.is_some() || preset.is_some() || !assignments.is_empty() || tolerance.is_some()
     }
 
-    /// The options that stand over the configuration, and the fields that they give.
+    /// Returns the options that override the configuration, with the fields that they set, in the order in which they
+    /// apply.
     pub(super) fn options(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let sets = self
             .assignments
@@ -65,26 +65,26 @@ impl Source {
         sets.chain(self.tolerance.map(|_| ("--tolerance", TOLERANCE)))
     }
 
-    /// The file that the configuration is read from; `None` for a template.
+    /// Returns the file of the configuration; `None` for a template.
     pub(super) fn file(&self) -> Option<PathBuf> {
         Some(PathBuf::from(self.config())).filter(|path| path.exists() && !path.is_dir())
     }
 
-    /// The same with `preset` under it, unless the command line named one.
+    /// Returns the same source over `preset`, unless the command line gave one.
     pub(super) fn with_preset(&self, preset: Option<&str>) -> Self {
         let preset = self.preset.clone().or_else(|| preset.map(str::to_owned));
         Self { preset, ..self.clone() }
     }
 
-    /// Reads, overlays and validates.
+    /// Reads the configuration with everything that overrides it, and validates it.
     ///
     /// # Errors
-    /// [`Failure::BadInput`] names file, line, field, value, bound and remedy.
+    /// [`Failure::bad_input`] with file and line or option, field, value, bound and help.
     pub(super) fn design(&self) -> Result<Design, Failure> {
-        self.made().map(|made| made.design)
+        self.load().map(|loaded| loaded.design)
     }
 
-    /// As [`Self::design`], from these bytes of its file: they are what the design shows, whatever happens to the file.
+    /// As [`Self::design`], from bytes that were read from the file before.
     ///
     /// # Errors
     /// As [`Self::design`].
@@ -93,78 +93,80 @@ impl Source {
         self.design_of_text(&text, self.config())
     }
 
-    /// The configuration of the text of its file, with what lies under and over it.
+    /// Reads the configuration from the text of its file, with everything that overrides it.
     ///
     /// # Errors
-    /// As [`Self::design`]; what only a design finds is not looked for.
+    /// As [`Self::design`], without the rules that need a design.
     pub(super) fn configuration_from(&self, text: &str) -> Result<Configuration, Failure> {
         self.configuration_of_text(text, self.config()).map(|(configuration, _)| configuration)
     }
 
-    /// An error of what was read, with the option that gave the value, or the name of its file.
-    pub(super) fn placed(&self, error: &ConfigError) -> Failure {
-        Failure::bad_input(self.with_place(error.clone(), &Places::default(), self.config()))
+    /// Returns the failure of a configuration error, located at the option that set the field, or else in the file.
+    pub(super) fn refusal(&self, error: &ConfigError) -> Failure {
+        Failure::bad_input(self.located(error.clone(), &Places::default(), self.config()))
     }
 
-    /// The error with the option that gave its field, the field's place in the file, or at least the file.
-    fn with_place(&self, error: ConfigError, places: &Places, file: &str) -> String {
-        let gives = |assignment: &&String| {
-            assignment.split_once('=').is_some_and(|(path, _)| path.trim() == error.field)
-        };
-        // The last one wins, over the file too.
-        if let Some(assignment) = self.assignments.iter().rfind(gives) {
-            let option = format!("--set {}", excerpt(assignment, 60));
-            return error.at(Place { file: option, line: None }).to_string();
-        }
-        match places.of(&error.field) {
-            Some(place) => error.at(place.clone()).to_string(),
-            None => format!("{file}: {error}"),
+    /// Locates an error at the option that set its field, at the field's line, or else in the file.
+    fn located(&self, error: ConfigError, places: &Places, file: &str) -> Diagnostic {
+        // Options override the file, and the last option the others.
+        let option = self.options().filter(|(_, field)| *field == error.field).last();
+        match (option, places.of(&error.field)) {
+            (Some((option, _)), _) => of_config(error).or_in_file(option),
+            (None, Some(place)) => of_config(error.at(place.clone())),
+            (None, None) => of_config(error).or_in_file(file),
         }
     }
 
-    /// As [`Self::design`], with where the configuration comes from, and the law of its set.
+    /// As [`Self::design`], with the origin of the configuration and the law of its set.
     ///
     /// # Errors
     /// As [`Self::design`].
-    pub(super) fn made(&self) -> Result<Made, Failure> {
+    pub(super) fn load(&self) -> Result<LoadedDesign, Failure> {
         let (text, file, kind) = read_configuration_text(self.config())?;
         let design = self.design_of_text(&text, &file)?;
         let (origin, law) = match kind {
             Kind::Text => (Origin::of(&file, &text), None),
-            Kind::Package(set_s, law) => {
-                let from_set = set_s.and_then(|source| Origin::from_set(source, &file));
+            Kind::Package(source, law) => {
+                let from_set = source.and_then(|source| Origin::from_set(source, &file));
                 (from_set.unwrap_or_else(|| Origin::of_package(&file, design.configuration())), law)
             }
         };
-        Ok(Made { design, origin, law })
+        Ok(LoadedDesign { design, origin, law })
     }
 
     fn design_of_text(&self, text: &str, file: &str) -> Result<Design, Failure> {
         let (configuration, places) = self.configuration_of_text(text, file)?;
-        Design::new(configuration).map_err(|e| Failure::bad_input(self.with_place(e, &places, file)))
+        Design::new(configuration).map_err(|e| Failure::bad_input(self.located(e, &places, file)))
     }
 
     fn configuration_of_text(&self, text: &str, file: &str) -> Result<(Configuration, Places), Failure> {
+        let bad_input = |e| Failure::bad_input(of_config(e));
         let base = self.preset.as_ref().map_or(Ok(Configuration::default()), |preset| {
             let (text, file) = read_text(preset)?;
-            read(&text, &file).map(|(base, _)| base).map_err(Failure::bad_input)
+            read(&text, &file).map(|(base, _)| base).map_err(bad_input)
         })?;
-        let (mut configuration, places) = read_over(base, text, file).map_err(Failure::bad_input)?;
+        let (mut configuration, places) = read_over(base, text, file).map_err(bad_input)?;
         if !places.sets("switch.name") {
             configuration.switch.name = Name::lent_by(file);
         }
         for assignment in &self.assignments {
-            assign(&mut configuration, assignment).map_err(Failure::bad_input)?;
+            assign(&mut configuration, assignment).map_err(bad_input)?;
         }
         if let Some(mm) = self.tolerance {
-            assign(&mut configuration, &format!("{TOLERANCE}={mm:?}"))
-                .map_err(|e| Failure::bad_input(e.to_string().replacen("--set", "--tolerance", 1)))?;
+            let value = format!("{mm:?}");
+            assign(&mut configuration, &format!("{TOLERANCE}={value}")).map_err(|e| {
+                let location = Location::file("--tolerance").with_field(TOLERANCE, value);
+                Failure::bad_input(of_config(e).with_location(location))
+            })?;
         }
         Ok((configuration, places))
     }
 }
 
-/// The text of a file or template, and the name to use for it in errors.
+/// Reads the text of a file or template; also returns its name for errors.
+///
+/// # Errors
+/// [`Failure::bad_input`] if there is neither, or the file cannot be read.
 pub(super) fn read_text(name: &str) -> Result<(String, String), Failure> {
     read_configuration_text(name).map(|(text, file, _)| (text, file))
 }
@@ -174,8 +176,8 @@ pub(super) fn read_text(name: &str) -> Result<(String, String), Failure> {
 enum Kind {
     /// A TOML file, or a template.
     Text,
-    /// A 3MF with a configuration in it, what the set beside it says that it was made from, and the law of its curve where
-    /// that was chosen.
+    /// A 3MF that contains a configuration: the source in the manifest of its set, and the law of its curve if it was
+    /// chosen.
     Package(Option<SourceEntry>, Option<String>),
 }
 
@@ -183,46 +185,53 @@ fn read_configuration_text(name: &str) -> Result<(String, String, Kind), Failure
     let path = Path::new(name);
     let bare = name.strip_prefix("templates/").unwrap_or(name);
     let bare = bare.strip_suffix(".toml").unwrap_or(bare);
-    // A folder that has the name of a template, such as the one that its set went to, is not in the way.
+    // A folder with the name of a template, such as the folder of its set, does not hide the template.
     if path.exists() && !(path.is_dir() && templates::text(bare).is_some()) {
         let (text, kind) = configuration_text(crate::input::read_configuration(path)?, name)?;
         return Ok((text, name.to_owned(), kind));
     }
     templates::text(bare).map(|text| (text, name.to_owned(), Kind::Text)).ok_or_else(|| {
         let names = templates::names();
-        let near = names.iter().max_by(|a, b| strsim::jaro_winkler(bare, a).total_cmp(&strsim::jaro_winkler(bare, b)));
-        let near = near.copied().unwrap_or_default();
-        Failure::bad_input(format!(
-            "{name}: no such file or template; the nearest template is {near:?}, `pinswitch layouts` lists all"
-        ))
+        let similarity = |a: &str| strsim::jaro_winkler(bare, a);
+        let nearest = names.iter().max_by(|a, b| similarity(a).total_cmp(&similarity(b)));
+        let nearest = nearest.copied().unwrap_or_default();
+        Failure::bad_input(
+            Diagnostic::new("no such file or template").with_location(Location::file(name)).with_help(
+                format!("the nearest template is {nearest:?}; `pinswitch layouts` lists all templates"),
+            ),
+        )
     })
 }
 
-/// The text of a configuration: the file itself, or what a 3MF of ours has in it.
+/// Returns the text of a configuration: the file itself, or the configuration in a 3MF that pinswitch wrote.
 fn configuration_text(bytes: Vec<u8>, file: &str) -> Result<(String, Kind), Failure> {
     if !bytes.starts_with(b"PK") {
-        return text(bytes, file).map(|text| (text, Kind::Text)).map_err(Failure::bad_input);
+        return text(bytes, file)
+            .map(|text| (text, Kind::Text))
+            .map_err(|e| Failure::bad_input(of_config(e)));
     }
-    let package = read_three_mf(&bytes).map_err(|e| Failure::bad_input(format!("{file}: {e}")))?;
-    let set_s = source_of_set_with(Path::new(file), &bytes);
+    let package = read_three_mf(&bytes).map_err(|e| Failure::bad_input(unconverted(e).or_in_file(file)))?;
+    let source = source_of_set_with(Path::new(file), &bytes);
     let law = package.law;
-    package.configuration.map(|text| (text, Kind::Package(set_s, law))).ok_or_else(|| {
-        Failure::bad_input(format!(
-            "{file}: holds no configuration; give a TOML file, or an assembly.3mf that pinswitch wrote"
-        ))
+    package.configuration.map(|text| (text, Kind::Package(source, law))).ok_or_else(|| {
+        Failure::bad_input(
+            Diagnostic::new("the 3MF contains no configuration")
+                .with_location(Location::file(file))
+                .with_help("give a TOML file, or an assembly.3mf that pinswitch wrote"),
+        )
     })
 }
 
-/// A design with what else its source says.
+/// A validated design with its origin.
 #[derive(Clone, Debug)]
-pub(super) struct Made {
+pub(super) struct LoadedDesign {
     pub(super) design: Design,
     pub(super) origin: Origin,
-    /// The law that was chosen for the curve of the set that the configuration was read from.
+    /// Law that was chosen for the set that contains the configuration.
     pub(super) law: Option<String>,
 }
 
-/// Where a configuration comes from.
+/// Origin of a configuration.
 #[derive(Clone, Debug)]
 pub(super) enum Origin {
     /// A template of this name, or its own file.
@@ -232,7 +241,8 @@ pub(super) enum Origin {
 }
 
 impl Origin {
-    /// Of a 3MF in the folder of its set, whose manifest says what made both; `None` where that is no longer there.
+    /// Returns the origin of a 3MF in the folder of its set, from the source in the manifest; `None` if that file no
+    /// longer exists.
     fn from_set(source: SourceEntry, package: &str) -> Option<Self> {
         if templates::names().contains(&source.name.as_str()) {
             return Some(Self::Template(source.name));
@@ -242,21 +252,22 @@ impl Origin {
         file.is_file().then_some(Self::File(file))
     }
 
-    /// Of a 3MF by itself: a template that makes the same set made it, and otherwise the file stands for what did.
+    /// Returns the origin of a 3MF outside of its set: the template with the same configuration, or else the file
+    /// itself.
     fn of_package(file: &str, configuration: &Configuration) -> Self {
         let name = configuration.switch.name.to_string();
         let template = templates::text(&name).and_then(|text| read(&text, &name).ok());
         // A template takes its name from its file.
-        let makes_it = template.is_some_and(|(mut template, _)| {
+        let is_same = template.is_some_and(|(mut template, _)| {
             template.switch.name.clone_from(&configuration.switch.name);
             template == *configuration
         });
-        if makes_it { Self::Template(name) } else { Self::File(PathBuf::from(file)) }
+        if is_same { Self::Template(name) } else { Self::File(PathBuf::from(file)) }
     }
 
     fn of(file: &str, text: &str) -> Self {
         let (path, stem) = (Path::new(file), stem(file));
-        // A template's own file, as in this repository, is the template.
+        // A file that equals its template, as in this repository, is the template.
         if !path.exists() || path.is_dir() || templates::text(&stem).is_some_and(|template| template == text)
         {
             Self::Template(stem)
@@ -265,22 +276,22 @@ impl Origin {
         }
     }
 
-    /// What a manifest in `folder`, which is there, says of it: of a file its path from that folder, which is the same
-    /// wherever the command is given, and wherever a machine keeps the folder of both.
+    /// Returns the entry for a manifest in `folder`, which exists. A file is named by its path from that folder, which
+    /// depends neither on the working directory nor on the place of both.
     pub(super) fn entry(&self, folder: &Path) -> SourceEntry {
         let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
         match self {
             Self::Template(name) => SourceEntry::new(name),
             Self::File(path) => {
                 let name = from_folder(&real(path), &real(folder)).to_string_lossy().replace('\\', "/");
-                let is_a_template_s = templates::names().contains(&name.as_str());
-                SourceEntry::new(if is_a_template_s { format!("./{name}") } else { name })
+                let is_template = templates::names().contains(&name.as_str());
+                SourceEntry::new(if is_template { format!("./{name}") } else { name })
             }
         }
     }
 }
 
-/// The path to `file` from `folder`, both absolute; `file` itself where they have no root in common.
+/// Returns the path from `folder` to `file`, both absolute; `file` itself if they have no root in common.
 fn from_folder(file: &Path, folder: &Path) -> PathBuf {
     let shared = file.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
     if shared == 0 {
@@ -299,35 +310,42 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_of_an_option_is_refused_at_the_option() {
+    fn errors_are_located_at_options() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("u.toml");
         std::fs::write(&file, "[layout]\npins = [5]\n").unwrap();
-        let of = |assignments: &[&str]| {
-            let mut source = Source::named(&file.to_string_lossy());
-            source.assignments = assignments.iter().map(|a| (*a).to_owned()).collect();
-            source.design().unwrap_err().message().to_owned()
+        let source = Source::new(&file.to_string_lossy());
+        let location = |source: &Source| {
+            let error = source.design().unwrap_err();
+            error.diagnostics()[0].location().cloned().unwrap()
         };
-        let said = of(&["layout.pins=[5, 98]", "layout.pins=[99]"]);
-        assert!(
-            said.starts_with("--set layout.pins=[99]: layout.pins = [99] puts a pin in groove 99"),
-            "{said}"
+        let with = |assignments: &[&str]| Source {
+            assignments: assignments.iter().map(|a| (*a).to_owned()).collect(),
+            ..source.clone()
+        };
+        let at = |option: &str, field: &str, value: &str| Location::file(option).with_field(field, value);
+        assert_eq!(
+            location(&with(&["layout.pins=[5, 98]", "layout.pins=[99]"])),
+            at("--set", "layout.pins", "[99]")
         );
-        // What the option did not give still has its line.
-        let said = of(&["segment.grooves=4"]);
-        assert!(said.contains("u.toml:2: layout.pins = [5] puts"), "{said}");
+        assert_eq!(location(&with(&["shell.width_mm=1"])), at("--set", "shell.width_mm", "1"));
+        let coarse = Source { tolerance: Some(1.0), ..source.clone() };
+        assert_eq!(location(&coarse), at("--tolerance", TOLERANCE, "1.0"));
+        // A field that no option sets keeps its line.
+        let line = location(&with(&["segment.grooves=4"]));
+        assert_eq!((line.line, line.field.as_deref()), (Some(2), Some("layout.pins")));
     }
 
     #[test]
-    fn every_file_has_its_own_name_and_no_templates() {
+    fn a_file_is_named_from_the_folder() {
         let from =
             |file: &str, folder: &str| from_folder(Path::new(file), Path::new(folder)).display().to_string();
         assert_eq!(from("/a/b/x.toml", "/a/b"), "x.toml");
         assert_eq!(from("/a/c/x.toml", "/a/b"), "../c/x.toml");
         assert_eq!(from("/x.toml", "/a/b"), "../../x.toml");
         let text = templates::text("three-double").unwrap();
-        for own in ["three-double", "templates/three-double.toml"] {
-            assert_eq!(Origin::of(own, &text).entry(Path::new(".")), SourceEntry::new("three-double"));
+        for file in ["three-double", "templates/three-double.toml"] {
+            assert_eq!(Origin::of(file, &text).entry(Path::new(".")), SourceEntry::new("three-double"));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `--plan`: what tables were recorded for, as `experiment` wrote it.
+//! `--plan`: the plans by which tables were recorded, as `experiment` wrote them.
 
 use std::path::{Path, PathBuf};
 
@@ -6,14 +6,23 @@ use pinswitch_calibration::Asked;
 use pinswitch_calibration::effects::{EffectDefinition, Vocabulary};
 use pinswitch_calibration::experiment::{PlannedRun, SCHEMA, by_contact, read_runs};
 use pinswitch_calibration::table::PlateauTable;
+use pinswitch_diagnostic::{Diagnostic, Location};
 
 use super::super::Failure;
-use super::FORM;
-use super::recorded::Recorded;
+use super::FORM_FILE;
+use super::plan_match::PlanMatch;
+use crate::failure::unconverted;
 use crate::input::{read_file, read_text_file};
+use crate::terminal::warn;
 
-/// What each table after the first was recorded for, if a plan was given for it. Plans come in the order of their tables; which
-/// table one belongs to, its runs tell.
+/// Help for a folder that is not a complete plan.
+const GIVE_PLAN: &str = "give the folder as `experiment` wrote it";
+
+/// Returns the plan of each table after the first; `None` for a table without one. Plans are given in the order of their
+/// tables; the runs of a plan decide which table it belongs to.
+///
+/// # Errors
+/// [`Failure::bad_input`] if there are more plans than tables, a plan cannot be read, or no table contains its runs.
 pub(super) fn plans(
     plans: &[PathBuf],
     tables: &[PathBuf],
@@ -21,135 +30,159 @@ pub(super) fn plans(
 ) -> Result<Vec<Option<Asked>>, Failure> {
     let later = tables.get(1..).unwrap_or_default();
     if plans.len() > later.len() {
-        return Err(Failure::bad_input(format!(
-            "--plan is given {} times and {} tables follow the first; give the tables in order, and a plan for each after it at most",
-            plans.len(),
-            later.len()
-        )));
+        return Err(Failure::bad_input(
+            Diagnostic::new(format!(
+                "--plan is given {} times, but {} tables follow the first",
+                plans.len(),
+                later.len()
+            ))
+            .with_help("give the tables in order, and at most one plan for each table after the first"),
+        ));
     }
-    let mut found = vec![None; later.len()];
+    let mut of_tables = vec![None; later.len()];
     let mut next = 0;
     for (i, folder) in plans.iter().enumerate() {
-        let asked = plan(folder, vocabulary)?;
-        // Each plan still to come needs a table of its own.
+        let plan = plan(folder, vocabulary)?;
+        // Each remaining plan needs a separate table.
         let possible = next..later.len() - (plans.len() - 1 - i);
-        let at = recorded_in(folder, &later[possible])? + next;
-        found[at] = Some(asked);
+        let at = table_of(folder, &later[possible])? + next;
+        of_tables[at] = Some(plan);
         next = at + 1;
     }
-    Ok(found)
+    Ok(of_tables)
 }
 
-/// What the plan in a folder asks.
+/// Reads the plan in a folder.
 fn plan(folder: &Path, vocabulary: &Vocabulary) -> Result<Asked, Failure> {
     #[derive(serde::Deserialize)]
     struct PlanFile {
         schema: String,
         #[serde(flatten)]
-        asked: Asked,
+        plan: Asked,
     }
-    // The file in the folder is meant as well.
+    // The file itself may be given instead of its folder.
     let path = if folder.is_file() { folder.to_owned() } else { folder.join("experiment.json") };
-    let refused = |problem: String| {
-        Failure::bad_input(format!("{}: {problem}; give the folder as `experiment` wrote it", path.display()))
-    };
-    let plan: PlanFile = serde_json::from_str(&read_text_file(&path)?).map_err(|e| refused(e.to_string()))?;
-    if plan.schema != SCHEMA {
-        return Err(refused(format!("schema = \"{}\" is not {SCHEMA}", plan.schema)));
+    let name = path.display().to_string();
+    let file: PlanFile = serde_json::from_str(&read_text_file(&path)?).map_err(|e| {
+        let problem = Diagnostic::new("not a plan").with_location(Location::file(&name));
+        Failure::bad_input(problem.with_help(GIVE_PLAN).with_source(e))
+    })?;
+    if file.schema != SCHEMA {
+        let location = Location::file(&name).with_field("schema", format!("\"{}\"", file.schema));
+        return Err(Failure::bad_input(
+            Diagnostic::new(format!("is not {SCHEMA}")).with_location(location).with_help(GIVE_PLAN),
+        ));
     }
-    // That a plan has no runs is said before what it says of them.
+    // Missing runs are reported before errors in the questions about them.
     let (runs, _) = runs_of(folder)?;
     let form = form_of(folder)?;
     let is_known = |id: &str| {
         vocabulary.named(id).is_some() || form.as_ref().is_some_and(|form| form.named(id).is_some())
     };
-    plan.asked.check(is_known).map_err(|e| refused(e.to_string()))?;
-    Ok(Asked { runs: by_contact(&runs), ..plan.asked })
+    file.plan.check(is_known).map_err(|e| {
+        let error = unconverted(e).or_in_file(&name);
+        Failure::bad_input(if error.help().is_none() { error.with_help(GIVE_PLAN) } else { error })
+    })?;
+    Ok(Asked { runs: by_contact(&runs), ..file.plan })
 }
 
-/// The built-in effects with the form that a plan asks about, if there is one.
+/// Returns the built-in effects with the form that a plan tests, if there is one.
 fn form_of(folder: &Path) -> Result<Option<Vocabulary>, Failure> {
-    let path = folder_of(folder).join(FORM);
+    let path = folder_of(folder).join(FORM_FILE);
     if !path.is_file() {
         return Ok(None);
     }
     let (text, name) = (read_text_file(&path)?, path.display().to_string());
-    Vocabulary::built_in().read(&text, &name).map(Some).map_err(Failure::bad_input)
+    let vocabulary = Vocabulary::built_in().read(&text, &name);
+    vocabulary.map(Some).map_err(|e| Failure::bad_input(unconverted(e)))
 }
 
-/// A vocabulary with the forms whose coming again the plans ask about, unless they are in it under whatever name.
+/// Adds the forms that the plans test to a vocabulary, unless it defines them under any name.
+///
+/// # Errors
+/// [`Failure::bad_input`] if the file of a form cannot be read.
 pub(super) fn with_forms(vocabulary: Vocabulary, plans: &[PathBuf]) -> Result<Vocabulary, Failure> {
     plans.iter().try_fold(vocabulary, |vocabulary, folder| {
         let Some(forms) = form_of(folder)? else { return Ok(vocabulary) };
         let is_known = |form: &EffectDefinition| {
-            let is_it = |own: &EffectDefinition| {
+            let is_same = |own: &EffectDefinition| {
                 own.id == form.id || (own.formula == form.formula && own.drawn_from == form.drawn_from)
             };
-            vocabulary.own().any(|own| is_it(own.definition()))
+            vocabulary.own().any(|own| is_same(own.definition()))
         };
         if forms.own().any(|form| is_known(form.definition())) {
             return Ok(vocabulary);
         }
-        let path = folder_of(folder).join(FORM);
-        vocabulary.read(&read_text_file(&path)?, &path.display().to_string()).map_err(Failure::bad_input)
+        let path = folder_of(folder).join(FORM_FILE);
+        vocabulary
+            .read(&read_text_file(&path)?, &path.display().to_string())
+            .map_err(|e| Failure::bad_input(unconverted(e)))
     })
 }
 
-/// The folder of a plan, which may be given by a file in it.
+/// Returns the folder of a plan, which may be given by a file in it.
 fn folder_of(plan: &Path) -> &Path {
     if plan.is_file() { plan.parent().unwrap_or(plan) } else { plan }
 }
 
-/// The runs of a plan, and the file that they stand in.
+/// Reads the runs of a plan; also returns the name of their file.
 fn runs_of(folder: &Path) -> Result<(Vec<PlannedRun>, String), Failure> {
     let path = folder_of(folder).join("next-runs.csv");
     let name = path.display().to_string();
     if !path.is_file() {
-        return Err(Failure::bad_input(format!(
-            "{name}: is not there, and it alone says which runs were planned; give the folder as `experiment` wrote it"
-        )));
+        return Err(Failure::bad_input(
+            Diagnostic::new("file not found; it lists the planned runs")
+                .with_location(Location::file(name))
+                .with_help(GIVE_PLAN),
+        ));
     }
-    let runs = read_runs(&read_text_file(&path)?, &name).map_err(Failure::bad_input)?;
+    let runs = read_runs(&read_text_file(&path)?, &name).map_err(|e| Failure::bad_input(unconverted(e)))?;
     Ok((runs, name))
 }
 
-/// What a table holds of the runs of a plan.
-fn recorded(runs: &[PlannedRun], table: &Path) -> Result<Recorded, Failure> {
+/// Matches a table with the runs of a plan.
+fn match_table(runs: &[PlannedRun], table: &Path) -> Result<PlanMatch, Failure> {
     let name = table.display().to_string();
-    let table = PlateauTable::read(read_file(table)?.as_slice(), &name).map_err(Failure::bad_input)?;
-    Ok(Recorded::of(runs, &table.rows))
+    let table = PlateauTable::read(read_file(table)?.as_slice(), &name)
+        .map_err(|e| Failure::bad_input(unconverted(e)))?;
+    Ok(PlanMatch::new(runs, &table.rows))
 }
 
-/// Place of the table that holds most of a plan's runs; of equals the first. One that holds fewer than half of them was not
-/// recorded by it.
-fn recorded_in(folder: &Path, tables: &[PathBuf]) -> Result<usize, Failure> {
+/// Returns the place of the table with most runs of a plan, the first of equals. Warns about missing runs and about
+/// another order.
+///
+/// # Errors
+/// [`Failure::bad_input`] if no table contains half of the runs.
+fn table_of(folder: &Path, tables: &[PathBuf]) -> Result<usize, Failure> {
     let (runs, plan) = runs_of(folder)?;
-    let mut best: Option<(usize, Recorded)> = None;
+    let mut best: Option<(usize, PlanMatch)> = None;
     for (at, table) in tables.iter().enumerate() {
-        let found = recorded(&runs, table)?;
-        if best.is_none_or(|(_, most)| found.made > most.made) {
-            best = Some((at, found));
+        let candidate = match_table(&runs, table)?;
+        if best.is_none_or(|(_, most)| candidate.made > most.made) {
+            best = Some((at, candidate));
         }
     }
-    let Some((at, found)) = best else { return Ok(0) };
-    let Recorded { planned, made, .. } = found;
-    let name = tables[at].display();
-    if !found.is_by_plan() {
-        let holds = match made {
-            0 => format!("none of the {planned} runs of {plan} is in it"),
-            _ => format!("only {made} of the {planned} runs of {plan} are in it"),
+    let Some((at, best)) = best else { return Ok(0) };
+    let PlanMatch { planned, made, .. } = best;
+    let in_table = |problem: String| {
+        Diagnostic::new(problem).with_location(Location::file(tables[at].display().to_string()))
+    };
+    if !best.is_by_plan() {
+        let problem = match made {
+            0 => format!("contains none of the {planned} runs of {plan}"),
+            _ => format!("contains only {made} of the {planned} runs of {plan}"),
         };
-        return Err(Failure::bad_input(format!(
-            "{name}: {holds}; give the table of the planned session, with the loads, sweeps, speeds and dwells planned, or leave --plan out"
+        return Err(Failure::bad_input(in_table(problem).with_help(
+            "give the table of the planned session, with the planned loads, sweeps, speeds and dwells, or leave out --plan",
         )));
     }
     if made < planned {
-        log::warn!("{name}: {} of the {planned} runs of {plan} are not in it", planned - made);
+        warn(in_table(format!("lacks {} of the {planned} runs of {plan}", planned - made)));
     }
-    if !found.is_in_order() {
-        log::warn!(
-            "{name}: its series stand in another order than the runs of {plan}; the order is part of the experiment, and what comes with time or with the load before is told less surely"
-        );
+    if !best.is_in_order() {
+        warn(in_table(format!("the order of the series differs from that of the runs of {plan}")).with_help(
+            "record the runs in order: another order weakens conclusions about time and about the previous load",
+        ));
     }
     Ok(at)
 }

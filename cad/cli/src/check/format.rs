@@ -2,10 +2,12 @@
 
 use std::io::{BufRead, Read, Seek};
 
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_solid::files::{read_stl, read_three_mf};
 use pinswitch_solid::validity::{Examination, Expectation, Fault, examine, shared_place};
 
 use super::verdict::PartVerdict;
+use crate::failure::unconverted;
 
 /// A kind of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,12 +51,17 @@ impl Format {
     }
 }
 
+/// Returns the diagnostic of a file that cannot be read.
+pub(super) fn unreadable(error: std::io::Error) -> Diagnostic {
+    Diagnostic::new("cannot read").with_help("give a file that exists and can be read").with_source(error)
+}
+
 /// Examines an STL.
 pub(super) fn stl(
     reader: &mut (impl BufRead + Seek),
     expected: &Expectation,
-) -> Result<(Examination, Vec<String>), String> {
-    let stl = read_stl(reader).map_err(|e| e.to_string())?;
+) -> Result<(Examination, Vec<String>), Diagnostic> {
+    let stl = read_stl(reader).map_err(unconverted)?;
     let mut examination = examine(&stl.mesh, expected);
     if stl.contrary_normals > 0 {
         examination.faults.push(Fault {
@@ -73,10 +80,10 @@ pub(super) fn stl(
 }
 
 /// Examines each solid object of a 3MF, and whether those that are built share space.
-pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<Parts, String> {
+pub(super) fn three_mf(mut reader: impl Read, expected: &Expectation) -> Result<Parts, Diagnostic> {
     let mut bytes = Vec::new();
-    reader.read_to_end(&mut bytes).map_err(|e| format!("cannot read: {e}; give a file that can be read"))?;
-    let package = read_three_mf(&bytes).map_err(|e| e.to_string())?;
+    reader.read_to_end(&mut bytes).map_err(unreadable)?;
+    let package = read_three_mf(&bytes).map_err(unconverted)?;
     drop(bytes);
     let each = Expectation { bodies: None, ..*expected };
     let parts: Vec<PartVerdict> = package
@@ -121,17 +128,17 @@ pub(super) fn step(
     mut reader: impl Read,
     expected: &Expectation,
     tolerance_mm: f64,
-) -> Result<Parts, String> {
+) -> Result<Parts, Diagnostic> {
     use pinswitch_solid::files::read_step;
     use pinswitch_solid::mesh::Mesh;
     use pinswitch_solid::profile::ChordTolerance;
 
     say_nothing_of_truck();
     let mut bytes = Vec::new();
-    reader.read_to_end(&mut bytes).map_err(|e| format!("cannot read: {e}; give a file that can be read"))?;
-    let tolerance = ChordTolerance::new(tolerance_mm).map_err(|e| e.to_string())?;
+    reader.read_to_end(&mut bytes).map_err(unreadable)?;
+    let tolerance = ChordTolerance::new(tolerance_mm).map_err(unconverted)?;
     // By the standard it is ASCII; names may be in whatever the program spoke.
-    let read = read_step(&String::from_utf8_lossy(&bytes), tolerance).map_err(|e| e.to_string())?;
+    let read = read_step(&String::from_utf8_lossy(&bytes), tolerance).map_err(unconverted)?;
     let each = Expectation { bodies: None, ..*expected };
     let mut parts = Vec::new();
     let mut placed: Vec<(&str, Mesh)> = Vec::new();
@@ -190,6 +197,6 @@ fn say_nothing_of_truck() {
 
 /// STEP is read through truck, which this build was made without.
 #[cfg(not(feature = "truck"))]
-pub(super) fn step(_: impl Read, _: &Expectation, _: f64) -> Result<Parts, String> {
-    Err("a STEP file, and this build reads none; build with --features brep".to_owned())
+pub(super) fn step(_: impl Read, _: &Expectation, _: f64) -> Result<Parts, Diagnostic> {
+    Err(Diagnostic::new("this build reads no STEP files").with_help("build with --features brep"))
 }

@@ -8,7 +8,8 @@ use std::path::PathBuf;
 use clap::Args;
 use rayon::prelude::*;
 
-use super::{Failure, print, print_json};
+use super::{Failure, print_json, print_text};
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_solid::validity::Expectation;
 use verdict::Verdict;
 
@@ -44,20 +45,21 @@ pub(super) struct Arguments {
 /// Finest and coarsest chord tolerance, mm.
 const TOLERANCES_MM: (f64, f64) = (0.001, 1.0);
 
-fn tolerance(text: &str) -> Result<f64, String> {
+fn tolerance(text: &str) -> Result<f64, Diagnostic> {
     let (finest, coarsest) = TOLERANCES_MM;
     let value: Option<f64> = text.parse().ok();
     value
         .filter(|mm| (finest..=coarsest).contains(mm))
-        .ok_or_else(|| format!("give {finest} to {coarsest} mm"))
+        .ok_or_else(|| Diagnostic::new(format!("not a length from {finest} to {coarsest} mm")))
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !(arguments.min_wall >= 0.0 && arguments.min_wall.is_finite()) {
-        return Err(Failure::bad_input(format!(
-            "--min-wall = {} is not a wall thickness; give 0 or more mm",
-            arguments.min_wall
-        )));
+        return Err(Failure::bad_input(
+            Diagnostic::new("is not a wall thickness")
+                .with_location(Location::field("--min-wall", arguments.min_wall.to_string()))
+                .with_help("give 0 or more mm"),
+        ));
     }
     let mut verdicts = Vec::new();
     let mut unreadable = Vec::new();
@@ -68,17 +70,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for (file, found) in arguments.files.iter().zip(found) {
         match found {
             Ok(verdict) => verdicts.push(verdict),
-            Err(error) => unreadable.push(format!("{}: {error}", file.display())),
+            Err(error) => unreadable.push(error.or_in_file(&file.display().to_string())),
         }
     }
     if arguments.json {
-        print_json(&verdicts)?;
+        // Without a verdict, the failure is the only JSON document.
+        if !verdicts.is_empty() {
+            print_json(&verdicts)?;
+        }
     } else {
-        print(verdicts.iter().map(Verdict::describe).collect::<String>().as_bytes())?;
+        print_text(&verdicts.iter().map(Verdict::describe).collect::<String>())?;
     }
     let invalid = verdicts.iter().filter(|v| !v.valid).count();
-    if !unreadable.is_empty() {
-        return Err(Failure::bad_input(unreadable.join("\nerror: ")));
+    if let Some(failure) = Failure::bad_inputs(unreadable) {
+        return Err(failure);
     }
     if invalid > 0 {
         return Err(Failure::failed(format!("{invalid} of {} files are not valid", verdicts.len())));

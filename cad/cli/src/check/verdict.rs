@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_solid::validity::{Examination, Expectation, Fault, MeshFacts};
 use serde::Serialize;
 
@@ -41,20 +42,19 @@ impl PartVerdict {
 }
 
 /// Examines a file of any kind that is known.
-pub(super) fn of(file: &Path, expected: &Expectation, tolerance_mm: f64) -> Result<Verdict, String> {
+pub(super) fn of(file: &Path, expected: &Expectation, tolerance_mm: f64) -> Result<Verdict, Diagnostic> {
     if file.is_dir() {
-        return Err("it is a folder; give the files in it".to_owned());
+        return Err(Diagnostic::new("is a folder").with_help("give the files in it"));
     }
-    let opened =
-        File::open(file).map_err(|e| format!("cannot read: {e}; give a file that exists and can be read"))?;
-    let length =
-        opened.metadata().map_err(|e| format!("cannot read: {e}; give a file that can be read"))?.len();
+    let opened = File::open(file).map_err(format::unreadable)?;
+    let length = opened.metadata().map_err(format::unreadable)?.len();
     let mut reader = BufReader::new(opened);
-    let head = reader.fill_buf().map_err(|e| format!("cannot read: {e}; give a file that can be read"))?;
+    let head = reader.fill_buf().map_err(format::unreadable)?;
     let format = Format::of(head);
     let most = format.longest();
     if length > most {
-        return Err(format!("holds {length} bytes, more than {most}; export it coarser"));
+        let problem = format!("is {length} bytes long, more than {most}");
+        return Err(Diagnostic::new(problem).with_help("export it coarser"));
     }
     let name = file.display().to_string();
     match format {

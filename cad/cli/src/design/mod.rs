@@ -1,21 +1,15 @@
-//! `pinswitch design`: from an ask to configurations.
+//! `pinswitch design`: configurations that meet a request.
 
-mod flags;
 mod progress;
-mod words;
+mod request_options;
+mod text;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use pinswitch_calibration::ModelFile;
-use pinswitch_friction::layout_search::LayoutCandidate;
-use serde::Serialize;
-
-use super::source::Source;
-use super::{Failure, print, print_json};
-use crate::write::write_set;
-use flags::AskFlags;
 use pinswitch_app::CalibratedSwitch;
+use pinswitch_diagnostic::{Diagnostic, Location};
+use pinswitch_friction::layout_search::LayoutCandidate;
 use pinswitch_friction::published::GROOVES;
 use pinswitch_report::{AskedRegion, pareto_svg};
 use pinswitch_switch::ask::{Ask, Parameter, Quantity};
@@ -24,15 +18,25 @@ use pinswitch_switch::design_search::{
     Belief, Blocked, Found, Options, Proposal, PublishedPhysics, load_range_n, search,
 };
 use pinswitch_switch::output::OutputFile;
-use progress::Bar;
+use serde::Serialize;
 
-/// Find switches that do what you ask: pins, grooves, silicone.
+use super::calibrated_curve::read_model;
+use super::failure::unconverted;
+use super::source::Source;
+use super::terminal::to_json;
+use super::{Failure, print_json, print_text};
+use crate::write::write_set;
+use progress::Bar;
+use request_options::RequestOptions;
+
+/// Find pins, grooves and silicone that meet a request.
 ///
-/// An ask is a set of targets (threshold, friction at any loads, stiffness of switching) within limits (size, number of pins,
-/// printer, materials at hand), in a file or as options. Patterns of pins and continuous parameters are searched with the
-/// physics; answers are ranked by the probability that a made part meets the ask, with everything that is uncertain: the
-/// constants, the model, and how well parts are printed and cast. An ask that cannot be met ends with exit code 1, the
-/// nearest design, the limit that blocks it, and the parameter that would move it.
+/// A request has targets (threshold, friction at any loads, stiffness of switching) within limits (size, number of pins,
+/// printer, available materials), in a file or as options. Write a target as `at most 8`, `at least 8`,
+/// `between 4 and 6`, `about 5` or `about 5 within 15%`. The search covers patterns of pins and continuous parameters,
+/// with the physics law. Proposals are ranked by the probability that a made part meets the request, which includes the
+/// uncertainty of the constants, of the model, and of printing and casting. A request that no design meets ends with exit
+/// code 1, the nearest design, the limit that blocks it, and the parameters to change.
 #[derive(Args, Debug)]
 #[command(mut_arg("config", |a| a.required(false).default_value("three-double")))]
 #[command(after_help = "Examples:
@@ -41,25 +45,25 @@ use progress::Bar;
   pinswitch design --friction 'at most 1 at 15' --friction 'at least 8 at 50' --pins 3..6 --vary pitch_deg,layer_mm=1.5..3
   pinswitch design --threshold 'at least 30' --model model.toml --json
 
-cad/doc/design.md explains every field, and how the probability is computed.")]
+cad/doc/design.md explains every field and the computation of the probability.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
     #[command(flatten)]
-    ask: Box<AskFlags>,
-    /// A model.toml written by `calibrate`: its curve, band and covariance instead of the published constants.
+    request: Box<RequestOptions>,
+    /// model.toml of a calibration; its curve, band and covariance replace the published constants.
     #[arg(long, value_name = "TOML")]
     model: Option<PathBuf>,
-    /// How many designs to propose.
+    /// Number of proposals.
     #[arg(long, value_name = "N", default_value_t = Options::default().best)]
     best: usize,
-    /// Made parts that are drawn for each probability.
+    /// Simulated parts per probability.
     #[arg(long, value_name = "N", default_value_t = Options::default().draws)]
     draws: usize,
-    /// Seed of the draws.
+    /// Seed of the simulated parts.
     #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
     seed: u64,
-    /// Patterns whose continuous parameters are searched: more is slower and leaves less out.
+    /// Patterns whose continuous parameters are optimised; more are slower and more thorough.
     #[arg(long, value_name = "N", default_value_t = Options::default().starts)]
     starts: usize,
     /// Folder for the configurations, pareto.svg and design.json.
@@ -70,16 +74,16 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// What is printed as JSON and written as design.json.
+/// Content of `--json` and design.json.
 #[derive(Serialize)]
 struct Report<'a> {
     ask: &'a Ask,
     load_range_n: (f64, f64),
     draws: usize,
     seed: u64,
-    /// Patterns that differ, mirror images counted once.
+    /// Distinct patterns; mirror images count once.
     patterns: usize,
-    /// Curves that the enumeration computed.
+    /// Curves that were computed to compare the patterns.
     tried: usize,
     possible: bool,
     proposals: &'a [Proposal],
@@ -87,24 +91,22 @@ struct Report<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let ask = arguments.ask.ask()?;
+    let ask = arguments.request.request()?;
     let base = arguments.source.with_preset(ask.limits.preset.as_deref()).design()?;
     let options = options(arguments)?;
     check_pins(&ask, base.configuration())?;
-    ask.check_loads(load_range_n(base.configuration(), &ask)).map_err(Failure::bad_input)?;
-    if arguments.model.is_some() && ask.vary.parameters.iter().any(|v| v.parameter == Parameter::WrapDeg) {
-        return Err(Failure::bad_input(
-            "--vary wrap_deg: a calibrated switch is known at the wrap of its rig only; leave out wrap_deg or --model",
-        ));
+    ask.check_loads(load_range_n(base.configuration(), &ask))
+        .map_err(|e| Failure::bad_input(unconverted(e)))?;
+    if arguments.model.is_some() {
+        check_model_scope(&ask, base.configuration())?;
     }
-    let grooves = base.configuration().segment.grooves;
-    if arguments.model.is_some() && grooves != GROOVES {
-        return Err(Failure::bad_input(format!(
-            "segment.grooves = {grooves}: a calibrated switch is known by the {GROOVES} grooves of its rig; set {GROOVES} or leave \
-             out --model"
-        )));
-    }
-    let calibrated = arguments.model.as_deref().map(calibrated_switch).transpose()?;
+    let calibrated = match &arguments.model {
+        Some(path) => {
+            let (model, name) = read_model(path)?;
+            Some(CalibratedSwitch::new(model, name))
+        }
+        None => None,
+    };
     let published = PublishedPhysics::default();
     let belief: &dyn Belief = match &calibrated {
         Some(calibrated) => calibrated,
@@ -114,7 +116,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = search(&base, &ask, belief, options, &bar);
     bar.finish();
     log::info!(
-        "{} patterns, mirror images once; {} curves of patterns computed",
+        "{} distinct patterns (mirror images count once); {} curves computed",
         found.patterns,
         found.tried
     );
@@ -138,22 +140,36 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json {
         print_json(&report)?;
     } else {
-        print(words::table(&found, &ask).as_bytes())?;
+        print_text(&text::table(&found, &ask))?;
     }
     match &found.blocked {
-        Some(blocked) => Err(Failure::failed(words::refusal(blocked))),
+        Some(blocked) => Err(Failure::failed(text::refusal(blocked))),
         None if found.proposals.is_empty() => Err(Failure::failed(
-            "nothing that the tendon touches can be printed, whatever the ask; start from another configuration",
+            Diagnostic::new("no layout of this configuration can be printed, whatever the request")
+                .with_help("start from another configuration"),
         )),
         None => Ok(()),
     }
 }
 
-fn calibrated_switch(path: &Path) -> Result<CalibratedSwitch, Failure> {
-    let name = path.display().to_string();
-    let text = crate::input::read_text_file(path)?;
-    let file = ModelFile::parse(&text, &name).map_err(Failure::bad_input)?;
-    Ok(CalibratedSwitch::new(file, name))
+/// Checks that a calibrated model covers everything that the request varies.
+fn check_model_scope(ask: &Ask, base: &Configuration) -> Result<(), Failure> {
+    if ask.vary.parameters.iter().any(|v| v.parameter == Parameter::WrapDeg) {
+        return Err(Failure::bad_input(
+            Diagnostic::new("a calibrated model covers the wrap angle of its rig only")
+                .with_location(Location::field("--vary", "wrap_deg"))
+                .with_help("leave out wrap_deg or --model"),
+        ));
+    }
+    let grooves = base.segment.grooves;
+    if grooves != GROOVES {
+        return Err(Failure::bad_input(
+            Diagnostic::new(format!("a calibrated model covers the {GROOVES} grooves of its rig only"))
+                .with_location(Location::field("segment.grooves", grooves.to_string()))
+                .with_help(format!("set it to {GROOVES}, or leave out --model")),
+        ));
+    }
+    Ok(())
 }
 
 fn options(arguments: &Arguments) -> Result<Options, Failure> {
@@ -162,7 +178,11 @@ fn options(arguments: &Arguments) -> Result<Options, Failure> {
         [("--best", best, 100), ("--draws", draws, 1_000_000), ("--starts", starts, 1000)]
     {
         if value == 0 || value > most {
-            return Err(Failure::bad_input(format!("{flag} = {value}: give 1 to {most}")));
+            return Err(Failure::bad_input(
+                Diagnostic::new("out of range")
+                    .with_location(Location::field(flag, value.to_string()))
+                    .with_help(format!("give 1 to {most}")),
+            ));
         }
     }
     Ok(Options { best, draws, seed, starts: starts.max(best) })
@@ -171,9 +191,11 @@ fn options(arguments: &Arguments) -> Result<Options, Failure> {
 fn check_pins(ask: &Ask, base: &Configuration) -> Result<(), Failure> {
     let grooves = base.segment.grooves;
     match ask.limits.pins {
-        Some((fewest, most)) if most > grooves => Err(Failure::bad_input(format!(
-            "--pins = {fewest}..{most}: a layout has 1 to {grooves} pins here; narrow it or raise segment.grooves"
-        ))),
+        Some((fewest, most)) if most > grooves => Err(Failure::bad_input(
+            Diagnostic::new(format!("a layout of this configuration has 1 to {grooves} pins"))
+                .with_location(Location::field("--pins", format!("{fewest}..{most}")))
+                .with_help("narrow the range, or raise segment.grooves"),
+        )),
         _ => Ok(()),
     }
 }
@@ -199,23 +221,22 @@ fn files(found: &Found, report: &Report<'_>, ask: &Ask) -> Result<Vec<OutputFile
             friction_n: p.friction_n,
         })
         .collect();
-    let svg =
-        pareto_svg(&found.candidates, &chosen, asked_region(ask, found.range_n)).map_err(Failure::failed)?;
+    let svg = pareto_svg(&found.candidates, &chosen, target_region(ask, found.range_n))
+        .map_err(|e| Failure::failed(unconverted(e)))?;
     files.push(OutputFile { name: "pareto.svg".to_owned(), bytes: svg.into_bytes() });
-    let mut bytes = serde_json::to_vec_pretty(report).map_err(Failure::failed)?;
-    bytes.push(b'\n');
-    files.push(OutputFile { name: "design.json".to_owned(), bytes });
+    files.push(OutputFile { name: "design.json".to_owned(), bytes: to_json(report)? });
     Ok(files)
 }
 
-/// What the ask says of threshold and friction at the heaviest load, if it says anything of either.
-fn asked_region(ask: &Ask, range_n: (f64, f64)) -> Option<AskedRegion> {
-    let of = |is_it: &dyn Fn(Quantity) -> bool| {
-        let intervals = ask.targets.iter().filter(|t| is_it(t.quantity)).map(|t| t.wish.interval());
+/// Returns the intervals of threshold and of friction at the heaviest load that meet the targets; `None` without a target
+/// for either.
+fn target_region(ask: &Ask, range_n: (f64, f64)) -> Option<AskedRegion> {
+    let interval = |is_meant: &dyn Fn(Quantity) -> bool| {
+        let intervals = ask.targets.iter().filter(|t| is_meant(t.quantity)).map(|t| t.wish.interval());
         intervals.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1)))
     };
-    let threshold = of(&|q| q == Quantity::Threshold);
-    let friction = of(&|q| match q {
+    let threshold = interval(&|q| q == Quantity::Threshold);
+    let friction = interval(&|q| match q {
         Quantity::MaxFriction => true,
         Quantity::Friction { load_n } => (load_n - range_n.1).abs() < 1e-9,
         _ => false,

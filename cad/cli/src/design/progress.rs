@@ -1,17 +1,17 @@
-//! How far a search has come, as a bar on a terminal; in a pipe nothing is shown.
+//! Progress of a search, as a bar on a terminal; nothing in a pipe.
 
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pinswitch_switch::design_search::Progress;
 
-/// The bar of the stage that runs.
+/// Progress bar of the current stage.
 pub(super) struct Bar(ProgressBar);
 
 impl Bar {
     pub(super) fn new() -> Self {
         let bar = ProgressBar::new(0);
-        // The form is a constant; if it were wrong, the default form would do.
+        // The template is a constant; an invalid one would leave the default style.
         if let Ok(style) = ProgressStyle::with_template("{msg:14} {bar:30} {pos} of {len}, {elapsed}") {
             bar.set_style(style);
         }
@@ -22,7 +22,7 @@ impl Bar {
         Self(bar)
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(super) fn finish(&self) {
         self.0.finish_and_clear();
     }

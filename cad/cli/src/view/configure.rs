@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use http_body_util::{BodyExt, Limited};
 use hyper::body::{Bytes, Incoming};
 use pinswitch_app::{Answer, Engine, Pace, Values, configuration, pace, values};
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_switch::config::{Configuration, parameter::Parameter, rewritten};
 use serde::Deserialize;
 
@@ -76,10 +77,10 @@ impl From<String> for NotSaved {
 }
 
 /// The body of a question, or why there is none.
-pub(super) async fn question(body: Incoming) -> Result<Bytes, String> {
+pub(super) async fn question(body: Incoming) -> Result<Bytes, Diagnostic> {
     let body = Limited::new(body, LARGEST).collect().await;
     body.map(http_body_util::Collected::to_bytes)
-        .map_err(|_| format!("the question is larger than {} MB", LARGEST >> 20))
+        .map_err(|_| Diagnostic::new(format!("the question is larger than {} MB", LARGEST >> 20)))
 }
 
 impl Configurator {
@@ -95,7 +96,7 @@ impl Configurator {
         serde_json::json!({
             "file": file.map(|file| file.path.display().to_string()),
             "saves": file.is_some_and(|file| file.is_text),
-            "said": self.source.is_said(),
+            "said": self.source.has_arguments(),
         })
     }
 
@@ -144,15 +145,15 @@ impl Configurator {
             return Err(NotSaved::Gone);
         }
         let text = if is_gone { Ok(String::new()) } else { read_text_file(file) };
-        let text = text.map_err(|e| e.message().to_owned())?;
+        let text = text.map_err(|e| e.to_string())?;
         // As the page has it: a preset lies under the file, options over it, and its name is that of the file if it has none.
-        let shown = self.source.configuration_from(&text).map_err(|e| e.message().to_owned())?;
+        let shown = self.source.configuration_from(&text).map_err(|e| e.to_string())?;
         let now = stamp(text.as_bytes());
         if !is_gone && saved.stamp.is_some_and(|known| known != now) {
             return Err(NotSaved::Differs { stamp: now, values: values(&shown) });
         }
         let text = rewritten(&text, &name, &shown, &wanted).map_err(|e| e.to_string())?;
-        write_back(file, text.as_bytes()).map_err(|e| e.to_string())?;
+        write_back(file, text.as_bytes()).map_err(|e| Diagnostic::from(e).to_string())?;
         let hidden = hidden(&self.source, &shown, &wanted);
         Ok(Written { file: name, stamp: stamp(text.as_bytes()), hidden })
     }

@@ -108,7 +108,7 @@ pub(super) fn follow(states: &watch::Sender<State>, arguments: &Arguments, file:
             let design = arguments.source.design_from(watched.shown.clone());
             design
                 .and_then(|design| build(arguments, design, next, &watched.shown))
-                .map_err(|failure| failure.message().to_owned())
+                .map_err(|failure| failure.to_string())
         };
         match built {
             Ok(built) => {

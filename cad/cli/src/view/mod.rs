@@ -14,11 +14,13 @@ use sha2::{Digest, Sha256};
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 
+use super::failure::unconverted;
 use super::law::LawChoice;
 use super::source::Source;
-use super::{Failure, print};
+use super::{Failure, print_text};
 use configure::{Configurator, Followed};
 use pinswitch_app::values;
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::built::Built;
 use pinswitch_switch::design::Design;
 use pinswitch_switch::formats::named;
@@ -68,18 +70,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // Kept to the end, also where there is no file to follow: pages that wait are not sent away.
     let sender = Arc::new(sender);
     // One thread answers all, however many wait.
-    let runtime =
-        tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failure::failed)?;
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
     runtime.block_on(async {
-        let busy = |e| {
-            Failure::bad_input(format!(
-                "--port {}: cannot serve there: {e}; give another port, or 0 for any that is free",
-                arguments.port
-            ))
+        let busy = |e: std::io::Error| {
+            Failure::bad_input(
+                Diagnostic::new("cannot listen on this port")
+                    .with_location(Location::field("--port", arguments.port.to_string()))
+                    .with_help("give another port, or 0 for any free port")
+                    .with_source(e),
+            )
         };
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, arguments.port)).await.map_err(busy)?;
-        let address: SocketAddr = listener.local_addr().map_err(Failure::failed)?;
-        print(format!("http://{address}\nhttp://{address}/configure\n").as_bytes())?;
+        let address: SocketAddr =
+            listener.local_addr().map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+        print_text(&format!("http://{address}\nhttp://{address}/configure\n"))?;
         if let Some((bytes, file)) = followed {
             log::info!("following {}; end with Ctrl-C", file.display());
             let (sender, arguments) = (Arc::clone(&sender), arguments.clone());
@@ -93,15 +98,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// What is shown of a design that was read from these bytes.
 fn build(arguments: &Arguments, design: Design, version: u64, bytes: &[u8]) -> Result<State, Failure> {
     let prediction = arguments.law.prediction(&design)?;
-    let built = Built::new(design).map_err(Failure::bad_input)?;
+    let built = Built::new(design).map_err(|e| Failure::bad_input(unconverted(e)))?;
     let formats = named(&["stl"]).map_err(Failure::failed)?;
-    let set = Set::new(&built, &prediction, &formats).map_err(Failure::bad_input)?;
+    let set = Set::new(&built, &prediction, &formats).map_err(|e| Failure::bad_input(unconverted(e)))?;
     let data = PageData::new(&built, &prediction, &set.manifest, Some(version));
     // A live page is rebuilt while somebody waits, in a browser that has shown it already: no picture.
-    let page = page_html(&data, "").map_err(Failure::failed)?;
+    let page = page_html(&data, "").map_err(|e| Failure::failed(unconverted(e)))?;
     let values = values(built.design().configuration());
-    let values = serde_json::to_string(&values).map_err(Failure::failed)?;
-    let data = data.json().map_err(Failure::failed)?;
+    let values = serde_json::to_string(&values).map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+    let data = data.json().map_err(|e| Failure::failed(unconverted(e)))?;
     let stamp = stamp(bytes).into();
     Ok(State { version, stamp, data: data.into(), page: page.into(), values: values.into(), trouble: None })
 }

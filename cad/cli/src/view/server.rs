@@ -137,9 +137,11 @@ impl Site {
     /// The answer to what the configurator asks.
     async fn questioned(&self, body: Incoming, path: &str) -> Response<Full<Bytes>> {
         let asked = tokio::time::timeout(QUESTION_TIMEOUT, question(body)).await;
-        let question = match asked.unwrap_or_else(|_| Err("the question did not arrive in time".to_owned())) {
+        let question = match asked.unwrap_or_else(|_| Err("the question did not arrive in time".into())) {
             Ok(question) => question,
-            Err(reason) => return self.response(StatusCode::PAYLOAD_TOO_LARGE, "text/plain", reason),
+            Err(reason) => {
+                return self.response(StatusCode::PAYLOAD_TOO_LARGE, "text/plain", reason.to_string());
+            }
         };
         if path == "/save" {
             return self.response(StatusCode::OK, "application/json", self.configurator.save(&question));

@@ -1,6 +1,6 @@
-//! Files are written whole or not at all, and so are sets: staged beside their target, then renamed into their names.
+//! Writes files and sets of files as a whole: staged next to their targets, then renamed.
 //!
-//! One process writes into a folder at a time, under a lock. What a run that was killed has left is removed by the next.
+//! A folder has a lock, so that one process writes at a time. The next run removes the unfinished files of a killed run.
 
 mod folder_lock;
 mod record;
@@ -11,37 +11,55 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use pinswitch_batch::{is_dead_link, remedy_at, temporary_file};
+use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::output::OutputFile;
 
-use folder_lock::{FolderLock, Waiting};
+use folder_lock::{FolderLock, LockMode};
 pub(crate) use record::source_of_set_with;
 pub use set_folder::{PublishError, SetFolder};
 
 use crate::Failure;
 use crate::input::was_read;
 
-/// Beginning of the names of everything that is not there to stay.
-const OURS: &str = ".pinswitch-";
+/// Begin of the names of temporary files.
+const TEMPORARY_PREFIX: &str = ".pinswitch-";
 
-/// A file or folder cannot be written.
+/// A file or folder that cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// The system does not let us.
-    #[error("{}: cannot write: {}; {}", path.display(), reason(path, source), remedy_at(path, source))]
+    /// The error of the file system.
+    #[error("{}: cannot write: {}", path.display(), reason(path, source))]
     System {
         /// The file or folder.
         path: PathBuf,
         /// Why.
         source: std::io::Error,
     },
-    /// This command has read the file: its input would be lost.
-    #[error("{}: is read by this very command; give another --out", .0.display())]
+    /// The command has read the file, and would overwrite its input.
+    #[error("{}: is an input of this command", .0.display())]
     Input(PathBuf),
 }
 
 impl WriteError {
     fn at(path: &Path) -> impl FnOnce(std::io::Error) -> Self + '_ {
         |source| Self::System { path: path.to_owned(), source }
+    }
+}
+
+impl From<WriteError> for Diagnostic {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::System { path, source } => {
+                let diagnostic = Self::new(format!("cannot write: {}", reason(&path, &source)))
+                    .with_location(Location::file(path.display().to_string()))
+                    .with_help(remedy_at(&path, &source));
+                // An error that was constructed here adds nothing to the reason.
+                if source.raw_os_error().is_some() { diagnostic.with_source(source) } else { diagnostic }
+            }
+            WriteError::Input(path) => Self::new("is an input of this command")
+                .with_location(Location::file(path.display().to_string()))
+                .with_help("give another --out"),
+        }
     }
 }
 
@@ -54,34 +72,34 @@ impl From<WriteError> for Failure {
     }
 }
 
-/// What is in the way; what the system says of it ("File exists") would not tell.
+/// Describes the obstacle, which the message of the system ("File exists") does not name.
 fn reason(path: &Path, error: &std::io::Error) -> String {
     match error.kind() {
-        _ if is_dead_link(path) => "a link that leads nowhere stands there".to_owned(),
-        ErrorKind::NotFound => "the folder for it is not there".to_owned(),
-        ErrorKind::AlreadyExists => "something stands there already".to_owned(),
+        _ if is_dead_link(path) => "the path is a dangling symlink".to_owned(),
+        ErrorKind::NotFound => "its folder does not exist".to_owned(),
+        ErrorKind::AlreadyExists => "another file has this name".to_owned(),
         _ => error.to_string(),
     }
 }
 
-/// Before anything changes: neither a folder nor a file that was read may stand where `path` is to be written.
+/// Refuses, before anything changes, to replace a folder or an input.
 fn refuse_obstacle(path: &Path) -> Result<(), WriteError> {
-    if std::fs::symlink_metadata(path).is_ok_and(|there| there.is_dir()) {
+    if std::fs::symlink_metadata(path).is_ok_and(|existing| existing.is_dir()) {
         return Err(WriteError::at(path)(ErrorKind::IsADirectory.into()));
     }
     if was_read(path) { Err(WriteError::Input(path.to_owned())) } else { Ok(()) }
 }
 
-/// Writes `bytes` to `path`: a reader sees the old file or the new one, never a part of it.
+/// Writes `bytes` to `path`. A reader finds the old file or the new one, never a part.
 ///
 /// # Errors
-/// [`WriteError`] names the path; the old file is untouched.
+/// [`WriteError`]; the old file is unchanged.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     refuse_obstacle(path)?;
     write_whole(path, bytes)
 }
 
-/// The same for a file that was read in order to be changed. A link to it stays one: the file that it names is written.
+/// Writes `bytes` to a file that was read in order to change it. If `path` is a symlink, writes its target.
 ///
 /// # Errors
 /// As [`write_file`].
@@ -92,28 +110,33 @@ pub fn write_back(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
 
 fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     match std::fs::metadata(path) {
-        Ok(there) if there.is_dir() => return Err(WriteError::at(path)(ErrorKind::IsADirectory.into())),
-        // A pipe or a terminal has no old content, and is not replaced by a file.
-        Ok(there) if !there.is_file() => return std::fs::write(path, bytes).map_err(WriteError::at(path)),
+        Ok(existing) if existing.is_dir() => {
+            return Err(WriteError::at(path)(ErrorKind::IsADirectory.into()));
+        }
+        // A pipe or a terminal is written to, not replaced by a file.
+        Ok(existing) if !existing.is_file() => {
+            return std::fs::write(path, bytes).map_err(WriteError::at(path));
+        }
         _ => {}
     }
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     if !folder.is_dir() {
         return Err(WriteError::at(path)(ErrorKind::NotFound.into()));
     }
-    let lock = FolderLock::take(folder, Waiting::UntilFree).map_err(WriteError::at(path))?;
-    lock.sweep().map_err(WriteError::at(path))?;
-    let mut temporary = temporary_file().prefix(OURS).tempfile_in(folder).map_err(WriteError::at(path))?;
+    let lock = FolderLock::take(folder, LockMode::WaitUntilFree).map_err(WriteError::at(path))?;
+    lock.remove_unfinished().map_err(WriteError::at(path))?;
+    let mut temporary =
+        temporary_file().prefix(TEMPORARY_PREFIX).tempfile_in(folder).map_err(WriteError::at(path))?;
     temporary.write_all(bytes).map_err(WriteError::at(path))?;
     temporary.persist(path).map_err(|e| WriteError::at(path)(e.error))?;
     Ok(())
 }
 
-/// Writes all files into `folder`, which is made if need be. Every file is complete on disk before the first takes its
-/// name. The last one stands for the whole: it is taken away first and comes back last.
+/// Writes all files into `folder`, which is created if necessary. Every file is complete on disk before the first one gets
+/// its name. The last file marks the set as complete: it is removed first and renamed last.
 ///
 /// # Errors
-/// [`WriteError`] names the path.
+/// [`WriteError`] with the path.
 pub fn write_set(folder: &Path, files: &[OutputFile]) -> Result<(), WriteError> {
     SetFolder::wait(folder)?.replace(files)
 }
@@ -141,7 +164,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn what_is_written_back_through_a_link_is_its_file() {
+    fn writing_back_keeps_a_symlink() {
         let place = tempfile::tempdir().unwrap();
         let [file, link] = ["there/mine.toml", "link.toml"].map(|name| place.path().join(name));
         std::fs::create_dir(place.path().join("there")).unwrap();
@@ -151,40 +174,42 @@ mod tests {
         assert!(link.is_symlink());
         assert_eq!(std::fs::read_to_string(&file).unwrap(), "new");
         std::fs::remove_file(&file).unwrap();
-        let said = write_back(&link, b"new").unwrap_err().to_string();
-        assert!(said.contains("leads nowhere"), "{said}");
+        let error = write_back(&link, b"new").unwrap_err().to_string();
+        assert!(error.contains("dangling symlink"), "{error}");
     }
 
     #[cfg(unix)]
     #[test]
-    fn what_stands_in_the_way_is_named_as_what_it_is() {
+    fn obstacles_are_named() {
         let place = tempfile::tempdir().unwrap();
         let at = |name: &str| place.path().join(name);
         for (link, target) in [("dangling", "nowhere"), ("looping", "looping")] {
             std::os::unix::fs::symlink(at(target), at(link)).unwrap();
             for out in [at(link), at(link).join("set")] {
-                let said = write_set(&out, &[OutputFile::new("a", "new")]).unwrap_err().to_string();
-                assert!(said.contains("a link that leads nowhere") && said.contains("remove it"), "{said}");
+                let error = write_set(&out, &[OutputFile::new("a", "new")]).unwrap_err();
+                let text = Diagnostic::from(error).to_string();
+                assert!(text.contains("a dangling symlink") && text.contains("remove it"), "{text}");
             }
         }
-        let said = write_file(&at("no/such.png"), b"new").unwrap_err().to_string();
-        assert!(said.contains("the folder for it is not there; make its folder"), "{said}");
+        let text = Diagnostic::from(write_file(&at("no/such.png"), b"new").unwrap_err()).to_string();
+        assert!(text.contains("cannot write: its folder does not exist; "), "{text}");
         std::fs::create_dir_all(at("s/manifest.json")).unwrap();
-        let said = SetFolder::lock(&at("s")).unwrap().check_source(&SourceEntry::new("x")).unwrap_err();
-        let said = said.to_string();
-        assert!(said.contains("manifest.json: cannot write") && said.contains("a folder stands"), "{said}");
+        let error = SetFolder::lock(&at("s")).unwrap().check_source(&SourceEntry::new("x")).unwrap_err();
+        let text = Diagnostic::from(error).to_string();
+        assert!(text.contains("manifest.json: cannot write") && text.contains("folder"), "{text}");
     }
 
     #[test]
-    fn what_was_read_is_not_written_over_under_any_name() {
+    fn inputs_are_not_overwritten() {
         let folder = tempfile::tempdir().unwrap();
         let input = folder.path().join("rows.csv");
         std::fs::write(&input, "dear").unwrap();
         crate::input::read_file(&input).unwrap();
         std::fs::create_dir(folder.path().join("sub")).unwrap();
         for name in ["rows.csv", "sub/../rows.csv"] {
-            let error = write_file(&folder.path().join(name), b"new").unwrap_err().to_string();
-            assert!(error.ends_with("is read by this very command; give another --out"), "{error}");
+            let error =
+                Diagnostic::from(write_file(&folder.path().join(name), b"new").unwrap_err()).to_string();
+            assert!(error.ends_with("is an input of this command; give another --out"), "{error}");
         }
         let set = [OutputFile::new("a", "new"), OutputFile::new("rows.csv", "new")];
         assert!(matches!(write_set(folder.path(), &set), Err(WriteError::Input(_))));
@@ -193,13 +218,19 @@ mod tests {
     }
 
     #[test]
-    fn a_single_file_sweeps_what_a_dead_run_left_and_never_takes_the_place_of_a_folder() {
+    fn unfinished_files_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join(".pinswitch-gone"), "half").unwrap();
         write_file(&folder.path().join("a"), b"one").unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_file_does_not_replace_a_folder() {
+        let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("b")).unwrap();
-        let error = write_file(&folder.path().join("b"), b"one").unwrap_err().to_string();
-        assert!(error.contains("a folder stands where a file must be"), "{error}");
+        let error = write_file(&folder.path().join("b"), b"one").unwrap_err();
+        let WriteError::System { path, source } = error else { panic!("{error}") };
+        assert_eq!((path, source.kind()), (folder.path().join("b"), ErrorKind::IsADirectory));
     }
 }

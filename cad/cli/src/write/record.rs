@@ -1,4 +1,4 @@
-//! What earlier runs have written into a folder, as its manifest says, and the journal of a run that was killed.
+//! The files that earlier runs have written into a folder, from its manifest and from the journal of a killed run.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
@@ -13,14 +13,14 @@ use sha2::{Digest, Sha256};
 use super::WriteError;
 use super::folder_lock::JOURNAL;
 
-/// Every file that is ours, with the SHA-256 of each content that we gave it, and what they were made from.
+/// Files that pinswitch wrote, with the SHA-256 of each content that it gave them, and their source.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Record {
     pub(super) source: Option<SourceEntry>,
     pub(super) files: BTreeMap<String, BTreeSet<String>>,
 }
 
-/// What is read of a manifest.
+/// The part of a manifest that is read.
 #[derive(Deserialize)]
 struct Listing {
     schema: String,
@@ -35,15 +35,15 @@ struct ListedFile {
 }
 
 impl Record {
-    /// What manifest and journal of `folder` say. A manifest that is none of ours says nothing.
+    /// Reads the manifest and the journal of `folder`. A manifest of another program is ignored.
     ///
     /// # Errors
-    /// If one of them is there and cannot be read.
+    /// [`WriteError`] if one of them exists and cannot be read.
     pub(super) fn read(folder: &Path) -> Result<Self, WriteError> {
         let mut record = Self::default();
         let read = |name: &str| {
             let path = folder.join(name);
-            read_if_there(&path).map_err(WriteError::at(&path))
+            read_existing(&path).map_err(WriteError::at(&path))
         };
         if let Some(bytes) = read(MANIFEST)?
             && let Ok(listing) = serde_json::from_slice::<Listing>(&bytes)
@@ -56,7 +56,7 @@ impl Record {
         if let Some(bytes) = read(JOURNAL)?
             && let Ok(killed) = serde_json::from_slice::<Self>(&bytes)
         {
-            // The run that was killed came after the one that left the manifest.
+            // The killed run is later than the run that wrote the manifest.
             record.source = killed.source.or(record.source);
             for (name, hashes) in killed.files {
                 hashes.into_iter().for_each(|hash| record.add(&name, hash));
@@ -65,7 +65,7 @@ impl Record {
         Ok(record)
     }
 
-    /// The record after `files` have been added.
+    /// Returns the record with `files` added.
     pub(super) fn with(&self, files: &[OutputFile], source: &SourceEntry) -> Self {
         let mut all = self.clone();
         all.source = Some(source.clone());
@@ -73,12 +73,12 @@ impl Record {
         all
     }
 
-    /// Whether the content is one that we gave the file.
+    /// Whether pinswitch gave the file this content.
     pub(super) fn wrote(&self, name: &str, bytes: &[u8]) -> bool {
         self.files.get(name).is_some_and(|hashes| hashes.contains(&sha256(bytes)))
     }
 
-    /// A manifest may be anybody's: what is no plain name in its own folder is not listened to.
+    /// Adds a file. A manifest is foreign text: entries with a path are ignored.
     fn add(&mut self, name: &str, hash: String) {
         if is_plain(name) {
             self.files.entry(name.to_owned()).or_default().insert(hash);
@@ -86,20 +86,23 @@ impl Record {
     }
 }
 
-/// What the set that `file` lies in was made from, if its manifest lists the file with this content.
+/// Returns the source of the set in the folder of `file`, if its manifest lists the file with this content.
 pub(crate) fn source_of_set_with(file: &Path, bytes: &[u8]) -> Option<SourceEntry> {
     let record = Record::read(file.parent()?).ok()?;
     record.wrote(file.file_name()?.to_str()?, bytes).then_some(record.source)?
 }
 
-/// Whether `name` is that of a file in its own folder, and no path.
+/// Whether `name` is a plain file name, not a path.
 pub(super) fn is_plain(name: &str) -> bool {
     let mut parts = Path::new(name).components();
     matches!((parts.next(), parts.next()), (Some(Component::Normal(only)), None) if only == name)
 }
 
-/// The bytes of a file; `None` if there is none.
-pub(super) fn read_if_there(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
+/// Reads a file; `None` if it does not exist.
+///
+/// # Errors
+/// The error of the file system.
+pub(super) fn read_existing(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
     match std::fs::read(path) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),

@@ -1,54 +1,80 @@
-//! A folder that holds one set: it appears whole, what the set before leaves goes, and what is not ours stays.
+//! A folder with one set of files, which is replaced as a whole.
 //!
-//! A new set is staged in a folder inside. Then a journal of all that is ours takes its name, the old manifest goes, the
-//! files take their names, files of the old set go, the new manifest takes its name, and the journal goes. Killed between
-//! any two steps, the folder holds the whole old set, the whole new one, or no manifest, and the next run knows from the
-//! journal what is ours.
+//! A new set is staged in a subfolder. Then a journal that lists all files of pinswitch gets its name, the old manifest is
+//! removed, the staged files get their names, stale files are removed, the new manifest gets its name, and the journal is
+//! removed. If a run is killed between any two steps, the folder has the old set, the new set, or no manifest; the next
+//! run reads the journal and knows which files to replace. Other files are left alone.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
 use pinswitch_switch::documents::SourceEntry;
 use pinswitch_switch::output::OutputFile;
 
-use super::folder_lock::{FolderLock, JOURNAL, Waiting};
-use super::record::{Record, is_plain, read_if_there};
+use super::folder_lock::{FolderLock, JOURNAL, LockMode};
+use super::record::{Record, is_plain, read_existing};
 use super::steps::Step;
 use super::{WriteError, refuse_obstacle};
 
-/// Name of the folder for files that do not have their names yet.
+/// Name of the folder for staged files.
 const STAGED: &str = ".pinswitch-staged";
-/// Longest text of others that a message repeats.
-const SHOWN: usize = 120;
+/// Most characters of a source in an error.
+const MAX_SOURCE: usize = 120;
 
-/// Why a set is not written. Nothing has changed, but for [`Self::Write`] in the last steps: then the folder has no
-/// manifest, and the same command mends it.
+/// A set that is not written. Nothing has changed, except by [`Self::Write`] in the last steps: then the folder has no
+/// manifest, and running the command again completes the set.
 #[derive(Debug, thiserror::Error)]
 pub enum PublishError {
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// The folder holds the set of another configuration.
-    #[error(
-        "{folder} holds the set made from {there}, and this one is made from {here}; give --force to replace it, or another --out"
-    )]
+    /// The folder has the set of another configuration.
+    #[error("{}: contains the set of another source, {existing}, while this set is made from {new}", folder.display())]
     OtherSource {
         /// The folder.
-        folder: String,
-        /// What its set was made from.
-        there: String,
-        /// What this one is made from.
-        here: String,
+        folder: PathBuf,
+        /// Source of its set.
+        existing: String,
+        /// Source of the new set.
+        new: String,
     },
-    /// A file of the set's names is there, and no manifest of ours lists it.
-    #[error("{0} is not from a set of ours; give --force to overwrite it, or another --out")]
-    Foreign(String),
-    /// A file of the set before was changed, and would be lost.
-    #[error("{0} was changed since it was made; give --force to overwrite it, or another --out")]
-    Changed(String),
+    /// A file with a name of the set exists, and no manifest of pinswitch lists it.
+    #[error("{}: pinswitch did not write this file", .0.display())]
+    Foreign(PathBuf),
+    /// A file of the previous set was changed.
+    #[error("{}: was changed since it was written", .0.display())]
+    Changed(PathBuf),
 }
 
-/// A locked folder; nobody else of us writes there meanwhile.
+impl From<PublishError> for Diagnostic {
+    fn from(error: PublishError) -> Self {
+        let (problem, path, help) = match error {
+            PublishError::Write(error) => return error.into(),
+            PublishError::OtherSource { folder, existing, new } => {
+                let problem = format!(
+                    "contains the set of another source, {}, while this set is made from {}",
+                    excerpt(&existing, MAX_SOURCE),
+                    excerpt(&new, MAX_SOURCE)
+                );
+                (problem, folder, "give --force to replace it, or another --out")
+            }
+            PublishError::Foreign(path) => (
+                "pinswitch did not write this file".to_owned(),
+                path,
+                "give --force to overwrite it, or another --out",
+            ),
+            PublishError::Changed(path) => (
+                "was changed since it was written".to_owned(),
+                path,
+                "give --force to overwrite it, or another --out",
+            ),
+        };
+        Self::new(problem).with_location(Location::file(path.display().to_string())).with_help(help)
+    }
+}
+
+/// A locked folder, into which no other process of pinswitch writes.
 #[derive(Debug)]
 pub struct SetFolder {
     folder: PathBuf,
@@ -56,43 +82,43 @@ pub struct SetFolder {
 }
 
 impl SetFolder {
-    /// Locks `folder`, which is made if need be, and removes what a dead run has left half written there. A folder that
-    /// was made and stays empty goes again.
+    /// Locks `folder`, which is created if necessary, and removes the unfinished files of killed runs. A created folder
+    /// that stays empty is removed at the end.
     ///
     /// # Errors
-    /// [`WriteError`] if another process writes there, or nothing can be written.
+    /// [`WriteError`] if another process writes there, or the folder cannot be written.
     pub fn lock(folder: &Path) -> Result<Self, WriteError> {
-        Self::locked(folder, Waiting::Never)
+        Self::locked(folder, LockMode::FailIfBusy)
     }
 
-    /// As [`Self::lock`], once no other process writes there.
+    /// As [`Self::lock`], but waits until no other process writes there.
     pub(super) fn wait(folder: &Path) -> Result<Self, WriteError> {
-        Self::locked(folder, Waiting::UntilFree)
+        Self::locked(folder, LockMode::WaitUntilFree)
     }
 
-    fn locked(folder: &Path, waiting: Waiting) -> Result<Self, WriteError> {
-        let lock = FolderLock::take(folder, waiting).map_err(WriteError::at(folder))?;
-        lock.sweep().map_err(WriteError::at(folder))?;
+    fn locked(folder: &Path, mode: LockMode) -> Result<Self, WriteError> {
+        let lock = FolderLock::take(folder, mode).map_err(WriteError::at(folder))?;
+        lock.remove_unfinished().map_err(WriteError::at(folder))?;
         Ok(Self { folder: folder.to_owned(), lock })
     }
 
     /// Whether a set made from `source` may be written here.
     ///
     /// # Errors
-    /// [`PublishError::OtherSource`] if the folder holds the set of another configuration.
+    /// [`PublishError::OtherSource`] if the folder has the set of another configuration.
     pub fn check_source(&self, source: &SourceEntry) -> Result<(), PublishError> {
         match self.record()?.source {
-            Some(there) if there != *source => Err(PublishError::OtherSource {
-                folder: shown(&self.folder.display().to_string()),
-                there: shown(&there.name),
-                here: shown(&source.name),
+            Some(existing) if existing != *source => Err(PublishError::OtherSource {
+                folder: self.folder.clone(),
+                existing: existing.name,
+                new: source.name.clone(),
             }),
             _ => Ok(()),
         }
     }
 
-    /// Replaces the set in this folder by `files`, the manifest last. Returns what files of the set before it were
-    /// changed since, and stay for that. `force` overwrites also what is not ours.
+    /// Replaces the set in this folder by `files`, the manifest last. Returns the stale files that stay because they were
+    /// changed. `force` also overwrites files that pinswitch did not write or that were changed.
     ///
     /// # Errors
     /// [`PublishError`].
@@ -104,10 +130,11 @@ impl SetFolder {
     ) -> Result<Vec<String>, PublishError> {
         let plan = self.plan(files, source, force)?;
         self.take(&plan.steps)?;
-        Ok(plan.kept)
+        Ok(plan.changed)
     }
 
-    /// Replaces `files`, the last of which stands for all, without a look at what else is there.
+    /// Replaces `files` without regard to other files. The last one marks the set as complete: it is removed first and
+    /// written last.
     ///
     /// # Errors
     /// [`WriteError`].
@@ -124,7 +151,7 @@ impl SetFolder {
         if !force {
             self.refuse_foreign(files, &before)?;
         }
-        let (stale, kept) = self.stale(files, &before)?;
+        let (stale, changed) = self.stale(files, &before)?;
         let record = before.with(files, source);
         let journal = serde_json::to_vec(&record)
             .map_err(|e| WriteError::at(&self.folder.join(JOURNAL))(std::io::Error::other(e)))?;
@@ -137,14 +164,14 @@ impl SetFolder {
         steps.extend(stale.into_iter().map(Step::Remove));
         steps.extend(seal);
         steps.push(Step::Remove(self.folder.join(JOURNAL)));
-        Ok(Plan { steps, kept })
+        Ok(Plan { steps, changed })
     }
 
     fn record(&self) -> Result<Record, WriteError> {
         Record::read(&self.folder)
     }
 
-    /// Writes the files into the folder for files without names; returns the steps that give them their names.
+    /// Writes the files into the staging folder; returns the steps that rename them.
     fn stage(&self, files: &[OutputFile]) -> Result<Vec<Step>, WriteError> {
         let staged = self.folder.join(STAGED);
         std::fs::create_dir_all(&staged).map_err(WriteError::at(&staged))?;
@@ -162,7 +189,7 @@ impl SetFolder {
         steps.iter().try_for_each(|step| step.take().map_err(WriteError::at(step.target())))
     }
 
-    /// Before anything changes: nothing may stand where a file must be, and no name may be a path.
+    /// Refuses names that are paths and places that are occupied by folders or inputs, before anything changes.
     fn refuse_obstacles(&self, files: &[OutputFile]) -> Result<(), WriteError> {
         for file in files {
             let path = self.folder.join(&file.name);
@@ -174,66 +201,55 @@ impl SetFolder {
         Ok(())
     }
 
-    /// A file that would be overwritten must be as we wrote it, or be the very same already.
+    /// Refuses to overwrite files that pinswitch did not write or that were changed; equal content is accepted.
     fn refuse_foreign(&self, files: &[OutputFile], before: &Record) -> Result<(), PublishError> {
         for file in files {
             let path = self.folder.join(&file.name);
-            let Some(there) = read_if_there(&path).map_err(WriteError::at(&path))? else { continue };
-            if there == file.bytes || before.wrote(&file.name, &there) {
+            let Some(existing) = read_existing(&path).map_err(WriteError::at(&path))? else { continue };
+            if existing == file.bytes || before.wrote(&file.name, &existing) {
                 continue;
             }
-            let name = shown(&path.display().to_string());
             let is_listed = before.files.contains_key(&file.name);
-            return Err(if is_listed { PublishError::Changed(name) } else { PublishError::Foreign(name) });
+            return Err(if is_listed { PublishError::Changed(path) } else { PublishError::Foreign(path) });
         }
         Ok(())
     }
 
-    /// Files of the set before that the new one does not have: those that are as we left them, and the names of those
-    /// that were changed since.
+    /// Returns the files of the previous set that the new one lacks: the unchanged ones, and the names of the changed
+    /// ones.
     fn stale(
         &self,
         files: &[OutputFile],
         before: &Record,
     ) -> Result<(Vec<PathBuf>, Vec<String>), WriteError> {
-        let (mut stale, mut kept) = (Vec::new(), Vec::new());
+        let (mut stale, mut changed) = (Vec::new(), Vec::new());
         for name in before.files.keys().filter(|name| files.iter().all(|file| file.name != **name)) {
             let path = self.folder.join(name);
             match std::fs::symlink_metadata(&path) {
-                Ok(there) if there.is_file() => {
+                Ok(existing) if existing.is_file() => {
                     let bytes = std::fs::read(&path).map_err(WriteError::at(&path))?;
-                    if before.wrote(name, &bytes) { stale.push(path) } else { kept.push(name.clone()) }
+                    if before.wrote(name, &bytes) { stale.push(path) } else { changed.push(name.clone()) }
                 }
-                Ok(_) => kept.push(name.clone()),
+                Ok(_) => changed.push(name.clone()),
                 Err(_) => {}
             }
         }
-        Ok((stale, kept))
+        Ok((stale, changed))
     }
 }
 
 impl Drop for SetFolder {
     fn drop(&mut self) {
-        // What cannot be removed now is removed by the next run.
-        let _ = self.lock.sweep();
+        // The next run removes files that cannot be removed now.
+        let _ = self.lock.remove_unfinished();
     }
 }
 
-/// How a folder gets a new set.
+/// The steps that replace a set.
 struct Plan {
     steps: Vec<Step>,
-    /// Files of the set before that were changed and stay.
-    kept: Vec<String>,
-}
-
-/// The end of a text that may be of any length: of a path, that says most.
-fn shown(text: &str) -> String {
-    let length = text.chars().count();
-    if length <= SHOWN {
-        text.to_owned()
-    } else {
-        format!("...{}", text.chars().skip(length - SHOWN).collect::<String>())
-    }
+    /// Files of the previous set that were changed, and stay.
+    changed: Vec<String>,
 }
 
 #[cfg(test)]
@@ -245,7 +261,7 @@ mod tests {
 
     type Files = BTreeMap<String, Vec<u8>>;
 
-    /// A set of files with these contents, and its manifest.
+    /// Returns files with these contents, and their manifest.
     fn set(source: &str, contents: &[(&str, &str)]) -> (Vec<OutputFile>, SourceEntry) {
         let source = SourceEntry::new(source);
         let entry = |(name, text): &(&str, &str)| {
@@ -269,13 +285,13 @@ mod tests {
         files.iter().map(|f| (f.name.clone(), f.bytes.clone())).collect()
     }
 
-    /// As if the process were killed after `steps` steps: nothing is tidied.
+    /// Leaves the folder as a process that is killed after `steps` steps. Returns whether these are all steps.
     fn killed_after(steps: usize, folder: &Path, files: &[OutputFile], source: &SourceEntry) -> bool {
         let place = SetFolder::lock(folder).unwrap();
         let plan = place.plan(files, source, true).unwrap();
         let last = steps >= plan.steps.len();
         plan.steps.iter().take(steps).for_each(|step| step.take().unwrap());
-        // The lock goes with the process; the staged files stay.
+        // The lock ends with the process; the staged files stay.
         let half = folder.join(".pinswitch-half");
         let _ = std::fs::rename(folder.join(STAGED), &half);
         drop(place);
@@ -285,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn killed_between_any_two_steps_a_set_is_whole_or_has_no_manifest() {
+    fn a_killed_run_leaves_no_mixture() {
         let (old, old_source) =
             set("a.toml", &[("a", "old"), ("b", "old"), ("gone", "old"), ("same", "same")]);
         let (new, new_source) =
@@ -304,7 +320,7 @@ mod tests {
                 "after {steps} steps: {:?}",
                 left.keys()
             );
-            // Another set, of which neither knows: nothing of both stays, and no half file.
+            // A third set leaves no files of both, and no unfinished file.
             SetFolder::lock(&folder).unwrap().publish(&third, &third_source, false).unwrap();
             let mut left = there(&folder);
             assert_eq!(left.remove("mine").unwrap(), b"dear");
@@ -319,20 +335,20 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_in_the_way_changes_nothing() {
+    fn an_obstacle_changes_nothing() {
         let place = tempfile::tempdir().unwrap();
         let (old, source) = set("a.toml", &[("a", "old")]);
         SetFolder::lock(place.path()).unwrap().publish(&old, &source, false).unwrap();
         std::fs::create_dir(place.path().join("b")).unwrap();
         let (new, source) = set("a.toml", &[("a", "new"), ("b", "new")]);
-        let error =
-            SetFolder::lock(place.path()).unwrap().publish(&new, &source, true).unwrap_err().to_string();
+        let error = SetFolder::lock(place.path()).unwrap().publish(&new, &source, true).unwrap_err();
+        let error = Diagnostic::from(error).to_string();
         assert!(error.contains("/b: cannot write") && error.contains("move it away"), "{error}");
         assert_eq!(there(place.path()), bytes(&old));
     }
 
     #[test]
-    fn a_manifest_that_lies_removes_nothing_outside() {
+    fn a_false_manifest_removes_nothing_outside() {
         let place = tempfile::tempdir().unwrap();
         let folder = place.path().join("out");
         std::fs::create_dir(&folder).unwrap();
@@ -347,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_ours_or_was_changed_stays() {
+    fn foreign_and_changed_files_stay() {
         let place = tempfile::tempdir().unwrap();
         let (old, source) = set("a.toml", &[("a", "old"), ("b", "old")]);
         std::fs::write(place.path().join("a"), "mine").unwrap();
@@ -361,18 +377,19 @@ mod tests {
         assert!(matches!(error, PublishError::Changed(_)), "{error}");
         assert_eq!(there(place.path())["b"], b"mine");
         let (new, source) = set("a.toml", &[("a", "new")]);
-        let kept = SetFolder::lock(place.path()).unwrap().publish(&new, &source, false).unwrap();
-        assert_eq!(kept, ["b"]);
+        let changed = SetFolder::lock(place.path()).unwrap().publish(&new, &source, false).unwrap();
+        assert_eq!(changed, ["b"]);
         assert_eq!(there(place.path())["b"], b"mine");
     }
 
     #[test]
-    fn a_set_of_another_configuration_stays() {
+    fn the_set_of_another_source_stays() {
         let place = tempfile::tempdir().unwrap();
         let (old, source) = set("a/x.toml", &[("a", "old")]);
         let folder = SetFolder::lock(place.path()).unwrap();
         folder.publish(&old, &source, false).unwrap();
-        let text = |name: &str| folder.check_source(&SourceEntry::new(name)).map_err(|e| e.to_string());
+        let check = |name: &str| folder.check_source(&SourceEntry::new(name));
+        let text = |name: &str| check(name).map_err(|e| Diagnostic::from(e).to_string());
         assert_eq!(text("a/x.toml"), Ok(()));
         for other in ["x.toml", "c/a/x.toml", "../a/x.toml", "b/x.toml", "y.toml", "ax.toml", "a", "a/x"] {
             let error = text(other).unwrap_err();

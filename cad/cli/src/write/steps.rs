@@ -1,24 +1,24 @@
-//! The steps in which a folder gets new files. Between any two of them a process may be killed.
+//! The steps that replace the files of a folder. A process may be killed between any two of them.
 
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-/// One change of a folder, which the file system makes at once or not at all.
+/// An atomic change of a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
-    /// A staged file takes its name.
+    /// Renames a staged file to its final name.
     Rename {
-        /// Where it is staged.
+        /// Path of the staged file.
         from: PathBuf,
-        /// Its name.
+        /// Final path.
         to: PathBuf,
     },
-    /// A file goes; it may be gone already.
+    /// Removes a file, if it exists.
     Remove(PathBuf),
 }
 
 impl Step {
-    /// The file whose name is concerned.
+    /// Returns the final path, or the path that is removed.
     pub(super) fn target(&self) -> &PathBuf {
         match self {
             Self::Rename { to, .. } => to,
@@ -29,7 +29,7 @@ impl Step {
     /// Makes the change.
     ///
     /// # Errors
-    /// The system's.
+    /// The error of the file system.
     pub(super) fn take(&self) -> std::io::Result<()> {
         match self {
             Self::Rename { from, to } => std::fs::rename(from, to),

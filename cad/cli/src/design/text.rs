@@ -1,14 +1,19 @@
-//! What a search found, for a reader at a terminal.
+//! Proposals of a search, and why there are none, as text for the terminal.
 
 use std::fmt::Write;
 
+use pinswitch_diagnostic::Diagnostic;
 use pinswitch_switch::ask::{Ask, Parameter};
 use pinswitch_switch::design_search::{Blocked, Found, Missed, Move, Proposal};
 
-/// Shares of the variance that are shown.
-const SHARES: usize = 3;
+/// Most sources of uncertainty that are listed.
+const MAX_SOURCES: usize = 3;
+/// Smallest share of the variance that is listed.
+const MIN_SHARE: f64 = 0.005;
+/// Most changes of one parameter that are listed.
+const MAX_MOVES: usize = 3;
 
-/// The ask, and every proposal with its targets, what the uncertainty comes from, and sensitivities.
+/// Formats the targets, and every proposal with its values, its sources of uncertainty and its sensitivities.
 pub(super) fn table(found: &Found, ask: &Ask) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -18,7 +23,7 @@ pub(super) fn table(found: &Found, ask: &Ask) -> String {
 
 fn write_table(text: &mut String, found: &Found, ask: &Ask) -> std::fmt::Result {
     let targets: Vec<String> = ask.targets.iter().map(ToString::to_string).collect();
-    writeln!(text, "asked: {}", targets.join("; "))?;
+    writeln!(text, "targets: {}", targets.join("; "))?;
     for (i, proposal) in found.proposals.iter().enumerate() {
         let name = if found.blocked.is_some() { "nearest".to_owned() } else { (i + 1).to_string() };
         write_proposal(text, &name, proposal, ask, found.range_n)?;
@@ -36,7 +41,7 @@ fn write_proposal(
     let trust = format!("{:?}", p.trust).to_lowercase();
     writeln!(
         text,
-        "{name}: met by {:.0} % of made parts (+-{:.0}); pins {:?}, {}; {trust}",
+        "{name}: {:.0} % of made parts meet the request (+-{:.0}); pins {:?}, {}; {trust}",
         100.0 * p.probability.all,
         196.0 * p.standard_error,
         p.pins,
@@ -47,34 +52,42 @@ fn write_proposal(
     for (i, t) in p.targets.iter().enumerate() {
         writeln!(
             text,
-            "   {}: {:.3} ({:.3} to {:.3}), met by {:.0} %{}{}",
+            "   {}: {:.3} ({:.3} to {:.3}), {:.0} % meet it{}{}",
             t.target,
             t.value,
             t.band[0],
             t.band[1],
             100.0 * t.probability,
-            if t.is_met { "" } else { "; missed by the best guess" },
-            if i == p.tightest && p.targets.len() > 1 { "; the tightest" } else { "" }
+            if t.is_met { "" } else { "; the best estimate does not" },
+            if i == p.tightest && p.targets.len() > 1 { "; tightest" } else { "" }
         )?;
     }
     let shares: Vec<String> = p
         .uncertainty
         .iter()
-        .take(SHARES)
-        .filter(|s| s.share >= 0.005)
+        .take(MAX_SOURCES)
+        .filter(|s| s.share >= MIN_SHARE)
         .map(|s| format!("{} {:.0} %", s.source, 100.0 * s.share))
         .collect();
-    writeln!(text, "   uncertain by: {}", shares.join(", "))?;
+    writeln!(text, "   sources of uncertainty: {}", shares.join(", "))?;
     let slopes = |slope: fn(&pinswitch_switch::design_search::Sensitivity) -> f64| {
         let all: Vec<String> =
             p.sensitivity.iter().map(|s| format!("{} {:+.3}", s.parameter.name(), slope(s))).collect();
         all.join(", ")
     };
-    writeln!(text, "   dD/d at the heaviest load, N per unit: {}", slopes(|s| s.friction_n_per_unit))?;
-    writeln!(text, "   dthreshold/d, N per unit:              {}", slopes(|s| s.threshold_n_per_unit))
+    writeln!(
+        text,
+        "   sensitivity of friction at the heaviest load, N per unit: {}",
+        slopes(|s| s.friction_n_per_unit)
+    )?;
+    writeln!(
+        text,
+        "   sensitivity of the threshold, N per unit:                 {}",
+        slopes(|s| s.threshold_n_per_unit)
+    )
 }
 
-/// Parameters that were varied or chosen, with their values.
+/// Lists the parameters that were varied or chosen, with their values.
 fn parameters(p: &Proposal, ask: &Ask) -> String {
     let is_chosen = |parameter: Parameter| {
         ask.vary.parameters.iter().any(|v| v.parameter == parameter)
@@ -91,42 +104,40 @@ fn parameters(p: &Proposal, ask: &Ask) -> String {
     if !ask.materials.tendon.is_empty() {
         all.push(format!("rope {} mm with {} mm of coating", p.tendon_mm[0], p.tendon_mm[1]));
     }
-    if all.is_empty() { "all else as configured".to_owned() } else { all.join(", ") }
+    if all.is_empty() { "other parameters as configured".to_owned() } else { all.join(", ") }
 }
 
-/// Why the ask cannot be met, for standard error.
-pub(super) fn refusal(blocked: &Blocked) -> String {
-    let mut text = "nothing within the ask meets it; the nearest ".to_owned();
-    text += &if blocked.missed.is_empty() {
-        "that can be printed does, and lies outside of it".to_owned()
+/// Returns the diagnostic of a request that no design meets: what the nearest design misses, what blocks it, and the
+/// changes that help.
+pub(super) fn refusal(blocked: &Blocked) -> Diagnostic {
+    let problem = if blocked.missed.is_empty() {
+        "no printable design within the limits meets the request; the nearest design outside of them does"
+            .to_owned()
     } else {
-        format!("misses: {}", all_missed(&blocked.missed))
+        format!("no design meets the request; the nearest misses: {}", all_missed(&blocked.missed))
     };
-    text += &format!("\n  blocked by: {}", blocked.limit);
-    for m in blocked.moves.iter().take(3) {
-        text += &format!("\n  {}", advice(m));
-    }
+    let mut help: Vec<String> = blocked.moves.iter().take(MAX_MOVES).map(advice).collect();
     if !blocked.together.is_empty() {
         let all: Vec<String> = blocked
             .together
             .iter()
             .map(|c| format!("{} from {:.2} to {:.2}", c.parameter.name(), c.from, c.to))
             .collect();
-        text += &format!("\n  together these meet it: {}", all.join(", "));
+        help.push(format!("together these meet the request: {}", all.join(", ")));
     }
-    text
+    Diagnostic::new(format!("{problem}; blocked by {}", blocked.limit)).with_help(help.join("\n"))
 }
 
-/// How far all of these are from their bounds, as shares of the bounds.
+/// Lists how far each target is from its bound, as a share of the bound.
 fn all_missed(missed: &[Missed]) -> String {
     let one =
-        |m: &Missed| format!("{} has {:.3}, {:.1} % from {:.3}", m.target, m.value, 100.0 * m.by, m.bound);
+        |m: &Missed| format!("{} is {:.3}, {:.1} % from {:.3}", m.target, m.value, 100.0 * m.by, m.bound);
     missed.iter().map(one).collect::<Vec<_>>().join("; ")
 }
 
 fn advice(m: &Move) -> String {
     let verb = if m.to > m.from { "raise" } else { "lower" };
     let effect =
-        if m.meets { "then the ask is met".to_owned() } else { format!("then {}", all_missed(&m.missed)) };
+        if m.meets { "meets the request".to_owned() } else { format!("leaves {}", all_missed(&m.missed)) };
     format!("{verb} {} from {:.2} to {:.2}: {effect} ({})", m.parameter.name(), m.from, m.to, m.forbidden_by)
 }

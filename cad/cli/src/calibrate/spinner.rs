@@ -1,16 +1,16 @@
-//! What a terminal shows while a table is calibrated; in a pipe nothing is shown.
+//! A line on the terminal while a table is calibrated; nothing in a pipe.
 
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// A line that moves until the calibration ends.
-pub(super) struct Waiting(ProgressBar);
+pub(super) struct Spinner(ProgressBar);
 
-impl Waiting {
+impl Spinner {
     pub(super) fn new(rows: usize) -> Self {
         let bar = ProgressBar::new_spinner().with_message(format!("{rows} rows"));
-        // The form is a constant; if it were wrong, the default form would do.
+        // The template is a constant; an invalid one would leave the default style.
         if let Ok(style) = ProgressStyle::with_template("{spinner} calibrating {msg}, {elapsed}") {
             bar.set_style(style);
         }
@@ -21,7 +21,7 @@ impl Waiting {
         Self(bar)
     }
 
-    /// Takes the line away.
+    /// Removes the line.
     pub(super) fn end(self) {
         self.0.finish_and_clear();
     }

@@ -1,0 +1,133 @@
+//! The boundary to the terminal.
+//!
+//! Names and cells of files are foreign text, and a terminal obeys the control characters in it. Every text for a
+//! person leaves the program through this module, which makes them visible. Data (CSV, JSON, TOML, pictures) keeps its
+//! bytes, except on a terminal.
+
+use std::borrow::Cow;
+use std::io::{IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use log::{Level, LevelFilter};
+use pinswitch_diagnostic::{Diagnostic, neutral};
+use serde::Serialize;
+
+use super::Failure;
+
+/// Whether something was printed on standard output. A program that reads JSON there reads one document.
+static IS_STDOUT_USED: AtomicBool = AtomicBool::new(false);
+
+/// Prints text for a person on standard output.
+///
+/// # Errors
+/// [`Failure::failed`] if it cannot be written.
+pub(super) fn print_text(text: &str) -> Result<(), Failure> {
+    write_stdout(neutral(text).as_bytes())
+}
+
+/// Prints data on standard output.
+///
+/// # Errors
+/// [`Failure::failed`] if it cannot be written.
+pub(super) fn print_data(bytes: &[u8]) -> Result<(), Failure> {
+    write_stdout(&data(bytes, std::io::stdout().is_terminal()))
+}
+
+/// Prints `value` on standard output as indented JSON.
+///
+/// # Errors
+/// [`Failure::failed`] if it cannot be written.
+pub(super) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+    print_data(&to_json(value)?)
+}
+
+/// Returns `value` as indented JSON with a line feed at the end.
+///
+/// # Errors
+/// [`Failure::failed`] if the value has no JSON form.
+pub(super) fn to_json(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
+    let mut bytes =
+        serde_json::to_vec_pretty(value).map_err(|e| Failure::failed(Diagnostic::from_error(e)))?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// Prints a failure as text on standard error, and as JSON on standard output if `as_json`. A command that has
+/// printed its report already does not print a second document.
+pub(super) fn report_failure(failure: &Failure, as_json: bool) {
+    #[derive(Serialize)]
+    struct Report<'a> {
+        error: &'a Failure,
+    }
+    if as_json && !IS_STDOUT_USED.load(Ordering::Relaxed) {
+        // The text and the exit code report the failure even if this cannot be written.
+        let _ = print_json(&Report { error: failure });
+    }
+    print_line(&failure.render());
+}
+
+/// Prints a warning on standard error, unless `--quiet` is given.
+pub(super) fn warn(warning: impl Into<Diagnostic>) {
+    if log::max_level() >= LevelFilter::Warn {
+        print_line(&warning.into().render("warning"));
+    }
+}
+
+/// Prints text for a person on standard error, with a line feed.
+///
+/// `eprintln!` would panic if standard error is closed or full; the exit code reports a failure all the same.
+pub(super) fn print_line(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{}", neutral(text));
+}
+
+/// Starts the log on standard error.
+pub(super) fn start_log(level: LevelFilter) {
+    env_logger::Builder::new()
+        .filter_level(level)
+        .format(|line, record| {
+            let (level, style) = (record.level(), line.default_level_style(record.level()));
+            let text = record.args().to_string();
+            match level {
+                // The shape of a diagnostic.
+                Level::Warn => writeln!(line, "{style}warning{style:#}: {}", neutral(&text)),
+                _ => writeln!(line, "[{style}{level:<5}{style:#}] {}", neutral(&text)),
+            }
+        })
+        .init();
+}
+
+/// Writes to standard output. A reader that stops early, as `head` does, is not an error.
+fn write_stdout(bytes: &[u8]) -> Result<(), Failure> {
+    IS_STDOUT_USED.store(true, Ordering::Relaxed);
+    match std::io::stdout().lock().write_all(bytes) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::failed(Diagnostic::new("cannot write to standard output").with_source(e)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Returns the bytes of data as they are written: unchanged, except that a terminal gets no control characters.
+fn data(bytes: &[u8], is_terminal: bool) -> Cow<'_, [u8]> {
+    if !is_terminal {
+        return Cow::Borrowed(bytes);
+    }
+    Cow::Owned(neutral(&String::from_utf8_lossy(bytes)).into_owned().into_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_terminal_gets_changed_data() {
+        let bytes = b"a\t\x1b[2J\xff\n";
+        assert_eq!(&*data(bytes, false), bytes);
+        assert_eq!(&*data(bytes, true), "a \\u{1b}[2J\u{fffd}\n".as_bytes());
+    }
+
+    #[test]
+    fn json_ends_with_a_line_feed() {
+        assert_eq!(to_json(&[1]).unwrap(), b"[\n  1\n]\n");
+    }
+}

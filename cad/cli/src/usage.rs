@@ -1,0 +1,75 @@
+//! Errors of the arguments, which clap finds before a command runs.
+
+use std::process::ExitCode;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use pinswitch_diagnostic::{excerpt, neutral};
+
+use super::terminal::print_line;
+
+/// Most characters of an error of the arguments, which quotes arguments of any length.
+const MAX_CHARACTERS: usize = 590;
+/// Arguments that are files, and the kind of file that `init` writes for each.
+const STARTERS: [(&str, &str); 3] = [("<PLAN>", "plan"), ("<RUN>", "run"), ("<SWEEP>", "sweep")];
+
+/// Prints what is wrong with the arguments, or the requested help, and returns the exit code.
+pub(super) fn report(error: clap::Error) -> ExitCode {
+    let error = with_starter(error);
+    let text = error.render().to_string();
+    if error.use_stderr() && (text.chars().count() > MAX_CHARACTERS || quotes_controls(&error)) {
+        print_line(&bounded(text.trim_end()));
+    } else {
+        // In colour on a terminal. The reader may have stopped, as `head` does.
+        let _ = error.print();
+    }
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
+/// Whether the error quotes an argument with control characters.
+fn quotes_controls(error: &clap::Error) -> bool {
+    error.context().any(|(_, value)| {
+        let text = value.to_string();
+        neutral(&text) != text
+    })
+}
+
+/// Adds how to start the file that is missing.
+fn with_starter(mut error: clap::Error) -> clap::Error {
+    let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else { return error };
+    let starter = STARTERS.iter().find(|(name, _)| missing.iter().any(|argument| argument == name));
+    if let Some((_, kind)) = starter.filter(|_| error.kind() == ErrorKind::MissingRequiredArgument) {
+        let tip = format!("`pinswitch init {kind} --out {kind}.toml` writes one to start from");
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    }
+    error
+}
+
+/// Shortens each line and then the whole text.
+fn bounded(text: &str) -> String {
+    let lines: Vec<_> = text.lines().map(|line| excerpt(line, MAX_CHARACTERS / 2)).collect();
+    excerpt(&lines.join("\n"), MAX_CHARACTERS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quoted_controls_are_found() {
+        let error = |argument: &str| {
+            let command = clap::Command::new("p").arg(clap::arg!([kind]).value_parser(["a", "b"]));
+            command.try_get_matches_from(["p", argument]).unwrap_err()
+        };
+        assert!(quotes_controls(&error("\u{1b}[2J")) && quotes_controls(&error("--\u{9b}2J")));
+        assert!(!quotes_controls(&error("c")) && !quotes_controls(&error("--c")));
+    }
+
+    #[test]
+    fn long_arguments_make_short_errors() {
+        let text =
+            format!("error: invalid value '{}' for '--law'\n\nFor more, try '--help'.", "x".repeat(100_000));
+        let short = bounded(&text);
+        assert!(short.chars().count() <= MAX_CHARACTERS, "{short}");
+        assert!(short.starts_with("error: invalid value") && short.ends_with("try '--help'."), "{short}");
+    }
+}

@@ -201,7 +201,7 @@ fn help_and_listings_are_complete() {
     let folder = tempfile::tempdir().unwrap();
     let help = printed(folder.path(), &["--help"]);
     for command in
-        ["generate", "batch", "merge", "predict", "check", "layouts", "init", "render", "completions"]
+        ["generate", "batch", "merge", "predict", "check", "layouts", "init", "render", "completions", "man"]
     {
         assert!(help.contains(command), "{command}");
         assert!(printed(folder.path(), &[command, "--help"]).contains("Usage"));

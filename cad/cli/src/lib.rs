@@ -37,7 +37,7 @@ use terminal::{print_data, print_json, print_text};
   design            design
   check meshes      check
   use measurements  segment, calibrate, experiment, effects, simulate, power
-  set up a shell    completions
+  set up a shell    completions, man
 
 `pinswitch help COMMAND` explains a command, with examples.")]
 struct Cli {
@@ -87,6 +87,7 @@ commands! {
     Simulate: simulate,
     Power: power,
     Completions: completions,
+    Man: man,
     Answer: answer,
 }
 

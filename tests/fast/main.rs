@@ -1,7 +1,7 @@
-//! Everything that takes seconds: the real binary end to end, the bytes it writes, what README and documents say.
+//! Tests that take seconds: the binary end to end, the bytes that it writes, and the claims of README and the documents.
 //!
-//! A new test goes here unless it takes more than some seconds (`slow`) or needs a program that nobody here wrote
-//! (`programs`). tests/README.md says which file protects what.
+//! A new test belongs here unless it takes more than some seconds (`slow`) or needs another program (`programs`).
+//! tests/README.md lists what each file protects.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -35,5 +35,6 @@ mod several_sessions;
 mod slicing;
 mod solid_files;
 mod table_columns;
+mod terminal;
 mod view;
 mod writing;

@@ -98,12 +98,11 @@ pub fn examined_print_mesh(
 }
 
 /// Whether the part or body of this name is built and meshed validly, if `design` has it.
-pub(crate) fn builds(name: &str, design: &Design) -> bool {
-    let caps = CapCache::new(usize::MAX);
+pub(crate) fn builds(name: &str, design: &Design, caps: &CapCache) -> bool {
     if let Some(part) = printed_part(name, design) {
-        return part.is_ok_and(|part| BuiltPart::with_caps(part, design, &caps).is_ok());
+        return part.is_ok_and(|part| BuiltPart::with_caps(part, design, caps).is_ok());
     }
-    let is_meshed = |part: Part| MeshedBody::new(part, design, &caps).is_ok();
+    let is_meshed = |part: Part| MeshedBody::new(part, design, caps).is_ok();
     reference_bodies(design)
         .is_ok_and(|bodies| bodies.into_iter().filter(|body| body.name == name).all(is_meshed))
 }

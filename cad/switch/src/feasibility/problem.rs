@@ -31,10 +31,10 @@ impl Obstacle {
     }
 
     /// Whether the obstacle is absent from a configuration that satisfies the rules.
-    fn is_absent_from(&self, design: &Design) -> bool {
+    fn is_absent_from(&self, design: &Design, caps: &CapCache) -> bool {
         match self {
             Self::Outline => can_be_printed(design),
-            Self::Mesh(part) => builds(part, design),
+            Self::Mesh(part) => builds(part, design, caps),
         }
     }
 }
@@ -130,9 +130,8 @@ impl<'a> Problem<'a> {
             return false;
         }
         let obstacles = self.obstacles.borrow();
-        obstacles.is_empty()
-            || Design::new(candidate.clone())
-                .is_ok_and(|design| obstacles.iter().all(|obstacle| obstacle.is_absent_from(&design)))
+        let is_free = |design: Design| obstacles.iter().all(|o| o.is_absent_from(&design, &self.caps));
+        obstacles.is_empty() || Design::new(candidate.clone()).is_ok_and(is_free)
     }
 
     /// Whether [`Self::admits`] builds parts.

@@ -65,6 +65,15 @@ impl Diagnostic {
         self
     }
 
+    /// The same diagnostic at this location; a field and a value of its own stay. Unchanged if it has a file.
+    #[must_use]
+    pub fn or_at(mut self, location: &Location) -> Self {
+        let own = self.location.take().map_or_else(Location::default, |own| *own);
+        let location = if own.file.is_some() { own } else { own.placed_at(location) };
+        self.location = Some(Box::new(location));
+        self
+    }
+
     /// The same diagnostic with what to do about it.
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
@@ -227,6 +236,17 @@ mod tests {
             "error: segment.grooves = 40: grooves overlap\n  help: lower it to 20"
         );
         assert_eq!(diagnostic.to_string(), "segment.grooves = 40: grooves overlap; lower it to 20");
+    }
+
+    #[test]
+    fn a_location_is_added_once() {
+        let line = Location::in_text("a.toml", "[shell]\nwidth_mm = 1\n", 8..16).with_field("shell", "table");
+        let diagnostic = Diagnostic::new("too narrow").with_location(Location::field("shell.width_mm", "1"));
+        let placed = diagnostic.or_at(&line);
+        assert_eq!(placed.to_string(), "a.toml:2:1: shell.width_mm = 1: too narrow");
+        assert_eq!(placed.clone().or_at(&Location::line("b.toml", 7)), placed);
+        let without_field = Diagnostic::new("too narrow").or_at(&line);
+        assert_eq!(without_field.to_string(), "a.toml:2:1: shell = table: too narrow");
     }
 
     #[test]

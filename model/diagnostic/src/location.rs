@@ -95,6 +95,12 @@ impl Location {
         self
     }
 
+    /// `place` with the field and the value of this location, where it has a field.
+    pub(crate) fn placed_at(self, place: &Self) -> Self {
+        let place = place.clone();
+        if self.field.is_some() { Self { field: self.field, value: self.value, ..place } } else { place }
+    }
+
     /// The line with a caret under the wrong part, indented by two; empty where there is no line.
     pub(crate) fn shown_snippet(&self) -> String {
         let (Some(line), Some(Snippet { text, marked })) = (self.line, &self.snippet) else {

@@ -5,10 +5,10 @@
 
 use std::time::Instant;
 
-use pinswitch::switch::ask::Ask;
 use pinswitch::switch::config::Configuration;
 use pinswitch::switch::design::Design;
 use pinswitch::switch::design_search::{Found, Options, PublishedPhysics, Silent, search, simulated};
+use pinswitch::switch::request::Request;
 
 /// Prints that are simulated, with a seed that the search does not use.
 const PRINTS: usize = 2000;
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("| | asked | proposed | predicted | stated | simulated | s |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     for (i, (text, is_possible)) in ASKS.iter().enumerate().filter(|(i, _)| only.is_none_or(|n| n == i + 1)) {
-        let ask = Ask::read(text, &format!("ask {}", i + 1))?;
+        let ask = Request::read(text, &format!("ask {}", i + 1))?;
         let start = Instant::now();
         let found = search(&base, &ask, &PublishedPhysics::default(), Options::default(), &Silent);
         let seconds = start.elapsed().as_secs_f64();
@@ -75,7 +75,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Prints the row of an ask; returns how many of its proposals state a probability that does not hold.
-fn row(number: usize, ask: &Ask, found: &Found, seconds: f64) -> Result<usize, Box<dyn std::error::Error>> {
+fn row(
+    number: usize,
+    ask: &Request,
+    found: &Found,
+    seconds: f64,
+) -> Result<usize, Box<dyn std::error::Error>> {
     let asked: Vec<String> = ask.targets.iter().map(ToString::to_string).collect();
     let asked = asked.join("; ");
     let Some(best) = found.proposals.first() else {

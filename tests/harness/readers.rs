@@ -22,9 +22,9 @@ use pinswitch_simulation::{Plan, simulate};
 use pinswitch_solid::files::{read_step, read_stl, read_three_mf, stl_bytes};
 use pinswitch_solid::profile::ChordTolerance;
 use pinswitch_solid::validity::{Expectation, examine};
-use pinswitch_switch::ask::Ask;
 use pinswitch_switch::config::{Configuration, read, read_over, to_toml};
-use pinswitch_switch::design::Design;
+use pinswitch_switch::feasibility;
+use pinswitch_switch::request::Request;
 use sha2::{Digest, Sha256};
 
 /// Most characters of an error.
@@ -104,11 +104,12 @@ fn configuration(bytes: &[u8]) -> Result<Reading, String> {
     let written = to_toml(&configuration);
     let (again, _) = read(&written, "written").map_err(|e| format!("what was written is refused: {e}"))?;
     require(again == configuration, || format!("what was written reads otherwise:\n{written}"))?;
-    match Design::new(configuration) {
+    match feasibility::design(configuration) {
         Ok(_) => Ok(Reading::Accepted),
         Err(e) => {
-            let known = Configuration::PARAMETERS.iter().any(|p| p.path() == e.field);
-            require(known && !e.remedy.is_empty(), || format!("an error without field or remedy: {e}"))?;
+            let field = e.location().and_then(|location| location.field.as_deref());
+            let known = Configuration::PARAMETERS.iter().any(|p| Some(p.path().as_str()) == field);
+            require(known && e.help().is_some(), || format!("an error without field or help: {e}"))?;
             refused(&e)
         }
     }
@@ -127,13 +128,13 @@ fn preset(bytes: &[u8]) -> Result<Reading, String> {
 
 fn ask(bytes: &[u8]) -> Result<Reading, String> {
     let Some(text) = text(bytes) else { return Ok(Reading::Refused) };
-    let ask = match Ask::read(text, FILE) {
+    let ask = match Request::read(text, FILE) {
         Ok(ask) => ask,
         Err(e) => return refused(&e),
     };
     require(!ask.targets.is_empty(), || "an ask that asks nothing".to_owned())?;
     for target in &ask.targets {
-        let (low, high) = target.wish.interval();
+        let (low, high) = target.requirement.interval();
         require(low <= high && low.is_finite(), || format!("{target}: {low} to {high}"))?;
         require(target.to_string().chars().count() < LONGEST, || "a target without end".to_owned())?;
     }

@@ -3,10 +3,9 @@
 
 use std::sync::Mutex;
 
-use pinswitch_switch::built::Built;
 use pinswitch_switch::config::parameter::Parameter;
 use pinswitch_switch::config::{Configuration, assign};
-use pinswitch_switch::design::Design;
+use pinswitch_switch::feasibility;
 use pinswitch_switch::output::BuildError;
 
 /// Layers that a field may not like to be alone with.
@@ -36,14 +35,15 @@ fn fault(assignments: &[String]) -> Option<String> {
     for assignment in assignments {
         assign(&mut c, assignment).unwrap();
     }
-    let error = match Design::new(c).map_err(BuildError::Configuration).and_then(Built::new) {
+    let error = match feasibility::design(c).map_err(BuildError::Configuration).and_then(feasibility::build) {
         Ok(_) => return None,
         Err(BuildError::Configuration(error)) => error,
         Err(other) => return Some(format!("{assignments:?}: {other}")),
     };
     let text = error.to_string();
-    let known = Configuration::PARAMETERS.iter().any(|p| p.path() == error.field);
-    let is_clear = known && error.value.is_some() && !error.remedy.is_empty() && text.len() < 600;
+    let location = error.location().cloned().unwrap_or_default();
+    let known = Configuration::PARAMETERS.iter().any(|p| Some(p.path()) == location.field);
+    let is_clear = known && location.value.is_some() && error.help().is_some() && text.len() < 600;
     (!is_clear).then(|| format!("{assignments:?}: {text}"))
 }
 

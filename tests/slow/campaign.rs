@@ -212,8 +212,10 @@ fn configurations_are_built_or_refused() {
                     Outcome::Refused(text) => Some(text),
                 },
                 Err(error) => {
-                    let known = Configuration::PARAMETERS.iter().any(|p| p.path() == error.field);
-                    if !known || error.value.is_none() || error.remedy.is_empty() || error.place.is_none() {
+                    let location = error.location().cloned().unwrap_or_default();
+                    let known = Configuration::PARAMETERS.iter().any(|p| Some(p.path()) == location.field);
+                    let is_placed = location.value.is_some() && location.line.is_some();
+                    if !known || !is_placed || error.help().is_none() {
                         return Err(format!("an error without field, value, remedy or place: {error}"));
                     }
                     Some(error.to_string())

@@ -161,8 +161,8 @@ const effectWords = (id) => (WORDS.effectNames[id] ? `${WORDS.effectNames[id]} (
 
 // Trouble as the engine tells it: what has it, its value, what is wrong, and what helps.
 function troubleWords({ field, value, problem, remedy }, name = field) {
-  const has = [name, value === null || value === undefined || value === '' ? '' : `= ${String(value).slice(0, 60)}`, problem].filter(Boolean).join(' ');
-  return `${has}${remedy ? `; ${remedy}` : ''}`;
+  const has = value === null || value === undefined || value === '' ? name : `${name} = ${String(value).slice(0, 60)}`;
+  return `${has ? `${has}: ` : ''}${problem}${remedy ? `; ${remedy}` : ''}`;
 }
 
 // What a field is called: its key without the unit, unless it has a name of its own.

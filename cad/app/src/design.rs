@@ -2,8 +2,8 @@
 
 use pinswitch_switch::built::Built;
 use pinswitch_switch::config::{Configuration, to_toml};
-use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::plate_entries;
+use pinswitch_switch::feasibility;
 use pinswitch_switch::formats::page::PageData;
 use pinswitch_switch::output::{BuildError, SetError};
 use pinswitch_switch::prediction::Prediction;
@@ -63,9 +63,10 @@ pub(crate) fn built(
     configuration: Configuration,
     model: Option<&str>,
 ) -> Result<(Built, Prediction), Trouble> {
-    let design = Design::new(configuration)?;
+    let design = feasibility::design(configuration)?;
     let prediction = kept.predictions.of(&design, model)?;
-    let built = Built::following(design, kept.built.as_ref(), &kept.caps).map_err(|e| trouble(e.into()))?;
+    let built = feasibility::build_following(design, kept.built.as_ref(), &kept.caps)
+        .map_err(|e| trouble(e.into()))?;
     Ok((built, prediction))
 }
 

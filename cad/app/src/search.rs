@@ -3,12 +3,13 @@
 use pinswitch_calibration::ModelFile;
 use pinswitch_friction::FrictionCurve;
 use pinswitch_friction::published::GROOVES;
-use pinswitch_switch::ask::{Ask, DEFAULT_WITHIN, Quantity, Target, Vary, Wish};
 use pinswitch_switch::design::Design;
 use pinswitch_switch::design_search::{
     Belief, Options, Proposal, PublishedPhysics, Silent, TargetResult, load_range_n, search,
 };
+use pinswitch_switch::feasibility;
 use pinswitch_switch::prediction::predicted_curve;
+use pinswitch_switch::request::{DEFAULT_WITHIN, Quantity, Request, Requirement, Target, Vary};
 use serde::Serialize;
 
 use crate::Answer;
@@ -65,18 +66,20 @@ pub(crate) fn answer(wanted: &Wanted) -> Answer {
 }
 
 fn found(wanted: &Wanted) -> Result<Found, Trouble> {
-    let base = Design::new(configuration(&wanted.values)?)?;
-    let about = |value| Wish::About { value, within: DEFAULT_WITHIN };
-    let threshold = wanted.threshold_n.map(|n| Target { quantity: Quantity::Threshold, wish: about(n) });
-    let friction = wanted
-        .friction
-        .iter()
-        .map(|at| Target { quantity: Quantity::Friction { load_n: at.load_n }, wish: about(at.friction_n) });
+    let base = feasibility::design(configuration(&wanted.values)?)?;
+    let about = |value| Requirement::About { value, within: DEFAULT_WITHIN };
+    let threshold =
+        wanted.threshold_n.map(|n| Target { quantity: Quantity::Threshold, requirement: about(n) });
+    let friction = wanted.friction.iter().map(|at| Target {
+        quantity: Quantity::Friction { load_n: at.load_n },
+        requirement: about(at.friction_n),
+    });
     // Only which grooves are occupied: dimensions have sliders of their own, and take the search many times as long.
     let vary = Vary { pattern: true, parameters: Vec::new() };
-    let ask = Ask { targets: threshold.into_iter().chain(friction).collect(), vary, ..Ask::default() };
-    ask.check().map_err(Trouble::general)?;
-    ask.check_loads(load_range_n(base.configuration(), &ask)).map_err(Trouble::general)?;
+    let targets = threshold.into_iter().chain(friction).collect();
+    let request = Request { targets, vary, ..Request::default() };
+    request.check().map_err(Trouble::general)?;
+    request.check_loads(load_range_n(base.configuration(), &request)).map_err(Trouble::general)?;
     let options = Options { best: wanted.most.clamp(1, MOST), ..QUICK };
     let model = wanted.model.as_deref().map(|text| ModelFile::parse(text, MODEL)).transpose();
     let model = model.map_err(Trouble::general)?;
@@ -90,7 +93,7 @@ fn found(wanted: &Wanted) -> Result<Found, Trouble> {
     let published = PublishedPhysics::default();
     let calibrated = model.clone().map(|model| CalibratedSwitch::new(model, MODEL.to_owned()));
     let belief: &dyn Belief = calibrated.as_ref().map_or(&published, |switch| switch);
-    let found = search(&base, &ask, belief, options, &Silent);
+    let found = search(&base, &request, belief, options, &Silent);
     let mut words = format!("{} patterns, {} curves computed", found.patterns, found.tried);
     if found.blocked.is_some() {
         words.push_str("; none does all of it by the best guess: this is the nearest");
@@ -118,7 +121,7 @@ fn card(proposal: &Proposal, model: Option<&ModelFile>) -> Option<Card> {
 
 /// What a proposal has of one thing that was asked.
 fn has(result: &TargetResult, proposal: &Proposal) -> Option<Has> {
-    let Wish::About { value: asked_n, .. } = result.target.wish else { return None };
+    let Requirement::About { value: asked_n, .. } = result.target.requirement else { return None };
     let (load_n, value_n) = match result.target.quantity {
         Quantity::Threshold => (None, proposal.threshold_n),
         Quantity::Friction { load_n } => (Some(load_n), Some(result.value)),

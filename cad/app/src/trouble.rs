@@ -1,6 +1,6 @@
 //! What is wrong with a design, as the page shows it: at the control of the field, with a button that mends it.
 
-use pinswitch_switch::config::ConfigError;
+use pinswitch_switch::config::{self, Diagnostic};
 use serde::Serialize;
 
 /// An error of one field.
@@ -31,17 +31,18 @@ impl Trouble {
     }
 }
 
-impl From<ConfigError> for Trouble {
-    fn from(error: ConfigError) -> Self {
-        let changes = error.changes.into_iter().filter_map(|(path, value)| {
+impl From<Diagnostic> for Trouble {
+    fn from(error: Diagnostic) -> Self {
+        let changes = error.changes().iter().filter_map(|config::Change { field, value }| {
             // Numbers, lists, words in quotes and booleans are the same in TOML and in JSON.
-            Some(Change { path, value: serde_json::from_str(&value).ok()? })
+            Some(Change { path: field.clone(), value: serde_json::from_str(value).ok()? })
         });
+        let location = error.location().cloned().unwrap_or_default();
         Self {
-            field: error.field,
-            value: error.value,
-            problem: error.problem,
-            remedy: error.remedy,
+            field: location.field.unwrap_or_default(),
+            value: location.value,
+            problem: error.problem().to_owned(),
+            remedy: error.help().unwrap_or_default().to_owned(),
             changes: changes.collect(),
         }
     }

@@ -1,7 +1,7 @@
 //! Between the values of the page and configurations.
 
 use pinswitch_switch::config::parameter::Parameter;
-use pinswitch_switch::config::{ConfigError, Configuration, Name, assign, read};
+use pinswitch_switch::config::{Configuration, Diagnostic, Name, assign, read};
 use pinswitch_switch::documents::toml_to_json;
 use serde::Serialize;
 
@@ -14,15 +14,12 @@ const LONGEST: usize = 1 << 20;
 /// The configuration with these values.
 ///
 /// # Errors
-/// [`ConfigError`] for a field that is unknown or a value out of its range.
-pub fn configuration(values: &Values) -> Result<Configuration, ConfigError> {
+/// A [`Diagnostic`] for a field that is unknown or a value out of its range.
+pub fn configuration(values: &Values) -> Result<Configuration, Diagnostic> {
     let mut configuration = Configuration::default();
     for (path, value) in values {
         // JSON of a number, a list of them, a truth value or a text of printable characters is TOML.
-        assign(&mut configuration, &format!("{path}={value}")).map_err(|mut error| {
-            error.place = None;
-            error
-        })?;
+        assign(&mut configuration, &format!("{path}={value}"))?;
     }
     Ok(configuration)
 }
@@ -55,9 +52,9 @@ pub(crate) fn opened(text: &str, file: &str) -> Opened {
         return Opened { values: None, trouble: Some(trouble) };
     }
     match read(text, file) {
-        Ok((mut configuration, places)) => {
-            if !places.sets("switch.name") {
-                configuration.switch.name = Name::lent_by(file);
+        Ok((mut configuration, locations)) => {
+            if !locations.contains("switch.name") {
+                configuration.switch.name = Name::from_file_stem(file);
             }
             Opened { values: Some(values(&configuration)), trouble: None }
         }
@@ -85,7 +82,8 @@ mod tests {
     fn what_is_no_value_is_named_without_a_place() {
         let values: Values = serde_json::from_str(r#"{"shell.wall_mm": 1e9}"#).unwrap();
         let error = configuration(&values).unwrap_err();
-        assert_eq!((error.field.as_str(), error.place.is_none()), ("shell.wall_mm", true));
+        let location = error.location().unwrap();
+        assert_eq!((location.field.as_deref(), &location.file), (Some("shell.wall_mm"), &None));
         for (path, value) in [("shell.wal_mm", "3"), ("x", "3"), ("layout.pins", "\"a\\nb\"")] {
             let values: Values = serde_json::from_str(&format!(r#"{{"{path}": {value}}}"#)).unwrap();
             assert!(configuration(&values).is_err(), "{path}");

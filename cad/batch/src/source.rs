@@ -10,7 +10,9 @@ use sha2::{Digest, Sha256};
 use toml_edit::Document;
 
 use super::hexadecimal;
-use pinswitch_switch::config::{ConfigError, Configuration, Name, Place, read, text, to_toml};
+use pinswitch_switch::config::{
+    ConfigError, Configuration, Location, Name, read, syntax_error, text, to_toml,
+};
 use pinswitch_switch::templates;
 
 /// Longest sweep: every value of its lists is held in memory, at a hundred times its length.
@@ -73,10 +75,8 @@ impl Reach {
         if self == Self::Anywhere || is_below() != Some(false) {
             return Ok(());
         }
-        Err(ConfigError {
-            remedy: "copy it beside the sweep, or allow it with --read-outside".to_owned(),
-            ..missing(field, name, "lies outside the folder of the sweep")
-        })
+        let error = missing(field, name, "lies outside the folder of the sweep");
+        Err(error.with_help("copy it beside the sweep, or allow it with --read-outside"))
     }
 }
 
@@ -98,7 +98,7 @@ impl SweepSource {
         let file = path.display().to_string();
         let sweep = text(read_at_most(path, MAX_SWEEP_BYTES).map_err(|e| unreadable(&file, &e))?, &file)?;
         let document: Document<String> = sweep.parse().map_err(|e: toml_edit::TomlError| {
-            ConfigError::syntax(Place::new(&file, &sweep, e.span().map_or(0, |s| s.start)), e.message())
+            syntax_error(Location::in_text(&file, &sweep, e.span().unwrap_or(0..0)), e.message())
         })?;
         let item = |table: &str, key: &str| document.get(table)?.as_table_like()?.get(key);
         let word = |table: &str, key: &str| {
@@ -106,8 +106,8 @@ impl SweepSource {
         };
         let at = |table: &str, key: &str| {
             let span = item(table, key).and_then(toml_edit::Item::span);
-            let place = Place::new(&file, &sweep, span.map_or(0, |s| s.start));
-            move |e: ConfigError| e.at(place.clone())
+            let place = Location::in_text(&file, &sweep, span.unwrap_or(0..0));
+            move |e: ConfigError| e.or_at(&place)
         };
         let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
         let base = match word("sweep", "base") {
@@ -124,7 +124,7 @@ impl SweepSource {
                 let bytes = read_at_most(&path, MAX_ROWS_BYTES).map_err(|e| {
                     at("rows", "file")(missing("rows.file", &name, &format!("cannot be read: {e}")))
                 })?;
-                Ok((name.clone(), text(bytes, &name)?))
+                text(bytes, &name).map(|text| (name.clone(), text))
             })
             .transpose()?;
         let stem = path.file_stem().map_or_else(|| "batch".into(), |s| s.to_string_lossy());
@@ -139,8 +139,8 @@ impl SweepSource {
     }
 
     /// Where a span of the sweep's file begins.
-    pub(super) fn place(&self, span: Option<Range<usize>>) -> Place {
-        Place::new(&self.file, &self.sweep, span.map_or(0, |s| s.start))
+    pub(super) fn place(&self, span: Option<Range<usize>>) -> Location {
+        Location::in_text(&self.file, &self.sweep, span.unwrap_or(0..0))
     }
 
     /// SHA-256 of everything that decides what the variants are, and of the program's version.
@@ -166,9 +166,8 @@ fn with_preset(
     let (over, given) = read(base, file)?;
     let Some((text, name)) = preset else { return Ok(over) };
     let (mut all, _) = read(text, name)?;
-    for parameter in Configuration::PARAMETERS.iter().filter(|p| given.sets(&p.path())) {
-        (parameter.set)(&mut all, &(parameter.get)(&over))
-            .map_err(|remedy| ConfigError::new(parameter.path(), "", remedy))?;
+    for parameter in Configuration::PARAMETERS.iter().filter(|p| given.contains(&p.path())) {
+        (parameter.set)(&mut all, &(parameter.get)(&over)).map_err(|e| e.in_field(parameter.path(), ""))?;
     }
     Ok(all)
 }
@@ -187,30 +186,18 @@ fn read_text(field: &str, name: &str, folder: &Path, reach: Reach) -> Result<(St
 }
 
 fn missing(field: &str, name: &str, problem: &str) -> ConfigError {
-    ConfigError {
-        field: field.to_owned(),
-        value: Some(format!("{name:?}")),
-        problem: problem.to_owned(),
-        remedy: "give a path relative to the sweep's file; `pinswitch layouts` lists the templates"
-            .to_owned(),
-        changes: Vec::new(),
-        place: None,
-    }
+    ConfigError::new(problem)
+        .with_location(Location::field(field, format!("{name:?}")))
+        .with_help("give a path relative to the sweep's file; `pinswitch layouts` lists the templates")
 }
 
 fn unreadable(file: &str, error: &std::io::Error) -> ConfigError {
-    ConfigError {
-        field: file.to_owned(),
-        value: None,
-        problem: format!("cannot be read: {error}"),
-        remedy: match error.kind() {
-            std::io::ErrorKind::IsADirectory => "it is a folder; give a file".to_owned(),
-            std::io::ErrorKind::FileTooLarge => {
-                "put the values into a CSV, one variant a line, and name that as rows.file".to_owned()
-            }
-            _ => "give the path of a sweep; see `pinswitch batch --help`".to_owned(),
-        },
-        changes: Vec::new(),
-        place: None,
-    }
+    let help = match error.kind() {
+        std::io::ErrorKind::IsADirectory => "it is a folder; give a file",
+        std::io::ErrorKind::FileTooLarge => {
+            "put the values into a CSV, one variant a line, and name that as rows.file"
+        }
+        _ => "give the path of a sweep; see `pinswitch batch --help`",
+    };
+    ConfigError::new(format!("cannot be read: {error}")).with_location(Location::file(file)).with_help(help)
 }

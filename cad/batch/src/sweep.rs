@@ -5,7 +5,7 @@ use toml_edit::{Document, Item, TableLike};
 use super::axis::{self, AXIS_TABLES, SweepAxis, config_error, fields};
 use super::constraint::Constraint;
 use super::source::SweepSource;
-use pinswitch_switch::config::{ConfigError, Configuration, Name, read};
+use pinswitch_switch::config::{ConfigError, Configuration, Name, read, syntax_error};
 use pinswitch_switch::parts::PRINTED_PARTS;
 
 /// What a sweep asks for, checked.
@@ -76,12 +76,12 @@ impl Sweep {
         let document: Document<String> = source
             .sweep
             .parse()
-            .map_err(|e: toml_edit::TomlError| ConfigError::syntax(source.place(e.span()), e.message()))?;
+            .map_err(|e: toml_edit::TomlError| syntax_error(source.place(e.span()), e.message()))?;
         check_keys(source, document.as_table())?;
         let table = |name: &str| document.get(name).and_then(Item::as_table_like);
         let located = |item: &Item| {
             let place = source.place(item.span());
-            move |e: ConfigError| e.at(place.clone())
+            move |e: ConfigError| e.or_at(&place)
         };
         let (mut base, _) = read(&source.base, "base")?;
         for (path, item) in fields(table("set")) {
@@ -90,7 +90,7 @@ impl Sweep {
                 located(item)(config_error(&path, None, "is no single value", "write \"table.key\" = value"))
             })?;
             let value = axis::accepted(field, value).map_err(located(item))?;
-            (field.set)(&mut base, &value).map_err(|r| located(item)(ConfigError::new(&path, "", r)))?;
+            (field.set)(&mut base, &value).map_err(|e| located(item)(e.in_field(&path, "")))?;
         }
         let axes = axis::axes(source, document.as_table())?;
         let sweep = table("sweep");
@@ -123,22 +123,23 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Conf
         let place = source.place(item.span());
         let Some((_, keys)) = tables().find(|(table, _)| *table == name) else {
             let known = tables().map(|(table, _)| table).collect::<Vec<_>>().join(", ");
-            return Err(
-                config_error(name, None, "is no table of a sweep", &format!("known are {known}")).at(place)
-            );
+            return Err(config_error(name, None, "is no table of a sweep", &format!("known are {known}"))
+                .or_at(&place));
         };
         let tables: Vec<&dyn TableLike> = match item.as_array_of_tables() {
             Some(tables) => tables.iter().map(|t| t as &dyn TableLike).collect(),
             None => item.as_table_like().into_iter().collect(),
         };
         if tables.is_empty() {
-            return Err(config_error(name, None, "is no table", &format!("write [{name}]")).at(place));
+            return Err(config_error(name, None, "is no table", &format!("write [{name}]")).or_at(&place));
         }
         for (key, item) in tables.iter().flat_map(|t| t.iter()).filter(|_| !keys.is_empty()) {
             if !keys.contains(&key) {
                 let place = source.place(item.span());
                 let known = format!("known are {}", keys.join(", "));
-                return Err(config_error(&format!("{name}.{key}"), None, "is no known key", &known).at(place));
+                return Err(
+                    config_error(&format!("{name}.{key}"), None, "is no known key", &known).or_at(&place)
+                );
             }
         }
     }
@@ -147,7 +148,7 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Conf
 
 /// The name goes into folders and figures.
 fn checked_name(name: &str) -> Result<Name, ConfigError> {
-    Name::new(name).map_err(|form| config_error("sweep.name", Some(&shortened(name)), "is no name", &form))
+    Name::new(name).map_err(|e| e.in_field("sweep.name", shortened(name)))
 }
 
 /// The beginning of a text that may be of any length, in quotes.
@@ -175,14 +176,14 @@ fn constraints(source: &SweepSource, document: &Document<String>) -> Result<Vec<
     let Some(tables) = document.get("constraints") else { return Ok(Vec::new()) };
     let tables = tables.as_array_of_tables().ok_or_else(|| {
         config_error("constraints", None, "is no list of tables", "write [[constraints]] before each")
-            .at(source.place(tables.span()))
+            .or_at(&source.place(tables.span()))
     })?;
     tables
         .iter()
         .map(|table| {
             let text = table.get("require").and_then(Item::as_str).unwrap_or_default();
             let because = table.get("because").and_then(Item::as_str).map(str::to_owned);
-            Constraint::new(text, because).map_err(|e| e.at(source.place(table.span())))
+            Constraint::new(text, because).map_err(|e| e.or_at(&source.place(table.span())))
         })
         .collect()
 }

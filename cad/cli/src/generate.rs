@@ -11,7 +11,7 @@ use super::slicing;
 use super::source::{Made, Source};
 use super::{Failure, print};
 use crate::write::{PublishError, SetFolder};
-use pinswitch_switch::built::Built;
+use pinswitch_switch::feasibility;
 use pinswitch_switch::formats::{ALL, FORMATS, Inclusion, named};
 use pinswitch_switch::output::BuildError;
 use pinswitch_switch::prediction::Prediction;
@@ -95,7 +95,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.force {
         place.check_source(&origin).map_err(refused)?;
     }
-    let built = Built::new(design).map_err(|e| match e {
+    let built = feasibility::build(design).map_err(|e| match e {
         BuildError::Configuration(e) => arguments.source.placed(&e),
         other => Failure::failed(other),
     })?;

@@ -8,7 +8,7 @@ use super::Failure;
 use super::source::Source;
 use crate::write::write_file;
 use pinswitch_solid::render::{View, render};
-use pinswitch_switch::built::Built;
+use pinswitch_switch::feasibility;
 use pinswitch_switch::output::BuildError;
 use pinswitch_switch::scene::{all_plates, assembled};
 
@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let design = arguments.source.design()?;
-    let built = Built::new(design).map_err(|e| match e {
+    let built = feasibility::build(design).map_err(|e| match e {
         BuildError::Configuration(e) => arguments.source.placed(&e),
         other => Failure::failed(other),
     })?;

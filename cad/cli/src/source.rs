@@ -9,10 +9,11 @@ use crate::write::source_of_set_with;
 use pinswitch_diagnostic::excerpt;
 use pinswitch_solid::files::read_three_mf;
 use pinswitch_switch::config::{
-    ConfigError, Configuration, Name, Place, Places, assign, read, read_over, text,
+    Configuration, Diagnostic, FieldLocations, Location, Name, assign, read, read_over, text,
 };
 use pinswitch_switch::design::Design;
 use pinswitch_switch::documents::SourceEntry;
+use pinswitch_switch::feasibility;
 use pinswitch_switch::templates;
 
 /// What a command shows that need not be told a configuration.
@@ -102,24 +103,21 @@ impl Source {
     }
 
     /// An error of what was read, with the option that gave the value, or the name of its file.
-    pub(super) fn placed(&self, error: &ConfigError) -> Failure {
-        Failure::bad_input(self.with_place(error.clone(), &Places::default(), self.config()))
+    pub(super) fn placed(&self, error: &Diagnostic) -> Failure {
+        Failure::bad_input(self.with_place(error.clone(), &FieldLocations::default(), self.config()))
     }
 
     /// The error with the option that gave its field, the field's place in the file, or at least the file.
-    fn with_place(&self, error: ConfigError, places: &Places, file: &str) -> String {
-        let gives = |assignment: &&String| {
-            assignment.split_once('=').is_some_and(|(path, _)| path.trim() == error.field)
-        };
+    fn with_place(&self, error: Diagnostic, locations: &FieldLocations, file: &str) -> Diagnostic {
+        let field = error.location().and_then(|location| location.field.clone()).unwrap_or_default();
+        let gives =
+            |assignment: &&String| assignment.split_once('=').is_some_and(|(path, _)| path.trim() == field);
         // The last one wins, over the file too.
         if let Some(assignment) = self.assignments.iter().rfind(gives) {
             let option = format!("--set {}", excerpt(assignment, 60));
-            return error.at(Place { file: option, line: None }).to_string();
+            return error.or_in_file(&option);
         }
-        match places.of(&error.field) {
-            Some(place) => error.at(place.clone()).to_string(),
-            None => format!("{file}: {error}"),
-        }
+        error.or_at(locations.get(&field).unwrap_or(&Location::file(file)))
     }
 
     /// As [`Self::design`], with where the configuration comes from, and the law of its set.
@@ -140,27 +138,32 @@ impl Source {
     }
 
     fn design_of_text(&self, text: &str, file: &str) -> Result<Design, Failure> {
-        let (configuration, places) = self.configuration_of_text(text, file)?;
-        Design::new(configuration).map_err(|e| Failure::bad_input(self.with_place(e, &places, file)))
+        let (configuration, locations) = self.configuration_of_text(text, file)?;
+        let placed = |e| Failure::bad_input(self.with_place(e, &locations, file));
+        feasibility::design(configuration).map_err(placed)
     }
 
-    fn configuration_of_text(&self, text: &str, file: &str) -> Result<(Configuration, Places), Failure> {
+    fn configuration_of_text(
+        &self,
+        text: &str,
+        file: &str,
+    ) -> Result<(Configuration, FieldLocations), Failure> {
         let base = self.preset.as_ref().map_or(Ok(Configuration::default()), |preset| {
             let (text, file) = read_text(preset)?;
             read(&text, &file).map(|(base, _)| base).map_err(Failure::bad_input)
         })?;
-        let (mut configuration, places) = read_over(base, text, file).map_err(Failure::bad_input)?;
-        if !places.sets("switch.name") {
-            configuration.switch.name = Name::lent_by(file);
+        let (mut configuration, locations) = read_over(base, text, file).map_err(Failure::bad_input)?;
+        if !locations.contains("switch.name") {
+            configuration.switch.name = Name::from_file_stem(file);
         }
         for assignment in &self.assignments {
-            assign(&mut configuration, assignment).map_err(Failure::bad_input)?;
+            assign(&mut configuration, assignment).map_err(|e| Failure::bad_input(e.or_in_file("--set")))?;
         }
         if let Some(mm) = self.tolerance {
             assign(&mut configuration, &format!("{TOLERANCE}={mm:?}"))
-                .map_err(|e| Failure::bad_input(e.to_string().replacen("--set", "--tolerance", 1)))?;
+                .map_err(|e| Failure::bad_input(e.or_in_file("--tolerance")))?;
         }
-        Ok((configuration, places))
+        Ok((configuration, locations))
     }
 }
 

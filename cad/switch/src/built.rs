@@ -5,10 +5,9 @@
 use std::sync::OnceLock;
 
 use crate::design::Design;
-use crate::diagnosis::diagnosed;
 use crate::output::BuildError;
 use crate::parallel::map_each;
-use crate::parts::{Part, Role, fit_on_bed, printed, reference_bodies};
+use crate::parts::{Part, Role, fit_on_bed, printed, printed_part, reference_bodies};
 use pinswitch_solid::files::stl_bytes;
 use pinswitch_solid::mesh::Mesh;
 use pinswitch_solid::solid::CapCache;
@@ -80,7 +79,7 @@ impl BuiltPart {
 }
 
 /// The mesh of `part` as it is written, on the print bed, and what it measures: for one part of many, with the caps that
-/// others have left in `caps`. Where no mesh can be made, the error names the field that decides, as for [`Built`].
+/// others have left in `caps`.
 ///
 /// # Errors
 /// [`BuildError`]; a mesh that the oracle refuses is never returned.
@@ -90,13 +89,20 @@ pub fn examined_print_mesh(
     caps: &CapCache,
 ) -> Result<(Mesh, MeshFacts), BuildError> {
     let mesh = part.solid.mesh_with(design.tolerance(), caps);
-    mesh.map_err(|source| BuildError::Cap { part: part.name.clone(), source })
-        .and_then(|mesh| {
-            let mesh = mesh.translated(part.print_shift_mm());
-            let facts = examined(part, &mesh, design)?;
-            Ok((mesh, facts))
-        })
-        .map_err(|e| diagnosed(e, design))
+    let mesh = mesh.map_err(|source| BuildError::Cap { part: part.name.clone(), source })?;
+    let mesh = mesh.translated(part.print_shift_mm());
+    let facts = examined(part, &mesh, design)?;
+    Ok((mesh, facts))
+}
+
+/// Whether the part or body of this name is built and meshed validly, if `design` has it.
+pub(crate) fn builds(name: &str, design: &Design, caps: &CapCache) -> bool {
+    if let Some(part) = printed_part(name, design) {
+        return part.is_ok_and(|part| BuiltPart::with_caps(part, design, caps).is_ok());
+    }
+    let is_meshed = |part: Part| MeshedBody::new(part, design, caps).is_ok();
+    reference_bodies(design)
+        .is_ok_and(|bodies| bodies.into_iter().filter(|body| body.name == name).all(is_meshed))
 }
 
 /// What the mesh measures, if it is valid.
@@ -155,10 +161,7 @@ impl Built {
             Some(twin) => Ok(twin.as_built(part)),
             None => BuiltPart::with_caps(part, &design, caps),
         };
-        let printed = map_each(parts, made)
-            .into_iter()
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(|e| diagnosed(e, &design))?;
+        let printed = map_each(parts, made).into_iter().collect::<Result<Vec<_>, _>>()?;
         let reference = reference_bodies(&design)?
             .into_iter()
             .map(|part| {

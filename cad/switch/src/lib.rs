@@ -18,19 +18,19 @@
 
 #![warn(clippy::disallowed_methods)]
 
-pub mod ask;
 pub mod built;
 pub mod config;
 pub mod design;
 pub mod design_search;
-mod diagnosis;
 pub mod documents;
+pub mod feasibility;
 pub mod formats;
 pub mod output;
 mod parallel;
 pub mod parts;
 pub mod plates;
 pub mod prediction;
+pub mod request;
 pub mod scene;
 pub mod set;
 pub mod templates;

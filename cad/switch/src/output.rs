@@ -1,6 +1,6 @@
 //! What is handed from one step to the next on the way to a set: a file in memory, or why there is none.
 
-use crate::config::ConfigError;
+use crate::config::Diagnostic;
 use pinswitch_report::PlotError;
 use pinswitch_solid::solid::CapError;
 use pinswitch_solid::validity::Fault;
@@ -25,9 +25,9 @@ impl OutputFile {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// The configuration asks for something that cannot be built.
+    /// A value of the configuration cannot be built.
     #[error(transparent)]
-    Configuration(#[from] ConfigError),
+    Configuration(#[from] Diagnostic),
     /// Contours of a part cross: a bound is missing, and this is a fault of the program.
     #[error("{part}: {source}; please report the configuration")]
     Cap {
@@ -44,6 +44,26 @@ pub enum BuildError {
         /// What is wrong.
         fault: Fault,
     },
+}
+
+impl BuildError {
+    /// Returns what is wrong, without field and help.
+    pub fn problem(&self) -> String {
+        match self {
+            Self::Configuration(error) => error.problem().to_owned(),
+            Self::Cap { part, .. } => format!("contours of {part} cross"),
+            Self::Invalid { part, fault } => format!("mesh of {part} is invalid: {fault}"),
+        }
+    }
+}
+
+impl From<BuildError> for Diagnostic {
+    fn from(error: BuildError) -> Self {
+        match error {
+            BuildError::Configuration(error) => error,
+            other => Self::new(other.problem()).with_help("report the configuration").with_source(other),
+        }
+    }
 }
 
 /// Why a set cannot be made.

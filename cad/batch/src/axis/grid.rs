@@ -13,7 +13,7 @@ pub(super) const TABLE: AxisTable = AxisTable { name: "axes", keys: &[], level: 
 fn read(source: &SweepSource, table: &Item) -> Result<Vec<SweepAxis>, ConfigError> {
     fields(table.as_table_like())
         .into_iter()
-        .map(|(path, item)| axis(&path, item).map_err(|e| e.at(source.place(item.span()))))
+        .map(|(path, item)| axis(&path, item).map_err(|e| e.or_at(&source.place(item.span()))))
         .collect()
 }
 

@@ -11,7 +11,7 @@ use toml_edit::{Item, TableLike, Value};
 
 use super::source::SweepSource;
 use pinswitch_switch::config::parameter::Parameter;
-use pinswitch_switch::config::{ConfigError, Configuration};
+use pinswitch_switch::config::{ConfigError, Configuration, Location};
 
 pub use sample::{Method, unit_points};
 
@@ -111,11 +111,11 @@ pub(super) fn axes(source: &SweepSource, sweep: &dyn TableLike) -> Result<Vec<Sw
             axes.extend((table.read)(source, item)?);
         }
     }
-    no_field_twice(&axes).map_err(|e| e.at(source.place(None)))?;
+    no_field_twice(&axes).map_err(|e| e.or_at(&source.place(None)))?;
     if axes.is_empty() {
         let problem = format!("is empty: no {}", table_names("or"));
         return Err(config_error("sweep", None, &problem, "name at least one field with its values")
-            .at(source.place(None)));
+            .or_at(&source.place(None)));
     }
     Ok(axes)
 }
@@ -199,20 +199,14 @@ pub(super) fn numeric(field: ParameterRef) -> Option<bool> {
 /// [`ConfigError`] with the accepted range.
 pub(super) fn accepted(field: ParameterRef, value: &Value) -> Result<Value, ConfigError> {
     let mut scratch = Configuration::default();
-    (field.set)(&mut scratch, value).map_err(|remedy| {
-        ConfigError::new(field.path(), value.clone().decorated("", "").to_string(), remedy)
-    })?;
+    let text = || value.clone().decorated("", "").to_string();
+    (field.set)(&mut scratch, value).map_err(|e| e.in_field(field.path(), text()))?;
     Ok((field.get)(&scratch))
 }
 
 /// An error in an axis.
 pub(super) fn config_error(field: &str, value: Option<&str>, problem: &str, remedy: &str) -> ConfigError {
-    ConfigError {
-        field: field.to_owned(),
-        value: value.map(|v| v.trim().to_owned()),
-        problem: problem.to_owned(),
-        remedy: remedy.to_owned(),
-        changes: Vec::new(),
-        place: None,
-    }
+    let value = value.map(|v| v.trim().to_owned());
+    let location = Location { field: Some(field.to_owned()), value, ..Location::default() };
+    ConfigError::new(problem).with_location(location).with_help(remedy)
 }

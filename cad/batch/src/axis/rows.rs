@@ -8,7 +8,7 @@ use toml_edit::{Item, Value};
 
 use super::{AxisTable, ParameterRef, SweepAxis, config_error};
 use crate::source::SweepSource;
-use pinswitch_switch::config::{ConfigError, Place};
+use pinswitch_switch::config::{ConfigError, Location};
 
 /// The table that names the file of rows, whose text the sweep's source holds.
 pub(super) const TABLE: AxisTable = AxisTable { name: "rows", keys: &["file"], level: 0, read };
@@ -48,19 +48,21 @@ impl Rows {
         let mut reader = reader(text, true);
         let broken = |e: csv::Error| {
             let at = usize::try_from(e.position().map_or(0, Position::byte)).unwrap_or_default();
-            unreadable(&e).at(place(file, text, at))
+            unreadable(&e).or_at(&place(file, text, at))
         };
         let header = reader.headers().map_err(broken)?.clone();
         let at_header = || place(file, text, 0);
         let fields: Vec<ParameterRef> = header
             .iter()
-            .map(|name| super::field(name).map_err(|e| e.at(at_header())))
+            .map(|name| super::field(name).map_err(|e| e.or_at(&at_header())))
             .collect::<Result<_, _>>()?;
         let twice =
             fields.iter().enumerate().find(|(i, f)| fields[..*i].iter().any(|g| g.path() == f.path()));
         if let Some((_, field)) = twice {
             let remedy = "name it in one column, and take the other out";
-            return Err(config_error(&field.path(), None, "is named by two columns", remedy).at(at_header()));
+            return Err(
+                config_error(&field.path(), None, "is named by two columns", remedy).or_at(&at_header())
+            );
         }
         let (mut record, mut starts) = (csv::ByteRecord::new(), Vec::new());
         loop {
@@ -72,7 +74,7 @@ impl Rows {
         }
         if starts.is_empty() {
             let remedy = "write one variant a line under the header";
-            return Err(config_error("rows", None, "holds no row", remedy).at(at_header()));
+            return Err(config_error("rows", None, "holds no row", remedy).or_at(&at_header()));
         }
         Ok(Self { file: file.to_owned(), text: text.to_owned(), fields, starts })
     }
@@ -84,13 +86,13 @@ impl Rows {
         let at = || place(&self.file, &self.text, start);
         reader(self.text.get(start..).unwrap_or_default(), false)
             .read_record(&mut record)
-            .map_err(|e| unreadable(&e).at(at()))?;
+            .map_err(|e| unreadable(&e).or_at(&at()))?;
         let cells = self.fields.iter().zip(record.iter());
         cells
             .map(|(field, cell)| {
                 // A bare word is taken as text, as with --set.
                 let value = cell.parse::<Value>().unwrap_or_else(|_| Value::from(cell));
-                super::accepted(field, &value).map_err(|e| e.at(at()))
+                super::accepted(field, &value).map_err(|e| e.or_at(&at()))
             })
             .collect()
     }
@@ -114,7 +116,7 @@ fn unreadable(error: &csv::Error) -> ConfigError {
 }
 
 /// The line of the first row at or after byte `start`, which is no comment and not empty.
-fn place(file: &str, text: &str, start: usize) -> Place {
+fn place(file: &str, text: &str, start: usize) -> Location {
     let mut offset = start.min(text.len());
     for line in text.get(offset..).unwrap_or_default().split_inclusive('\n') {
         if !line.trim().is_empty() && !line.starts_with('#') {
@@ -122,7 +124,8 @@ fn place(file: &str, text: &str, start: usize) -> Place {
         }
         offset += line.len();
     }
-    Place::new(file, text, offset)
+    let line = text.get(..offset).unwrap_or_default().matches('\n').count() + 1;
+    Location::line(file, line)
 }
 
 #[cfg(test)]

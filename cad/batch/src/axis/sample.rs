@@ -98,7 +98,7 @@ pub fn unit_points(method: Method, count: usize, axes: usize, seed: u64) -> Vec<
 
 fn read(source: &SweepSource, item: &Item) -> Result<Vec<SweepAxis>, ConfigError> {
     let Some(table) = item.as_table_like() else { return Ok(Vec::new()) };
-    let axis = sampled(table).map_err(|e| e.at(source.place(item.span())))?;
+    let axis = sampled(table).map_err(|e| e.or_at(&source.place(item.span())))?;
     Ok(vec![axis])
 }
 

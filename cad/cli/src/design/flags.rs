@@ -6,8 +6,10 @@ use clap::Args;
 
 use crate::Failure;
 use crate::range::Range;
-use pinswitch_switch::ask::{
-    Ask, DEFAULT_WITHIN, FORMS, Parameter, Quantity, Target, Varied, Wish, parse_wish, share_of,
+use pinswitch_switch::config::{Diagnostic, Location, ValueError};
+use pinswitch_switch::request::{
+    DEFAULT_WITHIN, FORMS, Parameter, Quantity, Request, Requirement, Target, Varied, parse_requirement,
+    parse_share,
 };
 
 /// Targets, limits, and what may vary. A wish is `at most 8`, `at least 8`, `between 4 and 6`, `about 5` or
@@ -69,14 +71,14 @@ impl AskFlags {
     ///
     /// # Errors
     /// [`Failure::BadInput`] names option or field, value, bound and remedy.
-    pub(super) fn ask(&self) -> Result<Ask, Failure> {
+    pub(super) fn ask(&self) -> Result<Request, Failure> {
         let mut ask = match &self.ask {
             Some(path) => {
                 let name = path.display().to_string();
                 let text = crate::input::read_text_file(path)?;
-                Ask::read(&text, &name).map_err(Failure::bad_input)?
+                Request::read(&text, &name).map_err(Failure::bad_input)?
             }
-            None => Ask::default(),
+            None => Request::default(),
         };
         self.add_targets(&mut ask)?;
         if let Some(range) = self.load_range {
@@ -103,14 +105,14 @@ impl AskFlags {
                 "nothing is asked; give --threshold, --max-friction, --friction, --low-friction, --stiffness or --ask FILE",
             ));
         }
-        ask.check().map_err(|e| Failure::bad_input(self.in_options(e.0)))?;
+        ask.check().map_err(|e| Failure::bad_input(self.in_options(e)))?;
         Ok(ask)
     }
 
     /// The message about a field that an option gave, with the option's name.
-    fn in_options(&self, message: String) -> String {
+    fn in_options(&self, error: Diagnostic) -> Diagnostic {
         let options = [
-            ("load range", "--load-range", self.load_range.is_some()),
+            ("ask.load_range_n", "--load-range", self.load_range.is_some()),
             ("limits.pins", "--pins", self.pins.is_some()),
             ("limits.outer_radius_mm", "--outer-radius", self.outer_radius.is_some()),
             ("limits.outer_width_mm", "--outer-width", self.outer_width.is_some()),
@@ -118,23 +120,28 @@ impl AskFlags {
             ("materials.hardness_shore_a", "--hardnesses", !self.hardnesses.is_empty()),
             ("vary.", "--vary ", self.vary.is_some()),
         ];
+        let location = error.location().cloned().unwrap_or_default();
+        let path = location.field.as_deref().unwrap_or_default();
         let given = options.iter().filter(|(.., is_given)| *is_given);
-        given
-            .filter_map(|(field, option, _)| Some(format!("{option}{}", message.strip_prefix(field)?)))
-            .next()
-            .unwrap_or(message)
+        let option = given
+            .filter_map(|(field, option, _)| Some(format!("{option}{}", path.strip_prefix(field)?)))
+            .next();
+        match option {
+            Some(option) => error.with_location(Location { field: Some(option), ..location }),
+            None => error,
+        }
     }
 
-    fn add_targets(&self, ask: &mut Ask) -> Result<(), Failure> {
+    fn add_targets(&self, ask: &mut Request) -> Result<(), Failure> {
         let within = match &self.within {
-            Some(text) => share_of(text).map_err(|e| Failure::bad_input(format!("--within: {e}")))?,
+            Some(text) => parse_share(text).map_err(|e| Failure::bad_input(format!("--within: {e}")))?,
             None => DEFAULT_WITHIN,
         };
         // What a bare number means: value and share.
-        type Bare = fn(f64, f64) -> Wish;
-        let about: Bare = |value, within| Wish::About { value, within };
-        let at_most: Bare = |value, _| Wish::AtMost(value);
-        let at_least: Bare = |value, _| Wish::AtLeast(value);
+        type Bare = fn(f64, f64) -> Requirement;
+        let about: Bare = |value, within| Requirement::About { value, within };
+        let at_most: Bare = |value, _| Requirement::AtMost(value);
+        let at_least: Bare = |value, _| Requirement::AtLeast(value);
         let single = [
             ("--threshold", &self.threshold, Quantity::Threshold, about),
             ("--max-friction", &self.max_friction, Quantity::MaxFriction, at_most),
@@ -143,24 +150,28 @@ impl AskFlags {
         ];
         for (flag, text, quantity, bare) in single {
             let Some(text) = text else { continue };
-            let refused = |e: String| Failure::bad_input(format!("{flag} = {text}: {e}"));
-            let wish = match (parse_wish(text, within).map_err(refused)?, text.trim().parse::<f64>()) {
+            let refused = |e: ValueError| Failure::bad_input(e.in_field(flag, text));
+            let wish = match (parse_requirement(text, within).map_err(refused)?, text.trim().parse::<f64>()) {
                 ((_, None), Ok(number)) => bare(number, within),
                 ((wish, None), Err(_)) => wish,
                 ((_, Some(load)), _) => {
-                    return Err(refused(format!("'at {load}' belongs to --friction; leave it out here")));
+                    return Err(Failure::bad_input(format!(
+                        "{flag} = {text}: 'at {load}' belongs to --friction; leave it out here"
+                    )));
                 }
             };
-            ask.targets.push(Target { quantity, wish });
+            ask.targets.push(Target { quantity, requirement: wish });
         }
         for text in &self.friction {
-            let refused = |e: String| Failure::bad_input(format!("--friction = {text}: {e}"));
-            match parse_wish(text, within).map_err(refused)? {
+            let refused = |e: ValueError| Failure::bad_input(e.in_field("--friction", text));
+            match parse_requirement(text, within).map_err(refused)? {
                 (wish, Some(load_n)) => {
-                    ask.targets.push(Target { quantity: Quantity::Friction { load_n }, wish });
+                    ask.targets.push(Target { quantity: Quantity::Friction { load_n }, requirement: wish });
                 }
                 (_, None) => {
-                    return Err(refused(format!("at which load? End it in 'at 50'; {FORMS}, and 'at LOAD'")));
+                    return Err(Failure::bad_input(format!(
+                        "--friction = {text}: at which load? End it in 'at 50'; {FORMS}, and 'at LOAD'"
+                    )));
                 }
             }
         }
@@ -171,7 +182,7 @@ impl AskFlags {
 /// `layer_mm` or `layer_mm=1.5..3`.
 fn varied(text: &str) -> Result<Varied, Failure> {
     let (name, range) = text.split_once('=').map_or((text, None), |(name, range)| (name, Some(range)));
-    let parameter = Parameter::named(name.trim()).ok_or_else(|| {
+    let parameter = Parameter::from_name(name.trim()).ok_or_else(|| {
         let known: Vec<_> = Parameter::ALL.iter().map(|p| p.name()).collect();
         Failure::bad_input(format!(
             "--vary {name}: no such parameter; known are {}, or none",

@@ -18,12 +18,12 @@ use flags::AskFlags;
 use pinswitch_app::CalibratedSwitch;
 use pinswitch_friction::published::GROOVES;
 use pinswitch_report::{AskedRegion, pareto_svg};
-use pinswitch_switch::ask::{Ask, Parameter, Quantity};
 use pinswitch_switch::config::{Configuration, Name, to_toml};
 use pinswitch_switch::design_search::{
     Belief, Blocked, Found, Options, Proposal, PublishedPhysics, load_range_n, search,
 };
 use pinswitch_switch::output::OutputFile;
+use pinswitch_switch::request::{Parameter, Quantity, Request};
 use progress::Bar;
 
 /// Find switches that do what you ask: pins, grooves, silicone.
@@ -73,7 +73,7 @@ pub(super) struct Arguments {
 /// What is printed as JSON and written as design.json.
 #[derive(Serialize)]
 struct Report<'a> {
-    ask: &'a Ask,
+    ask: &'a Request,
     load_range_n: (f64, f64),
     draws: usize,
     seed: u64,
@@ -168,7 +168,7 @@ fn options(arguments: &Arguments) -> Result<Options, Failure> {
     Ok(Options { best, draws, seed, starts: starts.max(best) })
 }
 
-fn check_pins(ask: &Ask, base: &Configuration) -> Result<(), Failure> {
+fn check_pins(ask: &Request, base: &Configuration) -> Result<(), Failure> {
     let grooves = base.segment.grooves;
     match ask.limits.pins {
         Some((fewest, most)) if most > grooves => Err(Failure::bad_input(format!(
@@ -178,7 +178,7 @@ fn check_pins(ask: &Ask, base: &Configuration) -> Result<(), Failure> {
     }
 }
 
-fn files(found: &Found, report: &Report<'_>, ask: &Ask) -> Result<Vec<OutputFile>, Failure> {
+fn files(found: &Found, report: &Report<'_>, ask: &Request) -> Result<Vec<OutputFile>, Failure> {
     let named = |i: usize| if report.possible { format!("design-{}", i + 1) } else { "nearest".to_owned() };
     let mut files: Vec<OutputFile> = found
         .proposals
@@ -209,9 +209,9 @@ fn files(found: &Found, report: &Report<'_>, ask: &Ask) -> Result<Vec<OutputFile
 }
 
 /// What the ask says of threshold and friction at the heaviest load, if it says anything of either.
-fn asked_region(ask: &Ask, range_n: (f64, f64)) -> Option<AskedRegion> {
+fn asked_region(ask: &Request, range_n: (f64, f64)) -> Option<AskedRegion> {
     let of = |is_it: &dyn Fn(Quantity) -> bool| {
-        let intervals = ask.targets.iter().filter(|t| is_it(t.quantity)).map(|t| t.wish.interval());
+        let intervals = ask.targets.iter().filter(|t| is_it(t.quantity)).map(|t| t.requirement.interval());
         intervals.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1)))
     };
     let threshold = of(&|q| q == Quantity::Threshold);

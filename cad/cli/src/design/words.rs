@@ -2,21 +2,21 @@
 
 use std::fmt::Write;
 
-use pinswitch_switch::ask::{Ask, Parameter};
 use pinswitch_switch::design_search::{Blocked, Found, Missed, Move, Proposal};
+use pinswitch_switch::request::{Parameter, Request};
 
 /// Shares of the variance that are shown.
 const SHARES: usize = 3;
 
 /// The ask, and every proposal with its targets, what the uncertainty comes from, and sensitivities.
-pub(super) fn table(found: &Found, ask: &Ask) -> String {
+pub(super) fn table(found: &Found, ask: &Request) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = write_table(&mut text, found, ask);
     text
 }
 
-fn write_table(text: &mut String, found: &Found, ask: &Ask) -> std::fmt::Result {
+fn write_table(text: &mut String, found: &Found, ask: &Request) -> std::fmt::Result {
     let targets: Vec<String> = ask.targets.iter().map(ToString::to_string).collect();
     writeln!(text, "asked: {}", targets.join("; "))?;
     for (i, proposal) in found.proposals.iter().enumerate() {
@@ -30,7 +30,7 @@ fn write_proposal(
     text: &mut String,
     name: &str,
     p: &Proposal,
-    ask: &Ask,
+    ask: &Request,
     range_n: (f64, f64),
 ) -> std::fmt::Result {
     let trust = format!("{:?}", p.trust).to_lowercase();
@@ -75,7 +75,7 @@ fn write_proposal(
 }
 
 /// Parameters that were varied or chosen, with their values.
-fn parameters(p: &Proposal, ask: &Ask) -> String {
+fn parameters(p: &Proposal, ask: &Request) -> String {
     let is_chosen = |parameter: Parameter| {
         ask.vary.parameters.iter().any(|v| v.parameter == parameter)
             || (parameter == Parameter::PinDiameterMm && !ask.materials.pin_diameter_mm.is_empty())

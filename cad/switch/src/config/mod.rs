@@ -1,4 +1,4 @@
-//! Configurations: what a user may set, how it is read, and what can be built.
+//! Configurations: the parameters of a switch, their ranges, and their TOML.
 
 mod error;
 mod name;
@@ -9,13 +9,16 @@ mod reference;
 mod rewrite;
 mod text;
 
-pub use error::{ConfigError, Place};
+pub(crate) use error::field_location;
+pub use error::{ConfigError, ValueError, syntax_error};
 pub use name::Name;
 pub use parameter::{Choice, Origin};
 pub use parameters::{
     Configuration, FastenerKind, MouldKind, MouldTable, MountKind, Paper, Projection, SlotKind, Slots,
 };
-pub use read::{Places, assign, read, read_over};
+pub use pinswitch_diagnostic::{Change, Diagnostic, Location};
+pub(crate) use read::shown;
+pub use read::{ClampedReading, FieldLocations, assign, read, read_clamped, read_over};
 pub use reference::{reference_toml, to_toml};
 pub use rewrite::rewritten;
 pub use text::text;

@@ -1,25 +1,26 @@
-//! Names that become files and folders: a name is never a path.
+//! Names that become names of files and folders, and are never paths.
 
 use std::fmt;
 
 use toml_edit::Value;
 use unicode_ident::is_xid_continue;
 
+use super::ValueError;
 use super::parameter::ParameterValue;
 
 /// Most characters of a name.
 const MAX_CHARACTERS: usize = 80;
-/// Most bytes of a name as UTF-8, which leave room for an ending within the 255 of a file system.
+/// Most bytes of a name as UTF-8: leaves room for an extension within the 255 of a file system.
 const MAX_BYTES: usize = 240;
-/// What stands in for a name of which nothing is left.
+/// The name of a text without any allowed character.
 const NAMELESS: &str = "unnamed";
-/// Names of devices on Windows, whatever their ending.
+/// Device names on Windows, with any extension.
 const DEVICES: [&str; 4] = ["CON", "PRN", "AUX", "NUL"];
-/// Those with a number of one digit behind them.
+/// Device names on Windows that end in a digit.
 const NUMBERED_DEVICES: [&str; 2] = ["COM", "LPT"];
 
-/// A name of a switch, a sweep or a log: letters of any script, digits, spaces and `-_.+`, so that it can stand in any
-/// folder, and in no other.
+/// The name of a switch, a sweep or a log: letters of any script, digits, spaces and `-_.+`. It is a valid file name on
+/// every platform, and cannot lead out of its folder.
 ///
 /// ```
 /// use pinswitch_switch::config::Name;
@@ -32,16 +33,17 @@ const NUMBERED_DEVICES: [&str; 2] = ["COM", "LPT"];
 pub struct Name(String);
 
 impl Name {
-    /// The name `text`, if it is one.
+    /// Returns `text` as a name.
     ///
     /// # Errors
-    /// What would be accepted.
-    pub fn new(text: &str) -> Result<Self, String> {
-        if is_name(text) { Ok(Self(text.to_owned())) } else { Err(format!("give {}", Self::form())) }
+    /// [`ValueError`] for a text that is not a valid name.
+    pub fn new(text: &str) -> Result<Self, ValueError> {
+        let error = || ValueError::new("not a valid name", format!("give {}", Self::form()));
+        if is_name(text) { Ok(Self(text.to_owned())) } else { Err(error()) }
     }
 
-    /// The name nearest to `text`, for what has a name by its nature, such as a file: other characters become `-`.
-    /// A name stays as it is.
+    /// Returns the valid name nearest to `text`, such as the name of a file: characters that are not allowed become
+    /// `-`. A valid name is unchanged.
     #[must_use]
     pub fn cleaned(text: &str) -> Self {
         let mut clean = String::new();
@@ -57,22 +59,22 @@ impl Name {
         Self(if is_name(&clean) { clean } else { NAMELESS.to_owned() })
     }
 
-    /// The name that a file lends to a set whose configuration names none: that of the file, without folder and ending.
+    /// Returns the name of a file without folder and extension: the default name of its configuration.
     #[must_use]
-    pub fn lent_by(file: &str) -> Self {
+    pub fn from_file_stem(file: &str) -> Self {
         let name = file.rsplit(['/', std::path::MAIN_SEPARATOR]).next().unwrap_or(file);
         Self::cleaned(
             name.rsplit_once('.').map_or(name, |(stem, _)| if stem.is_empty() { name } else { stem }),
         )
     }
 
-    /// The name as text.
+    /// Returns the name as text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
     }
 
-    /// What is accepted, in words.
+    /// Describes the accepted names.
     #[must_use]
     pub fn form() -> String {
         format!(
@@ -104,8 +106,9 @@ impl AsRef<std::path::Path> for Name {
 impl ParameterValue for Name {
     type Bounds = ();
 
-    fn read(value: &Value, (): &()) -> Result<Self, String> {
-        value.as_str().map_or_else(|| Err(format!("give {}, in quotes", Self::form())), Self::new)
+    fn read(value: &Value, (): &()) -> Result<Self, ValueError> {
+        let error = || ValueError::new("not a text", format!("give {}, in quotes", Self::form()));
+        value.as_str().map_or_else(|| Err(error()), Self::new)
     }
 
     fn write(&self) -> Value {
@@ -117,7 +120,7 @@ impl ParameterValue for Name {
     }
 }
 
-/// Letters and digits of any script with the marks that belong to them, as identifiers may have, and a little more.
+/// Whether a name may contain `c`: the characters of Unicode identifiers, spaces, `-`, `.` and `+`.
 fn is_allowed(c: char) -> bool {
     is_xid_continue(c) || " -.+".contains(c)
 }
@@ -125,12 +128,12 @@ fn is_allowed(c: char) -> bool {
 fn is_name(text: &str) -> bool {
     let ends = [text.chars().next(), text.chars().next_back()];
     let has_length = text.len() <= MAX_BYTES && text.chars().count() <= MAX_CHARACTERS;
-    // A dot at its end is lost on Windows, a space at an end is not seen anywhere.
+    // Windows drops a dot at the end, and a space at an end is invisible.
     let has_ends = ends.iter().all(|end| end.is_some_and(|c| c != '.' && c != ' '));
     has_length && has_ends && text.chars().all(is_allowed) && !is_device(text)
 }
 
-/// Whether Windows takes the name for a device.
+/// Whether the name is a device on Windows.
 fn is_device(text: &str) -> bool {
     let stem = text.split('.').next().unwrap_or_default().trim_end().to_ascii_uppercase();
     let numbered = |device: &&str| {
@@ -147,17 +150,17 @@ mod tests {
     use std::path::{Component, Path};
 
     #[test]
-    fn a_file_lends_its_name() {
-        let lent = |file: &str| Name::lent_by(file).as_str().to_owned();
-        assert_eq!(lent("parts/My Part.toml"), "My Part");
-        assert_eq!(lent("my.part.TOML"), "my.part");
-        assert_eq!(lent("three-double"), "three-double");
-        assert_eq!(lent(".toml"), "toml");
-        assert_eq!((lent(""), lent("..")), (NAMELESS.to_owned(), NAMELESS.to_owned()));
+    fn a_file_stem_becomes_a_name() {
+        let stem = |file: &str| Name::from_file_stem(file).as_str().to_owned();
+        assert_eq!(stem("parts/My Part.toml"), "My Part");
+        assert_eq!(stem("my.part.TOML"), "my.part");
+        assert_eq!(stem("three-double"), "three-double");
+        assert_eq!(stem(".toml"), "toml");
+        assert_eq!((stem(""), stem("..")), (NAMELESS.to_owned(), NAMELESS.to_owned()));
     }
 
     #[test]
-    fn names_of_any_script_are_names() {
+    fn names_of_any_script_are_valid() {
         let longest = "ü".repeat(80);
         for good in
             ["three-double", "a b_c.d+e", "スイッチ 3", "переключатель", "स्विच", "7", "x..y", "-x", &longest]
@@ -168,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn paths_are_no_names() {
+    fn paths_are_not_names() {
         let (long, wide) = ("x".repeat(81), "𐍈".repeat(61));
         for bad in [
             "",
@@ -201,7 +204,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_has_a_nearest_name_in_its_folder(text in any::<String>()) {
+        fn any_text_has_a_nearest_name(text in any::<String>()) {
             let name = Name::cleaned(&text);
             prop_assert_eq!(Name::new(&name), Ok(name.clone()));
             let parts: Vec<_> = Path::new(name.as_str()).components().collect();

@@ -1,17 +1,19 @@
-//! One parameter: its unit, range, origin and reason, and how it is read from and written to TOML.
+//! One parameter: its unit, range, origin and reason, and its conversion from and to TOML.
 
 use serde::Serialize;
 use toml_edit::{Array, Value};
 
-/// Where a value comes from.
+use super::ValueError;
+
+/// The origin of a default value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Origin {
     /// Printed in the paper.
     Published,
-    /// Not published; named as an assumption wherever it is shown.
+    /// Not published; marked as an assumption wherever it is shown.
     Assumed,
-    /// A choice of ours, with its reason.
+    /// Chosen by this project, with a reason.
     Chosen,
 }
 
@@ -31,27 +33,29 @@ pub struct Parameter<C> {
     pub section: &'static str,
     /// Key, such as `width_mm`.
     pub key: &'static str,
-    /// Where the default comes from.
+    /// Origin of the default.
     pub origin: Origin,
-    /// Accepted values, in words or as `low..=high`.
+    /// Accepted values, in words or as `low to high`.
     pub range: fn() -> String,
-    /// Least and greatest value of a number; `None` for words and lists.
+    /// Least and greatest value of a number; `None` for texts, choices and lists.
     pub ends: fn() -> Option<[f64; 2]>,
-    /// What it is and why it has this default.
+    /// Every value of a choice as TOML; empty for any other parameter.
+    pub choices: fn() -> Vec<Value>,
+    /// Meaning of the parameter, and the reason for its default.
     pub reason: &'static str,
-    /// The value in a configuration.
+    /// Returns the value in a configuration.
     pub get: fn(&C) -> Value,
-    /// Sets the value, or says what would be accepted.
-    pub set: fn(&mut C, &Value) -> Result<(), String>,
+    /// Sets the value, or returns why it is not accepted.
+    pub set: fn(&mut C, &Value) -> Result<(), ValueError>,
 }
 
 impl<C> Parameter<C> {
-    /// `section.key`, as in a dotted TOML key.
+    /// Returns `section.key`, as in a dotted TOML key.
     pub fn path(&self) -> String {
         if self.section.is_empty() { self.key.to_owned() } else { format!("{}.{}", self.section, self.key) }
     }
 
-    /// The unit, from the key's ending; `1` for a plain number, empty for words.
+    /// Returns the unit that the key ends in; empty for dimensionless numbers, texts, choices and lists.
     pub fn unit(&self) -> &'static str {
         const UNITS: [(&str, &str); 7] = [
             ("_g_cm3", "g/cm3"),
@@ -66,34 +70,53 @@ impl<C> Parameter<C> {
     }
 }
 
+/// A number of a TOML value, whether it is written as a float or as an integer.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
+}
+
 /// A type that a parameter can have.
 pub trait ParameterValue: Sized {
-    /// Bounds of the type: a range for numbers, nothing for words.
+    /// Bounds of the type: a range for numbers, nothing for choices.
     type Bounds;
-    /// Reads a TOML value within bounds, or says what would be accepted.
-    fn read(value: &Value, bounds: &Self::Bounds) -> Result<Self, String>;
-    /// The TOML value.
+    /// Reads a TOML value within bounds.
+    ///
+    /// # Errors
+    /// [`ValueError`] for a value of another type or outside the bounds.
+    fn read(value: &Value, bounds: &Self::Bounds) -> Result<Self, ValueError>;
+    /// Returns the TOML value.
     fn write(&self) -> Value;
-    /// The bounds in words.
+    /// Describes the accepted values.
     fn describe(bounds: &Self::Bounds) -> String;
-    /// The bounds of a number.
+    /// Returns the bounds of a number.
     fn ends(_bounds: &Self::Bounds) -> Option<[f64; 2]> {
         None
+    }
+    /// Returns every value of a choice.
+    fn choices() -> Vec<Value> {
+        Vec::new()
     }
 }
 
 type Range<T> = std::ops::RangeInclusive<T>;
 
+/// The error of a number outside `range`.
+fn outside(range: &str, what: &str) -> ValueError {
+    ValueError::new(format!("outside {range}"), format!("give a {what} from {range}"))
+}
+
 impl ParameterValue for f64 {
     type Bounds = Range<f64>;
 
-    fn read(value: &Value, bounds: &Self::Bounds) -> Result<Self, String> {
-        #[allow(clippy::cast_precision_loss)]
-        let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
-        match number {
+    fn read(value: &Value, bounds: &Self::Bounds) -> Result<Self, ValueError> {
+        let range = Self::describe(bounds);
+        match number(value) {
             Some(number) if bounds.contains(&number) => Ok(number),
-            Some(_) => Err(format!("give a number within {}", Self::describe(bounds))),
-            None => Err(format!("give a number within {}, without quotes", Self::describe(bounds))),
+            Some(_) => Err(outside(&range, "number")),
+            None => {
+                Err(ValueError::new("not a number", format!("give a number from {range}, without quotes")))
+            }
         }
     }
 
@@ -113,11 +136,16 @@ impl ParameterValue for f64 {
 impl ParameterValue for usize {
     type Bounds = Range<usize>;
 
-    fn read(value: &Value, bounds: &Self::Bounds) -> Result<Self, String> {
-        let number = value.as_integer().and_then(|i| usize::try_from(i).ok());
-        number
-            .filter(|n| bounds.contains(n))
-            .ok_or_else(|| format!("give a whole number within {}", Self::describe(bounds)))
+    fn read(value: &Value, bounds: &Self::Bounds) -> Result<Self, ValueError> {
+        let range = Self::describe(bounds);
+        match value.as_integer().map(usize::try_from) {
+            Some(Ok(number)) if bounds.contains(&number) => Ok(number),
+            Some(_) => Err(outside(&range, "whole number")),
+            None => {
+                let help = format!("give a whole number from {range}, without quotes");
+                Err(ValueError::new("not a whole number", help))
+            }
+        }
     }
 
     fn write(&self) -> Value {
@@ -137,8 +165,9 @@ impl ParameterValue for usize {
 impl ParameterValue for bool {
     type Bounds = ();
 
-    fn read(value: &Value, (): &()) -> Result<Self, String> {
-        value.as_bool().ok_or_else(|| "give true or false, without quotes".to_owned())
+    fn read(value: &Value, (): &()) -> Result<Self, ValueError> {
+        let error = || ValueError::new("not a boolean", "give true or false, without quotes");
+        value.as_bool().ok_or_else(error)
     }
 
     fn write(&self) -> Value {
@@ -148,20 +177,25 @@ impl ParameterValue for bool {
     fn describe((): &()) -> String {
         "true or false".to_owned()
     }
+
+    fn choices() -> Vec<Value> {
+        vec![Value::from(false), Value::from(true)]
+    }
 }
 
 impl ParameterValue for String {
     /// Longest accepted text.
     type Bounds = usize;
 
-    fn read(value: &Value, longest: &usize) -> Result<Self, String> {
-        let printable =
-            |text: &&str| text.len() <= *longest && text.chars().all(|c| (' '..='~').contains(&c));
-        value
-            .as_str()
-            .filter(printable)
-            .map(str::to_owned)
-            .ok_or_else(|| format!("give {} in quotes", Self::describe(longest)))
+    fn read(value: &Value, longest: &usize) -> Result<Self, ValueError> {
+        let is_printable = |text: &str| text.chars().all(|c| (' '..='~').contains(&c));
+        let problem = match value.as_str() {
+            None => "not a text",
+            Some(text) if text.len() > *longest => "too long",
+            Some(text) if !is_printable(text) => "not printable ASCII",
+            Some(text) => return Ok(text.to_owned()),
+        };
+        Err(ValueError::new(problem, format!("give {}, in quotes", Self::describe(longest))))
     }
 
     fn write(&self) -> Value {
@@ -176,12 +210,10 @@ impl ParameterValue for String {
 impl ParameterValue for Vec<usize> {
     type Bounds = ();
 
-    fn read(value: &Value, (): &()) -> Result<Self, String> {
+    fn read(value: &Value, (): &()) -> Result<Self, ValueError> {
         let whole = |v: &Value| v.as_integer().and_then(|i| usize::try_from(i).ok());
-        value
-            .as_array()
-            .and_then(|list| list.iter().map(whole).collect())
-            .ok_or_else(|| "give a list of groove numbers such as [5, 8, 11]".to_owned())
+        let error = || ValueError::new("not a list of groove numbers", "give a list such as [5, 8, 11]");
+        value.as_array().and_then(|list| list.iter().map(whole).collect()).ok_or_else(error)
     }
 
     fn write(&self) -> Value {
@@ -193,29 +225,33 @@ impl ParameterValue for Vec<usize> {
     }
 }
 
-/// A choice between words.
+/// A parameter with a fixed set of named values.
 pub trait Choice: Sized + Copy + PartialEq + 'static {
-    /// Every choice with its word.
+    /// Every value with its name.
     const NAMES: &'static [(Self, &'static str)];
 
-    /// The word of this choice.
+    /// Returns the name of this value.
     fn as_str(self) -> &'static str {
-        Self::NAMES.iter().find(|(choice, _)| *choice == self).map_or("", |(_, word)| word)
+        Self::NAMES.iter().find(|(choice, _)| *choice == self).map_or("", |(_, name)| name)
     }
 
-    /// The choice that `word` names; the error lists the words.
-    fn choose(word: Option<&str>) -> Result<Self, String> {
-        let found = Self::NAMES.iter().find(|(_, w)| Some(*w) == word);
-        found.map(|(choice, _)| *choice).ok_or_else(|| format!("give {}", Self::all()))
+    /// Returns the value called `name`.
+    ///
+    /// # Errors
+    /// [`ValueError`] lists the names.
+    fn from_name(name: Option<&str>) -> Result<Self, ValueError> {
+        let choice = Self::NAMES.iter().find(|(_, n)| Some(*n) == name);
+        let error = || ValueError::new("unknown value", format!("give {}", Self::all()));
+        choice.map(|(choice, _)| *choice).ok_or_else(error)
     }
 
-    /// All words, quoted.
+    /// Returns all names, quoted.
     fn all() -> String {
-        Self::NAMES.iter().map(|(_, word)| format!("{word:?}")).collect::<Vec<_>>().join(" or ")
+        Self::NAMES.iter().map(|(_, name)| format!("{name:?}")).collect::<Vec<_>>().join(" or ")
     }
 }
 
-/// Gives an enum names by which a parameter can be set.
+/// Gives the values of an enum the names by which a parameter is set.
 macro_rules! choice_values {
     ($name:ident { $($variant:ident = $word:literal),+ $(,)? }) => {
         impl $crate::config::parameter::Choice for $name {
@@ -224,14 +260,18 @@ macro_rules! choice_values {
 
         impl $crate::config::parameter::ParameterValue for $name {
             type Bounds = ();
-            fn read(value: &toml_edit::Value, (): &()) -> Result<Self, String> {
-                <Self as $crate::config::parameter::Choice>::choose(value.as_str())
+            fn read(value: &toml_edit::Value, (): &()) -> Result<Self, $crate::config::ValueError> {
+                <Self as $crate::config::parameter::Choice>::from_name(value.as_str())
             }
             fn write(&self) -> toml_edit::Value {
                 toml_edit::Value::from($crate::config::parameter::Choice::as_str(*self))
             }
             fn describe((): &()) -> String {
                 <Self as $crate::config::parameter::Choice>::all()
+            }
+            fn choices() -> Vec<toml_edit::Value> {
+                let names = <Self as $crate::config::parameter::Choice>::NAMES.iter();
+                names.map(|(_, name)| toml_edit::Value::from(*name)).collect()
             }
         }
     };
@@ -280,6 +320,7 @@ macro_rules! configuration {
                     origin: $crate::config::parameter::Origin::$origin,
                     range: || <$Type as $crate::config::parameter::ParameterValue>::describe(&$bounds),
                     ends: || <$Type as $crate::config::parameter::ParameterValue>::ends(&$bounds),
+                    choices: <$Type as $crate::config::parameter::ParameterValue>::choices,
                     reason: $reason,
                     get: |c| $crate::config::parameter::ParameterValue::write(&c.$table.$field),
                     set: |c, value| {

@@ -17,19 +17,19 @@ choice! {
 }
 
 choice! {
-    /// How deep the slots of the side supports are.
+    /// Depth of the slots of the side supports.
     SlotKind {
-        /// With a floor that holds the pins axially.
+        /// With a floor that retains the pins axially.
         Blind = "blind",
-        /// Right through the plate.
+        /// Through the whole plate.
         Through = "through",
     }
 }
 
 choice! {
-    /// How the casting mould is built.
+    /// Type of the casting mould.
     MouldKind {
-        /// Core, ring and lid with keys: comes apart.
+        /// Core, ring and lid, registered by keys.
         Split = "split",
         /// A tray in one piece.
         OnePiece = "one-piece",
@@ -39,21 +39,21 @@ choice! {
 }
 
 choice! {
-    /// How the views of a drawing are arranged.
+    /// Arrangement of the views of a drawing.
     Projection {
-        /// What is seen from above lies below.
+        /// First angle: the top view is below the front view.
         First = "first",
-        /// What is seen from above lies above.
+        /// Third angle: the top view is above the front view.
         Third = "third",
     }
 }
 
 choice! {
-    /// How shell and side supports are joined.
+    /// Type of the joint between shell and side supports.
     FastenerKind {
-        /// Screws right through, with nuts outside.
+        /// Through screws with nuts outside.
         Screw = "screw",
-        /// The same, the nuts caught in the right support.
+        /// Through screws with nuts in traps of the right support.
         NutTrap = "nut-trap",
         /// Short screws from both sides into heat-set inserts in the shell.
         Insert = "insert",
@@ -61,7 +61,7 @@ choice! {
 }
 
 choice! {
-    /// Smallest paper of a drawing.
+    /// Smallest sheet size of a drawing.
     Paper {
         /// 297 x 210 mm.
         A4 = "a4",
@@ -71,13 +71,13 @@ choice! {
 }
 
 choice! {
-    /// What the switch is mounted by.
+    /// Type of the mounting plate.
     MountKind {
-        /// Nothing: the screws alone.
+        /// No plate.
         None = "none",
         /// A base plate with four holes.
         Flange = "flange",
-        /// A link of a finger: two bores at a given distance.
+        /// A finger link with two bores at a given distance.
         FingerLink = "finger-link",
         /// The plate of a test rig, with the guide pulley.
         Rig = "rig",
@@ -85,17 +85,17 @@ choice! {
 }
 
 configuration! {
-    /// A configuration whose every value lies in its range; [`crate::design::Design`] is one that can also be built.
+    /// A configuration with every value in its range. [`crate::design::Design`] is one that also satisfies the rules.
     Configuration {
         /// The switch as a whole.
         switch: SwitchTable {
             name: Name = Name::cleaned("switch"), (), Chosen, "names the output folder and the plots";
         }
-        /// Pins, tendon contact and what lies under them.
+        /// Pins, substrate and wrap of the tendon.
         layout: LayoutTable {
             pins: Vec<usize> = Vec::new(), (), Published, "occupied grooves, numbered from 1 along increasing angle; [] leaves the substrate bare";
             substrate: Substrate = Substrate::Silicone, (), Published, "silicone for the switch; abs for the rigid proxy, on which the pins alone carry the tendon";
-            wrap_angle_deg: f64 = published::WRAP_ANGLE_DEG, 1.0..=340.0, Published, "angle over which the tendon touches; 63.89 in every experiment";
+            wrap_angle_deg: f64 = published::WRAP_ANGLE_DEG, 1.0..=340.0, Published, "wrap angle of the tendon; 63.89 in every experiment";
         }
         /// The grooved sector.
         segment: SegmentTable {
@@ -106,58 +106,58 @@ configuration! {
         }
         /// The rigid shell.
         shell: ShellTable {
-            outer_radius_mm: f64 = 20.0, 5.0..=150.0, Assumed, "radius on which the silicone lies; puts the contact at 22 mm, the only radius that the paper gives";
-            wall_mm: f64 = 8.5, 1.0..=60.0, Assumed, "radial thickness; 8.5 takes M3 nut traps and inserts with 1 mm of wall around them under the grooves";
+            outer_radius_mm: f64 = 20.0, 5.0..=150.0, Assumed, "radius of the face under the silicone; places the contact at 22 mm, the only radius in the paper";
+            wall_mm: f64 = 8.5, 1.0..=60.0, Assumed, "radial thickness; 8.5 has room under the grooves for M3 nut traps and inserts with 1 mm of wall around them";
             width_mm: f64 = 14.0, 2.0..=100.0, Assumed, "width along the axis";
-            stop_mm: f64 = 1.0, 0.0..=5.0, Chosen, "thickness of the stops beyond both ends of the layer, which cannot slide along the shell; 0 leaves them out";
+            stop_mm: f64 = 1.0, 0.0..=5.0, Chosen, "thickness of the stops beyond both ends of the layer, which keep it from sliding; 0 omits them";
             stop_height_mm: f64 = 0.8, 0.2..=5.0, Chosen, "height of the stops above the shell's face, at most 0.2 below the silicone's surface";
         }
         /// Axial holes that join shell and side supports.
         fasteners: FastenersTable {
-            kind: FastenerKind = FastenerKind::NutTrap, (), Chosen, "nuts caught in the right support need no second wrench; inserts need a soldering iron";
-            count: usize = 2, 0..=12, Chosen, "number of through holes; 0 leaves them out";
+            kind: FastenerKind = FastenerKind::NutTrap, (), Chosen, "nuts in traps need no second wrench; inserts need a soldering iron";
+            count: usize = 2, 0..=12, Chosen, "number of through holes; 0 omits them";
             hole_diameter_mm: f64 = 3.4, 1.0..=12.0, Chosen, "clearance hole: 3.4 for M3, 2.4 for M2";
-            end_distance_mm: f64 = 3.0, 1.0..=40.0, Chosen, "from the ends of the sector to the middle of the outermost holes, along the arc";
-            nut_recess_mm: f64 = 1.5, 0.0..=10.0, Chosen, "depth of the nut traps, left out where they do not fit; half the default plate, so that the other half carries";
-            head_recess_mm: f64 = 0.0, 0.0..=10.0, Chosen, "depth of counterbores for the screw heads, left out where they do not fit; 0 for heads that stand out";
-            dowel_diameter_mm: f64 = 0.0, 0.0..=6.0, Chosen, "steel dowels that register shell and supports beside the outermost screws; 0 leaves them out";
+            end_distance_mm: f64 = 3.0, 1.0..=40.0, Chosen, "distance along the arc from the ends of the sector to the centres of the outermost holes";
+            nut_recess_mm: f64 = 1.5, 0.0..=10.0, Chosen, "depth of the nut traps, omitted where they do not fit; half the default plate, the other half carries the load";
+            head_recess_mm: f64 = 0.0, 0.0..=10.0, Chosen, "depth of counterbores for the screw heads, omitted where they do not fit; 0 for protruding heads";
+            dowel_diameter_mm: f64 = 0.0, 0.0..=6.0, Chosen, "steel dowels next to the outermost screws that register shell and supports; 0 omits them";
         }
         /// The cast layer.
         silicone: SiliconeTable {
             thickness_mm: f64 = 2.0, 0.3..=10.0, Published, "thickness of the layer";
             side_clearance_mm: f64 = 0.2, 0.0..=1.0, Chosen, "gap to each side support; the layer must bulge without rubbing";
-            hardness_shore_a: f64 = 50.0, 10.0..=80.0, Published, "Sylgard 184 after a hot cure; moves friction, by the stiffness that Gent's formula gives it";
+            hardness_shore_a: f64 = 50.0, 10.0..=80.0, Published, "Sylgard 184 after a hot cure; affects friction through the stiffness from Gent's formula";
             density_g_cm3: f64 = 1.03, 0.8..=1.5, Assumed, "cured Sylgard 184";
             mix_ratio: f64 = 10.0, 1.0..=20.0, Published, "base to curing agent by mass";
-            waste_factor: f64 = 1.3, 1.0..=3.0, Chosen, "what stays in cup and syringe";
-            least_mix_g: f64 = 11.0, 0.0..=100.0, Chosen, "below it, a scale of 0.1 g cannot weigh 10:1";
+            waste_factor: f64 = 1.3, 1.0..=3.0, Chosen, "allowance for silicone left in cup and syringe";
+            least_mix_g: f64 = 11.0, 0.0..=100.0, Chosen, "below it, a scale with 0.1 g resolution cannot weigh 10:1";
         }
         /// The steel pins.
         pins: PinsTable {
             diameter_mm: f64 = 0.94, 0.1..=5.0, Published, "polished tin-plated steel";
-            tolerance_mm: f64 = 0.01, 0.0..=0.2, Published, "of the diameter";
+            tolerance_mm: f64 = 0.01, 0.0..=0.2, Published, "tolerance of the diameter";
             end_play_mm: f64 = 0.2, 0.0..=2.0, Chosen, "axial play between the two slot floors";
-            spares: usize = 1, 0..=20, Chosen, "pins to cut beyond those in use";
+            spares: usize = 1, 0..=20, Chosen, "spare pins to cut";
         }
         /// The tendon.
         tendon: TendonTable {
             rope_diameter_mm: f64 = 1.2, 0.1..=6.0, Published, "the paper's 1.2 mm \"radius\" read as diameter: 2.4 mm rope would carry four times the published 850 N";
             coating_mm: f64 = 0.25, 0.0..=2.0, Published, "polyamide-12 coating, on the radius";
-            length_mm: f64 = 300.0, 10.0..=10000.0, Chosen, "to cut, for the bill of materials";
-            entry_fillet_mm: f64 = 0.45, 0.0..=3.0, Chosen, "rounds the stops where the tendon comes in and leaves, at most to 0.45 of their thickness; a sharp edge would cut the coating";
-            sheath_diameter_mm: f64 = 0.0, 0.0..=10.0, Chosen, "outer diameter of a sheath that ends in a stop on the mounting plate, on the side away from the load; 0 for none";
+            length_mm: f64 = 300.0, 10.0..=10000.0, Chosen, "length to cut, for the bill of materials";
+            entry_fillet_mm: f64 = 0.45, 0.0..=3.0, Chosen, "fillet of the stops where the tendon enters and leaves, at most 0.45 of their thickness; a sharp edge would cut the coating";
+            sheath_diameter_mm: f64 = 0.0, 0.0..=10.0, Chosen, "outer diameter of a sheath that ends in a stop on the mounting plate, on the side away from the load; 0 for no sheath";
         }
         /// The two side supports.
         support: SupportTable {
             plate_mm: f64 = 3.0, 0.8..=20.0, Chosen, "thickness of the plates";
-            slots: Slots = Slots::All, (), Chosen, "all lets pins be moved; occupied makes the layout foolproof";
-            slot_kind: SlotKind = SlotKind::Blind, (), Chosen, "blind slots hold the pins axially; through slots let them be changed from outside";
-            slot_clearance_mm: f64 = 0.2, 0.1..=0.4, Chosen, "slot width beyond the pin; under 0.1 slicers close the slot, over 0.4 the pin walks";
-            slot_floor_mm: f64 = 0.9, 0.2..=5.0, Chosen, "what is left under a blind slot";
+            slots: Slots = Slots::All, (), Chosen, "all lets pins be moved; occupied prevents wrong layouts";
+            slot_kind: SlotKind = SlotKind::Blind, (), Chosen, "blind slots retain the pins axially; through slots let them be changed from outside";
+            slot_clearance_mm: f64 = 0.2, 0.1..=0.4, Chosen, "slot width beyond the pin; under 0.1 slicers close the slot, over 0.4 the pin has too much play";
+            slot_floor_mm: f64 = 0.9, 0.2..=5.0, Chosen, "thickness of the plate under a blind slot";
             travel_margin_mm: f64 = 0.2, 0.0..=2.0, Chosen, "travel beyond the pin's flush position";
-            rise_mm: f64 = 2.55, 0.5..=20.0, Chosen, "plate above the resting pins; 1.5 tendon diameters keep the tendon in";
-            corner_radius_mm: f64 = 1.5, 0.0..=5.0, Chosen, "rounds the outer corners, which would cut the coating";
-            lip_depth_mm: f64 = 0.8, 0.0..=5.0, Chosen, "how far the lip reaches over the edge of the silicone; 0 leaves it out";
+            rise_mm: f64 = 2.55, 0.5..=20.0, Chosen, "height of the plate above the resting pins; 1.5 tendon diameters retain the tendon";
+            corner_radius_mm: f64 = 1.5, 0.0..=5.0, Chosen, "radius of the outer corners; sharp ones would cut the coating";
+            lip_depth_mm: f64 = 0.8, 0.0..=5.0, Chosen, "depth of the lip over the edge of the silicone; 0 omits it";
             lip_height_mm: f64 = 0.9, 0.4..=5.0, Chosen, "radial thickness of the lip: two printed lines";
             lip_clearance_mm: f64 = 0.2, 0.0..=2.0, Chosen, "gap between lip and resting silicone";
         }
@@ -168,18 +168,18 @@ configuration! {
             floor_mm: f64 = 3.0, 0.8..=20.0, Chosen, "floor, base plate and lid";
             overfill_mm: f64 = 1.0, 0.0..=10.0, Chosen, "one-piece: height of the basin above the layer; cut the layer along its ledge";
             layers: usize = 1, 1..=12, Chosen, "one-piece: layers cast at once; 11 g are mixed, and one layer takes 1 g";
-            draft_deg: f64 = 0.0, 0.0..=5.0, Chosen, "one-piece: slant of the basin's walls, whose silicone is cut off; the walls that shape the layer stay upright";
+            draft_deg: f64 = 0.0, 0.0..=5.0, Chosen, "one-piece: draft of the basin's walls, whose silicone is cut off; the walls that shape the layer are vertical";
             shrinkage_pct: f64 = 0.0, 0.0..=3.0, Chosen, "linear shrinkage of the silicone: 0 when cured at 25 C, about 1 at 60 to 80 C";
             clearance_mm: f64 = 0.2, 0.05..=0.5, Chosen, "print clearance between parts of the split mould, per side";
-            key_diameter_mm: f64 = 3.0, 1.5..=10.0, Chosen, "foot of the keys that register the parts";
+            key_diameter_mm: f64 = 3.0, 1.5..=10.0, Chosen, "diameter at the foot of the keys that register the parts";
             key_height_mm: f64 = 2.5, 0.5..=10.0, Chosen, "height of the keys";
-            pour_width_mm: f64 = 6.0, 1.0..=20.0, Chosen, "mouth of the lid's pouring funnel";
-            vent_diameter_mm: f64 = 1.5, 0.5..=4.0, Chosen, "vents at both ends of the lid, no wider than the cavity allows";
+            pour_width_mm: f64 = 6.0, 1.0..=20.0, Chosen, "width of the lid's pouring funnel at its mouth";
+            vent_diameter_mm: f64 = 1.5, 0.5..=4.0, Chosen, "diameter of the vents at both ends of the lid, at most the width of the cavity";
         }
-        /// What the switch is mounted by: a plate beside the left support, held by the same screws.
+        /// The mounting plate next to the left support, fastened by the same screws.
         mount: MountTable {
-            kind: MountKind = MountKind::None, (), Chosen, "flange, finger-link or rig; none leaves the two screws for a support of your own";
-            plate_mm: f64 = 7.0, 2.0..=20.0, Chosen, "thickness of the plate; 7 lets the heads of M5 screws and of the rig's M8 bolt sink";
+            kind: MountKind = MountKind::None, (), Chosen, "flange, finger-link or rig; with none, the two screws fasten the switch to a user-defined support";
+            plate_mm: f64 = 7.0, 2.0..=20.0, Chosen, "thickness of the plate; 7 has room for the heads of M5 screws and of the rig's M8 bolt";
             hole_diameter_mm: f64 = 4.5, 2.0..=12.0, Chosen, "mounting holes, and bores of a finger link: 4.5 for M4 (ISO 273)";
             rim_mm: f64 = 3.0, 1.0..=20.0, Chosen, "wall around every hole of the plate";
             bore_distance_mm: f64 = 45.0, 5.0..=300.0, Chosen, "finger-link: distance between the two bores";
@@ -187,7 +187,7 @@ configuration! {
             bore_offset_mm: f64 = 0.0, -100.0..=100.0, Chosen, "finger-link: from the pulley's axis to the line between the bores, towards the wrap";
             pulley_distance_mm: f64 = 70.0, 20.0..=500.0, Chosen, "rig: from the switch's axis to that of the guide pulley, along the tendon";
         }
-        /// Parts beside shell, supports and mould.
+        /// Optional parts.
         parts: PartsTable {
             proxy: bool = true, (), Published, "the rigid proxy of the silicone layer";
             coupon: bool = true, (), Chosen, "fit coupon: slots of 0.10 to 0.40 mm clearance and three grooves";
@@ -195,10 +195,10 @@ configuration! {
         }
         /// The engraved label.
         label: LabelTable {
-            engrave: bool = true, (), Chosen, "tells printed variants apart; left out, with a warning, where it does not fit";
+            engrave: bool = true, (), Chosen, "identifies printed variants; omitted with a warning where it does not fit";
             text: String = String::new(), 12, Chosen, "empty: pins x step / first groove, such as 3x3/5";
             height_mm: f64 = 3.2, 1.5..=10.0, Chosen, "height of the letters";
-            stroke_mm: f64 = 0.45, 0.3..=2.0, Chosen, "width of the strokes, at least one printed line";
+            stroke_mm: f64 = 0.45, 0.3..=2.0, Chosen, "stroke width, at least one printed line";
             depth_mm: f64 = 0.4, 0.1..=2.0, Chosen, "two layers";
         }
         /// The printer.
@@ -207,19 +207,19 @@ configuration! {
             line_mm: f64 = 0.45, 0.1..=1.5, Chosen, "extrusion width";
             layer_mm: f64 = 0.2, 0.05..=0.6, Chosen, "layer height";
             least_wall_mm: f64 = 0.45, 0.1..=3.0, Chosen, "thinnest wall or land that is accepted: one printed line; under two lines it warns";
-            elephant_foot_mm: f64 = 0.0, 0.0..=1.0, Chosen, "45 degree chamfer on bottom edges; slicers compensate 0.2 by default: set the one or the other";
+            elephant_foot_mm: f64 = 0.0, 0.0..=1.0, Chosen, "45 degree chamfer on bottom edges; slicers compensate 0.2 by default: use one of the two";
             bed_mm: f64 = 250.0, 50.0..=2000.0, Chosen, "side of the print bed";
             abs_density_g_cm3: f64 = 1.04, 0.5..=3.0, Assumed, "for the mass of the printed parts";
         }
         /// The mesh.
         mesh: MeshTable {
-            chord_tolerance_mm: f64 = 0.01, 1e-4..=0.1, Chosen, "largest distance between mesh and true curve, absolute";
+            chord_tolerance_mm: f64 = 0.01, 1e-4..=0.1, Chosen, "largest absolute distance between mesh and true curve";
         }
         /// The drawing.
         drawing: DrawingTable {
             projection: Projection = Projection::First, (), Chosen, "first angle as in Europe and Asia, third as in North America";
-            paper: Paper = Paper::A4, (), Chosen, "size of the sheets; what finds no room on a4 gets a3";
-            date: String = String::new(), 20, Chosen, "for the title block; empty: no date, and the same bytes every day";
+            paper: Paper = Paper::A4, (), Chosen, "sheet size; a part that does not fit on a4 gets a3";
+            date: String = String::new(), 20, Chosen, "for the title block; empty for no date, which keeps the bytes reproducible";
         }
         /// The predicted curve.
         friction: FrictionTable {

@@ -1,22 +1,26 @@
-//! Reading a configuration from TOML: every error names file, line, field, value, bound and remedy.
+//! Reading a configuration from TOML. Every error names the field, and its place in the text.
 
 use std::ops::Range;
 
+use pinswitch_diagnostic::{Change, Diagnostic, Location};
 use toml_edit::{Document, Item, TableLike, Value};
 
-use super::parameter::Parameter;
+use super::error::{field_location, syntax_error};
+use super::parameter::{Parameter, number};
 use super::parameters::Configuration;
-use super::{ConfigError, Place};
+
+/// Similarity (Jaro-Winkler) from which a known word is suggested for an unknown one.
+const SIMILAR: f64 = 0.7;
 
 /// Reads `text`; `file` names it in errors.
 ///
 /// # Errors
-/// [`ConfigError`] for text that is no TOML, an unknown key, or a value out of its range.
-pub fn read(text: &str, file: &str) -> Result<(Configuration, Places), ConfigError> {
+/// A [`Diagnostic`] for invalid TOML, an unknown key, or a value that its field does not accept.
+pub fn read(text: &str, file: &str) -> Result<(Configuration, FieldLocations), Diagnostic> {
     read_over(Configuration::default(), text, file)
 }
 
-/// Reads `text` over `base`, such as a preset: every value that the text sets wins, also one that is the default.
+/// Reads `text` over `base`, such as a preset: every value in the text replaces that of `base`, defaults too.
 ///
 /// # Errors
 /// As [`read`].
@@ -24,168 +28,208 @@ pub fn read_over(
     base: Configuration,
     text: &str,
     file: &str,
-) -> Result<(Configuration, Places), ConfigError> {
-    let at = |span: Option<Range<usize>>| Place::new(file, text, span.map_or(0, |s| s.start));
-    let document: Document<String> =
-        text.parse().map_err(|e: toml_edit::TomlError| ConfigError::syntax(at(e.span()), e.message()))?;
-    let mut configuration = base;
-    let mut places = Places::default();
-    for (table, item) in document.as_table().iter() {
-        let place = at(key_span(document.as_table(), table));
-        let entries = item.as_table_like().filter(|_| sections().contains(&table)).ok_or_else(|| {
-            another_kind(document.as_table(), &place).unwrap_or_else(|| no_table(table, item, place.clone()))
-        })?;
-        for (key, item) in entries.iter() {
-            let place = at(item.span().or_else(|| key_span(entries, key)));
-            let parameter = find(table, key, at(key_span(entries, key)))?;
-            let value = item.as_value().ok_or_else(|| {
-                ConfigError::new(parameter.path(), display(item), "give a single value".to_owned())
-                    .at(place.clone())
-            })?;
-            set(&mut configuration, parameter, value).map_err(|e| e.at(place.clone()))?;
-            places.0.push((parameter.path(), place));
-        }
+) -> Result<(Configuration, FieldLocations), Diagnostic> {
+    let reading = read_clamped(base, text, file)?;
+    match reading.out_of_range.into_iter().next() {
+        Some(error) => Err(error),
+        None => Ok((reading.configuration, reading.locations)),
     }
-    Ok((configuration, places))
 }
 
-/// Sets `section.key=value` in `configuration`, as `--set` does.
+/// A text read as a configuration, with each number outside the range of its field replaced by the nearest end of the
+/// range.
+#[derive(Clone, Debug)]
+pub struct ClampedReading {
+    /// The configuration; all values lie in their ranges.
+    pub configuration: Configuration,
+    /// Locations of the values in the text.
+    pub locations: FieldLocations,
+    /// Errors of the numbers that were replaced, in the order of the text.
+    pub out_of_range: Vec<Diagnostic>,
+}
+
+/// Reads `text` over `base` as [`read_over`] does, and clamps numbers to the ranges of their fields.
 ///
 /// # Errors
-/// [`ConfigError`] for an unknown key or a value out of its range.
-pub fn assign(configuration: &mut Configuration, assignment: &str) -> Result<(), ConfigError> {
-    let place = Place { file: "--set".to_owned(), line: None };
-    let (path, value) = assignment.split_once('=').ok_or_else(|| {
-        ConfigError::syntax(place.clone(), &format!("{assignment:?} is no assignment; write table.key=value"))
-    })?;
-    let (table, key) =
-        path.trim().split_once('.').ok_or_else(|| no_field(path.trim(), value.trim(), place.clone()))?;
-    if !sections().contains(&table) {
-        return Err(unknown(table, &sections(), "table", place));
+/// As [`read`], apart from numbers out of range.
+pub fn read_clamped(base: Configuration, text: &str, file: &str) -> Result<ClampedReading, Diagnostic> {
+    let mut reading = ClampedReading {
+        configuration: base,
+        locations: FieldLocations::default(),
+        out_of_range: Vec::new(),
+    };
+    match read_into(&mut reading, text, file) {
+        // The first error of the text comes first, whatever its kind.
+        Err(error) => Err(reading.out_of_range.into_iter().next().unwrap_or(error)),
+        Ok(()) => Ok(reading),
     }
-    let parameter = find(table, key, place.clone())?;
-    // A bare word is taken as text, so that --set support.slots=occupied works without quotes in quotes.
-    let value = value.trim().parse::<Value>().unwrap_or_else(|_| Value::from(value.trim()));
-    set(configuration, parameter, &value).map_err(|e| e.at(place))
 }
 
-/// The error of an assignment to a name without a table, or to a table.
-fn no_field(name: &str, value: &str, place: Place) -> ConfigError {
-    let of = |is_meant: &dyn Fn(&Parameter<Configuration>) -> bool| {
+fn read_into(reading: &mut ClampedReading, text: &str, file: &str) -> Result<(), Diagnostic> {
+    let at = |span: Option<Range<usize>>| Location::in_text(file, text, span.unwrap_or(0..0));
+    let document: Document<String> =
+        text.parse().map_err(|e: toml_edit::TomlError| syntax_error(at(e.span()), e.message()))?;
+    for (table, item) in document.as_table().iter() {
+        let location = at(key_span(document.as_table(), table));
+        let entries = item.as_table_like().filter(|_| sections().contains(&table)).ok_or_else(|| {
+            other_kind_of_file(document.as_table(), file)
+                .unwrap_or_else(|| not_a_table(table, item))
+                .or_at(&location)
+        })?;
+        for (key, item) in entries.iter() {
+            let parameter = find(table, key).map_err(|e| e.or_at(&at(key_span(entries, key))))?;
+            let location = at(item.span().or_else(|| key_span(entries, key)));
+            let value = item.as_value().ok_or_else(|| {
+                Diagnostic::new("not a single value")
+                    .with_help(format!("give {}", (parameter.range)()))
+                    .with_location(Location::field(parameter.path(), item.type_name()))
+                    .or_at(&location)
+            })?;
+            if let Err(error) = set(&mut reading.configuration, parameter, value) {
+                let error = error.or_at(&location);
+                match error.changes().first().and_then(|change| change.value.parse::<Value>().ok()) {
+                    Some(nearest) if (parameter.set)(&mut reading.configuration, &nearest).is_ok() => {
+                        reading.out_of_range.push(error);
+                    }
+                    _ => return Err(error),
+                }
+            }
+            reading.locations.0.push((parameter.path(), location));
+        }
+    }
+    Ok(())
+}
+
+/// Sets a value from `section.key=value`, as `--set` does.
+///
+/// # Errors
+/// A [`Diagnostic`] without a file for an unknown key or a value that the field does not accept.
+pub fn assign(configuration: &mut Configuration, assignment: &str) -> Result<(), Diagnostic> {
+    let Some((path, value)) = assignment.split_once('=') else {
+        let problem = format!("{assignment:?} is not an assignment");
+        return Err(Diagnostic::new(problem).with_help("write TABLE.KEY=VALUE"));
+    };
+    let (path, value) = (path.trim(), value.trim());
+    let (table, key) = path.split_once('.').ok_or_else(|| incomplete_path(path, value))?;
+    if !sections().contains(&table) {
+        return Err(unknown(table, &sections(), "table"));
+    }
+    let parameter = find(table, key)?;
+    // A bare word is a text: --set support.slots=occupied needs no quotes within quotes.
+    let value = value.parse::<Value>().unwrap_or_else(|_| Value::from(value));
+    set(configuration, parameter, &value)
+}
+
+/// The error of an assignment to a table, or to a key without its table.
+fn incomplete_path(name: &str, value: &str) -> Diagnostic {
+    let path_of = |is_meant: &dyn Fn(&Parameter<Configuration>) -> bool| {
         Configuration::PARAMETERS.iter().find(|p| is_meant(p)).map(Parameter::path)
     };
-    let remedy = match (of(&|p| p.section == name), of(&|p| p.key == name)) {
-        (Some(path), _) => format!("it is a table: set one of its values, as in --set {path}={value}"),
-        (None, Some(path)) => format!("write it with its table, as in --set {path}={value}"),
-        (None, None) => format!("write TABLE.KEY=VALUE; tables are {}", sections().join(", ")),
+    let (problem, help) = match (path_of(&|p| p.section == name), path_of(&|p| p.key == name)) {
+        (Some(path), _) => ("a table, not a value", format!("set one of its values: --set {path}={value}")),
+        (None, Some(path)) => ("key without its table", format!("write --set {path}={value}")),
+        (None, None) => {
+            let problem = if name.is_empty() { "no field before '='" } else { "unknown field" };
+            (problem, format!("write TABLE.KEY=VALUE; the tables are {}", sections().join(", ")))
+        }
     };
-    ConfigError {
-        field: if name.is_empty() { "the name before '='".to_owned() } else { name.to_owned() },
-        value: None,
-        problem: if name.is_empty() { "is missing" } else { "is no field" }.to_owned(),
-        remedy,
-        changes: Vec::new(),
-        place: Some(place),
-    }
+    let error = Diagnostic::new(problem).with_help(help);
+    if name.is_empty() { error } else { error.with_location(field_location(name)) }
 }
 
 impl Configuration {
-    /// The value of the parameter called `path`, as a person would write it; `None` for no parameter.
+    /// Returns the value of the parameter called `path` as a person would write it; `None` for an unknown parameter.
     pub fn shown(&self, path: &str) -> Option<String> {
         let parameter = Self::PARAMETERS.iter().find(|p| p.path() == path)?;
-        Some(match (parameter.get)(self) {
-            Value::Float(number) => number.value().to_string(),
-            other => other.decorated("", "").to_string(),
-        })
+        Some(shown(&(parameter.get)(self)))
     }
 }
 
-/// The place of each value that a file sets.
+/// A TOML value as a person would write it: `8.5`, `15`, `"screw"`; whole floats without a decimal point.
+pub(crate) fn shown(value: &Value) -> String {
+    match value {
+        Value::Float(number) => number.value().to_string(),
+        other => other.clone().decorated("", "").to_string(),
+    }
+}
+
+/// Locations of the values that a file sets.
 #[derive(Clone, Debug, Default)]
-pub struct Places(Vec<(String, Place)>);
+pub struct FieldLocations(Vec<(String, Location)>);
 
-impl Places {
+impl FieldLocations {
     /// Whether the file sets `field`.
-    pub fn sets(&self, field: &str) -> bool {
-        self.of(field).is_some()
+    pub fn contains(&self, field: &str) -> bool {
+        self.get(field).is_some()
     }
 
-    /// The place of `field`, if the file sets it.
-    pub fn of(&self, field: &str) -> Option<&Place> {
-        self.0.iter().find(|(path, _)| path == field).map(|(_, place)| place)
+    /// Returns the location of the value of `field`, if the file sets it.
+    pub fn get(&self, field: &str) -> Option<&Location> {
+        self.0.iter().find(|(path, _)| path == field).map(|(_, location)| location)
     }
 }
 
-fn set(
-    c: &mut Configuration,
-    parameter: &Parameter<Configuration>,
-    value: &Value,
-) -> Result<(), ConfigError> {
-    (parameter.set)(c, value).map_err(|remedy| ConfigError {
-        changes: nearest(parameter, value).into_iter().collect(),
-        ..ConfigError::new(parameter.path(), value.clone().decorated("", "").to_string(), remedy)
+fn set(c: &mut Configuration, parameter: &Parameter<Configuration>, value: &Value) -> Result<(), Diagnostic> {
+    (parameter.set)(c, value).map_err(|error| {
+        error
+            .in_field(parameter.path(), value.clone().decorated("", "").to_string())
+            .with_changes(nearest(parameter, value).into_iter().collect())
     })
 }
 
-/// The nearest number that `parameter` takes, as the change that mends a number beyond its ends.
-fn nearest(parameter: &Parameter<Configuration>, value: &Value) -> Option<(String, String)> {
-    #[allow(clippy::cast_precision_loss)]
-    let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64))?;
+/// The change of a number outside its range to the nearest end of the range.
+fn nearest(parameter: &Parameter<Configuration>, value: &Value) -> Option<Change> {
+    let number = number(value).filter(|number| !number.is_nan())?;
     let [low, high] = (parameter.ends)()?;
-    let taken = if number.is_nan() { return None } else { number.clamp(low, high) };
-    // What lies between them and is refused nevertheless, such as 3.5 grooves, words alone mend.
-    (taken != number).then(|| (parameter.path(), taken.to_string()))
+    let clamped = number.clamp(low, high);
+    // A number within the range is refused for its type, such as 3.5 grooves.
+    (clamped != number).then(|| Change { field: parameter.path(), value: clamped.to_string() })
 }
 
-/// The error of a name at the top that is none of a table, or holds none.
-fn no_table(name: &str, item: &Item, place: Place) -> ConfigError {
+/// The error of a name at the top level that is not a table of a configuration.
+fn not_a_table(name: &str, item: &Item) -> Diagnostic {
     if !sections().contains(&name) {
-        return unknown(name, &sections(), "table", place);
+        return unknown(name, &sections(), "table");
     }
-    ConfigError::new(name, display(item), format!("write it as a table: [{name}]")).at(place)
+    Diagnostic::new("not a table")
+        .with_location(Location::field(name, item.type_name()))
+        .with_help(format!("write it as a table: [{name}]"))
 }
 
-/// Tables and keys that only another kind of file has, with what it is and which command reads it (FILE stands for it).
+/// Names that only another kind of file has at its top level, the kind, and the command that reads it.
 const OTHER_KINDS: [(&[&str], &str, &str); 7] = [
-    (&["sweep", "axes", "constraints", "set"], "a sweep", "`pinswitch batch FILE` makes its variants"),
-    (&["ask"], "an ask for a design", "`pinswitch design --ask FILE` reads it"),
-    (&["effect"], "a file of effects", "`pinswitch calibrate TABLE --effects FILE` reads it"),
+    (&["sweep", "axes", "constraints", "set"], "a sweep", "run `pinswitch batch FILE`"),
+    (&["ask"], "a request for a design", "run `pinswitch design --ask FILE`"),
+    (&["effect"], "a file of effects", "run `pinswitch calibrate TABLE --effects FILE`"),
     (
         &["effects", "noise", "protocol", "weights_g", "repetitions", "constants"],
         "a rig to simulate",
-        "`pinswitch simulate FILE` reads it",
+        "run `pinswitch simulate FILE`",
     ),
-    (&["series", "rig"], "a run with its logs", "`pinswitch segment FILE` reads it"),
+    (&["series", "rig"], "a run with its logs", "run `pinswitch segment FILE`"),
     (
         &["loads_g", "minutes_per_load_change", "minutes_per_mount_change"],
-        "what a rig can do",
-        "`pinswitch experiment DIR --rig FILE` reads it",
+        "the description of a rig",
+        "run `pinswitch experiment DIR --rig FILE`",
     ),
     (
         &["schema"],
         "a file that pinswitch wrote",
-        "a model.toml goes with `--model FILE`, discovered.toml with `calibrate TABLE --effects FILE`",
+        "give a model.toml to `--model FILE`, a discovered.toml to `calibrate TABLE --effects FILE`",
     ),
 ];
 
-/// Says so where a whole file is of another kind. One that has a table of a configuration is a configuration, with a word in it that
-/// is none.
-fn another_kind(document: &dyn TableLike, place: &Place) -> Option<ConfigError> {
+/// The error of a file of another kind; `None` for a file with a table of a configuration, where a single name is wrong.
+fn other_kind_of_file(document: &dyn TableLike, file: &str) -> Option<Diagnostic> {
     let has_table = |section: &&str| document.get(section).is_some_and(Item::is_table_like);
     if sections().iter().any(has_table) {
         return None;
     }
-    let (key, kind, remedy) = OTHER_KINDS.iter().find_map(|(keys, kind, remedy)| {
-        keys.iter().find(|key| document.contains_key(key)).map(|key| (key, kind, remedy))
+    let (key, kind, help) = OTHER_KINDS.iter().find_map(|(keys, kind, help)| {
+        keys.iter().find(|key| document.contains_key(key)).map(|key| (key, kind, help))
     })?;
-    Some(ConfigError {
-        field: (*key).to_owned(),
-        value: None,
-        problem: format!("is of no configuration: this is {kind}"),
-        remedy: remedy.replace("FILE", &place.file),
-        changes: Vec::new(),
-        place: Some(place.clone()),
-    })
+    let error = Diagnostic::new(format!("not a configuration: this is {kind}"));
+    Some(error.with_location(field_location(*key)).with_help(help.replace("FILE", file)))
 }
 
 fn sections() -> Vec<&'static str> {
@@ -194,40 +238,25 @@ fn sections() -> Vec<&'static str> {
     all
 }
 
-fn find(table: &str, key: &str, place: Place) -> Result<&'static Parameter<Configuration>, ConfigError> {
+fn find(table: &str, key: &str) -> Result<&'static Parameter<Configuration>, Diagnostic> {
     let in_table = || Configuration::PARAMETERS.iter().filter(|p| p.section == table);
     in_table().find(|p| p.key == key).ok_or_else(|| {
         let keys: Vec<_> = in_table().map(|p| p.key).collect();
-        let mut error = unknown(key, &keys, "key", place);
-        error.field = format!("{table}.{key}");
-        error
+        unknown(key, &keys, "key").with_location(field_location(format!("{table}.{key}")))
     })
 }
 
-/// An unknown word, with the nearest known one.
-fn unknown(word: &str, known: &[&str], what: &str, place: Place) -> ConfigError {
-    let nearest =
-        known.iter().max_by(|a, b| strsim::jaro_winkler(word, a).total_cmp(&strsim::jaro_winkler(word, b)));
-    let remedy = match nearest {
-        Some(near) if strsim::jaro_winkler(word, near) > 0.7 => {
-            format!("did you mean {near:?}? templates/reference.toml lists all")
-        }
-        _ => format!("known are {}", known.join(", ")),
+/// The error of an unknown word, with the most similar known one.
+fn unknown(word: &str, known: &[&str], what: &str) -> Diagnostic {
+    let similarity = |known: &str| strsim::jaro_winkler(word, known);
+    let nearest = known.iter().max_by(|a, b| similarity(a).total_cmp(&similarity(b)));
+    let help = match nearest.filter(|near| similarity(near) > SIMILAR) {
+        Some(near) => format!("did you mean {near:?}? templates/reference.toml lists all"),
+        None => format!("known are {}", known.join(", ")),
     };
-    ConfigError {
-        field: word.to_owned(),
-        value: None,
-        problem: format!("is no known {what}"),
-        remedy,
-        changes: Vec::new(),
-        place: Some(place),
-    }
+    Diagnostic::new(format!("unknown {what}")).with_location(field_location(word)).with_help(help)
 }
 
 fn key_span(table: &dyn TableLike, key: &str) -> Option<Range<usize>> {
     table.get_key_value(key).and_then(|(key, item)| key.span().or_else(|| item.span()))
-}
-
-fn display(item: &Item) -> String {
-    item.type_name().to_owned()
 }

@@ -1,15 +1,16 @@
-//! Values written back into the text of a configuration, whose comments and order stay.
+//! Rewriting of values in the text of a configuration; comments and order are preserved.
 
+use pinswitch_diagnostic::{Diagnostic, Location};
 use toml_edit::{Array, DocumentMut, Item, RawString, Table, TableLike, Value};
 
+use super::error::syntax_error;
 use super::parameters::Configuration;
-use super::{ConfigError, Place};
 
-/// `text` with what differs between the configuration that it was `shown` as and the one that is `wanted`: that is changed
-/// in its place, or added to its table. Everything else stays as it is: comments, line ends, and a mark at its begin that
-/// says that it is UTF-8. What stands behind a pin on its line goes with the pin. `file` names the text in errors.
+/// Returns `text` with the values in which the configuration `wanted` differs from `shown`, the one that the text was
+/// read as: each is replaced in its place, or added to its table. Everything else is preserved: comments, line ends and
+/// a byte order mark. The comment behind an item of a list goes with the item. `file` names the text in errors.
 ///
-/// What it was shown as is more than it says, where a preset lay under it or an option over it.
+/// `shown` may contain more than the text: a preset under it, options over it.
 ///
 /// ```
 /// use pinswitch_switch::config::{assign, read, rewritten};
@@ -19,19 +20,19 @@ use super::{ConfigError, Place};
 /// let mut wanted = shown.clone();
 /// assign(&mut wanted, "shell.width_mm=13")?;
 /// assert_eq!(rewritten(text, "mine.toml", &shown, &wanted)?, "# mine\n[shell]\nwidth_mm = 13.0 # narrow\n");
-/// # Ok::<(), pinswitch_switch::config::ConfigError>(())
+/// # Ok::<(), pinswitch_diagnostic::Diagnostic>(())
 /// ```
 ///
 /// # Errors
-/// [`ConfigError`] for a text that is no TOML.
+/// A [`Diagnostic`] for invalid TOML.
 pub fn rewritten(
     text: &str,
     file: &str,
     shown: &Configuration,
     wanted: &Configuration,
-) -> Result<String, ConfigError> {
+) -> Result<String, Diagnostic> {
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| {
-        ConfigError::syntax(Place::new(file, text, e.span().map_or(0, |s| s.start)), e.message())
+        syntax_error(Location::in_text(file, text, e.span().unwrap_or(0..0)), e.message())
     })?;
     for parameter in Configuration::PARAMETERS {
         let value = (parameter.get)(wanted);
@@ -40,7 +41,7 @@ pub fn rewritten(
         }
         if document.get(parameter.section).is_none() {
             let mut table = Table::new();
-            // What stood at the end of the text stays before what is added.
+            // A comment at the end of the text stays before the new table.
             let end = document.trailing().as_str().unwrap_or_default().to_owned();
             document.set_trailing("");
             let gap = if text.trim().is_empty() { "" } else { "\n" };
@@ -54,7 +55,7 @@ pub fn rewritten(
     Ok(written_as(text, &document.to_string()))
 }
 
-/// Sets a key to a value; what stands before and behind an old value stays there.
+/// Sets a key to a value, and preserves the whitespace and comments around an old value.
 fn put(table: &mut dyn TableLike, key: &str, mut value: Value) {
     match table.get_mut(key).and_then(Item::as_value_mut) {
         Some(old) => {
@@ -72,7 +73,7 @@ fn put(table: &mut dyn TableLike, key: &str, mut value: Value) {
     }
 }
 
-/// `new` with the line ends of `text`, and with its byte order mark.
+/// Gives `new` the line ends and the byte order mark of `text`.
 fn written_as(text: &str, new: &str) -> String {
     const MARK: char = '\u{feff}';
     let lines = new.replace("\r\n", "\n");
@@ -83,18 +84,18 @@ fn written_as(text: &str, new: &str) -> String {
 /// An item of a list over several lines.
 struct Listed {
     item: String,
-    /// Lines before its own, and its indentation; without a line end if it stands behind another item.
+    /// Lines between the previous item and this one, and the indentation; no line end if both are on one line.
     before: String,
-    /// What stands behind it on its line.
+    /// The comment behind the item on its line.
     behind: String,
 }
 
-/// Lays a list out over the lines that an old one had: items that were there keep theirs, with the comment behind them.
+/// Lays a list out over the lines of an old one: items of the old list keep their lines and comments.
 fn lay_out_as(old: &Array, new: &mut Array) {
     let raw = |text: Option<&RawString>| text.and_then(RawString::as_str).unwrap_or_default().to_owned();
     let (mut opening, mut listed, mut suffix) = (String::new(), Vec::<Listed>::new(), String::new());
     for value in old {
-        // A comma may stand behind the comment of its item, on a line of its own; it is written before it.
+        // A comma on a line of its own, after the comment of its item, moves before the comment.
         let (behind_last, before) = split_line(&(suffix + &raw(value.decor().prefix())));
         match listed.last_mut() {
             Some(last) => last.behind = behind_last,
@@ -112,7 +113,7 @@ fn lay_out_as(old: &Array, new: &mut Array) {
     let indent =
         listed.iter().find_map(|l| l.before.rsplit_once('\n')).map_or("  ", |(_, indent)| indent).to_owned();
     let own_line = format!("\n{indent}");
-    // Lines of comment before an item that goes stay where they are.
+    // Lines of comment before a removed item stay in the list.
     let (mut orphaned, mut ahead) = (String::new(), opening);
     let wanted: Vec<String> = new.iter().map(|v| v.clone().decorated("", "").to_string()).collect();
     let mut known = listed.into_iter().peekable();
@@ -125,7 +126,7 @@ fn lay_out_as(old: &Array, new: &mut Array) {
             None => (own_line.clone(), String::new()),
         };
         let mut prefix = ahead + &std::mem::take(&mut orphaned) + &before;
-        // Behind a comment it would be part of it.
+        // On the line of a comment, the item would become a part of the comment.
         if prefix.rsplit('\n').next().is_some_and(|line| line.contains('#')) {
             prefix.truncate(prefix.trim_end().len());
             prefix += &own_line;
@@ -142,13 +143,13 @@ fn lay_out_as(old: &Array, new: &mut Array) {
     new.set_trailing_comma(true);
 }
 
-/// What stands on a line, and from its end on.
+/// Splits a text after its first line, which is empty unless it has a comment.
 fn split_line(text: &str) -> (String, String) {
     let end = text.find('\n').unwrap_or(if text.contains('#') { text.len() } else { 0 });
     (text[..end].trim_end().to_owned(), text[end..].to_owned())
 }
 
-/// The lines of comment before an item, without its indentation.
+/// Returns the lines of comment before an item, without its indentation.
 fn comment_lines(before: &str) -> &str {
     before.rsplit_once('\n').map_or("", |(lines, _)| if lines.contains('#') { lines } else { "" })
 }
@@ -195,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lay_under_or_over_a_text_is_not_written_and_what_undoes_it_is() {
+    fn only_differences_from_the_shown_configuration_are_written() {
         let text = "[layout]\npins = [5]\n";
         let (mut shown, _) = read(text, "x.toml").unwrap();
         let default = shown.clone();
@@ -209,7 +210,7 @@ mod tests {
         assert!(changed.contains("width_mm"), "{changed}");
     }
 
-    /// The text with its pins in these grooves.
+    /// Returns the text with pins in these grooves.
     fn with_pins(text: &str, pins: &str) -> String {
         let (shown, _) = read(text, "x.toml").unwrap();
         let mut wanted = shown.clone();
@@ -220,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn a_list_keeps_its_lines_and_the_comments_of_what_stays() {
+    fn a_list_keeps_lines_and_comments() {
         let text = "[layout]\npins = [ # mine\n  5, # first\n  # the middle\n  8,\n  11, # third\n] # done\n";
         assert_eq!(
             with_pins(text, "[2, 5, 11]"),
@@ -238,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_stay_before_what_is_added_and_line_ends_as_they_are() {
+    fn comments_and_line_ends_are_preserved() {
         assert_eq!(with_pins("# nothing yet\n", "[2]"), "# nothing yet\n\n[layout]\npins = [2]\n");
         assert_eq!(with_pins("", "[2]"), "[layout]\npins = [2]\n");
         assert_eq!(
@@ -252,9 +253,9 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever the lines of a list look like, it is read as what was wanted, and comments of what stays are there.
+        /// A rewritten list of any layout reads as the wanted one, and comments around it are preserved.
         #[test]
-        fn lists_of_any_lines_are_rewritten(
+        fn lists_of_any_layout_are_rewritten(
             old in prop::collection::btree_set(1..16u32, 0..6),
             new in prop::collection::btree_set(1..16u32, 0..6),
             lines in prop::collection::vec(("[ \n]{0,3}", prop::option::of("[a-z]{1,4}"), any::<bool>()), 7),

@@ -162,8 +162,7 @@ impl Dimensions {
         let f = &c.fasteners;
         let thread = THREADS.into_iter().rev().find(|t| t.least_hole_mm <= f.hole_diameter_mm);
         let fits = |recess: Recess| {
-            (f.count > 0 && recess.depth_mm > 0.0 && self.recess_obstacle(&recess).is_none())
-                .then_some(recess)
+            (f.count > 0 && recess.depth_mm > 0.0 && self.recess_fits(&recess)).then_some(recess)
         };
         let nut_trap = thread.filter(|_| f.kind == FastenerKind::NutTrap).and_then(|t| {
             let flats = (t.nut_mm[0] + RECESS_PLAY_MM) / 2.0;
@@ -213,67 +212,41 @@ impl Dimensions {
         chord + ROUNDING_MM >= 2.0 * recess.along_mm + self.rim_mm()
     }
 
-    /// What keeps a recess out of the outer face of a support, as what to change: its seat, or a wall between it and the
-    /// inner face, the slots, the ends, or its neighbours.
-    fn recess_obstacle(&self, recess: &Recess) -> Option<String> {
+    /// Whether a recess fits in the outer face of a support: on its seat, with a wall to the inner face, the slots, the
+    /// ends and its neighbours.
+    fn recess_fits(&self, recess: &Recess) -> bool {
         let c = self.configuration();
         let (middle, rim) = (self.fastener_radius_mm(), self.rim_mm());
         let inside = middle - recess.radial_mm - self.inner_radius_mm() - rim;
         let under_slots = self.slot().inner_edge_mm() - middle - recess.along_mm.max(recess.radial_mm) - rim;
         let at_ends = c.fasteners.end_distance_mm + self.shell_end_shift_mm() - recess.along_mm - rim;
-        let seated = self.seated_mm(recess.depth_mm);
-        // The value that mends it, shown so that it does after rounding.
-        let raised = |now: f64, by: f64| ((now + by) * 1e3 - 1e-6).ceil() / 1e3;
-        let is_short = |left: f64| left < -ROUNDING_MM;
-        if is_short(c.support.plate_mm - seated) {
-            Some(format!("raise support.plate_mm to {}", raised(seated, 0.0)))
-        } else if is_short(inside) || is_short(under_slots) {
-            // The holes lie in the middle of the wall: of what it gains, half comes to lie on each side.
-            let by = 2.0 * -inside.min(under_slots);
-            Some(format!("raise shell.wall_mm to {}", raised(c.shell.wall_mm, by)))
-        } else if c.fasteners.count > 1 && is_short(at_ends) {
-            Some(format!(
-                "raise fasteners.end_distance_mm to {}",
-                raised(c.fasteners.end_distance_mm, -at_ends)
-            ))
-        } else {
-            let is_crowded = self.fastener_angles_rad().windows(2).any(|w| !self.are_apart(w, recess));
-            is_crowded.then(|| format!("lower fasteners.count to {}", c.fasteners.count - 1))
-        }
+        let seat = c.support.plate_mm - self.seated_mm(recess.depth_mm);
+        let is_enough = |room: f64| room >= -ROUNDING_MM;
+        [seat, inside, under_slots].into_iter().all(is_enough)
+            && (c.fasteners.count < 2 || is_enough(at_ends))
+            && self.fastener_angles_rad().windows(2).all(|w| self.are_apart(w, recess))
     }
 
-    /// What to change for nut traps in the right support that were asked for and do not fit.
-    pub fn nut_trap_remedy(&self) -> Option<String> {
-        let (c, fastening) = (self.configuration(), self.fastening());
-        let f = &c.fasteners;
-        let is_lost = f.kind == FastenerKind::NutTrap
-            && f.count > 0
-            && f.nut_recess_mm > 0.0
-            && fastening.nut_trap.is_none();
-        let thread = fastening.thread.filter(|_| is_lost)?;
-        let flats = (thread.nut_mm[0] + RECESS_PLAY_MM) / 2.0;
-        let along_mm = flats / libm::cos(std::f64::consts::FRAC_PI_6);
-        self.recess_obstacle(&Recess {
-            radial_mm: flats,
-            along_mm,
-            depth_mm: f.nut_recess_mm,
-            is_hexagon: true,
-        })
+    /// Whether nut traps in the right support are wanted and do not fit.
+    pub fn lacks_nut_traps(&self) -> bool {
+        let f = &self.configuration().fasteners;
+        let is_wanted = f.kind == FastenerKind::NutTrap && f.count > 0 && f.nut_recess_mm > 0.0;
+        let fastening = self.fastening();
+        is_wanted && fastening.thread.is_some() && fastening.nut_trap.is_none()
     }
 
-    /// The same of counterbores in the supports.
-    pub fn counterbore_remedy(&self) -> Option<String> {
+    /// Whether counterbores in the supports are wanted and do not fit.
+    pub fn lacks_counterbores(&self) -> bool {
         let (c, fastening) = (self.configuration(), self.fastening());
         let f = &c.fasteners;
         let in_supports = c.mount.kind == MountKind::None || f.kind == FastenerKind::Insert;
-        let is_lost = in_supports && f.count > 0 && f.head_recess_mm > 0.0 && fastening.counterbore.is_none();
-        let thread = fastening.thread.filter(|_| is_lost)?;
-        self.recess_obstacle(&head_recess(&thread, f.head_recess_mm))
+        let is_wanted = in_supports && f.count > 0 && f.head_recess_mm > 0.0;
+        is_wanted && fastening.thread.is_some() && fastening.counterbore.is_none()
     }
 
-    /// Whether a recess in a support was asked for and finds no room.
-    pub(crate) fn has_lost_hardware(&self) -> bool {
-        self.nut_trap_remedy().is_some() || self.counterbore_remedy().is_some()
+    /// Whether a recess in a support is wanted and does not fit.
+    pub(crate) fn lacks_recesses(&self) -> bool {
+        self.lacks_nut_traps() || self.lacks_counterbores()
     }
 
     /// Length of the screws that enter from the left and from the right, mm, the latter with inserts only; `None` where no

@@ -1,4 +1,4 @@
-//! A design: a configuration that can be built, printed and assembled, with every dimension that follows from it.
+//! Designs: configurations that satisfy all rules, with every derived dimension.
 
 mod clearance;
 mod dimensions;
@@ -8,9 +8,9 @@ pub mod rules;
 mod tendon_ends;
 
 use pinswitch_friction::physics::{Bed, modulus_of_shore_a_mpa};
-use pinswitch_friction::{Contact, PinPattern};
+use pinswitch_friction::{Contact, ContactError, PinPattern};
 
-use crate::config::{ConfigError, Configuration};
+use crate::config::{Configuration, Diagnostic, Location};
 use pinswitch_solid::profile::ChordTolerance;
 
 pub(crate) use clearance::{clearance, clearance_grade};
@@ -20,7 +20,8 @@ pub use fastening::{Fastening, Recess, Thread};
 pub(crate) use mounting::{BEARING_SEAT_MM, PULLEY_RADIUS_MM, pulley_outer_mm, pulley_width_mm};
 pub use mounting::{Hole, Mounting, SheathStop};
 
-/// A validated configuration: all its [`Dimensions`], the tolerance of its meshes, and what the tendon touches.
+/// A configuration that satisfies all rules, with its [`Dimensions`], the tolerance of its meshes, and the contact of the
+/// tendon.
 ///
 /// ```
 /// use pinswitch_switch::{config::{Configuration, assign}, design::Design};
@@ -31,9 +32,11 @@ pub use mounting::{Hole, Mounting, SheathStop};
 /// let mut crowded = Configuration::default();
 /// assign(&mut crowded, "segment.grooves=40")?;
 /// let error = Design::new(crowded).unwrap_err();
-/// assert_eq!(error.field, "segment.grooves");
-/// assert!(error.remedy.starts_with("lower it to 20"));
-/// # Ok::<(), pinswitch_switch::config::ConfigError>(())
+/// assert_eq!(
+///     error.to_string(),
+///     "segment.grooves = 40: grooves overlap (0.781 mm apart, at least 1.450 mm needed)"
+/// );
+/// # Ok::<(), pinswitch_diagnostic::Diagnostic>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
@@ -51,51 +54,52 @@ impl std::ops::Deref for Design {
 }
 
 impl Design {
-    /// Checks that `configuration` can be built.
+    /// Checks the rules of `configuration`.
     ///
     /// # Errors
-    /// [`ConfigError`] names the field, its value, the bound and the remedy.
-    pub fn new(configuration: Configuration) -> Result<Self, ConfigError> {
+    /// A [`Diagnostic`] of the first broken rule: field, value, problem and bound. It has no help:
+    /// [`crate::feasibility::design`] adds the nearest values that build, which takes longer to find.
+    pub fn new(configuration: Configuration) -> Result<Self, Diagnostic> {
         let dimensions = Dimensions::new(configuration);
         rules::check(&dimensions)?;
         let tolerance_mm = dimensions.configuration().mesh.chord_tolerance_mm;
         let tolerance = ChordTolerance::new(tolerance_mm).map_err(|e| {
-            ConfigError::new("mesh.chord_tolerance_mm", tolerance_mm.to_string(), e.to_string())
+            let location = Location::field("mesh.chord_tolerance_mm", tolerance_mm.to_string());
+            Diagnostic::from_error(e).with_location(location)
         })?;
         let contact = contact(&dimensions)?;
         Ok(Self { dimensions, tolerance, contact })
     }
 
-    /// The chord tolerance of every mesh.
+    /// Returns the chord tolerance of every mesh.
     pub const fn tolerance(&self) -> ChordTolerance {
         self.tolerance
     }
 
-    /// What can be made but is not ideal, each with the parameter to change.
+    /// Returns the warnings of the rules, each with the parameter to change.
     pub fn warnings(&self) -> Vec<String> {
         rules::warnings(&self.dimensions)
     }
 
-    /// What the tendon touches, for the friction model.
+    /// Returns the contact of the tendon, the input of the friction model.
     pub const fn contact(&self) -> &Contact {
         &self.contact
     }
 }
 
-/// Whether [`Design::new`] accepts `configuration`: for a search, which asks often and shows no error.
+/// Whether [`Design::new`] accepts `configuration`. Cheaper, for searches.
 pub(crate) fn is_accepted(configuration: Configuration) -> bool {
     let dimensions = Dimensions::new(configuration);
     let tolerance = ChordTolerance::new(dimensions.configuration().mesh.chord_tolerance_mm);
-    rules::are_kept(&dimensions) && tolerance.is_ok() && contact(&dimensions).is_ok()
+    rules::are_satisfied(&dimensions) && tolerance.is_ok() && contact(&dimensions).is_ok()
 }
 
-/// What the tendon touches by `configuration`, whether it can be built or not: a search looks past the rules, and asks them
-/// for what it keeps.
-pub(crate) fn contact_of(configuration: Configuration) -> Result<Contact, ConfigError> {
+/// Returns the contact of the tendon of `configuration`, which may break rules: searches check them separately.
+pub(crate) fn contact_of(configuration: Configuration) -> Result<Contact, Diagnostic> {
     contact(&Dimensions::new(configuration))
 }
 
-fn contact(dimensions: &Dimensions) -> Result<Contact, ConfigError> {
+fn contact(dimensions: &Dimensions) -> Result<Contact, Diagnostic> {
     let c = dimensions.configuration();
     let pins = PinPattern::new(dimensions.pin_angles_rad());
     Contact::new(c.layout.substrate, pins, c.layout.wrap_angle_deg.to_radians())
@@ -105,17 +109,18 @@ fn contact(dimensions: &Dimensions) -> Result<Contact, ConfigError> {
                 .with_six_single_threshold(c.friction.six_single_threshold)
                 .with_bed(bed(dimensions))
         })
-        .map_err(|e| ConfigError {
-            field: "layout.pins".to_owned(),
-            value: Some(format!("{:?}", c.layout.pins)),
-            problem: "leaves nothing to predict".to_owned(),
-            remedy: e.to_string(),
-            changes: Vec::new(),
-            place: None,
+        .map_err(|e| {
+            let error = match e {
+                ContactError::NothingTouches { degrees } => Diagnostic::new(format!(
+                    "no pin within the wrap of {degrees:.2} deg, and the rigid proxy carries load on its pins only"
+                )),
+                other => Diagnostic::from_error(other),
+            };
+            error.with_location(Location::field("layout.pins", format!("{:?}", c.layout.pins)))
         })
 }
 
-/// What carries the tendon, for the physics.
+/// Returns the bed under the tendon, for the physics.
 fn bed(dimensions: &Dimensions) -> Bed {
     let c = dimensions.configuration();
     Bed {
@@ -130,15 +135,15 @@ fn bed(dimensions: &Dimensions) -> Bed {
     }
 }
 
-/// Ways in which a part departs from the one that was measured of which the friction model knows nothing. All others are
-/// numbers of its bed, and the model finds them itself.
+/// Describes departures from the measured part that the friction model does not cover. The model finds all others in the
+/// dimensions of the bed.
 fn unmodelled(c: &Configuration) -> Vec<String> {
     let published = Configuration::default().silicone.mix_ratio;
     let ours = c.silicone.mix_ratio;
     (ours != published)
         .then(|| {
             format!(
-                "silicone.mix_ratio is {ours}, measured was {published}; no law knows what it does beyond the hardness that is given"
+                "silicone.mix_ratio is {ours}, the measured one is {published}; no law models its effect beyond the given hardness"
             )
         })
         .into_iter()
@@ -163,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn labels_tell_layouts_apart() {
+    fn labels_identify_layouts() {
         let label = |pins: &[usize]| {
             let mut c = Configuration::default();
             c.layout.pins = pins.to_vec();

@@ -1,4 +1,4 @@
-//! Why an ask cannot be met: what the nearest design misses, what holds it there, and what would move it.
+//! Why a request cannot be met: what the nearest design misses, what holds it there, and what would move it.
 
 use serde::Serialize;
 
@@ -6,8 +6,8 @@ use super::candidate::Trial;
 use super::refine::{Aim, Place, refined};
 use super::relaxed::usual;
 use super::space::{Space, is_predictable};
-use crate::ask::{Ask, Limits, Materials, Parameter, Target, Vary};
 use crate::config::Configuration;
+use crate::request::{Limits, Materials, Parameter, Request, Target, Vary};
 use pinswitch_friction::{counted, sort_by_number};
 
 /// Steps of the search over all parameters together.
@@ -39,7 +39,7 @@ pub struct Move {
     pub parameter: Parameter,
     /// Its value in the nearest design.
     pub from: f64,
-    /// The value that comes nearest to the ask.
+    /// The value that comes nearest to the request.
     pub to: f64,
     /// Whether all targets are met there.
     pub meets: bool,
@@ -48,11 +48,11 @@ pub struct Move {
     /// How far all is missed there, to compare moves by: a root of summed squares of logarithms.
     #[serde(skip)]
     pub(super) miss: f64,
-    /// What forbids it: a limit of the ask, or a rule of what can be printed.
+    /// What forbids it: a limit of the request, or a rule of what can be printed.
     pub forbidden_by: String,
 }
 
-/// Why an ask cannot be met.
+/// Why a request cannot be met.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Blocked {
     /// Targets that the nearest design misses.
@@ -61,7 +61,7 @@ pub struct Blocked {
     pub limit: String,
     /// What would move the nearest design, the best first.
     pub moves: Vec<Move>,
-    /// Where no single change meets the ask: changes of several parameters that do so together, if there are any within
+    /// Where no single change meets the request: changes of several parameters that do so together, if there are any within
     /// what is usual, with no limits of size and any material.
     pub together: Vec<Change>,
 }
@@ -73,7 +73,7 @@ pub struct Change {
     pub parameter: Parameter,
     /// Its value in the nearest design.
     pub from: f64,
-    /// Its value in a design that meets the ask.
+    /// Its value in a design that meets the request.
     pub to: f64,
 }
 
@@ -91,10 +91,10 @@ pub(super) fn blocked(
         .filter_map(|p| best_move(trial, space, nearest, *p))
         .filter(|m| m.miss < (1.0 - WORTH_NAMING) * miss)
         .collect();
-    // What meets the ask first: where the ask itself sets the limit before what is merely held, then by how little it
+    // What meets the request first: where the request itself sets the limit before what is merely held, then by how little it
     // changes. After that what comes nearest.
     let is_held = |m: &Move| {
-        !space.varied.iter().any(|v| v.parameter == m.parameter) && !is_listed(trial.ask, m.parameter)
+        !space.varied.iter().any(|v| v.parameter == m.parameter) && !is_listed(trial.request, m.parameter)
     };
     let change = |m: &Move| libm::log(m.to / m.from).abs();
     sort_by_number(&mut moves, |m| if m.meets { change(m) } else { m.miss });
@@ -103,8 +103,8 @@ pub(super) fn blocked(
         false => 2.0,
     });
     let of_pins = |pins: usize, effect: &str| {
-        let asked = trial.ask.limits.pins.map_or_else(String::new, |(a, b)| format!("{a}..{b}"));
-        format!("limits.pins = {asked}: with {} the ask {effect}", counted(pins, "pin"))
+        let asked = trial.request.limits.pins.map_or_else(String::new, |(a, b)| format!("{a}..{b}"));
+        format!("limits.pins = {asked}: with {} the request {effect}", counted(pins, "pin"))
     };
     let limit = match (moves.first(), other_pins) {
         (Some(first), _) if first.meets => first.forbidden_by.clone(),
@@ -112,7 +112,7 @@ pub(super) fn blocked(
         (None, Some((pins, other))) if other < (1.0 - WORTH_NAMING) * miss => {
             of_pins(pins, "is missed by less")
         }
-        (Some(first), _) => format!("{}; no single parameter reaches the ask", first.forbidden_by),
+        (Some(first), _) => format!("{}; no single parameter reaches the request", first.forbidden_by),
         (None, _) => {
             "the physics: no parameter that the program knows comes nearer; relax a target".to_owned()
         }
@@ -121,19 +121,19 @@ pub(super) fn blocked(
     Blocked { missed, limit, moves, together }
 }
 
-/// Changes of all parameters, from the nearest design, that meet the ask; none if the search finds none.
+/// Changes of all parameters, from the nearest design, that meet the request; none if the search finds none.
 fn together(trial: &Trial<'_>, nearest: &Configuration) -> Vec<Change> {
-    let free = Ask {
+    let free = Request {
         limits: Limits {
             pins: None,
-            ..if trial.has_soft_sizes() { trial.ask.limits.clone() } else { Limits::default() }
+            ..if trial.has_soft_sizes() { trial.request.limits.clone() } else { Limits::default() }
         },
         materials: Materials::default(),
         vary: Vary {
             pattern: false,
             parameters: Parameter::ALL.iter().map(|p| usual(*p, nearest)).collect(),
         },
-        ..trial.ask.clone()
+        ..trial.request.clone()
     };
     let trial = trial.with_ask(&free);
     let space = Space::new(nearest, &free);
@@ -150,7 +150,7 @@ fn together(trial: &Trial<'_>, nearest: &Configuration) -> Vec<Change> {
 /// Targets, and sizes where they are wishes, that `configuration` misses.
 fn all_missed(trial: &Trial<'_>, configuration: &Configuration) -> Vec<Missed> {
     let values = trial.median(configuration).unwrap_or_default();
-    let targets = trial.ask.targets.iter().zip(&values).filter_map(|(t, v)| missed(t, *v, trial.range_n));
+    let targets = trial.request.targets.iter().zip(&values).filter_map(|(t, v)| missed(t, *v, trial.range_n));
     let sizes = trial.missed_sizes(configuration).into_iter().map(|(field, value, bound)| Missed {
         target: format!("{field} = {bound} mm"),
         value,
@@ -164,11 +164,11 @@ fn missed(target: &Target, value: f64, range_n: (f64, f64)) -> Option<Missed> {
     let of = |text: String, bound: f64| {
         Some(Missed { target: text, value, bound, by: (value - bound).abs() / bound })
     };
-    if !target.wish.is_met(value) {
-        return of(target.to_string(), target.wish.nearest_bound(value));
+    if !target.requirement.is_met(value) {
+        return of(target.to_string(), target.requirement.nearest_bound(value));
     }
     let (low, high) = range_n;
-    let outside = target.quantity == crate::ask::Quantity::Threshold && !(low..=high).contains(&value);
+    let outside = target.quantity == crate::request::Quantity::Threshold && !(low..=high).contains(&value);
     if outside {
         return of(
             format!("{target} (within the loads, {low} to {high} N)"),
@@ -178,7 +178,7 @@ fn missed(target: &Target, value: f64, range_n: (f64, f64)) -> Option<Missed> {
     None
 }
 
-/// The value of one parameter that comes nearest to the ask, whatever the ask allows.
+/// The value of one parameter that comes nearest to the request, whatever the request allows.
 fn best_move(
     trial: &Trial<'_>,
     space: &Space,
@@ -209,24 +209,26 @@ fn best_move(
     let change = |to: f64| libm::log(to / from).abs();
     let (to, miss, moved) =
         tried.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| change(a.0).total_cmp(&change(b.0))))?;
-    let forbidden_by = forbidden(trial.ask, space, parameter, from, to)
+    let forbidden_by = forbidden(trial.request, space, parameter, from, to)
         .or_else(|| trial.broken_limit(&moved))
-        .unwrap_or_else(|| "the search, which stopped near to it: ask again with more --starts".to_owned());
+        .unwrap_or_else(|| {
+            "the search, which stopped near to it: request again with more --starts".to_owned()
+        });
     let missed = all_missed(trial, &moved);
     Some(Move { parameter, from, to, meets: miss == 0.0, missed, miss, forbidden_by })
 }
 
-/// Whether the ask names the materials that a parameter is taken from.
-const fn is_listed(ask: &Ask, parameter: Parameter) -> bool {
+/// Whether the request names the materials that a parameter is taken from.
+const fn is_listed(request: &Request, parameter: Parameter) -> bool {
     match parameter {
-        Parameter::PinDiameterMm => !ask.materials.pin_diameter_mm.is_empty(),
-        Parameter::HardnessShoreA => !ask.materials.hardness_shore_a.is_empty(),
+        Parameter::PinDiameterMm => !request.materials.pin_diameter_mm.is_empty(),
+        Parameter::HardnessShoreA => !request.materials.hardness_shore_a.is_empty(),
         _ => false,
     }
 }
 
-/// What in the ask keeps a parameter from going there.
-fn forbidden(ask: &Ask, space: &Space, parameter: Parameter, from: f64, to: f64) -> Option<String> {
+/// What in the request keeps a parameter from going there.
+fn forbidden(request: &Request, space: &Space, parameter: Parameter, from: f64, to: f64) -> Option<String> {
     let name = parameter.name();
     if let Some(v) = space.varied.iter().find(|v| v.parameter == parameter) {
         let slack = AT_THE_END * (v.to - v.from);
@@ -241,8 +243,8 @@ fn forbidden(ask: &Ask, space: &Space, parameter: Parameter, from: f64, to: f64)
         };
     }
     let list = match parameter {
-        Parameter::PinDiameterMm => &ask.materials.pin_diameter_mm,
-        Parameter::HardnessShoreA => &ask.materials.hardness_shore_a,
+        Parameter::PinDiameterMm => &request.materials.pin_diameter_mm,
+        Parameter::HardnessShoreA => &request.materials.hardness_shore_a,
         _ => return Some(format!("{name} is held at {from:.2}: it is not in vary")),
     };
     Some(if list.is_empty() {

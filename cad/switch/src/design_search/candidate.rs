@@ -4,10 +4,10 @@ use pinswitch_friction::{Substrate, Transition};
 
 use super::belief::{Belief, Believed, ModelError, Part};
 use super::curve::Curve;
-use crate::ask::{Ask, Quantity, SOURCES, Target};
 use crate::config::Configuration;
 use crate::design::{Design, Dimensions, contact_of, is_accepted};
 use crate::prediction::evenly;
+use crate::request::{Quantity, Request, SOURCES, Target};
 
 /// Loads between the ends, evenly in their logarithm.
 const LOADS: usize = 22;
@@ -21,7 +21,7 @@ const NEAR: f64 = 0.05;
 
 /// What does not change during a search.
 pub(super) struct Trial<'a> {
-    pub(super) ask: &'a Ask,
+    pub(super) request: &'a Request,
     pub(super) belief: &'a dyn Belief,
     /// Lightest and heaviest load, N.
     pub(super) range_n: (f64, f64),
@@ -42,28 +42,40 @@ pub(super) struct Draw {
 }
 
 impl<'a> Trial<'a> {
-    pub(super) fn new(ask: &'a Ask, belief: &'a dyn Belief, range_n: (f64, f64), points: usize) -> Self {
+    pub(super) fn new(
+        request: &'a Request,
+        belief: &'a dyn Belief,
+        range_n: (f64, f64),
+        points: usize,
+    ) -> Self {
         let (low, high) = ((range_n.0 / REACH).max(0.2), range_n.1 * REACH);
         let mut loads_n: Vec<f64> =
             (0..LOADS).map(|i| low * libm::pow(high / low, i as f64 / (LOADS - 1) as f64)).collect();
         loads_n.extend([range_n.0.max(low), range_n.1]);
-        loads_n.extend(ask.targets.iter().filter_map(|t| match t.quantity {
+        loads_n.extend(request.targets.iter().filter_map(|t| match t.quantity {
             Quantity::Friction { load_n } => Some(load_n),
             _ => None,
         }));
         loads_n.sort_by(f64::total_cmp);
         loads_n.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * b.abs());
-        Self { ask, belief, range_n, loads_n, predicted_n: evenly(range_n, points), has_soft_sizes: false }
+        Self {
+            request,
+            belief,
+            range_n,
+            loads_n,
+            predicted_n: evenly(range_n, points),
+            has_soft_sizes: false,
+        }
     }
 
-    /// The same loads for another ask.
-    pub(super) fn with_ask<'b>(&'b self, ask: &'b Ask) -> Trial<'b> {
-        Trial { ask, loads_n: self.loads_n.clone(), predicted_n: self.predicted_n.clone(), ..*self }
+    /// The same loads for another request.
+    pub(super) fn with_ask<'b>(&'b self, request: &'b Request) -> Trial<'b> {
+        Trial { request, loads_n: self.loads_n.clone(), predicted_n: self.predicted_n.clone(), ..*self }
     }
 
-    /// The same for another ask, whose limits of size are wishes.
-    pub(super) fn with_soft_sizes<'b>(&'b self, ask: &'b Ask) -> Trial<'b> {
-        Trial { has_soft_sizes: true, ..self.with_ask(ask) }
+    /// The same for another request, whose limits of size are wishes.
+    pub(super) fn with_soft_sizes<'b>(&'b self, request: &'b Request) -> Trial<'b> {
+        Trial { has_soft_sizes: true, ..self.with_ask(request) }
     }
 
     /// Whether limits of size are wishes.
@@ -73,7 +85,7 @@ impl<'a> Trial<'a> {
 
     /// Limits of size: field, the size that `configuration` has, and the largest, mm.
     fn sizes(&self, configuration: &Configuration) -> Vec<(&'static str, f64, f64)> {
-        let limits = &self.ask.limits;
+        let limits = &self.request.limits;
         let radius_mm = || Dimensions::new(configuration.clone()).support_radius_mm();
         let radius = limits.outer_radius_mm.map(|most| ("limits.outer_radius_mm", radius_mm(), most));
         let width =
@@ -142,18 +154,18 @@ impl<'a> Trial<'a> {
             let value = curve.value(t.quantity, self.range_n);
             if t.quantity == Quantity::Threshold { value * threshold_factor } else { value }
         };
-        self.ask.targets.iter().map(value).collect()
+        self.request.targets.iter().map(value).collect()
     }
 
     /// Whether the best guess meets all targets; a threshold must lie within the loads.
     pub(super) fn is_met(&self, values: &[f64]) -> bool {
-        self.ask.targets.iter().zip(values).all(|(t, v)| self.meets(t, *v))
+        self.request.targets.iter().zip(values).all(|(t, v)| self.meets(t, *v))
     }
 
     fn meets(&self, target: &Target, value: f64) -> bool {
         let within =
             target.quantity != Quantity::Threshold || (self.range_n.0..=self.range_n.1).contains(&value);
-        within && target.wish.is_met(value)
+        within && target.requirement.is_met(value)
     }
 
     /// How far the values miss the targets: root of the sum of squares of the logarithms.
@@ -164,9 +176,9 @@ impl<'a> Trial<'a> {
             } else {
                 0.0
             };
-            t.wish.excess(*v).abs().max(outside).powi(2)
+            t.requirement.excess(*v).abs().max(outside).powi(2)
         };
-        self.ask.targets.iter().zip(values).map(excess).sum::<f64>().sqrt()
+        self.request.targets.iter().zip(values).map(excess).sum::<f64>().sqrt()
     }
 
     /// The values of a made part, predicted in full.
@@ -177,7 +189,7 @@ impl<'a> Trial<'a> {
         error: &ModelError,
         draw: &Draw,
     ) -> Option<Vec<f64>> {
-        let bed = self.ask.tolerances.made(part.contact.bed(), hardness_shore_a, &draw.made);
+        let bed = self.request.tolerances.made(part.contact.bed(), hardness_shore_a, &draw.made);
         let made = Part { pins: part.pins.clone(), contact: part.contact.clone().with_bed(bed) };
         let curve = self.belief.curve(&made, &self.loads_n, &draw.constants)?;
         let (curve, threshold_factor) = error.applied(curve, draw.model);
@@ -196,7 +208,7 @@ impl<'a> Trial<'a> {
         hardness_shore_a: f64,
         made: &[f64; SOURCES],
     ) -> Option<Curve> {
-        let bed = self.ask.tolerances.made(part.contact.bed(), hardness_shore_a, made);
+        let bed = self.request.tolerances.made(part.contact.bed(), hardness_shore_a, made);
         let made = Part { pins: part.pins.clone(), contact: part.contact.clone().with_bed(bed) };
         self.belief.curve(&made, &self.loads_n, &vec![0.0; self.belief.constants()])
     }
@@ -251,21 +263,21 @@ pub(super) fn outer_width_mm(c: &Configuration) -> f64 {
 mod tests {
     use super::super::PublishedPhysics;
     use super::*;
-    use crate::ask::{Target, Wish};
     use crate::prediction::predicted_curve;
+    use crate::request::{Requirement, Target};
 
     #[test]
     fn a_threshold_is_the_one_that_is_predicted() {
-        let ask = Ask {
-            targets: vec![Target { quantity: Quantity::Threshold, wish: Wish::AtLeast(5.0) }],
-            ..Ask::default()
+        let request = Request {
+            targets: vec![Target { quantity: Quantity::Threshold, requirement: Requirement::AtLeast(5.0) }],
+            ..Request::default()
         };
         let belief = PublishedPhysics::default();
         for pins in [vec![5, 8, 11], vec![4, 8, 12], vec![6, 7, 10]] {
             let mut configuration = Configuration::default();
             configuration.layout.pins = pins;
             let f = &configuration.friction;
-            let trial = Trial::new(&ask, &belief, (f.load_min_n, f.load_max_n), f.points);
+            let trial = Trial::new(&request, &belief, (f.load_min_n, f.load_max_n), f.points);
             let value = trial.median(&configuration).unwrap()[0];
             let curve = predicted_curve(&Design::new(configuration).unwrap());
             let predicted = Transition::of(&curve).unwrap().threshold_n;

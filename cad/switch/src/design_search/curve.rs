@@ -2,7 +2,7 @@
 
 use pinswitch_friction::FrictionCurve;
 
-use crate::ask::Quantity;
+use crate::request::Quantity;
 
 /// Half of the ratio of loads, as a logarithm, over which the stiffness is taken: the curve from 15 % under to 15 % over
 /// the threshold. Narrower, and the mesh of the physics shows; wider, and the knee is cut.

@@ -1,7 +1,7 @@
 //! When two answers differ in kind, and not only in the last digit.
 
-use crate::ask::Parameter;
 use crate::config::Configuration;
+use crate::request::Parameter;
 
 /// Ratio of a parameter from which on another material or another mould is meant.
 const CLEARLY_OTHER: f64 = 1.25;

@@ -7,8 +7,8 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use pinswitch_friction::sort_by_number;
 
 use super::candidate::Trial;
-use crate::ask::{Quantity, SOURCES, Target, Tolerances};
 use crate::config::Configuration;
+use crate::request::{Quantity, SOURCES, Target, Tolerances};
 
 /// Standard deviation that stands in before anything is known of a candidate.
 pub(super) const GUESSED_SD: f64 = 0.12;
@@ -85,7 +85,7 @@ impl Linear {
         });
         let hardness = configuration.silicone.hardness_shore_a;
         let mut made = vec![[0.0; SOURCES]; middle.len()];
-        for source in (0..SOURCES).filter(|i| trial.ask.tolerances.sd()[*i] > 0.0) {
+        for source in (0..SOURCES).filter(|i| trial.request.tolerances.sd()[*i] > 0.0) {
             let mut z = [0.0; SOURCES];
             z[source] = 1.0;
             let curve = trial.curve_of_made(&part, hardness, &z)?;
@@ -109,19 +109,19 @@ impl Linear {
     /// Minus the logarithm of the probability of meeting all targets, as if they were independent.
     pub(super) fn cost(&self, trial: &Trial<'_>) -> f64 {
         let one = |(t, s): (&Target, &Spread)| cost(t, trial.range_n, s.value, s.sd());
-        trial.ask.targets.iter().zip(&self.targets).map(one).sum()
+        trial.request.targets.iter().zip(&self.targets).map(one).sum()
     }
 }
 
 /// The same with standard deviations that are only guessed.
 pub(super) fn guessed_cost(trial: &Trial<'_>, values: &[f64]) -> f64 {
     let one = |(t, v): (&Target, &f64)| cost(t, trial.range_n, *v, (GUESSED_SD, GUESSED_SD));
-    trial.ask.targets.iter().zip(values).map(one).sum()
+    trial.request.targets.iter().zip(values).map(one).sum()
 }
 
 /// Minus the logarithm of the probability that a target is met.
 fn cost(target: &Target, range_n: (f64, f64), value: f64, (up, down): (f64, f64)) -> f64 {
-    let (mut low, mut high) = target.wish.interval();
+    let (mut low, mut high) = target.requirement.interval();
     if target.quantity == Quantity::Threshold {
         (low, high) = (low.max(range_n.0), high.min(range_n.1));
     }
@@ -150,7 +150,7 @@ fn log_between(low: f64, high: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ask::Wish;
+    use crate::request::Requirement;
 
     #[test]
     fn the_logarithm_falls_without_a_step() {
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_value_on_the_bound_is_met_half_of_the_time() {
-        let target = Target { quantity: Quantity::MaxFriction, wish: Wish::AtMost(8.0) };
+        let target = Target { quantity: Quantity::MaxFriction, requirement: Requirement::AtMost(8.0) };
         let chance = |value: f64| libm::exp(-cost(&target, (3.0, 50.0), value, (0.1, 0.1)));
         assert!((chance(8.0) - 0.5).abs() < 1e-9);
         assert!(chance(6.0) > 0.99 && chance(10.0) < 0.02);

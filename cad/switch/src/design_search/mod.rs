@@ -1,5 +1,5 @@
-//! From an ask to configurations: patterns by enumeration, continuous parameters by a simplex, ranked by the probability that
-//! a made part meets the ask. `cad/doc/design.md` explains every step.
+//! From a request to configurations: patterns by enumeration, continuous parameters by a simplex, ranked by the probability that
+//! a made part meets the request. `cad/doc/design.md` explains every step.
 
 mod belief;
 mod blocked;
@@ -17,10 +17,10 @@ mod space;
 use pinswitch_friction::layout_search::LayoutCandidate;
 use pinswitch_friction::sort_by_number;
 
-use crate::ask::{Ask, Quantity, Wish};
 use crate::config::Configuration;
 use crate::design::Design;
 use crate::parallel::map_each;
+use crate::request::{Quantity, Request, Requirement};
 use candidate::Trial;
 use linear::guessed_cost;
 use refine::{Aim, Place, cost, refined};
@@ -93,25 +93,25 @@ pub struct Found {
     pub tried: usize,
     /// The base's patterns, for a picture.
     pub candidates: Vec<LayoutCandidate>,
-    /// Designs that meet the ask by the best guess, the most probable first; if there are none, the nearest one.
+    /// Designs that meet the request by the best guess, the most probable first; if there are none, the nearest one.
     pub proposals: Vec<Proposal>,
     /// Why there are none.
     pub blocked: Option<Blocked>,
 }
 
-/// The loads that `ask` looks at: its own range or the configuration's, widened to the loads and thresholds that it names.
-pub fn load_range_n(base: &Configuration, ask: &Ask) -> (f64, f64) {
-    if let Some(range) = ask.load_range_n {
+/// The loads that `request` looks at: its own range or the configuration's, widened to the loads and thresholds that it names.
+pub fn load_range_n(base: &Configuration, request: &Request) -> (f64, f64) {
+    if let Some(range) = request.load_range_n {
         return range;
     }
     let (mut low, mut high) = (base.friction.load_min_n, base.friction.load_max_n);
-    for target in &ask.targets {
-        let (least, most) = match (target.quantity, target.wish) {
+    for target in &request.targets {
+        let (least, most) = match (target.quantity, target.requirement) {
             (Quantity::Friction { load_n }, _) => (load_n, load_n),
             // Room under an early threshold, or no load is lighter than it.
-            (Quantity::Threshold, Wish::AtMost(most)) => (most / 1.2, most),
-            (Quantity::Threshold, Wish::AtLeast(least)) => (least, least * 1.2),
-            (Quantity::Threshold, wish) => wish.interval(),
+            (Quantity::Threshold, Requirement::AtMost(most)) => (most / 1.2, most),
+            (Quantity::Threshold, Requirement::AtLeast(least)) => (least, least * 1.2),
+            (Quantity::Threshold, requirement) => requirement.interval(),
             _ => continue,
         };
         (low, high) = (low.min(least), high.max(most));
@@ -119,19 +119,19 @@ pub fn load_range_n(base: &Configuration, ask: &Ask) -> (f64, f64) {
     (low, high.min(1000.0))
 }
 
-/// Searches for designs that meet `ask`, from `base`. The same arguments give the same answer.
+/// Searches for designs that meet `request`, from `base`. The same arguments give the same answer.
 pub fn search(
     base: &Design,
-    ask: &Ask,
+    request: &Request,
     belief: &dyn Belief,
     options: Options,
     progress: &dyn Progress,
 ) -> Found {
-    let range_n = load_range_n(base.configuration(), ask);
+    let range_n = load_range_n(base.configuration(), request);
     let mut configuration = base.configuration().clone();
     (configuration.friction.load_min_n, configuration.friction.load_max_n) = range_n;
-    let trial = Trial::new(ask, belief, range_n, base.configuration().friction.points);
-    let space = Space::new(&configuration, ask);
+    let trial = Trial::new(request, belief, range_n, base.configuration().friction.points);
+    let space = Space::new(&configuration, request);
     let enumerated = enumerate(&trial, &space, progress);
     let starts = starts(&space, &enumerated.places, options.starts);
 
@@ -187,23 +187,23 @@ pub fn search(
         proposals.extend(proposal::propose(&trial, &nearest, &draws));
         found.blocked = Some(blocked);
     } else if !is_possible && let Some(nearest) = proposals.first() {
-        let other = ask.limits.pins.and_then(|_| with_any_pins(&trial, ask, &configuration));
+        let other = request.limits.pins.and_then(|_| with_any_pins(&trial, request, &configuration));
         found.blocked = Some(blocked::blocked(&trial, &space, &nearest.configuration, other));
     }
     found.proposals = proposals;
     found
 }
 
-/// How often made parts of `configuration` meet `ask`, with draws of another seed: a check of a stated probability.
+/// How often made parts of `configuration` meet `request`, with draws of another seed: a check of a stated probability.
 pub fn simulated(
     base: &Design,
-    ask: &Ask,
+    request: &Request,
     belief: &dyn Belief,
     draws: usize,
     seed: u64,
 ) -> Option<Probability> {
-    let range_n = load_range_n(base.configuration(), ask);
-    let trial = Trial::new(ask, belief, range_n, base.configuration().friction.points);
+    let range_n = load_range_n(base.configuration(), request);
+    let trial = Trial::new(request, belief, range_n, base.configuration().friction.points);
     probability::probability(
         &trial,
         base.configuration(),
@@ -331,8 +331,8 @@ fn starts(space: &Space, places: &[(f64, Place)], count: usize) -> Vec<Place> {
 }
 
 /// The least miss with any number of pins, and that number.
-fn with_any_pins(trial: &Trial<'_>, ask: &Ask, base: &Configuration) -> Option<(usize, f64)> {
-    let mut free = ask.clone();
+fn with_any_pins(trial: &Trial<'_>, request: &Request, base: &Configuration) -> Option<(usize, f64)> {
+    let mut free = request.clone();
     free.limits.pins = None;
     let space = Space::new(base, &free);
     let places = enumerate(trial, &space, &Silent).places;

@@ -1,4 +1,4 @@
-//! How often a made part meets the ask: every draw is a part of its own, with its dimensions, constants and model error,
+//! How often a made part meets the request: every draw is a part of its own, with its dimensions, constants and model error,
 //! predicted in full.
 
 use rand::seq::SliceRandom;
@@ -8,11 +8,11 @@ use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::candidate::{Draw, Trial};
-use crate::ask::SOURCES;
 use crate::config::Configuration;
 use crate::parallel::map_each;
+use crate::request::SOURCES;
 
-/// How often the draws met the ask.
+/// How often the draws met the request.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Probability {
     /// Share of draws that meet all targets.
@@ -55,7 +55,7 @@ pub(super) fn draws(seed: u64, count: usize, constants: usize) -> Vec<Draw> {
         .collect()
 }
 
-/// The probability that a made part of `configuration` meets the ask; `None` if it cannot be predicted.
+/// The probability that a made part of `configuration` meets the request; `None` if it cannot be predicted.
 pub(super) fn probability(
     trial: &Trial<'_>,
     configuration: &Configuration,
@@ -64,7 +64,7 @@ pub(super) fn probability(
     let part = trial.part(configuration)?;
     let error = trial.believed(&part)?.error;
     let hardness = configuration.silicone.hardness_shore_a;
-    // A part that finds no equilibrium is left out of the count: it says nothing of the ask.
+    // A part that finds no equilibrium is left out of the count: it says nothing of the request.
     let made: Vec<Vec<f64>> =
         map_each(draws.iter().collect(), |draw| trial.made(&part, hardness, &error, draw))
             .into_iter()
@@ -75,9 +75,9 @@ pub(super) fn probability(
         return None;
     }
     let share = |met: usize| met as f64 / count as f64;
-    let targets = &trial.ask.targets;
+    let targets = &trial.request.targets;
     let each = (0..targets.len())
-        .map(|t| share(made.iter().filter(|values| targets[t].wish.is_met(values[t])).count()))
+        .map(|t| share(made.iter().filter(|values| targets[t].requirement.is_met(values[t])).count()))
         .collect();
     let band = (0..targets.len())
         .map(|t| {
@@ -87,7 +87,9 @@ pub(super) fn probability(
         })
         .collect();
     let all = share(
-        made.iter().filter(|values| targets.iter().zip(*values).all(|(t, v)| t.wish.is_met(*v))).count(),
+        made.iter()
+            .filter(|values| targets.iter().zip(*values).all(|(t, v)| t.requirement.is_met(*v)))
+            .count(),
     );
     Some(Probability { all, each, band, draws: count })
 }
@@ -96,7 +98,7 @@ pub(super) fn probability(
 mod tests {
     use super::super::{Belief, PublishedPhysics};
     use super::*;
-    use crate::ask::{Ask, Quantity, Target, Tolerances, Wish};
+    use crate::request::{Quantity, Request, Requirement, Target, Tolerances};
 
     #[test]
     fn bands_of_parts_without_tolerances_are_those_of_the_law() {
@@ -107,16 +109,16 @@ mod tests {
             layer_mm: 0.0,
             hardness_shore_a: 0.0,
         };
-        let ask = Ask {
-            targets: vec![Target { quantity: Quantity::MaxFriction, wish: Wish::AtMost(9.0) }],
+        let request = Request {
+            targets: vec![Target { quantity: Quantity::MaxFriction, requirement: Requirement::AtMost(9.0) }],
             tolerances: exact,
-            ..Ask::default()
+            ..Request::default()
         };
         let mut configuration = Configuration::default();
         configuration.layout.pins = vec![5, 7, 9, 10];
         let belief = PublishedPhysics::default();
         let f = &configuration.friction;
-        let trial = Trial::new(&ask, &belief, (f.load_min_n, f.load_max_n), f.points);
+        let trial = Trial::new(&request, &belief, (f.load_min_n, f.load_max_n), f.points);
         let part = trial.part(&configuration).unwrap();
         let law = belief.banded(&part, &[trial.range_n.1]).unwrap();
         // A seed whose independent draws had a band 4 % too narrow at its lower end.

@@ -11,10 +11,10 @@ use super::curve::Curve;
 use super::linear::{Linear, VarianceShare};
 use super::probability::{Probability, probability};
 use super::sensitivity::{Sensitivity, sensitivities};
-use crate::ask::{Parameter, Quantity, Target};
 use crate::config::Configuration;
 use crate::design::Design;
 use crate::parts::can_be_printed;
+use crate::request::{Parameter, Quantity, Target};
 
 /// One target and what the proposal has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -51,13 +51,13 @@ pub struct Proposal {
     pub threshold_n: Option<f64>,
     /// Friction at the heaviest load by the best guess, N.
     pub friction_n: f64,
-    /// How often made parts meet the ask.
+    /// How often made parts meet the request.
     pub probability: Probability,
     /// Standard error of that share, by the number of draws.
     pub standard_error: f64,
     /// Target by target.
     pub targets: Vec<TargetResult>,
-    /// The target that is met least often, by its place in the ask.
+    /// The target that is met least often, by its place in the request.
     pub tightest: usize,
     /// What the uncertainty of that target comes from, largest first.
     pub uncertainty: Vec<VarianceShare>,
@@ -81,7 +81,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
     let linear = Linear::of(trial, &configuration)?;
     let probability = probability(trial, &configuration, draws)?;
     let targets: Vec<TargetResult> = trial
-        .ask
+        .request
         .targets
         .iter()
         .enumerate()
@@ -89,7 +89,7 @@ pub(super) fn propose(trial: &Trial<'_>, configuration: &Configuration, draws: &
             target: *target,
             value: values[i],
             band: probability.band[i],
-            is_met: target.wish.is_met(values[i]),
+            is_met: target.requirement.is_met(values[i]),
             probability: probability.each[i],
         })
         .collect();

@@ -1,4 +1,4 @@
-//! The nearest design that can be printed, where none can within the ask: sizes become wishes, then pins are let loose, then
+//! The nearest design that can be printed, where none can within the request: sizes become wishes, then pins are let loose, then
 //! all parameters.
 
 use super::blocked::{self, Blocked, Change};
@@ -6,20 +6,20 @@ use super::candidate::Trial;
 use super::refine::{Aim, cost, refined};
 use super::space::Space;
 use super::{GUESSED_STEPS, Silent, enumerate, starts};
-use crate::ask::{Ask, Parameter, Varied};
 use crate::config::Configuration;
 use crate::parallel::map_each;
+use crate::request::{Parameter, Request, Varied};
 
 /// Patterns whose parameters are searched.
 const STARTS: usize = 4;
 
 /// The nearest design and why it is not within `asked`; `None` if nothing at all can be printed from `base`.
 pub(super) fn nearest(asked: &Trial<'_>, base: &Configuration) -> Option<(Configuration, Blocked)> {
-    let within = Space::new(base, asked.ask);
+    let within = Space::new(base, asked.request);
     let (refused, why) = refusal(asked, &within);
-    relaxations(asked.ask, base).iter().find_map(|ask| {
-        let trial = asked.with_soft_sizes(ask);
-        let space = Space::new(base, ask);
+    relaxations(asked.request, base).iter().find_map(|request| {
+        let trial = asked.with_soft_sizes(request);
+        let space = Space::new(base, request);
         let mut places = enumerate(&trial, &space, &Silent).places;
         places.retain(|(_, p)| trial.keeps_limits(&space.configuration(p.material, &p.pins, &p.at)));
         let steps = GUESSED_STEPS * (space.varied.len() as u64 + 1);
@@ -34,20 +34,20 @@ pub(super) fn nearest(asked: &Trial<'_>, base: &Configuration) -> Option<(Config
         let mut blocked = blocked::blocked(&trial, &within, &nearest, None);
         blocked.limit = asked.broken_limit(&nearest).unwrap_or_else(|| why.clone());
         if blocked.missed.is_empty() {
-            blocked.together = left(asked.ask, &refused, &nearest);
+            blocked.together = left(asked.request, &refused, &nearest);
         }
         Some((nearest, blocked))
     })
 }
 
-/// What refuses the ask where its search begins: the limit or the rule, with field, value and bound.
+/// What refuses the request where its search begins: the limit or the rule, with field, value and bound.
 fn refusal(asked: &Trial<'_>, space: &Space) -> (Configuration, String) {
     let base = space.base();
     let patterns = space.patterns(0, &base, 1).taken;
     let Some(pins) = patterns.first() else {
-        let (fewest, most) = asked.ask.limits.pins.unwrap_or_default();
+        let (fewest, most) = asked.request.limits.pins.unwrap_or_default();
         let why = format!(
-            "limits.pins = {fewest}..{most}: fewer grooves lie under the tendon; ask for fewer pins (--pins) or raise \
+            "limits.pins = {fewest}..{most}: fewer grooves lie under the tendon; request for fewer pins (--pins) or raise \
              layout.wrap_angle_deg"
         );
         return (space.materials[0].clone(), why);
@@ -65,16 +65,16 @@ fn refusal(asked: &Trial<'_>, space: &Space) -> (Configuration, String) {
     (c, why)
 }
 
-/// Asks that allow more and more: any size is a wish in all of them.
-fn relaxations(ask: &Ask, base: &Configuration) -> [Ask; 3] {
-    let mut any_pins = ask.clone();
+/// Asks that allow more and more: any size is a requirement in all of them.
+fn relaxations(request: &Request, base: &Configuration) -> [Request; 3] {
+    let mut any_pins = request.clone();
     any_pins.vary.pattern = true;
     any_pins.limits.pins = None;
     let mut anything = any_pins.clone();
     anything.materials.pin_diameter_mm.clear();
     anything.materials.hardness_shore_a.clear();
     anything.vary.parameters = Parameter::ALL.iter().map(|p| usual(*p, base)).collect();
-    [ask.clone(), any_pins, anything]
+    [request.clone(), any_pins, anything]
 }
 
 /// The default range of a parameter, widened to where it is.
@@ -83,9 +83,9 @@ pub(super) fn usual(parameter: Parameter, at: &Configuration) -> Varied {
     Varied { parameter, from: low.min(here), to: high.max(here) }
 }
 
-/// Parameters of `to` that the ask does not allow.
-fn left(ask: &Ask, from: &Configuration, to: &Configuration) -> Vec<Change> {
-    let allows = |p: Parameter| match ask.vary.parameters.iter().find(|v| v.parameter == p) {
+/// Parameters of `to` that the request does not allow.
+fn left(request: &Request, from: &Configuration, to: &Configuration) -> Vec<Change> {
+    let allows = |p: Parameter| match request.vary.parameters.iter().find(|v| v.parameter == p) {
         Some(v) => (v.from - 1e-9..=v.to + 1e-9).contains(&p.value(to)),
         None => (p.value(from) - p.value(to)).abs() < 1e-6,
     };

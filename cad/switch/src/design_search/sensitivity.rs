@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::candidate::Trial;
-use crate::ask::{Parameter, Quantity};
 use crate::config::Configuration;
+use crate::request::{Parameter, Quantity};
 
 /// Relative step: beyond the mesh of the physics, within its bends.
 const STEP: f64 = 0.02;

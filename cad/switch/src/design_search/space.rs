@@ -2,9 +2,9 @@
 
 use pinswitch_friction::layout_search::{MAX_GROOVES, patterns};
 
-use crate::ask::{Ask, Parameter, Varied};
 use crate::config::Configuration;
 use crate::design::contact_of;
+use crate::request::{Parameter, Request, Varied};
 
 /// A base configuration and what may change on it.
 pub(super) struct Space {
@@ -18,24 +18,24 @@ pub(super) struct Space {
 }
 
 impl Space {
-    pub(super) fn new(base: &Configuration, ask: &Ask) -> Self {
+    pub(super) fn new(base: &Configuration, request: &Request) -> Self {
         let mut materials = vec![base.clone()];
         let lists = [
-            (Parameter::PinDiameterMm, &ask.materials.pin_diameter_mm),
-            (Parameter::HardnessShoreA, &ask.materials.hardness_shore_a),
+            (Parameter::PinDiameterMm, &request.materials.pin_diameter_mm),
+            (Parameter::HardnessShoreA, &request.materials.hardness_shore_a),
         ];
         for (parameter, list) in lists.into_iter().filter(|(_, list)| !list.is_empty()) {
             materials = each_with(&materials, list, |c, value| parameter.set(c, *value));
         }
-        if !ask.materials.tendon.is_empty() {
-            materials = each_with(&materials, &ask.materials.tendon, |c, tendon| {
+        if !request.materials.tendon.is_empty() {
+            materials = each_with(&materials, &request.materials.tendon, |c, tendon| {
                 c.tendon.rope_diameter_mm = tendon.rope_diameter_mm;
                 c.tendon.coating_mm = tendon.coating_mm;
             });
         }
         let grooves = base.segment.grooves;
-        let pins = ask.limits.pins.map_or((1, grooves), |(fewest, most)| (fewest, most.min(grooves)));
-        Self { materials, varied: ask.vary.parameters.clone(), pins, vary_pattern: ask.vary.pattern }
+        let pins = request.limits.pins.map_or((1, grooves), |(fewest, most)| (fewest, most.min(grooves)));
+        Self { materials, varied: request.vary.parameters.clone(), pins, vary_pattern: request.vary.pattern }
     }
 
     /// Where the base lies, each parameter from 0 to 1 within its range.
@@ -152,17 +152,17 @@ pub(super) fn is_predictable(configuration: &Configuration) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ask::{Quantity, Target, Wish};
+    use crate::request::{Quantity, Requirement, Target};
 
     #[test]
     fn materials_are_combined_and_places_are_within_their_ranges() {
-        let mut ask = Ask {
-            targets: vec![Target { quantity: Quantity::Threshold, wish: Wish::AtLeast(5.0) }],
-            ..Ask::default()
+        let mut request = Request {
+            targets: vec![Target { quantity: Quantity::Threshold, requirement: Requirement::AtLeast(5.0) }],
+            ..Request::default()
         };
-        ask.materials.pin_diameter_mm = vec![0.8, 1.0];
-        ask.materials.hardness_shore_a = vec![30.0, 40.0, 50.0];
-        let space = Space::new(&Configuration::default(), &ask);
+        request.materials.pin_diameter_mm = vec![0.8, 1.0];
+        request.materials.hardness_shore_a = vec![30.0, 40.0, 50.0];
+        let space = Space::new(&Configuration::default(), &request);
         assert_eq!(space.materials.len(), 6);
         for index in 1..20 {
             let c = space.configuration(0, &[5, 8, 11], &space.spread_point(index));
@@ -171,11 +171,11 @@ mod tests {
                 assert!(value >= v.from - 1e-6 && value <= v.to + 1e-6, "{value} {v:?}");
             }
         }
-        ask.vary.pattern = false;
-        ask.vary.parameters = vec![Varied { parameter: Parameter::WrapDeg, from: 120.0, to: 120.0 }];
+        request.vary.pattern = false;
+        request.vary.parameters = vec![Varied { parameter: Parameter::WrapDeg, from: 120.0, to: 120.0 }];
         let mut kept = Configuration::default();
         kept.layout.pins = vec![5, 8, 11];
-        let wide = Space::new(&kept, &ask);
+        let wide = Space::new(&kept, &request);
         let pins = &wide.patterns(0, &wide.base(), 9).taken[0];
         assert_eq!(
             wide.configuration(0, pins, &wide.base()).layout.pins,

@@ -1,33 +1,34 @@
-//! Searches of small asks, whole.
+//! Searches of small requests, whole.
 
 use super::*;
-use crate::ask::{Parameter, Target, Varied, Vary};
+use crate::request::{Parameter, Target, Varied, Vary};
 
 fn base() -> Design {
     Design::new(Configuration::default()).unwrap()
 }
 
-fn ask(targets: Vec<(Quantity, Wish)>) -> Ask {
-    let targets = targets.into_iter().map(|(quantity, wish)| Target { quantity, wish }).collect();
-    Ask { targets, ..Ask::default() }
+fn request(targets: Vec<(Quantity, Requirement)>) -> Request {
+    let targets =
+        targets.into_iter().map(|(quantity, requirement)| Target { quantity, requirement }).collect();
+    Request { targets, ..Request::default() }
 }
 
 fn few(best: usize) -> Options {
     Options { best, draws: 100, starts: 3, ..Options::default() }
 }
 
-fn found(ask: &Ask, options: Options) -> Found {
-    search(&base(), ask, &PublishedPhysics::default(), options, &Silent)
+fn found(request: &Request, options: Options) -> Found {
+    search(&base(), request, &PublishedPhysics::default(), options, &Silent)
 }
 
 #[test]
 fn proposals_meet_the_ask_and_differ_in_kind() {
-    let mut ask = ask(vec![
-        (Quantity::Threshold, Wish::About { value: 24.0, within: 0.1 }),
-        (Quantity::MaxFriction, Wish::AtMost(9.0)),
+    let mut request = request(vec![
+        (Quantity::Threshold, Requirement::About { value: 24.0, within: 0.1 }),
+        (Quantity::MaxFriction, Requirement::AtMost(9.0)),
     ]);
-    ask.limits.pins = Some((2, 4));
-    let found = found(&ask, few(5));
+    request.limits.pins = Some((2, 4));
+    let found = found(&request, few(5));
     assert!(found.blocked.is_none() && found.proposals.len() >= 3, "{}", found.proposals.len());
     for (i, p) in found.proposals.iter().enumerate() {
         assert!(p.targets.iter().all(|t| t.is_met), "{p:?}");
@@ -44,21 +45,21 @@ fn proposals_meet_the_ask_and_differ_in_kind() {
 
 #[test]
 fn the_same_ask_has_the_same_answer() {
-    let mut ask = ask(vec![(Quantity::MaxFriction, Wish::AtMost(8.0))]);
-    ask.limits.pins = Some((2, 3));
+    let mut request = request(vec![(Quantity::MaxFriction, Requirement::AtMost(8.0))]);
+    request.limits.pins = Some((2, 3));
     let fewer = Options { starts: 1, draws: 50, ..few(2) };
-    let twice = [found(&ask, fewer), found(&ask, fewer)].map(|f| format!("{:?}", f.proposals));
+    let twice = [found(&request, fewer), found(&request, fewer)].map(|f| format!("{:?}", f.proposals));
     assert_eq!(twice[0], twice[1]);
 }
 
 #[test]
 fn a_frozen_part_is_judged_as_it_is() {
-    let mut ask = ask(vec![(Quantity::Threshold, Wish::AtLeast(5.0))]);
-    ask.vary = Vary { pattern: false, parameters: Vec::new() };
+    let mut request = request(vec![(Quantity::Threshold, Requirement::AtLeast(5.0))]);
+    request.vary = Vary { pattern: false, parameters: Vec::new() };
     let mut configuration = Configuration::default();
     configuration.layout.pins = vec![5, 8, 11];
     let base = Design::new(configuration).unwrap();
-    let found = search(&base, &ask, &PublishedPhysics::default(), few(5), &Silent);
+    let found = search(&base, &request, &PublishedPhysics::default(), few(5), &Silent);
     assert_eq!((found.patterns, found.proposals.len()), (1, 1));
     assert_eq!(found.proposals[0].pins, [5, 8, 11]);
 }
@@ -66,33 +67,33 @@ fn a_frozen_part_is_judged_as_it_is() {
 #[test]
 fn an_impossible_ask_names_what_blocks_it_and_what_would_move_it() {
     // A late threshold takes a thin layer or hard silicone; thickness may hardly vary.
-    let mut ask = ask(vec![(Quantity::Threshold, Wish::Between(34.0, 40.0))]);
-    ask.limits.pins = Some((3, 3));
-    ask.vary.parameters = vec![Varied { parameter: Parameter::LayerMm, from: 1.9, to: 2.1 }];
-    let found = found(&ask, few(5));
+    let mut request = request(vec![(Quantity::Threshold, Requirement::Between(34.0, 40.0))]);
+    request.limits.pins = Some((3, 3));
+    request.vary.parameters = vec![Varied { parameter: Parameter::LayerMm, from: 1.9, to: 2.1 }];
+    let found = found(&request, few(5));
     let blocked = found.blocked.unwrap();
     assert_eq!(found.proposals.len(), 1);
     assert_eq!(blocked.missed.len(), 1);
     assert!(blocked.missed[0].value < 34.0);
     let first = &blocked.moves[0];
     assert!(first.meets, "{blocked:?}");
-    // What is advised is true: with that value alone the ask is met.
+    // What is advised is true: with that value alone the request is met.
     let mut moved = found.proposals[0].configuration.clone();
     first.parameter.set(&mut moved, first.to);
-    ask.vary = Vary { pattern: false, parameters: Vec::new() };
+    request.vary = Vary { pattern: false, parameters: Vec::new() };
     let base = Design::new(moved).unwrap();
-    let again = search(&base, &ask, &PublishedPhysics::default(), few(1), &Silent);
+    let again = search(&base, &request, &PublishedPhysics::default(), few(1), &Silent);
     assert!(again.blocked.is_none());
 }
 
 #[test]
 fn stated_probabilities_hold_for_other_draws() {
-    let mut ask = ask(vec![(Quantity::MaxFriction, Wish::Between(6.0, 9.0))]);
-    ask.limits.pins = Some((3, 4));
+    let mut request = request(vec![(Quantity::MaxFriction, Requirement::Between(6.0, 9.0))]);
+    request.limits.pins = Some((3, 4));
     let options = Options { draws: 500, ..few(1) };
-    for p in found(&ask, options).proposals {
+    for p in found(&request, options).proposals {
         let design = Design::new(p.configuration.clone()).unwrap();
-        let again = simulated(&design, &ask, &PublishedPhysics::default(), 500, 77).unwrap();
+        let again = simulated(&design, &request, &PublishedPhysics::default(), 500, 77).unwrap();
         assert!((again.all - p.probability.all).abs() < 0.07, "{} {}", again.all, p.probability.all);
     }
 }

@@ -135,7 +135,7 @@ fn print_section(text: &mut String, built: &Built, manifest: &Manifest) {
     }
     text.push_str("\n### Checks\n\n");
     for check in checklist(design, manifest.widest_bridge_mm()) {
-        let _ = if check.is_kept {
+        let _ = if check.is_satisfied {
             writeln!(text, "- ok: {}", escape(&check.statement))
         } else {
             writeln!(text, "- **look**: {}; {}", escape(&check.statement), escape(&check.remedy))

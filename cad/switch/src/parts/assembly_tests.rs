@@ -152,13 +152,13 @@ fn wide_wraps_are_refused_or_bring_nothing_together() {
             let all =
                 wide.iter().map(String::as_str).chain(["segment.grooves=25"]).chain(more.iter().copied());
             all.for_each(|a| assign(&mut c, a).unwrap());
-            match Design::new(c) {
+            match crate::feasibility::design(c) {
                 Ok(design) => {
                     assert_eq!(overlap(&assembled(&design)), None, "{wrap} {more:?}");
                     made += 1;
                 }
                 Err(e) => {
-                    assert!(!e.changes.is_empty(), "{wrap} {more:?}: {e}");
+                    assert!(!e.changes().is_empty(), "{wrap} {more:?}: {e}");
                     refused += 1;
                 }
             }

@@ -1,14 +1,13 @@
-//! What a configuration asks for and finds no room on a part: the set is made without it, and a warning names a value that
-//! was tried and makes room.
+//! Features that do not fit on a part: the set is made without them, and a warning names a value with which they fit.
 
 use super::mould::core_has_lost_label;
 use super::{Part, has_split_mould, mount, shell, support};
 use crate::config::{Configuration, MountKind};
 use crate::design::Design;
-use crate::design::rules::Change::{self, Ease, Lower, Raise, Set};
-use crate::design::rules::{Effort, way_out};
+use crate::design::rules::Direction::{self, Lower, Raise, Restore, Set};
+use crate::feasibility::advice;
 
-/// What can be left out.
+/// A feature that can be left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOut {
     /// The engraved label.
@@ -17,46 +16,46 @@ pub enum LeftOut {
     Side,
     /// The arrow to groove 1 on a support, and its `1`.
     Arrow,
-    /// The lip over the silicone's edge.
+    /// The lip over the edge of the silicone.
     Lip,
-    /// The stops at the layer's ends.
+    /// The stops at the ends of the layer.
     Stops,
     /// Traps for the nuts in the right support.
     NutTraps,
     /// Counterbores for the heads in a support.
     Counterbores,
-    /// The same in the mounting plate.
+    /// Counterbores for the heads in the mounting plate.
     PlateCounterbores,
 }
 
-/// Where no single value makes room.
-const NO_WAY: &str = "no single value makes room";
-/// What makes room in the wall between fasteners and faces.
-const ROOM_FOR_RECESSES: &[Change] = &[
+/// Text of a note without a value that makes room.
+const NO_ADVICE: &str = "no single value makes room";
+/// Directions that make room in the wall between fasteners and faces.
+const ROOM_FOR_RECESSES: &[Direction] = &[
     Raise("support.plate_mm"),
     Raise("shell.wall_mm"),
     Raise("fasteners.end_distance_mm"),
     Lower("fasteners.count"),
-    Ease("fasteners.hole_diameter_mm"),
+    Restore("fasteners.hole_diameter_mm"),
     Lower("fasteners.nut_recess_mm"),
     Lower("fasteners.head_recess_mm"),
     Set("fasteners.kind", "\"screw\""),
 ];
-/// What makes room for letters.
-const ROOM_FOR_LETTERS: &[Change] = &[
+/// Directions that make room for letters.
+const ROOM_FOR_LETTERS: &[Direction] = &[
     Raise("shell.wall_mm"),
     Lower("fasteners.count"),
-    Ease("label.depth_mm"),
+    Restore("label.depth_mm"),
     Raise("support.plate_mm"),
-    Ease("label.stroke_mm"),
-    Ease("fasteners.head_recess_mm"),
-    Ease("fasteners.nut_recess_mm"),
-    Ease("fasteners.hole_diameter_mm"),
+    Restore("label.stroke_mm"),
+    Restore("fasteners.head_recess_mm"),
+    Restore("fasteners.nut_recess_mm"),
+    Restore("fasteners.hole_diameter_mm"),
     Set("label.text", "\"\""),
 ];
 
 impl LeftOut {
-    fn words(self, design: &Design, part: &str) -> String {
+    fn description(self, design: &Design, part: &str) -> String {
         match self {
             Self::Label => format!("the label {:?} does not fit and is left out", design.label()),
             Self::Side => {
@@ -73,21 +72,21 @@ impl LeftOut {
         }
     }
 
-    const fn room(self) -> &'static [Change] {
+    const fn room(self) -> &'static [Direction] {
         match self {
             Self::Label | Self::Side | Self::Arrow => ROOM_FOR_LETTERS,
             Self::Lip => &[
                 Raise("support.rise_mm"),
-                Ease("support.lip_height_mm"),
-                Ease("support.corner_radius_mm"),
-                Ease("print.elephant_foot_mm"),
-                Ease("support.lip_clearance_mm"),
+                Restore("support.lip_height_mm"),
+                Restore("support.corner_radius_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("support.lip_clearance_mm"),
             ],
             Self::Stops => &[
                 Raise("shell.stop_mm"),
                 Raise("silicone.thickness_mm"),
                 Raise("shell.stop_height_mm"),
-                Ease("print.elephant_foot_mm"),
+                Restore("print.elephant_foot_mm"),
             ],
             Self::NutTraps | Self::Counterbores => ROOM_FOR_RECESSES,
             Self::PlateCounterbores => {
@@ -98,26 +97,26 @@ impl LeftOut {
 }
 
 impl Part {
-    /// What of it was left out, each with a value that makes room for it.
+    /// Returns a note for each feature that is left out, with a value with which it fits.
     pub fn notes(&self, design: &Design) -> Vec<String> {
-        let note = |what: &LeftOut| {
-            let remedy = remedy(&self.name, *what, design);
-            let remedy = remedy.unwrap_or_else(|| NO_WAY.to_owned());
-            format!("{}: {remedy}", what.words(design, &self.name))
+        let note = |feature: &LeftOut| {
+            let remedy = remedy(&self.name, *feature, design);
+            let remedy = remedy.unwrap_or_else(|| NO_ADVICE.to_owned());
+            format!("{}: {remedy}", feature.description(design, &self.name))
         };
         self.left_out.iter().map(note).collect()
     }
 
-    /// What of it was left out, for those who make the part and do not know its configuration.
+    /// Returns a note for each feature that is left out, without remedy: for the drawing.
     pub fn left_out_notes(&self, design: &Design) -> Vec<String> {
-        self.left_out.iter().map(|what| what.words(design, &self.name)).collect()
+        self.left_out.iter().map(|feature| feature.description(design, &self.name)).collect()
     }
 }
 
-/// All that a design leaves out, with the part that lacks it. The parts themselves are not made.
+/// Returns all features that a design leaves out, each with its part. No part is built for it.
 fn of_set(design: &Design) -> Vec<(&'static str, LeftOut)> {
     let c = design.configuration();
-    let on = |part: &'static str, lost: Vec<LeftOut>| lost.into_iter().map(move |what| (part, what));
+    let on = |part: &'static str, lost: Vec<LeftOut>| lost.into_iter().map(move |feature| (part, feature));
     let core = (has_split_mould(c) && core_has_lost_label(design)).then_some(LeftOut::Label);
     let plate = if c.mount.kind == MountKind::None { Vec::new() } else { mount::left_out(design) };
     on("shell", shell::left_out(design))
@@ -128,33 +127,33 @@ fn of_set(design: &Design) -> Vec<(&'static str, LeftOut)> {
         .collect()
 }
 
-/// What makes room for `what` on a part, and takes it from nothing else.
-fn remedy(part: &str, what: LeftOut, design: &Design) -> Option<String> {
+/// Returns a change that makes room for `feature` on a part, and does not displace another feature.
+fn remedy(part: &str, feature: LeftOut, design: &Design) -> Option<String> {
     let before = of_set(design);
-    let is_wanted = |(on, lost): &(&str, LeftOut)| *lost != what || (*on != part && *on != "plate");
+    let is_other = |(on, lost): &(&str, LeftOut)| *lost != feature || (*on != part && *on != "plate");
     let fits = |c: &Configuration| {
         Design::new(c.clone()).is_ok_and(|changed| {
             let after = of_set(&changed);
-            after.iter().all(|lost| before.contains(lost) && is_wanted(lost))
+            after.iter().all(|lost| before.contains(lost) && is_other(lost))
         })
     };
     let c = design.configuration();
-    // Nobody takes half of the screws off for a label.
-    let is_of_letters = matches!(what, LeftOut::Label | LeftOut::Side | LeftOut::Arrow);
-    let way = way_out(c, what.room(), &fits, Effort::QUICK).filter(|way| way.is_moderate || !is_of_letters);
-    way.map(|way| way.words).or_else(|| {
-        let letters = if what == LeftOut::Label { design.label().chars().count() } else { 0 };
+    // A label is not worth half of the screws.
+    let is_of_letters = matches!(feature, LeftOut::Label | LeftOut::Side | LeftOut::Arrow);
+    let advice = advice(c, feature.room(), &fits).filter(|advice| advice.is_small || !is_of_letters);
+    advice.map(|advice| advice.instruction).or_else(|| {
+        let letters = if feature == LeftOut::Label { design.label().chars().count() } else { 0 };
         let fitting = (1..letters).rev().find(|letters| {
             let mut shorter = c.clone();
             shorter.label.text = "M".repeat(*letters);
             fits(&shorter)
         })?;
-        Some(format!("set label.text to {} of your own", counted(fitting)))
+        Some(format!("set label.text to a text of {}", at_most_letters(fitting)))
     })
 }
 
-/// At most so many letters.
-fn counted(letters: usize) -> String {
+/// `one letter`, `at most 3 letters`.
+fn at_most_letters(letters: usize) -> String {
     if letters == 1 { "one letter".to_owned() } else { format!("at most {letters} letters") }
 }
 
@@ -204,20 +203,21 @@ mod tests {
         ],
     ];
 
-    /// Every value that a note names, taken, brings back what the note is about, and no other note with it.
+    /// With the value that a note names, the feature is back, and no other note appears.
     #[test]
-    fn a_note_about_what_was_left_out_mends_it() {
-        let mut told = 0;
+    fn the_remedy_of_a_note_restores_the_feature() {
+        let mut followed = 0;
         for case in CASES {
             let mut set: Vec<String> = case.iter().map(|a| (*a).to_owned()).collect();
             let mut before = notes(&design(&set));
             while let Some(note) = before.first().cloned() {
                 let remedy = note.split("left out: ").nth(1).unwrap();
                 let words: Vec<&str> = remedy.split(' ').collect();
-                let of_text =
-                    remedy.strip_prefix("set label.text to ").map(|said| said.replace("one", "most 1"));
+                let of_text = remedy
+                    .strip_prefix("set label.text to a text of ")
+                    .map(|letters| letters.replace("one", "most 1"));
                 if let Some(letters) =
-                    of_text.and_then(|said| said.split("most ").nth(1)?.split(' ').next()?.parse().ok())
+                    of_text.and_then(|text| text.split("most ").nth(1)?.split(' ').next()?.parse().ok())
                 {
                     set.push(format!("label.text={}", "Q".repeat(letters)));
                 } else {
@@ -225,33 +225,33 @@ mod tests {
                         ["raise" | "lower", field, "to", value] | ["set", field, "=", value] => {
                             set.push(format!("{field}={value}"))
                         }
-                        _ if remedy == NO_WAY => break,
+                        _ if remedy == NO_ADVICE => break,
                         _ => panic!("{case:?}: {note}"),
                     }
                 }
                 let after = notes(&design(&set));
-                // What a note is about, whatever the label says.
+                // The subjects of the notes, whatever the text of the label.
                 let about = |notes: &[String]| -> Vec<String> {
                     let words = |n: &String| {
                         n.split(" left out").next()?.split('"').step_by(2).last().map(str::to_owned)
                     };
                     notes.iter().filter_map(words).collect()
                 };
-                let is_told_before = |what: &String| about(&before).contains(what);
+                let is_known = |what: &String| about(&before).contains(what);
                 assert!(
-                    after.len() < before.len() && about(&after).iter().all(is_told_before),
+                    after.len() < before.len() && about(&after).iter().all(is_known),
                     "{set:?}: {before:?} -> {after:?}"
                 );
                 before = after;
-                told += 1;
+                followed += 1;
             }
         }
-        assert!(told >= 12, "{told}");
-        // What fits to a hair is not lost to rounding.
+        assert!(followed >= 12, "{followed}");
+        // A recess that fits exactly is not lost to rounding.
         assert_eq!(notes(&design(&["fasteners.head_recess_mm=1.6".to_owned()])), Vec::<String>::new());
     }
 
-    /// What is told of a set without its parts is what the parts say.
+    /// The features that are left out are known without building the parts.
     #[test]
     fn the_set_and_its_parts_lack_the_same() {
         let mut lost = 0;
@@ -263,7 +263,7 @@ mod tests {
             let parts = printed(&design).unwrap();
             let of_parts: Vec<LeftOut> = parts.iter().flat_map(|part| part.left_out.clone()).collect();
             assert_eq!(
-                of_set(&design).into_iter().map(|(_, what)| what).collect::<Vec<_>>(),
+                of_set(&design).into_iter().map(|(_, feature)| feature).collect::<Vec<_>>(),
                 of_parts,
                 "{case:?}"
             );

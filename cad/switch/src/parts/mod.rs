@@ -1,4 +1,4 @@
-//! The parts of a switch: exact solids in print orientation, and where each one sits in the assembly.
+//! The parts of a switch: exact solids in print orientation, with their poses in the assembly.
 //!
 //! A printed part is one file and one entry of [`PRINTED_PARTS`].
 
@@ -20,16 +20,15 @@ mod support;
 mod tendon;
 mod thin_walls;
 
-use crate::config::{ConfigError, Configuration, MouldKind, MountKind};
+use crate::config::{ConfigError, Configuration, Location, MouldKind, MountKind, field_location};
 use crate::design::Design;
-use crate::design::rules::{Change, Effort, ways_out};
 use pinswitch_friction::Substrate;
 use pinswitch_solid::pose::Pose;
 use pinswitch_solid::profile::{Contour, OffsetError, polar};
 use pinswitch_solid::solid::Solid;
 
-pub(crate) use bed::can_be_printed;
 pub use bed::fit_on_bed;
+pub(crate) use bed::{can_be_printed, room_on_bed};
 pub use layer::silicone_layer;
 pub use left_out::LeftOut;
 pub use mould::{cavity_mm3, gang_mm};
@@ -40,11 +39,11 @@ pub use part::{Material, Part, Role};
 pub use sector::Sector;
 pub use tendon::{Touch, touches};
 
-/// A printed part: when a configuration asks for it, and how it is built.
+/// A printed part: which configurations have it, and how it is built.
 pub struct PrintedPart {
     /// Name, and stem of its files.
     pub name: &'static str,
-    /// Whether a configuration asks for it.
+    /// Whether a configuration has it.
     pub is_wanted: fn(&Configuration) -> bool,
     build: fn(&Design) -> Result<Part, ConfigError>,
 }
@@ -96,48 +95,33 @@ fn has_tray(c: &Configuration) -> bool {
     !is_rigid(c) && c.mould.kind == MouldKind::OnePiece
 }
 
-/// Every printed part that `design` asks for.
+/// Builds every printed part of `design`.
 ///
 /// # Errors
-/// [`ConfigError`] if a chamfer, draft or offset swallows an edge, with the nearest value that swallows none.
+/// A diagnostic of the field whose chamfer, draft or offset leaves nothing of an edge; without help, as [`Design::new`].
 pub fn printed(design: &Design) -> Result<Vec<Part>, ConfigError> {
-    all_printed(design).map_err(|error| swallowing(error, design.configuration()))
+    let c = design.configuration();
+    let wanted = PRINTED_PARTS.iter().filter(|p| (p.is_wanted)(c));
+    wanted.map(|p| (p.build)(design).map_err(|error| with_value(error, c))).collect()
 }
 
-fn all_printed(design: &Design) -> Result<Vec<Part>, ConfigError> {
-    let wanted = PRINTED_PARTS.iter().filter(|p| (p.is_wanted)(design.configuration()));
-    wanted.map(|p| (p.build)(design)).collect()
+/// The error with the value of its field.
+fn with_value(error: ConfigError, c: &Configuration) -> ConfigError {
+    let Some(field) = error.location().and_then(|location| location.field.clone()) else { return error };
+    let location = Location { value: c.shown(&field), field: Some(field), ..Location::default() };
+    error.with_location(location)
 }
 
-/// Fields of which a contour's offset depends, so that too large a value swallows an edge.
-const OFFSETS: [&str; 5] = [
-    "print.elephant_foot_mm",
-    "mould.key_height_mm",
-    "mould.pour_width_mm",
-    "segment.groove_radius_mm",
-    "support.corner_radius_mm",
-];
-
-/// The error about an offset that swallows an edge, with the present value and the largest one below it that swallows none.
-fn swallowing(error: ConfigError, c: &Configuration) -> ConfigError {
-    let Some(field) = OFFSETS.into_iter().find(|field| *field == error.field) else { return error };
-    let is_built =
-        |c: &Configuration| Design::new(c.clone()).is_ok_and(|design| all_printed(&design).is_ok());
-    let (remedy, changes) = ways_out(field, c, &[Change::Lower(field)], &is_built, Effort::THOROUGH);
-    let error = ConfigError { value: c.shown(field), ..error };
-    if remedy.is_empty() { error } else { ConfigError { remedy, changes, ..error } }
-}
-
-/// One printed part by its name; `None` where it is not asked for or cannot be built.
-fn printed_part(name: &str, design: &Design) -> Option<Part> {
+/// Builds one printed part by its name; `None` if the design does not have it.
+pub(crate) fn printed_part(name: &str, design: &Design) -> Option<Result<Part, ConfigError>> {
     let part = PRINTED_PARTS.iter().find(|p| p.name == name && (p.is_wanted)(design.configuration()))?;
-    (part.build)(design).ok()
+    Some((part.build)(design))
 }
 
-/// The bodies that are not printed, for the assembly and the bill of materials: layer, pins and tendon.
+/// Builds the bodies that are not printed, for the assembly and the bill of materials: layer, pins and tendon.
 ///
 /// # Errors
-/// [`ConfigError`] if an offset swallows an edge.
+/// As [`printed`].
 pub fn reference_bodies(design: &Design) -> Result<Vec<Part>, ConfigError> {
     let c = design.configuration();
     let mut bodies = Vec::new();
@@ -156,19 +140,14 @@ pub fn reference_bodies(design: &Design) -> Result<Vec<Part>, ConfigError> {
     Ok(bodies)
 }
 
-/// The error about `field` when an offset that depends on it swallows an edge.
+/// Returns the error of `field` when an offset that depends on it leaves nothing of an edge.
 fn offset_error(field: &'static str) -> impl Fn(OffsetError) -> ConfigError {
-    move |e| ConfigError {
-        field: field.to_owned(),
-        value: None,
-        problem: format!("is too large for this geometry: {e}"),
-        remedy: format!("lower {field}"),
-        changes: Vec::new(),
-        place: None,
+    move |e| {
+        ConfigError::new(format!("too large for this geometry: {e}")).with_location(field_location(field))
     }
 }
 
-/// Clockwise circles on `radius_mm` at `angles_rad`, for holes.
+/// Returns clockwise circles on `radius_mm` at `angles_rad`, for holes.
 fn holes_at(radius_mm: f64, angles_rad: &[f64], hole_radius_mm: f64) -> Vec<Contour> {
     angles_rad.iter().map(|a| Contour::circle(polar(radius_mm, *a), hole_radius_mm).reversed()).collect()
 }

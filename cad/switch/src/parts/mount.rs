@@ -3,7 +3,7 @@
 
 use super::left_out::LeftOut;
 use super::{Part, Pose, Role, fastening, offset_error};
-use crate::config::{ConfigError, Configuration, MountKind};
+use crate::config::{ConfigError, Configuration, MountKind, field_location};
 use crate::design::{Design, Hole, SheathStop, axle_recess, pulley_width_mm, stop_recess};
 use pinswitch_solid::profile::{Contour, Point2, Vector2, hull};
 use pinswitch_solid::solid::{Facing, Solid};
@@ -45,14 +45,7 @@ fn face_mm(design: &Design) -> f64 {
 }
 
 fn no_plate() -> ConfigError {
-    ConfigError {
-        field: "mount.kind".to_owned(),
-        value: None,
-        problem: "has no plate".to_owned(),
-        remedy: "set it to \"flange\"".to_owned(),
-        changes: vec![("mount.kind".to_owned(), "\"flange\"".to_owned())],
-        place: None,
-    }
+    ConfigError::new("no mounting plate").with_location(field_location("mount.kind"))
 }
 
 /// The plate: the hull of discs around all its holes, printed on its outer face.

@@ -111,8 +111,8 @@ fn lost_hardware(design: &Design, side: Side) -> Vec<LeftOut> {
     let lost_lip = c.support.lip_depth_mm > 0.0 && lip(design).is_none();
     [
         (lost_lip, LeftOut::Lip),
-        (side == Side::Right && design.nut_trap_remedy().is_some(), LeftOut::NutTraps),
-        (has_heads && design.counterbore_remedy().is_some(), LeftOut::Counterbores),
+        (side == Side::Right && design.lacks_nut_traps(), LeftOut::NutTraps),
+        (has_heads && design.lacks_counterbores(), LeftOut::Counterbores),
     ]
     .into_iter()
     .filter_map(|(is_lost, what)| is_lost.then_some(what))

@@ -4,10 +4,10 @@
 use pinswitch_solid::solid::ThinPlace;
 
 use super::{Material, Part, Role, printed_part};
-use crate::config::{Configuration, assign};
+use crate::config::Configuration;
 use crate::design::Design;
-use crate::design::rules::Change::{self, Ease, Lower, Raise};
-use crate::design::rules::{Effort, way_out, ways_out};
+use crate::design::rules::Direction::{self, Lower, Raise, Restore};
+use crate::feasibility::advice;
 
 /// Walls of exactly two lines are not thin for the rounding of their distance.
 const THIN_ROUNDING_MM: f64 = 1e-6;
@@ -72,14 +72,14 @@ impl Part {
     fn remedy_for_thin_places(&self, design: &Design, thinnest_mm: f64) -> String {
         let places = |c: &Configuration| -> Option<Vec<ThinPlace>> {
             let design = Design::new(c.clone()).ok()?;
-            Some(printed_part(&self.name, &design)?.untold_thin_places(&design))
+            Some(printed_part(&self.name, &design)?.ok()?.untold_thin_places(&design))
         };
         let is_mended = |c: &Configuration| places(c).is_some_and(|places| places.is_empty());
         // The first that does: each part is made many times for it. A layer three times as thick would mend the end walls of
         // its copy, and be another switch: it is named where nothing else helps.
         let c = design.configuration();
-        if let Some(way) = way_out(c, self.thickening(), &is_mended, Effort::QUICK) {
-            return way.words;
+        if let Some(advice) = advice(c, self.thickening(), &is_mended) {
+            return advice.instruction;
         }
         // The thinnest places first, then those that are left.
         let (mut c, mut left_mm, mut steps) = (c.clone(), thinnest_mm, Vec::new());
@@ -87,15 +87,11 @@ impl Part {
             let is_thicker = |c: &Configuration| {
                 places(c).is_some_and(|p| p.first().is_none_or(|p| p.thickness_mm > left_mm + ALIKE_MM))
             };
-            let found = self.thickening().iter().find_map(|change| {
-                let (words, set) = ways_out("", &c, std::slice::from_ref(change), &is_thicker, Effort::QUICK);
-                Some((words, set.into_iter().next()?))
-            });
-            let Some((words, (field, value))) = found else { break };
-            if assign(&mut c, &format!("{field}={value}")).is_err() {
-                break;
-            }
-            steps.push(words);
+            let found =
+                self.thickening().iter().find_map(|d| advice(&c, std::slice::from_ref(d), &is_thicker));
+            let Some(step) = found else { break };
+            c = step.configuration;
+            steps.push(step.instruction);
             match places(&c).as_deref() {
                 Some([]) => return steps.join(", and "),
                 Some([thinnest, ..]) => left_mm = thinnest.thickness_mm,
@@ -107,8 +103,8 @@ impl Part {
     }
 
     /// What may make a thin wall of this part thicker, the most natural first.
-    fn thickening(&self) -> &'static [Change] {
-        const MARGIN: Change = Raise("segment.end_margin_mm");
+    fn thickening(&self) -> &'static [Direction] {
+        const MARGIN: Direction = Raise("segment.end_margin_mm");
         match (self.role, self.name.as_str()) {
             (_, "mould-lid") => {
                 &[Lower("mould.pour_width_mm"), Lower("mould.key_diameter_mm"), Raise("mould.wall_mm")]
@@ -135,18 +131,18 @@ impl Part {
                 Raise("fasteners.end_distance_mm"),
                 Raise("support.plate_mm"),
                 Lower("segment.grooves"),
-                Ease("fasteners.hole_diameter_mm"),
+                Restore("fasteners.hole_diameter_mm"),
             ],
             (Role::Mount, _) => {
-                &[Raise("mount.rim_mm"), Raise("mount.plate_mm"), Ease("mount.hole_diameter_mm")]
+                &[Raise("mount.rim_mm"), Raise("mount.plate_mm"), Restore("mount.hole_diameter_mm")]
             }
             (Role::Shell, _) => &[
                 MARGIN,
                 Raise("shell.wall_mm"),
                 Raise("shell.stop_mm"),
                 Raise("fasteners.end_distance_mm"),
-                Ease("fasteners.hole_diameter_mm"),
-                Ease("fasteners.dowel_diameter_mm"),
+                Restore("fasteners.hole_diameter_mm"),
+                Restore("fasteners.dowel_diameter_mm"),
                 Lower("segment.grooves"),
                 Lower("segment.groove_radius_mm"),
             ],
@@ -158,6 +154,7 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::assign;
     use crate::parts::printed;
 
     /// The warnings of a configuration, by part.

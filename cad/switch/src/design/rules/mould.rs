@@ -1,17 +1,17 @@
 //! Rules for the ends of sectors, the mould, and the loads.
 
-use super::Change::{self, Ease, Lower, Raise, Set};
+use super::Direction::{self, Lower, Raise, Restore, Set};
 use super::shell::MIN_INNER_RADIUS_MM;
 use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
 use crate::config::MouldKind;
 use crate::parts::{keys, tray};
 use pinswitch_friction::Substrate;
 
-/// Largest shift of a sector's ends, as a share of its inner radius: beyond it they miss the circle.
+/// Largest shift of the ends of a sector as a share of its inner radius: beyond 1 they would miss the circle.
 const LARGEST_SHIFT: f64 = 0.9;
-/// How far the base of a split mould reaches beyond what it holds.
+/// Width of the base of a split mould beyond the parts on it, mm.
 const MOULD_MARGIN_MM: f64 = 1.0;
-/// What must stay open behind a sector, so that its ends do not meet.
+/// Least gap between the ends of a sector behind the axis, mm.
 const MIN_GAP_MM: f64 = 0.5;
 
 pub(super) const RULES: &[Rule] = &[
@@ -27,21 +27,23 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "friction.load_min_n", severity: Severity::Error, assess: load_range },
 ];
 
-/// A sector whose ends are shifted parallel to radial planes: at its inner radius they are furthest around the axis, and
-/// must neither leave the circle nor meet behind it.
+/// The ends of a sector, shifted outwards from radial planes. They reach furthest around the axis at the inner radius,
+/// where they must neither miss the circle nor meet behind the axis.
 struct Ends {
+    name: &'static str,
     inner_mm: f64,
     shift_mm: f64,
 }
 
 impl Ends {
-    /// Of shell and supports.
+    /// The ends of shell and supports.
     fn of_sector(i: &Inspection<'_>) -> Self {
-        Self { inner_mm: i.inner_radius_mm(), shift_mm: i.shell_end_shift_mm() }
+        Self { name: "ends of the shell", inner_mm: i.inner_radius_mm(), shift_mm: i.shell_end_shift_mm() }
     }
 
-    /// Of the mould, which goes around the sector with a wall at both ends; `None` without one.
+    /// The ends of the mould, which has a wall beyond both ends of the sector; `None` without a mould.
     fn of_mould(i: &Inspection<'_>) -> Option<Self> {
+        const MOULD: &str = "ends of the mould";
         let c = i.configuration();
         let scale = 1.0 / (1.0 - c.mould.shrinkage_pct / 100.0);
         let margin = c.segment.end_margin_mm * scale;
@@ -49,11 +51,13 @@ impl Ends {
             MouldKind::None => None,
             MouldKind::OnePiece => {
                 let around = tray::around_mm(&c.mould);
-                Some(Self { inner_mm: c.shell.outer_radius_mm * scale - around, shift_mm: margin + around })
+                let inner_mm = c.shell.outer_radius_mm * scale - around;
+                Some(Self { name: MOULD, inner_mm, shift_mm: margin + around })
             }
             MouldKind::Split => {
                 let inner = i.inner_radius_mm();
                 Some(Self {
+                    name: MOULD,
                     inner_mm: inner - MOULD_MARGIN_MM.min(inner / 2.0),
                     shift_mm: margin + c.mould.wall_mm + MOULD_MARGIN_MM,
                 })
@@ -61,26 +65,29 @@ impl Ends {
         }
     }
 
-    fn assess_shift(&self, changes: &'static [Change]) -> Assessment {
+    fn assess_shift(&self, directions: &'static [Direction]) -> Assessment {
         let most = LARGEST_SHIFT * self.inner_mm;
         require(self.shift_mm <= most, || {
             (
                 format!(
-                    "shifts the ends by {:.3} mm at an inner radius of {:.3} mm, where {:.3} mm is the most",
-                    self.shift_mm,
+                    "{} too far beyond the span at an inner radius of {:.3} mm ({:.3} mm, at most {:.3} mm)",
+                    self.name,
                     self.inner_mm,
+                    self.shift_mm,
                     most.max(0.0)
                 ),
-                changes,
+                directions,
             )
         })
     }
 
-    fn assess_gap(&self, half_span_rad: f64, changes: &'static [Change]) -> Assessment {
+    fn assess_gap(&self, half_span_rad: f64, directions: &'static [Direction]) -> Assessment {
         let half_rad = half_span_rad + libm::asin(self.shift_mm / self.inner_mm);
         let most_rad = std::f64::consts::PI - libm::asin((MIN_GAP_MM / 2.0 / self.inner_mm).min(1.0));
         require(half_rad <= most_rad, || {
-            (format!("lets the ends meet behind the axis; {MIN_GAP_MM} mm must stay between them"), changes)
+            let problem =
+                format!("{} meet behind the axis (at least {MIN_GAP_MM} mm apart needed)", self.name);
+            (problem, directions)
         })
     }
 }
@@ -114,12 +121,15 @@ fn room_in_tray(i: &Inspection<'_>) -> Assessment {
     };
     require(ends.inner_mm >= MIN_INNER_RADIUS_MM, || {
         (
-            "leaves no room inside the inner wall of the mould".to_owned(),
+            format!(
+                "inner radius of the mould too small ({:.3} mm, at least {MIN_INNER_RADIUS_MM} mm needed)",
+                ends.inner_mm
+            ),
             &[
                 Lower("mould.wall_mm"),
                 Raise("shell.outer_radius_mm"),
-                Ease("mould.draft_deg"),
-                Ease("mould.overfill_mm"),
+                Restore("mould.draft_deg"),
+                Restore("mould.overfill_mm"),
                 Set("mould.kind", "\"none\""),
             ],
         )
@@ -154,13 +164,13 @@ fn mould_ends_apart(i: &Inspection<'_>) -> Assessment {
     })
 }
 
-/// Whether a tray is made, which has no basin unless it is overfilled.
+/// Whether a tray is made, which has a basin only if it is overfilled.
 fn has_tray(i: &Inspection<'_>) -> bool {
     let c = i.configuration();
     c.mould.kind == MouldKind::OnePiece && c.layout.substrate == Substrate::Silicone
 }
 
-/// Only the basin's walls may lean: all others shape the layer.
+/// Only the walls of the basin may have a draft: all others shape the layer.
 fn draft_without_basin(i: &Inspection<'_>) -> Assessment {
     let m = &i.configuration().mould;
     if !has_tray(i) {
@@ -169,7 +179,7 @@ fn draft_without_basin(i: &Inspection<'_>) -> Assessment {
     advise(m.draft_deg == 0.0 || m.overfill_mm > 0.0, || {
         (
             format!(
-                "mould.draft_deg = {} leans no wall: without a basin every wall of the tray shapes the layer",
+                "mould.draft_deg = {} has no effect: without a basin every wall of the tray shapes the layer",
                 m.draft_deg
             ),
             "set it to 0, or raise mould.overfill_mm".to_owned(),
@@ -177,12 +187,12 @@ fn draft_without_basin(i: &Inspection<'_>) -> Assessment {
     })
 }
 
-/// Only trays are made for several layers.
+/// Only trays cast several layers at once.
 fn gang_in_one_piece(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     require(c.mould.layers < 2 || c.mould.kind == MouldKind::OnePiece, || {
         (
-            format!("asks for {} layers at once, which only the one-piece mould casts", c.mould.layers),
+            format!("only a one-piece mould casts {} layers at once", c.mould.layers),
             &[Lower("mould.layers"), Set("mould.kind", "\"one-piece\"")],
         )
     })
@@ -193,7 +203,7 @@ fn has_keys(i: &Inspection<'_>) -> bool {
     c.mould.kind == MouldKind::Split && c.layout.substrate == Substrate::Silicone
 }
 
-/// Keys need a wall between each other and at the ends of the ring.
+/// Keys need a wall between them and at the ends of the ring.
 fn keys_apart(i: &Inspection<'_>) -> Assessment {
     if !has_keys(i) {
         return Assessment::NotApplicable;
@@ -201,14 +211,17 @@ fn keys_apart(i: &Inspection<'_>) -> Assessment {
     let diameter = i.configuration().mould.key_diameter_mm;
     require(keys_fit(i, diameter), || {
         (
-            "leaves no wall between the keys of the mould, or at its ends".to_owned(),
+            format!(
+                "wall between the keys of the mould or at its ends too thin (at least {:.3} mm needed)",
+                least_wall_mm(i.configuration(), 1.0)
+            ),
             &[
                 Lower("mould.key_diameter_mm"),
                 Raise("segment.span_deg"),
                 Set("mould.kind", "\"one-piece\""),
-                Ease("mould.clearance_mm"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("mould.clearance_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
@@ -222,13 +235,13 @@ fn keys_fit(i: &Inspection<'_>, diameter_mm: f64) -> bool {
     let hole = diameter_mm / 2.0 + c.mould.clearance_mm;
     let chord = |share: f64| 2.0 * radius * libm::sin((share * i.half_span_rad() / 2.0).min(1.5));
     let between = keys::PLACES.windows(2).all(|two| chord(two[1] - two[0]) >= 2.0 * hole + wall);
-    // The ends of the ring lie outside the radial planes.
+    // The ends of the ring are outside the radial planes.
     let shift = c.segment.end_margin_mm * scale + c.mould.wall_mm;
     let at_end = |place: &f64| radius * libm::sin(((1.0 - place.abs()) * i.half_span_rad()).min(1.5)) + shift;
     between && keys::PLACES.iter().all(|place| at_end(place) >= hole + wall)
 }
 
-/// A key must keep a head, and its hole must end inside the ring.
+/// A key needs a head, and its hole must end inside the ring.
 fn keys_in_ring(i: &Inspection<'_>) -> Assessment {
     if !has_keys(i) {
         return Assessment::NotApplicable;
@@ -239,17 +252,17 @@ fn keys_in_ring(i: &Inspection<'_>) -> Assessment {
     require(c.mould.key_height_mm <= most, || {
         (
             format!(
-                "leaves no room for keys {} mm high: in a ring of {ring:.3} mm, keys of {} mm may be {:.3} mm high",
+                "keys too high ({} mm, at most {:.3} mm with {} mm in diameter in a ring of {ring:.3} mm)",
                 c.mould.key_height_mm,
-                c.mould.key_diameter_mm,
-                most.max(0.0)
+                most.max(0.0),
+                c.mould.key_diameter_mm
             ),
             &[
                 Lower("mould.key_height_mm"),
                 Raise("shell.width_mm"),
                 Raise("mould.key_diameter_mm"),
                 Set("mould.kind", "\"one-piece\""),
-                Ease("silicone.side_clearance_mm"),
+                Restore("silicone.side_clearance_mm"),
             ],
         )
     })
@@ -260,7 +273,7 @@ fn load_range(i: &Inspection<'_>) -> Assessment {
     require(f.load_min_n < f.load_max_n, || {
         (
             format!(
-                "leaves no range of loads: friction.load_min_n = {} is not below friction.load_max_n = {}",
+                "empty range of loads: friction.load_min_n = {} is not below friction.load_max_n = {}",
                 f.load_min_n, f.load_max_n
             ),
             &[Lower("friction.load_min_n"), Raise("friction.load_max_n")],

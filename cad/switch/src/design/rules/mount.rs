@@ -1,17 +1,17 @@
 //! Rules for the mounting plate and the sheath stop.
 
-use super::Change::{self, Ease, Lower, Raise, Set};
+use super::Direction::{self, Lower, Raise, Restore, Set};
 use super::{Assessment, Inspection, Rule, Severity, require};
 use crate::config::MountKind;
 use crate::design::fastening::{HEAD_BELOW_MM, axle_recess, stop_recess};
 use crate::design::mounting::{Hole, PULLEY_AIR_MM, PULLEY_RADIUS_MM, SheathStop};
 use crate::design::{pulley_outer_mm, pulley_width_mm};
 
-/// Least wall between two holes of the plate.
+/// Least wall between two holes of the plate, mm.
 const HOLE_WALL_MM: f64 = 1.0;
-/// Least length of the pulley's spacer, and least height of the sheath stop's base.
+/// Least length of the spacer of the pulley, and least height of the base of the sheath stop, mm.
 const LEAST_PIECE_MM: f64 = 1.0;
-/// What a sheath is wider than the tendon.
+/// Least clearance of the tendon in its sheath, on the diameter, mm.
 const SHEATH_WALL_MM: f64 = 0.4;
 
 pub(super) const RULES: &[Rule] = &[
@@ -22,17 +22,17 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "mount.pulley_distance_mm", severity: Severity::Error, assess: pulley_beside_switch },
     Rule { field: "mount.kind", severity: Severity::Error, assess: pulley_over_plate },
     Rule { field: "tendon.sheath_diameter_mm", severity: Severity::Error, assess: stop_out_of_the_way },
-    Rule { field: "mount.bore_offset_mm", severity: Severity::Error, assess: bores_beside_support },
+    Rule { field: "mount.bore_offset_mm", severity: Severity::Error, assess: bores_clear_support },
     Rule { field: "mount.plate_mm", severity: Severity::Error, assess: heads_within_plate },
 ];
 
-const NO_MOUNT: Change = Set("mount.kind", "\"none\"");
+const NO_MOUNT: Direction = Set("mount.kind", "\"none\"");
 
 fn sheath_on_plate(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     require(c.tendon.sheath_diameter_mm == 0.0 || c.mount.kind != MountKind::None, || {
         (
-            "asks for a sheath stop, which stands on a mounting plate".to_owned(),
+            "a sheath stop needs a mounting plate".to_owned(),
             &[Set("mount.kind", "\"flange\""), Lower("tendon.sheath_diameter_mm")],
         )
     })
@@ -48,11 +48,13 @@ fn sheath_around_tendon(i: &Inspection<'_>) -> Assessment {
     require(sheath >= least && floor >= LEAST_PIECE_MM, || {
         let problem = if sheath < least {
             format!(
-                "is too narrow for a tendon of {:.3} mm: {least:.3} mm is the least, or 0 for no sheath",
+                "sheath too narrow for a tendon of {:.3} mm (at least {least:.3} mm needed, or 0 for no sheath)",
                 i.tendon_diameter_mm()
             )
         } else {
-            "reaches below the plate: the tendon's axis lies too near to it".to_owned()
+            format!(
+                "sheath too close to the plate ({floor:.3} mm above it, at least {LEAST_PIECE_MM} mm needed)"
+            )
         };
         (
             problem,
@@ -68,12 +70,12 @@ fn sheath_around_tendon(i: &Inspection<'_>) -> Assessment {
 fn plate_is_fastened(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     require(c.mount.kind == MountKind::None || c.fasteners.count > 0, || {
-        ("has a plate that no screw holds".to_owned(), &[NO_MOUNT, Raise("fasteners.count")])
+        ("the plate needs a screw".to_owned(), &[NO_MOUNT, Raise("fasteners.count")])
     })
 }
 
-/// How far a hole stays from the sheath stop's base, mm.
-fn beside_stop_mm(hole: &Hole, stop: &SheathStop) -> f64 {
+/// Distance of a hole from the base of the sheath stop, mm.
+fn distance_to_stop_mm(hole: &Hole, stop: &SheathStop) -> f64 {
     let from = hole.centre - stop.start;
     let (along, across) = (from.dot(&stop.along), from.perp(&stop.along).abs());
     let out = [(along - stop.length_mm).max(-along).max(0.0), (across - stop.half_width_mm).max(0.0)];
@@ -86,11 +88,14 @@ fn holes_clear_each_other(i: &Inspection<'_>) -> Assessment {
     let apart = |a: &Hole, b: &Hole| (a.centre - b.centre).norm() >= a.radius_mm + b.radius_mm + HOLE_WALL_MM;
     let pairs = all.iter().enumerate().all(|(k, a)| all[k + 1..].iter().all(|b| apart(a, b)));
     let own = mounting.holes.iter().chain(&mounting.axle);
-    let clear =
-        mounting.sheath.is_none_or(|stop| own.into_iter().all(|h| beside_stop_mm(h, &stop) >= HOLE_WALL_MM));
+    let clear = mounting
+        .sheath
+        .is_none_or(|stop| own.into_iter().all(|h| distance_to_stop_mm(h, &stop) >= HOLE_WALL_MM));
     require(pairs && clear, || {
         (
-            "brings holes of the mounting plate together, or under the sheath stop".to_owned(),
+            format!(
+                "holes of the mounting plate too close to each other or to the sheath stop (at least {HOLE_WALL_MM} mm needed)"
+            ),
             &[
                 Raise("mount.bore_distance_mm"),
                 Raise("mount.pulley_distance_mm"),
@@ -110,7 +115,7 @@ fn pulley_beside_switch(i: &Inspection<'_>) -> Assessment {
     require(distance >= least, || {
         (
             format!(
-                "brings the pulley of {PULLEY_RADIUS_MM} mm into the switch: its axis is {distance:.1} mm away, {least:.1} mm is the least"
+                "guide pulley of {PULLEY_RADIUS_MM} mm too close to the switch ({distance:.1} mm between the axes, at least {least:.1} mm needed)"
             ),
             &[Raise("mount.pulley_distance_mm"), NO_MOUNT],
         )
@@ -124,12 +129,12 @@ fn stop_out_of_the_way(i: &Inspection<'_>) -> Assessment {
     let nearer_mm = i.stop_in_the_way_mm(&mounting);
     require(nearer_mm <= 0.0, || {
         let what = if mounting.axle.is_some() {
-            "guide pulley, or the tendon that runs to it"
+            "guide pulley or the tendon to it"
         } else {
-            "tendon on the load's side"
+            "tendon on the side of the load"
         };
         (
-            format!("puts the sheath stop {nearer_mm:.2} mm too near to the {what}"),
+            format!("sheath stop {nearer_mm:.2} mm too close to the {what}"),
             &[
                 Lower("layout.wrap_angle_deg"),
                 Raise("mount.pulley_distance_mm"),
@@ -139,8 +144,8 @@ fn stop_out_of_the_way(i: &Inspection<'_>) -> Assessment {
     })
 }
 
-/// A bore of a finger link that a support covers takes no pivot.
-fn bores_beside_support(i: &Inspection<'_>) -> Assessment {
+/// The support must not cover the bores of a finger link, which take pivots.
+fn bores_clear_support(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     let Some(mounting) = i.mounting().filter(|_| c.mount.kind == MountKind::FingerLink) else {
         return Assessment::NotApplicable;
@@ -148,7 +153,7 @@ fn bores_beside_support(i: &Inspection<'_>) -> Assessment {
     let clear = |hole: &Hole| i.beside_support_mm(hole.centre) >= hole.radius_mm + HOLE_WALL_MM;
     require(mounting.holes.iter().all(clear), || {
         (
-            "puts a bore behind the left support, where no pivot passes".to_owned(),
+            format!("the left support covers a bore (at least {HOLE_WALL_MM} mm between them needed)"),
             &[
                 Lower("mount.bore_offset_mm"),
                 Raise("mount.bore_distance_mm"),
@@ -169,19 +174,19 @@ fn pulley_over_plate(i: &Inspection<'_>) -> Assessment {
     let spacer = c.support.plate_mm + c.shell.width_mm / 2.0 - pulley_width_mm(i.tendon_diameter_mm()) / 2.0;
     require(spacer >= LEAST_PIECE_MM, || {
         (
-            format!("leaves {spacer:.2} mm between plate and pulley; {LEAST_PIECE_MM} mm is the least"),
+            format!("pulley too close to the plate ({spacer:.2} mm, at least {LEAST_PIECE_MM} mm needed)"),
             &[Raise("shell.width_mm"), Raise("support.plate_mm"), Lower("tendon.rope_diameter_mm"), NO_MOUNT],
         )
     })
 }
 
-/// The heads of all screws that stand in the plate from below must lie within it.
+/// The plate must be thick enough for the heads of all screws in its outer face.
 fn heads_within_plate(i: &Inspection<'_>) -> Assessment {
     let Some(mounting) = i.mounting() else { return Assessment::NotApplicable };
     let c = i.configuration();
     let fastening = i.fastening();
-    let stop = mounting.sheath.map(|_| ("the sheath stop's screws", stop_recess().depth_mm));
-    let axle = mounting.axle.map(|_| ("the axle's bolt", axle_recess().depth_mm));
+    let stop = mounting.sheath.map(|_| ("the screws of the sheath stop", stop_recess().depth_mm));
+    let axle = mounting.axle.map(|_| ("the bolt of the axle", axle_recess().depth_mm));
     let heads = fastening.thread.filter(|_| i.lies_on_a_table() && c.fasteners.count > 0);
     let heads = heads.map(|t| ("the screws", (t.head_mm[1] + HEAD_BELOW_MM).max(c.fasteners.head_recess_mm)));
     let deepest = [stop, axle, heads].into_iter().flatten().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -191,17 +196,18 @@ fn heads_within_plate(i: &Inspection<'_>) -> Assessment {
     require(c.mount.plate_mm + 1e-9 >= needed && !is_crowded, || {
         let problem = if c.mount.plate_mm + 1e-9 < needed {
             format!(
-                "is too thin for the heads of {whose}, which sink in its outer face: {needed:.3} mm is the least"
+                "plate too thin for the recessed heads of {whose} ({} mm, at least {needed:.3} mm needed)",
+                c.mount.plate_mm
             )
         } else {
-            "has no room between the screws for the recesses of their heads".to_owned()
+            "recesses for the heads of the screws do not fit next to each other".to_owned()
         };
         (
             problem,
             &[
                 Raise("mount.plate_mm"),
-                Ease("fasteners.head_recess_mm"),
-                Ease("print.layer_mm"),
+                Restore("fasteners.head_recess_mm"),
+                Restore("print.layer_mm"),
                 Lower("fasteners.hole_diameter_mm"),
                 Lower("fasteners.count"),
                 Raise("shell.outer_radius_mm"),

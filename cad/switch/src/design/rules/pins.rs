@@ -1,16 +1,16 @@
 //! Rules for pins, layer and tendon.
 
-use super::Change::{Ease, Lower, Raise, Say};
+use super::Direction::{Lower, Raise, Restore};
 use super::{Assessment, Inspection, Rule, Severity, advise, require};
 use pinswitch_friction::PinPattern;
 
-/// Gap that the tendon needs on both sides of it.
+/// Least gap on both sides of the tendon, mm.
 const TENDON_GAP_MM: f64 = 0.5;
-/// A rope bent sharper than this, pulley over rope diameter, breaks soon (cad/doc/print-limits.md).
+/// Least ratio of pulley to rope diameter: below it, a rope breaks soon (cad/doc/print-limits.md).
 const MIN_BEND_RATIO: f64 = 10.0;
-/// Below this ratio of pulley to rope diameter a wire rope tires early (cad/doc/print-limits.md).
+/// Ratio of pulley to rope diameter from which on a wire rope lasts (cad/doc/print-limits.md).
 const GOOD_BEND_RATIO: f64 = 20.0;
-/// Silicone left between the bottom of its grooves and its inner face.
+/// Least thickness of silicone between the bottom of the grooves and the inner face, mm.
 const MIN_LAYER_MM: f64 = 0.5;
 
 pub(super) const RULES: &[Rule] = &[
@@ -35,11 +35,11 @@ fn pins_in_grooves(i: &Inspection<'_>) -> Assessment {
     require(outside.is_none(), || {
         (
             format!(
-                "puts a pin in groove {}; the segment has grooves 1 to {}",
+                "pin in groove {}, outside grooves 1 to {}",
                 outside.copied().unwrap_or_default(),
                 c.segment.grooves
             ),
-            &[Say("move the pin"), Raise("segment.grooves")],
+            &[Raise("segment.grooves")],
         )
     })
 }
@@ -47,12 +47,7 @@ fn pins_in_grooves(i: &Inspection<'_>) -> Assessment {
 fn one_pin_per_groove(i: &Inspection<'_>) -> Assessment {
     let pins = &i.configuration().layout.pins;
     let twice = pins.iter().find(|p| pins.iter().filter(|q| q == p).count() > 1);
-    require(twice.is_none(), || {
-        (
-            format!("puts two pins in groove {}", twice.copied().unwrap_or_default()),
-            &[Say("name every groove once")],
-        )
-    })
+    require(twice.is_none(), || (format!("two pins in groove {}", twice.copied().unwrap_or_default()), &[]))
 }
 
 fn pin_fits_groove(i: &Inspection<'_>) -> Assessment {
@@ -61,10 +56,10 @@ fn pin_fits_groove(i: &Inspection<'_>) -> Assessment {
     require(c.pins.diameter_mm <= most, || {
         (
             format!(
-                "makes pins of {} mm wider than their groove: {most:.3} mm is the most with the pin's tolerance",
+                "pins wider than their grooves ({} mm, at most {most:.3} mm with the pin's tolerance)",
                 c.pins.diameter_mm
             ),
-            &[Lower("pins.diameter_mm"), Raise("segment.groove_radius_mm"), Ease("pins.tolerance_mm")],
+            &[Lower("pins.diameter_mm"), Raise("segment.groove_radius_mm"), Restore("pins.tolerance_mm")],
         )
     })
 }
@@ -74,7 +69,7 @@ fn layer_thickness(i: &Inspection<'_>) -> Assessment {
     let least = c.segment.groove_radius_mm + MIN_LAYER_MM;
     require(c.silicone.thickness_mm >= least, || {
         (
-            format!("leaves less than {MIN_LAYER_MM} mm of silicone under its grooves"),
+            format!("silicone under the grooves too thin (at least {least:.3} mm of layer needed)"),
             &[Raise("silicone.thickness_mm"), Lower("segment.groove_radius_mm")],
         )
     })
@@ -86,12 +81,12 @@ fn layer_width(i: &Inspection<'_>) -> Assessment {
     let least = 2.0 * c.support.lip_depth_mm + 2.0 * c.print.least_wall_mm;
     require(width >= least, || {
         (
-            format!("leaves a layer of {width:.3} mm; the lips and the mould need {least:.3} mm"),
+            format!("silicone layer too narrow for the lips ({width:.3} mm, at least {least:.3} mm needed)"),
             &[
                 Raise("shell.width_mm"),
                 Lower("silicone.side_clearance_mm"),
                 Lower("support.lip_depth_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
@@ -102,7 +97,7 @@ fn wrap_within_segment(i: &Inspection<'_>) -> Assessment {
     require(c.layout.wrap_angle_deg <= c.segment.span_deg, || {
         (
             format!(
-                "takes the wrap of {} deg beyond the segment of {} deg",
+                "wrap exceeds the segment ({} deg, at most {} deg)",
                 c.layout.wrap_angle_deg, c.segment.span_deg
             ),
             &[Lower("layout.wrap_angle_deg"), Raise("segment.span_deg")],
@@ -113,8 +108,13 @@ fn wrap_within_segment(i: &Inspection<'_>) -> Assessment {
 fn ends_keep_clear(i: &Inspection<'_>) -> Assessment {
     require(i.ends_keep_clear(), || {
         (
-            "brings the two ends of the tendon together, or one into the guide pulley, where they leave the wrap".to_owned(),
-            &[Lower("layout.wrap_angle_deg"), Raise("mount.pulley_distance_mm"), Raise("shell.outer_radius_mm")],
+            "an end of the tendon meets the other end or the guide pulley where it leaves the wrap"
+                .to_owned(),
+            &[
+                Lower("layout.wrap_angle_deg"),
+                Raise("mount.pulley_distance_mm"),
+                Raise("shell.outer_radius_mm"),
+            ],
         )
     })
 }
@@ -123,16 +123,13 @@ fn ends_meet(i: &Inspection<'_>) -> Assessment {
     let meet = i.ends_meet_mm();
     advise(meet.is_none(), || {
         (
-            format!(
-                "the two ends of the tendon would meet {:.1} mm beyond the wrap",
-                meet.unwrap_or_default()
-            ),
-            "lead them past each other, or lower layout.wrap_angle_deg".to_owned(),
+            format!("the ends of the tendon meet {:.1} mm beyond the wrap", meet.unwrap_or_default()),
+            "guide them past each other, or lower layout.wrap_angle_deg".to_owned(),
         )
     })
 }
 
-/// Pins that the tendon does not reach carry nothing.
+/// Pins outside the wrap carry no load.
 fn pins_within_wrap(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     let pins = PinPattern::new(i.pin_angles_rad());
@@ -147,12 +144,12 @@ fn pins_within_wrap(i: &Inspection<'_>) -> Assessment {
         };
         (
             format!(
-                "{} outside the wrap of {} deg, where no tendon runs, and {} nothing",
-                if outside == 1 { "1 pin lies".to_owned() } else { format!("{outside} pins lie") },
+                "{} outside the wrap of {} deg and {} no load",
+                if outside == 1 { "1 pin is".to_owned() } else { format!("{outside} pins are") },
                 c.layout.wrap_angle_deg,
                 if outside == 1 { "carries" } else { "carry" },
             ),
-            format!("move them nearer to the middle groove (layout.pins){raise}"),
+            format!("move them closer to the middle groove (layout.pins){raise}"),
         )
     })
 }
@@ -162,7 +159,7 @@ fn tendon_reaches(i: &Inspection<'_>) -> Assessment {
     advise(length >= least, || {
         (
             format!(
-                "the tendon of {length} mm does not reach: wrap, ends and what it runs over need {least:.0} mm"
+                "tendon of {length} mm too short for the wrap, the ends and the pulleys ({least:.0} mm needed)"
             ),
             format!("raise tendon.length_mm to {least:.0}"),
         )
@@ -177,8 +174,7 @@ fn tendon_in_channel(i: &Inspection<'_>) -> Assessment {
     require(tendon <= most, || {
         (
             format!(
-                "gives the coated tendon, of {tendon:.3} mm, too little room: the channel of {channel:.3} mm takes \
-                 {most:.3} mm"
+                "coated tendon too thick for the channel of {channel:.3} mm ({tendon:.3} mm, at most {most:.3} mm)"
             ),
             &[
                 Lower("tendon.rope_diameter_mm"),
@@ -196,8 +192,7 @@ fn tendon_bend(i: &Inspection<'_>) -> Assessment {
     require(tendon <= most, || {
         (
             format!(
-                "bends the coated tendon, of {tendon:.3} mm, too sharply: {most:.3} mm with the coating is the most \
-                 at this radius"
+                "coated tendon too thick for the bend radius ({tendon:.3} mm, at most {most:.3} mm at this radius)"
             ),
             &[
                 Lower("tendon.rope_diameter_mm"),
@@ -213,7 +208,7 @@ fn early_wear(i: &Inspection<'_>) -> Assessment {
     let ratio = i.bend_ratio();
     advise(ratio >= GOOD_BEND_RATIO, || {
         (
-            format!("pulley over tendon diameter is {ratio:.1}; ropes last from {GOOD_BEND_RATIO} on"),
+            format!("ratio of pulley to tendon diameter is {ratio:.1}; ropes last from {GOOD_BEND_RATIO} on"),
             "raise shell.outer_radius_mm".to_owned(),
         )
     })

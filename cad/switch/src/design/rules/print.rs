@@ -1,6 +1,6 @@
-//! Rules of the printer: what it can make, what it makes well, and what a person should look at.
+//! Rules of the printer: errors, warnings, and checks for a person.
 
-use super::Change::{Lower, Raise};
+use super::Direction::{Lower, Raise};
 use super::{Assessment, Inspection, Remedy, Rule, Severity, advise, require};
 use crate::config::MountKind;
 use crate::design::axle_recess;
@@ -9,11 +9,11 @@ use crate::design::axle_recess;
 const MIN_CHAMFER_MM: f64 = 0.02;
 /// Longest bridge that prints without sagging, mm (cad/doc/print-limits.md).
 const LONGEST_BRIDGE_MM: f64 = 10.0;
-/// Bridges that differ by less are one, mm.
+/// Difference under which two bridges are the same, mm.
 const SAME_BRIDGE_MM: f64 = 0.01;
-/// Gaps under this are closed by slicers, mm (cad/doc/print-limits.md).
+/// Gap under which slicers close it, mm (cad/doc/print-limits.md).
 const MIN_GAP_MM: f64 = 0.1;
-/// Wall around a screw hole that holds well, mm.
+/// Good thickness of the wall around a screw hole, mm.
 const GOOD_RIM_MM: f64 = 1.0;
 
 pub(super) const RULES: &[Rule] = &[
@@ -29,21 +29,21 @@ pub(super) const RULES: &[Rule] = &[
     Rule { field: "shell.wall_mm", severity: Severity::Checklist, assess: rim_of_holes },
 ];
 
-/// A line of the checklist: the same statement, kept or not.
-fn check(is_kept: bool, statement: String, remedy: &str) -> Assessment {
-    if is_kept {
-        Assessment::Kept(statement)
+/// A line of the checklist, with the same statement whether it is satisfied or not.
+fn check(is_satisfied: bool, statement: String, remedy: &str) -> Assessment {
+    if is_satisfied {
+        Assessment::Satisfied(statement)
     } else {
-        Assessment::Broken { problem: statement, remedy: Remedy::Words(remedy.to_owned()) }
+        Assessment::Broken { problem: statement, remedy: Remedy::Text(remedy.to_owned()) }
     }
 }
 
-/// A chamfer is left out or large enough to print: a sliver of one would also be thinner than a facet may be.
+/// A chamfer is either omitted or large enough to print. A smaller one would also make facets that are too thin.
 fn chamfer_prints(i: &Inspection<'_>) -> Assessment {
     let chamfer = i.configuration().print.elephant_foot_mm;
     require(chamfer == 0.0 || chamfer >= MIN_CHAMFER_MM, || {
         (
-            format!("is too small to print; the least is {MIN_CHAMFER_MM} mm, or 0 for no chamfer"),
+            format!("chamfer too small to print (at least {MIN_CHAMFER_MM} mm needed, or 0 for no chamfer)"),
             &[Raise("print.elephant_foot_mm"), Lower("print.elephant_foot_mm")],
         )
     })
@@ -54,7 +54,7 @@ fn label_stroke(i: &Inspection<'_>) -> Assessment {
     advise(!c.label.engrave || c.label.stroke_mm >= c.print.line_mm, || {
         (
             format!(
-                "label.stroke_mm = {} is under one printed line ({} mm)",
+                "label.stroke_mm = {} is less than one printed line ({} mm)",
                 c.label.stroke_mm, c.print.line_mm
             ),
             "raise it".to_owned(),
@@ -66,7 +66,7 @@ fn layers_per_groove(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     advise(4.0 * c.print.layer_mm <= 2.0 * c.segment.groove_radius_mm, || {
         (
-            format!("the grooves are narrower than four layers of print.layer_mm = {}", c.print.layer_mm),
+            format!("grooves are narrower than four layers of print.layer_mm = {}", c.print.layer_mm),
             "use thinner layers".to_owned(),
         )
     })
@@ -122,9 +122,9 @@ fn bridges(i: &Inspection<'_>) -> Assessment {
             i.configuration().mount.kind == MountKind::Rig && (bridge - pocket_mm).abs() < SAME_BRIDGE_MM;
         check(
             bridge <= LONGEST_BRIDGE_MM,
-            format!("ceilings of up to {bridge:.2} mm to bridge, up to {LONGEST_BRIDGE_MM} mm print well"),
+            format!("bridges of up to {bridge:.2} mm, up to {LONGEST_BRIDGE_MM} mm print well"),
             if is_pocket {
-                "it is the skin over the pocket for the axle's bolt in rig-plate: let it sag, the bolt breaks it"
+                "ignore it: it is the skin over the pocket for the bolt in rig-plate, which the bolt breaks"
             } else {
                 "lower pins.diameter_mm or mould.key_diameter_mm"
             },
@@ -150,7 +150,7 @@ fn rim_of_holes(i: &Inspection<'_>) -> Assessment {
     if c.fasteners.count == 0 {
         return Assessment::NotApplicable;
     }
-    // The widest that a fastener is across the wall: its hole or insert in the shell, its recess in the supports.
+    // Greatest width of a fastener across the wall: its hole or insert in the shell, its recess in the supports.
     let fastening = i.fastening();
     let (middle, hole) = (i.fastener_radius_mm(), c.fasteners.hole_diameter_mm / 2.0);
     let in_shell = i.shell_hole_mm();

@@ -1,9 +1,9 @@
 //! Rules for the grooved sector of the shell.
 
-use super::Change::{Ease, Lower, Raise};
+use super::Direction::{Lower, Raise, Restore};
 use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
 
-/// Least radius inside the shell: below it there is no room for a core.
+/// Least inner radius of the shell, mm: leaves room for the core of a mould.
 pub(super) const MIN_INNER_RADIUS_MM: f64 = 1.0;
 
 pub(super) const RULES: &[Rule] = &[
@@ -21,7 +21,7 @@ fn inner_radius(i: &Inspection<'_>) -> Assessment {
     require(c.shell.wall_mm <= c.shell.outer_radius_mm - MIN_INNER_RADIUS_MM, || {
         (
             format!(
-                "leaves {inside:.3} mm of radius inside the shell; {MIN_INNER_RADIUS_MM} mm is the least"
+                "inner radius of the shell too small ({inside:.3} mm, at least {MIN_INNER_RADIUS_MM} mm needed)"
             ),
             &[Lower("shell.wall_mm"), Raise("shell.outer_radius_mm")],
         )
@@ -33,13 +33,15 @@ fn wall_under_grooves(i: &Inspection<'_>) -> Assessment {
     let least = c.segment.groove_radius_mm + 2.0 * c.print.least_wall_mm;
     require(c.shell.wall_mm >= least, || {
         (
-            format!("leaves less than two walls of {} mm under the grooves", c.print.least_wall_mm),
-            &[Raise("shell.wall_mm"), Lower("segment.groove_radius_mm"), Ease("print.least_wall_mm")],
+            format!(
+                "wall under the grooves too thin (at least {least:.3} mm needed, two walls and a groove)"
+            ),
+            &[Raise("shell.wall_mm"), Lower("segment.groove_radius_mm"), Restore("print.least_wall_mm")],
         )
     })
 }
 
-/// The land between grooves is tightest on the shell (cad/doc/print-limits.md).
+/// The land between grooves is narrowest on the shell (cad/doc/print-limits.md).
 fn land(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     if c.segment.grooves < 2 {
@@ -49,23 +51,20 @@ fn land(i: &Inspection<'_>) -> Assessment {
     let chord = i.groove_chord_mm();
     require(chord >= needed, || {
         (
-            format!(
-                "makes grooves overlap: neighbours are {chord:.3} mm apart on the shell, a groove with its land takes \
-                 {needed:.3} mm"
-            ),
+            format!("grooves overlap ({chord:.3} mm apart, at least {needed:.3} mm needed)"),
             &[
                 Lower("segment.grooves"),
                 Raise("shell.outer_radius_mm"),
                 Lower("segment.groove_radius_mm"),
                 Raise("segment.span_deg"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
 }
 
-/// The wall between the last groove and the end of the sector is half a land, plus the margin.
+/// The wall between the outermost groove and the end of the sector is half a land plus the margin.
 fn end_walls(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     let left = c.shell.outer_radius_mm * libm::sin(i.half_pitch_rad()) + c.segment.end_margin_mm
@@ -73,13 +72,15 @@ fn end_walls(i: &Inspection<'_>) -> Assessment {
     let least = least_wall_mm(c, 0.5);
     require(left >= least, || {
         (
-            format!("leaves {left:.3} mm of wall beyond the outermost groove; {least:.3} mm is the least"),
+            format!(
+                "wall beyond the outermost groove too thin ({left:.3} mm, at least {least:.3} mm needed)"
+            ),
             &[
                 Raise("segment.end_margin_mm"),
                 Lower("segment.groove_radius_mm"),
                 Lower("segment.grooves"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
@@ -90,7 +91,7 @@ fn thin_land(i: &Inspection<'_>) -> Assessment {
     let (land, two_lines) = (i.land_mm(), 2.0 * c.print.line_mm);
     advise(c.segment.grooves < 2 || land >= two_lines, || {
         (
-            format!("the land between grooves is {land:.2} mm, under two printed lines ({two_lines:.2} mm)"),
+            format!("land between grooves is {land:.2} mm wide, under two printed lines ({two_lines:.2} mm)"),
             "raise shell.outer_radius_mm or lower segment.grooves".to_owned(),
         )
     })
@@ -100,7 +101,7 @@ fn thin_end_walls(i: &Inspection<'_>) -> Assessment {
     let (end, two_lines) = (i.end_wall_mm(), 2.0 * i.configuration().print.line_mm);
     advise(end >= two_lines, || {
         (
-            format!("the end walls are {end:.2} mm, under two printed lines ({two_lines:.2} mm)"),
+            format!("end walls are {end:.2} mm thick, under two printed lines ({two_lines:.2} mm)"),
             format!("raise segment.end_margin_mm by {:.2}", two_lines - end),
         )
     })

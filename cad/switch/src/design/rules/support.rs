@@ -1,13 +1,13 @@
 //! Rules for the side supports, their slots and the fasteners.
 
-use super::Change::{self, Ease, Lower, OneOf, Raise, Set};
+use super::Direction::{self, Lower, OneOf, Raise, Restore, Set};
 use super::{Assessment, Inspection, Rule, Severity, advise, least_wall_mm, require};
 use crate::config::{FastenerKind, SlotKind};
 use crate::design::fastening::{
     CLEARANCE_HOLES_MM, DOWELS_MM, HOLE_EDGE_MM, INSERT_SHOULDER_MM, INSERT_TIP_MM,
 };
 
-/// Beyond this clearance the pins walk noticeably (cad/doc/print-limits.md).
+/// Clearance above which pins have noticeable play (cad/doc/print-limits.md), mm.
 const WIDE_CLEARANCE_MM: f64 = 0.3;
 
 pub(super) const RULES: &[Rule] = &[
@@ -34,14 +34,12 @@ fn slots_in_plate(i: &Inspection<'_>) -> Assessment {
     let outer_edge = i.support_radius_mm() - slot.outer_mm - slot.width_mm / 2.0;
     require(outer_edge >= wall, || {
         (
-            format!(
-                "lets the slots leave the plate: {outer_edge:.3} mm is left outside them, {wall:.3} mm is the least"
-            ),
+            format!("plate outside the slots too thin ({outer_edge:.3} mm, at least {wall:.3} mm needed)"),
             &[
                 Raise("support.rise_mm"),
                 Lower("support.slot_clearance_mm"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
@@ -53,16 +51,16 @@ fn land_between_slots(i: &Inspection<'_>) -> Assessment {
     let land = 2.0 * slot.inner_edge_mm() * libm::sin(i.pitch_rad() / 2.0) - 2.0 * half;
     require(i.configuration().segment.grooves < 2 || land >= wall, || {
         (
-            format!("leaves {land:.3} mm between neighbouring slots; {wall:.3} mm is the least"),
+            format!("wall between neighbouring slots too thin ({land:.3} mm, at least {wall:.3} mm needed)"),
             &[
                 Lower("support.slot_clearance_mm"),
                 Lower("segment.grooves"),
                 Raise("shell.outer_radius_mm"),
                 Raise("segment.span_deg"),
-                Ease("support.travel_margin_mm"),
-                Ease("pins.diameter_mm"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("support.travel_margin_mm"),
+                Restore("pins.diameter_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
@@ -76,32 +74,32 @@ fn wall_beyond_slots(i: &Inspection<'_>) -> Assessment {
     let least = least_wall_mm(c, 0.5);
     require(end >= least, || {
         (
-            format!("leaves {end:.3} mm beyond the outermost slot; {least:.3} mm is the least"),
+            format!("wall beyond the outermost slot too thin ({end:.3} mm, at least {least:.3} mm needed)"),
             &[
                 Raise("segment.end_margin_mm"),
                 Lower("segment.grooves"),
                 Raise("shell.outer_radius_mm"),
-                Ease("support.slot_clearance_mm"),
-                Ease("support.travel_margin_mm"),
-                Ease("pins.diameter_mm"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("support.slot_clearance_mm"),
+                Restore("support.travel_margin_mm"),
+                Restore("pins.diameter_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
 }
 
-/// Rounded corners must leave a wall around the outermost slots and holes, and something of the ends.
+/// Rounded corners must leave a wall around the outermost slots and holes, and a part of the ends.
 fn corners_in_plate(i: &Inspection<'_>) -> Assessment {
     let radius = i.configuration().support.corner_radius_mm;
     require(corner_fits(i, radius), || {
         (
-            "cuts into the outermost slot or hole, or takes the whole end of the plate".to_owned(),
+            "rounded corner reaches the outermost slot or hole, or the whole end of the plate".to_owned(),
             &[
                 Lower("support.corner_radius_mm"),
                 Raise("segment.end_margin_mm"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
@@ -113,7 +111,7 @@ fn corner_fits(i: &Inspection<'_>, radius_mm: f64) -> bool {
     }
     let c = i.configuration();
     let (half_span, shift) = (i.half_span_rad(), i.shell_end_shift_mm());
-    // In the frame of an end: along its radial plane, and outwards across it. A slot has round ends.
+    // Coordinates of an end: along its radial plane, and outwards across it. A slot has round ends.
     let at =
         |mm: f64, rad: f64| [mm * libm::cos(half_span - rad.abs()), -mm * libm::sin(half_span - rad.abs())];
     let (across, reach) = (shift - radius_mm, i.support_radius_mm() - radius_mm);
@@ -129,7 +127,7 @@ fn corner_fits(i: &Inspection<'_>, radius_mm: f64) -> bool {
     let holes = i.fastener_angles_rad().into_iter().map(|rad| (at(i.fastener_radius_mm(), rad), hole_mm));
     let is_inside = |(point, room_mm): ([f64; 2], f64)| {
         let from = [point[0] - centre[0], point[1] - centre[1]];
-        // Only beyond the centre both outwards and along the end is the outline the rounded corner.
+        // The outline is the rounded corner only beyond its centre, both outwards and along the end.
         let is_beyond = from[0] > 0.0 && from[1] * centre[0] > from[0] * centre[1];
         !is_beyond || libm::hypot(from[0], from[1]) + room_mm <= radius_mm
     };
@@ -143,25 +141,29 @@ fn blind_slot_depth(i: &Inspection<'_>) -> Assessment {
     let depth = i.slot().depth_mm;
     require(c.support.slot_kind != SlotKind::Blind || depth >= least_wall_mm(c, 1.0), || {
         (
-            format!("leaves a slot of {depth:.3} mm in a plate of {} mm", c.support.plate_mm),
+            format!(
+                "slots too shallow in a plate of {} mm ({depth:.3} mm, at least {:.3} mm needed)",
+                c.support.plate_mm,
+                least_wall_mm(c, 1.0)
+            ),
             &[
                 Lower("support.slot_floor_mm"),
                 Raise("support.plate_mm"),
                 Set("support.slot_kind", "\"through\""),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
 }
 
-/// A pin at the end of its slot must not reach the shell.
+/// A pin at the inner end of its slot must not reach the shell.
 fn slot_travel(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     let left = c.silicone.thickness_mm - c.pins.diameter_mm - c.support.travel_margin_mm;
     require(left >= 0.0, || {
         (
-            format!("lets a sunk pin reach {:.3} mm into the shell", -left),
+            format!("a sunk pin reaches {:.3} mm into the shell", -left),
             &[Lower("support.travel_margin_mm"), Lower("pins.diameter_mm"), Raise("silicone.thickness_mm")],
         )
     })
@@ -174,7 +176,7 @@ fn pin_engagement(i: &Inspection<'_>) -> Assessment {
     require(engagement >= least, || {
         (
             format!(
-                "holds the pins by {engagement:.3} mm at each end; one diameter, {least:.3} mm, is the least"
+                "pins engage too little at each end ({engagement:.3} mm, at least one diameter, {least:.3} mm, needed)"
             ),
             &[
                 Raise("support.plate_mm"),
@@ -186,7 +188,7 @@ fn pin_engagement(i: &Inspection<'_>) -> Assessment {
     })
 }
 
-/// Wall that must stay around a fastener hole.
+/// Least wall around a fastener hole, mm.
 fn hole_edge_mm(i: &Inspection<'_>) -> f64 {
     HOLE_EDGE_MM.max(least_wall_mm(i.configuration(), 1.0))
 }
@@ -198,25 +200,25 @@ fn holes_in_wall(i: &Inspection<'_>) -> Assessment {
     }
     let edge = hole_edge_mm(i);
     let radial = c.shell.wall_mm - c.segment.groove_radius_mm - 2.0 * edge;
-    // The slots of the supports may reach below the shell's face.
+    // The slots of the supports may reach below the face of the shell.
     let slot = i.slot();
     let under_slots = 2.0 * (slot.inner_edge_mm() - edge - i.fastener_radius_mm());
     let most = radial.min(under_slots);
     require(c.fasteners.hole_diameter_mm <= most, || {
         (
             format!(
-                "leaves no room in the wall for holes of {} mm: {} with {edge} mm around them",
+                "holes too large for the wall ({} mm, {} with {edge} mm of wall around them)",
                 c.fasteners.hole_diameter_mm,
-                if most > 0.0 { format!("{most:.3} mm is the most") } else { "none fits".to_owned() }
+                if most > 0.0 { format!("at most {most:.3} mm") } else { "no hole fits".to_owned() }
             ),
             &[
                 Lower("fasteners.hole_diameter_mm"),
                 Raise("shell.wall_mm"),
                 Set("fasteners.count", "0"),
-                Ease("segment.groove_radius_mm"),
-                Ease("support.travel_margin_mm"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("segment.groove_radius_mm"),
+                Restore("support.travel_margin_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
@@ -230,14 +232,17 @@ fn holes_in_sector(i: &Inspection<'_>) -> Assessment {
     let needed = c.fasteners.hole_diameter_mm / 2.0 + hole_edge_mm(i);
     require(c.fasteners.end_distance_mm + i.shell_end_shift_mm() >= needed, || {
         (
-            "lets the outermost hole leave the sector".to_owned(),
+            format!(
+                "outermost hole too close to the end of the sector ({:.3} mm, at least {needed:.3} mm needed)",
+                c.fasteners.end_distance_mm + i.shell_end_shift_mm()
+            ),
             &[
                 Raise("fasteners.end_distance_mm"),
                 Raise("segment.end_margin_mm"),
                 Lower("fasteners.hole_diameter_mm"),
                 Set("fasteners.count", "0"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
@@ -258,7 +263,7 @@ fn holes_apart(i: &Inspection<'_>) -> Assessment {
     require(!crowded && !single, || {
         (
             format!(
-                "leaves no room between the screw holes: {} of {diameter} mm do not fit on an arc of {} deg",
+                "{} holes of {diameter} mm do not fit on an arc of {} deg ({needed:.3} mm apart needed)",
                 c.fasteners.count, c.segment.span_deg
             ),
             &[
@@ -267,20 +272,20 @@ fn holes_apart(i: &Inspection<'_>) -> Assessment {
                 Lower("fasteners.hole_diameter_mm"),
                 Raise("segment.span_deg"),
                 Raise("shell.outer_radius_mm"),
-                Ease("print.elephant_foot_mm"),
-                Ease("print.least_wall_mm"),
+                Restore("print.elephant_foot_mm"),
+                Restore("print.least_wall_mm"),
             ],
         )
     })
 }
 
-/// Inserts need a thread for which they are sold, walls around them, and room for both in the shell's width.
+/// Inserts need a thread for which they are sold, walls around them, and room for two in the width of the shell.
 fn inserts_in_shell(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     if c.fasteners.kind != FastenerKind::Insert || c.fasteners.count == 0 {
         return Assessment::NotApplicable;
     }
-    const CHANGES: &[Change] = &[
+    const DIRECTIONS: &[Direction] = &[
         Set("fasteners.kind", "\"screw\""),
         OneOf("fasteners.hole_diameter_mm", CLEARANCE_HOLES_MM),
         Raise("shell.width_mm"),
@@ -289,7 +294,7 @@ fn inserts_in_shell(i: &Inspection<'_>) -> Assessment {
     let hole = c.fasteners.hole_diameter_mm;
     let Some([bore, length]) = i.fastening().insert_mm else {
         return require(false, || {
-            (format!("has no inserts for holes of {hole} mm: M2 to M4 are known"), CHANGES)
+            (format!("no inserts for holes of {hole} mm (known are M2 to M4)"), DIRECTIONS)
         });
     };
     let (radius, edge) = (i.fastener_radius_mm(), hole_edge_mm(i));
@@ -301,9 +306,10 @@ fn inserts_in_shell(i: &Inspection<'_>) -> Assessment {
         return require(false, || {
             (
                 format!(
-                    "has no shoulder for inserts: they sit in holes of {bore} mm, over a hole of {hole} mm for the screw"
+                    "no shoulder for inserts (a screw hole of {hole} mm under an insert hole of {bore} mm, at most {:.1} mm)",
+                    bore - 2.0 * INSERT_SHOULDER_MM
                 ),
-                CHANGES,
+                DIRECTIONS,
             )
         });
     }
@@ -311,9 +317,9 @@ fn inserts_in_shell(i: &Inspection<'_>) -> Assessment {
         return require(false, || {
             (
                 format!(
-                    "leaves no wall around inserts in holes of {bore} mm: {wall:.3} mm, {edge} mm is the least"
+                    "wall around insert holes of {bore} mm too thin ({wall:.3} mm, at least {edge} mm needed)"
                 ),
-                CHANGES,
+                DIRECTIONS,
             )
         });
     }
@@ -321,25 +327,25 @@ fn inserts_in_shell(i: &Inspection<'_>) -> Assessment {
     require(c.shell.width_mm >= needed, || {
         (
             format!(
-                "takes inserts of {length} mm from both sides: {needed:.1} mm of width, {} mm are there",
+                "shell too narrow for inserts of {length} mm from both sides ({} mm, at least {needed:.1} mm needed)",
                 c.shell.width_mm
             ),
-            CHANGES,
+            DIRECTIONS,
         )
     })
 }
 
-/// A screw that nobody sells cannot be billed: ISO 4762 lists lengths for each thread.
+/// Screws are sold in certain lengths: ISO 4762 lists them for each thread.
 fn screws_are_sold(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     if c.fasteners.count == 0 || i.screw_lengths_mm().is_some() {
         return Assessment::NotApplicable;
     }
-    const CHANGES: &[Change] = &[
+    const DIRECTIONS: &[Direction] = &[
         OneOf("fasteners.hole_diameter_mm", CLEARANCE_HOLES_MM),
         Lower("shell.width_mm"),
-        Ease("support.plate_mm"),
-        Ease("mount.plate_mm"),
+        Restore("support.plate_mm"),
+        Restore("mount.plate_mm"),
         Raise("fasteners.head_recess_mm"),
         Set("fasteners.kind", "\"insert\""),
         Set("fasteners.kind", "\"screw\""),
@@ -348,27 +354,30 @@ fn screws_are_sold(i: &Inspection<'_>) -> Assessment {
     let hole = c.fasteners.hole_diameter_mm;
     let Some(thread) = i.fastening().thread else {
         return require(false, || {
-            (format!("lets no screw through a hole of {hole} mm: M1.6, the smallest, takes 1.7 mm"), CHANGES)
+            (
+                format!("holes of {hole} mm too small for a screw (at least 1.7 mm needed, for M1.6)"),
+                DIRECTIONS,
+            )
         });
     };
     let [low, high] = thread.lengths_mm;
     require(false, || {
         (
             format!(
-                "takes {} screws, which are sold from {low} to {high} mm long (ISO 4762): none of them joins shell and plates",
+                "no {} screw joins shell and plates (sold from {low} to {high} mm long, ISO 4762)",
                 thread.name
             ),
-            CHANGES,
+            DIRECTIONS,
         )
     })
 }
 
-/// Dowels are bought as they are: ISO 2338 lists their diameters.
+/// Dowels are sold in certain diameters (ISO 2338).
 fn dowels_are_sold(i: &Inspection<'_>) -> Assessment {
     let diameter = i.configuration().fasteners.dowel_diameter_mm;
     require(diameter == 0.0 || DOWELS_MM.iter().any(|d| (d - diameter).abs() < 1e-9), || {
         (
-            "is no diameter in which dowels are sold (ISO 2338)".to_owned(),
+            "dowels are not sold in this diameter (ISO 2338)".to_owned(),
             &[OneOf("fasteners.dowel_diameter_mm", DOWELS_MM), Set("fasteners.dowel_diameter_mm", "0")],
         )
     })
@@ -377,7 +386,7 @@ fn dowels_are_sold(i: &Inspection<'_>) -> Assessment {
 fn dowels_in_wall(i: &Inspection<'_>) -> Assessment {
     require(i.dowels_fit(), || {
         (
-            "leaves no wall around the dowels beside the outermost screws".to_owned(),
+            "wall around the dowels next to the outermost screws too thin".to_owned(),
             &[
                 OneOf("fasteners.dowel_diameter_mm", DOWELS_MM),
                 Raise("shell.wall_mm"),
@@ -388,13 +397,13 @@ fn dowels_in_wall(i: &Inspection<'_>) -> Assessment {
     })
 }
 
-/// Nothing but friction holds a pin in a slot that goes right through.
+/// Friction alone retains a pin in a through slot.
 fn loose_pins(i: &Inspection<'_>) -> Assessment {
     let c = i.configuration();
     advise(c.support.slot_kind != SlotKind::Through || c.layout.pins.is_empty(), || {
         (
-            "through slots do not hold the pins along the axis".to_owned(),
-            "cover the plates outside, or set support.slot_kind = \"blind\"".to_owned(),
+            "through slots do not retain the pins axially".to_owned(),
+            "cover the outside of the plates, or set support.slot_kind = \"blind\"".to_owned(),
         )
     })
 }
@@ -403,7 +412,7 @@ fn wide_clearance(i: &Inspection<'_>) -> Assessment {
     let clearance = i.configuration().support.slot_clearance_mm;
     advise(clearance <= WIDE_CLEARANCE_MM, || {
         (
-            format!("support.slot_clearance_mm = {clearance} lets the pins walk"),
+            format!("support.slot_clearance_mm = {clearance} gives the pins too much play"),
             "print the coupon and lower it".to_owned(),
         )
     })

@@ -1,4 +1,4 @@
-//! How far a printed, cast and assembled part departs from its configuration, as stated distributions.
+//! Manufacturing tolerances: distributions of the deviations of printed, cast and assembled parts.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,19 +7,19 @@ use pinswitch_friction::physics::{Bed, modulus_of_shore_a_mpa};
 /// Number of sources, in the order of [`Tolerances::NAMES`].
 pub const SOURCES: usize = 5;
 
-/// Standard deviations of normal distributions about the configured values; `cad/doc/design.md` gives their sources.
+/// Standard deviations of normal distributions about the configured values; `cad/doc/design.md` gives the sources.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Tolerances {
-    /// Of the pins' diameter, mm.
+    /// Standard deviation of the diameter of the pins, mm.
     pub pin_diameter_mm: f64,
-    /// Of the grooves' diameter, mm.
+    /// Standard deviation of the diameter of the grooves, mm.
     pub groove_diameter_mm: f64,
-    /// Of the shell's radius, mm.
+    /// Standard deviation of the radius of the shell, mm.
     pub radius_mm: f64,
-    /// Of the silicone's thickness, mm.
+    /// Standard deviation of the thickness of the silicone, mm.
     pub layer_mm: f64,
-    /// Of the silicone's hardness, Shore A.
+    /// Standard deviation of the hardness of the silicone, Shore A.
     pub hardness_shore_a: f64,
 }
 
@@ -40,23 +40,24 @@ impl Tolerances {
     pub const NAMES: [&'static str; SOURCES] =
         ["pin diameter", "groove diameter", "radius", "layer thickness", "hardness"];
 
-    /// Standard deviations in order.
+    /// Returns the standard deviations in the order of [`Self::NAMES`].
     pub const fn sd(&self) -> [f64; SOURCES] {
         [self.pin_diameter_mm, self.groove_diameter_mm, self.radius_mm, self.layer_mm, self.hardness_shore_a]
     }
 
-    /// Fields in order, for errors.
+    /// Fields in the order of [`Self::NAMES`], for errors.
     pub const FIELDS: [&'static str; SOURCES] =
         ["pin_diameter_mm", "groove_diameter_mm", "radius_mm", "layer_mm", "hardness_shore_a"];
 
-    /// The bed of a part that was made: `bed` of its configuration at `hardness_shore_a`, with standard normals `z`.
+    /// Returns the bed of a made part: that of its configuration at `hardness_shore_a`, with deviations of `z` standard
+    /// deviations.
     pub fn made(&self, bed: &Bed, hardness_shore_a: f64, z: &[f64; SOURCES]) -> Bed {
         let [pin, groove, radius, layer, hardness] = self.sd();
         let layer_mm = (bed.layer_mm + layer * z[3]).max(0.05);
         Bed {
             pin_diameter_mm: (bed.pin_diameter_mm + pin * z[0]).max(0.02),
             groove_radius_mm: (bed.groove_radius_mm + groove / 2.0 * z[1]).max(0.01),
-            // The mould's cavity and the shell both carry the thickness: the contact lies on what was cast.
+            // The contact is on the surface of the cast layer, whose thickness deviates.
             contact_radius_mm: (bed.contact_radius_mm + radius * z[2] + layer_mm - bed.layer_mm).max(1.0),
             layer_mm,
             modulus_mpa: modulus_of_shore_a_mpa((hardness_shore_a + hardness * z[4]).clamp(1.0, 95.0)),
@@ -70,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_part_without_errors_is_its_configuration() {
+    fn a_part_without_deviations_is_nominal() {
         let bed = Bed::published();
         assert_eq!(Tolerances::default().made(&bed, 50.0, &[0.0; SOURCES]), bed);
         let thick = Tolerances::default().made(&bed, 50.0, &[0.0, 0.0, 0.0, 2.0, 0.0]);

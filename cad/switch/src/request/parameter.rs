@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::config::Configuration;
 
-/// A parameter that may vary; the names are those of an ask.
+/// A parameter that may vary; the names are those of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Parameter {
@@ -14,13 +14,13 @@ pub enum Parameter {
     LayerMm,
     /// Hardness of the silicone, `silicone.hardness_shore_a`.
     HardnessShoreA,
-    /// Diameter of the pins, `pins.diameter_mm`; the grooves keep their play around the pin.
+    /// Diameter of the pins, `pins.diameter_mm`; the grooves keep their clearance around the pin.
     PinDiameterMm,
     /// Radius of the shell, `shell.outer_radius_mm`.
     RadiusMm,
     /// Width of the shell, `shell.width_mm`.
     WidthMm,
-    /// Angle over which the tendon touches, `layout.wrap_angle_deg`; a sector that is too short for it gets further grooves.
+    /// Wrap angle of the tendon, `layout.wrap_angle_deg`; a sector that is too short for it gets more grooves.
     WrapDeg,
 }
 
@@ -36,7 +36,7 @@ impl Parameter {
         Self::WrapDeg,
     ];
 
-    /// Its name in an ask.
+    /// Returns its name in a request.
     pub const fn name(self) -> &'static str {
         match self {
             Self::PitchDeg => "pitch_deg",
@@ -49,12 +49,12 @@ impl Parameter {
         }
     }
 
-    /// The parameter of this name.
-    pub fn named(name: &str) -> Option<Self> {
+    /// Returns the parameter of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|p| p.name() == name)
     }
 
-    /// The parameter of a configuration that it sets.
+    /// Returns the path of the parameter of a configuration that it sets.
     pub const fn field(self) -> &'static str {
         match self {
             Self::PitchDeg => "segment.span_deg",
@@ -67,8 +67,8 @@ impl Parameter {
         }
     }
 
-    /// The range in which it varies if an ask gives none: what a maker can print, cast or buy, and where the physics'
-    /// assumptions are not stretched beyond a factor of about two (`cad/doc/design.md`).
+    /// Returns the range in which it varies by default: values that can be printed, cast or bought, at which the
+    /// assumptions of the physics are extended by a factor of two at most (`cad/doc/design.md`).
     pub const fn default_range(self) -> (f64, f64) {
         match self {
             Self::PitchDeg => (4.0, 9.0),
@@ -81,7 +81,7 @@ impl Parameter {
         }
     }
 
-    /// The range that a configuration accepts.
+    /// Returns the range that a configuration accepts.
     pub const fn hard_range(self) -> (f64, f64) {
         match self {
             Self::PitchDeg => (0.5, 90.0),
@@ -94,8 +94,8 @@ impl Parameter {
         }
     }
 
-    /// What is finer than anyone prints, casts or measures: answers are rounded to it.
-    const fn step(self) -> f64 {
+    /// Returns the step to which values are rounded: finer ones cannot be printed, cast or measured.
+    pub(crate) const fn step(self) -> f64 {
         match self {
             Self::PitchDeg | Self::LayerMm | Self::PinDiameterMm => 0.01,
             Self::RadiusMm | Self::WidthMm | Self::WrapDeg => 0.1,
@@ -103,14 +103,14 @@ impl Parameter {
         }
     }
 
-    /// The value, rounded to what can be made, within `range`.
+    /// Rounds a value to the step, within `range`.
     pub fn rounded(self, value: f64, range: (f64, f64)) -> f64 {
         let per_unit = (1.0 / self.step()).round();
-        // Divided, since 0.01 is no exact number: 227 / 100 is the nearest to 2.27.
+        // Divided, since 0.01 is not exact: 227 / 100 is the number nearest to 2.27.
         ((value * per_unit).round() / per_unit).clamp(range.0, range.1.max(range.0))
     }
 
-    /// Its value in `configuration`.
+    /// Returns its value in a configuration.
     pub fn value(self, c: &Configuration) -> f64 {
         match self {
             Self::PitchDeg => c.segment.span_deg / c.segment.grooves as f64,
@@ -123,14 +123,14 @@ impl Parameter {
         }
     }
 
-    /// Sets it, with what hangs on it. What the program cannot take is refused later, by the rules.
+    /// Sets it, with the dependent parameters. The rules may refuse the result.
     pub fn set(self, c: &mut Configuration, value: f64) {
         match self {
             Self::PitchDeg => c.segment.span_deg = (value * c.segment.grooves as f64 * 1e6).round() / 1e6,
             Self::LayerMm => c.silicone.thickness_mm = value,
             Self::HardnessShoreA => c.silicone.hardness_shore_a = value,
             Self::PinDiameterMm => {
-                // The groove follows the pin: the play between them stays.
+                // The groove follows the pin: the clearance between them stays.
                 let play_mm = c.segment.groove_radius_mm - c.pins.diameter_mm / 2.0;
                 c.pins.diameter_mm = value;
                 c.segment.groove_radius_mm = ((value / 2.0 + play_mm) * 1e4).round() / 1e4;
@@ -145,7 +145,7 @@ impl Parameter {
     }
 }
 
-/// Adds a groove at both ends of the sector until it spans the wrap; the pins stay where they are, and are numbered anew.
+/// Adds grooves at both ends of the sector until it spans the wrap; the pins keep their positions and are renumbered.
 fn grow_sector(c: &mut Configuration) {
     const MOST_GROOVES: usize = 60;
     let pitch_deg = c.segment.span_deg / c.segment.grooves as f64;
@@ -162,9 +162,9 @@ mod tests {
     use crate::config::assign;
 
     #[test]
-    fn what_is_set_is_read_back_and_in_range() {
+    fn values_are_set_and_read_back() {
         for p in Parameter::ALL {
-            assert_eq!(Parameter::named(p.name()), Some(p));
+            assert_eq!(Parameter::from_name(p.name()), Some(p));
             let mut c = Configuration::default();
             let (low, high) = p.default_range();
             for value in [low, high] {

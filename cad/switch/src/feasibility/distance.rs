@@ -38,6 +38,14 @@ impl Distance {
     }
 }
 
+impl Distance {
+    /// Compares two distances; sizes are never NaN.
+    pub(super) fn total_cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let counts = |d: &Self| (d.changes, d.defaults);
+        counts(self).cmp(&counts(other)).then(self.size.total_cmp(&other.size))
+    }
+}
+
 /// The size of a change, 0 to 2: of a number relative to the larger of both values, of a list the share of its items that
 /// changed, of anything else 1.
 #[allow(clippy::cast_precision_loss)]

@@ -13,6 +13,8 @@ const MAX_ALTERNATIVES: usize = 4;
 const MAX_BUILDS: usize = 6;
 /// Lines whose pairs are searched; the first are the most natural.
 const MAX_PAIRED_LINES: usize = 12;
+/// Pairs that satisfy the rules, the nearest first, out of which one is sought that is free of obstacles.
+const MAX_CHECKED_PAIRS: usize = 16;
 /// Ratio of two numbers up to which a change is small.
 const SMALL_RATIO: f64 = 2.0;
 /// Screws without which a switch is not assembled.
@@ -160,24 +162,24 @@ fn paired(problem: &Problem<'_>, restored: Option<&Configuration>) -> Option<Con
     lines.extend(problem.lines.iter().cloned());
     lines.truncate(MAX_PAIRED_LINES);
     let satisfies_rules = |c: &Configuration| is_accepted(c.clone());
-    let mut best: Option<(Distance, Configuration, &Line, &Line)> = None;
+    let mut pairs: Vec<(Distance, Configuration, [&Line; 2])> = Vec::new();
     for first in &lines {
         for sample in first.samples(start) {
             for second in lines.iter().filter(|second| second.field() != first.field()) {
-                let Some(c) = second.nearest(&sample, &satisfies_rules, Effort::QUICK) else { continue };
-                let distance = Distance::new(start, &c);
-                if best.as_ref().is_none_or(|(least, ..)| distance < *least) {
-                    best = Some((distance, c, first, second));
+                if let Some(c) = second.nearest(&sample, &satisfies_rules, Effort::QUICK) {
+                    pairs.push((Distance::new(start, &c), c, [first, second]));
                 }
             }
         }
     }
-    let (_, mut c, first, second) = best?;
-    // Each as near as the other allows.
-    for line in [first, second, first] {
-        c = line.nearest(&c, &satisfies_rules, Effort::THOROUGH).unwrap_or(c);
-    }
-    problem.admits(&c).then_some(c)
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (_, pair, [first, second]) =
+        pairs.into_iter().take(MAX_CHECKED_PAIRS).find(|(_, c, _)| problem.admits(c))?;
+    // Each change as small as the other allows.
+    let refined = [first, second, first]
+        .into_iter()
+        .fold(pair.clone(), |c, line| line.nearest(&c, &satisfies_rules, Effort::THOROUGH).unwrap_or(c));
+    Some(if problem.admits(&refined) { refined } else { pair })
 }
 
 /// Whether all changed numbers are within a factor of two, and no screw is lost that the assembly needs.

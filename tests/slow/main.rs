@@ -14,6 +14,7 @@ mod campaign;
 mod closed_loop;
 mod effects_aside;
 mod generate_kill;
+mod proposals;
 mod random_configurations;
 mod second_rig;
 mod undeclared_effect;

@@ -2,8 +2,7 @@
 
 use std::fmt;
 
-use super::expression::{Fault, Node};
-use super::parser::is_function;
+use super::expression::EffectFormula;
 use super::probe::probes;
 use super::unit::Unit;
 use super::unit_check::check_units;
@@ -11,6 +10,7 @@ use super::variable::{VARIABLES, variable};
 use crate::effects::{ActsOn, Combine, Covariate, Effect, Parameter, Side, Written, effect_named};
 use crate::inference::UNATTRIBUTED;
 use crate::table::{Frame, tells_readings};
+use pinswitch_formula::{FormulaError, is_reserved};
 
 /// Most constants of an effect.
 const MAX_PARAMETERS: usize = 8;
@@ -138,7 +138,7 @@ impl EffectDefinition {
     ///
     /// # Errors
     /// The first thing that is wrong.
-    pub(super) fn compiled(&self) -> Result<Node, DefinitionError> {
+    pub(super) fn compiled(&self) -> Result<EffectFormula, DefinitionError> {
         self.check_words()?;
         let mut units = Vec::new();
         for (i, parameter) in self.parameters.iter().enumerate() {
@@ -148,8 +148,10 @@ impl EffectDefinition {
             units.push(unit);
         }
         let names: Vec<&str> = self.parameters.iter().map(|p| p.name.as_str()).collect();
-        let faulty = |Fault { at, problem }| DefinitionError { part: Part::Formula(at), problem };
-        let node = Node::parse(&self.formula, &names, self.acts_on.knows_tension()).map_err(faulty)?;
+        let faulty =
+            |e: FormulaError| DefinitionError { part: Part::Formula(e.span().start), problem: e.to_string() };
+        let node =
+            EffectFormula::parse(&self.formula, &names, self.acts_on.knows_tension()).map_err(faulty)?;
         for (i, name) in names.iter().enumerate() {
             require(node.has_constant(i), Part::Parameter(i), || {
                 format!("the formula does not use '{name}'; leave it out, or use it")
@@ -159,8 +161,8 @@ impl EffectDefinition {
             Combine::Factor => ("1", "a factor".to_owned()),
             Combine::Sum => (self.acts_on.unit(), format!("a sum on {}", self.acts_on.as_str())),
         };
-        let needed = Unit::parse(unit).map_err(|problem| faulty(Fault::new(0, problem)))?;
-        check_units(&node, &units, needed, &what).map_err(faulty)?;
+        let needed = Unit::parse(unit).map_err(|problem| faulty(FormulaError::new(0..0, problem)))?;
+        check_units(node.root(), &units, needed, &what).map_err(faulty)?;
         self.check_values(&node)?;
         Ok(node)
     }
@@ -226,7 +228,7 @@ impl EffectDefinition {
             let names: Vec<&str> = VARIABLES.iter().map(|v| v.name).collect();
             format!("parameter '{name}' has the name of a variable; taken are {}", names.join(", "))
         })?;
-        require(!is_function(name), part(), || {
+        require(!is_reserved(name), part(), || {
             format!("parameter '{name}' has the name of a function; give it another one, such as my_{name}")
         })?;
         let usable = |v: f64| v.is_finite() && v.abs() <= MAX_VALUE;
@@ -250,7 +252,7 @@ impl EffectDefinition {
 
     /// Why small sizes are in no proportion to what they do; `None` if they are. Of `k^2`, `abs(k)` or `sqrt(k)` no linear fit can
     /// begin at zero, and an interval about zero means nothing.
-    pub(super) fn not_in_proportion(&self, node: &Node) -> Option<String> {
+    pub(super) fn not_in_proportion(&self, node: &EffectFormula) -> Option<String> {
         const SMALL: f64 = 1e-4;
         let at = |size: f64| -> Vec<f64> {
             let values: Vec<f64> =
@@ -270,7 +272,7 @@ impl EffectDefinition {
     }
 
     /// With all sizes zero nothing is left, and at the start there is a number, on rows that span what a rig does.
-    fn check_values(&self, node: &Node) -> Result<(), DefinitionError> {
+    fn check_values(&self, node: &EffectFormula) -> Result<(), DefinitionError> {
         let formula = |problem| DefinitionError { part: Part::Formula(0), problem };
         let pick = |size: f64, shape: fn(f64, (f64, f64)) -> f64| -> Vec<f64> {
             self.parameters.iter().map(|p| p.bounds.map_or(size * p.start, |b| shape(p.start, b))).collect()
@@ -282,7 +284,7 @@ impl EffectDefinition {
         ];
         let there = pick(1.0, |start, _| start);
         // What acts in a narrow range only may act in none of these rows.
-        let mut acts = node.has_condition();
+        let mut acts = node.root().has_cases();
         for probe in probes() {
             let moment = probe.moment();
             let value = node.value(&there, &moment);

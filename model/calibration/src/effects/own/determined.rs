@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::definition::OwnParameter;
-use super::expression::Node;
+use super::expression::EffectFormula;
 use super::probe::spread_probes;
 
 /// Smallest singular value of the sensitivities, as a share of the largest, below which some combination of constants does
@@ -16,7 +16,10 @@ const ROWS_EACH: usize = 3;
 
 /// Names of constants that no data can tell apart, wherever they stand; `None` if there are none, or the rows that are tried
 /// cannot say.
-pub(super) fn not_told_apart<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<Vec<&'a str>> {
+pub(super) fn not_told_apart<'a>(
+    node: &EffectFormula,
+    parameters: &'a [OwnParameter],
+) -> Option<Vec<&'a str>> {
     // What is one at its start values alone is no fault of the formula.
     let places = [(1.0, 0.5), (1.37, 0.31), (0.71, 0.68)];
     // Each constant elsewhere: what may be exchanged is one where it is equal.
@@ -43,7 +46,7 @@ pub(super) fn not_told_apart<'a>(node: &Node, parameters: &'a [OwnParameter]) ->
 }
 
 /// Name of a shape that moves the effect by jumps alone: no fit can follow it, and no interval tells where it lies.
-pub(super) fn jumps_only<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<&'a str> {
+pub(super) fn jumps_only<'a>(node: &EffectFormula, parameters: &'a [OwnParameter]) -> Option<&'a str> {
     let rows = spread_probes();
     let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
     let at = |k: usize, value: f64| -> Vec<f64> {
@@ -63,7 +66,7 @@ pub(super) fn jumps_only<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Opt
 }
 
 /// Constants that take part in a combination that does nothing; `None` if there is none, or too few rows say anything.
-fn alike_at(node: &Node, parameters: &[OwnParameter], values: &[f64]) -> Option<Vec<usize>> {
+fn alike_at(node: &EffectFormula, parameters: &[OwnParameter], values: &[f64]) -> Option<Vec<usize>> {
     let rows = spread_probes();
     let mut columns: Vec<(usize, Vec<f64>)> = Vec::new();
     for (k, parameter) in parameters.iter().enumerate() {

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::OwnEffect;
 use super::definition::{DefinitionError, EffectDefinition, OwnParameter, Part};
-use super::parser::unknown;
+use super::expression::unknown;
 use crate::effects::{ActsOn, Combine, Covariate, Side, Vocabulary};
 
 /// Name and version of the format.

@@ -7,11 +7,9 @@ mod definition;
 mod determined;
 mod expression;
 mod file;
-mod parser;
 mod probe;
 #[cfg(test)]
 mod tests;
-mod token;
 mod unit;
 mod unit_check;
 mod variable;
@@ -22,8 +20,8 @@ pub(crate) use file::effects_of_model;
 pub use file::{OwnEffectError, read_own_effects};
 pub use writer::{own_effect_blocks, own_effects_text};
 
-use expression::Node;
-pub(crate) use parser::unknown;
+use expression::EffectFormula;
+pub(crate) use expression::unknown;
 use variable::Moment;
 
 use pinswitch_friction::sort_by_number;
@@ -69,7 +67,7 @@ pub fn formula_variables() -> impl Iterator<Item = [&'static str; 3]> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnEffect {
     definition: EffectDefinition,
-    formula: Node,
+    formula: EffectFormula,
 }
 
 impl OwnEffect {

@@ -4,8 +4,14 @@
 //! `speed_pct > 50`; a number that multiplies has none. Such a number is an unknown of linear equations between powers
 //! of units, which are solved one by one as they are met (Kennedy, Types for units-of-measure, 2010).
 
-use super::expression::{Fault, Function, Kind, Node, Operator};
+use std::ops::Range;
+
+use pinswitch_formula::{FormulaError, Function, Kind, Operator};
+
+use super::expression::Symbol;
 use super::unit::Unit;
+
+type Node = pinswitch_formula::Node<Symbol>;
 
 /// A unit that may depend on units not yet known: a known one times powers of unknown ones.
 #[derive(Clone, Debug)]
@@ -45,15 +51,20 @@ struct Solver {
 ///
 /// # Errors
 /// The first place where units do not fit.
-pub(super) fn check_units(formula: &Node, constants: &[Unit], needed: Unit, what: &str) -> Result<(), Fault> {
+pub(super) fn check_units(
+    formula: &Node,
+    constants: &[Unit],
+    needed: Unit,
+    what: &str,
+) -> Result<(), FormulaError> {
     let mut solver = Solver::default();
     let found = solver.unit_of(formula, constants)?;
     if solver.equal(&found, &Quantity::known(needed)) {
         return Ok(());
     }
     let found = solver.told(&found);
-    Err(Fault::new(
-        0,
+    Err(FormulaError::new(
+        formula.extent(),
         format!(
             "the formula has the unit {found}, {what} needs {needed}; divide by a reference, as load_n/50, or give a \
              constant another unit"
@@ -92,9 +103,9 @@ impl Solver {
     }
 
     /// Unit of an operand that may be a bare number of any unit.
-    fn operand(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
-        let bare = match &node.kind {
-            Kind::Negated(inner) => matches!(inner.kind, Kind::Number(_)),
+    fn operand(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, FormulaError> {
+        let bare = match node.kind() {
+            Kind::Negated(inner) => matches!(inner.kind(), Kind::Number(_)),
             kind => matches!(kind, Kind::Number(_)),
         };
         if !bare {
@@ -104,42 +115,49 @@ impl Solver {
         Ok(Quantity { known: Unit::NONE, unknown: vec![(self.solved.len() - 1, 1.0)] })
     }
 
-    fn dimensionless(&mut self, found: &Quantity, at: usize, what: &str) -> Result<(), Fault> {
+    fn dimensionless(&mut self, found: &Quantity, at: Range<usize>, what: &str) -> Result<(), FormulaError> {
         if self.equal(found, &Quantity::known(Unit::NONE)) {
             return Ok(());
         }
         let found = self.told(found);
-        Err(Fault::new(
+        Err(FormulaError::new(
             at,
             format!("{what} has the unit {found} and needs none; divide by a reference, as load_n/50"),
         ))
     }
 
-    fn unit_of(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
-        match &node.kind {
+    fn unit_of(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, FormulaError> {
+        match node.kind() {
             Kind::Number(_) => Ok(Quantity::known(Unit::NONE)),
-            Kind::Variable(variable) => {
-                Unit::parse(variable.unit).map(Quantity::known).map_err(|e| Fault::new(node.at, e))
+            Kind::Name(Symbol::Variable(variable)) => {
+                Unit::parse(variable.unit).map(Quantity::known).map_err(|e| FormulaError::new(node.span(), e))
             }
-            Kind::Constant(place) => {
+            Kind::Name(Symbol::Constant(place)) => {
                 Ok(Quantity::known(constants.get(*place).copied().unwrap_or(Unit::NONE)))
             }
-            Kind::Negated(a) => self.unit_of(a, constants),
+            Kind::Negated(a) | Kind::Not(a) => self.unit_of(a, constants),
             Kind::Call(function, a) => self.call(*function, a, constants),
-            Kind::Binary(operator, a, b) => self.binary(*operator, node.at, a, b, constants),
+            Kind::Binary(operator, a, b) => self.binary(*operator, node.span(), a, b, constants),
         }
     }
 
-    fn call(&mut self, function: Function, a: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
+    fn call(&mut self, function: Function, a: &Node, constants: &[Unit]) -> Result<Quantity, FormulaError> {
         let unit = self.unit_of(a, constants)?;
         let none = Quantity::known(Unit::NONE);
         match function {
             Function::Abs => Ok(unit),
             Function::Sqrt => Ok(none.times(&unit, 0.5)),
             Function::Sin | Function::Cos if self.told(&unit) == "rad" => Ok(none),
-            Function::Exp | Function::Ln | Function::Tanh | Function::Sin | Function::Cos => {
-                let name = format!("{function:?}").to_lowercase();
-                self.dimensionless(&unit, a.at, &format!("what {name} is taken of"))?;
+            Function::Exp
+            | Function::Ln
+            | Function::Tanh
+            | Function::Sin
+            | Function::Cos
+            | Function::Round
+            | Function::Floor
+            | Function::Ceil => {
+                let name = function.name();
+                self.dimensionless(&unit, a.extent(), &format!("what {name} is taken of"))?;
                 Ok(none)
             }
         }
@@ -148,54 +166,56 @@ impl Solver {
     fn binary(
         &mut self,
         operator: Operator,
-        at: usize,
+        at: Range<usize>,
         a: &Node,
         b: &Node,
         constants: &[Unit],
-    ) -> Result<Quantity, Fault> {
+    ) -> Result<Quantity, FormulaError> {
         match operator {
             Operator::Multiply => Ok(self.unit_of(a, constants)?.times(&self.unit_of(b, constants)?, 1.0)),
             Operator::Divide => Ok(self.operand(a, constants)?.times(&self.operand(b, constants)?, -1.0)),
             Operator::Power => self.power(a, b, constants),
+            Operator::And | Operator::Or => {
+                self.unit_of(a, constants)?;
+                self.unit_of(b, constants)
+            }
             Operator::Add
             | Operator::Subtract
-            | Operator::Least
-            | Operator::Greatest
+            | Operator::Min
+            | Operator::Max
             | Operator::Less
-            | Operator::AtMost
-            | Operator::More
-            | Operator::AtLeast
+            | Operator::LessOrEqual
+            | Operator::Greater
+            | Operator::GreaterOrEqual
             | Operator::Equal
-            | Operator::Unequal => {
+            | Operator::NotEqual => {
                 let (left, right) = (self.operand(a, constants)?, self.operand(b, constants)?);
                 if !self.equal(&left, &right) {
                     let (left, right) = (self.told(&left), self.told(&right));
-                    return Err(Fault::new(
+                    return Err(FormulaError::new(
                         at,
                         format!(
                             "the units {left} and {right} meet here and must be one; divide each by a reference"
                         ),
                     ));
                 }
-                let joins = matches!(
-                    operator,
-                    Operator::Add | Operator::Subtract | Operator::Least | Operator::Greatest
-                );
+                let joins =
+                    matches!(operator, Operator::Add | Operator::Subtract | Operator::Min | Operator::Max);
                 Ok(if joins { left } else { Quantity::known(Unit::NONE) })
             }
         }
     }
 
     /// A power: by a number of anything, else of what has no unit.
-    fn power(&mut self, a: &Node, b: &Node, constants: &[Unit]) -> Result<Quantity, Fault> {
+    fn power(&mut self, a: &Node, b: &Node, constants: &[Unit]) -> Result<Quantity, FormulaError> {
         let base = self.unit_of(a, constants)?;
         let none = Quantity::known(Unit::NONE);
-        if let Some(power) = b.number().filter(|power| power.is_finite()) {
+        if let Some(power) = b.constant().filter(|power| power.is_finite()) {
             return Ok(none.times(&base, power));
         }
-        self.dimensionless(&base, a.at, "the base of a power that is no number")?;
+        self.dimensionless(&base, a.extent(), "the base of a power that is no number")?;
         let exponent = self.unit_of(b, constants)?;
-        self.dimensionless(&exponent, b.at, "an exponent")?;
+        self.dimensionless(&exponent, b.extent(), "an exponent")?;
         Ok(none)
     }
 }
@@ -203,12 +223,13 @@ impl Solver {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::own::expression::EffectFormula;
 
     /// A formula with constants `k` (1), `f` (N), `p` (N^-0.5), `w` (%).
-    fn check(text: &str, needed: &str) -> Result<(), Fault> {
-        let node = Node::parse(text, &["k", "f", "p", "w"], true)?;
+    fn check(text: &str, needed: &str) -> Result<(), FormulaError> {
+        let formula = EffectFormula::parse(text, &["k", "f", "p", "w"], true)?;
         let units = ["1", "N", "N^-0.5", "%"].map(|u| Unit::parse(u).unwrap());
-        check_units(&node, &units, Unit::parse(needed).unwrap(), "it")
+        check_units(formula.root(), &units, Unit::parse(needed).unwrap(), "it")
     }
 
     #[test]
@@ -230,6 +251,8 @@ mod tests {
             ("k*(load_n^2/2500)", "1"),
             ("k*tanh((load_n - 20)/f)", "1"),
             ("k*(load_n < f)*-1", "1"),
+            ("k*(load_n > 20 && !(speed_pct > 52) or stroke > 0.5)", "1"),
+            ("k*floor(load_n/10)", "1"),
         ] {
             assert_eq!(check(text, needed), Ok(()), "{text}");
         }
@@ -237,19 +260,22 @@ mod tests {
 
     #[test]
     fn units_that_do_not_fit_are_placed() {
-        for (text, needed, at, part) in [
-            ("k*load_n", "1", 0, "has the unit N, it needs 1"),
-            ("f", "1", 0, "has the unit N"),
-            ("k*(load_n + speed_pct)", "N", 10, "the units N and % meet here"),
-            ("k*exp(load_n)", "1", 6, "what exp is taken of has the unit N"),
-            ("k*ln(load_n + 3)", "1", 12, "what ln is taken of"),
-            ("k*(load_n > speed_pct)", "1", 10, "the units N and % meet"),
-            ("k*load_n^k", "1", 2, "the base of a power"),
-            ("k*2^load_n", "1", 4, "an exponent has the unit N"),
-            ("k*(load_n/50 + load_n)", "1", 0, "has the unit N"),
+        for (text, needed, marked, part) in [
+            ("k*load_n", "1", "k*load_n", "has the unit N, it needs 1"),
+            ("f", "1", "f", "has the unit N"),
+            ("k*(load_n + speed_pct)", "N", "+", "the units N and % meet here"),
+            ("k*exp(load_n)", "1", "load_n", "what exp is taken of has the unit N"),
+            ("k*ln(load_n + 3)", "1", "load_n + 3", "what ln is taken of"),
+            ("k*(load_n > speed_pct)", "1", ">", "the units N and % meet"),
+            ("k*(time > 1 && load_n > speed_pct)", "1", ">", "the units N and % meet"),
+            ("k*round(load_n)", "1", "load_n", "what round is taken of"),
+            ("k*load_n^k", "1", "load_n", "the base of a power"),
+            ("k*2^load_n", "1", "load_n", "an exponent has the unit N"),
+            ("k*(load_n/50 + load_n)", "1", "k*(load_n/50 + load_n)", "has the unit N"),
         ] {
             let fault = check(text, needed).map(|()| text).unwrap_err();
-            assert!(fault.at == at && fault.problem.contains(part), "{text}: {fault:?}");
+            assert!(fault.problem().contains(part), "{text}: {fault:?}");
+            assert_eq!(&text[fault.span()], marked, "{text}: {fault:?}");
         }
     }
 }

@@ -246,7 +246,7 @@ fn little_data_leaves_open_questions() {
 fn requested_effects_are_checked() {
     let folder = tempfile::tempdir().unwrap();
     for (options, expected) in [
-        ("--effect gravity=1", "known are"),
+        ("--effect gravity=1", "use one of"),
         ("--effect run_in=0.1", "run_in needs 3 values"),
         ("--effect adhesion=much", "values are numbers"),
     ] {

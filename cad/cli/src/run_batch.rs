@@ -9,8 +9,9 @@ use clap::Args;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use pinswitch_batch::{
-    CountedSweep, Destination, Estimate, Observer, Options, Reach, RunError, Shard, SweepSource, Tally,
-    VariantOutcome, Variants, admit, estimate, mesh_file, partial_folder, run as run_batch, would_fail,
+    Destination, Estimate, Observer, Options, Reach, RunError, Shard, SweepSource, Tally, UncheckedSweep,
+    VariantOutcome, Variants, check_destination, estimate, mesh_file, obstructed_paths, partial_folder,
+    run as run_batch,
 };
 use pinswitch_diagnostic::{Diagnostic, Location};
 
@@ -83,15 +84,14 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let kernel = requested_kernel(arguments.verify)?;
-    let failed = |e| Failure::failed(unconverted(e));
-    let reach = if arguments.read_outside { Reach::Anywhere } else { Reach::Beside };
+    let reach = if arguments.read_outside { Reach::Anywhere } else { Reach::SweepFolder };
     let mut source = SweepSource::read_within(&arguments.sweep, reach).map_err(Failure::bad_input)?;
     source.slice = arguments.slice;
     source.verify = arguments.verify;
-    let counted = CountedSweep::new(&source).map_err(Failure::bad_input)?;
+    let counted = UncheckedSweep::new(&source).map_err(Failure::bad_input)?;
     let count = count(arguments, &counted)?;
     let range = arguments.shard.range(count);
-    let variants = Variants::new(counted.checked().map_err(Failure::bad_input)?, &source);
+    let variants = Variants::new(counted.check().map_err(Failure::bad_input)?, &source);
     let out = arguments.out.as_deref().unwrap_or_default();
     let open = || {
         Destination::open(out, &partial_folder(arguments.shard))
@@ -101,8 +101,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let mut failing = Vec::new();
         if arguments.out.is_some() {
             let destination = open()?;
-            admit(&variants, &source, &destination, arguments.shard).map_err(refused)?;
-            failing = would_fail(&destination, &variants, arguments.shard).map_err(failed)?;
+            check_destination(&variants, &source, &destination, arguments.shard).map_err(refused)?;
+            failing = obstructed_paths(&destination, &variants, arguments.shard).map_err(Failure::failed)?;
         }
         dry_run(arguments, &variants)?;
         return match failing.first() {
@@ -143,7 +143,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 ///
 /// # Errors
 /// [`Failure::bad_input`] if there are too many, or none in the requested shard.
-fn count(arguments: &Arguments, sweep: &CountedSweep) -> Result<u64, Failure> {
+fn count(arguments: &Arguments, sweep: &UncheckedSweep) -> Result<u64, Failure> {
     let file = || Location::file(arguments.sweep.display().to_string());
     let count = sweep.count().ok_or_else(|| {
         Failure::bad_input(

@@ -53,8 +53,8 @@ pub(super) fn slicing(
 ) -> Result<(Slicing, Vec<OutputFile>), Failure> {
     // Parts and plates are sliced, whichever formats are written.
     let printable = named(&["stl", "3mf"]).map_err(Failure::failed)?;
-    let printable = Set::new(built, prediction, &printable).map_err(|e| Failure::failed(unconverted(e)))?;
-    let settings = PrintSettings::of(built.design().configuration());
+    let printable = Set::new(built, prediction, &printable).map_err(Failure::failed)?;
+    let settings = PrintSettings::from_configuration(built.design().configuration());
     let slicer = slicer.prepared(&settings).map_err(failure)?;
     let log_file = |file: &str| log::info!("slicing {file}");
     let slicing = Slicing::new(&slicer, settings, &printable.files, log_file).map_err(failure)?;

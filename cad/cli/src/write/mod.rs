@@ -10,7 +10,7 @@ mod steps;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use pinswitch_batch::{is_dead_link, remedy_at, temporary_file};
+use pinswitch_batch::{is_dangling_symlink, temporary_file, write_help};
 use pinswitch_diagnostic::{Diagnostic, Location};
 use pinswitch_switch::output::OutputFile;
 
@@ -52,7 +52,7 @@ impl From<WriteError> for Diagnostic {
             WriteError::System { path, source } => {
                 let diagnostic = Self::new(format!("cannot write: {}", reason(&path, &source)))
                     .with_location(Location::file(path.display().to_string()))
-                    .with_help(remedy_at(&path, &source));
+                    .with_help(write_help(&path, &source));
                 // An error that was constructed here adds nothing to the reason.
                 if source.raw_os_error().is_some() { diagnostic.with_source(source) } else { diagnostic }
             }
@@ -75,7 +75,7 @@ impl From<WriteError> for Failure {
 /// Describes the obstacle, which the message of the system ("File exists") does not name.
 fn reason(path: &Path, error: &std::io::Error) -> String {
     match error.kind() {
-        _ if is_dead_link(path) => "the path is a dangling symlink".to_owned(),
+        _ if is_dangling_symlink(path) => "the path is a dangling symlink".to_owned(),
         ErrorKind::NotFound => "its folder does not exist".to_owned(),
         ErrorKind::AlreadyExists => "another file has this name".to_owned(),
         _ => error.to_string(),

@@ -128,7 +128,7 @@ mod tests {
                 "disturbances[0].target = \"friction\"",
             ),
             ("[columns]\nspecimen = true", "unknown field"),
-            ("[[effects]]\nid = \"gravity\"", "known are"),
+            ("[[effects]]\nid = \"gravity\"", "use one of"),
             ("[[effects]]\nid = \"run_in\"\nvalues = [1]", "run_in needs 3 values (k, r0, c), found 1"),
             ("colour = 1", "plan.toml:1:1: unknown field"),
         ];
@@ -136,7 +136,7 @@ mod tests {
             let error = Plan::parse(text, "plan.toml").unwrap_err();
             let shown = error.to_string();
             assert!(shown.contains(expected) && shown.starts_with("plan.toml:"), "{shown}");
-            assert!(error.help().is_some() || shown.contains("known are"), "{shown}");
+            assert!(error.help().is_some() || shown.contains("use one of"), "{shown}");
         }
         assert_eq!(Plan::parse("", "plan.toml").unwrap(), Plan::default());
     }

@@ -1,14 +1,15 @@
 //! Definition of a user-defined effect, and its checks.
 
 use std::fmt;
+use std::ops::Range;
 
 use pinswitch_diagnostic::{Diagnostic, Location, excerpt};
+use pinswitch_formula::{FormulaError, is_reserved};
 
-use super::expression::{Fault, Node};
-use super::parser::is_function;
+use super::expression::EffectFormula;
 use super::probe::probes;
 use super::unit::Unit;
-use super::unit_check::{UnitError, check_units};
+use super::unit_check::{check_units, located};
 use super::variable::{VARIABLES, variable};
 use crate::effects::{ActsOn, Combine, Covariate, Effect, Parameter, Side, Written, effect_named};
 use crate::inference::UNATTRIBUTED;
@@ -74,8 +75,8 @@ pub struct EffectDefinition {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Id,
-    /// The formula, at this byte.
-    Formula(usize),
+    /// The formula, at these bytes.
+    Formula(Range<usize>),
     ConfusedWith,
     Experiment,
     DrawnFrom,
@@ -151,7 +152,7 @@ impl EffectDefinition {
     ///
     /// # Errors
     /// The first problem.
-    pub(super) fn compiled(&self) -> Result<Node, DefinitionError> {
+    pub(super) fn compiled(&self) -> Result<EffectFormula, DefinitionError> {
         self.check_words()?;
         let mut units = Vec::new();
         for (i, parameter) in self.parameters.iter().enumerate() {
@@ -161,10 +162,10 @@ impl EffectDefinition {
             units.push(unit);
         }
         let names: Vec<&str> = self.parameters.iter().map(|p| p.name.as_str()).collect();
-        let node = Node::parse(&self.formula, &names, self.acts_on.knows_tension())
-            .map_err(|Fault { at, problem }| self.formula_error(at, Diagnostic::new(problem)))?;
+        let formula = EffectFormula::parse(&self.formula, &names, self.acts_on.knows_tension())
+            .map_err(|error| self.formula_error(&error))?;
         for (i, name) in names.iter().enumerate() {
-            require(node.has_constant(i), Part::Parameter(i), || {
+            require(formula.has_constant(i), Part::Parameter(i), || {
                 advised(format!("the formula does not use '{name}'"), "use it, or leave it out")
             })?;
         }
@@ -172,16 +173,18 @@ impl EffectDefinition {
             Combine::Factor => ("1", "a factor".to_owned()),
             Combine::Sum => (self.acts_on.unit(), format!("a term of {}", self.acts_on.as_str())),
         };
-        let needed = Unit::parse(unit).map_err(|e| self.formula_error(0, e))?;
-        check_units(&node, &units, needed, &what)
-            .map_err(|UnitError { at, diagnostic }| self.formula_error(at, diagnostic))?;
-        self.check_values(&node)?;
-        Ok(node)
+        let needed = Unit::parse(unit).map_err(|e| self.formula_error(&located(0..0, &e)))?;
+        check_units(formula.root(), &units, needed, &what).map_err(|error| self.formula_error(&error))?;
+        self.check_values(&formula)?;
+        Ok(formula)
     }
 
-    fn formula_error(&self, at: usize, diagnostic: Diagnostic) -> DefinitionError {
-        let location = Location::in_text("formula", &self.formula, at..at);
-        DefinitionError { part: Part::Formula(at), diagnostic: diagnostic.with_location(location) }
+    /// Returns the error of a part of the formula.
+    fn formula_error(&self, error: &FormulaError) -> DefinitionError {
+        let span = error.span();
+        let location = Location::in_text("formula", &self.formula, span.clone());
+        let diagnostic = Diagnostic::from(error).with_location(location);
+        DefinitionError { part: Part::Formula(span), diagnostic }
     }
 
     fn check_words(&self) -> Result<(), DefinitionError> {
@@ -255,7 +258,7 @@ impl EffectDefinition {
                 format!("use another name than {}", names.join(", ")),
             )
         })?;
-        require(!is_function(name), part(), || {
+        require(!is_reserved(name), part(), || {
             advised(
                 format!("parameter '{name}' has the name of a function"),
                 format!("use another name, such as my_{name}"),
@@ -291,12 +294,12 @@ impl EffectDefinition {
 
     /// Returns whether the effect is nonlinear in small sizes, as `k^2`, `abs(k)` or `sqrt(k)` are.
     /// A linear fit cannot start from zero then, and an interval around zero is meaningless.
-    pub(super) fn is_nonlinear_in_sizes(&self, node: &Node) -> bool {
+    pub(super) fn is_nonlinear_in_sizes(&self, formula: &EffectFormula) -> bool {
         const SMALL: f64 = 1e-4;
         let at = |size: f64| -> Vec<f64> {
             let values: Vec<f64> =
                 self.parameters.iter().map(|p| p.bounds.map_or(size * p.start, |_| p.start)).collect();
-            probes().iter().map(|probe| node.value(&values, &probe.moment())).collect()
+            probes().iter().map(|probe| formula.value(&values, &probe.moment())).collect()
         };
         let [small, twice, negative] = [SMALL, 2.0 * SMALL, -SMALL].map(at);
         let length = |values: &[f64]| values.iter().map(|v| v.abs()).filter(|v| v.is_finite()).sum::<f64>();
@@ -309,7 +312,8 @@ impl EffectDefinition {
 
     /// Checks on probe rows that the formula is zero if all sizes are, and finite and not always
     /// zero at the start values.
-    fn check_values(&self, node: &Node) -> Result<(), DefinitionError> {
+    fn check_values(&self, formula: &EffectFormula) -> Result<(), DefinitionError> {
+        let whole = |problem: String| FormulaError::new(0..0, problem);
         let pick = |size: f64, shape: fn(f64, (f64, f64)) -> f64| -> Vec<f64> {
             self.parameters.iter().map(|p| p.bounds.map_or(size * p.start, |b| shape(p.start, b))).collect()
         };
@@ -319,33 +323,33 @@ impl EffectDefinition {
             pick(0.0, |_, (low, high)| high - 0.01 * (high - low)),
         ];
         let present = pick(1.0, |start, _| start);
-        // A formula with a condition may act in a narrow range that contains none of the probe
-        // rows.
-        let mut acts = node.has_condition();
+        // A formula that distinguishes cases may act in a narrow range that contains none of the
+        // probe rows.
+        let mut acts = formula.root().has_cases();
         for probe in probes() {
             let moment = probe.moment();
-            let value = node.value(&present, &moment);
+            let value = formula.value(&present, &moment);
             if !value.is_finite() {
                 let problem =
                     format!("the formula is not finite at its start values {}", probe.description());
-                return Err(self.formula_error(0, advised(problem, "guard it with max or min")));
+                return Err(self.formula_error(&whole(problem).with_help("guard it with max or min")));
             }
             acts |= value.abs() > 1e-12;
             if let Some(left) =
-                gone.iter().map(|k| node.value(k, &moment)).find(|v| v.is_nan() || v.abs() >= 1e-9)
+                gone.iter().map(|k| formula.value(k, &moment)).find(|v| v.is_nan() || v.abs() >= 1e-9)
             {
                 let problem = format!(
                     "the formula is {left:.4} instead of zero with all sizes at zero, {}",
                     probe.description()
                 );
                 let help = "mark every constant that cancels the effect as a size, or subtract the remainder";
-                return Err(self.formula_error(0, advised(problem, help)));
+                return Err(self.formula_error(&whole(problem).with_help(help)));
             }
         }
         if acts {
             return Ok(());
         }
         let problem = "the formula is zero at its start values in every row, so the effect does nothing";
-        Err(self.formula_error(0, Diagnostic::new(problem)))
+        Err(self.formula_error(&whole(problem.to_owned())))
     }
 }

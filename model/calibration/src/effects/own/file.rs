@@ -290,8 +290,11 @@ fn effect(source: &Source<'_>, value: &Value<'_>) -> Result<Placed, Diagnostic> 
     };
     let own = OwnEffect::new(definition).map_err(|DefinitionError { part, diagnostic }| {
         let at = match part {
+            Part::Formula(span) => {
+                let [start, end] = [span.start, span.end].map(|byte| source.inside(formula_at.clone(), byte));
+                return diagnostic.with_location(Location::in_text(source.file, source.text, start..end));
+            }
             Part::Id => id_at.start,
-            Part::Formula(byte) => source.inside(formula_at.clone(), byte),
             Part::Parameter(i) => parameters_at.get(i).copied().unwrap_or(table.at),
             Part::Parameters => key_at(&table, "parameters"),
             Part::ConfusedWith => key_at(&table, "confused_with"),

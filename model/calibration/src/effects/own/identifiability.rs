@@ -4,7 +4,7 @@
 use nalgebra::DMatrix;
 
 use super::definition::OwnParameter;
-use super::expression::Node;
+use super::expression::EffectFormula;
 use super::probe::spread_probes;
 
 /// Smallest singular value of the sensitivities, as a share of the largest, below which a
@@ -17,7 +17,10 @@ const ROWS_EACH: usize = 3;
 
 /// Returns the names of constants that no data can identify at any values; `None` if there are
 /// none, or the probe rows do not decide it.
-pub(super) fn unidentifiable<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<Vec<&'a str>> {
+pub(super) fn unidentifiable<'a>(
+    formula: &EffectFormula,
+    parameters: &'a [OwnParameter],
+) -> Option<Vec<&'a str>> {
     // Constants may be confounded at the start values only, which is acceptable.
     let places = [(1.0, 0.5), (1.37, 0.31), (0.71, 0.68)];
     // A different share for each constant, since exchangeable constants are confounded where they
@@ -34,7 +37,7 @@ pub(super) fn unidentifiable<'a>(node: &Node, parameters: &'a [OwnParameter]) ->
                 Some((low, high)) => low + (high - low) * between(shape, k),
             })
             .collect();
-        let here = confounded_at(node, parameters, &values)?;
+        let here = confounded_at(formula, parameters, &values)?;
         confounded = Some(match confounded {
             None => here,
             Some(before) => before.into_iter().filter(|k| here.contains(k)).collect(),
@@ -45,13 +48,13 @@ pub(super) fn unidentifiable<'a>(node: &Node, parameters: &'a [OwnParameter]) ->
 }
 
 /// Returns the name of a shape that changes the effect only in steps, which a fit cannot follow.
-pub(super) fn step_parameter<'a>(node: &Node, parameters: &'a [OwnParameter]) -> Option<&'a str> {
+pub(super) fn step_parameter<'a>(formula: &EffectFormula, parameters: &'a [OwnParameter]) -> Option<&'a str> {
     let rows = spread_probes();
     let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
     let at = |k: usize, value: f64| -> Vec<f64> {
         let mut moved = start.clone();
         moved[k] = value;
-        rows.iter().map(|row| node.value(&moved, &row.moment())).collect()
+        rows.iter().map(|row| formula.value(&moved, &row.moment())).collect()
     };
     let jumps = |(k, parameter): &(usize, &OwnParameter)| {
         let Some((low, high)) = parameter.bounds else { return false };
@@ -66,7 +69,7 @@ pub(super) fn step_parameter<'a>(node: &Node, parameters: &'a [OwnParameter]) ->
 
 /// Returns the constants of a combination without effect at these values; `None` if there is none,
 /// or too few rows decide.
-fn confounded_at(node: &Node, parameters: &[OwnParameter], values: &[f64]) -> Option<Vec<usize>> {
+fn confounded_at(formula: &EffectFormula, parameters: &[OwnParameter], values: &[f64]) -> Option<Vec<usize>> {
     let rows = spread_probes();
     let mut columns: Vec<(usize, Vec<f64>)> = Vec::new();
     for (k, parameter) in parameters.iter().enumerate() {
@@ -75,7 +78,7 @@ fn confounded_at(node: &Node, parameters: &[OwnParameter], values: &[f64]) -> Op
         let at = |value: f64| {
             let mut moved = values.to_vec();
             moved[k] = value;
-            rows.iter().map(|row| node.value(&moved, &row.moment())).collect::<Vec<f64>>()
+            rows.iter().map(|row| formula.value(&moved, &row.moment())).collect::<Vec<f64>>()
         };
         let (above, below) = (at(values[k] + step), at(values[k] - step));
         let column: Vec<f64> = above.iter().zip(&below).map(|(a, b)| (a - b) / (2.0 * step)).collect();

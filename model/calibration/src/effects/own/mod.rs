@@ -8,11 +8,9 @@ mod definition;
 mod expression;
 mod file;
 mod identifiability;
-mod parser;
 mod probe;
 #[cfg(test)]
 mod tests;
-mod token;
 mod unit;
 mod unit_check;
 mod unknown_name;
@@ -25,7 +23,7 @@ pub use file::read_own_effects;
 pub(crate) use unknown_name::unknown_name;
 pub use writer::{own_effect_blocks, own_effects_text};
 
-use expression::Node;
+use expression::EffectFormula;
 use variable::Moment;
 
 use pinswitch_diagnostic::Diagnostic;
@@ -72,7 +70,7 @@ pub fn formula_variables() -> impl Iterator<Item = [&'static str; 3]> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnEffect {
     definition: EffectDefinition,
-    formula: Node,
+    formula: EffectFormula,
 }
 
 impl OwnEffect {

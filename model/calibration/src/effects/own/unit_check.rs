@@ -6,21 +6,22 @@
 //! number is an unknown of linear equations between powers of units, which are solved one by one
 //! (Kennedy, Types for units-of-measure, 2010).
 
-use pinswitch_diagnostic::Diagnostic;
+use std::ops::Range;
 
-use super::expression::{Function, Kind, Node, Operator};
+use pinswitch_diagnostic::Diagnostic;
+use pinswitch_formula::{FormulaError, Function, Kind, Operator};
+
+use super::expression::Symbol;
 use super::unit::Unit;
 
-/// An inconsistency at a byte of the formula.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct UnitError {
-    pub(super) at: usize,
-    pub(super) diagnostic: Diagnostic,
-}
+type Node = pinswitch_formula::Node<Symbol>;
 
-impl UnitError {
-    fn new(at: usize, problem: String, help: &str) -> Self {
-        Self { at, diagnostic: Diagnostic::new(problem).with_help(help) }
+/// Returns the error for a diagnostic about these bytes of the formula.
+pub(super) fn located(span: Range<usize>, diagnostic: &Diagnostic) -> FormulaError {
+    let error = FormulaError::new(span, diagnostic.problem());
+    match diagnostic.help() {
+        Some(help) => error.with_help(help),
+        None => error,
     }
 }
 
@@ -68,18 +69,16 @@ pub(super) fn check_units(
     constants: &[Unit],
     needed: Unit,
     what: &str,
-) -> Result<(), UnitError> {
+) -> Result<(), FormulaError> {
     let mut solver = Solver::default();
     let unit = solver.unit_of(formula, constants)?;
     if solver.equal(&unit, &Quantity::known(needed)) {
         return Ok(());
     }
     let unit = solver.shown(&unit);
-    Err(UnitError::new(
-        0,
-        format!("the formula has unit {unit}, but {what} needs {needed}"),
-        "divide by a reference, as in load_n/50, or give a constant another unit",
-    ))
+    let problem = format!("the formula has unit {unit}, but {what} needs {needed}");
+    Err(FormulaError::new(formula.extent(), problem)
+        .with_help("divide by a reference, as in load_n/50, or give a constant another unit"))
 }
 
 impl Solver {
@@ -113,9 +112,9 @@ impl Solver {
     }
 
     /// Returns the unit of an operand, which is unknown for a bare number.
-    fn operand(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, UnitError> {
-        let bare = match &node.kind {
-            Kind::Negated(inner) => matches!(inner.kind, Kind::Number(_)),
+    fn operand(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, FormulaError> {
+        let bare = match node.kind() {
+            Kind::Negated(inner) => matches!(inner.kind(), Kind::Number(_)),
             kind => matches!(kind, Kind::Number(_)),
         };
         if !bare {
@@ -125,43 +124,52 @@ impl Solver {
         Ok(Quantity { known: Unit::NONE, unknown: vec![(self.solved.len() - 1, 1.0)] })
     }
 
-    fn dimensionless(&mut self, quantity: &Quantity, at: usize, what: &str) -> Result<(), UnitError> {
+    fn dimensionless(
+        &mut self,
+        quantity: &Quantity,
+        at: Range<usize>,
+        what: &str,
+    ) -> Result<(), FormulaError> {
         if self.equal(quantity, &Quantity::known(Unit::NONE)) {
             return Ok(());
         }
         let unit = self.shown(quantity);
-        Err(UnitError::new(
-            at,
-            format!("{what} has unit {unit}, but must be dimensionless"),
-            "divide by a reference, as in load_n/50",
-        ))
+        let problem = format!("{what} has unit {unit}, but must be dimensionless");
+        Err(FormulaError::new(at, problem).with_help("divide by a reference, as in load_n/50"))
     }
 
-    fn unit_of(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, UnitError> {
-        match &node.kind {
+    fn unit_of(&mut self, node: &Node, constants: &[Unit]) -> Result<Quantity, FormulaError> {
+        match node.kind() {
             Kind::Number(_) => Ok(Quantity::known(Unit::NONE)),
-            Kind::Variable(variable) => Unit::parse(variable.unit)
-                .map(Quantity::known)
-                .map_err(|diagnostic| UnitError { at: node.at, diagnostic }),
-            Kind::Constant(place) => {
+            Kind::Name(Symbol::Variable(variable)) => {
+                Unit::parse(variable.unit).map(Quantity::known).map_err(|e| located(node.span(), &e))
+            }
+            Kind::Name(Symbol::Constant(place)) => {
                 Ok(Quantity::known(constants.get(*place).copied().unwrap_or(Unit::NONE)))
             }
-            Kind::Negated(a) => self.unit_of(a, constants),
+            Kind::Negated(a) | Kind::Not(a) => self.unit_of(a, constants),
             Kind::Call(function, a) => self.call(*function, a, constants),
-            Kind::Binary(operator, a, b) => self.binary(*operator, node.at, a, b, constants),
+            Kind::Binary(operator, a, b) => self.binary(*operator, node.span(), a, b, constants),
         }
     }
 
-    fn call(&mut self, function: Function, a: &Node, constants: &[Unit]) -> Result<Quantity, UnitError> {
+    fn call(&mut self, function: Function, a: &Node, constants: &[Unit]) -> Result<Quantity, FormulaError> {
         let unit = self.unit_of(a, constants)?;
         let none = Quantity::known(Unit::NONE);
         match function {
             Function::Abs => Ok(unit),
             Function::Sqrt => Ok(none.times(&unit, 0.5)),
             Function::Sin | Function::Cos if self.shown(&unit) == "rad" => Ok(none),
-            Function::Exp | Function::Ln | Function::Tanh | Function::Sin | Function::Cos => {
-                let name = format!("{function:?}").to_lowercase();
-                self.dimensionless(&unit, a.at, &format!("the argument of {name}"))?;
+            Function::Exp
+            | Function::Ln
+            | Function::Tanh
+            | Function::Sin
+            | Function::Cos
+            | Function::Round
+            | Function::Floor
+            | Function::Ceil => {
+                let name = function.name();
+                self.dimensionless(&unit, a.extent(), &format!("the argument of {name}"))?;
                 Ok(none)
             }
         }
@@ -170,38 +178,37 @@ impl Solver {
     fn binary(
         &mut self,
         operator: Operator,
-        at: usize,
+        at: Range<usize>,
         a: &Node,
         b: &Node,
         constants: &[Unit],
-    ) -> Result<Quantity, UnitError> {
+    ) -> Result<Quantity, FormulaError> {
         match operator {
             Operator::Multiply => Ok(self.unit_of(a, constants)?.times(&self.unit_of(b, constants)?, 1.0)),
             Operator::Divide => Ok(self.operand(a, constants)?.times(&self.operand(b, constants)?, -1.0)),
             Operator::Power => self.power(a, b, constants),
+            Operator::And | Operator::Or => {
+                self.unit_of(a, constants)?;
+                self.unit_of(b, constants)
+            }
             Operator::Add
             | Operator::Subtract
-            | Operator::Least
-            | Operator::Greatest
+            | Operator::Min
+            | Operator::Max
             | Operator::Less
-            | Operator::AtMost
-            | Operator::More
-            | Operator::AtLeast
+            | Operator::LessOrEqual
+            | Operator::Greater
+            | Operator::GreaterOrEqual
             | Operator::Equal
-            | Operator::Unequal => {
+            | Operator::NotEqual => {
                 let (left, right) = (self.operand(a, constants)?, self.operand(b, constants)?);
                 if !self.equal(&left, &right) {
                     let (left, right) = (self.shown(&left), self.shown(&right));
-                    return Err(UnitError::new(
-                        at,
-                        format!("the operands have different units, {left} and {right}"),
-                        "divide each by a reference",
-                    ));
+                    let problem = format!("the operands have different units, {left} and {right}");
+                    return Err(FormulaError::new(at, problem).with_help("divide each by a reference"));
                 }
-                let joins = matches!(
-                    operator,
-                    Operator::Add | Operator::Subtract | Operator::Least | Operator::Greatest
-                );
+                let joins =
+                    matches!(operator, Operator::Add | Operator::Subtract | Operator::Min | Operator::Max);
                 Ok(if joins { left } else { Quantity::known(Unit::NONE) })
             }
         }
@@ -209,15 +216,15 @@ impl Solver {
 
     /// Returns the unit of a power. Unless the exponent is a number, base and exponent must be
     /// dimensionless.
-    fn power(&mut self, a: &Node, b: &Node, constants: &[Unit]) -> Result<Quantity, UnitError> {
+    fn power(&mut self, a: &Node, b: &Node, constants: &[Unit]) -> Result<Quantity, FormulaError> {
         let base = self.unit_of(a, constants)?;
         let none = Quantity::known(Unit::NONE);
-        if let Some(power) = b.number().filter(|power| power.is_finite()) {
+        if let Some(power) = b.constant().filter(|power| power.is_finite()) {
             return Ok(none.times(&base, power));
         }
-        self.dimensionless(&base, a.at, "the base of a variable power")?;
+        self.dimensionless(&base, a.extent(), "the base of a variable power")?;
         let exponent = self.unit_of(b, constants)?;
-        self.dimensionless(&exponent, b.at, "the exponent")?;
+        self.dimensionless(&exponent, b.extent(), "the exponent")?;
         Ok(none)
     }
 }
@@ -225,12 +232,13 @@ impl Solver {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::own::expression::EffectFormula;
 
     /// Checks a formula with constants `k` (1), `f` (N), `p` (N^-0.5), `w` (%).
-    fn check(text: &str, needed: &str) -> Result<(), UnitError> {
-        let node = Node::parse(text, &["k", "f", "p", "w"], true).unwrap();
+    fn check(text: &str, needed: &str) -> Result<(), FormulaError> {
+        let formula = EffectFormula::parse(text, &["k", "f", "p", "w"], true)?;
         let units = ["1", "N", "N^-0.5", "%"].map(|u| Unit::parse(u).unwrap());
-        check_units(&node, &units, Unit::parse(needed).unwrap(), "it")
+        check_units(formula.root(), &units, Unit::parse(needed).unwrap(), "it")
     }
 
     #[test]
@@ -252,6 +260,8 @@ mod tests {
             ("k*(load_n^2/2500)", "1"),
             ("k*tanh((load_n - 20)/f)", "1"),
             ("k*(load_n < f)*-1", "1"),
+            ("k*(load_n > 20 && !(speed_pct > 52) or stroke > 0.5)", "1"),
+            ("k*floor(load_n/10)", "1"),
         ] {
             assert_eq!(check(text, needed), Ok(()), "{text}");
         }
@@ -259,19 +269,22 @@ mod tests {
 
     #[test]
     fn inconsistent_units_are_located() {
-        for (text, needed, at, part) in [
-            ("k*load_n", "1", 0, "the formula has unit N, but it needs 1"),
-            ("f", "1", 0, "the formula has unit N"),
-            ("k*(load_n + speed_pct)", "N", 10, "different units, N and %"),
-            ("k*exp(load_n)", "1", 6, "the argument of exp has unit N"),
-            ("k*ln(load_n + 3)", "1", 12, "the argument of ln has unit N"),
-            ("k*(load_n > speed_pct)", "1", 10, "different units, N and %"),
-            ("k*load_n^k", "1", 2, "the base of a variable power has unit N"),
-            ("k*2^load_n", "1", 4, "the exponent has unit N"),
-            ("k*(load_n/50 + load_n)", "1", 0, "the formula has unit N"),
+        for (text, needed, marked, part) in [
+            ("k*load_n", "1", "k*load_n", "the formula has unit N, but it needs 1"),
+            ("f", "1", "f", "the formula has unit N"),
+            ("k*(load_n + speed_pct)", "N", "+", "different units, N and %"),
+            ("k*exp(load_n)", "1", "load_n", "the argument of exp has unit N"),
+            ("k*ln(load_n + 3)", "1", "load_n + 3", "the argument of ln has unit N"),
+            ("k*(load_n > speed_pct)", "1", ">", "different units, N and %"),
+            ("k*(time > 1 && load_n > speed_pct)", "1", ">", "different units, N and %"),
+            ("k*round(load_n)", "1", "load_n", "the argument of round has unit N"),
+            ("k*load_n^k", "1", "load_n", "the base of a variable power has unit N"),
+            ("k*2^load_n", "1", "load_n", "the exponent has unit N"),
+            ("k*(load_n/50 + load_n)", "1", "k*(load_n/50 + load_n)", "the formula has unit N"),
         ] {
             let error = check(text, needed).unwrap_err();
-            assert!(error.at == at && error.diagnostic.problem().contains(part), "{text}: {error:?}");
+            assert!(error.problem().contains(part), "{text}: {error:?}");
+            assert_eq!(&text[error.span()], marked, "{text}: {error:?}");
         }
     }
 }

@@ -38,7 +38,7 @@ export async function fromPageToPage(visit, site) {
     visit.findings.check('a page without a server has no link to a set', !await visit.shown('#set-page'));
     return;
   }
-  // The page of the set has no icon.
+  // The page of the set lacks an icon.
   visit.allowed.push(/404/);
   await visit.click('#set-page');
   await visit.check('the configurator links to the page of the set', () => location.pathname === '/' && document.querySelector('#summary').textContent !== '');

@@ -32,7 +32,10 @@ fn invalid_sweeps_are_refused() {
             "sweep.toml:2:20: shell.width_mm = \"wide\": invalid value; give a number within 2 to 100",
         ),
         (
-            format!("{}[[constraints]]\nrequire = \"shell.width_mm + 1\"\n", axes("\"shell.width_mm\" = [12]")),
+            format!(
+                "{}[[constraints]]\nrequire = \"shell.width_mm + 1\"\n",
+                axes("\"shell.width_mm\" = [12]")
+            ),
             "sweep.toml:4:12: constraints.require = \"shell.width_mm + 1\": expected a condition, found a number",
         ),
         (
@@ -57,7 +60,10 @@ fn invalid_sweeps_are_refused() {
             "[sweep]\nparts = [\"shel\"]\n[axes]\n\"shell.width_mm\" = [12]\n".to_owned(),
             "sweep.toml:2:9: sweep.parts = \"shel\": unknown part",
         ),
-        ("[rows]\nfile = \"no.csv\"\n".to_owned(), "sweep.toml:2:8: rows.file = \"no.csv\": cannot read the file"),
+        (
+            "[rows]\nfile = \"no.csv\"\n".to_owned(),
+            "sweep.toml:2:8: rows.file = \"no.csv\": cannot read the file",
+        ),
         ("[sample]\ncount = 5\n".to_owned(), "sweep.toml:1:1: the sample has no points or no axes"),
         (
             "[sample]\nmethod = \"sobol\"\ncount = 5\n".to_owned(),
@@ -100,7 +106,11 @@ fn large_sweeps_need_confirmation() {
 fn invalid_shards_are_refused() {
     let folder = with_sweep(SWEEP);
     let (code, said) = ended(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "4/3"]);
-    assert!(code == Some(2) && said.contains("'4/3' for '--shard <K/N>': invalid shard: expected K/N with 1 <= K <= N"), "{said}");
+    assert!(
+        code == Some(2)
+            && said.contains("'4/3' for '--shard <K/N>': invalid shard: expected K/N with 1 <= K <= N"),
+        "{said}"
+    );
     let (code, error) = refused(folder.path(), &["batch", "sweep.toml", "--out", "b", "--shard", "1/99"]);
     assert!(
         code == Some(2) && error.contains("--shard = 1/99: no variant is in this shard: the sweep has 24"),
@@ -117,7 +127,10 @@ fn folders_with_other_files_stay_unchanged() {
     std::fs::write(path.join("other.toml"), SWEEP.replace("\"small\"", "\"other\"")).unwrap();
     let (code, error) = refused(path, &["batch", "other.toml", "--out", "b"]);
     assert_eq!(code, Some(2));
-    assert_eq!(error, "error: b contains another sweep (\"small\"); give another --out (nothing was changed)");
+    assert_eq!(
+        error,
+        "error: b contains another sweep (\"small\"); give another --out (nothing was changed)"
+    );
     std::fs::create_dir(path.join("papers")).unwrap();
     std::fs::write(path.join("papers/thesis"), "dear").unwrap();
     let (code, error) = refused(path, &["batch", "sweep.toml", "--out", "papers"]);
@@ -130,7 +143,10 @@ fn folders_with_other_files_stay_unchanged() {
     assert_eq!(std::fs::read_dir(path.join("papers")).unwrap().count(), 1);
     assert_eq!(differences(&before, &hashes(&path.join("b"))), Vec::<String>::new());
     let (code, error) = refused(path, &["merge", "papers"]);
-    assert!(code == Some(2) && error.contains("papers is not a batch folder (batch.json not found)"), "{error}");
+    assert!(
+        code == Some(2) && error.contains("papers is not a batch folder (batch.json not found)"),
+        "{error}"
+    );
 }
 
 #[test]

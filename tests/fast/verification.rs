@@ -1,4 +1,5 @@
-//! `--verify`: every mesh of a set or a batch is compared with that of a second kernel, and the manifest records it.
+//! `--verify`: every mesh of a set or a batch is compared with that of a second kernel, and the
+//! manifest records it.
 
 use std::path::Path;
 

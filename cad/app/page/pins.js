@@ -67,7 +67,7 @@ class Pins {
     byId('pins-title').textContent = TEXT.pinsIn(pins);
     byId('pins-count').textContent = pins.length ? TEXT.pinsCount(pins.length, s.n) : TEXT.noPinsNote;
     byId('clear-pins').disabled = !pins.length;
-    // A pin beyond the last groove, which is refused, has no mirror image.
+    // A pin beyond the last groove, which is refused, cannot be mirrored.
     byId('mirror-pins').disabled = !pins.length || pins.some((i) => i > this.grooves());
   }
 

@@ -14,7 +14,7 @@ use pinswitch_switch::prediction::loads_n;
 /// design differ from the rig's, the physics gives the change.
 ///
 /// # Errors
-/// A [`Diagnostic`] if the model is invalid, if a pin has no counterpart on the rig, or if nothing
+/// A [`Diagnostic`] if the model is invalid, if a pin lacks a counterpart on the rig, or if nothing
 /// touches.
 pub fn calibrated_curve(design: &Design, model: &ModelFile, name: &str) -> Result<FrictionCurve, Diagnostic> {
     let configuration = design.configuration();
@@ -37,7 +37,7 @@ pub fn calibrated_curve(design: &Design, model: &ModelFile, name: &str) -> Resul
 }
 
 /// Returns the rig's grooves, numbered from 1 and ascending, at the same distances from the middle
-/// as `pins` among `grooves`; `None` if one has no counterpart.
+/// as `pins` among `grooves`; `None` if one lacks a counterpart.
 fn rig_grooves(pins: &[usize], grooves: usize) -> Option<Vec<usize>> {
     let mut counterparts = pins
         .iter()

@@ -90,7 +90,7 @@ mod tests {
         let vocabulary = Vocabulary::built_in();
         let effects = vocabulary.effects().map(|effect| effect.description().id);
         for word in effects.chain(["none", "inconclusive", "attributed", "ambiguous", "unattributed"]) {
-            assert!(words.contains(&format!("{word}: ")), "{word} has no words in text.js");
+            assert!(words.contains(&format!("{word}: ")), "{word} is missing in text.js");
         }
     }
 

@@ -76,7 +76,7 @@ impl FileSet {
     pub(crate) fn content(&self, name: &str) -> Answer {
         match self.files.iter().find(|file| file.name == name) {
             Some(file) => Answer::Bytes(file.bytes.clone()),
-            None => Answer::error(format!("{name}: this design has no such file")),
+            None => Answer::error(format!("{name}: no such file in this design")),
         }
     }
 

@@ -137,8 +137,8 @@ impl<'a> PartStore<'a> {
     pub(super) fn store(&self, part: &Part, design: &Design) -> Result<Arc<StoredPart>, ContentError> {
         self.cache.get_or_insert_with(&recipe_hash(part, design), || {
             let (bytes, facts) = (self.mesh_maker)(part, design, &self.caps)?;
-            let kernel = self.kernel.map(|kernel| verified_file(&bytes, part, design, kernel));
-            let verification = kernel.transpose().map_err(ContentError::Verification)?;
+            let outcome = self.kernel.map(|kernel| verified_file(&bytes, part, design, kernel));
+            let verification = outcome.transpose().map_err(ContentError::Verification)?;
             let sha256 = hexadecimal(&Sha256::digest(&bytes));
             self.write(&content_path(&sha256), &bytes)?;
             Ok(Arc::new(StoredPart { sha256, bytes: bytes.len(), facts, verification }))

@@ -63,7 +63,9 @@ impl Refusal {
     pub fn kind(&self) -> String {
         match self {
             Self::Repeats { .. } => "repeats another variant".to_owned(),
-            Self::Configuration(error) => error.location().and_then(|location| location.field.clone()).unwrap_or_default(),
+            Self::Configuration(error) => {
+                error.location().and_then(|location| location.field.clone()).unwrap_or_default()
+            }
             Self::Constraint(violation) => format!("constraint {:?}", violation.constraint),
         }
     }

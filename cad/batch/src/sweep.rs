@@ -6,7 +6,7 @@ use toml_edit::{Document, Item, TableLike};
 
 use super::axis::{self, AXIS_TABLES, SweepAxis, fields};
 use super::constraint::Constraint;
-use super::diagnostics::{field_error};
+use super::diagnostics::field_error;
 use super::source::SweepSource;
 use pinswitch_switch::config::{Configuration, Name, read};
 use pinswitch_switch::parts::PRINTED_PARTS;
@@ -153,8 +153,7 @@ fn check_keys(source: &SweepSource, document: &dyn TableLike) -> Result<(), Diag
 
 /// Returns the sweep's name, which becomes part of folders and figures.
 fn checked_name(name: &str) -> Result<Name, Diagnostic> {
-    Name::new(name)
-        .map_err(|error| error.in_field("sweep.name", format!("{name:?}")))
+    Name::new(name).map_err(|error| error.in_field("sweep.name", format!("{name:?}")))
 }
 
 fn parts(sweep: Option<&dyn TableLike>) -> Result<Vec<&'static str>, Diagnostic> {

@@ -76,7 +76,7 @@ impl ViewSource {
     }
 
     fn required_file(&self) -> Result<&Path, Diagnostic> {
-        self.file.as_deref().ok_or_else(|| Diagnostic::new("there is no file to follow"))
+        self.file.as_deref().ok_or_else(|| Diagnostic::new("the server follows a template, not a file"))
     }
 }
 

@@ -78,7 +78,7 @@ impl SlicerError {
 
 impl fmt::Display for SlicerError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.diagnostic().fmt(f)
+        fmt::Display::fmt(&self.diagnostic(), f)
     }
 }
 

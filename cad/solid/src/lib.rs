@@ -1,7 +1,8 @@
-//! Exact solids of lines and arcs at heights, their meshes, the examination of meshes, and files of any solid.
+//! Exact solids of lines and arcs at heights, their meshes, the examination of meshes, and files of
+//! any solid.
 //!
-//! The crate does not depend on switches, friction or configurations, and does no input or output: it computes meshes,
-//! bytes and findings from numbers and text.
+//! The crate does not depend on switches, friction or configurations, and does no input or output:
+//! it computes meshes, bytes and findings from numbers and text.
 //!
 //! | module | content |
 //! | --- | --- |
@@ -37,8 +38,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! `cad/doc/meshes.md` explains why a mesh is valid and what each check proves. `cad/examples/own_part.rs` and
-//! `cad/examples/check_stl.rs` are example programs.
+//! `cad/doc/meshes.md` explains why a mesh is valid and what each check proves.
+//! `cad/examples/own_part.rs` and `cad/examples/check_stl.rs` are example programs.
 
 #![warn(clippy::disallowed_methods)]
 

@@ -31,7 +31,8 @@ impl Mesh {
         self.triangles.iter().map(|t| self.corners(*t))
     }
 
-    /// Returns the volume in mm³ by the divergence theorem along x, y and z. The three are equal for a closed mesh.
+    /// Returns the volume in mm³ by the divergence theorem along x, y and z. The three are equal
+    /// for a closed mesh.
     pub fn axis_volumes_mm3(&self) -> [f64; 3] {
         axis_volumes_about(self.middle(), self.facets())
     }
@@ -71,8 +72,9 @@ impl Mesh {
     }
 }
 
-/// Volume in mm³ of a closed surface by the divergence theorem along x, y and z, relative to `middle`. Relative to the centre
-/// of its bounding box, a part far from the origin loses no digits.
+/// Volume in mm³ of a closed surface by the divergence theorem along x, y and z, relative to
+/// `middle`. Relative to the centre of its bounding box, a part far from the origin loses no
+/// digits.
 pub(crate) fn axis_volumes_about(middle: Point3, facets: impl Iterator<Item = [Point3; 3]>) -> [f64; 3] {
     let mut sums = Vector3::zeros();
     for [a, b, c] in facets {

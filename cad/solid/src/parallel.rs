@@ -1,13 +1,15 @@
 //! Parallel loops. Without the feature `parallel`, they run on one thread.
 //!
-//! Chunks have a fixed size and their results are in order, so that results do not depend on the number of threads.
+//! Chunks have a fixed size and their results are in order, so that results do not depend on the
+//! number of threads.
 
 use std::ops::Range;
 
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 
-/// Items per chunk. Fewer are processed on one thread: starting tasks would take longer than the work.
+/// Items per chunk. Fewer are processed on one thread: starting tasks would take longer than the
+/// work.
 const CHUNK: usize = 4096;
 
 /// Calls `work` on chunks of the range `0..len`; returns the results in the order of the chunks.

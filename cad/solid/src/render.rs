@@ -98,7 +98,8 @@ pub fn render(bodies: &[Body], view: View, width: u32, height: u32) -> Picture {
 struct Face {
     /// Corners from the highest to the lowest, as column and row.
     corners: [[f64; 2]; 3],
-    /// Change in column per row of the sides: highest to lowest corner, highest to middle, middle to lowest.
+    /// Change in column per row of the sides: highest to lowest corner, highest to middle, middle
+    /// to lowest.
     slopes: [f64; 3],
     /// Depth in mm at the origin of the picture, and its slopes per column and row.
     depth: [f64; 3],
@@ -185,8 +186,9 @@ impl Face {
         (self.corners[0][1], self.corners[2][1])
     }
 
-    /// Columns where a horizontal line at `y`, between the highest and lowest corner, enters and leaves the triangle. Faces
-    /// that share a side agree, because a side is always followed from its higher end.
+    /// Columns where a horizontal line at `y`, between the highest and lowest corner, enters and
+    /// leaves the triangle. Faces that share a side agree, because a side is always followed from
+    /// its higher end.
     fn span(&self, y: f64) -> (f64, f64) {
         let [top, middle, _] = self.corners;
         let long = top[0] + self.slopes[0] * (y - top[1]);
@@ -244,7 +246,8 @@ impl Band {
         }
     }
 
-    /// Appends the pixels of `rows` rows of samples: the means of their samples, darker at steps in depth.
+    /// Appends the pixels of `rows` rows of samples: the means of their samples, darker at steps in
+    /// depth.
     fn shade(&self, rows: usize, faces: &[Face], pixels: &mut Vec<u8>) {
         for row in (0..rows).step_by(SAMPLES) {
             let lines: [&[f32]; SAMPLES + 1] = std::array::from_fn(|i| {
@@ -283,7 +286,8 @@ impl Band {
     }
 }
 
-/// Whether there is an edge between samples of these depths: one is background, or they differ by more than [`EDGE_MM`].
+/// Whether there is an edge between samples of these depths: one is background, or they differ by
+/// more than [`EDGE_MM`].
 fn is_step(a: f32, b: f32) -> bool {
     a != b && ((a == NOTHING) != (b == NOTHING) || (a - b).abs() > EDGE_MM)
 }

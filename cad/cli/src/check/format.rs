@@ -8,7 +8,8 @@ use pinswitch_solid::validity::{Examination, Expectation, Fault, examine, shared
 
 use super::verdict::PartVerdict;
 
-/// Depth in mm below which two solids of a 3MF only touch: exporters round coordinates, and parts may be adjacent.
+/// Depth in mm below which two solids of a 3MF only touch: exporters round coordinates, and parts
+/// may be adjacent.
 const CONTACT_DEPTH_MM: f64 = 0.05;
 
 /// A format that can be checked.
@@ -22,7 +23,8 @@ pub(super) enum Format {
 type Parts = (Vec<Fault>, Vec<PartVerdict>);
 
 impl Format {
-    /// Detects the format from the first bytes of a file. Any other content is left to the reader of STL, which names it.
+    /// Detects the format from the first bytes of a file. Any other content is left to the reader
+    /// of STL, which names it.
     ///
     /// # Errors
     /// A diagnostic for a STEP file.
@@ -45,7 +47,8 @@ impl Format {
         }
     }
 
-    /// Size in bytes of the largest file that is examined: a mesh takes several times that in memory.
+    /// Size in bytes of the largest file that is examined: a mesh takes several times that in
+    /// memory.
     pub(super) fn max_bytes(self) -> u64 {
         match self {
             Self::Stl => 2 << 30,
@@ -54,7 +57,8 @@ impl Format {
     }
 }
 
-/// The diagnostic of a STEP file. An exact solid needs a CAD kernel to be judged, and this program has none.
+/// The diagnostic of a STEP file. An exact solid needs a CAD kernel to be judged, and this program
+/// has none.
 fn unsupported_step() -> Diagnostic {
     Diagnostic::new("check does not support STEP").with_help(
         "check it in the CAD program that made it, or with FreeCAD or another program based on Open CASCADE; \

@@ -15,11 +15,12 @@ use verdict::Verdict;
 
 /// Check whether STL and 3MF files from any program are valid printable solids.
 ///
-/// Finds holes, edges with more than two facets, flipped, repeated and degenerate facets, vertices that join separate
-/// surfaces, bodies that face inward or are inside another, facets that intersect, contrary normals, thin walls and wrong
-/// units. Of a 3MF it also finds violations of the core specification, object by object, and items that overlap on the
-/// plate. Every fault has a place and a size; nothing is repaired. Exit code 0: all files are valid; 1: a file is not
-/// valid; 2: a file cannot be examined.
+/// Finds holes, edges with more than two facets, flipped, repeated and degenerate facets, vertices
+/// that join separate surfaces, bodies that face inward or are inside another, facets that
+/// intersect, contrary normals, thin walls and wrong units. Of a 3MF it also finds violations of
+/// the core specification, object by object, and items that overlap on the plate. Every fault has a
+/// place and a size; nothing is repaired. Exit code 0: all files are valid; 1: a file is not valid;
+/// 2: a file cannot be examined.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pinswitch check out/three-double/*.stl out/three-double/assembly.3mf

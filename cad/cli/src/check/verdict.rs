@@ -107,7 +107,8 @@ impl Verdict {
 
     /// Formats the verdict for a person: a line for the file, for each part and for each fault.
     ///
-    /// Names and faults contain text of the file, which may act on a terminal: control characters become visible.
+    /// Names and faults contain text of the file, which may act on a terminal: control characters
+    /// become visible.
     pub(super) fn describe(&self) -> String {
         let mut text = format!("{}: {}\n", shown(&self.file), summary(self.valid, &self.examination));
         for part in &self.parts {

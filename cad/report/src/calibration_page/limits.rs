@@ -181,7 +181,7 @@ fn confounding(report: &Report) -> String {
     for class in &report.classes {
         let _ = writeln!(
             html,
-            "<li>aliased: {}. After the refit their sensitivities are equal; any of them may stand for another.</li>",
+            "<li>aliased: {}. After the refit their sensitivities are equal; each may replace another.</li>",
             escape(&class.join(", "))
         );
     }

@@ -1,7 +1,7 @@
 //! DXF (R12) of profiles: exact lines and arcs, one layer per height.
 //!
-//! Every laser cutter and CAD program reads R12. Libraries that write whole drawings add time stamps and random handles, so
-//! that the same input would not give the same bytes.
+//! Every laser cutter and CAD program reads R12. Libraries that write whole drawings add time
+//! stamps and random handles, so that the same input would not give the same bytes.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,5 @@
-//! Layout of parts on print beds: rows (shelves), first fit by decreasing depth, on as many beds as necessary.
+//! Layout of parts on print beds: rows (shelves), first fit by decreasing depth, on as many beds as
+//! necessary.
 
 use nalgebra::Vector2;
 
@@ -18,7 +19,8 @@ const ROUNDING_MM: f64 = 1e-9;
 pub struct Placement {
     /// Index of the plate.
     pub plate: usize,
-    /// Whether the part is rotated by 90 degrees counter-clockwise about the vertical before it is moved.
+    /// Whether the part is rotated by 90 degrees counter-clockwise about the vertical before it is
+    /// moved.
     pub is_turned: bool,
     /// Translation, mm, in whole micrometres across the bed.
     pub shift: Vector3,
@@ -45,13 +47,15 @@ pub fn needed_bed_mm((low, high): &Box3) -> f64 {
 
 /// Returns places for parts of these bounding boxes on square beds of `bed_mm`, in their order.
 ///
-/// Parts are on z = 0, [`PART_GAP_MM`] apart and [`BED_EDGE_MM`] from the edges; those of a plate are centred on its bed. The
-/// same boxes get the same places. A part larger than the bed ([`needed_bed_mm`]) is alone on it and extends over its edges.
+/// Parts are on z = 0, [`PART_GAP_MM`] apart and [`BED_EDGE_MM`] from the edges; those of a plate
+/// are centred on its bed. The same boxes get the same places. A part larger than the bed
+/// ([`needed_bed_mm`]) is alone on it and extends over its edges.
 pub fn lay_out(boxes: &[Box3], bed_mm: f64) -> Vec<Placement> {
     let footprints: Vec<Footprint> = boxes.iter().map(Footprint::of).collect();
     let free_mm = bed_mm - 2.0 * BED_EDGE_MM;
     let widest = footprints.iter().map(|f| f.width_mm).fold(0.0, f64::max);
-    // Parts of a single plate are in the smallest square: short moves of the nozzle, and a legible picture.
+    // Parts of a single plate are in the smallest square: short moves of the nozzle, and a legible
+    // picture.
     let compact = (0u32..)
         .map(|step| widest + f64::from(step) * STEP_MM)
         .take_while(|side| *side < free_mm)

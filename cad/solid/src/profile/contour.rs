@@ -108,9 +108,10 @@ impl Contour {
         Self { corners: self.corners.iter().map(|p| flip(*p)).collect(), edges: edges.collect() }.reversed()
     }
 
-    /// Returns the contour halfway to `other`, which has the same edges in the same order: corners are midway, and arcs are
-    /// about the midway centre. This is exact for lines, and for arcs over the same angles. Over different angles the exact
-    /// curve is not an arc; [`Self::midway_area_mm2`] is exact for it, too.
+    /// Returns the contour halfway to `other`, which has the same edges in the same order: corners
+    /// are midway, and arcs are about the midway centre. This is exact for lines, and for arcs over
+    /// the same angles. Over different angles the exact curve is not an arc;
+    /// [`Self::midway_area_mm2`] is exact for it, too.
     #[must_use]
     pub fn midway(&self, other: &Self) -> Self {
         let corners: Vec<_> =
@@ -132,10 +133,12 @@ impl Contour {
         (0..self.edges.len()).map(|i| self.twice_swept_mm2(i)).sum::<f64>() / 2.0
     }
 
-    /// Signed area in mm² halfway up the ruled wall to `other`, which has the same edges in the same order.
+    /// Signed area in mm² halfway up the ruled wall to `other`, which has the same edges in the
+    /// same order.
     ///
-    /// The wall joins both curves at equal shares of every edge, so that the curve halfway is `m = (a + b)/2`. For two arcs
-    /// over different angles it is not an arc, but `∫ m × dm` has a closed form.
+    /// The wall joins both curves at equal shares of every edge, so that the curve halfway is `m =
+    /// (a + b)/2`. For two arcs over different angles it is not an arc, but `∫ m × dm` has a closed
+    /// form.
     pub fn midway_area_mm2(&self, other: &Self) -> f64 {
         let halfway = self.midway(other);
         let twice = (0..self.edges.len()).map(|i| match (&self.edges[i], &other.edges[i]) {
@@ -157,7 +160,8 @@ impl Contour {
         }
     }
 
-    /// Largest angle, in radians, between edge `i` of this contour and of `other` at equal shares of both.
+    /// Largest angle, in radians, between edge `i` of this contour and of `other` at equal shares
+    /// of both.
     pub(crate) fn turn_to_rad(&self, other: &Self, i: usize) -> f64 {
         match (&self.edges[i], &other.edges[i]) {
             (Edge::Arc(a), Edge::Arc(b)) => {

@@ -1,8 +1,9 @@
 //! Flattening within a chord tolerance: polygons that straddle the curve and keep its area.
 //!
-//! Vertices on the curve would make convex parts too small and grooves too shallow, always with the same sign. Therefore
-//! the inner vertices of each arc are slightly outside of it, so that the polygon encloses exactly the area of the arc;
-//! corners are exact. Both the overshoot of the vertices and the sag of the chords are within the tolerance.
+//! Vertices on the curve would make convex parts too small and grooves too shallow, always with the
+//! same sign. Therefore the inner vertices of each arc are slightly outside of it, so that the
+//! polygon encloses exactly the area of the arc; corners are exact. Both the overshoot of the
+//! vertices and the sag of the chords are within the tolerance.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,7 +12,8 @@ use super::contour::{Contour, Edge};
 use super::point::Point2;
 use super::tolerance::ChordTolerance;
 
-/// Sagitta in mm up to which an arc becomes its chord: finer vertices would be equal in single precision.
+/// Sagitta in mm up to which an arc becomes its chord: finer vertices would be equal in single
+/// precision.
 pub const FLAT_MM: f64 = 2e-4;
 
 /// Radius of the inner vertices with which `chords` chords enclose the area of the arc's sector.
@@ -26,14 +28,16 @@ fn straddling_radius_mm(arc: &Arc, chords: usize) -> f64 {
     if chords == 2 { -c / (2.0 * b) } else { (-b + (b * b - a * c).sqrt()) / a }
 }
 
-/// Returns the largest distance in millimetres between `arc` and its flattening into `chords` chords.
+/// Returns the largest distance in millimetres between `arc` and its flattening into `chords`
+/// chords.
 pub fn deviation_mm(arc: &Arc, chords: usize) -> f64 {
     if chords < 2 {
         return arc.sagitta_mm();
     }
     let q = straddling_radius_mm(arc, chords);
     let step = arc.sweep_rad.abs() / chords as f64;
-    // Distance from the centre to a chord between radii p and q; the foot of the perpendicular may be outside of it.
+    // Distance from the centre to a chord between radii p and q; the foot of the perpendicular may
+    // be outside of it.
     let nearest = |p: f64| {
         let length = (p * p + q * q - 2.0 * p * q * libm::cos(step)).sqrt();
         let foot_inside = (p - q).abs() * (p + q) <= length * length;
@@ -59,7 +63,8 @@ pub fn chords_for(arc: &Arc, tolerance: ChordTolerance) -> usize {
 }
 
 impl Contour {
-    /// Returns the number of chords per edge that keep every edge within `tolerance`; one for a line.
+    /// Returns the number of chords per edge that keep every edge within `tolerance`; one for a
+    /// line.
     pub fn chords(&self, tolerance: ChordTolerance) -> Vec<usize> {
         self.edges()
             .iter()
@@ -70,13 +75,15 @@ impl Contour {
             .collect()
     }
 
-    /// Returns the number of pieces per edge with which the mean distance of a wall up to `other`, which has the same edges
-    /// in the same order, from its ruled surface is within `tolerance`. This bounds the error of its volume.
+    /// Returns the number of pieces per edge with which the mean distance of a wall up to `other`,
+    /// which has the same edges in the same order, from its ruled surface is within `tolerance`.
+    /// This bounds the error of its volume.
     ///
-    /// Where an edge turns by `d` from one contour to the other, a piece of the wall is not planar, but becomes two
-    /// triangles. With lengths `p` and `q`, the distance between its diagonals is at most
-    /// `p q sin d / (n sqrt(p² + q² + 2 p q cos d))`. The surface is midway between them and halves the tetrahedron
-    /// of the four corners, so that its mean distance from the triangles is a sixth of that.
+    /// Where an edge turns by `d` from one contour to the other, a piece of the wall is not planar,
+    /// but becomes two triangles. With lengths `p` and `q`, the distance between its diagonals is
+    /// at most `p q sin d / (n sqrt(p² + q² + 2 p q cos d))`. The surface is midway between them
+    /// and halves the tetrahedron of the four corners, so that its mean distance from the triangles
+    /// is a sixth of that.
     pub(crate) fn wall_pieces(&self, other: &Self, tolerance: ChordTolerance) -> Vec<usize> {
         (0..self.edges().len())
             .map(|i| {
@@ -88,7 +95,8 @@ impl Contour {
             .collect()
     }
 
-    /// Returns the closed polygon with `chords[i]` pieces on edge `i`; the first point is not repeated.
+    /// Returns the closed polygon with `chords[i]` pieces on edge `i`; the first point is not
+    /// repeated.
     pub fn flattened(&self, chords: &[usize]) -> Vec<Point2> {
         let mut points = Vec::with_capacity(chords.iter().sum());
         for (i, ((corner, edge), &n)) in self.corners().iter().zip(self.edges()).zip(chords).enumerate() {

@@ -1,7 +1,8 @@
 //! The convex hull of discs: a band stretched around them.
 //!
-//! The support function of a disc at `c` with radius `r` is `h(φ) = c·u(φ) + r` for the direction `u(φ)`. That of the hull is
-//! the largest of all discs, and arcs of the hull end where two discs have equal support.
+//! The support function of a disc at `c` with radius `r` is `h(φ) = c·u(φ) + r` for the direction
+//! `u(φ)`. That of the hull is the largest of all discs, and arcs of the hull end where two discs
+//! have equal support.
 
 use std::f64::consts::TAU;
 
@@ -42,8 +43,8 @@ fn direction(angle_rad: f64) -> Vector2 {
     Vector2::new(libm::cos(angle_rad), libm::sin(angle_rad))
 }
 
-/// Returns the outermost discs from the direction `from_rad` counter-clockwise to `to_rad`, in order. Between two of them
-/// the band is straight.
+/// Returns the outermost discs from the direction `from_rad` counter-clockwise to `to_rad`, in
+/// order. Between two of them the band is straight.
 pub fn hull_arcs(discs: &[Disc], from_rad: f64, to_rad: f64) -> Vec<HullArc> {
     // Just after the start, so that of two discs with equal support the next one is taken.
     let start = from_rad + 2.0 * SAME_RAD;
@@ -65,7 +66,8 @@ pub fn hull_arcs(discs: &[Disc], from_rad: f64, to_rad: f64) -> Vec<HullArc> {
     arcs
 }
 
-/// The first direction after `after_rad` from which the support of `other` exceeds that of `disc`; `None` if it never does.
+/// The first direction after `after_rad` from which the support of `other` exceeds that of `disc`;
+/// `None` if it never does.
 fn overtaken_rad(disc: &Disc, other: &Disc, after_rad: f64) -> Option<f64> {
     let between = other.centre - disc.centre;
     let share = (disc.radius_mm - other.radius_mm) / between.norm();
@@ -80,7 +82,8 @@ fn overtaken_rad(disc: &Disc, other: &Disc, after_rad: f64) -> Option<f64> {
 
 /// Returns the convex hull of `discs`, counter-clockwise; `None` without discs.
 pub fn hull(discs: &[Disc]) -> Option<Contour> {
-    // The rightmost disc is outermost at the direction +x: the hull starts where the next arc begins.
+    // The rightmost disc is outermost at the direction +x: the hull starts where the next arc
+    // begins.
     let whole = hull_arcs(discs, 0.0, TAU);
     let second = whole.get(1).copied();
     let Some(second) = second else {

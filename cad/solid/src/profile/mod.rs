@@ -1,6 +1,7 @@
 //! Exact plane profiles of straight lines and circular arcs: the only description of every part.
 //!
-//! A [`Contour`] is closed, with material to its left: outlines run counter-clockwise, holes clockwise.
+//! A [`Contour`] is closed, with material to its left: outlines run counter-clockwise, holes
+//! clockwise.
 
 mod arc;
 mod contour;

@@ -37,8 +37,9 @@ enum OffsetEdge {
 }
 
 impl Contour {
-    /// Returns the contour offset to its left, into the material, by `distance_mm`; a negative distance is out of the
-    /// material. It has the same edges in the same order, so that a wall can join the two.
+    /// Returns the contour offset to its left, into the material, by `distance_mm`; a negative
+    /// distance is out of the material. It has the same edges in the same order, so that a wall can
+    /// join the two.
     ///
     /// # Errors
     /// [`OffsetError`] if an edge vanishes or neighbours no longer meet.

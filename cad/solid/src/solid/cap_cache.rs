@@ -1,5 +1,5 @@
-//! A cache of triangulated caps: those of a solid are often equal, and so are those of a family of solids that differ in
-//! height or in a label only.
+//! A cache of triangulated caps: those of a solid are often equal, and so are those of a family of
+//! solids that differ in height or in a label only.
 
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
@@ -78,13 +78,14 @@ impl Loops {
 }
 
 impl CapCache {
-    /// Creates a cache of up to `corners` corners, at about 50 bytes each. The least recently used caps are dropped.
+    /// Creates a cache of up to `corners` corners, at about 50 bytes each. The least recently used
+    /// caps are dropped.
     pub fn new(corners: usize) -> Self {
         Self { capacity: corners / 2, generations: Mutex::default() }
     }
 
-    /// Returns the triangulation of `loops`, cached or new. Threads that request the same one at the same time each compute
-    /// it.
+    /// Returns the triangulation of `loops`, cached or new. Threads that request the same one at
+    /// the same time each compute it.
     pub(super) fn triangles(&self, loops: &[&[Point2]], z_mm: f64) -> Result<Arc<Triangles>, CapError> {
         let key = Loops::new(loops);
         if let Some(known) = self.locked(|generations| generations.get(&key)) {
@@ -137,7 +138,8 @@ mod tests {
         let triangles = |side: f64| cache.triangles(&[&square(side)], 0.0).unwrap();
         let (first, second) = (triangles(1.0), triangles(2.0));
         assert!(Arc::ptr_eq(&first, &triangles(1.0)) && Arc::ptr_eq(&second, &triangles(2.0)));
-        // Two squares fill a generation: the second pair moves the first to the older one, a third pair drops it.
+        // Two squares fill a generation: the second pair moves the first to the older one, a third
+        // pair drops it.
         for side in 3..=6 {
             triangles(f64::from(side));
         }

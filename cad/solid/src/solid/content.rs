@@ -1,11 +1,12 @@
-//! The content of a solid as bytes: two solids with the same bytes have the same mesh at the same tolerance.
+//! The content of a solid as bytes: two solids with the same bytes have the same mesh at the same
+//! tolerance.
 
 use super::definition::{Facing, Solid};
 use crate::profile::{Contour, Edge, Point2};
 
 impl Solid {
-    /// Returns every ring, wall and cap as bytes: numbers as bits, lists after their lengths. For cache keys, not for files:
-    /// the format may change between versions.
+    /// Returns every ring, wall and cap as bytes: numbers as bits, lists after their lengths. For
+    /// cache keys, not for files: the format may change between versions.
     pub fn content_bytes(&self) -> Vec<u8> {
         let mut content = Content(Vec::new());
         content.count(self.rings.len());

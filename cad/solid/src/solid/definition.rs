@@ -35,7 +35,8 @@ pub(super) struct Cap {
     pub(super) rings: Vec<RingId>,
 }
 
-/// A solid between contours at heights. Every ring must belong to two faces: a wall and a cap, or two walls.
+/// A solid between contours at heights. Every ring must belong to two faces: a wall and a cap, or
+/// two walls.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     pub(super) rings: Vec<Ring>,
@@ -55,8 +56,8 @@ impl Solid {
         RingId(self.rings.len() - 1)
     }
 
-    /// Adds a wall from `lower` up to `upper`. Both contours have the same edges in the same order; that of a hole runs
-    /// clockwise, with material to its left.
+    /// Adds a wall from `lower` up to `upper`. Both contours have the same edges in the same order;
+    /// that of a hole runs clockwise, with material to its left.
     pub fn wall(&mut self, lower: RingId, upper: RingId) {
         self.walls.push(Wall { lower, upper });
     }
@@ -67,14 +68,16 @@ impl Solid {
         self.caps.push(Cap { facing, rings });
     }
 
-    /// Adds a vertical wall over `contour` from `from_mm` to `to_mm`; returns its lower and upper ring.
+    /// Adds a vertical wall over `contour` from `from_mm` to `to_mm`; returns its lower and upper
+    /// ring.
     pub fn extrude(&mut self, contour: &Contour, from_mm: f64, to_mm: f64) -> (RingId, RingId) {
         let (lower, upper) = (self.ring(contour.clone(), from_mm), self.ring(contour.clone(), to_mm));
         self.wall(lower, upper);
         (lower, upper)
     }
 
-    /// As [`Self::extrude`], with a 45 degree chamfer of `chamfer_mm` into the material at the lower edge.
+    /// As [`Self::extrude`], with a 45 degree chamfer of `chamfer_mm` into the material at the
+    /// lower edge.
     ///
     /// # Errors
     /// [`OffsetError`] if the chamfer removes an edge of the contour.
@@ -94,7 +97,8 @@ impl Solid {
         Ok((foot, upper))
     }
 
-    /// Creates a prism over `outline` with `holes` (clockwise), from `from_mm` to `to_mm`, with a chamfer at the bottom.
+    /// Creates a prism over `outline` with `holes` (clockwise), from `from_mm` to `to_mm`, with a
+    /// chamfer at the bottom.
     ///
     /// # Errors
     /// [`OffsetError`] if the chamfer removes an edge.
@@ -129,8 +133,9 @@ impl Solid {
         Ok(walls?.into_iter().unzip())
     }
 
-    /// Adds a pocket with a flat floor from `top_mm` down to `floor_mm`. `outline` runs clockwise, islands inside it run
-    /// counter-clockwise and end at the top. Returns the ring at its top, which is a hole in the cap there.
+    /// Adds a pocket with a flat floor from `top_mm` down to `floor_mm`. `outline` runs clockwise,
+    /// islands inside it run counter-clockwise and end at the top. Returns the ring at its top,
+    /// which is a hole in the cap there.
     pub fn pocket(&mut self, outline: &Contour, islands: &[Contour], floor_mm: f64, top_mm: f64) -> RingId {
         let (floor, top) = self.extrude(outline, floor_mm, top_mm);
         let mut feet = Vec::new();
@@ -143,8 +148,9 @@ impl Solid {
         top
     }
 
-    /// Adds a recess with a flat ceiling from `bottom_mm` up to `ceiling_mm`. `outline` runs clockwise, islands inside it run
-    /// counter-clockwise and end at the bottom. Returns the ring at its mouth, which is a hole in the cap there.
+    /// Adds a recess with a flat ceiling from `bottom_mm` up to `ceiling_mm`. `outline` runs
+    /// clockwise, islands inside it run counter-clockwise and end at the bottom. Returns the ring
+    /// at its mouth, which is a hole in the cap there.
     pub fn recess(
         &mut self,
         outline: &Contour,
@@ -163,8 +169,8 @@ impl Solid {
         mouth
     }
 
-    /// Adds a boss with a flat top from `foot_mm` to `top_mm` over `outline` (counter-clockwise). Returns the ring at its
-    /// foot, which is a hole in the cap below.
+    /// Adds a boss with a flat top from `foot_mm` to `top_mm` over `outline` (counter-clockwise).
+    /// Returns the ring at its foot, which is a hole in the cap below.
     pub fn boss(&mut self, outline: &Contour, foot_mm: f64, top_mm: f64) -> RingId {
         let (foot, top) = self.extrude(outline, foot_mm, top_mm);
         self.cap(Facing::Up, top, &[]);
@@ -182,8 +188,9 @@ impl Solid {
             .reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d)))
     }
 
-    /// Returns the contours that bound the material at height `z_mm`, outlines counter-clockwise and holes clockwise. For a
-    /// slanted wall it is the contour midway between its rings ([`Contour::midway`]).
+    /// Returns the contours that bound the material at height `z_mm`, outlines counter-clockwise
+    /// and holes clockwise. For a slanted wall it is the contour midway between its rings
+    /// ([`Contour::midway`]).
     pub fn section(&self, z_mm: f64) -> Vec<Contour> {
         self.walls
             .iter()
@@ -196,8 +203,8 @@ impl Solid {
             .collect()
     }
 
-    /// Raises the numbers of pieces per edge of each ring, so that both rings of a wall have equal ones and the wall is a
-    /// strip.
+    /// Raises the numbers of pieces per edge of each ring, so that both rings of a wall have equal
+    /// ones and the wall is a strip.
     pub(crate) fn matched_counts(&self, mut numbers: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
         loop {
             let mut settled = true;

@@ -1,7 +1,7 @@
 //! Solids of contours at heights: walls between two rings, and flat caps with holes.
 //!
-//! A [`Solid`] gives its volume in closed form and its mesh. The mesh is watertight by construction, because walls and caps
-//! share the vertices of their rings by index.
+//! A [`Solid`] gives its volume in closed form and its mesh. The mesh is watertight by
+//! construction, because walls and caps share the vertices of their rings by index.
 
 mod cap;
 mod cap_cache;

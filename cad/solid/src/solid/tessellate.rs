@@ -13,12 +13,14 @@ struct FlatRing {
 }
 
 impl Solid {
-    /// Returns the mesh of the solid, with every curve within `tolerance`. All faces of a ring share its vertices by index.
+    /// Returns the mesh of the solid, with every curve within `tolerance`. All faces of a ring
+    /// share its vertices by index.
     ///
     /// # Errors
     /// [`CapError`] if contours of one cap cross or touch.
     pub fn mesh(&self, tolerance: ChordTolerance) -> Result<Mesh, CapError> {
-        // The caps of a prism have the same triangulation: even a single solid uses most of them twice.
+        // The caps of a prism have the same triangulation: even a single solid uses most of them
+        // twice.
         self.mesh_with(tolerance, &CapCache::new(usize::MAX))
     }
 
@@ -54,7 +56,8 @@ impl Solid {
 }
 
 impl Solid {
-    /// Least number of pieces per edge of each ring that keeps its curves, and the walls above it, within `tolerance`.
+    /// Least number of pieces per edge of each ring that keeps its curves, and the walls above it,
+    /// within `tolerance`.
     fn least_pieces(&self, tolerance: ChordTolerance) -> Vec<Vec<usize>> {
         let mut pieces: Vec<_> = self.rings.iter().map(|ring| ring.contour.chords(tolerance)).collect();
         for Wall { lower: RingId(a), upper: RingId(b) } in &self.walls {
@@ -84,7 +87,8 @@ fn close(cap: &Cap, cut: &[[u32; 3]], rings: &[FlatRing], triangles: &mut Vec<[u
     }));
 }
 
-/// Appends the wall between two rings of equal vertex count, each quadrilateral cut along its shorter diagonal.
+/// Appends the wall between two rings of equal vertex count, each quadrilateral cut along its
+/// shorter diagonal.
 fn strip(lower: &FlatRing, upper: &FlatRing, positions: &[Point3], triangles: &mut Vec<[u32; 3]>) {
     let n = lower.points.len();
     for i in 0..n {
@@ -126,8 +130,8 @@ mod tests {
             .close()
     }
 
-    /// Least distance between the diagonals of a quadrilateral; the mean distance of its triangles from the ruled surface is a
-    /// sixth of it.
+    /// Least distance between the diagonals of a quadrilateral; the mean distance of its triangles
+    /// from the ruled surface is a sixth of it.
     fn diagonals_apart_mm([a, b, c, d]: [Point3; 4]) -> f64 {
         let across = (c - a).cross(&(d - b));
         (b - a).dot(&across).abs() / across.norm()

@@ -1,15 +1,15 @@
 //! Thin places: pairs of walls that face each other with little material between them.
 //!
-//! Distances are those between the exact lines and arcs of the profile at every common height, without a mesh and without
-//! sampling. So one rule finds every thin place of every part.
+//! Distances are those between the exact lines and arcs of the profile at every common height,
+//! without a mesh and without sampling. So one rule finds every thin place of every part.
 
 use std::borrow::Cow;
 
 use super::definition::{Solid, Wall};
 use crate::profile::{Arc, Contour, Edge, Point2, Vector2};
 
-/// Two faces bound a wall if the segment between them is within this angle of both normals (cosine of 35 degrees). The two
-/// sides of a rounded corner, at 45 degrees, do not.
+/// Two faces bound a wall if the segment between them is within this angle of both normals (cosine
+/// of 35 degrees). The two sides of a rounded corner, at 45 degrees, do not.
 const FACING: f64 = 0.82;
 /// Distance up to which points are equal, mm.
 const SAME_MM: f64 = 1e-9;
@@ -51,8 +51,9 @@ struct Section {
 }
 
 impl Solid {
-    /// Returns every pair of faces closer than `under_mm` through material, the closest first. Walls that are lower than
-    /// thick are excluded: they are steps, such as the floor of an engraved letter.
+    /// Returns every pair of faces closer than `under_mm` through material, the closest first.
+    /// Walls that are lower than thick are excluded: they are steps, such as the floor of an
+    /// engraved letter.
     pub fn thin_places(&self, under_mm: f64) -> Vec<ThinPlace> {
         let mut faces = self.faces();
         faces.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
@@ -101,7 +102,8 @@ impl Solid {
         let above = if are_upright { below } else { at(to_mm) };
         let thickness = |place: Option<(f64, Point2)>| place.map_or(f64::INFINITY, |p| p.0);
         let (thickness_mm, middle) = if thickness(above) < thickness(below) { above? } else { below? };
-        // The mean thickness decides whether a slanted wall is a step; a wall with one end only is not.
+        // The mean thickness decides whether a slanted wall is a step; a wall with one end only is
+        // not.
         let mean = f64::midpoint(thickness(below), thickness(above));
         let is_step = to_mm - from_mm <= if mean.is_finite() { mean } else { thickness_mm };
         (thickness_mm < under_mm && !is_step).then_some(ThinPlace { thickness_mm, middle, from_mm, to_mm })
@@ -153,7 +155,8 @@ fn tangent((from, to, arc): &PlainEdge, share: f64) -> Vector2 {
     }
 }
 
-/// The shortest segment through material between two edges, if shorter than `within_mm`: its length and its middle.
+/// The shortest segment through material between two edges, if shorter than `within_mm`: its length
+/// and its middle.
 fn nearest(a: &Section, b: &Section, within_mm: f64) -> Option<(f64, Point2)> {
     let mut best: Option<(f64, Point2)> = None;
     // The slowest conditions come last.
@@ -178,7 +181,8 @@ fn nearest(a: &Section, b: &Section, within_mm: f64) -> Option<(f64, Point2)> {
     best
 }
 
-/// A candidate point of an edge. One on the circle of an arc is on the edge only if the arc covers its direction.
+/// A candidate point of an edge. One on the circle of an arc is on the edge only if the arc covers
+/// its direction.
 #[derive(Clone, Copy)]
 struct Candidate {
     point: Point2,
@@ -196,7 +200,8 @@ impl Candidate {
 }
 
 impl Face {
-    /// Whether another face is further away than `under_mm` at every height, by its box or the disc around that.
+    /// Whether another face is further away than `under_mm` at every height, by its box or the disc
+    /// around that.
     fn is_apart(&self, other: &Self, under_mm: f64) -> bool {
         other.low.y > self.high.y + under_mm
             || self.low.y > other.high.y + under_mm
@@ -204,7 +209,8 @@ impl Face {
             || other.is_beyond(self, under_mm)
     }
 
-    /// Whether the disc around the box of another face is further away than `under_mm` from the line or circle of this one.
+    /// Whether the disc around the box of another face is further away than `under_mm` from the
+    /// line or circle of this one.
     fn is_beyond(&self, other: &Self, under_mm: f64) -> bool {
         self.upright.as_ref().is_some_and(|section| {
             let middle = nalgebra::center(&other.low, &other.high);
@@ -225,7 +231,8 @@ impl Section {
         }
     }
 
-    /// Points where the shortest segment to `other` can start: the ends, and points of an arc that are parallel to it.
+    /// Points where the shortest segment to `other` can start: the ends, and points of an arc that
+    /// are parallel to it.
     fn stations(&self, other: &Self) -> [Option<Candidate>; 4] {
         let mut all = [Some(Candidate::end(self.from)), Some(Candidate::end(self.to)), None, None];
         if let Some(arc) = &self.arc {
@@ -268,8 +275,8 @@ impl Section {
         }
     }
 
-    /// Whether `direction` at `point` of this edge is into the material and close to the normal, or, at a corner that points
-    /// into the material, between the normals of its two sides.
+    /// Whether `direction` at `point` of this edge is into the material and close to the normal,
+    /// or, at a corner that points into the material, between the normals of its two sides.
     fn faces(&self, point: Point2, direction: Vector2) -> bool {
         let inwards = |t: Vector2| Vector2::new(-t.y, t.x);
         let own = match &self.arc {
@@ -282,7 +289,8 @@ impl Section {
         }
         let between = |first: Vector2, second: Vector2| {
             let (first_in, second_in) = (inwards(first), inwards(second));
-            // A corner that points into the material is closest for every direction between the two normals.
+            // A corner that points into the material is closest for every direction between the two
+            // normals.
             first.perp(&second) < 0.0 && first_in.perp(&direction) <= 0.0 && direction.perp(&second_in) <= 0.0
         };
         let here: PlainEdge = (self.from, self.to, self.arc);

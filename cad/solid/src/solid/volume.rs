@@ -6,9 +6,10 @@ use crate::profile::{ChordTolerance, FLAT_MM};
 impl Solid {
     /// Returns the volume in mm³.
     ///
-    /// The section at a height is bounded by the walls that cross it, outlines counter-clockwise and holes clockwise. So the
-    /// volume is the sum over all walls of their signed area times height. The area of a section of a slanted wall is
-    /// quadratic in height, for which Simpson's rule is exact.
+    /// The section at a height is bounded by the walls that cross it, outlines counter-clockwise
+    /// and holes clockwise. So the volume is the sum over all walls of their signed area times
+    /// height. The area of a section of a slanted wall is quadratic in height, for which Simpson's
+    /// rule is exact.
     pub fn volume_mm3(&self) -> f64 {
         self.walls
             .iter()
@@ -22,10 +23,11 @@ impl Solid {
             .sum()
     }
 
-    /// Returns a bound on the difference between the volume of the mesh and [`Self::volume_mm3`], in mm³.
+    /// Returns a bound on the difference between the volume of the mesh and [`Self::volume_mm3`],
+    /// in mm³.
     ///
-    /// Flattened arcs keep their area, except those that become their chord ([`FLAT_MM`]). Slanted walls are within the
-    /// tolerance for their arcs, and again for the surface between them.
+    /// Flattened arcs keep their area, except those that become their chord ([`FLAT_MM`]). Slanted
+    /// walls are within the tolerance for their arcs, and again for the surface between them.
     pub fn volume_bound_mm3(&self, tolerance: ChordTolerance) -> f64 {
         let off = |wall: &Wall| {
             if self.is_upright(wall) { FLAT_MM.min(tolerance.mm()) } else { 2.0 * tolerance.mm() }
@@ -35,7 +37,8 @@ impl Solid {
         bound + 1e-5 * self.surface_mm2()
     }
 
-    /// Returns the area of the surface in mm²; of slanted walls, the mean perimeter times the slant height.
+    /// Returns the area of the surface in mm²; of slanted walls, the mean perimeter times the slant
+    /// height.
     pub fn surface_mm2(&self) -> f64 {
         self.walls.iter().map(|wall| self.wall_mm2(wall)).sum::<f64>() + self.caps_mm2()
     }
@@ -117,8 +120,8 @@ mod tests {
         solid.mesh(ChordTolerance::new(tolerance_mm).unwrap()).unwrap().volume_mm3()
     }
 
-    /// A cavity with 5 degrees of draft on three sides, 13.6 mm deep. An arc through the corners midway is not the curve
-    /// midway; the slices show the difference.
+    /// A cavity with 5 degrees of draft on three sides, 13.6 mm deep. An arc through the corners
+    /// midway is not the curve midway; the slices show the difference.
     #[test]
     fn twisted_walls_have_their_exact_volume() {
         let drafted_mm = 13.6 * libm::tan(5f64.to_radians());

@@ -15,7 +15,8 @@ fn index(i: usize) -> u32 {
     u32::try_from(i).unwrap()
 }
 
-/// Triangles without shared vertices: anywhere, or on a lattice, where many touch, are coplanar or degenerate.
+/// Triangles without shared vertices: anywhere, or on a lattice, where many touch, are coplanar or
+/// degenerate.
 fn soup(most: usize) -> impl Strategy<Value = Mesh> {
     let of =
         move |point: BoxedStrategy<[f64; 3]>| prop::collection::vec(prop::array::uniform3(point), 1..most);

@@ -1,9 +1,9 @@
 //! A bounding volume hierarchy of facets, with nodes of eight boxes that are compared at once.
 //!
-//! Facets are sorted along a Morton curve through the centres of their boxes. Eight neighbours on the curve form a leaf,
-//! eight leaves a node of the next level, and so on. The tree is implicit: the children of node `n` are the nodes
-//! `8 n .. 8 n + 8` of the level below. Boxes are in single precision, rounded outward; the exact box of a facet comes from
-//! the mesh ([`corner_box`]).
+//! Facets are sorted along a Morton curve through the centres of their boxes. Eight neighbours on
+//! the curve form a leaf, eight leaves a node of the next level, and so on. The tree is implicit:
+//! the children of node `n` are the nodes `8 n .. 8 n + 8` of the level below. Boxes are in single
+//! precision, rounded outward; the exact box of a facet comes from the mesh ([`corner_box`]).
 
 use super::plane::Plane;
 use crate::mesh::{Mesh, Point3};
@@ -83,8 +83,8 @@ impl Node {
         for axis in 0..3 {
             let (low, high) = (bounds.low[axis], bounds.high[axis]);
             for (lane, overlaps) in overlaps.iter_mut().enumerate() {
-                // `&` instead of `&&`, on integers as wide as a coordinate: without branches, one instruction compares
-                // four lanes.
+                // `&` instead of `&&`, on integers as wide as a coordinate: without branches, one
+                // instruction compares four lanes.
                 *overlaps &=
                     u32::from(self.low[axis][lane] <= high) & u32::from(self.high[axis][lane] >= low);
             }
@@ -114,7 +114,8 @@ impl Iterator for Lanes {
     }
 }
 
-/// The bounding volume hierarchy of the facets of a mesh. A slot is the position of a facet on the curve.
+/// The bounding volume hierarchy of the facets of a mesh. A slot is the position of a facet on the
+/// curve.
 pub(super) struct Bvh {
     /// Index of the facet in each slot.
     facets: Vec<u32>,
@@ -166,8 +167,8 @@ impl Bvh {
         WIDTH * leaf..self.facets.len().min(WIDTH * (leaf + 1))
     }
 
-    /// Calls `visit` once for every pair of slots whose boxes touch or overlap, the first of them in `leaf`, the second
-    /// after it. `near` is a buffer.
+    /// Calls `visit` once for every pair of slots whose boxes touch or overlap, the first of them
+    /// in `leaf`, the second after it. `near` is a buffer.
     pub(super) fn pairs_from(&self, leaf: usize, near: &mut Vec<usize>, mut visit: impl FnMut(usize, usize)) {
         let own = &self.levels[0][leaf];
         self.leaves_overlapping(&own.hull(), leaf + 1, near);

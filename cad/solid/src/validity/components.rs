@@ -17,8 +17,8 @@ pub(super) struct Bodies {
 
 /// Classifies the connected components of a closed mesh of volume `volume_mm3`.
 ///
-/// A component inside an even number of others bounds a body and must face outward, one inside an odd number bounds a void
-/// and must face inward.
+/// A component inside an even number of others bounds a body and must face outward, one inside an
+/// odd number bounds a void and must face inward.
 pub(super) fn bodies(mesh: &Mesh, volume_mm3: f64) -> Bodies {
     let triangles = connected(mesh);
     let components: Vec<Component> = match &triangles[..] {
@@ -76,7 +76,8 @@ pub(super) fn wrong_count(bodies: usize, expected: Option<usize>) -> Option<Faul
     })
 }
 
-/// Groups of triangles that are connected through shared vertices, in the order of their first triangles.
+/// Groups of triangles that are connected through shared vertices, in the order of their first
+/// triangles.
 fn connected(mesh: &Mesh) -> Vec<Cow<'_, [[u32; 3]]>> {
     let mut parents: Vec<u32> = (0u32..).take(mesh.positions.len()).collect();
     for t in &mesh.triangles {
@@ -136,7 +137,8 @@ impl<'a> Component<'a> {
         self.facets().next().map(|corners| corners[0])
     }
 
-    /// Whether `inner` is entirely inside; components that cross are left to the intersection check.
+    /// Whether `inner` is entirely inside; components that cross are left to the intersection
+    /// check.
     fn encloses(&self, inner: &Component) -> bool {
         let (Some((low, high)), Some((inner_low, inner_high))) = (self.bounds, inner.bounds) else {
             return false;
@@ -147,7 +149,8 @@ impl<'a> Component<'a> {
     }
 }
 
-/// Winding number of a closed surface about `point`: its solid angle over that of a sphere (van Oosterom & Strackee).
+/// Winding number of a closed surface about `point`: its solid angle over that of a sphere (van
+/// Oosterom & Strackee).
 pub(super) fn winding_number(facets: impl Iterator<Item = [Point3; 3]>, point: Point3) -> f64 {
     let half_angles: f64 = facets
         .map(|corners| {

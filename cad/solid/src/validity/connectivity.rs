@@ -1,7 +1,8 @@
 //! Connectivity of facets, edges and vertices, checked in one pass over the one-rings.
 //!
-//! Every edge belongs to the one-ring of its lesser vertex, and every facet to that of its least. So edges and facets are
-//! counted without a table of all edges, and vertices are independent of each other.
+//! Every edge belongs to the one-ring of its lesser vertex, and every facet to that of its least.
+//! So edges and facets are counted without a table of all edges, and vertices are independent of
+//! each other.
 
 use super::edge_manifold::EdgeFaults;
 use super::facets::RepeatedFacets;

@@ -4,10 +4,11 @@ use super::bvh::{Bounds, Bvh};
 use crate::mesh::{Mesh, Point3, Vector3};
 use crate::parallel;
 
-/// Returns the largest distance in mm from a vertex of `from` to the surface of `to`, and that vertex; `None` if one of the
-/// meshes is empty or has a coordinate that is not finite.
+/// Returns the largest distance in mm from a vertex of `from` to the surface of `to`, and that
+/// vertex; `None` if one of the meshes is empty or has a coordinate that is not finite.
 ///
-/// Vertices within `near_mm` of the surface are found fastest; the distance of any other is exact, too.
+/// Vertices within `near_mm` of the surface are found fastest; the distance of any other is exact,
+/// too.
 pub(crate) fn largest_distance(from: &Mesh, to: &Mesh, near_mm: f64) -> Option<(f64, Point3)> {
     let is_finite = |p: &Point3| p.coords.iter().all(|c| c.is_finite());
     if to.triangles.is_empty() || !from.positions.iter().chain(&to.positions).all(is_finite) {
@@ -27,7 +28,8 @@ fn larger(a: (f64, Point3), b: (f64, Point3)) -> (f64, Point3) {
     if b.0 > a.0 { b } else { a }
 }
 
-/// Distance of a point from a mesh: the nearest facet is in a box around the point as soon as that contains one.
+/// Distance of a point from a mesh: the nearest facet is in a box around the point as soon as that
+/// contains one.
 fn distance(p: Point3, mesh: &Mesh, bvh: &Bvh, near_mm: f64, leaves: &mut Vec<usize>) -> f64 {
     let mut reach_mm = near_mm;
     loop {

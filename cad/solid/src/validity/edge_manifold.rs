@@ -22,7 +22,8 @@ impl EdgeFaults {
         for (far, half_edges) in ring.edges().filter(|(far, _)| *far >= ring.centre) {
             let outgoing = half_edges.iter().filter(|h| h.is_outgoing()).count();
             let edge = (ring.centre, far);
-            // Each half-edge of an edge from a vertex to itself occurs twice, outgoing and incoming.
+            // Each half-edge of an edge from a vertex to itself occurs twice, outgoing and
+            // incoming.
             let (outgoing, facets) =
                 if far == ring.centre { (0, outgoing) } else { (outgoing, half_edges.len()) };
             match facets {

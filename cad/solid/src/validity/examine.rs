@@ -20,7 +20,8 @@ pub struct Expectation {
     pub volume_mm3: Option<(f64, f64)>,
     /// Least height of a triangle, mm: below it, its corners may be equal in single precision.
     pub min_height_mm: f64,
-    /// Least and greatest length of the longest side, mm; outside of it, the unit is probably wrong.
+    /// Least and greatest length of the longest side, mm; outside of it, the unit is probably
+    /// wrong.
     pub longest_side_mm: (f64, f64),
     /// Least wall thickness in mm; zero skips the check.
     pub min_wall_mm: f64,

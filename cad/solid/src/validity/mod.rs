@@ -1,4 +1,5 @@
-//! Examination of meshes: whether a mesh is a valid, printable solid, and if not, what is wrong, where and by how much.
+//! Examination of meshes: whether a mesh is a valid, printable solid, and if not, what is wrong,
+//! where and by how much.
 //!
 //! The generator, the tests and `pinswitch check` all use [`examine`]. Nothing is repaired.
 

@@ -2,7 +2,8 @@
 
 use crate::mesh::Mesh;
 
-/// A half-edge at the centre of a one-ring, packed so that sorting groups the half-edges of one edge.
+/// A half-edge at the centre of a one-ring, packed so that sorting groups the half-edges of one
+/// edge.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct HalfEdge(u64);
 
@@ -31,7 +32,8 @@ impl HalfEdge {
 pub(super) struct OneRing<'a> {
     /// The vertex.
     pub(super) centre: u32,
-    /// Indices of the facets, ascending. A facet with several corners at the centre occurs as often.
+    /// Indices of the facets, ascending. A facet with several corners at the centre occurs as
+    /// often.
     pub(super) facets: &'a [u32],
     /// The half-edges from and to the centre, sorted by the vertex at the other end.
     pub(super) half_edges: &'a [HalfEdge],

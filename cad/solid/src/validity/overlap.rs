@@ -7,13 +7,16 @@ use crate::mesh::{Mesh, Point3, Vector3};
 const MAX_SAMPLES: usize = 12;
 /// Samples along the diagonal of the smaller solid.
 const SAMPLES_PER_DIAGONAL: f64 = 24.0;
-/// Most facets that all samples together are compared with: large meshes get fewer samples, so that the check takes seconds.
+/// Most facets that all samples together are compared with: large meshes get fewer samples, so that
+/// the check takes seconds.
 const MAX_COMPARISONS: usize = 300_000_000;
 
-/// Returns a place where two closed meshes overlap by more than `depth_mm`, measured from the surface of one of them;
-/// `None` if no sample shows one. Solids that touch, or curved ones whose facets intersect less deeply, do not overlap.
+/// Returns a place where two closed meshes overlap by more than `depth_mm`, measured from the
+/// surface of one of them; `None` if no sample shows one. Solids that touch, or curved ones whose
+/// facets intersect less deeply, do not overlap.
 ///
-/// The surfaces are sampled: an overlap between the samples, such as of a single corner, is not detected.
+/// The surfaces are sampled: an overlap between the samples, such as of a single corner, is not
+/// detected.
 pub fn shared_place(one: &Mesh, other: &Mesh, depth_mm: f64) -> Option<[f64; 3]> {
     let (Some(a), Some(b)) = (one.bounds(), other.bounds()) else { return None };
     let (low, high) = (a.0.sup(&b.0), a.1.inf(&b.1));

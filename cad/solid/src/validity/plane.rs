@@ -1,8 +1,10 @@
-//! Planes of facets in floating point, with bounds on the rounding error: a filter before exact predicates.
+//! Planes of facets in floating point, with bounds on the rounding error: a filter before exact
+//! predicates.
 
 use crate::mesh::{Point3, Vector3};
 
-/// Bound on the relative rounding errors of a normal and of a dot product with it: some ten times their sum.
+/// Bound on the relative rounding errors of a normal and of a dot product with it: some ten times
+/// their sum.
 const ROUNDING: f64 = 1e-14;
 
 /// The plane of a facet.
@@ -10,8 +12,8 @@ const ROUNDING: f64 = 1e-14;
 pub(super) struct Plane {
     /// Normal, as long as twice the area of the facet.
     pub(super) normal: Vector3,
-    /// Rounding error of the side of a point, over its distance from the facet's first corner. Infinite if the corners may
-    /// be collinear.
+    /// Rounding error of the side of a point, over its distance from the facet's first corner.
+    /// Infinite if the corners may be collinear.
     error: f64,
 }
 
@@ -28,7 +30,8 @@ impl Plane {
         self.error < f64::INFINITY
     }
 
-    /// Whether the points, at least one, are certainly on the same side. `origin` is the facet's first corner.
+    /// Whether the points, at least one, are certainly on the same side. `origin` is the facet's
+    /// first corner.
     pub(super) fn has_on_one_side(&self, origin: Point3, points: impl Iterator<Item = Point3>) -> bool {
         let (mut above, mut below, mut certain) = (false, false, true);
         for point in points {

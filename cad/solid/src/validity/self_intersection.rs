@@ -54,6 +54,7 @@ fn is_intersection(mesh: &Mesh, bvh: &Bvh, a: usize, b: usize) -> bool {
     };
     // Facets with the same corners count as repeated, not as an intersection.
     let same = s.iter().all(|(v, _)| t.iter().any(|(w, _)| v == w));
-    // The boxes of the tree are rounded outward. So few facets intersect that the exact boxes are compared last.
+    // The boxes of the tree are rounded outward. So few facets intersect that the exact boxes are
+    // compared last.
     !same && intersect(&s, &t) && boxes_overlap(corner_box(mesh, i), corner_box(mesh, j))
 }

@@ -8,11 +8,12 @@ use crate::mesh::Point3;
 /// A triangle with the indices of its corners.
 pub(super) type Corners = [(u32, Point3); 3];
 
-/// Whether floating point already proves that the triangles do not [`intersect`]: the corners that are not shared are on
-/// one side.
+/// Whether floating point already proves that the triangles do not [`intersect`]: the corners that
+/// are not shared are on one side.
 ///
-/// Triangles of positive area in different planes intersect in the line of both planes. If all unshared corners of one of
-/// them are on one side of the other's plane, it has at most a shared corner or a shared edge on that line.
+/// Triangles of positive area in different planes intersect in the line of both planes. If all
+/// unshared corners of one of them are on one side of the other's plane, it has at most a shared
+/// corner or a shared edge on that line.
 pub(super) fn are_disjoint((s, s_plane): (&Corners, &Plane), (t, t_plane): (&Corners, &Plane)) -> bool {
     let on_one_side = |of: &Corners, other: &Corners, plane: &Plane| {
         let unshared = of.iter().filter(|(i, _)| other.iter().all(|(j, _)| i != j));
@@ -21,13 +22,15 @@ pub(super) fn are_disjoint((s, s_plane): (&Corners, &Plane), (t, t_plane): (&Cor
     s_plane.is_certain() && t_plane.is_certain() && (on_one_side(t, s, s_plane) || on_one_side(s, t, t_plane))
 }
 
-/// Whether the triangles have a common point other than those of corners and edges that they share by index.
+/// Whether the triangles have a common point other than those of corners and edges that they share
+/// by index.
 pub(super) fn intersect(s: &Corners, t: &Corners) -> bool {
     let of_t = sides(t, s);
     if one_sided(of_t) {
         return false;
     }
-    // A shared corner is in the plane, so that only triangles without one can be one-sided from `t`.
+    // A shared corner is in the plane, so that only triangles without one can be one-sided from
+    // `t`.
     let shared = s.iter().filter(|(i, _)| t.iter().any(|(j, _)| i == j)).count();
     let in_plane = of_t == [0.0; 3];
     match shared {
@@ -47,8 +50,8 @@ pub(super) fn intersect(s: &Corners, t: &Corners) -> bool {
     }
 }
 
-/// The side of `plane` of each corner of `of`. A shared corner is in the plane, which exact arithmetic would find only with
-/// its slowest method.
+/// The side of `plane` of each corner of `of`. A shared corner is in the plane, which exact
+/// arithmetic would find only with its slowest method.
 fn sides(of: &Corners, plane: &Corners) -> [f64; 3] {
     of.map(|(i, p)| if plane.iter().any(|(j, _)| i == *j) { 0.0 } else { side(plane, p) })
 }
@@ -119,7 +122,8 @@ fn counter_clockwise(t: &Corners, flat: &impl Fn(Point3) -> Coord<f64>) -> [Coor
     if orient2d(a, b, c) < 0.0 { [a, c, b] } else { [a, b, c] }
 }
 
-/// Whether coplanar triangles overlap: convex shapes are disjoint if and only if an edge of one of them separates them.
+/// Whether coplanar triangles overlap: convex shapes are disjoint if and only if an edge of one of
+/// them separates them.
 fn overlap_in_plane(s: &Corners, t: &Corners) -> bool {
     let flat = projection(s);
     let (a, b) = (counter_clockwise(s, &flat), counter_clockwise(t, &flat));

@@ -1,4 +1,5 @@
-//! Manifold vertices: the facets around each vertex form a single fan, so that its link is connected.
+//! Manifold vertices: the facets around each vertex form a single fan, so that its link is
+//! connected.
 
 use super::fault::{Fault, place};
 use super::occurrences::Occurrences;

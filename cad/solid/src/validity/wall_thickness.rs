@@ -82,7 +82,8 @@ impl Ray {
     fn nearest_mm(&self, mesh: &Mesh, bvh: &Bvh, near: &[usize]) -> f64 {
         let mut nearest = f64::INFINITY;
         bvh.slots_overlapping(&self.bounds, near, |slot| {
-            // The starting facet faces back along the ray (-1); the other side of a wall faces ahead.
+            // The starting facet faces back along the ray (-1); the other side of a wall faces
+            // ahead.
             let normal = bvh.plane(slot).normal;
             if self.along.dot(&normal) <= 0.0 {
                 return;

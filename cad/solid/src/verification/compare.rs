@@ -33,7 +33,8 @@ pub struct Verification {
     pub bounds_mm: f64,
     /// Largest such difference that the chord tolerance allows, mm.
     pub bounds_limit_mm: f64,
-    /// Largest distance from a vertex of our mesh to the kernel's surface, and from one of the kernel to ours, mm.
+    /// Largest distance from a vertex of our mesh to the kernel's surface, and from one of the
+    /// kernel to ours, mm.
     pub distance_mm: [f64; 2],
     /// Largest such distances that the chord tolerance allows, mm.
     pub distance_limit_mm: [f64; 2],
@@ -136,7 +137,8 @@ const OURS: &str = "pinswitch";
 /// Rebuilds `solid` with `kernel` and compares its mesh with `mesh`, both within `tolerance`.
 ///
 /// # Errors
-/// [`VerificationError`] if the kernel refuses the solid, or if the meshes differ by more than the chord tolerance allows.
+/// [`VerificationError`] if the kernel refuses the solid, or if the meshes differ by more than the
+/// chord tolerance allows.
 pub fn verify(
     solid: &Solid,
     mesh: &Mesh,

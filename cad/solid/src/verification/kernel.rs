@@ -19,8 +19,8 @@ type Tessellate = fn(&Solid, ChordTolerance) -> Result<Mesh, KernelError>;
 
 /// A geometry kernel that builds and tessellates solids independently of this crate.
 ///
-/// Its curves must be within the chord tolerance of the exact ones where it measures them: in the middle fifth of each
-/// chord. Its vertices must be on the exact surface.
+/// Its curves must be within the chord tolerance of the exact ones where it measures them: in the
+/// middle fifth of each chord. Its vertices must be on the exact surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Kernel {
     name: &'static str,

@@ -1,32 +1,40 @@
 //! How far two meshes of one solid may differ, from the chord tolerance alone.
 //!
-//! Let `e` be the chord tolerance. Our mesh is within `e` of every curve. The kernel inscribes its chords, and measures
-//! their sag in the middle fifth of a chord, where it is at least 96 % of the largest: its mesh is within `s = e/0.96`.
-//! The limits follow wall by wall, with `θ` the angle of an arc, `L` the length of an edge and `h` the slant height.
+//! Let `e` be the chord tolerance. Our mesh is within `e` of every curve. The kernel inscribes its
+//! chords, and measures their sag in the middle fifth of a chord, where it is at least 96 % of the
+//! largest: its mesh is within `s = e/0.96`. The limits follow wall by wall, with `θ` the angle of
+//! an arc, `L` the length of an edge and `h` the slant height.
 //!
-//! - *Volume.* Ours deviates by at most [`Solid::volume_bound_mm3`]. A curved wall of the kernel is off by at most `s` over
-//!   its area `L h`. Where a wall is twisted, its triangles are off the ruled surface by `e` in the mean, too.
-//! - *Area of upright walls.* A chord of half angle `t` has a sag of `r (1 - cos t)`, and is shorter than its arc by
-//!   `2 r (t - sin t) <= 2 t r (1 - cos t)`. So the length of an inscribed arc is short by at most `s θ`. Our vertices are
-//!   outside of the arc by at most `e`, and a curve outside of a convex one at that distance is longer by at most `e θ`.
-//! - *Area of cones.* The slant height of a piece is short, too, by at most the same share of the area.
-//! - *Area next to the edges.* Where rows of the kernel's triangles do not match the chords of an edge, a triangle on a
-//!   chord is higher by at most twice the sag: `s L` over an edge.
-//! - *Area of twisted walls.* On a piece between edge vectors `u` and `v`, `p` and `q` long, with a ruling `c`, the normal of
-//!   the ruled surface is linear: `N = (1 - t) u×c + t v×c + w u×v`. Two triangles have half the sum of its lengths in two
-//!   corners, the surface the mean of its length. Both are at least `|M|`, the length in the middle, and at most
-//!   `|M| + m²/(2 |M|)`, where `m` is the largest deviation across `M`: at most `(p q sin d + min(p, q) d h)/2` for edges
-//!   that are turned by `d`. `|M|` is at least the mean length times the height.
-//! - *Area of caps.* Ours keep it, but for arcs that are drawn as chords. The kernel's are off by at most `s` over their arcs.
+//! - *Volume.* Ours deviates by at most [`Solid::volume_bound_mm3`]. A curved wall of the kernel is
+//!   off by at most `s` over its area `L h`. Where a wall is twisted, its triangles are off the
+//!   ruled surface by `e` in the mean, too.
+//! - *Area of upright walls.* A chord of half angle `t` has a sag of `r (1 - cos t)`, and is
+//!   shorter than its arc by `2 r (t - sin t) <= 2 t r (1 - cos t)`. So the length of an inscribed
+//!   arc is short by at most `s θ`. Our vertices are outside of the arc by at most `e`, and a curve
+//!   outside of a convex one at that distance is longer by at most `e θ`.
+//! - *Area of cones.* The slant height of a piece is short, too, by at most the same share of the
+//!   area.
+//! - *Area next to the edges.* Where rows of the kernel's triangles do not match the chords of an
+//!   edge, a triangle on a chord is higher by at most twice the sag: `s L` over an edge.
+//! - *Area of twisted walls.* On a piece between edge vectors `u` and `v`, `p` and `q` long, with a
+//!   ruling `c`, the normal of the ruled surface is linear: `N = (1 - t) u×c + t v×c + w u×v`. Two
+//!   triangles have half the sum of its lengths in two corners, the surface the mean of its length.
+//!   Both are at least `|M|`, the length in the middle, and at most `|M| + m²/(2 |M|)`, where `m`
+//!   is the largest deviation across `M`: at most `(p q sin d + min(p, q) d h)/2` for edges that
+//!   are turned by `d`. `|M|` is at least the mean length times the height.
+//! - *Area of caps.* Ours keep it, but for arcs that are drawn as chords. The kernel's are off by
+//!   at most `s` over their arcs.
 //! - *Bounding box, and vertices of ours from the kernel's surface.* Both are on edges: `e + s`.
-//! - *Vertices of the kernel from our surface.* They are on the exact surface: `e`, and on a twisted wall `3 e` more: the
-//!   triangles are off by three times their mean in the middle of a piece.
+//! - *Vertices of the kernel from our surface.* They are on the exact surface: `e`, and on a
+//!   twisted wall `3 e` more: the triangles are off by three times their mean in the middle of a
+//!   piece.
 
 use crate::mesh::Mesh;
 use crate::profile::{ChordTolerance, Contour, Edge, FLAT_MM};
 use crate::solid::Solid;
 
-/// Share of the largest sag of a chord that the kernel measures at least: `4 x (1 - x)` at `x` = 0.4.
+/// Share of the largest sag of a chord that the kernel measures at least: `4 x (1 - x)` at `x` =
+/// 0.4.
 const MEASURED_SAG: f64 = 0.96;
 /// Rounding of a coordinate in single precision, and of the kernel's own computations, mm.
 const ROUNDING_MM: f64 = 1e-5;
@@ -153,7 +161,8 @@ fn arcs_mm(contour: &Contour) -> f64 {
     (0..contour.edges().len()).filter(is_arc).map(|i| contour.edge_mm(i)).sum()
 }
 
-/// Half of the perimeter: the area of a triangle changes by at most this times the distance that its corners move.
+/// Half of the perimeter: the area of a triangle changes by at most this times the distance that
+/// its corners move.
 fn half_perimeter([a, b, c]: [crate::mesh::Point3; 3]) -> f64 {
     ((b - a).norm() + (c - b).norm() + (a - c).norm()) / 2.0
 }

@@ -1,9 +1,10 @@
 //! Verification of meshes by a second geometry kernel.
 //!
-//! A second kernel builds the same exact solid with its own curves, surfaces and tessellation. [`verify`] compares its mesh
-//! with ours: both must be closed, and their volumes, areas, bounding boxes and surfaces must agree within limits that
-//! follow from the chord tolerance (`cad/doc/meshes.md`, "Second kernel"). It protects against errors in this crate's
-//! flattening, walls and caps, which an examination of the mesh alone cannot detect.
+//! A second kernel builds the same exact solid with its own curves, surfaces and tessellation.
+//! [`verify`] compares its mesh with ours: both must be closed, and their volumes, areas, bounding
+//! boxes and surfaces must agree within limits that follow from the chord tolerance
+//! (`cad/doc/meshes.md`, "Second kernel"). It protects against errors in this crate's flattening,
+//! walls and caps, which an examination of the mesh alone cannot detect.
 //!
 //! With the feature `truck`, [`second_kernel`] is truck-modeling.
 //!
@@ -32,7 +33,8 @@ mod truck;
 pub use compare::{Quantity, Verification, VerificationError, verify};
 pub use kernel::{Kernel, KernelError};
 
-/// Returns the second kernel of this build: truck-modeling with the feature `truck`, otherwise none.
+/// Returns the second kernel of this build: truck-modeling with the feature `truck`, otherwise
+/// none.
 pub const fn second_kernel() -> Option<Kernel> {
     #[cfg(feature = "truck")]
     return Some(Kernel::new("truck-modeling", truck::mesh));

@@ -70,8 +70,9 @@ fn a_moved_vertex_is_refused() {
         let mesh = washer().mesh(tolerance()).unwrap();
         for vertex in [3, mesh.positions.len() / 2 + 5, mesh.positions.len() - 7] {
             let p = mesh.positions[vertex];
-            // A vertex may move along its wall. Across it, a right one is within the tolerance on the outer side, so that
-            // three times the tolerance may still be within both tolerances on the inner side.
+            // A vertex may move along its wall. Across it, a right one is within the tolerance on
+            // the outer side, so that three times the tolerance may still be within both tolerances
+            // on the inner side.
             let radial = Vector3::new(p.x, p.y, 0.0).normalize();
             for by in [radial, -radial, Vector3::z(), -Vector3::z()] {
                 let mut moved = mesh.clone();

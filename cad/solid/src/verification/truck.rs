@@ -1,7 +1,7 @@
 //! The exact solid in truck-modeling, and its tessellation by truck-meshalgo.
 //!
-//! Arcs are cut to at most 45 degrees: truck takes the extent of a plane from control points, and longer arcs give wrong
-//! caps without an error (cad/doc/meshes.md, "Second kernel").
+//! Arcs are cut to at most 45 degrees: truck takes the extent of a plane from control points, and
+//! longer arcs give wrong caps without an error (cad/doc/meshes.md, "Second kernel").
 
 use truck_meshalgo::prelude::{
     Faces, MeshableShape, MeshedShape, OptimizingFilter, PolygonMesh, StandardAttributes,
@@ -12,9 +12,14 @@ use super::kernel::KernelError;
 use crate::mesh::{Mesh, Point3};
 use crate::profile::{ChordTolerance, Contour, Edge, Point2};
 use crate::solid::{Facing, Solid};
+use crate::validity::is_closed;
 
 /// Longest arc of an edge, radians.
 const LONGEST_ARC_RAD: f64 = std::f64::consts::FRAC_PI_4;
+
+/// Shares of the chord tolerance that are tried until the mesh is closed: at a coarse one, truck
+/// may fold the facets of a narrow face over each other.
+const TOLERANCE_SHARES: [f64; 3] = [1.0, 0.4, 0.1];
 
 /// Builds the solid in truck and tessellates it.
 ///
@@ -23,17 +28,24 @@ const LONGEST_ARC_RAD: f64 = std::f64::consts::FRAC_PI_4;
 pub(super) fn mesh(solid: &Solid, tolerance: ChordTolerance) -> Result<Mesh, KernelError> {
     let error = |problem: String| KernelError { kernel: "truck-modeling", problem };
     let exact = truck_solid(solid, tolerance).map_err(|e| error(e.to_string()))?;
-    let meshed = exact.triangulation(tolerance.mm());
-    let faces = meshed.boundaries().iter().flat_map(|shell| shell.face_iter());
-    let missing = faces.filter(|face| face.surface().is_none()).count();
-    if missing > 0 {
-        return Err(error(format!("{missing} faces cannot be tessellated")));
+    let mut mesh = Mesh::default();
+    for share in TOLERANCE_SHARES {
+        let meshed = exact.triangulation(share * tolerance.mm());
+        let faces = meshed.boundaries().iter().flat_map(|shell| shell.face_iter());
+        let missing = faces.filter(|face| face.surface().is_none()).count();
+        if missing > 0 {
+            return Err(error(format!("{missing} faces cannot be tessellated")));
+        }
+        mesh = welded(&meshed.to_polygon());
+        if is_closed(&mesh) {
+            break;
+        }
     }
-    Ok(welded(&meshed.to_polygon()))
+    Ok(mesh)
 }
 
-/// The exact solid: planes, and ruled surfaces between arcs. Twisted walls are cut into as many faces as our mesh has
-/// pieces: truck tessellates a face without regard to its twist.
+/// The exact solid: planes, and ruled surfaces between arcs. Twisted walls are cut into as many
+/// faces as our mesh has pieces: truck tessellates a face without regard to its twist.
 fn truck_solid(
     solid: &Solid,
     tolerance: ChordTolerance,
@@ -52,7 +64,8 @@ fn truck_solid(
         shell.extend(builder::try_wire_homotopy(&wires[lower], &wires[upper])?);
     }
     for (facing, members) in solid.caps() {
-        // Seen from the side that the cap faces, outlines run counter-clockwise and holes clockwise.
+        // Seen from the side that the cap faces, outlines run counter-clockwise and holes
+        // clockwise.
         let oriented = |(i, ring): (usize, usize)| {
             let is_counter_clockwise = rings[ring].0.area_mm2() > 0.0;
             let keeps = is_counter_clockwise == ((i == 0) == (facing == Facing::Up));
@@ -105,7 +118,8 @@ fn wire(contour: &Contour, cuts: &[usize], z_mm: f64) -> Wire {
         .collect()
 }
 
-/// The polygon with equal positions merged. Merging normals and texture coordinates, too, takes quadratic time.
+/// The polygon with equal positions merged. Merging normals and texture coordinates, too, takes
+/// quadratic time.
 fn welded(polygon: &PolygonMesh) -> Mesh {
     let triangles: Vec<[usize; 3]> = polygon.faces().triangle_iter().map(|t| t.map(|v| v.pos)).collect();
     let attributes =

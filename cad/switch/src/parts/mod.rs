@@ -157,5 +157,3 @@ fn holes_at(radius_mm: f64, angles_rad: &[f64], hole_radius_mm: f64) -> Vec<Cont
 mod assembly_tests;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod zz_study;

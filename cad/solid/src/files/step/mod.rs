@@ -1,7 +1,8 @@
-//! STEP (AP214): one exact solid per part with planes, cylinders, cones, lines and circles, and the assembly.
+//! STEP (AP214): one exact solid per part with planes, cylinders, cones, lines and circles, and the
+//! assembly.
 //!
-//! Libraries write arcs as B-splines and add a time stamp (cad/doc/meshes.md, "Files"). A solid of contours at heights needs
-//! only a dozen kinds of entity.
+//! Libraries write arcs as B-splines and add a time stamp (cad/doc/meshes.md, "Files"). A solid of
+//! contours at heights needs only a dozen kinds of entity.
 
 mod shell;
 mod surface;

@@ -28,7 +28,8 @@ pub(super) fn manifold_solid(out: &mut StepWriter, name: &str, solid: &Solid) ->
             .iter()
             .enumerate()
             .map(|(i, ring)| {
-                // Seen from the side that the cap faces, outlines run counter-clockwise and holes clockwise.
+                // Seen from the side that the cap faces, outlines run counter-clockwise and holes
+                // clockwise.
                 let counter_clockwise = contours[*ring].0.area_mm2() > 0.0;
                 let along = counter_clockwise == ((i == 0) == (facing == Facing::Up));
                 let kind = if i == 0 { "FACE_OUTER_BOUND" } else { "FACE_BOUND" };

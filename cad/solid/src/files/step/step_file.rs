@@ -1,9 +1,9 @@
-//! A reader of the STEP files that this crate writes, for tests only: it computes topology, geometry and volume from
-//! the text alone.
+//! A reader of the STEP files that this crate writes, for tests only: it computes topology,
+//! geometry and volume from the text alone.
 //!
-//! It depends on the standard library only, so that it shares no code with the writer, and an error there cannot cancel
-//! itself here. `tests/harness` includes this file, too. It supports the kinds of entity that the writer uses, walls
-//! about vertical axes, and refuses everything else.
+//! It depends on the standard library only, so that it shares no code with the writer, and an error
+//! there cannot cancel itself here. `tests/harness` includes this file, too. It supports the kinds
+//! of entity that the writer uses, walls about vertical axes, and refuses everything else.
 
 use std::collections::BTreeMap;
 
@@ -132,7 +132,8 @@ impl StepFile {
         }
     }
 
-    /// The solids of the file, each of them checked: a closed, oriented shell with its edges on its faces.
+    /// The solids of the file, each of them checked: a closed, oriented shell with its edges on its
+    /// faces.
     pub(crate) fn solids(&self) -> Result<Vec<StepSolid>, String> {
         self.of_type("MANIFOLD_SOLID_BREP").map(|(_, p)| self.solid(p)).collect()
     }
@@ -320,7 +321,8 @@ impl StepFile {
     }
 
     fn spline(&self, entity: &Entity, with_knots: &[Value]) -> Result<Spline, String> {
-        // A rational surface is a complex entity; a plain one has all parameters in one list, after its name.
+        // A rational surface is a complex entity; a plain one has all parameters in one list, after
+        // its name.
         let (shape, knots) = match entity.get("B_SPLINE_SURFACE") {
             Some(shape) => (&shape[..3], &with_knots[..4]),
             None => (&with_knots[1..4], &with_knots[8..12]),
@@ -370,9 +372,11 @@ impl StepFile {
     }
 }
 
-/// The integral of `z n_z` over a face, with `n` its outward normal: summed over all faces, the volume of the solid.
+/// The integral of `z n_z` over a face, with `n` its outward normal: summed over all faces, the
+/// volume of the solid.
 ///
-/// Checks that the loops are on the surface and run counter-clockwise about the outward normal, holes clockwise.
+/// Checks that the loops are on the surface and run counter-clockwise about the outward normal,
+/// holes clockwise.
 fn face_integral(surface: &Surface, sense: f64, bounds: &[Vec<LoopEdge>]) -> Result<f64, String> {
     let samples = |edge: &LoopEdge| (0..5).map(|k| edge.point(f64::from(k) / 4.0)).collect::<Vec<_>>();
     let mut points = bounds.iter().flatten().flat_map(samples);
@@ -413,7 +417,8 @@ fn polygon_integral(edges: &[LoopEdge]) -> Result<f64, String> {
     Ok(edges.iter().map(triangle).sum())
 }
 
-/// The integral over a cone between two arcs: `-sweep ∫ z r dr`, a polynomial of degree two for Simpson's rule.
+/// The integral over a cone between two arcs: `-sweep ∫ z r dr`, a polynomial of degree two for
+/// Simpson's rule.
 fn cone_integral(outline: &[LoopEdge]) -> Result<f64, String> {
     let arcs: Vec<LoopArc> = outline.iter().filter_map(|e| e.arc).collect();
     let [a, b] = arcs[..] else { return Err("a cone without two arcs is not supported".to_owned()) };
@@ -465,7 +470,8 @@ impl LoopEdge {
 }
 
 impl Surface {
-    /// Whether a point is on the surface. A spline is compared with its loop instead ([`Spline::check_boundary`]).
+    /// Whether a point is on the surface. A spline is compared with its loop instead
+    /// ([`Spline::check_boundary`]).
     fn contains(&self, p: Vec3) -> bool {
         let off = match self {
             Self::Plane(frame) => dot(minus(p, frame.origin), frame.z),

@@ -1,4 +1,5 @@
-//! Curves and surfaces: lines, circles, planes, cylinders, cones, and ruled B-spline surfaces for twisted walls.
+//! Curves and surfaces: lines, circles, planes, cylinders, cones, and ruled B-spline surfaces for
+//! twisted walls.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,9 +9,10 @@ use crate::profile::{Arc, Contour, Edge};
 
 /// Difference of lengths, in mm, and of angles, in rad, up to which they are equal.
 const SAME: f64 = 1e-9;
-/// Largest angle of a rational piece of a wall between arcs, rad. A wall joins its arcs at equal shares of their angles, a
-/// rational piece at equal parameters, which agree only at its ends. With pieces of a quarter turn, the relative error of
-/// the volume of a chamfered part was 5e-5; it falls with the square of the angle.
+/// Largest angle of a rational piece of a wall between arcs, rad. A wall joins its arcs at equal
+/// shares of their angles, a rational piece at equal parameters, which agree only at its ends. With
+/// pieces of a quarter turn, the relative error of the volume of a chamfered part was 5e-5; it
+/// falls with the square of the angle.
 const LARGEST_PIECE_RAD: f64 = PI / 32.0;
 
 pub(super) fn line(out: &mut StepWriter, from: Point3, to: Point3) -> Id {
@@ -30,14 +32,15 @@ pub(super) fn circle(out: &mut StepWriter, centre: Point3, radius_mm: f64) -> Id
 /// Writes a plane through `at` with its normal out of the material.
 pub(super) fn face_surface(out: &mut StepWriter, at: Point3, normal: Vector3) -> Id {
     let normal = normal.normalize();
-    // Any direction in the plane: the cross product with an axis that is far from parallel to the normal.
+    // Any direction in the plane: the cross product with an axis that is far from parallel to the
+    // normal.
     let across = if normal.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let frame = out.placement(at, normal, normal.cross(&across).normalize());
     out.add(&format!("PLANE('',{frame})"))
 }
 
-/// Writes the surface of edge `i` of a wall between two contours at heights; returns it and whether its normal points out of
-/// the material.
+/// Writes the surface of edge `i` of a wall between two contours at heights; returns it and whether
+/// its normal points out of the material.
 pub(super) fn wall_surface(
     out: &mut StepWriter,
     [(lower, low), (upper, high)]: [(&Contour, f64); 2],
@@ -100,7 +103,8 @@ fn arc_poles(arc: &Arc, z_mm: f64, pieces: usize) -> Vec<(Point3, f64)> {
         .collect()
 }
 
-/// Writes the ruled surface between two arcs: rational, quadratic along the arcs, with exact arcs as edges.
+/// Writes the ruled surface between two arcs: rational, quadratic along the arcs, with exact arcs
+/// as edges.
 fn ruled_arcs(out: &mut StepWriter, (a, low): (&Arc, f64), (b, high): (&Arc, f64)) -> Id {
     let largest = a.sweep_rad.abs().max(b.sweep_rad.abs());
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -128,8 +132,8 @@ fn ruled_arcs(out: &mut StepWriter, (a, low): (&Arc, f64), (b, high): (&Arc, f64
     ))
 }
 
-/// Writes the ruled surface between two lines that are not parallel; corners counter-clockwise from outside, lower ones
-/// first.
+/// Writes the ruled surface between two lines that are not parallel; corners counter-clockwise from
+/// outside, lower ones first.
 fn bilinear(out: &mut StepWriter, corners: [Point3; 4]) -> Id {
     let [a, b, c, d] = corners.map(|p| out.point(p));
     out.add(&format!(

@@ -6,8 +6,8 @@ use crate::pose::Pose;
 use crate::profile::{Contour, Pen, Point2, polar};
 use crate::solid::Solid;
 
-/// Largest relative error of the volume with twisted walls. Such a wall joins its arcs at equal angles, its spline at
-/// equal parameters, which differ inside of each piece of π/32 (surface.rs).
+/// Largest relative error of the volume with twisted walls. Such a wall joins its arcs at equal
+/// angles, its spline at equal parameters, which differ inside of each piece of π/32 (surface.rs).
 const TWISTED: f64 = 4e-6;
 
 /// A plate with a hole.
@@ -79,7 +79,8 @@ fn assemblies_place_their_parts() {
     assert_eq!(frames, [upright, ([0.0, 0.0, 7.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0])]);
 }
 
-/// The reader of these tests refuses what the writer must not write: without that, it would prove nothing.
+/// The reader of these tests refuses what the writer must not write: without that, it would prove
+/// nothing.
 #[test]
 fn damaged_files_are_refused() {
     let whole = text(&plate(0.4));

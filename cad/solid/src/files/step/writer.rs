@@ -85,8 +85,8 @@ pub(super) fn real(value: f64) -> String {
     }
 }
 
-/// The content of a string: quotes and backslashes doubled, other than printable ASCII as `\X2\` and `\X4\` with the
-/// hexadecimal code point (ISO 10303-21, 6.4.3), without control characters.
+/// The content of a string: quotes and backslashes doubled, other than printable ASCII as `\X2\`
+/// and `\X4\` with the hexadecimal code point (ISO 10303-21, 6.4.3), without control characters.
 pub(super) fn text(value: &str) -> String {
     let mut text = String::new();
     for c in value.chars().filter(|c| !c.is_control()) {

@@ -76,8 +76,8 @@ impl Body {
         Ok(())
     }
 
-    /// The error of the facet that follows `read` valid ones. Every facet has the same number of lines, blank ones not
-    /// counted, which gives its line.
+    /// The error of the facet that follows `read` valid ones. Every facet has the same number of
+    /// lines, blank ones not counted, which gives its line.
     fn error_after(&self, read: usize, error: &std::io::Error) -> StlError {
         let lines = self.text.lines().zip(self.first_line..);
         let mut rest = lines.skip(1).filter(|(line, _)| !line.trim().is_empty()).skip(FACET.len() * read);

@@ -14,8 +14,8 @@ pub(super) const RECORDS_PER_READ: usize = 1 << 16;
 
 /// Reads a binary STL of `length` bytes.
 ///
-/// Corners are merged in two steps: first within some thousand facets, on several threads with tables that fit into the
-/// processor's caches, then the remaining sixth of them in one table.
+/// Corners are merged in two steps: first within some thousand facets, on several threads with
+/// tables that fit into the processor's caches, then the remaining sixth of them in one table.
 pub(super) fn read_binary(source: &mut impl Read, length: u64) -> std::io::Result<Facets> {
     let mut header = [0; HEADER];
     source.read_exact(&mut header)?;

@@ -49,7 +49,8 @@ impl Facets {
         self.contrary_normals += usize::from((b - a).cross(&(c - a)).dot(&stored) < 0.0);
     }
 
-    /// Appends facets that come later in the file. Vertices get the numbers that adding facet by facet gives them.
+    /// Appends facets that come later in the file. Vertices get the numbers that adding facet by
+    /// facet gives them.
     pub(super) fn append(&mut self, later: Self) {
         if self.triangles.is_empty() {
             *self = later;

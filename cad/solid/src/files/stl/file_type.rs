@@ -35,8 +35,8 @@ const WEAK_SIGNATURES: [(&[u8], &str); 2] = [(b"MZ", "a program"), (b"BM", "a BM
 
 /// Returns the name of the format of a file that begins with `head`, if that cannot be an STL.
 ///
-/// A binary STL begins with 80 bytes of any content. Where the file is as long as a binary header announces (`fits`), only
-/// signatures count that no program writes there.
+/// A binary STL begins with 80 bytes of any content. Where the file is as long as a binary header
+/// announces (`fits`), only signatures count that no program writes there.
 pub(super) fn other_format(head: &[u8], fits: bool) -> Option<&'static str> {
     let among = |list: &[(&[u8], &'static str)]| {
         list.iter().find(|(signature, _)| head.starts_with(signature)).map(|(_, name)| *name)
@@ -51,7 +51,8 @@ pub(super) fn other_format(head: &[u8], fits: bool) -> Option<&'static str> {
         // The head may end within a character.
         head.get(..head.len().saturating_sub(3)).and_then(|whole| std::str::from_utf8(whole).ok())
     })?;
-    // A binary STL has a zero in its count of facets unless it is longer than any file that is read.
+    // A binary STL has a zero in its count of facets unless it is longer than any file that is
+    // read.
     if text.contains('\0') {
         return None;
     }

@@ -8,7 +8,8 @@ use super::error::StlError;
 use super::facets::StlFile;
 use super::file_type::other_format;
 
-/// Reads a binary or ASCII STL. Corners with identical coordinates become one vertex; nothing is repaired.
+/// Reads a binary or ASCII STL. Corners with identical coordinates become one vertex; nothing is
+/// repaired.
 ///
 /// ```
 /// use std::io::Cursor;
@@ -70,8 +71,8 @@ impl Head {
         Some((announced, HEADER as u64 + RECORD as u64 * u64::from(announced)))
     }
 
-    /// Whether the file has room for all facets that a binary header announces. Some programs append bytes, which readers
-    /// ignore.
+    /// Whether the file has room for all facets that a binary header announces. Some programs
+    /// append bytes, which readers ignore.
     fn fits(&self) -> bool {
         self.announced().is_some_and(|(_, expected)| expected <= self.length)
     }
@@ -80,7 +81,8 @@ impl Head {
         self.announced().map_or(0, |(_, expected)| self.length.saturating_sub(expected))
     }
 
-    /// Refuses a binary file that is shorter than its header announces: it would pass for a smaller part.
+    /// Refuses a binary file that is shorter than its header announces: it would pass for a smaller
+    /// part.
     fn check_length(&self) -> Result<(), StlError> {
         match self.announced() {
             _ if is_ascii(&self.bytes) || self.fits() => Ok(()),

@@ -11,8 +11,9 @@ use crate::mesh::Point3;
 pub(super) struct VertexMap {
     /// Coordinates of each vertex, as bits: a NaN equals itself.
     vertices: Vec<[u32; 3]>,
-    /// Indices of the vertices by a hash of their coordinates. The table does not repeat the coordinates, so that it fits
-    /// into the processor's caches: most vertices of a file occur again soon after their first corner.
+    /// Indices of the vertices by a hash of their coordinates. The table does not repeat the
+    /// coordinates, so that it fits into the processor's caches: most vertices of a file occur
+    /// again soon after their first corner.
     indices: HashTable<u32>,
     hasher: DefaultHashBuilder,
 }

@@ -42,7 +42,8 @@ pub(super) struct Build {
 }
 
 impl Build {
-    /// Resolves every item of the model in `main_part`; appends the faults of items that cannot be built.
+    /// Resolves every item of the model in `main_part`; appends the faults of items that cannot be
+    /// built.
     pub(super) fn of_package(
         models: &BTreeMap<String, Model>,
         main_part: &str,
@@ -122,7 +123,8 @@ impl Traversal<'_> {
         }
     }
 
-    /// Reports an item below or next to the plate. Slicers centre an item that reaches over an edge.
+    /// Reports an item below or next to the plate. Slicers centre an item that reaches over an
+    /// edge.
     fn check_bounds(&mut self, id: &str) {
         let is_outside =
             |(low, high): &(Point3, Point3)| low.z < -ROUNDING_MM || high.x < 0.0 || high.y < 0.0;

@@ -1,4 +1,5 @@
-//! Names of the core specification: namespaces, parts, elements with their attributes, metadata, units.
+//! Names of the core specification: namespaces, parts, elements with their attributes, metadata,
+//! units.
 
 use crate::validity::Fault;
 
@@ -61,7 +62,8 @@ const UNITS: [(&str, f64); 6] = [
     ("foot", 304.8),
     ("meter", 1e3),
 ];
-/// Namespaces of extensions that leave meshes unchanged or that the reader supports: materials, production, triangle sets.
+/// Namespaces of extensions that leave meshes unchanged or that the reader supports: materials,
+/// production, triangle sets.
 const EXTENSIONS: [&str; 3] = [
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
     PRODUCTION,

@@ -18,7 +18,8 @@ use crate::validity::Fault;
 pub struct PackagedMesh {
     /// Name of its object, or `object ID`.
     pub name: String,
-    /// Whether it is printed as a solid: other meshes are supports and surfaces, which need not be closed.
+    /// Whether it is printed as a solid: other meshes are supports and surfaces, which need not be
+    /// closed.
     pub is_solid: bool,
     /// The mesh, in millimetres.
     pub mesh: Mesh,

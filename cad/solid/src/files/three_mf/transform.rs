@@ -14,7 +14,8 @@ impl Transform {
     pub(super) const IDENTITY: Self =
         Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]]);
 
-    /// Parses twelve finite numbers, the translation in units of `unit_mm`; `None` for any other text.
+    /// Parses twelve finite numbers, the translation in units of `unit_mm`; `None` for any other
+    /// text.
     pub(super) fn parse(text: &str, unit_mm: f64) -> Option<Self> {
         let numbers: Vec<f64> = text.split_whitespace().filter_map(|v| v.parse().ok()).collect();
         if numbers.len() != 12 || !numbers.iter().all(|v| v.is_finite()) {

@@ -67,7 +67,8 @@ const THUMBNAIL_TYPE: &str =
 /// Type of the relationship to an attachment, which printers ignore.
 const ATTACHMENT_TYPE: &str = "urn:pinswitch:attachment:1";
 
-/// Returns the bytes of a 3MF file with `objects` in their places. The same input gives the same bytes.
+/// Returns the bytes of a 3MF file with `objects` in their places. The same input gives the same
+/// bytes.
 ///
 /// # Errors
 /// [`ThreeMfError`] if the archive cannot be written.
@@ -179,7 +180,8 @@ fn model(objects: &[Object<'_>], package: &Package) -> String {
             escaped(&object.part_number)
         );
         for p in &object.mesh.positions {
-            // Single precision as in the STL, in the fewest digits that read back to the same value.
+            // Single precision as in the STL, in the fewest digits that read back to the same
+            // value.
             let _ =
                 writeln!(text, r#"<vertex x="{}" y="{}" z="{}"/>"#, single(p.x), single(p.y), single(p.z));
         }

@@ -52,8 +52,8 @@ impl FormulaError {
         self.to_diagnostic_at(location)
     }
 
-    /// Returns the diagnostic for a formula that is the value of a TOML string; `string` are the bytes of the string in
-    /// `text`, with its quotes.
+    /// Returns the diagnostic for a formula that is the value of a TOML string; `string` are the
+    /// bytes of the string in `text`, with its quotes.
     pub fn to_diagnostic_in_toml(&self, file: &str, text: &str, string: Range<usize>) -> Diagnostic {
         self.to_diagnostic_at(Location::in_text(file, text, span_in_toml(text, string, &self.span)))
     }
@@ -97,8 +97,8 @@ impl NameError {
         self
     }
 
-    /// A name that does not exist, with the nearest of the `known` ones, or all of them; `kind` is what is named, such as
-    /// `variable`.
+    /// A name that does not exist, with the nearest of the `known` ones, or all of them; `kind` is
+    /// what is named, such as `variable`.
     pub fn unknown<'a>(kind: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
         let known: Vec<&str> = known.into_iter().collect();
         let problem = format!("unknown {kind} '{}'", excerpt(name, LONGEST_NAME));
@@ -124,7 +124,8 @@ impl fmt::Display for NameError {
 
 impl std::error::Error for NameError {}
 
-/// Bytes of `text` at which the bytes `span` of a TOML string's value are; the whole string if it has escapes.
+/// Bytes of `text` at which the bytes `span` of a TOML string's value are; the whole string if it
+/// has escapes.
 fn span_in_toml(text: &str, string: Range<usize>, span: &Range<usize>) -> Range<usize> {
     let raw = text.get(string.clone()).unwrap_or_default();
     if raw.starts_with('"') && raw.contains('\\') {

@@ -10,8 +10,8 @@ impl<N> Formula<N> {
 }
 
 impl<N> Condition<N> {
-    /// Returns its truth value; `None` where it depends on a value that is not a number. `read` gives the value of a name,
-    /// NaN where it has none.
+    /// Returns its truth value; `None` where it depends on a value that is not a number. `read`
+    /// gives the value of a name, NaN where it has none.
     pub fn truth(&self, read: impl Fn(&N) -> f64) -> Option<bool> {
         self.root.truth(&read)
     }
@@ -20,10 +20,12 @@ impl<N> Condition<N> {
 impl<N> Node<N> {
     /// Returns its value if it contains no names.
     pub fn constant(&self) -> Option<f64> {
-        self.names().is_empty().then(|| self.value(&|_| f64::NAN))
+        let has_names = self.any(&|node| matches!(node.kind(), Kind::Name(_)));
+        (!has_names).then(|| self.value(&|_| f64::NAN))
     }
 
-    /// Returns its value as a number; a truth value counts as 1, its negation and an undecided one as 0.
+    /// Returns its value as a number; a truth value counts as 1, its negation and an undecided one
+    /// as 0.
     fn value<F: Fn(&N) -> f64>(&self, read: &F) -> f64 {
         match self.kind() {
             Kind::Number(value) => *value,
@@ -92,7 +94,8 @@ impl Operator {
         }
     }
 
-    /// Returns the result of a comparison; `None` of a value that is not a number, and of any other operator.
+    /// Returns the result of a comparison; `None` of a value that is not a number, and of any other
+    /// operator.
     fn truth(self, a: f64, b: f64) -> Option<bool> {
         let order = a.partial_cmp(&b)?;
         match self {

@@ -1,4 +1,5 @@
-//! Formulas and conditions: one small expression language for user-defined effects and for constraints of sweeps.
+//! Formulas and conditions: one small expression language for user-defined effects and for
+//! constraints of sweeps.
 //!
 //! A [`Formula`] evaluates to a number, a [`Condition`] to a truth value. Both consist of:
 //!
@@ -18,16 +19,18 @@
 //!
 //! Operators are listed with the strongest first; brackets override them.
 //!
-//! **Types.** Comparisons and logical operators give truth values. Arithmetic and functions take a truth value as 1 or 0,
-//! so that `k*(time > 0.5)` is a step. Nothing takes a number as a truth value: `a && 1` is an error at the `1`. A formula
-//! must be a number, and a condition a truth value.
+//! **Types.** Comparisons and logical operators give truth values. Arithmetic and functions take a
+//! truth value as 1 or 0, so that `k*(time > 0.5)` is a step. Nothing takes a number as a truth
+//! value: `a && 1` is an error at the `1`. A formula must be a number, and a condition a truth
+//! value.
 //!
-//! **Undefined values.** A value that does not exist is not a number (NaN). A comparison with it is neither true nor false,
-//! and a [`Condition`] that depends on it is undecided: `threshold_n > 20 || 1 < 2` is true without a threshold,
-//! `threshold_n > 20` and `!(threshold_n > 20)` are undecided. In arithmetic an undecided truth value counts as 0.
+//! **Undefined values.** A value that does not exist is not a number (NaN). A comparison with it is
+//! neither true nor false, and a [`Condition`] that depends on it is undecided: `threshold_n > 20
+//! || 1 < 2` is true without a threshold, `threshold_n > 20` and `!(threshold_n > 20)` are
+//! undecided. In arithmetic an undecided truth value counts as 0.
 //!
-//! **Bounds.** A formula has at most 1000 characters and at most 100 nested operations. Parsing and evaluation need
-//! neither more stack nor more time than these bounds allow, whatever the text.
+//! **Bounds.** A formula has at most 1000 characters and at most 100 nested operations. Parsing and
+//! evaluation need neither more stack nor more time than these bounds allow, whatever the text.
 //!
 //! ```
 //! use pinswitch_formula::{Formula, NameError};

@@ -5,8 +5,8 @@ use crate::tree::{FUNCTIONS, PAIRS};
 
 /// Returns whether a name cannot be a variable: a keyword, or a function.
 ///
-/// `round`, `floor` and `ceil` can be variables, too: files of effects may use these names since before the functions
-/// existed, and a bracket tells a function from a variable.
+/// `round`, `floor` and `ceil` can be variables, too: files of effects may use these names since
+/// before the functions existed, and a bracket tells a function from a variable.
 pub fn is_reserved(name: &str) -> bool {
     let is_keyword = KEYWORDS.iter().any(|(keyword, _)| *keyword == name);
     let is_function = is_function(name) && !["round", "floor", "ceil"].contains(&name);
@@ -18,7 +18,8 @@ pub(crate) fn is_function(name: &str) -> bool {
     FUNCTIONS.iter().any(|(known, _)| *known == name) || PAIRS.iter().any(|(known, _)| *known == name)
 }
 
-/// Returns the known name that is most like `name`, if one is: at most a third of the letters differ, or two.
+/// Returns the known name that is most like `name`, if one is: at most a third of the letters
+/// differ, or two.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let distances = known.into_iter().map(|k| (strsim::damerau_levenshtein(k, name), k));
     let (distance, near) = distances.min()?;

@@ -1,6 +1,7 @@
 //! A parser by precedence climbing.
 //!
-//! Crates that evaluate formulas do not keep the positions of operands, which checks of units and their errors need.
+//! Crates that evaluate formulas do not keep the positions of operands, which checks of units and
+//! their errors need.
 
 use std::ops::Range;
 

@@ -116,7 +116,8 @@ impl Function {
 
 /// A part of a formula. `N` is what the caller makes of a name.
 ///
-/// Two nodes are equal if they compute the same in the same way; where they are in their formulas does not matter.
+/// Two nodes are equal if they compute the same in the same way; where they are in their formulas
+/// does not matter.
 #[derive(Clone, Debug)]
 pub struct Node<N> {
     kind: Kind<N>,
@@ -194,39 +195,31 @@ impl<N> Node<N> {
         }
     }
 
-    /// Visits it and all its parts, in the order of the formula except for operators, which come before their operands.
-    pub fn visit<'a>(&'a self, visitor: &mut dyn FnMut(&'a Node<N>)) {
-        visitor(self);
-        self.kind.parts().for_each(|part| part.visit(visitor));
+    /// Returns whether it or one of its parts meets a condition.
+    pub fn any(&self, condition: &dyn Fn(&Node<N>) -> bool) -> bool {
+        condition(self) || self.kind.parts().any(|part| part.any(condition))
     }
 
     /// Returns the names, as often as they occur, in the order of the formula.
     pub fn names(&self) -> Vec<&N> {
-        let mut all = Vec::new();
-        self.visit(&mut |node| {
-            if let Kind::Name(name) = &node.kind {
-                all.push(name);
-            }
-        });
-        all
+        match &self.kind {
+            Kind::Name(name) => vec![name],
+            kind => kind.parts().flat_map(Node::names).collect(),
+        }
     }
 
     /// Returns whether it distinguishes cases: by a truth value, by rounding, by `min` or by `max`.
     pub fn has_cases(&self) -> bool {
-        let mut has_cases = false;
-        self.visit(&mut |node| {
-            has_cases |= match node.kind {
-                Kind::Not(_) => true,
-                Kind::Call(function, _) => {
-                    matches!(function, Function::Round | Function::Floor | Function::Ceil)
-                }
-                Kind::Binary(operator, ..) => {
-                    operator.result() == Type::Truth || matches!(operator, Operator::Min | Operator::Max)
-                }
-                Kind::Number(_) | Kind::Name(_) | Kind::Negated(_) => false,
-            };
-        });
-        has_cases
+        self.any(&|node| match node.kind {
+            Kind::Not(_) => true,
+            Kind::Call(function, _) => {
+                matches!(function, Function::Round | Function::Floor | Function::Ceil)
+            }
+            Kind::Binary(operator, ..) => {
+                operator.result() == Type::Truth || matches!(operator, Operator::Min | Operator::Max)
+            }
+            Kind::Number(_) | Kind::Name(_) | Kind::Negated(_) => false,
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Formulas of user-defined effects: what their names mean, and their values in a row.
 
-use pinswitch_formula::{Formula, FormulaError, NameError, Node};
+use pinswitch_formula::{Formula, FormulaError, Kind, NameError, Node};
 
 use super::variable::{Moment, TENSION, VARIABLES, Variable, variable};
 
@@ -51,13 +51,13 @@ impl EffectFormula {
 
     /// Returns whether it uses the constant with this index.
     pub(super) fn has_constant(&self, index: usize) -> bool {
-        self.root().names().into_iter().any(|symbol| *symbol == Symbol::Constant(index))
+        self.root().any(&|node| *node.kind() == Kind::Name(Symbol::Constant(index)))
     }
 
     /// Returns whether it reads a variable that meets the condition.
     pub(super) fn reads(&self, condition: impl Fn(&Variable) -> bool) -> bool {
-        let mut names = self.root().names().into_iter();
-        names.any(|symbol| matches!(symbol, Symbol::Variable(variable) if condition(variable)))
+        self.root()
+            .any(&|node| matches!(node.kind(), Kind::Name(Symbol::Variable(variable)) if condition(variable)))
     }
 }
 
